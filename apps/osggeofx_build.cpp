@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// osggeofx_build: rasters to a paged terrain database.
+#include <osgGeoFX/terrain/DatabaseBuilder.h>
+
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+namespace
+{
+
+/// One line that is rewritten on a terminal; a line for each tenth of the way where output goes to a file.
+class ProgressLine
+{
+public:
+    bool operator()(std::uint64_t done, std::uint64_t total, const std::string& phase)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        const auto percent = 100 * done / total;
+        if (_terminal && (now - _last > std::chrono::milliseconds(100) || done == total))
+        {
+            std::fprintf(stderr, "\r%-7s %3d %%  (%llu of %llu units)%s", phase.c_str(), static_cast<int>(percent),
+                         static_cast<unsigned long long>(done), static_cast<unsigned long long>(total),
+                         done == total ? "\n" : "");
+            _last = now;
+        }
+        else if (!_terminal && percent / 10 > _tenths)
+        {
+            _tenths = percent / 10;
+            std::fprintf(stderr, "%s: %d %%\n", phase.c_str(), static_cast<int>(percent));
+        }
+        return true;
+    }
+
+private:
+    bool _terminal = isatty(STDERR_FILENO) != 0;
+    std::uint64_t _tenths = 0;
+    std::chrono::steady_clock::time_point _last;
+};
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    osgGeoFX::BuildOptions options;
+    bool geocentric = false, quiet = false;
+    std::string srs;
+
+    CLI::App app{"Builds a paged terrain database from rasters. Plain osgviewer reads the result: osgviewer "
+                 "DIR/terrain.osgb",
+                 "osggeofx_build"};
+    app.add_option("--dem", options.dems, "Elevation rasters; where several overlap, the later one wins")
+        ->required()
+        ->type_name("FILE…");
+    app.add_option("--imagery", options.imagery, "Colour rasters for the surface; the later one wins")
+        ->type_name("FILE…");
+    app.add_option("--landcover", options.landCover, "Raster of land-cover classes, one byte for each pixel")
+        ->type_name("FILE");
+    app.add_option("--landcover-table", options.landCoverTable,
+                   "Its classes: value,class,name,red,green,blue; without imagery they colour the surface")
+        ->type_name("CSV");
+    auto* globe = app.add_flag("--geocentric", geocentric, "Curved, in geocentric WGS 84 coordinates (the default)");
+    app.add_option("--srs", srs, "Flat, in a projected CRS: EPSG:N")->excludes(globe)->type_name("EPSG:N");
+    const std::map<std::string, osgGeoFX::VerticalDatum> datums{{"none", osgGeoFX::VerticalDatum::None},
+                                                               {"ellipsoid", osgGeoFX::VerticalDatum::Ellipsoid},
+                                                               {"egm96", osgGeoFX::VerticalDatum::Egm96}};
+    app.add_option("--vertical", options.vertical,
+                   "What the heights are measured from: the ellipsoid, the EGM96 geoid (they are then moved to the "
+                   "ellipsoid), or none: used as they are (the default)")
+        ->transform(CLI::CheckedTransformer(datums).description("ellipsoid|egm96|none"));
+    app.add_option("--tile-size", options.tileSize, "Grid intervals along a tile's edge, at most")
+        ->capture_default_str();
+    app.add_option("--texture-size", options.textureSize,
+                   "Texture intervals along a tile's edge; 0 chooses by the resolution of the sources")
+        ->capture_default_str();
+    app.add_option("--pixel-error", options.pixelError, "Largest error of the relief on the screen, pixels")
+        ->capture_default_str();
+    app.add_option("--texel-error", options.texelError, "Largest texel on the screen where it shows, pixels")
+        ->capture_default_str();
+    app.add_option("--pixels-per-radian", options.pixelsPerRadian,
+                   "The screen for which the errors hold; the default is osgviewer's view on 1080 lines")
+        ->capture_default_str();
+    app.add_option("--memory", options.memoryMiB, "Memory for the data, MiB")->capture_default_str();
+    app.add_option("--threads", options.threads, "Worker threads; 0 for one for each core")->capture_default_str();
+    app.add_flag("--resume", options.resume, "Continue a build that was interrupted");
+    app.add_flag("--quiet", quiet, "No progress and no summary");
+    app.add_option("-o,--output", options.output, "Folder of the database")->required()->type_name("DIR");
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError& error)
+    {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+
+    try
+    {
+        if (!srs.empty())
+        {
+            const std::string number = srs.rfind("EPSG:", 0) == 0 ? srs.substr(5) : srs;
+            if (number.empty() || number.size() > 9 || number.find_first_not_of("0123456789") != std::string::npos)
+                throw osgGeoFX::BuildError("--srs " + srs + ": write it as EPSG: and a number, such as EPSG:32604.");
+            options.epsg = std::stoi(number);
+        }
+        const auto summary =
+            osgGeoFX::buildDatabase(options, quiet ? osgGeoFX::BuildProgress() : ProgressLine());
+        if (!quiet)
+            std::printf("%s: %llu tiles (%llu taken over), %d levels, %.3f million samples, %.1f MB, %.1f s, peak "
+                        "memory %.0f MiB\n",
+                        summary.file.c_str(), static_cast<unsigned long long>(summary.tiles),
+                        static_cast<unsigned long long>(summary.tilesReused), summary.levels,
+                        static_cast<double>(summary.samples) * 1e-6, static_cast<double>(summary.bytes) * 1e-6,
+                        summary.seconds, static_cast<double>(summary.peakMemoryBytes) / (1024.0 * 1024.0));
+        return 0;
+    }
+    catch (const std::exception& error)
+    {
+        std::cerr << "osggeofx_build: " << error.what() << std::endl;
+        return 2;
+    }
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+// Private to osgGeoFXData: consumers of the library do not need GDAL's headers.
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <memory>
+#include <string>
+
+namespace osgGeoFX
+{
+
+struct DatasetCloser
+{
+    void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
+
+struct TransformationDestroyer
+{
+    void operator()(OGRCoordinateTransformation* t) const { OGRCoordinateTransformation::DestroyCT(t); }
+};
+using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation, TransformationDestroyer>;
+
+/// Registers GDAL's drivers once for the process. Thread-safe.
+void initialiseGdal();
+
+/** While it lives, keeps what GDAL reports on this thread from the terminal; `message()` is the first failure.
+    GDAL's handlers are a stack for each thread, so these nest. */
+class GdalErrorScope
+{
+public:
+    GdalErrorScope();
+    ~GdalErrorScope();
+    GdalErrorScope(const GdalErrorScope&) = delete;
+    GdalErrorScope& operator=(const GdalErrorScope&) = delete;
+
+    bool failed() const { return !_message.empty(); }
+    const std::string& message() const { return _message; }
+
+private:
+    static void CPL_STDCALL handle(CPLErr severity, CPLErrorNum number, const char* text);
+    std::string _message;
+};
+
+/// A CRS that takes longitude before latitude and easting before northing, whatever its authority says.
+OGRSpatialReference gisOrder(OGRSpatialReference srs);
+
+/// Transformation between two CRSs; throws BuildError, naming `file`, where PROJ has none.
+TransformationPtr createTransformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
+                                       const std::string& file);
+
+} // namespace osgGeoFX

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "LandCoverTable.h"
+
+#include "GdalSupport.h"
+
+#include <osgGeoFX/geodata/BuildError.h>
+
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+int byteField(const OGRFeature& feature, int field, const std::string& where, const char* column)
+{
+    const std::string text = feature.GetFieldAsString(field);
+    int value = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 255)
+        throw BuildError(where + "the column \"" + column + "\" holds \"" + text +
+                         "\"; write a whole number from 0 to 255.");
+    return value;
+}
+
+} // namespace
+
+std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
+{
+    initialiseGdal();
+    GdalErrorScope errors;
+    const char* drivers[] = {"CSV", nullptr};
+    const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, drivers));
+    if (!dataset || dataset->GetLayerCount() == 0)
+        throw BuildError(file + ": the land-cover table cannot be read as CSV" +
+                         (errors.failed() ? " (" + errors.message() + ")" : "") +
+                         "; it needs the extension .csv and a first line value,class,name,red,green,blue.");
+    OGRLayer* layer = dataset->GetLayer(0);
+    const char* columns[] = {"value", "class", "name", "red", "green", "blue"};
+    std::array<int, 6> index{};
+    for (std::size_t i = 0; i < index.size(); ++i)
+    {
+        index[i] = layer->GetLayerDefn()->GetFieldIndex(columns[i]);
+        if (index[i] < 0)
+            throw BuildError(file + ": the column \"" + columns[i] +
+                             "\" is missing; the first line must be value,class,name,red,green,blue.");
+    }
+
+    std::vector<LandCoverClass> classes;
+    int line = 1;
+    for (const auto& feature : layer)
+    {
+        const std::string where = file + ":" + std::to_string(++line) + ": ";
+        LandCoverClass entry;
+        entry.value = byteField(*feature, index[0], where, columns[0]);
+        entry.id = feature->GetFieldAsString(index[1]);
+        entry.name = feature->GetFieldAsString(index[2]);
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            entry.color[channel] = static_cast<unsigned char>(
+                byteField(*feature, index[3 + channel], where, columns[3 + channel]));
+        if (entry.value == 0)
+            throw BuildError(where + "the value 0 is kept for \"no data\"; give the class another value.");
+        if (std::any_of(classes.begin(), classes.end(), [&](const auto& c) { return c.value == entry.value; }))
+            throw BuildError(where + "the value " + std::to_string(entry.value) +
+                             " stands in the table twice; remove one of the lines.");
+        classes.push_back(std::move(entry));
+    }
+    if (classes.empty())
+        throw BuildError(file + ": the land-cover table has no classes; add a line for each value.");
+    return classes;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include "DatabaseBuilder.h"
+#include "TilingScheme.h"
+
+#include <osgGeoFX/geodata/LandCoverTable.h>
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// What both passes know of a tile.
+struct TileFacts
+{
+    float minHeight = 0.0f, maxHeight = 0.0f; ///< of the finest posts below it, metres
+    float error = 0.0f;     ///< bound of the vertical distance between its mesh and the finest one, metres
+    float skirtBelow = 0.0f; ///< the deepest skirt of the tile and all below it, metres
+    bool any = false;       ///< it has at least one post with data
+};
+
+/// A square block of tiles that one worker builds at a time: `root` and the `depth` levels below it. Its arrays
+/// are lattices of the level root.level + depth.
+struct Unit
+{
+    TileKey root;
+    int depth = 0;
+    int tier = 0; ///< 0 samples rasters; tier n stands on the roots of tier n−1
+
+    int latticeLevel() const { return root.level + depth; }
+    int span() const { return 1 << depth; }
+};
+
+/** Everything that follows from the options and the rasters' headers, and what the passes hand on.
+
+    Built in two passes, because a skirt must reach the coarsest neighbour that can ever stand beside it, and how
+    far that lies is known only when all heights have been seen. */
+class BuildPlan
+{
+public:
+    explicit BuildPlan(const BuildOptions& options);
+
+    BuildOptions options;
+    TilingScheme scheme;
+    std::vector<std::vector<Unit>> tiers;
+    std::vector<LandCoverClass> classes;
+    std::array<std::array<unsigned char, 4>, 256> classColors{};
+    std::string fingerprint; ///< what the database's bytes depend on, in words
+    int threads = 1;
+
+    /// By level, row by row from the south.
+    std::vector<std::vector<TileFacts>> facts;
+    /// Skirt depths by level: of horizontal edges [line from the south][tile], of vertical ones [line from the west][tile].
+    std::vector<std::vector<float>> horizontalSkirts, verticalSkirts;
+
+    TileFacts& fact(const TileKey& key);
+    const TileFacts& fact(const TileKey& key) const;
+    float horizontalSkirt(int level, int line, int tile) const;
+    float verticalSkirt(int level, int line, int tile) const;
+
+    std::string tileFile(const TileKey& parent) const; ///< the file that holds the children of `parent`
+    std::string workFile(const char* pass, const Unit& unit) const;
+    std::string workFolder() const { return options.output + "/work"; }
+
+    /// Counts a finished unit; throws BuildError where the caller's progress function says stop.
+    void advance(const std::string& phase);
+    BuildProgress progress;
+    std::uint64_t unitsDone = 0, unitsTotal = 0;
+
+private:
+    void chooseGrid();
+    void chooseUnits();
+    void chooseFingerprint();
+    std::mutex _progressMutex;
+};
+
+/// The rasters of a plan, opened for one worker.
+class RasterStack
+{
+public:
+    explicit RasterStack(const BuildPlan& plan);
+
+    /// Heights on a lattice, metres; NaN where there are none.
+    std::vector<float> heights(const Lattice& lattice);
+
+    /// Classes on a lattice; 0 where there are none. Empty without land cover.
+    std::vector<unsigned char> classes(const Lattice& lattice);
+
+    /// Base colours on a lattice, red, green, blue for each texel.
+    std::vector<unsigned char> colors(const Lattice& lattice);
+
+private:
+    void moveToEllipsoid(const Lattice& lattice, std::vector<float>& heights);
+
+    const BuildPlan& _plan;
+    std::vector<RasterSource> _dems, _imagery, _landCover, _landCoverColors;
+    TransformationPtr _geoid;
+};
+
+/// Pass 1: samples all heights into work files, and fills the plan's facts and skirts.
+void runHeightPass(BuildPlan& plan);
+
+} // namespace osgGeoFX

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "DatabaseBuilder.h"
+
+#include "AtomicFile.h"
+#include "BuildPlan.h"
+#include "TilePass.h"
+
+#include <osg/CoordinateSystemNode>
+#include <osg/Material>
+#include <osg/ValueObject>
+#include <osgDB/ReadFile>
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+constexpr const char* ORIGIN_FILE = "built-from.txt";
+
+std::string readText(const fs::path& path)
+{
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+std::uint64_t bytesBelow(const fs::path& folder)
+{
+    std::uint64_t bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file())
+            bytes += entry.file_size();
+    return bytes;
+}
+
+/// Empties or adopts the output folder. Returns true where a finished database of the same build lies there.
+bool prepareFolder(const BuildPlan& plan)
+{
+    const fs::path folder = plan.options.output;
+    const fs::path origin = folder / ORIGIN_FILE, root = folder / "terrain.osgb";
+    std::error_code code;
+    fs::create_directories(folder, code);
+    if (code || !fs::is_directory(folder))
+        throw BuildError(folder.string() + ": the folder cannot be made (" +
+                         (code ? code.message() : std::string("a file has this name")) +
+                         "); choose another with -o.");
+    const bool ours = fs::exists(origin);
+    if (!ours && !fs::is_empty(folder))
+        throw BuildError(folder.string() +
+                         ": the folder holds other files, which a build would mix with its own; choose an empty one "
+                         "with -o.");
+    if (ours && plan.options.resume)
+    {
+        if (readText(origin) != plan.fingerprint)
+            throw BuildError(folder.string() +
+                             ": the build that was begun here has other sources or options; repeat it with those, or "
+                             "leave out --resume to begin anew.");
+        return fs::exists(root);
+    }
+    // The root first: without it, what is left of an old database does not look whole.
+    for (const fs::path& old : {root, folder / "tiles", folder / "work"})
+    {
+        fs::remove_all(old, code);
+        if (code)
+            throw BuildError(old.string() + ": the old database cannot be removed (" + code.message() +
+                             "); make the folder writable, or choose another with -o.");
+    }
+    writeFileAtomically(origin.string(), plan.fingerprint.data(), plan.fingerprint.size());
+    return false;
+}
+
+osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const TilePassResult& result)
+{
+    char* wkt = nullptr;
+    plan.scheme.crs.srs.exportToWkt(&wkt);
+    osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode("WKT", wkt);
+    CPLFree(wkt);
+    if (plan.scheme.crs.geographic)
+        root->setEllipsoidModel(new osg::EllipsoidModel);
+    root->setName("osgGeoFX terrain");
+
+    const double unit = plan.scheme.crs.geographic ? 1.0 : plan.scheme.crs.metresPerUnit;
+    const char* vertical[] = {"none", "ellipsoid", "egm96"};
+    root->setUserValue("geofx.format", 1);
+    root->setUserValue("geofx.kind", std::string(plan.scheme.crs.geographic ? "geocentric" : "projected"));
+    root->setUserValue("geofx.west", plan.scheme.west * unit);
+    root->setUserValue("geofx.south", plan.scheme.south * unit);
+    root->setUserValue("geofx.east", plan.scheme.east * unit);
+    root->setUserValue("geofx.north", plan.scheme.north * unit);
+    root->setUserValue("geofx.minHeight", static_cast<double>(plan.facts[0][0].minHeight));
+    root->setUserValue("geofx.maxHeight", static_cast<double>(plan.facts[0][0].maxHeight));
+    root->setUserValue("geofx.pixelsPerRadian", plan.options.pixelsPerRadian);
+    root->setUserValue("geofx.pixelError", plan.options.pixelError);
+    root->setUserValue("geofx.levels", plan.scheme.finestLevel + 1);
+    root->setUserValue("geofx.tiles", static_cast<double>(result.tiles));
+    root->setUserValue("geofx.vertical", std::string(vertical[static_cast<int>(plan.options.vertical)]));
+    if (!plan.options.landCoverTable.empty())
+        root->setUserValue("geofx.landCoverTable", readText(plan.options.landCoverTable));
+
+    osg::ref_ptr<osg::Material> material = new osg::Material;
+    material->setAmbient(osg::Material::FRONT_AND_BACK, osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f));
+    material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f));
+    root->getOrCreateStateSet()->setAttributeAndModes(material);
+    root->addChild(result.root);
+    return root;
+}
+
+} // namespace
+
+BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& progress)
+{
+    const auto start = std::chrono::steady_clock::now();
+    BuildPlan plan(options);
+    plan.progress = progress;
+    GDALSetCacheMax64(static_cast<GIntBig>(options.memoryMiB) * 1024 * 1024 / 4);
+
+    BuildSummary summary;
+    summary.file = options.output + "/terrain.osgb";
+    summary.levels = plan.scheme.finestLevel + 1;
+    const auto across = static_cast<std::uint64_t>(plan.scheme.tilesAcross(plan.scheme.finestLevel));
+    summary.samples = (across * static_cast<std::uint64_t>(plan.scheme.intervalsX) + 1) *
+                      (across * static_cast<std::uint64_t>(plan.scheme.intervalsY) + 1);
+    if (prepareFolder(plan))
+    {
+        const osg::ref_ptr<osg::Node> root = osgDB::readRefNodeFile(summary.file);
+        double tiles = 0.0;
+        if (!root || !root->getUserValue("geofx.tiles", tiles))
+            throw BuildError(summary.file + ": the finished database cannot be read; build again without --resume.");
+        summary.tiles = summary.tilesReused = static_cast<std::uint64_t>(tiles);
+    }
+    else
+    {
+        runHeightPass(plan);
+        const TilePassResult result = runTilePass(plan);
+        writeNodeAtomically(*createRoot(plan, result), summary.file);
+        summary.tiles = result.tiles;
+        summary.tilesReused = result.tilesReused;
+    }
+    std::error_code code;
+    fs::remove_all(plan.workFolder(), code); // what could not be removed does no harm
+
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    summary.peakMemoryBytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+    summary.bytes = bytesBelow(options.output);
+    summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return summary;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/geodata/BuildError.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// How the heights of a DEM are to be understood.
+enum class VerticalDatum
+{
+    None,      ///< used as they are: the zero of the DEM is the zero of the database (the default)
+    Ellipsoid, ///< metres above the WGS 84 ellipsoid, used as they are
+    Egm96      ///< metres above the EGM96 geoid (mean sea level); moved to the ellipsoid by PROJ's grid
+};
+
+/** What a database is built from and how.
+
+    Levels, tile shapes and every byte of the database follow from the fields above `threads` alone. */
+struct BuildOptions
+{
+    std::vector<std::string> dems;    ///< elevation rasters, metres; where several overlap the later one wins
+    std::vector<std::string> imagery; ///< colour rasters (RGB, RGBA, grey or palette); the later one wins
+    std::string landCover;            ///< class raster, one byte band; empty for none
+    std::string landCoverTable;       ///< CSV with the columns value, class, name, red, green, blue
+    int epsg = 0;                     ///< projected database in this CRS; 0 for a geocentric one (WGS 84)
+    VerticalDatum vertical = VerticalDatum::None;
+    int tileSize = 128;      ///< largest number of grid intervals along a tile's edge, 8…240
+    int textureSize = 0;     ///< intervals of the texture's grid along a tile's edge; 0 chooses, from the sources' resolution, between 2 × and 8 × tileSize but at most 1024
+    double pixelError = 1.0; ///< bound of the geometric error on the screen, pixels
+    double texelError = 2.0; ///< largest size of a texel on the screen where it would show, pixels
+    /// The screen for which the bounds hold: pixels per radian at its centre. The default is that of
+    /// plain osgviewer, 1080 lines over a vertical field of view of 29.15°.
+    double pixelsPerRadian = 2077.0;
+    std::string output; ///< folder of the database; made when missing
+
+    int threads = 0;      ///< worker threads; 0 for one for each core
+    int memoryMiB = 1024; ///< what the builder may use for its data, at least 128 MiB
+    bool resume = false;  ///< continue a build of the same options that was interrupted
+};
+
+/// Figures of a finished build.
+struct BuildSummary
+{
+    std::uint64_t tiles = 0;         ///< tiles with geometry, all levels
+    std::uint64_t tilesReused = 0;   ///< of these, taken over from an interrupted build
+    int levels = 0;                  ///< levels of detail
+    std::uint64_t samples = 0;       ///< grid posts of the finest level
+    std::uint64_t bytes = 0;         ///< size of the database on disk
+    double seconds = 0.0;            ///< wall-clock time
+    std::uint64_t peakMemoryBytes = 0; ///< largest resident size of the process
+    std::string file;                ///< the file to open: OUTPUT/terrain.osgb
+};
+
+/// Called from any worker, never from two at once: work units done and in all, and what is being done.
+/// Return false to cancel; the build then throws BuildError and can be resumed.
+using BuildProgress = std::function<bool(std::uint64_t done, std::uint64_t total, const std::string& phase)>;
+
+/** Builds a paged terrain database from rasters.
+
+    The result is `OUTPUT/terrain.osgb` and one `.osgb` file for each group of four tiles below `OUTPUT/tiles`;
+    plain OpenSceneGraph reads it. `terrain.osgb` is written last, so a folder without it is not a database.
+    The same options give the same bytes, for any number of threads and through any interruptions.
+    Throws BuildError. Safe to call from any thread; one build for each output folder at a time. */
+OSGGEOFXDATA_EXPORT BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& progress = {});
+
+} // namespace osgGeoFX

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <string>
+
+namespace osgGeoFX
+{
+
+/// Place of a tile in the quadtree: level 0 is the root, x counts eastwards, y northwards.
+struct TileKey
+{
+    int level = 0;
+    int x = 0;
+    int y = 0;
+
+    TileKey child(int dx, int dy) const { return {level + 1, 2 * x + dx, 2 * y + dy}; }
+
+    /// "level/x/y", as tiles are named and their files are filed.
+    std::string path() const
+    {
+        return std::to_string(level) + "/" + std::to_string(x) + "/" + std::to_string(y);
+    }
+
+    friend bool operator==(const TileKey& a, const TileKey& b)
+    {
+        return a.level == b.level && a.x == b.x && a.y == b.y;
+    }
+};
+
+} // namespace osgGeoFX

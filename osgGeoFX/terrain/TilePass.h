@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include "BuildPlan.h"
+
+#include <osg/Node>
+
+#include <cstdint>
+
+namespace osgGeoFX
+{
+
+struct TilePassResult
+{
+    std::uint64_t tiles = 0;
+    std::uint64_t tilesReused = 0; ///< taken over from an interrupted build
+    osg::ref_ptr<osg::Node> root;  ///< the root tile, for terrain.osgb
+};
+
+/// Pass 2: writes the tiles' files; needs what pass 1 has found.
+TilePassResult runTilePass(BuildPlan& plan);
+
+/// Writes a node as a compressed .osgb that plain OpenSceneGraph reads. Throws BuildError.
+void writeNodeAtomically(const osg::Node& node, const std::string& path);
+
+} // namespace osgGeoFX
