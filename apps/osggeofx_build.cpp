@@ -79,7 +79,7 @@ int main(int argc, char** argv)
     app.add_option("--tile-size", options.tileSize, "Grid intervals along a tile's edge, at most")
         ->capture_default_str();
     app.add_option("--texture-size", options.textureSize,
-                   "Texture intervals along a tile's edge; 0 chooses by the resolution of the sources")
+                   "Texture intervals along a tile's edge, at most; 0 for four times the tile size")
         ->capture_default_str();
     app.add_option("--pixel-error", options.pixelError, "Largest error of the relief on the screen, pixels")
         ->capture_default_str();

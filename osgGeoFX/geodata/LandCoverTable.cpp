@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fstream>
 
 namespace osgGeoFX
 {
@@ -26,6 +27,35 @@ int byteField(const OGRFeature& feature, int field, const std::string& where, co
         throw BuildError(where + "the column \"" + column + "\" holds \"" + text +
                          "\"; write a whole number from 0 to 255.");
     return value;
+}
+
+/// Where the table's records begin, lines counted from 1: GDAL passes over blank lines, and quoted text may have
+/// line breaks.
+std::vector<int> recordLines(const std::string& file)
+{
+    std::vector<int> lines;
+    std::ifstream stream(file, std::ios::binary);
+    bool quoted = false, blank = true;
+    int line = 1, start = 1;
+    for (char c = '\n'; stream.get(c);)
+    {
+        if (c == '"')
+            quoted = !quoted;
+        if (c != '\n' && c != '\r')
+        {
+            if (blank)
+                start = line;
+            blank = false;
+        }
+        if (c != '\n')
+            continue;
+        ++line;
+        if (!quoted && !blank)
+            lines.push_back(start);
+        blank = blank || !quoted;
+    }
+    lines.push_back(blank ? line : start);
+    return lines;
 }
 
 } // namespace
@@ -52,10 +82,13 @@ std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
     }
 
     std::vector<LandCoverClass> classes;
-    int line = 1;
+    const std::vector<int> lines = recordLines(file);
+    std::size_t record = 0;
     for (const auto& feature : layer)
     {
-        const std::string where = file + ":" + std::to_string(++line) + ": ";
+        ++record;
+        const std::string where =
+            file + ":" + std::to_string(record < lines.size() ? lines[record] : lines.back()) + ": ";
         LandCoverClass entry;
         entry.value = byteField(*feature, index[0], where, columns[0]);
         entry.id = feature->GetFieldAsString(index[1]);

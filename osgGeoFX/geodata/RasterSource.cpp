@@ -225,19 +225,10 @@ void RasterSource::translate(const std::vector<std::string>& arguments)
 
 void RasterSource::openAs(RasterKind kind)
 {
-    if (_chain.back()->GetGeoTransform(_geoTransform.data()) != CE_None)
-    {
-        GdalErrorScope errors;
-        if (_chain.back()->GetGCPCount() == 0)
-            fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
-        GDALDatasetH warped = GDALAutoCreateWarpedVRT(GDALDataset::ToHandle(_chain.back().get()), nullptr, nullptr,
-                                                      GRA_Bilinear, 0.0, nullptr);
-        if (!warped)
-            fail("its ground control points fit no plane (" + errors.message() + "); warp it with gdalwarp first");
-        _chain.emplace_back(GDALDataset::FromHandle(warped));
-        _chain.back()->GetGeoTransform(_geoTransform.data());
-    }
-    const OGRSpatialReference* srs = _chain.back()->GetSpatialRef();
+    const bool placed = _chain.back()->GetGeoTransform(_geoTransform.data()) == CE_None;
+    if (!placed && _chain.back()->GetGCPCount() == 0)
+        fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
+    const OGRSpatialReference* srs = placed ? _chain.back()->GetSpatialRef() : _chain.back()->GetGCPSpatialRef();
     if (!srs || srs->IsEmpty() || srs->IsLocal())
         fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
     _srs = gisOrder(*srs);
@@ -277,12 +268,43 @@ void RasterSource::openAs(RasterKind kind)
     else if (type != GDT_Byte)
         fail("land-cover classes must be one byte for each pixel (it has " +
              std::string(GDALGetDataTypeName(type)) + "); convert it with gdal_translate -ot Byte");
+    if (!placed)
+        warpByControlPoints(kind);
     _srs.StripVertical();
+}
+
+void RasterSource::warpByControlPoints(RasterKind kind)
+{
+    CPLStringList list;
+    std::vector<const char*> arguments{"-of", "VRT", "-r", kind == RasterKind::LandCover ? "near" : "bilinear"};
+    // What lies outside the turned raster is no ground.
+    int hasNoData = FALSE;
+    _chain.back()->GetRasterBand(1)->GetNoDataValue(&hasNoData);
+    if (kind == RasterKind::Imagery)
+        arguments.push_back("-dstalpha");
+    else if (!hasNoData && kind == RasterKind::Elevation)
+        arguments.insert(arguments.end(), {"-ot", "Float32", "-dstnodata", "-32768"});
+    else if (!hasNoData)
+        arguments.insert(arguments.end(), {"-dstnodata", "0"});
+    for (const char* argument : arguments)
+        list.AddString(argument);
+    GdalErrorScope errors;
+    GDALDatasetH source = GDALDataset::ToHandle(_chain.back().get());
+    GDALWarpAppOptions* options = GDALWarpAppOptionsNew(list.List(), nullptr);
+    GDALDatasetH result = GDALWarp("", nullptr, 1, &source, options, nullptr);
+    GDALWarpAppOptionsFree(options);
+    if (!result)
+        fail("its ground control points fit no plane (" + errors.message() + "); warp it with gdalwarp first");
+    _chain.emplace_back(GDALDataset::FromHandle(result));
+    _chain.back()->GetGeoTransform(_geoTransform.data());
 }
 
 void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>& colors)
 {
-    const GDALDataset& source = *_chain.back();
+    GDALDataset& source = *_chain.back();
+    // A virtual dataset is named by its XML.
+    char** description = source.GetMetadata("xml:VRT");
+    const std::string name = _chain.size() > 1 && description ? description[0] : _file;
     char* wkt = nullptr;
     _srs.exportToWkt(&wkt);
     const auto escaped = [](const char* text)
@@ -293,8 +315,7 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
         return result;
     };
     std::string xml = CPLSPrintf("<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\">",
-                                 const_cast<GDALDataset&>(source).GetRasterXSize(),
-                                 const_cast<GDALDataset&>(source).GetRasterYSize());
+                                 source.GetRasterXSize(), source.GetRasterYSize());
     xml += "<SRS>" + escaped(wkt) + "</SRS>";
     CPLFree(wkt);
     xml += CPLSPrintf("<GeoTransform>%.17g,%.17g,%.17g,%.17g,%.17g,%.17g</GeoTransform>", _geoTransform[0],
@@ -304,7 +325,7 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
     {
         xml += CPLSPrintf("<VRTRasterBand dataType=\"Byte\" band=\"%d\"><ColorInterp>%s</ColorInterp>",
                           static_cast<int>(channel) + 1, interpretation[channel]);
-        xml += "<ComplexSource><SourceFilename relativeToVRT=\"0\">" + escaped(_file.c_str()) +
+        xml += "<ComplexSource><SourceFilename relativeToVRT=\"0\">" + escaped(name.c_str()) +
                "</SourceFilename><SourceBand>1</SourceBand><LUT>";
         for (std::size_t value = 0; value < 256; ++value)
             xml += CPLSPrintf("%s%d:%d", value ? "," : "", static_cast<int>(value), colors[value][channel]);

@@ -78,6 +78,7 @@ public:
 private:
     struct WarpRequest;
     void openAs(RasterKind kind);
+    void warpByControlPoints(RasterKind kind);
     void translate(const std::vector<std::string>& arguments);
     void warp(const GridCrs& crs, const Lattice& lattice, const WarpRequest& request);
     [[noreturn]] void fail(const std::string& what) const;

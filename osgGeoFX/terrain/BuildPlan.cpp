@@ -81,11 +81,10 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
     initialiseGdal();
     require(!options.dems.empty(), "No elevation raster is named; give at least one with --dem FILE.");
     require(!options.output.empty(), "No folder for the database is named; give one with -o DIR.");
-    require(options.tileSize >= 8 && options.tileSize <= 240,
-            "The tile size must be 8 to 240 intervals (it is " + std::to_string(options.tileSize) + ").");
-    require(options.textureSize == 0 || (options.textureSize >= 16 && options.textureSize <= 4096 &&
-                                         options.textureSize % 2 == 0),
-            "The texture size must be an even number from 16 to 4096 (it is " +
+    require(options.tileSize >= 8 && options.tileSize <= 256 && (options.tileSize & (options.tileSize - 1)) == 0,
+            "The tile size must be a power of two from 8 to 256 (it is " + std::to_string(options.tileSize) + ").");
+    require(options.textureSize == 0 || (options.textureSize >= 16 && options.textureSize <= 4096),
+            "The texture size must be 16 to 4096 intervals (it is " +
                 std::to_string(options.textureSize) + ").");
     require(options.pixelError > 0.0 && options.texelError > 0.0 && options.pixelsPerRadian > 0.0,
             "The pixel error, the texel error and the pixels per radian must be greater than 0.");
@@ -157,36 +156,37 @@ void BuildPlan::chooseGrid()
     }
 
     const auto count = [](double extent, double step) { return std::ceil(extent / step - 1e-4); };
-    const double postsX = count(scheme.east - scheme.west, stepX);
-    const double postsY = count(scheme.north - scheme.south, stepY);
-    const double texelsX = colorFiles.empty() ? 0.0 : count(scheme.east - scheme.west, colorStepX);
-    const double texelsY = colorFiles.empty() ? 0.0 : count(scheme.north - scheme.south, colorStepY);
-
+    const double columns = count(scheme.east - scheme.west, stepX), rows = count(scheme.north - scheme.south, stepY);
+    scheme.intervals = options.tileSize;
+    require(std::max(columns, rows) <= static_cast<double>(scheme.intervals << MAX_LEVEL),
+            options.dems.front() + ": at its resolution the terrain would need more than " +
+                std::to_string(MAX_LEVEL) + " levels; give coarser rasters or a smaller region.");
+    scheme.lastColumn = std::max(1, static_cast<int>(columns));
+    scheme.lastRow = std::max(1, static_cast<int>(rows));
     scheme.finestLevel = 0;
-    const auto tiles = [&] { return static_cast<double>(scheme.tilesAcross(scheme.finestLevel)); };
-    while (scheme.finestLevel < MAX_LEVEL && tiles() * options.tileSize < std::max(postsX, postsY))
+    while ((scheme.intervals << scheme.finestLevel) < std::max(scheme.lastColumn, scheme.lastRow))
         ++scheme.finestLevel;
 
-    // A texture may be a quarter coarser than its source: resampling blurs by more than that anyway.
-    scheme.textureIntervals = options.textureSize;
-    const double texels = 0.75 * std::max(texelsX, texelsY);
-    if (scheme.textureIntervals == 0)
+    // Finest tiles have as many texels as the colours' source has pixels; tiles above them keep these texels until
+    // a texture reaches its limit of, by default, four for each mesh interval. So a mesh is never finer than
+    // its relief asks for only because its texture would be too coarse.
+    const int limit = options.textureSize > 0 ? options.textureSize : 4 * options.tileSize;
+    for (;; ++scheme.finestLevel, scheme.lastColumn *= 2, scheme.lastRow *= 2)
     {
-        scheme.textureIntervals = 32;
-        while (scheme.textureIntervals < 2 * options.tileSize)
-            scheme.textureIntervals *= 2;
-        while (scheme.textureIntervals < std::min(8 * options.tileSize, 1024) &&
-               tiles() * scheme.textureIntervals < texels)
-            scheme.textureIntervals *= 2;
+        require(scheme.finestLevel <= MAX_LEVEL, colorFiles.empty() ? options.dems.front() : colorFiles.front() +
+                ": at its resolution the terrain would need more than " + std::to_string(MAX_LEVEL) +
+                " levels; give coarser rasters, a smaller region, or a larger --texture-size.");
+        double texels = scheme.intervals;
+        if (!colorFiles.empty())
+            texels *= std::max((scheme.east - scheme.west) / colorStepX / scheme.lastColumn,
+                               (scheme.north - scheme.south) / colorStepY / scheme.lastRow);
+        scheme.texels = std::max(2, static_cast<int>(std::ceil(texels - 1e-3)));
+        if (scheme.texels <= limit)
+            break;
     }
-    while (scheme.finestLevel < MAX_LEVEL && tiles() * scheme.textureIntervals < texels)
-        ++scheme.finestLevel;
-    require(scheme.finestLevel < MAX_LEVEL, options.dems.front() + ": at its resolution the terrain would need more than " +
-                                                std::to_string(MAX_LEVEL) +
-                                                " levels; give coarser rasters or a smaller region.");
-
-    scheme.intervalsX = std::max(2, static_cast<int>(std::ceil(postsX / tiles())));
-    scheme.intervalsY = std::max(2, static_cast<int>(std::ceil(postsY / tiles())));
+    scheme.textureDepth = 0;
+    while (scheme.textureDepth < scheme.finestLevel && (scheme.texels << (scheme.textureDepth + 1)) <= limit)
+        ++scheme.textureDepth;
 }
 
 void BuildPlan::chooseUnits()
@@ -194,7 +194,7 @@ void BuildPlan::chooseUnits()
     // A unit's textures are its largest arrays: some four million texels at most. Bytes at a unit's border
     // depend on where it lies, so nothing here may depend on the machine.
     int depthLimit = 3;
-    while (depthLimit > 1 && (scheme.textureIntervals << depthLimit) > 2048)
+    while (depthLimit > 1 && (scheme.texels << depthLimit) > 2048)
         --depthLimit;
     int latticeLevel = scheme.finestLevel;
     for (int tier = 0;; ++tier)
@@ -216,11 +216,9 @@ void BuildPlan::chooseUnits()
     {
         const auto across = static_cast<std::size_t>(scheme.tilesAcross(level));
         facts.emplace_back(across * across);
-        horizontalSkirts.emplace_back((across + 1) * across, 0.0f);
-        verticalSkirts.emplace_back((across + 1) * across, 0.0f);
     }
 
-    const double texels = std::pow(static_cast<double>(scheme.textureIntervals << tiers[0][0].depth) + 1.0, 2.0);
+    const double texels = std::pow(static_cast<double>(scheme.texels << tiers[0][0].depth), 2.0);
     const double posts = std::pow(static_cast<double>(options.tileSize << tiers[0][0].depth) + 3.0, 2.0);
     const double unitMiB = (texels * 24.0 + posts * 28.0) / (1024.0 * 1024.0) + 64.0;
     const int wanted = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
@@ -271,18 +269,44 @@ const TileFacts& BuildPlan::fact(const TileKey& key) const
                  static_cast<std::size_t>(key.x)];
 }
 
-float BuildPlan::horizontalSkirt(int level, int line, int tile) const
+double BuildPlan::tolerance(int level) const
 {
-    return horizontalSkirts[static_cast<std::size_t>(level)]
-                           [static_cast<std::size_t>(line) * static_cast<std::size_t>(scheme.tilesAcross(level)) +
-                            static_cast<std::size_t>(tile)];
+    return level == scheme.finestLevel ? 0.0 : options.pixelError * scheme.tileMetres(level) / options.pixelsPerRadian;
 }
 
-float BuildPlan::verticalSkirt(int level, int line, int tile) const
+double BuildPlan::skirt(const TileKey& key, int side) const
 {
-    return verticalSkirts[static_cast<std::size_t>(level)]
-                         [static_cast<std::size_t>(line) * static_cast<std::size_t>(scheme.tilesAcross(level)) +
-                          static_cast<std::size_t>(tile)];
+    // Which neighbour stands on the other side is up to the camera and the pager: any from the coarsest level on
+    // which this line divides two tiles. (Below that level both sides lie in one tile.)
+    const int dx = side == 1 ? 1 : side == 3 ? -1 : 0, dy = side == 0 ? -1 : side == 2 ? 1 : 0;
+    double other = 0.0;
+    for (TileKey self = key;; self = {self.level - 1, self.x / 2, self.y / 2})
+    {
+        const TileKey neighbour{self.level, self.x + dx, self.y + dy};
+        const int across = scheme.tilesAcross(self.level);
+        if (neighbour.x >= 0 && neighbour.y >= 0 && neighbour.x < across && neighbour.y < across)
+            other = std::max(other, static_cast<double>(fact(neighbour).error));
+        other = std::max(other, static_cast<double>(fact(self).error));
+        const int place = dx != 0 ? self.x : self.y;
+        const bool towardsEnd = dx + dy > 0;
+        if (self.level == 0 || (place % 2 == 1) != towardsEnd)
+            break;
+    }
+    // Rounding alone opens hair lines between meshes of different density, even in a plain.
+    const double least = 0.5 + 0.02 * scheme.tileMetres(key.level) / scheme.intervals;
+    return static_cast<double>(fact(key).error) + other + least;
+}
+
+int BuildPlan::validColumns(const Unit& unit) const
+{
+    const int step = scheme.step(unit.latticeLevel());
+    return std::min(unit.span() * scheme.intervals, (scheme.lastColumn - scheme.firstColumn(unit.root) + step - 1) / step) + 1;
+}
+
+int BuildPlan::validRows(const Unit& unit) const
+{
+    const int step = scheme.step(unit.latticeLevel());
+    return std::min(unit.span() * scheme.intervals, (scheme.lastRow - scheme.firstRow(unit.root) + step - 1) / step) + 1;
 }
 
 std::string BuildPlan::tileFile(const TileKey& parent) const

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "DatabaseBuilder.h"
+#include "HeightGrid.h"
 #include "TilingScheme.h"
 
 #include <osgGeoFX/geodata/LandCoverTable.h>
@@ -19,9 +20,11 @@ namespace osgGeoFX
 struct TileFacts
 {
     float minHeight = 0.0f, maxHeight = 0.0f; ///< of the finest posts below it, metres
-    float error = 0.0f;     ///< bound of the vertical distance between its mesh and the finest one, metres
-    float skirtBelow = 0.0f; ///< the deepest skirt of the tile and all below it, metres
-    bool any = false;       ///< it has at least one post with data
+    float latticeError = 0.0f; ///< what the lattice that its mesh is made from misses of the finest heights, metres
+    float rootError = 0.0f;    ///< of a unit's root: what its own posts miss of the finest heights, metres
+    float error = 0.0f;        ///< bound of the vertical distance between its mesh and the finest one, metres
+    float skirtBelow = 0.0f;   ///< the deepest skirt of the tile and all below it, metres
+    std::int32_t any = 0;      ///< it has at least one post with data
 };
 
 /// A square block of tiles that one worker builds at a time: `root` and the `depth` levels below it. Its arrays
@@ -39,7 +42,7 @@ struct Unit
 /** Everything that follows from the options and the rasters' headers, and what the passes hand on.
 
     Built in two passes, because a skirt must reach the coarsest neighbour that can ever stand beside it, and how
-    far that lies is known only when all heights have been seen. */
+    far off that can be is known only when all heights have been seen. */
 class BuildPlan
 {
 public:
@@ -55,13 +58,18 @@ public:
 
     /// By level, row by row from the south.
     std::vector<std::vector<TileFacts>> facts;
-    /// Skirt depths by level: of horizontal edges [line from the south][tile], of vertical ones [line from the west][tile].
-    std::vector<std::vector<float>> horizontalSkirts, verticalSkirts;
-
     TileFacts& fact(const TileKey& key);
     const TileFacts& fact(const TileKey& key) const;
-    float horizontalSkirt(int level, int line, int tile) const;
-    float verticalSkirt(int level, int line, int tile) const;
+    /// Depth of the skirt on a tile's side (0 south, 1 east, 2 north, 3 west), metres.
+    double skirt(const TileKey& key, int side) const;
+
+    /// The vertical error that a mesh of a level above the finest is made with, metres: so much that the tile is due
+    /// where its edge is about as long on the screen as a pixel error is for its relief.
+    double tolerance(int level) const;
+
+    /// Points of a unit's lattice that lie on the extent; those beyond repeat the last of them.
+    int validColumns(const Unit& unit) const;
+    int validRows(const Unit& unit) const;
 
     std::string tileFile(const TileKey& parent) const; ///< the file that holds the children of `parent`
     std::string workFile(const char* pass, const Unit& unit) const;
@@ -102,7 +110,10 @@ private:
     TransformationPtr _geoid;
 };
 
-/// Pass 1: samples all heights into work files, and fills the plan's facts and skirts.
+/// Pass 1: samples all heights into work files, and fills the plan's facts.
 void runHeightPass(BuildPlan& plan);
+
+/// The lattice of an upper tier's unit: what the roots of the units below it have, as pass 1 left them.
+HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit);
 
 } // namespace osgGeoFX

@@ -129,9 +129,8 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
     BuildSummary summary;
     summary.file = options.output + "/terrain.osgb";
     summary.levels = plan.scheme.finestLevel + 1;
-    const auto across = static_cast<std::uint64_t>(plan.scheme.tilesAcross(plan.scheme.finestLevel));
-    summary.samples = (across * static_cast<std::uint64_t>(plan.scheme.intervalsX) + 1) *
-                      (across * static_cast<std::uint64_t>(plan.scheme.intervalsY) + 1);
+    summary.samples = (static_cast<std::uint64_t>(plan.scheme.lastColumn) + 1) *
+                      (static_cast<std::uint64_t>(plan.scheme.lastRow) + 1);
     if (prepareFolder(plan))
     {
         const osg::ref_ptr<osg::Node> root = osgDB::readRefNodeFile(summary.file);

@@ -33,7 +33,8 @@ struct BuildOptions
     int epsg = 0;                     ///< projected database in this CRS; 0 for a geocentric one (WGS 84)
     VerticalDatum vertical = VerticalDatum::None;
     int tileSize = 128;      ///< largest number of grid intervals along a tile's edge, 8…240
-    int textureSize = 0;     ///< intervals of the texture's grid along a tile's edge; 0 chooses, from the sources' resolution, between 2 × and 8 × tileSize but at most 1024
+    /// Largest number of texture intervals along a tile's edge, 16…4096; 0 for 4 × tileSize.
+    int textureSize = 0;
     double pixelError = 1.0; ///< bound of the geometric error on the screen, pixels
     double texelError = 2.0; ///< largest size of a texel on the screen where it would show, pixels
     /// The screen for which the bounds hold: pixels per radian at its centre. The default is that of

@@ -3,6 +3,7 @@
 #include "TileNode.h"
 
 #include <osg/BoundingBox>
+#include <osg/Math>
 #include <osg/MatrixTransform>
 #include <osg/PagedLOD>
 #include <osg/Texture2D>
@@ -42,161 +43,180 @@ osg::ref_ptr<osg::Image> cutImage(const std::vector<unsigned char>& texels, int 
 
 TileNodeFactory::TileNodeFactory(const BuildPlan& plan) : _plan(plan)
 {
-    const int nx = plan.scheme.intervalsX, ny = plan.scheme.intervalsY, stride = nx + 1;
-    for (int i = 0; i < nx; ++i)
-        _edge.push_back(i);
-    for (int j = 0; j < ny; ++j)
-        _edge.push_back(j * stride + nx);
-    for (int i = nx; i > 0; --i)
-        _edge.push_back(ny * stride + i);
-    for (int j = ny; j >= 0; --j)
-        _edge.push_back(j * stride);
-
-    // Texels lie on the tile's border, so that neighbours of a level meet without a seam.
-    const auto coordinate = [&](int index, int intervals)
-    {
-        const double m = plan.scheme.textureIntervals;
-        return static_cast<float>((0.5 + m * index / intervals) / (m + 1.0));
-    };
-    _texCoords = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
-    for (int j = 0; j <= ny; ++j)
-        for (int i = 0; i <= nx; ++i)
-            _texCoords->push_back(osg::Vec2(coordinate(i, nx), coordinate(j, ny)));
-    for (const int post : _edge)
-        _texCoords->push_back((*_texCoords)[static_cast<std::size_t>(post)]);
+    // With a buffer object of their own, shared arrays do not join that of the first geometry that takes them, which
+    // would make a file's bytes depend on the order of the work.
+    _sharedBuffer = new osg::VertexBufferObject;
     _white = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1);
     _white->front().set(1.0f, 1.0f, 1.0f, 1.0f);
-    _wholeElements = createElements(std::vector<bool>(static_cast<std::size_t>((nx + 1) * (ny + 1)), true));
-
-    // Left alone, an array joins the buffer object of the first geometry that takes it; which one that is depends
-    // on the order of the work, and a file's bytes must not.
-    osg::ref_ptr<osg::VertexBufferObject> shared = new osg::VertexBufferObject;
-    _texCoords->setVertexBufferObject(shared);
-    _white->setVertexBufferObject(shared);
+    _white->setVertexBufferObject(_sharedBuffer);
 }
 
-osg::ref_ptr<osg::DrawElementsUShort> TileNodeFactory::createElements(const std::vector<bool>& valid) const
-{
-    const int nx = _plan.scheme.intervalsX, ny = _plan.scheme.intervalsY, stride = nx + 1;
-    osg::ref_ptr<osg::DrawElementsUShort> elements = new osg::DrawElementsUShort(osg::PrimitiveSet::TRIANGLES);
-    const auto triangle = [&](int a, int b, int c)
-    {
-        if (!valid[static_cast<std::size_t>(a)] || !valid[static_cast<std::size_t>(b)] ||
-            !valid[static_cast<std::size_t>(c)])
-            return;
-        for (const int index : {a, b, c})
-            elements->push_back(static_cast<GLushort>(index));
-    };
-    for (int j = 0; j < ny; ++j)
-        for (int i = 0; i < nx; ++i)
-        {
-            const int sw = j * stride + i, se = sw + 1, nw = sw + stride, ne = nw + 1;
-            triangle(sw, se, ne);
-            triangle(sw, ne, nw);
-        }
-    elements->setElementBufferObject(new osg::ElementBufferObject);
-    const int posts = (nx + 1) * (ny + 1);
-    for (std::size_t k = 0; k + 1 < _edge.size(); ++k)
-    {
-        const int a = _edge[k], b = _edge[k + 1];
-        if (!valid[static_cast<std::size_t>(a)] || !valid[static_cast<std::size_t>(b)])
-            continue;
-        const int lowA = posts + static_cast<int>(k), lowB = lowA + 1;
-        for (const int index : {a, lowA, b, b, lowA, lowB})
-            elements->push_back(static_cast<GLushort>(index));
-    }
-    return elements;
-}
-
-osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, const LevelArrays& arrays, int x,
-                                                            int y) const
+TileMesh TileNodeFactory::createMesh(const TileKey& key, const LevelArrays& arrays, int x, int y) const
 {
     const TilingScheme& scheme = _plan.scheme;
-    const int nx = scheme.intervalsX, ny = scheme.intervalsY, stride = nx + 1;
-    const Lattice lattice = scheme.lattice(key.level, key.x, key.y, 1, nx, ny);
-    const TileFrame frame(scheme, key);
-    const std::size_t posts = static_cast<std::size_t>(stride) * static_cast<std::size_t>(ny + 1);
+    const int intervals = (arrays.heights.columns - 1) / arrays.span; // of the tile, at the heights' density
+    const int posts = scheme.intervals * scheme.step(key.level) / intervals; // finest posts to each of these
+    const int firstColumn = scheme.firstColumn(key), firstRow = scheme.firstRow(key);
+    TileLattice lattice{arrays.heights, x * intervals, y * intervals, intervals,
+                        (scheme.lastColumn - firstColumn + posts - 1) / posts,
+                        (scheme.lastRow - firstRow + posts - 1) / posts,
+                        {},
+                        {}};
+    const double middle = scheme.gridY(firstRow + 0.5 * posts * intervals);
+    const auto drop = [&](int index, double metres)
+    {
+        if (!scheme.crs.geographic)
+            return 0.0f;
+        const double radius = GeographicLib::Constants::WGS84_a();
+        const double angle = std::min((index - 0.5 * intervals) * posts * metres / radius, osg::PI);
+        return static_cast<float>(radius * (1.0 - std::cos(angle)));
+    };
+    for (int i = 0; i <= intervals; ++i)
+    {
+        lattice.dropX.push_back(drop(i, scheme.metresX(middle)));
+        lattice.dropY.push_back(drop(i, scheme.metresY(middle)));
+    }
+    if (key.level == scheme.finestLevel)
+        return createFullMesh(lattice);
+    const TileSlopes slopes{arrays.slopeX,           arrays.slopeY,           arrays.span * scheme.intervals + 1,
+                            x * scheme.intervals, y * scheme.intervals, scheme.intervals};
+    return createAdaptiveMesh(lattice, slopes, _plan.tolerance(key.level));
+}
 
+osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, const LevelArrays& arrays, int x, int y,
+                                                            const TileMesh& mesh)
+{
+    const TilingScheme& scheme = _plan.scheme;
+    const int n = scheme.intervals, intervals = (arrays.heights.columns - 1) / arrays.span;
+    const double posts = static_cast<double>(n) * scheme.step(key.level) / intervals;
+    const int firstColumn = scheme.firstColumn(key), firstRow = scheme.firstRow(key);
+    const double texels = scheme.textureIntervals(key.level);
+    const TileFrame frame(scheme, key);
+    const auto gridX = [&](int column) { return scheme.gridX(firstColumn + column * posts); };
+    const auto gridY = [&](int row) { return scheme.gridY(firstRow + row * posts); };
+
+    const std::size_t count = mesh.posts.size() + mesh.edge.size();
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec3sArray> normals = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec2Array> texCoords = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
     normals->setNormalize(true);
-    vertices->reserve(posts + _edge.size());
-    normals->reserve(posts + _edge.size());
-    std::vector<bool> valid(posts, true);
-    bool whole = true;
-    osg::Vec3d east, north, up;
-    for (int j = 0; j <= ny; ++j)
-        for (int i = 0; i <= nx; ++i)
-        {
-            const double gx = lattice.x0 + i * lattice.dx, gy = lattice.y0 + j * lattice.dy;
-            const int column = x * nx + i, row = y * ny + j;
-            float height = arrays.heights.at(column, row);
-            const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(arrays.heights.columns) +
-                                      static_cast<std::size_t>(column);
-            if (std::isnan(height))
-            {
-                // No triangle uses it; it must only not widen the tile's box.
-                height = _plan.fact(key).minHeight;
-                valid[static_cast<std::size_t>(j * stride + i)] = false;
-                whole = false;
-            }
-            vertices->push_back(osg::Vec3(frame.position(gx, gy, static_cast<double>(height))));
-            frame.axes(gx, gy, east, north, up);
-            osg::Vec3d normal = up - east * static_cast<double>(arrays.slopeX[index]) -
-                                north * static_cast<double>(arrays.slopeY[index]);
-            normal.normalize();
-            normals->push_back(osg::Vec3s(static_cast<GLshort>(std::lround(normal.x() * 32767.0)),
-                                          static_cast<GLshort>(std::lround(normal.y() * 32767.0)),
-                                          static_cast<GLshort>(std::lround(normal.z() * 32767.0))));
-        }
+    vertices->reserve(count);
+    normals->reserve(count);
+    texCoords->reserve(count);
 
-    // The skirt: each edge's posts again, lower, in the order of the edge; corners go as deep as either edge.
-    const float depths[] = {_plan.horizontalSkirt(key.level, key.y, key.x),
-                            _plan.verticalSkirt(key.level, key.x + 1, key.y),
-                            _plan.horizontalSkirt(key.level, key.y + 1, key.x),
-                            _plan.verticalSkirt(key.level, key.x, key.y)};
-    for (const int post : _edge)
+    // The level's slopes lie on its own posts; between them they are interpolated.
+    const int stride = arrays.span * n + 1;
+    const auto slope = [&](const std::vector<float>& values, int column, int row)
     {
-        const int i = post % stride, j = post / stride;
+        const double c = x * n + static_cast<double>(column) * n / intervals;
+        const double r = y * n + static_cast<double>(row) * n / intervals;
+        const int c0 = std::min(static_cast<int>(c), stride - 2), r0 = std::min(static_cast<int>(r), stride - 2);
+        const double u = c - c0, v = r - r0;
+        const auto at = [&](int i, int j)
+        { return static_cast<double>(values[static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(i)]); };
+        return (at(c0, r0) * (1.0 - u) + at(c0 + 1, r0) * u) * (1.0 - v) +
+               (at(c0, r0 + 1) * (1.0 - u) + at(c0 + 1, r0 + 1) * u) * v;
+    };
+    osg::Vec3d east, north, up;
+    for (const TileMesh::Post& post : mesh.posts)
+    {
+        const double gx = gridX(post.column), gy = gridY(post.row);
+        float height = arrays.heights.at(x * intervals + post.column, y * intervals + post.row);
+        if (std::isnan(height)) // no triangle uses it; it must only not widen the tile's box
+            height = _plan.fact(key).minHeight;
+        vertices->push_back(osg::Vec3(frame.position(gx, gy, static_cast<double>(height))));
+        frame.axes(gx, gy, east, north, up);
+        osg::Vec3d normal = up - east * slope(arrays.slopeX, post.column, post.row) -
+                            north * slope(arrays.slopeY, post.column, post.row);
+        normal.normalize();
+        normals->push_back(osg::Vec3s(static_cast<GLshort>(std::lround(normal.x() * 32767.0)),
+                                      static_cast<GLshort>(std::lround(normal.y() * 32767.0)),
+                                      static_cast<GLshort>(std::lround(normal.z() * 32767.0))));
+        // Texels lie on the tile's border, so that neighbours of a level meet without a seam.
+        const double u = std::min<double>(post.column * posts, scheme.lastColumn - firstColumn) / (posts * intervals);
+        const double v = std::min<double>(post.row * posts, scheme.lastRow - firstRow) / (posts * intervals);
+        texCoords->push_back(osg::Vec2(static_cast<float>((0.5 + texels * u) / (texels + 1.0)),
+                                       static_cast<float>((0.5 + texels * v) / (texels + 1.0))));
+    }
+
+    // The skirt: the border's posts again, lower, in the border's order; corners go as deep as either side.
+    double depths[4] = {};
+    for (int side = 0; side < 4; ++side)
+        depths[side] = _plan.skirt(key, side);
+    for (const std::uint32_t index : mesh.edge)
+    {
+        const TileMesh::Post post = mesh.posts[index];
         double depth = 0.0, outX = 0.0, outY = 0.0;
-        const auto edge = [&](bool on, int side, double dx, double dy)
+        const auto onSide = [&](bool on, int side, double dx, double dy)
         {
             if (!on)
                 return;
-            depth = std::max(depth, static_cast<double>(depths[side]));
+            depth = std::max(depth, depths[side]);
             outX += dx;
             outY += dy;
         };
-        edge(j == 0, 0, 0.0, -1.0);
-        edge(i == nx, 1, 1.0, 0.0);
-        edge(j == ny, 2, 0.0, 1.0);
-        edge(i == 0, 3, -1.0, 0.0);
-        frame.axes(lattice.x0 + i * lattice.dx, lattice.y0 + j * lattice.dy, east, north, up);
+        onSide(post.row == 0, 0, 0.0, -1.0);
+        onSide(post.column == intervals, 1, 1.0, 0.0);
+        onSide(post.row == intervals, 2, 0.0, 1.0);
+        onSide(post.column == 0, 3, -1.0, 0.0);
+        frame.axes(gridX(post.column), gridY(post.row), east, north, up);
         const osg::Vec3d offset = (east * outX + north * outY) * (SKIRT_LEAN * depth) - up * depth;
-        vertices->push_back((*vertices)[static_cast<std::size_t>(post)] + osg::Vec3(offset));
-        normals->push_back((*normals)[static_cast<std::size_t>(post)]);
+        vertices->push_back((*vertices)[index] + osg::Vec3(offset));
+        normals->push_back(osg::Vec3s((*normals)[index]));
+        texCoords->push_back(osg::Vec2((*texCoords)[index]));
     }
 
-    osg::ref_ptr<osg::DrawElementsUShort> elements = whole ? _wholeElements : createElements(valid);
-    if (elements->empty())
-        return nullptr;
+    std::vector<std::uint32_t> elements = mesh.triangles;
+    bool whole = key.level == scheme.finestLevel && firstColumn + n <= scheme.lastColumn && firstRow + n <= scheme.lastRow;
+    whole = whole && elements.size() == std::size_t{6} * static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+    for (std::size_t k = 0; k + 1 < mesh.edge.size(); ++k)
+    {
+        const std::uint32_t a = mesh.edge[k], b = mesh.edge[k + 1];
+        const auto hole = [&](std::uint32_t i)
+        { return std::isnan(arrays.heights.at(x * intervals + mesh.posts[i].column, y * intervals + mesh.posts[i].row)); };
+        if (hole(a) || hole(b))
+            continue;
+        const auto lowA = static_cast<std::uint32_t>(mesh.posts.size() + k);
+        for (const std::uint32_t index : {a, lowA, b, b, lowA, lowA + 1})
+            elements.push_back(index);
+    }
+
     osg::ref_ptr<osg::VertexBufferObject> buffer = new osg::VertexBufferObject;
     vertices->setVertexBufferObject(buffer);
     normals->setVertexBufferObject(buffer);
+    texCoords->setVertexBufferObject(buffer);
     osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
     geometry->setUseDisplayList(false);
     geometry->setUseVertexBufferObjects(true);
     geometry->setVertexArray(vertices);
     geometry->setNormalArray(normals);
+    osg::ref_ptr<osg::PrimitiveSet> primitives;
+    if (count <= 65536)
+        primitives = new osg::DrawElementsUShort(osg::PrimitiveSet::TRIANGLES, elements.begin(), elements.end());
+    else
+        primitives = new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES, elements.begin(), elements.end());
+    if (whole)
+    {
+        // The four of a file share what is the same in all of them.
+        if (!_wholePrimitives)
+        {
+            _wholeTexCoords = texCoords;
+            _wholeTexCoords->setVertexBufferObject(_sharedBuffer);
+            _wholePrimitives = primitives;
+            _wholePrimitives->getDrawElements()->setElementBufferObject(new osg::ElementBufferObject);
+        }
+        texCoords = _wholeTexCoords;
+        primitives = _wholePrimitives;
+    }
+    geometry->setTexCoordArray(COLOR_UNIT, texCoords);
     geometry->setColorArray(_white);
-    geometry->setTexCoordArray(COLOR_UNIT, _texCoords);
-    geometry->addPrimitiveSet(elements);
+    geometry->addPrimitiveSet(primitives);
     return geometry;
 }
 
 osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const LevelArrays& arrays, int x, int y) const
 {
-    const int m = _plan.scheme.textureIntervals;
+    const int m = _plan.scheme.textureIntervals(arrays.level);
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     osg::ref_ptr<osg::Texture2D> color = new osg::Texture2D(
         cutImage(arrays.colors, arrays.texelColumns, x * m, y * m, m + 1, 3));
@@ -222,57 +242,49 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const LevelArrays& arra
     return state;
 }
 
-osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelArrays& arrays, int x, int y,
-                                                const std::string& file)
+osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelArrays& arrays, int x, int y)
 {
+    const TilingScheme& scheme = _plan.scheme;
     const TileFacts& facts = _plan.fact(key);
-    if (!facts.any)
-        return nullptr;
-
-    osg::ref_ptr<osg::MatrixTransform> transform =
-        new osg::MatrixTransform(TileFrame(_plan.scheme, key).localToWorld());
+    osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(TileFrame(scheme, key).localToWorld());
     transform->setName("tile " + key.path());
+
+    const TileMesh mesh = createMesh(key, arrays, x, y);
     osg::BoundingBoxd box;
-    // Null where data is so scattered that no triangle of this level holds any; the finer levels draw it.
-    if (const osg::ref_ptr<osg::Geometry> geometry = createGeometry(key, arrays, x, y))
+    double radius = 0.0;
+    if (!mesh.triangles.empty())
     {
+        const osg::ref_ptr<osg::Geometry> geometry = createGeometry(key, arrays, x, y, mesh);
         geometry->setStateSet(createState(arrays, x, y));
         transform->addChild(geometry);
-        for (const auto& vertex : static_cast<const osg::Vec3Array&>(*geometry->getVertexArray()))
+        const auto& vertices = static_cast<const osg::Vec3Array&>(*geometry->getVertexArray());
+        for (const auto& vertex : vertices)
             box.expandBy(osg::Vec3d(vertex));
-    }
-    else
-    {
-        const TilingScheme& scheme = _plan.scheme;
-        const Lattice corners = scheme.lattice(key.level, key.x, key.y, 1, 1, 1);
-        const TileFrame frame(scheme, key);
-        for (int c = 0; c < 4; ++c)
-            for (const float height : {facts.minHeight, facts.maxHeight})
-                box.expandBy(frame.position(corners.x0 + (c & 1) * corners.dx, corners.y0 + (c >> 1) * corners.dy,
-                                            static_cast<double>(height)));
-    }
-    transform->setUserValue("geofx.boxMin", osg::Vec3d(box._min));
-    transform->setUserValue("geofx.boxMax", osg::Vec3d(box._max));
-    if (key.level == _plan.scheme.finestLevel)
-        return transform;
-
-    double radius = 0.0;
-    if (transform->getNumChildren() > 0)
-    {
-        const auto* geometry = transform->getChild(0)->asDrawable()->asGeometry();
-        for (const auto& vertex : static_cast<const osg::Vec3Array&>(*geometry->getVertexArray()))
+        for (const auto& vertex : vertices)
             radius = std::max(radius, (osg::Vec3d(vertex) - box.center()).length());
     }
     else
+    {
+        // Data so scattered that no triangle of this level holds any; the finer levels draw it.
+        const TileFrame frame(scheme, key);
+        const int span = scheme.intervals * scheme.step(key.level);
+        for (int c = 0; c < 4; ++c)
+            for (const float height : {facts.minHeight, facts.maxHeight})
+                box.expandBy(frame.position(scheme.gridX(scheme.firstColumn(key) + (c & 1) * span),
+                                            scheme.gridY(scheme.firstRow(key) + (c >> 1) * span),
+                                            static_cast<double>(height)));
         radius = box.radius();
+    }
+    transform->setUserValue("geofx.boxMin", osg::Vec3d(box._min));
+    transform->setUserValue("geofx.boxMax", osg::Vec3d(box._max));
+    if (key.level == scheme.finestLevel)
+        return transform;
 
     // Seen from d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R away, so
     // the finer tiles are due where d < R + e·k/limit.
-    const double sag = _plan.scheme.chordSag(key.level);
-    const double error = std::max((static_cast<double>(facts.error) + sag) / _plan.options.pixelError,
-                                  static_cast<double>(arrays.textureError[static_cast<std::size_t>(
-                                      y * ((arrays.texelColumns - 1) / _plan.scheme.textureIntervals) + x)]) /
-                                      _plan.options.texelError);
+    const double relief = mesh.deviation + static_cast<double>(facts.latticeError);
+    const double texel = static_cast<double>(arrays.textureError[static_cast<std::size_t>(y * arrays.span + x)]);
+    const double error = std::max(relief / _plan.options.pixelError, texel / _plan.options.texelError);
     const double range = error > 0.0 ? radius + error * _plan.options.pixelsPerRadian : 0.0;
 
     osg::ref_ptr<osg::PagedLOD> lod = new osg::PagedLOD;
@@ -280,9 +292,10 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     lod->setRangeMode(osg::LOD::DISTANCE_FROM_EYE_POINT);
     lod->setCenterMode(osg::LOD::USER_DEFINED_CENTER);
     lod->setCenter(osg::Vec3(box.center() * transform->getMatrix()));
-    lod->setRadius(static_cast<float>(radius + static_cast<double>(facts.error + facts.skirtBelow) + sag));
+    lod->setRadius(static_cast<float>(radius + static_cast<double>(facts.error + facts.skirtBelow)));
     lod->addChild(transform, static_cast<float>(range), std::numeric_limits<float>::max());
-    lod->setFileName(1, file);
+    // A file holds the four children of a tile; the root's lies beside no other tile.
+    lod->setFileName(1, (key.level == 0 ? "tiles/" : "../../") + key.path() + ".osgb");
     lod->setRange(1, 0.0f, static_cast<float>(range));
     lod->setNumChildrenThatCannotBeExpired(1);
     return lod;

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fstream>
 #include <sstream>
 
 namespace osgGeoFX
@@ -68,6 +69,37 @@ std::vector<T> halved(const std::vector<T>& values, int columns, int rows)
     return result;
 }
 
+/// Copies a lattice of `partColumns` columns into a larger one.
+template<typename T>
+void paste(const std::vector<T>& part, int partColumns, int channels, std::vector<T>& whole, int wholeColumns, int x0,
+           int y0)
+{
+    const std::size_t run = static_cast<std::size_t>(partColumns) * static_cast<std::size_t>(channels);
+    const int rows = static_cast<int>(part.size() / run);
+    for (int row = 0; row < rows; ++row)
+        std::copy_n(part.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * run), run,
+                    whole.begin() + (static_cast<std::ptrdiff_t>(y0 + row) * wholeColumns + x0) * channels);
+}
+
+std::string rootTileFile(const BuildPlan& plan, const TileKey& key)
+{
+    return plan.workFolder() + "/nodes/" + key.path() + ".osgb";
+}
+
+osg::ref_ptr<osg::Node> readRootTile(const BuildPlan& plan, const TileKey& key)
+{
+    const std::string file = rootTileFile(plan, key);
+    // Without a path in the options OSG leaves the tile's own file names as they were written.
+    std::ifstream stream(file, std::ios::binary);
+    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
+    osg::ref_ptr<osg::Node> node;
+    if (stream && reader)
+        node = reader->readNode(stream, new osgDB::Options).getNode();
+    if (!node)
+        throw BuildError(file + ": this work file is damaged; build again without --resume.");
+    return node;
+}
+
 /// Whether the finer texels show anything that the coarser ones, interpolated, do not.
 bool losesDetail(const LevelArrays& fine, const LevelArrays& coarse, int x, int y, int intervals)
 {
@@ -97,26 +129,26 @@ class UnitBuilder
 public:
     explicit UnitBuilder(BuildPlan& plan) : _plan(plan), _factory(plan) {}
 
+    /// Writes the files of all groups of four tiles in the unit, and its root where the next tier finds it.
     std::uint64_t build(const Unit& unit);
-    osg::ref_ptr<osg::Node> root(const std::string& file);
 
 private:
     LevelArrays sampled(const Unit& unit);
     LevelArrays gathered(const Unit& unit);
-    LevelArrays coarser(const LevelArrays& fine) const;
+    /// The next coarser level; may take over the finer one's texels, which is then done with.
+    LevelArrays coarser(LevelArrays& fine) const;
     void slopes(const Unit& unit, const HeightGrid& withApron, LevelArrays& arrays) const;
-    std::uint64_t writeChildren(const Unit& unit, const LevelArrays& arrays);
+    std::uint64_t writeGroups(const Unit& unit, const LevelArrays& arrays);
 
     BuildPlan& _plan;
     TileNodeFactory _factory;
     std::unique_ptr<RasterStack> _rasters;
 };
 
+/// Slopes at the posts from their neighbours; the apron gives those on the border theirs.
 void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArrays& arrays) const
 {
     const TilingScheme& scheme = _plan.scheme;
-    const Lattice lattice = scheme.lattice(unit.latticeLevel(), unit.root.x * unit.span(), unit.root.y * unit.span(),
-                                           unit.span(), scheme.intervalsX, scheme.intervalsY);
     arrays.slopeX.resize(arrays.heights.values.size());
     arrays.slopeY.resize(arrays.heights.values.size());
     const auto rise = [](float before, float here, float after, double distance)
@@ -127,19 +159,12 @@ void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArr
         const float difference = (hasAfter ? after : here) - (hasBefore ? before : here);
         return static_cast<float>(static_cast<double>(difference) / (distance * (hasBefore && hasAfter ? 2.0 : 1.0)));
     };
-    for (int j = 0; j < arrays.heights.rows; ++j)
+    const int validColumns = withApron.columns - 2, validRows = withApron.rows - 2;
+    for (int j = 0; j < validRows; ++j)
     {
-        double metresX = lattice.dx * scheme.crs.metresPerUnit, metresY = lattice.dy * scheme.crs.metresPerUnit;
-        if (scheme.crs.geographic)
-        {
-            const double latitude = std::clamp(lattice.y0 + j * lattice.dy, -89.9, 89.9);
-            const double sine = std::sin(osg::DegreesToRadians(latitude));
-            const double a = GeographicLib::Constants::WGS84_a(), f = GeographicLib::Constants::WGS84_f();
-            const double e2 = f * (2.0 - f), w2 = 1.0 - e2 * sine * sine;
-            metresX = lattice.dx * osg::DegreesToRadians(a / std::sqrt(w2) * std::cos(osg::DegreesToRadians(latitude)));
-            metresY = lattice.dy * osg::DegreesToRadians(a * (1.0 - e2) / (w2 * std::sqrt(w2)));
-        }
-        for (int i = 0; i < arrays.heights.columns; ++i)
+        const double y = scheme.gridY(scheme.firstRow(unit.root) + j);
+        const double metresX = scheme.metresX(y), metresY = scheme.metresY(y);
+        for (int i = 0; i < validColumns; ++i)
         {
             const std::size_t index = static_cast<std::size_t>(j) * static_cast<std::size_t>(arrays.heights.columns) +
                                       static_cast<std::size_t>(i);
@@ -148,65 +173,72 @@ void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArr
             arrays.slopeY[index] = rise(withApron.at(i + 1, j), here, withApron.at(i + 1, j + 2), metresY);
         }
     }
+    extendBeyond(arrays.slopeX, arrays.heights.columns, arrays.heights.rows, 1, validColumns, validRows);
+    extendBeyond(arrays.slopeY, arrays.heights.columns, arrays.heights.rows, 1, validColumns, validRows);
 }
 
 LevelArrays UnitBuilder::sampled(const Unit& unit)
 {
     const TilingScheme& scheme = _plan.scheme;
-    const int x = unit.root.x * unit.span(), y = unit.root.y * unit.span();
+    const int span = unit.span(), posts = span * scheme.intervals + 1, texels = span * scheme.texels + 1;
+    const int column = scheme.firstColumn(unit.root), row = scheme.firstRow(unit.root);
     LevelArrays arrays;
     arrays.level = unit.latticeLevel();
+    arrays.span = span;
 
-    HeightGrid withApron(unit.span() * scheme.intervalsX + 3, unit.span() * scheme.intervalsY + 3);
+    HeightGrid withApron(_plan.validColumns(unit) + 2, _plan.validRows(unit) + 2);
     ByteReader reader(_plan.workFile("heights", unit));
     const std::size_t expected = withApron.values.size();
     withApron.values = reader.getVector<float>();
     if (!reader.good() || withApron.values.size() != expected)
         throw BuildError(_plan.workFile("heights", unit) +
                          ": this work file is damaged; build again without --resume.");
-    arrays.heights = HeightGrid(withApron.columns - 2, withApron.rows - 2);
-    for (int j = 0; j < arrays.heights.rows; ++j)
-        for (int i = 0; i < arrays.heights.columns; ++i)
+    arrays.heights = HeightGrid(posts, posts);
+    for (int j = 0; j < withApron.rows - 2; ++j)
+        for (int i = 0; i < withApron.columns - 2; ++i)
             arrays.heights.at(i, j) = withApron.at(i + 1, j + 1);
+    extendBeyond(arrays.heights.values, posts, posts, 1, withApron.columns - 2, withApron.rows - 2);
     slopes(unit, withApron, arrays);
 
-    const Lattice texels = scheme.lattice(arrays.level, x, y, unit.span(), scheme.textureIntervals,
-                                          scheme.textureIntervals);
-    arrays.texelColumns = texels.columns;
-    arrays.texelRows = texels.rows;
+    const double spacing = static_cast<double>(scheme.intervals) / scheme.texels;
+    const auto valid = [&](int last) { return std::min(texels, static_cast<int>(std::floor(last / spacing)) + 1); };
+    const int validColumns = valid(scheme.lastColumn - column), validRows = valid(scheme.lastRow - row);
+    const Lattice lattice = scheme.lattice(column, row, spacing, validColumns, validRows);
     if (!_rasters)
         _rasters = std::make_unique<RasterStack>(_plan);
-    arrays.colors = _rasters->colors(texels);
-    arrays.classes = _rasters->classes(texels);
-    arrays.textureError.assign(static_cast<std::size_t>(unit.span()) * static_cast<std::size_t>(unit.span()), 0.0f);
+    const auto widened = [&](const std::vector<unsigned char>& part, int channels)
+    {
+        std::vector<unsigned char> whole(static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels) *
+                                         static_cast<std::size_t>(channels));
+        paste(part, validColumns, channels, whole, texels, 0, 0);
+        extendBeyond(whole, texels, texels, channels, validColumns, validRows);
+        return whole;
+    };
+    arrays.texelColumns = texels;
+    arrays.colors = widened(_rasters->colors(lattice), 3);
+    if (!_plan.options.landCover.empty())
+        arrays.classes = widened(_rasters->classes(lattice), 1);
+    arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
     return arrays;
 }
 
 LevelArrays UnitBuilder::gathered(const Unit& unit)
 {
     const TilingScheme& scheme = _plan.scheme;
-    const int nx = scheme.intervalsX, ny = scheme.intervalsY, m = scheme.textureIntervals, span = unit.span();
+    const int n = scheme.intervals, span = unit.span(), posts = span * n + 1;
+    const int m = scheme.textureIntervals(unit.latticeLevel()), texels = span * m + 1;
     LevelArrays arrays;
     arrays.level = unit.latticeLevel();
-    arrays.heights = HeightGrid(span * nx + 1, span * ny + 1);
+    arrays.span = span;
+    arrays.heights = gatherRoots(_plan, unit);
     arrays.slopeX.resize(arrays.heights.values.size());
     arrays.slopeY.resize(arrays.heights.values.size());
-    arrays.texelColumns = arrays.texelRows = span * m + 1;
-    const std::size_t texels = static_cast<std::size_t>(arrays.texelColumns) * static_cast<std::size_t>(arrays.texelRows);
-    arrays.colors.assign(3 * texels, 128);
+    arrays.texelColumns = texels;
+    const std::size_t count = static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels);
+    arrays.colors.assign(3 * count, 128);
     if (!_plan.options.landCover.empty())
-        arrays.classes.assign(texels, 0);
+        arrays.classes.assign(count, 0);
     arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
-    std::fill(arrays.heights.values.begin(), arrays.heights.values.end(), std::nanf(""));
-
-    const auto paste = [](const auto& part, int partColumns, int channels, auto& whole, int wholeColumns, int x0, int y0)
-    {
-        const std::size_t run = static_cast<std::size_t>(partColumns) * static_cast<std::size_t>(channels);
-        const int rows = static_cast<int>(part.size() / run);
-        for (int row = 0; row < rows; ++row)
-            std::copy_n(part.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * run), run,
-                        whole.begin() + (static_cast<std::ptrdiff_t>(y0 + row) * wholeColumns + x0) * channels);
-    };
     for (int y = 0; y < span; ++y)
         for (int x = 0; x < span; ++x)
         {
@@ -216,7 +248,6 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
                 continue;
             ByteReader reader(_plan.workFile("tiles", below));
             reader.get<std::uint64_t>();
-            const auto heights = reader.getVector<float>();
             const auto slopeX = reader.getVector<float>();
             const auto slopeY = reader.getVector<float>();
             const auto colors = reader.getVector<unsigned char>();
@@ -225,56 +256,59 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
             if (!reader.good())
                 throw BuildError(_plan.workFile("tiles", below) +
                                  ": this work file is damaged; build again without --resume.");
-            paste(heights, nx + 1, 1, arrays.heights.values, arrays.heights.columns, x * nx, y * ny);
-            paste(slopeX, nx + 1, 1, arrays.slopeX, arrays.heights.columns, x * nx, y * ny);
-            paste(slopeY, nx + 1, 1, arrays.slopeY, arrays.heights.columns, x * nx, y * ny);
-            paste(colors, m + 1, 3, arrays.colors, arrays.texelColumns, x * m, y * m);
-            paste(classes, m + 1, 1, arrays.classes, arrays.texelColumns, x * m, y * m);
+            paste(slopeX, n + 1, 1, arrays.slopeX, posts, x * n, y * n);
+            paste(slopeY, n + 1, 1, arrays.slopeY, posts, x * n, y * n);
+            paste(colors, m + 1, 3, arrays.colors, texels, x * m, y * m);
+            paste(classes, m + 1, 1, arrays.classes, texels, x * m, y * m);
         }
     return arrays;
 }
 
-LevelArrays UnitBuilder::coarser(const LevelArrays& fine) const
+LevelArrays UnitBuilder::coarser(LevelArrays& fine) const
 {
-    const int m = _plan.scheme.textureIntervals;
+    const int posts = (fine.span * _plan.scheme.intervals) + 1;
     LevelArrays coarse;
     coarse.level = fine.level - 1;
-    coarse.heights = HeightGrid((fine.heights.columns - 1) / 2 + 1, (fine.heights.rows - 1) / 2 + 1);
-    for (int j = 0; j < coarse.heights.rows; ++j)
-        for (int i = 0; i < coarse.heights.columns; ++i)
-            coarse.heights.at(i, j) = fine.heights.at(2 * i, 2 * j);
-    coarse.slopeX = halved<float, float, 1>(fine.slopeX, fine.heights.columns, fine.heights.rows);
-    coarse.slopeY = halved<float, float, 1>(fine.slopeY, fine.heights.columns, fine.heights.rows);
-    coarse.texelColumns = (fine.texelColumns - 1) / 2 + 1;
-    coarse.texelRows = (fine.texelRows - 1) / 2 + 1;
-    coarse.colors = halved<unsigned char, int, 3>(fine.colors, fine.texelColumns, fine.texelRows);
-    if (!fine.classes.empty())
-    {
-        coarse.classes.reserve(static_cast<std::size_t>(coarse.texelColumns) * static_cast<std::size_t>(coarse.texelRows));
-        for (int j = 0; j < fine.texelRows; j += 2)
-            for (int i = 0; i < fine.texelColumns; i += 2)
-                coarse.classes.push_back(fine.classes[static_cast<std::size_t>(j) * static_cast<std::size_t>(fine.texelColumns) +
-                                                      static_cast<std::size_t>(i)]);
-    }
-    const int span = (coarse.texelColumns - 1) / m;
-    const auto texelMetres = static_cast<float>(
-        _plan.scheme.spacingMetres(coarse.level) * std::max(_plan.scheme.intervalsX, _plan.scheme.intervalsY) / m);
+    coarse.span = fine.span / 2;
+    coarse.heights = std::move(fine.heights);
+    coarse.slopeX = halved<float, float, 1>(fine.slopeX, posts, posts);
+    coarse.slopeY = halved<float, float, 1>(fine.slopeY, posts, posts);
+    const int span = coarse.span;
     for (int y = 0; y < span; ++y)
         for (int x = 0; x < span; ++x)
         {
             float error = 0.0f;
             for (int c = 0; c < 4; ++c)
-                error = std::max(error, fine.textureError[static_cast<std::size_t>((2 * y + (c >> 1)) * 2 * span + 2 * x + (c & 1))]);
-            if (losesDetail(fine, coarse, x, y, m))
-                error = texelMetres;
+                error = std::max(error, fine.textureError[static_cast<std::size_t>((2 * y + (c >> 1)) * 2 * span +
+                                                                                  2 * x + (c & 1))]);
             coarse.textureError.push_back(error);
         }
+    if (_plan.scheme.keepsTexels(coarse.level))
+    {
+        coarse.texelColumns = fine.texelColumns;
+        coarse.colors = std::move(fine.colors);
+        coarse.classes = std::move(fine.classes);
+        return coarse;
+    }
+    coarse.texelColumns = (fine.texelColumns - 1) / 2 + 1;
+    coarse.colors = halved<unsigned char, int, 3>(fine.colors, fine.texelColumns, fine.texelColumns);
+    if (!fine.classes.empty())
+        for (int j = 0; j < fine.texelColumns; j += 2)
+            for (int i = 0; i < fine.texelColumns; i += 2)
+                coarse.classes.push_back(fine.classes[static_cast<std::size_t>(j) * static_cast<std::size_t>(fine.texelColumns) +
+                                                      static_cast<std::size_t>(i)]);
+    const int intervals = _plan.scheme.textureIntervals(coarse.level);
+    const auto texelMetres = static_cast<float>(_plan.scheme.tileMetres(coarse.level) / intervals);
+    for (int y = 0; y < span; ++y)
+        for (int x = 0; x < span; ++x)
+            if (losesDetail(fine, coarse, x, y, intervals))
+                coarse.textureError[static_cast<std::size_t>(y * span + x)] = texelMetres;
     return coarse;
 }
 
-std::uint64_t UnitBuilder::writeChildren(const Unit& unit, const LevelArrays& arrays)
+std::uint64_t UnitBuilder::writeGroups(const Unit& unit, const LevelArrays& arrays)
 {
-    const int parentLevel = arrays.level - 1, span = 1 << (parentLevel - unit.root.level);
+    const int parentLevel = arrays.level - 1, span = arrays.span / 2;
     std::uint64_t tiles = 0;
     for (int y = 0; y < span; ++y)
         for (int x = 0; x < span; ++x)
@@ -286,12 +320,14 @@ std::uint64_t UnitBuilder::writeChildren(const Unit& unit, const LevelArrays& ar
             for (int c = 0; c < 4; ++c)
             {
                 const TileKey key = parent.child(c & 1, c >> 1);
-                const auto tile = _factory.create(key, arrays, 2 * x + (c & 1), 2 * y + (c >> 1),
-                                                  "../../" + key.path() + ".osgb");
-                if (!tile)
+                if (!_plan.fact(key).any)
                     continue;
-                group->addChild(tile);
-                ++tiles;
+                // An upper tier's finest tiles are the roots of the units below it, which made them from their
+                // denser heights.
+                const bool made = unit.tier > 0 && key.level == unit.latticeLevel();
+                group->addChild(made ? readRootTile(_plan, key)
+                                     : _factory.create(key, arrays, 2 * x + (c & 1), 2 * y + (c >> 1)));
+                tiles += made ? 0 : 1;
             }
             writeNodeAtomically(*group, _plan.tileFile(parent));
         }
@@ -304,13 +340,13 @@ std::uint64_t UnitBuilder::build(const Unit& unit)
     std::uint64_t tiles = 0;
     for (int level = unit.latticeLevel(); level > unit.root.level; --level)
     {
-        LevelArrays next = coarser(arrays);
-        tiles += writeChildren(unit, arrays);
-        arrays = std::move(next);
+        tiles += writeGroups(unit, arrays);
+        arrays = coarser(arrays);
     }
+    writeNodeAtomically(*_factory.create(unit.root, arrays, 0, 0), rootTileFile(_plan, unit.root));
+    ++tiles;
     ByteWriter writer;
     writer.put(tiles);
-    writer.put(arrays.heights.values);
     writer.put(arrays.slopeX);
     writer.put(arrays.slopeY);
     writer.put(arrays.colors);
@@ -318,17 +354,6 @@ std::uint64_t UnitBuilder::build(const Unit& unit)
     writer.put(arrays.textureError.front());
     writeFileAtomically(_plan.workFile("tiles", unit), writer.bytes().data(), writer.bytes().size());
     return tiles;
-}
-
-osg::ref_ptr<osg::Node> UnitBuilder::root(const std::string& file)
-{
-    // What the last unit left is the root's arrays: a lattice of one tile.
-    Unit top = _plan.tiers.back().front();
-    Unit whole;
-    whole.root = {0, 0, 0};
-    whole.depth = 0;
-    whole.tier = top.tier + 1;
-    return _factory.create(whole.root, gathered(whole), 0, 0, file);
 }
 
 } // namespace
@@ -377,9 +402,9 @@ TilePassResult runTilePass(BuildPlan& plan)
                          plan.advance("tiles");
                      });
     TilePassResult result;
-    result.tiles = tiles + 1;
+    result.tiles = tiles;
     result.tilesReused = reused;
-    result.root = UnitBuilder(plan).root("tiles/0/0/0.osgb");
+    result.root = readRootTile(plan, {0, 0, 0});
     return result;
 }
 

@@ -13,49 +13,61 @@ namespace osgGeoFX
 namespace
 {
 
+const double WGS84_A = GeographicLib::Constants::WGS84_a(), WGS84_F = GeographicLib::Constants::WGS84_f();
+
 // Longitudes beyond ±180° are the grid's way across the antimeridian.
 double turned(double longitude) { return longitude - 360.0 * std::round(longitude / 360.0); }
 
 } // namespace
 
-Lattice TilingScheme::lattice(int level, int x, int y, int span, int perTileX, int perTileY, int apron) const
+Lattice TilingScheme::lattice(double column, double row, double spacing, int columns, int rows) const
 {
     Lattice result;
-    result.dx = (east - west) / (static_cast<double>(tilesAcross(level)) * perTileX);
-    result.dy = (north - south) / (static_cast<double>(tilesAcross(level)) * perTileY);
-    result.x0 = west + result.dx * (static_cast<double>(x) * perTileX - apron);
-    result.y0 = south + result.dy * (static_cast<double>(y) * perTileY - apron);
-    result.columns = span * perTileX + 1 + 2 * apron;
-    result.rows = span * perTileY + 1 + 2 * apron;
+    const double dx = (east - west) / lastColumn, dy = (north - south) / lastRow;
+    result.x0 = west + dx * column;
+    result.y0 = south + dy * row;
+    result.dx = dx * spacing;
+    result.dy = dy * spacing;
+    result.columns = columns;
+    result.rows = rows;
     return result;
 }
 
-double TilingScheme::spacingMetres(int level) const
+double TilingScheme::metresX(double y) const
 {
-    const Lattice l = lattice(level, 0, 0, 1, intervalsX, intervalsY);
+    const double dx = (east - west) / lastColumn;
     if (!crs.geographic)
-        return std::max(l.dx, l.dy) * crs.metresPerUnit;
-    // The parallel nearest to the equator is the longest.
-    const double latitude = south > 0.0 ? south : north < 0.0 ? north : 0.0;
-    const double degree = osg::DegreesToRadians(1.0) * 6378137.0;
-    return std::max(l.dx * std::cos(osg::DegreesToRadians(latitude)), l.dy) * degree;
+        return dx * crs.metresPerUnit;
+    // Not at the poles themselves, where slopes to the east would be divided by nothing.
+    const double latitude = osg::DegreesToRadians(std::clamp(y, -89.9, 89.9));
+    const double e2 = WGS84_F * (2.0 - WGS84_F);
+    const double sine = std::sin(latitude);
+    return osg::DegreesToRadians(dx) * WGS84_A * std::cos(latitude) / std::sqrt(1.0 - e2 * sine * sine);
 }
 
-double TilingScheme::chordSag(int level) const
+double TilingScheme::metresY(double y) const
 {
+    const double dy = (north - south) / lastRow;
     if (!crs.geographic)
-        return 0.0;
-    // The longest chord is a cell's diagonal; beyond a half circle the formula below would shrink again.
-    const double diagonal = spacingMetres(level) * std::sqrt(2.0);
-    const double angle = std::min(diagonal / 6378137.0, osg::PI);
-    return 6378137.0 * (1.0 - std::cos(angle / 2.0));
+        return dy * crs.metresPerUnit;
+    const double e2 = WGS84_F * (2.0 - WGS84_F);
+    const double sine = std::sin(osg::DegreesToRadians(y));
+    const double w2 = 1.0 - e2 * sine * sine;
+    return osg::DegreesToRadians(dy) * WGS84_A * (1.0 - e2) / (w2 * std::sqrt(w2));
+}
+
+double TilingScheme::tileMetres(int level) const
+{
+    // The parallel nearest to the equator is the longest.
+    const double widest = crs.geographic ? std::clamp(0.0, south, north) : south;
+    return std::max(metresX(widest), metresY(widest)) * intervals * step(level);
 }
 
 TileFrame::TileFrame(const TilingScheme& scheme, const TileKey& key) : _scheme(scheme)
 {
-    const double across = scheme.tilesAcross(key.level);
-    _centerX = scheme.west + (scheme.east - scheme.west) * ((key.x + 0.5) / across);
-    _centerY = scheme.south + (scheme.north - scheme.south) * ((key.y + 0.5) / across);
+    const double width = static_cast<double>(scheme.intervals) * scheme.step(key.level);
+    _centerX = 0.5 * (scheme.gridX(scheme.firstColumn(key)) + scheme.gridX(scheme.firstColumn(key) + width));
+    _centerY = 0.5 * (scheme.gridY(scheme.firstRow(key)) + scheme.gridY(scheme.firstRow(key) + width));
     if (scheme.crs.geographic)
         _geodetic.emplace(_centerY, turned(_centerX), 0.0);
 }

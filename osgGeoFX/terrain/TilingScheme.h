@@ -11,35 +11,54 @@
 #include <osg/Matrixd>
 #include <osg/Vec3d>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
 namespace osgGeoFX
 {
 
-/** The quadtree's grid: one root tile over the whole extent, 2^level × 2^level tiles on each level, every tile with
-    the same number of intervals, so that a parent's posts are every second one of its children's.
+/** The quadtree's grid: posts on a lattice over the extent, the first on its south-western corner and the last on its
+    north-eastern one, as dense as the source asks for; a tile has `intervals` × `intervals` cells, a power of two, and a
+    parent's posts are every second one of its children's.
 
-    Extents in the grid's CRS. The finest level is at least as dense as the source asks for, and at most one
-    interval a tile denser. */
+    The quadtree is square, the extent need not be: posts beyond the extent lie on its border, with the border's
+    height. So all levels end exactly where the source does, and tiles beyond do not exist. */
 struct TilingScheme
 {
     GridCrs crs;
-    double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
+    double west = 0.0, south = 0.0, east = 0.0, north = 0.0; ///< extent, in the grid's CRS
+    int lastColumn = 0, lastRow = 0; ///< intervals of the finest level over the extent
     int finestLevel = 0;
-    int intervalsX = 0, intervalsY = 0; ///< mesh intervals along a tile's edges
-    int textureIntervals = 0;           ///< texture intervals along a tile's edges; texels lie on both ends
+    int intervals = 0;              ///< cells along a tile's edges
+    int texels = 0;                 ///< texture intervals along a finest tile's edges; texels lie on both ends
+    int textureDepth = 0;           ///< levels above the finest that keep the finest texels
 
     int tilesAcross(int level) const { return 1 << level; }
+    int step(int level) const { return 1 << (finestLevel - level); } ///< finest posts from post to post of a level
 
-    /// Lattice over `span` × `span` tiles of a level from tile (x, y), with `apron` points more on each side.
-    Lattice lattice(int level, int x, int y, int span, int perTileX, int perTileY, int apron = 0) const;
+    /// Texels of a level are as dense as those of finest tiles, until a texture would grow beyond its limit.
+    bool keepsTexels(int level) const { return level >= finestLevel - textureDepth; }
+    int textureIntervals(int level) const { return texels << std::min(finestLevel - level, textureDepth); }
 
-    /// Metres between two mesh posts of a level, the larger of both directions, at the extent's middle.
-    double spacingMetres(int level) const;
+    /// The finest post at a tile's south-western corner.
+    int firstColumn(const TileKey& key) const { return key.x * intervals * step(key.level); }
+    int firstRow(const TileKey& key) const { return key.y * intervals * step(key.level); }
+    bool exists(const TileKey& key) const { return firstColumn(key) < lastColumn && firstRow(key) < lastRow; }
 
-    /// How far a chord between two posts of a level runs below the ellipsoid at most; 0 on a projected grid.
-    double chordSag(int level) const;
+    /// Grid position of a finest post, which may be a fraction; beyond the extent, its border.
+    double gridX(double column) const { return west + (east - west) * (std::min<double>(column, lastColumn) / lastColumn); }
+    double gridY(double row) const { return south + (north - south) * (std::min<double>(row, lastRow) / lastRow); }
+
+    /// `columns` × `rows` points from a finest post on, `spacing` finest posts apart.
+    Lattice lattice(double column, double row, double spacing, int columns, int rows) const;
+
+    /// Metres from post to post of the finest level at a latitude's (geographic: degrees) scale.
+    double metresX(double gridYPosition) const;
+    double metresY(double gridYPosition) const;
+
+    /// Metres along a tile's edge on a level, the longer one.
+    double tileMetres(int level) const;
 };
 
 /** Local frame of a tile: origin on the ellipsoid (or the plane's zero) at the tile's centre, x east, y north, z up.
