@@ -10,7 +10,19 @@ install(TARGETS ${geofx_targets} EXPORT osgGeoFXTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_COMPONENT Development)
 set_target_properties(${geofx_targets} PROPERTIES INSTALL_RPATH "$ORIGIN")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/osgGeoFX DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.h" PATTERN "cmake" EXCLUDE)
+        FILES_MATCHING PATTERN "*.h" PATTERN "cmake" EXCLUDE PATTERN "terrain" EXCLUDE PATTERN "geodata" EXCLUDE)
+if(GEOFX_BUILD_DATA)
+  # Those that export something; the others are between the library's own files and include GDAL.
+  foreach(folder terrain geodata)
+    file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/osgGeoFX/${folder}/*.h)
+    foreach(header ${headers})
+      file(STRINGS ${header} exported REGEX OSGGEOFXDATA_EXPORT)
+      if(exported)
+        install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/osgGeoFX/${folder})
+      endif()
+    endforeach()
+  endforeach()
+endif()
 install(EXPORT osgGeoFXTargets NAMESPACE osgGeoFX:: DESTINATION ${geofx_config_dir})
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/osgGeoFXConfig.cmake.in

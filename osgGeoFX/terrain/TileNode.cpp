@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <set>
 
 namespace osgGeoFX
 {
@@ -169,12 +170,21 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     std::vector<std::uint32_t> elements = mesh.triangles;
     bool whole = key.level == scheme.finestLevel && firstColumn + n <= scheme.lastColumn && firstRow + n <= scheme.lastRow;
     whole = whole && elements.size() == std::size_t{6} * static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+    // A wall hangs from each edge of the surface along the border; not across a hole, nor beyond the ground's end.
+    std::vector<bool> onBorder(mesh.posts.size(), false);
+    for (const std::uint32_t index : mesh.edge)
+        onBorder[index] = true;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> borders;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    {
+        const std::uint32_t a = mesh.triangles[i], b = mesh.triangles[i % 3 == 2 ? i - 2 : i + 1];
+        if (onBorder[a] && onBorder[b])
+            borders.insert({a, b});
+    }
     for (std::size_t k = 0; k + 1 < mesh.edge.size(); ++k)
     {
         const std::uint32_t a = mesh.edge[k], b = mesh.edge[k + 1];
-        const auto hole = [&](std::uint32_t i)
-        { return std::isnan(arrays.heights.at(x * intervals + mesh.posts[i].column, y * intervals + mesh.posts[i].row)); };
-        if (hole(a) || hole(b))
+        if (!borders.count({a, b}))
             continue;
         const auto lowA = static_cast<std::uint32_t>(mesh.posts.size() + k);
         for (const std::uint32_t index : {a, lowA, b, b, lowA, lowA + 1})

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// osggeofx_render: an OSG file or .geofx scene to pictures, off-screen.
+#include "osggeofx_render_output.h"
+
+#include <osgGeoFX/offscreen/SceneRenderer.h>
+#include <osgGeoFX/paging/CameraPath.h>
+#include <osgGeoFX/paging/Scene.h>
+
+#include <CLI/CLI.hpp>
+#include <osg/Math>
+
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <stdexcept>
+
+namespace
+{
+
+constexpr int badInput = 2;
+constexpr int tookTooLong = 1;
+
+/// One sentence for the person at the keyboard, and the exit code.
+struct Failure : public std::runtime_error
+{
+    Failure(int code, const std::string& sentence) : std::runtime_error(sentence), exitCode(code) {}
+    int exitCode;
+};
+
+struct Arguments
+{
+    std::string scene;
+    std::string output;
+    std::string size = "1600x900";
+    std::string view;
+    std::string eye;
+    std::string look;
+    std::string up;
+    std::string path;
+    std::string stats;
+    double fieldOfView = 0.0;
+    unsigned int frames = 0;
+    bool noCull = false;
+    osgGeoFX::SceneRenderer::Options renderer;
+};
+
+void addOptions(CLI::App& app, Arguments& arguments)
+{
+    using Platform = osgGeoFX::SceneRenderer::Platform;
+    app.add_option("scene", arguments.scene, "Any file that OpenSceneGraph reads, or a .geofx scene")
+        ->required()
+        ->type_name("SCENE");
+    app.add_option(
+           "-o,--output", arguments.output,
+           "Picture to write; its extension names the format (png, jpg, tiff, …). With --path a pattern "
+           "such as f%04d.png")
+        ->required()
+        ->type_name("FILE");
+    app.add_option("--size", arguments.size, "Size of the picture in pixels")
+        ->type_name("WxH")
+        ->capture_default_str();
+    app.add_option("--fov", arguments.fieldOfView,
+                   "Vertical field of view in degrees (default: the scene's, or 30)")
+        ->type_name("DEG");
+
+    auto* view =
+        app.add_option("--view", arguments.view,
+                       "Camera on the ground's terms: degrees; metres above the database's zero height; "
+                       "heading clockwise from north; pitch negative downwards; roll positive with the "
+                       "right wing down")
+            ->type_name("LON,LAT,ALT,HEADING,PITCH[,ROLL]");
+    auto* eye = app.add_option("--eye", arguments.eye, "Camera in world coordinates: where it is")
+                    ->type_name("X,Y,Z")
+                    ->excludes(view);
+    auto* look = app.add_option("--look", arguments.look, "… the point that it looks at")
+                     ->type_name("X,Y,Z")
+                     ->needs(eye);
+    eye->needs(look);
+    app.add_option("--up", arguments.up, "… its upward direction (default: away from the ground)")
+        ->type_name("X,Y,Z")
+        ->needs(eye);
+    auto* path =
+        app.add_option("--path", arguments.path,
+                       "Camera along a way: CSV with the header time,lon,lat,alt,heading,pitch[,roll]")
+            ->type_name("FILE.csv")
+            ->excludes(view)
+            ->excludes(eye);
+    auto* frames = app.add_option("--frames", arguments.frames, "… the number of pictures, evenly in time")
+                       ->type_name("N")
+                       ->check(CLI::Range(1u, 1000000u))
+                       ->needs(path);
+    path->needs(frames);
+
+    app.add_flag("--no-cull", arguments.noCull, "Switch frustum and small-feature culling off");
+    app.add_option("--samples", arguments.renderer.samples, "Samples per pixel (multisampling)")
+        ->type_name("N")
+        ->check(CLI::Range(0u, 64u))
+        ->capture_default_str();
+    app.add_flag("--wait-for-tiles,!--no-wait-for-tiles", arguments.renderer.waitForTiles,
+                 "Wait until every tile that the picture needs is there (the default), or do not");
+    app.add_option("--timeout", arguments.renderer.timeout, "Longest wait for each picture, in seconds")
+        ->type_name("S")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option(
+           "--stats", arguments.stats,
+           "Write figures as JSON: for each picture cull_ms, draw_ms (with reading it back), total_ms, "
+           "triangles, drawables, tiles_drawn, tiles_loaded, bytes_read; once renderer, gl_version, "
+           "peak_memory_bytes, size, samples")
+        ->type_name("FILE.json");
+    const std::map<std::string, Platform> platforms = {{"egl", Platform::Egl}, {"x11", Platform::X11}};
+    app.add_option("--platform", arguments.renderer.platform, "egl needs no X server (the default); or x11")
+        ->transform(CLI::CheckedTransformer(platforms).description("egl|x11"));
+    app.footer(
+        "Without --view, --eye or --path the scene's home view is taken, or one that shows the whole scene. "
+        "The same command gives the same bytes.\n"
+        "Exit code: 0; 1 if tiles did not arrive in time; 2 if the input, the output or the machine's "
+        "OpenGL is at fault.\n\n"
+        "Examples:\n"
+        "  osggeofx_render oahu.geofx -o oahu.png\n"
+        "  osggeofx_render terrain.osgb -o ridge.jpg --size 1920x1080 --view -157.86,21.27,900,45,-8\n"
+        "  osggeofx_render oahu.geofx -o f%04d.png --path flight.csv --frames 240 --stats flight.json");
+}
+
+osg::Vec3d vectorOf(const std::string& option, const std::string& text)
+{
+    const auto numbers = osgGeoFX::parseNumbers(text);
+    if (!numbers || numbers->size() != 3)
+    {
+        throw Failure(badInput, option + " " + text + ": write three numbers, X,Y,Z.");
+    }
+    return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
+
+void readSize(Arguments& arguments)
+{
+    int used = 0;
+    int& width = arguments.renderer.width;
+    int& height = arguments.renderer.height;
+    if (std::sscanf(arguments.size.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 ||
+        static_cast<std::size_t>(used) != arguments.size.size() || width < 1 || height < 1)
+    {
+        throw Failure(badInput,
+                      "--size " + arguments.size + ": write width and height in pixels, such as 1600x900.");
+    }
+}
+
+/// One view matrix for each picture, and its time.
+class Camera
+{
+public:
+    Camera(const Arguments& arguments, const osgGeoFX::Scene& scene) : _scene(scene)
+    {
+        std::string error;
+        if (!arguments.path.empty())
+        {
+            _path = osgGeoFX::CameraPath::read(arguments.path, error);
+            if (!_path) throw Failure(badInput, error);
+            _count = arguments.frames;
+            requireReference("--path");
+        }
+        else if (!arguments.view.empty())
+        {
+            const auto point = osgGeoFX::ViewPoint::parse(arguments.view, error);
+            if (!point) throw Failure(badInput, "--view: " + error);
+            requireReference("--view");
+            _single = matrixOf(*point);
+        }
+        else if (!arguments.eye.empty())
+        {
+            lookAt(arguments);
+        }
+        else
+        {
+            if (scene.settings.homeView) requireReference("The scene's home view");
+            const double aspect = static_cast<double>(arguments.renderer.width) /
+                                  static_cast<double>(arguments.renderer.height);
+            _single = scene.homeViewMatrix(osg::DegreesToRadians(arguments.renderer.fieldOfView), aspect);
+        }
+    }
+
+    unsigned int count() const { return _count; }
+    double time(unsigned int frame) const { return _path ? _path->timeOfFrame(frame, _count) : 0.0; }
+    osg::Matrixd view(unsigned int frame) const { return _path ? matrixOf(_path->at(time(frame))) : _single; }
+
+private:
+    void requireReference(const std::string& what) const
+    {
+        if (!_scene.reference) throw Failure(badInput, what + " cannot be used: " + _scene.referenceError);
+    }
+
+    osg::Matrixd matrixOf(const osgGeoFX::ViewPoint& point) const
+    {
+        osg::Matrixd view;
+        if (!point.viewMatrix(*_scene.reference, view))
+        {
+            throw Failure(badInput,
+                          "The camera's longitude and latitude lie outside the scene's projection; move "
+                          "it nearer to the terrain.");
+        }
+        return view;
+    }
+
+    void lookAt(const Arguments& arguments)
+    {
+        const osg::Vec3d eye = vectorOf("--eye", arguments.eye);
+        const osg::Vec3d look = vectorOf("--look", arguments.look);
+        osg::Vec3d up = arguments.up.empty() ? osg::Vec3d(0.0, 0.0, 1.0) : vectorOf("--up", arguments.up);
+        if (arguments.up.empty() && _scene.reference && _scene.reference->isGeocentric())
+        {
+            up = eye;
+        }
+        if (((look - eye) ^ up).length2() == 0.0)
+        {
+            throw Failure(badInput,
+                          "--eye, --look and --up do not make a camera: it must not look along its upward "
+                          "direction; give another --up.");
+        }
+        _single = osg::Matrixd::lookAt(eye, look, up);
+    }
+
+    const osgGeoFX::Scene& _scene;
+    std::optional<osgGeoFX::CameraPath> _path;
+    osg::Matrixd _single;
+    unsigned int _count = 1;
+};
+
+void run(Arguments& arguments)
+{
+    std::string error;
+    readSize(arguments);
+    PictureFiles pictures(arguments.output, !arguments.path.empty());
+    if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
+    const std::string statsFault = arguments.stats.empty() ? std::string() : faultOfOutput(arguments.stats);
+    if (!statsFault.empty()) throw Failure(badInput, statsFault);
+
+    const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(arguments.scene, error);
+    if (!scene) throw Failure(badInput, error);
+    osgGeoFX::SceneRenderer::Options& options = arguments.renderer;
+    options.fieldOfView =
+        arguments.fieldOfView != 0.0 ? arguments.fieldOfView : scene->settings.homeFov.value_or(30.0);
+    if (!(options.fieldOfView > 0.0 && options.fieldOfView < 180.0))
+    {
+        throw Failure(badInput, "--fov must lie between 0 and 180 degrees.");
+    }
+    options.cull = !arguments.noCull;
+    options.countTriangles = !arguments.stats.empty();
+    const Camera camera(arguments, *scene);
+
+    const auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
+    if (!renderer) throw Failure(badInput, error);
+    StatisticsFile statistics(*renderer, options);
+    for (unsigned int frame = 0; frame < camera.count(); ++frame)
+    {
+        osgGeoFX::FrameStatistics figures;
+        const auto image = renderer->render(camera.view(frame), camera.time(frame), figures, error);
+        if (!image) throw Failure(tookTooLong, error);
+        if (!pictures.write(*image, frame)) throw Failure(badInput, pictures.error());
+        statistics.add(figures);
+    }
+    if (!arguments.stats.empty() && !statistics.write(arguments.stats))
+    {
+        throw Failure(badInput, "The figures cannot be written to \"" + arguments.stats +
+                                    "\"; check the folder, its permissions and the disk's space.");
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    Arguments arguments;
+    CLI::App app(
+        "Renders an OSG file or .geofx scene to a picture, or to one for each step of a camera path, "
+        "without a screen.",
+        "osggeofx_render");
+    addOptions(app, arguments);
+    try
+    {
+        app.parse(argc, argv);
+        run(arguments);
+    }
+    catch (const CLI::Success& help)
+    {
+        return app.exit(help);
+    }
+    catch (const CLI::ParseError& error)
+    {
+        std::cerr << "osggeofx_render: " << error.what() << "; see --help." << std::endl;
+        return badInput;
+    }
+    catch (const Failure& failure)
+    {
+        std::cerr << "osggeofx_render: " << failure.what() << std::endl;
+        return failure.exitCode;
+    }
+    return 0;
+}

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/offscreen/SceneRenderer.h>
+
+#include <osgGeoFX/offscreen/DrawnLeaves.h>
+#include <osgGeoFX/offscreen/EglGraphicsContext.h>
+#include <osgGeoFX/paging/PagerMonitor.h>
+
+#include <osg/Group>
+#include <osg/Stats>
+#include <osgUtil/SceneView>
+#include <osgViewer/Renderer>
+#include <osgViewer/Viewer>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <sstream>
+#include <thread>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start)
+{
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// A viewer whose clock shows what it is told: nothing expires, and nothing moves, while a picture's tiles come.
+class StillViewer : public osgViewer::Viewer
+{
+public:
+    void advance(double time) override
+    {
+        osgViewer::Viewer::advance(time);
+        getFrameStamp()->setReferenceTime(time);
+    }
+};
+
+/// Counts what is about to be drawn; afterwards OSG has cleared its lists.
+class CountCallback : public osg::Camera::DrawCallback
+{
+public:
+    using osg::Camera::DrawCallback::operator();
+    void operator()(osg::RenderInfo& renderInfo) const override
+    {
+        auto* renderer = dynamic_cast<osgViewer::Renderer*>(renderInfo.getCurrentCamera()->getRenderer());
+        // The single-threaded model uses the first of the renderer's two scene views only.
+        if (renderer) leaves = DrawnLeaves::count(*renderer->getSceneView(0)->getRenderStage());
+    }
+
+    mutable DrawnLeaves leaves;
+};
+
+/// Leaves the frame in the back buffer of an X11 pbuffer, which has no screen; Mesa reports an X error for each swap.
+struct NoSwap : public osg::GraphicsContext::SwapCallback
+{
+    void swapBuffersImplementation(osg::GraphicsContext*) override {}
+};
+
+osg::ref_ptr<osg::GraphicsContext> createContext(const SceneRenderer::Options& options, std::string& error)
+{
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+    traits->width = options.width;
+    traits->height = options.height;
+    traits->alpha = 8;
+    traits->stencil = 8;
+    traits->samples = options.samples;
+    traits->sampleBuffers = options.samples > 1 ? 1 : 0;
+    if (options.platform == SceneRenderer::Platform::Egl)
+    {
+        osg::ref_ptr<EglGraphicsContext> context = new EglGraphicsContext(traits);
+        error = context->error();
+        if (!context->valid()) return nullptr;
+        return context;
+    }
+    const char* display = std::getenv("DISPLAY");
+    if (!display || !*display)
+    {
+        error = "There is no X display (DISPLAY is not set); start an X server or use EGL.";
+        return nullptr;
+    }
+    traits->pbuffer = true;
+    traits->doubleBuffer = true;
+    traits->readDISPLAY();
+    osg::ref_ptr<osg::GraphicsContext> context = osg::GraphicsContext::createGraphicsContext(traits);
+    if (!context || !context->valid())
+    {
+        error = std::string("No OpenGL context could be made on the X display ") + display +
+                "; check that it runs and has GLX.";
+        return nullptr;
+    }
+    context->setSwapCallback(new NoSwap);
+    return context;
+}
+
+} // namespace
+
+struct SceneRenderer::Parts
+{
+    Options options;
+    osg::ref_ptr<StillViewer> viewer;
+    osg::ref_ptr<ImageCapture> capture;
+    osg::ref_ptr<CountCallback> counter;
+    std::unique_ptr<PagerMonitor> monitor;
+    std::string rendererName;
+    std::string glVersion;
+    unsigned int samples = 0;
+
+    void setUpCamera(const Scene& scene, osg::GraphicsContext& context);
+    void setUpScene(const Scene& scene);
+    bool describe(osg::GraphicsContext& context);
+    osg::ref_ptr<osg::Image> frame(double time, FrameStatistics& statistics);
+};
+
+void SceneRenderer::Parts::setUpCamera(const Scene& scene, osg::GraphicsContext& context)
+{
+    osg::Camera& camera = *viewer->getCamera();
+    const double height = options.height;
+    camera.setGraphicsContext(&context);
+    camera.setViewport(0, 0, options.width, options.height);
+    camera.setProjectionMatrixAsPerspective(options.fieldOfView, options.width / height, 1.0, 1e6);
+    camera.setLODScale(scene.lodScale(height, osg::DegreesToRadians(options.fieldOfView)));
+    scene.setUpView(*viewer);
+    if (!options.cull)
+    {
+        camera.setCullingMode(osg::CullSettings::NO_CULLING);
+    }
+    camera.setStats(new osg::Stats("Camera"));
+    camera.getStats()->collectStats("rendering", true);
+    if (options.countTriangles)
+    {
+        counter = new CountCallback;
+        camera.addInitialDrawCallback(counter.get());
+    }
+    capture = ImageCapture::attach(&camera, options.format);
+}
+
+void SceneRenderer::Parts::setUpScene(const Scene& scene)
+{
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    // Sorting by state would draw in the order of addresses in memory, which differ from run to run.
+    root->getOrCreateStateSet()->setRenderBinDetails(0, "TraversalOrderBin");
+    root->addChild(scene.node.get());
+    viewer->setSceneData(root);
+    viewer->getDatabasePager()->setUpThreads(std::max(2u, std::thread::hardware_concurrency()), 0);
+    monitor = std::make_unique<PagerMonitor>(viewer->getDatabasePager(), scene.guard.get(), 1);
+}
+
+bool SceneRenderer::Parts::describe(osg::GraphicsContext& context)
+{
+    if (!context.makeCurrent())
+    {
+        return false;
+    }
+    rendererName = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    glVersion = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+    GLint count = 0;
+    glGetIntegerv(GL_SAMPLES, &count);
+    samples = static_cast<unsigned int>(count);
+    context.releaseContext();
+    return true;
+}
+
+osg::ref_ptr<osg::Image> SceneRenderer::Parts::frame(double time, FrameStatistics& statistics)
+{
+    const auto start = Clock::now();
+    capture->request();
+    viewer->frame(time);
+    osg::ref_ptr<osg::Image> image = capture->take();
+    statistics.totalMilliseconds = 1000.0 * secondsSince(start);
+
+    osg::Stats& stats = *viewer->getCamera()->getStats();
+    const unsigned int number = viewer->getFrameStamp()->getFrameNumber();
+    double cull = 0.0;
+    double draw = 0.0;
+    stats.getAttribute(number, "Cull traversal time taken", cull);
+    stats.getAttribute(number, "Draw traversal time taken", draw);
+    statistics.cullMilliseconds = 1000.0 * cull;
+    statistics.drawMilliseconds = 1000.0 * draw;
+    if (counter)
+    {
+        statistics.triangles = counter->leaves.triangles;
+        statistics.drawables = counter->leaves.drawables;
+        statistics.tilesDrawn = counter->leaves.tiles;
+    }
+    return image;
+}
+
+SceneRenderer::SceneRenderer(std::unique_ptr<Parts> parts) : _parts(std::move(parts)) {}
+
+SceneRenderer::~SceneRenderer() = default;
+
+std::unique_ptr<SceneRenderer> SceneRenderer::create(const Scene& scene, const Options& options,
+                                                     std::string& error)
+{
+    const osg::ref_ptr<osg::GraphicsContext> context = createContext(options, error);
+    if (!context)
+    {
+        return nullptr;
+    }
+    auto parts = std::make_unique<Parts>();
+    parts->options = options;
+    parts->viewer = new StillViewer;
+    parts->viewer->setThreadingModel(osgViewer::Viewer::SingleThreaded);
+    parts->setUpCamera(scene, *context);
+    parts->setUpScene(scene);
+    parts->viewer->realize();
+    if (!parts->viewer->isRealized() || !parts->describe(*context))
+    {
+        error = "The OpenGL context cannot be used; check the driver.";
+        return nullptr;
+    }
+    return std::unique_ptr<SceneRenderer>(new SceneRenderer(std::move(parts)));
+}
+
+osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double time,
+                                               FrameStatistics& statistics, std::string& error)
+{
+    Parts& parts = *_parts;
+    const auto start = Clock::now();
+    parts.viewer->getCamera()->setViewMatrix(view);
+    parts.monitor->restart();
+    osg::ref_ptr<osg::Image> image;
+    for (bool done = false; !done;)
+    {
+        image = parts.frame(time, statistics);
+        if (!image)
+        {
+            error = "The frame could not be read back; check the OpenGL driver.";
+            return nullptr;
+        }
+        done = parts.monitor->frameFinished() || !parts.options.waitForTiles;
+        const double left = parts.options.timeout - secondsSince(start);
+        if (!done && left <= 0.0)
+        {
+            std::ostringstream text;
+            text << "The tiles did not arrive within " << parts.options.timeout
+                 << " s; allow more time, or do not wait for them.";
+            error = text.str();
+            return nullptr;
+        }
+        if (!done) parts.monitor->waitForReads(left);
+    }
+    const PagerMonitor::Progress progress = parts.monitor->takeProgress();
+    statistics.tilesLoaded = progress.tilesLoaded;
+    statistics.bytesRead = progress.bytesRead;
+    return image;
+}
+
+const std::string& SceneRenderer::rendererName() const
+{
+    return _parts->rendererName;
+}
+
+const std::string& SceneRenderer::glVersion() const
+{
+    return _parts->glVersion;
+}
+
+unsigned int SceneRenderer::samples() const
+{
+    return _parts->samples;
+}
+
+} // namespace osgGeoFX

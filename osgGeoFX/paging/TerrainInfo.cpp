@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/paging/TerrainInfo.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/MatrixTransform>
+#include <osg/NodeVisitor>
+#include <osg/ValueObject>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+class FindTerrain : public osg::NodeVisitor
+{
+public:
+    FindTerrain() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
+
+    void apply(osg::Node& node) override
+    {
+        if (!found) traverse(node);
+    }
+    void apply(osg::CoordinateSystemNode& node) override
+    {
+        if (!found && node.getName() == "osgGeoFX terrain") found = &node;
+        apply(static_cast<osg::Node&>(node));
+    }
+
+    const osg::Node* found = nullptr;
+};
+
+} // namespace
+
+std::optional<TerrainInfo> TerrainInfo::read(const osg::Node* node, std::string& error)
+{
+    FindTerrain finder;
+    if (node) const_cast<osg::Node*>(node)->accept(finder);
+    if (!finder.found)
+    {
+        return std::nullopt;
+    }
+    const osg::Node& root = *finder.found;
+    TerrainInfo info;
+    std::string kind;
+    if (root.getUserValue("geofx.format", info.format) && info.format > newestFormat)
+    {
+        error = "The terrain database is of format " + std::to_string(info.format) +
+                ", which is newer than this program; use a newer osgGeoFX.";
+        return std::nullopt;
+    }
+    const bool complete =
+        info.format >= 1 && root.getUserValue("geofx.kind", kind) &&
+        root.getUserValue("geofx.west", info.west) && root.getUserValue("geofx.south", info.south) &&
+        root.getUserValue("geofx.east", info.east) && root.getUserValue("geofx.north", info.north) &&
+        root.getUserValue("geofx.minHeight", info.minHeight) &&
+        root.getUserValue("geofx.maxHeight", info.maxHeight) &&
+        root.getUserValue("geofx.pixelsPerRadian", info.pixelsPerRadian) &&
+        root.getUserValue("geofx.pixelError", info.pixelError) &&
+        root.getUserValue("geofx.levels", info.levels) && root.getUserValue("geofx.vertical", info.vertical);
+    if (!complete || (kind != "geocentric" && kind != "projected"))
+    {
+        error = "The terrain database's description of itself is incomplete; build it again.";
+        return std::nullopt;
+    }
+    info.geocentric = kind == "geocentric";
+    return info;
+}
+
+bool TileInfo::isTile(const osg::Node& node)
+{
+    return node.getName().compare(0, 5, "tile ") == 0 && node.asTransform() != nullptr;
+}
+
+std::optional<TileInfo> TileInfo::read(const osg::Node& node)
+{
+    TileInfo info;
+    int used = 0;
+    const std::string& name = node.getName();
+    if (!isTile(node) ||
+        std::sscanf(name.c_str(), "tile %d/%d/%d%n", &info.level, &info.x, &info.y, &used) != 3 ||
+        static_cast<std::size_t>(used) != name.size() || !node.getUserValue("geofx.boxMin", info.boxMin) ||
+        !node.getUserValue("geofx.boxMax", info.boxMax))
+    {
+        return std::nullopt;
+    }
+    return info;
+}
+
+float lodScaleFor(const TerrainInfo& info, double pixelsPerRadian)
+{
+    return static_cast<float>(std::min(1.0, info.pixelsPerRadian / pixelsPerRadian));
+}
+
+double pixelsPerRadian(double height, double fieldOfView)
+{
+    return height / (2.0 * std::tan(fieldOfView / 2.0));
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+
+#include <osg/Node>
+#include <osg/Vec3d>
+
+#include <optional>
+#include <string>
+
+namespace osgGeoFX
+{
+
+/** What a terrain database of osggeofx_build says about itself, read from its root node.
+
+    Extents are degrees in a geocentric database (east may exceed 180 across the antimeridian), else metres in
+    its projected coordinate system; heights are metres. A plain value; reading changes nothing. */
+struct OSGGEOFX_EXPORT TerrainInfo
+{
+    int format = 0;
+    bool geocentric = false;
+    double west = 0.0;
+    double south = 0.0;
+    double east = 0.0;
+    double north = 0.0;
+    double minHeight = 0.0;
+    double maxHeight = 0.0;
+    double pixelsPerRadian = 0.0; ///< of the screen on which LOD ranges keep the error bound
+    double pixelError = 0.0;      ///< that bound
+    int levels = 0;
+    std::string vertical; ///< vertical datum
+
+    /// The newest format that this library understands.
+    static constexpr int newestFormat = 1;
+
+    /// Of the first terrain root at or below `node`. Nothing where there is none; nothing, with a sentence in
+    /// `error`, where it is of a newer format or incomplete.
+    static std::optional<TerrainInfo> read(const osg::Node* node, std::string& error);
+};
+
+/// The name and box of a terrain tile, carried by the transform above its geometry.
+struct OSGGEOFX_EXPORT TileInfo
+{
+    int level = 0;
+    int x = 0;
+    int y = 0;
+    osg::Vec3d boxMin; ///< in the tile's local frame
+    osg::Vec3d boxMax;
+
+    /// Whether the node is a tile's transform, by its name.
+    static bool isTile(const osg::Node& node);
+    static std::optional<TileInfo> read(const osg::Node& node);
+};
+
+/** The LOD scale at which a database keeps its error bound on a screen: never above 1, which would coarsen it.
+
+    `pixelsPerRadian` is viewport height / (2·tan(vertical field of view / 2)). */
+OSGGEOFX_EXPORT float lodScaleFor(const TerrainInfo& info, double pixelsPerRadian);
+
+/// Pixels per radian at the centre of an image, from its height in pixels and vertical field of view in radians.
+OSGGEOFX_EXPORT double pixelsPerRadian(double height, double fieldOfView);
+
+} // namespace osgGeoFX

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/paging/ViewerHandlers.h>
+
+#include <osg/Math>
+#include <osgUtil/IntersectionVisitor>
+#include <osgUtil/LineSegmentIntersector>
+
+#include <cmath>
+#include <cstdio>
+
+namespace osgGeoFX
+{
+
+bool LodScaleFollower::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action)
+{
+    osg::View* view = action.asView();
+    if (event.getEventType() != osgGA::GUIEventAdapter::FRAME || !view)
+    {
+        return false;
+    }
+    osg::Camera& camera = *view->getCamera();
+    double fieldOfView = 0.0;
+    double aspect = 0.0;
+    double zNear = 0.0;
+    double zFar = 0.0;
+    if (!_terrain || !camera.getViewport() || camera.getViewport()->height() <= 0.0 ||
+        !camera.getProjectionMatrixAsPerspective(fieldOfView, aspect, zNear, zFar))
+    {
+        return false;
+    }
+    const float base = lodScaleFor(
+        *_terrain, pixelsPerRadian(camera.getViewport()->height(), osg::DegreesToRadians(fieldOfView)));
+    if (base != _base)
+    {
+        camera.setLODScale(camera.getLODScale() * base / _base);
+        _base = base;
+    }
+    return false;
+}
+
+CursorReadout::CursorReadout(osg::ref_ptr<Georeference> reference, const std::string& whyNone)
+    : _reference(std::move(reference)), _whyNone(whyNone), _overlay(new osg::Camera), _text(new osgText::Text)
+{
+    _text->setDataVariance(osg::Object::DYNAMIC);
+    _text->setCharacterSize(18.0f);
+    _text->setPosition(osg::Vec3(10.0f, 10.0f, 0.0f));
+    _text->setColor(osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f));
+    _text->setBackdropType(osgText::Text::OUTLINE);
+    _text->setBackdropColor(osg::Vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    _overlay->setRenderOrder(osg::Camera::POST_RENDER, 10);
+    _overlay->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+    _overlay->setClearMask(0);
+    _overlay->setAllowEventFocus(false);
+    osg::StateSet* state = _overlay->getOrCreateStateSet();
+    state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    state->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
+    _overlay->addChild(_text);
+}
+
+void CursorReadout::getUsage(osg::ApplicationUsage& usage) const
+{
+    usage.addKeyboardMouseBinding("c", "Toggle the coordinates of the ground below the pointer");
+}
+
+std::string CursorReadout::text() const
+{
+    return _shown ? _text->getText().createUTF8EncodedString() : std::string();
+}
+
+void CursorReadout::toggle(osgViewer::View& view)
+{
+    _shown = !_shown;
+    const osg::Viewport* viewport = view.getCamera()->getViewport();
+    if (!_overlay->getGraphicsContext() && viewport)
+    {
+        _overlay->setGraphicsContext(view.getCamera()->getGraphicsContext());
+        _overlay->setViewport(0, 0, static_cast<int>(viewport->width()),
+                              static_cast<int>(viewport->height()));
+        _overlay->setProjectionMatrixAsOrtho2D(0.0, viewport->width(), 0.0, viewport->height());
+        // A slave camera, so that the scene itself stays as it was loaded.
+        view.addSlave(_overlay, false);
+    }
+    _overlay->setNodeMask(_shown ? ~0u : 0u);
+    _text->setText(_reference ? std::string("move the pointer over the ground") : _whyNone);
+}
+
+void CursorReadout::show(osgViewer::View& view, float x, float y)
+{
+    osg::ref_ptr<osgUtil::LineSegmentIntersector> ray = new osgUtil::LineSegmentIntersector(
+        osgUtil::Intersector::WINDOW, static_cast<double>(x), static_cast<double>(y));
+    ray->setIntersectionLimit(osgUtil::Intersector::LIMIT_NEAREST);
+    osgUtil::IntersectionVisitor visitor(ray.get());
+    view.getCamera()->accept(visitor);
+    double longitude = 0.0;
+    double latitude = 0.0;
+    double height = 0.0;
+    if (!ray->containsIntersections() ||
+        !_reference->toGeodetic(ray->getFirstIntersection().getWorldIntersectPoint(), longitude, latitude,
+                                height))
+    {
+        _text->setText("");
+        return;
+    }
+    char line[128];
+    std::snprintf(line, sizeof line, "%.6f %s  %.6f %s  %.1f m", std::abs(osg::RadiansToDegrees(longitude)),
+                  longitude < 0.0 ? "W" : "E", std::abs(osg::RadiansToDegrees(latitude)),
+                  latitude < 0.0 ? "S" : "N", height);
+    _text->setText(line);
+}
+
+bool CursorReadout::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action)
+{
+    auto* view = dynamic_cast<osgViewer::View*>(&action);
+    if (!view)
+    {
+        return false;
+    }
+    using Clock = std::chrono::steady_clock;
+    switch (event.getEventType())
+    {
+    case osgGA::GUIEventAdapter::KEYDOWN:
+        if (event.getKey() != 'c') return false;
+        toggle(*view);
+        return true;
+    case osgGA::GUIEventAdapter::MOVE:
+        _moved = true;
+        _lastMove = Clock::now();
+        return false;
+    case osgGA::GUIEventAdapter::RESIZE:
+        // OSG gives the slave its new viewport; its projection is ours.
+        _overlay->setProjectionMatrixAsOrtho2D(0.0, event.getWindowWidth(), 0.0, event.getWindowHeight());
+        return false;
+    case osgGA::GUIEventAdapter::FRAME:
+        // A ray through all tiles costs milliseconds, so it waits until the pointer rests.
+        if (_shown && _moved && _reference && Clock::now() - _lastMove > std::chrono::milliseconds(60))
+        {
+            _moved = false;
+            show(*view, event.getX(), event.getY());
+        }
+        return false;
+    default:
+        return false;
+    }
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <glm/glm.hpp>
+
+/** The functions of shaders/lib as C++, from the very text that the GPU runs: in double as `osgGeoFX::glsl`,
+    and in float, to see what a GPU loses, as `osgGeoFX::glslf`. Units, ranges and errors are told in each file.
+
+    A file of shaders/lib is written in what GLSL 3.30 and C++ with GLM have in common:
+    - pure functions, marked GEOFX_INLINE, and constants and structures; names begin with geofx_ or GEOFX_;
+    - the types below instead of float and vec2, and Number(0.5) instead of 0.5, which would be a double;
+      integers may stand in the arithmetic of scalars, not of vectors and not as arguments;
+    - no swizzles of several components, uniforms, samplers, gl_... or main; `out` parameters need a macro;
+    - what it includes stands in #ifndef __cplusplus, since this header includes all of it, in order, twice. */
+#define GEOFX_INLINE inline
+
+namespace osgGeoFX
+{
+
+/// GLSL's own functions that shaders/lib uses.
+namespace glslBuiltIns
+{
+using glm::abs;
+using glm::clamp;
+using glm::dot;
+using glm::length;
+using glm::max;
+using glm::sqrt;
+} // namespace glslBuiltIns
+
+namespace glsl
+{
+using namespace glslBuiltIns;
+using Number = double;
+using Length = double;
+using Angle = double;
+using PerMetre = double;
+using Vector2 = glm::dvec2;
+using Profile = glm::dvec2;
+#include <shaders/lib/series.glsl>
+
+#include <shaders/lib/bend.glsl>
+} // namespace glsl
+
+namespace glslf
+{
+using namespace glslBuiltIns;
+using Number = float;
+using Length = float;
+using Angle = float;
+using PerMetre = float;
+using Vector2 = glm::vec2;
+using Profile = glm::vec2;
+#include <shaders/lib/series.glsl>
+
+#include <shaders/lib/bend.glsl>
+} // namespace glslf
+
+} // namespace osgGeoFX
+
+#undef GEOFX_INLINE

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// What GLSL calls the things that shaders/lib is written in. C++ has its own definitions, in double and in
+// float, in osgGeoFX/scene/GlslFunctions.h; that header tells how a file of shaders/lib must be written.
+#define GEOFX_INLINE
+
+#define Number float   // without a unit
+#define Length float   // metres
+#define Angle float    // radians
+#define PerMetre float // radians per metre
+#define Vector2 vec2   // each component without a unit, a direction
+#define Profile vec2   // a point (s, h) of a profile, metres
