@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The osgDB plugin of the scene file. It needs no GDAL: where a scene names rasters, it asks osgdb_geofxdata.
+#include "SceneFile.h"
+#include "SceneNode.h"
+
+#include <osgGeoFX/paging/TileGuard.h>
+
+#include <osg/ValueObject>
+#include <osgDB/FileNameUtils>
+#include <osgDB/FileUtils>
+#include <osgDB/Registry>
+#include <osgDB/fstream>
+
+#include <exception>
+
+namespace osgGeoFX
+{
+
+class ReaderWriterGeoFX : public osgDB::ReaderWriter
+{
+public:
+    ReaderWriterGeoFX() { supportsExtension("geofx", "osgGeoFX scene file"); }
+
+    const char* className() const override { return "osgGeoFX scene reader"; }
+
+    ReadResult readObject(const std::string& file, const Options* options) const override
+    {
+        return readNode(file, options);
+    }
+
+    ReadResult readNode(const std::string& file, const Options* options) const override
+    {
+        if (!acceptsExtension(osgDB::getLowerCaseFileExtension(file))) return ReadResult::FILE_NOT_HANDLED;
+        const std::string path = osgDB::findDataFile(file, options);
+        if (path.empty()) return ReadResult::FILE_NOT_FOUND;
+
+        osgDB::ifstream stream(path.c_str(), std::ios::in | std::ios::binary);
+        std::string text(largestScene + 1, '\0'); // one more: what is too long is seen to be
+        stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+        text.resize(static_cast<std::size_t>(stream.gcount()));
+        // Absolute, so that what is paged later is found from any current folder.
+        SceneResult result = parseScene(text, path, osgDB::getFilePath(osgDB::getRealPath(path)));
+        if (result.scene) result.errors = missingFiles(*result.scene);
+        if (!result.errors.empty()) return failure(result.errors);
+
+        std::string error;
+        ScenePath database;
+        if (result.scene->database)
+            database = *result.scene->database;
+        else
+            database = builtDatabase(*result.scene->rasters, error);
+        const osg::ref_ptr<osg::Node> terrain =
+            error.empty() ? readTerrain(database, options, error) : nullptr;
+        if (!terrain) return failure({error});
+        TileGuard::install(terrain);
+        const osg::ref_ptr<osg::Group> node = createSceneNode(*result.scene, terrain, error);
+        if (!node) return failure({error});
+        return node.get();
+    }
+
+private:
+    static ReadResult failure(const std::vector<std::string>& errors)
+    {
+        std::string text;
+        for (const std::string& error : errors)
+            text += (text.empty() ? "" : "\n") + error;
+        return text;
+    }
+
+    static ScenePath builtDatabase(const SceneRasters& rasters, std::string& error)
+    {
+        osgDB::ReaderWriter* builder = osgDB::Registry::instance()->getReaderWriterForExtension("geofxdata");
+        if (!builder)
+        {
+            error = rasters.place.message("rasters are built into a database by the OSG plugin "
+                                          "osgdb_geofxdata, which was not found or lacks "
+                                          "its libraries (GDAL); put its folder on OSG_LIBRARY_PATH, or "
+                                          "build the database elsewhere with "
+                                          "osggeofx_build and name it in a <database>.");
+            return {};
+        }
+        osg::ref_ptr<Options> request = new Options;
+        request->setPluginStringData("version", GEOFX_VERSION);
+        request->setPluginData("rasters", const_cast<SceneRasters*>(&rasters));
+        ReadResult result = builder->readObject("terrain", request);
+        const auto* path = dynamic_cast<osg::StringValueObject*>(result.getObject());
+        if (!path)
+        {
+            error = rasters.place.message(result.message());
+            return {};
+        }
+        return {path->getValue(), rasters.place, "cache"};
+    }
+
+    static osg::ref_ptr<osg::Node> readTerrain(const ScenePath& file, const Options* options,
+                                               std::string& error)
+    {
+        std::string reason;
+        try
+        {
+            ReadResult result = osgDB::Registry::instance()->readNode(file.path, options);
+            if (result.validNode()) return result.getNode();
+            reason = result.statusMessage();
+        }
+        catch (const std::exception& exception)
+        {
+            reason = exception.what();
+        }
+        error = file.place.message("the terrain \"" + file.path + "\" cannot be read (" + reason +
+                                   "); restore the file or build it again.");
+        return nullptr;
+    }
+};
+
+} // namespace osgGeoFX
+
+using osgGeoFX::ReaderWriterGeoFX;
+REGISTER_OSGPLUGIN(geofx, ReaderWriterGeoFX)

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// Where in a scene file something was said.
+struct ScenePlace
+{
+    std::string file; ///< as the person named it
+    int line = 0;
+    std::string element;
+
+    /// `FILE:LINE: <element>: text`
+    std::string message(const std::string& text) const;
+};
+
+/// A path in a scene, relative ones already joined to the folder of the scene file.
+struct ScenePath
+{
+    std::string path;
+    ScenePlace place;
+    std::string attribute;
+};
+
+/// Red, green, blue, 0…1.
+using SceneColour = std::array<double, 3>;
+
+struct SceneRasters
+{
+    struct LandCover
+    {
+        ScenePath file, table;
+    };
+
+    ScenePlace place;
+    std::vector<ScenePath> dems; ///< at least one
+    std::vector<ScenePath> imagery;
+    std::optional<LandCover> landCover;
+    std::string cache; ///< empty: the person's cache folder
+    int epsg = 0;      ///< 0: geocentric
+    std::string vertical;
+    int tileSize = 0, textureSize = 0;
+    double pixelError = 0.0, texelError = 0.0; ///< pixels
+    int memoryMiB = 0;
+};
+
+/// Degrees, and metres above the database's zero height.
+struct SceneView
+{
+    double longitude = 0.0, latitude = 0.0, altitude = 0.0, heading = 0.0, pitch = 0.0, roll = 0.0;
+    std::optional<double> verticalFieldOfView;
+};
+
+/// Degrees.
+struct SceneSun
+{
+    ScenePlace place;
+    double azimuth = 0.0, elevation = 0.0;
+    SceneColour colour{}, ambient{};
+};
+
+/** What a .geofx file says; data/geofx.xsd has the meaning, range and default of everything.
+
+    Plain values. All functions may be called from any thread. */
+struct Scene
+{
+    // One of these two.
+    std::optional<ScenePath> database;
+    std::optional<SceneRasters> rasters;
+
+    std::optional<SceneView> homeView;
+    std::optional<SceneSun> sun;
+    std::optional<SceneColour> background;
+};
+
+/// A scene, or else at least one sentence of the form `FILE:LINE: <element>: what was expected`.
+struct SceneResult
+{
+    std::optional<Scene> scene;
+    std::vector<std::string> errors;
+};
+
+/// A text longer than this (bytes) is no scene.
+constexpr std::size_t largestScene = 16 * 1024 * 1024;
+
+/// Reads the text of a scene. `file` is for messages; relative paths start at `folder`. No file is opened.
+SceneResult parseScene(const std::string& text, const std::string& file, const std::string& folder);
+
+/// One sentence for each file that the scene names and that is not there.
+std::vector<std::string> missingFiles(const Scene& scene);
+
+} // namespace osgGeoFX

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "SceneNode.h"
+
+#include <osgGeoFX/paging/Georeference.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
+
+#include <osg/LightModel>
+#include <osg/LightSource>
+#include <osg/Math>
+#include <osg/ValueObject>
+
+#include <charconv>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// The shortest texts that give the same numbers again, in every locale.
+template<typename Numbers>
+std::string joined(const Numbers& numbers)
+{
+    std::string text;
+    for (const double value : numbers)
+    {
+        char buffer[32];
+        const auto end = std::to_chars(std::begin(buffer), std::end(buffer), value).ptr;
+        text += (text.empty() ? "" : ",") + std::string(buffer, end);
+    }
+    return text;
+}
+
+/// Longitude and latitude (radians) of the place from which a scene's sun is seen. False, with the reason in
+/// `error`.
+bool sunPlace(const Scene& scene, const osg::Node& terrain, const Georeference& reference, double& longitude,
+              double& latitude, std::string& error)
+{
+    if (scene.homeView)
+    {
+        longitude = osg::DegreesToRadians(scene.homeView->longitude);
+        latitude = osg::DegreesToRadians(scene.homeView->latitude);
+        return true;
+    }
+    const std::optional<TerrainInfo> info = TerrainInfo::read(&terrain, error);
+    if (!error.empty()) return false;
+    osg::Vec3d center = terrain.getBound().center();
+    if (info)
+    {
+        center.set((info->west + info->east) / 2.0, (info->south + info->north) / 2.0, 0.0);
+        if (info->geocentric)
+        {
+            longitude = osg::DegreesToRadians(center.x());
+            latitude = osg::DegreesToRadians(center.y());
+            return true;
+        }
+    }
+    double height = 0.0;
+    if (reference.toGeodetic(center, longitude, latitude, height)) return true;
+    error = "The terrain's centre has no longitude and latitude; give the scene a <homeView>.";
+    return false;
+}
+
+/// Unit vector to the sun, in the world; not valid, with the reason in `error`, if the place is unknown.
+osg::Vec3d sunDirection(const Scene& scene, const osg::Node& terrain, std::string& error)
+{
+    const osg::Vec3d none(NAN, NAN, NAN);
+    const osg::ref_ptr<Georeference> reference = Georeference::create(&terrain, error);
+    double longitude = 0.0, latitude = 0.0;
+    if (!reference || !sunPlace(scene, terrain, *reference, longitude, latitude, error)) return none;
+    osg::Matrixd frame;
+    if (!reference->localToWorld(longitude, latitude, 0.0, frame))
+    {
+        error = "The home view lies outside the terrain's projection; correct its longitude and latitude.";
+        return none;
+    }
+    const double azimuth = osg::DegreesToRadians(scene.sun->azimuth);
+    const double elevation = osg::DegreesToRadians(scene.sun->elevation);
+    const osg::Vec3d local(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
+                           std::sin(elevation));
+    return osg::Matrixd::transform3x3(local, frame);
+}
+
+osg::Vec4 opaque(const SceneColour& colour)
+{
+    return osg::Vec4(osg::Vec3d(colour[0], colour[1], colour[2]), 1.0);
+}
+
+void addSun(osg::Group& group, const SceneSun& sun, const osg::Vec3d& direction)
+{
+    // A viewer puts its headlight, number 0, into the list of lights before the scene's: ours comes later and
+    // wins.
+    osg::ref_ptr<osg::Light> light = new osg::Light(0);
+    light->setPosition(osg::Vec4d(direction, 0.0));
+    light->setDiffuse(opaque(sun.colour));
+    light->setSpecular(opaque(sun.colour));
+    light->setAmbient(opaque(sun.ambient));
+    osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+    source->setName("sun");
+    source->setLight(light);
+    group.addChild(source);
+
+    osg::StateSet* state = group.getOrCreateStateSet();
+    state->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    state->setAssociatedModes(light, osg::StateAttribute::ON);
+    // OSG adds an ambient light of its own, 0.1; the scene's says all.
+    osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
+    model->setAmbientIntensity(osg::Vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    state->setAttributeAndModes(model);
+}
+
+} // namespace
+
+osg::ref_ptr<osg::Group> createSceneNode(const Scene& scene, osg::Node* terrain, std::string& error)
+{
+    osg::ref_ptr<osg::Group> group = new osg::Group;
+    group->setName("osgGeoFX scene");
+    group->addChild(terrain);
+    if (scene.homeView)
+    {
+        const SceneView& view = *scene.homeView;
+        group->setUserValue("geofx.homeView",
+                            joined(std::array<double, 6>{view.longitude, view.latitude, view.altitude,
+                                                         view.heading, view.pitch, view.roll}));
+        if (view.verticalFieldOfView) group->setUserValue("geofx.homeFov", *view.verticalFieldOfView);
+    }
+    if (scene.background) group->setUserValue("geofx.background", joined(*scene.background));
+    if (scene.sun)
+    {
+        const osg::Vec3d direction = sunDirection(scene, *terrain, error);
+        if (!error.empty())
+        {
+            error = scene.sun->place.message(error);
+            return nullptr;
+        }
+        addSun(*group, *scene.sun, direction);
+        group->setUserValue("geofx.hasLight", true);
+    }
+    return group;
+}
+
+} // namespace osgGeoFX

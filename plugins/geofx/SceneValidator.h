@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <libxml/tree.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+struct XmlDocumentFree
+{
+    void operator()(xmlDoc* document) const { xmlFreeDoc(document); }
+};
+using XmlDocument = std::unique_ptr<xmlDoc, XmlDocumentFree>;
+
+/// The value of an attribute without spaces around it; empty where there is none.
+std::string attributeOf(xmlNode* element, const char* name);
+
+/** A scene's XML, checked against the schema and with the schema's defaults filled in. Null, with sentences
+   in `errors` that name `file`, where it is no scene of this version. Nothing but `text` is read: no DTD, no
+   entity and no schema that the text names. */
+XmlDocument readSceneXml(const std::string& text, const std::string& file, std::vector<std::string>& errors);
+
+} // namespace osgGeoFX

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+namespace osgGeoFX
+{
+
+/// Shows how far a build is, on the standard error output: one line, rewritten on a terminal, else a line for
+/// each tenth of the way. Not thread-safe, as the builder calls it from one thread at a time.
+class ProgressLine
+{
+public:
+    explicit ProgressLine(std::string title) : _title(std::move(title)) {}
+    ~ProgressLine()
+    {
+        if (_open) std::fputc('\n', stderr);
+    }
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    bool operator()(std::uint64_t done, std::uint64_t total, const std::string& phase)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        const int percent = static_cast<int>(100 * done / (total ? total : 1));
+        if (_terminal && (done >= total || now - _last > std::chrono::milliseconds(100)))
+        {
+            std::fprintf(stderr, "\r%s: %3d %% (%s)\x1b[K", _title.c_str(), percent, phase.c_str());
+            std::fflush(stderr);
+            _last = now;
+            _open = true;
+        }
+        else if (!_terminal && percent / 10 > _tenths)
+        {
+            std::fprintf(stderr, "%s: %d %% (%s)\n", _title.c_str(), percent, phase.c_str());
+            _tenths = percent / 10;
+        }
+        return true;
+    }
+
+private:
+    std::string _title;
+    bool _terminal = isatty(STDERR_FILENO) != 0;
+    bool _open = false; ///< the line on the terminal is not ended
+    int _tenths = -1;
+    std::chrono::steady_clock::time_point _last;
+};
+
+} // namespace osgGeoFX
