@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Any bytes are a scene or give sentences that say why not; what comes out as a scene keeps the schema's
+// promises.
+#include <geofx/SceneFile.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+namespace
+{
+
+void require(bool condition, const char* what)
+{
+    if (condition) return;
+    std::fprintf(stderr, "not so: %s\n", what);
+    std::abort();
+}
+
+bool within(double value, double low, double high)
+{
+    return value >= low && value <= high;
+}
+
+bool isColour(const osgGeoFX::SceneColour& c)
+{
+    return within(c[0], 0.0, 1.0) && within(c[1], 0.0, 1.0) && within(c[2], 0.0, 1.0);
+}
+
+void check(const osgGeoFX::Scene& scene)
+{
+    require(scene.database.has_value() != scene.rasters.has_value(), "one terrain");
+    if (scene.rasters)
+    {
+        require(!scene.rasters->dems.empty(), "an elevation raster");
+        require(within(scene.rasters->tileSize, 8, 240), "tile size in its range");
+        require(within(scene.rasters->pixelError, 0.01, 100.0), "pixel error in its range");
+        require(scene.rasters->memoryMiB >= 128, "memory in its range");
+        require(within(scene.rasters->epsg, 0, 999999), "EPSG number in its range");
+    }
+    if (scene.homeView)
+    {
+        require(within(scene.homeView->longitude, -180.0, 180.0), "longitude in its range");
+        require(within(scene.homeView->latitude, -90.0, 90.0), "latitude in its range");
+        require(within(scene.homeView->pitch, -90.0, 90.0), "pitch in its range");
+        require(within(scene.homeView->verticalFieldOfView.value_or(1.0), 1.0, 170.0),
+                "field of view in its range");
+    }
+    if (scene.sun)
+    {
+        require(within(scene.sun->elevation, -90.0, 90.0), "elevation in its range");
+        require(isColour(scene.sun->colour) && isColour(scene.sun->ambient), "colours in their range");
+    }
+    require(!scene.background || isColour(*scene.background), "background in its range");
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    const std::string text(reinterpret_cast<const char*>(data), size);
+    const osgGeoFX::SceneResult result = osgGeoFX::parseScene(text, "fuzz.geofx", "/folder");
+    require(result.scene.has_value() == result.errors.empty(), "a scene or errors");
+    for (const std::string& error : result.errors)
+        require(error.rfind("fuzz.geofx:", 0) == 0, "each error begins with the file");
+    if (result.scene) check(*result.scene);
+    return 0;
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+// The program osggeofx_render, as a person calls it.
+#include <tools/GlFixture.h>
+#include <tools/PagedScene.h>
+#include <tools/RunProgram.h>
+#include <tools/TempDir.h>
+
+#include <nlohmann/json.hpp>
+#include <osg/Image>
+#include <osgDB/ReadFile>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+using geofx::test::PagedScene;
+using geofx::test::ProgramResult;
+using geofx::test::TempDir;
+
+namespace fs = std::filesystem;
+
+namespace
+{
+
+class RenderProgram : public geofx::test::GlFixture
+{
+protected:
+    ProgramResult run(std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.begin(), geofx::test::builtProgram("osggeofx_render"));
+        geofx::test::ProgramOptions options;
+        options.folder = folder.path().string();
+        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
+        return geofx::test::runProgram(arguments, options);
+    }
+
+    void expectPicture(const std::vector<std::string>& arguments)
+    {
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        EXPECT_EQ(result.standardError, "");
+        EXPECT_EQ(result.standardOutput, "");
+    }
+
+    /// Exit code 2 and one sentence, no more, that holds a word of what is wrong.
+    void expectRefusal(const std::vector<std::string>& arguments, const std::string& word)
+    {
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 2) << result.standardError;
+        EXPECT_NE(result.standardError.find(word), std::string::npos) << result.standardError;
+        EXPECT_EQ(std::count(result.standardError.begin(), result.standardError.end(), '\n'), 1)
+            << result.standardError;
+        EXPECT_EQ(result.standardError.rfind("osggeofx_render: ", 0), 0u) << result.standardError;
+        EXPECT_FALSE(fs::exists(folder / "out.png"));
+    }
+
+    osg::ref_ptr<osg::Image> image(const std::string& name) const
+    {
+        return osgDB::readRefImageFile((folder / name).string());
+    }
+
+    std::string bytes(const std::string& name) const
+    {
+        std::ifstream stream(folder / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    }
+
+    osg::Vec3i pixel(const osg::Image& picture, int x, int y) const
+    {
+        const unsigned char* p = picture.data(x, y);
+        return osg::Vec3i(p[0], p[1], p[2]);
+    }
+
+    TempDir folder;
+    const osg::Vec3i blue = {0, 0, 255};
+};
+
+} // namespace
+
+TEST_F(RenderProgram, DrawsFromAboveWithViewAndWithEye)
+{
+    PagedScene::write(folder.path(), PagedScene::Kind::Geocentric);
+    expectPicture({"terrain.osgb", "-o", "a.png", "--size", "160x120", "--view", "-157.8,21.4,8100,0,-90",
+                   "--stats", "a.json"});
+    const osg::ref_ptr<osg::Image> picture = image("a.png");
+    ASSERT_TRUE(picture.valid());
+    EXPECT_EQ(picture->s(), 160);
+    EXPECT_EQ(picture->t(), 120);
+    EXPECT_EQ(pixel(*picture, 80, 60), blue);
+    EXPECT_EQ(pixel(*picture, 2, 2), osg::Vec3i(184, 204, 224)) << "the background";
+
+    const auto stats = nlohmann::json::parse(bytes("a.json"));
+    EXPECT_FALSE(stats.at("renderer").get<std::string>().empty());
+    EXPECT_FALSE(stats.at("gl_version").get<std::string>().empty());
+    EXPECT_GT(stats.at("peak_memory_bytes").get<double>(), 1e6);
+    EXPECT_EQ(stats.at("size"), nlohmann::json({160, 120}));
+    ASSERT_EQ(stats.at("frames").size(), 1u);
+    const auto frame = stats.at("frames").at(0);
+    EXPECT_EQ(frame.at("tiles_drawn"), 16);
+    EXPECT_EQ(frame.at("triangles"), 32);
+    EXPECT_EQ(frame.at("drawables"), 16);
+    EXPECT_EQ(frame.at("tiles_loaded"), 5);
+    EXPECT_GT(frame.at("bytes_read"), 1000);
+    EXPECT_GT(frame.at("cull_ms"), 0.0);
+    EXPECT_GT(frame.at("draw_ms"), 0.0);
+    EXPECT_GT(frame.at("total_ms"), 0.0);
+
+    TempDir other;
+    PagedScene::write(folder / "flat", PagedScene::Kind::Flat);
+    expectPicture({"flat/terrain.osgb", "-o", "b.png", "--size", "160x120", "--eye", "0,0,8000", "--look",
+                   "0,0,0", "--up", "0,1,0"});
+    EXPECT_EQ(bytes("b.png"), bytes("a.png")) << "the same view, told in world coordinates";
+}
+
+TEST_F(RenderProgram, SameCommandGivesSameBytesInEachFormat)
+{
+    PagedScene::write(folder.path(), PagedScene::Kind::Geocentric);
+    for (const std::string extension : {"png", "jpg", "tiff"})
+    {
+        for (const std::string name : {"a.", "b."})
+        {
+            expectPicture({"terrain.osgb", "-o", name + extension, "--size", "200x150", "--samples", "4"});
+        }
+        EXPECT_FALSE(bytes("a." + extension).empty());
+        EXPECT_EQ(bytes("a." + extension), bytes("b." + extension));
+    }
+}
+
+TEST_F(RenderProgram, FollowsAPath)
+{
+    PagedScene::write(folder.path(), PagedScene::Kind::Geocentric);
+    folder.write("flight.csv",
+                 "time,lon,lat,alt,heading,pitch\n0,-157.8,21.4,8100,0,-90\n10,-157.8,22.4,8100,0,-90\n");
+    expectPicture(
+        {"terrain.osgb", "-o", "f%03d.png", "--size", "64x64", "--path", "flight.csv", "--frames", "3"});
+    ASSERT_TRUE(image("f000.png").valid());
+    ASSERT_TRUE(image("f002.png").valid());
+    EXPECT_EQ(pixel(*image("f000.png"), 32, 32), blue);
+    EXPECT_NE(pixel(*image("f001.png"), 32, 32), blue) << "half a degree away there is no terrain";
+    EXPECT_FALSE(fs::exists(folder / "f003.png"));
+}
+
+TEST_F(RenderProgram, HelpIsOnStandardOutput)
+{
+    const ProgramResult result = run({"--help"});
+    EXPECT_EQ(result.exitCode, 0);
+    for (const char* option :
+         {"--size", "--view", "--eye", "--look", "--up", "--fov", "--path", "--frames", "--no-cull",
+          "--samples", "--stats", "--wait-for-tiles", "--platform", "--timeout"})
+    {
+        EXPECT_NE(result.standardOutput.find(option), std::string::npos) << option;
+    }
+}
+
+TEST_F(RenderProgram, RefusesBadInputWithASentence)
+{
+    PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    expectRefusal({}, "scene");
+    expectRefusal({"terrain.osgb"}, "--output");
+    expectRefusal({"missing.osgb", "-o", "out.png"}, "missing.osgb");
+    folder.write("broken.osgb", "garbage");
+    expectRefusal({"broken.osgb", "-o", "out.png"}, "broken.osgb");
+    expectRefusal({"terrain.osgb", "-o", "out.nosuchformat"}, "nosuchformat");
+    expectRefusal({"terrain.osgb", "-o", "no/such/folder/out.png"}, "folder");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--size", "10"}, "--size");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--size", "0x10"}, "--size");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--view", "1,2"}, "--view");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--view", "1,2,3,4,5"}, "coordinate system");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--eye", "1,2,3"}, "--look");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--eye", "1,2,3", "--look", "1,2,0"}, "--up");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--fov", "180"}, "--fov");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--path", "missing.csv", "--frames", "2"}, "pattern");
+    expectRefusal({"terrain.osgb", "-o", "f%d.png", "--path", "missing.csv", "--frames", "2"}, "missing.csv");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--path", "missing.csv"}, "--frames");
+    expectRefusal(
+        {"terrain.osgb", "-o", "out.png", "--view", "1,2,3,4,5", "--eye", "1,2,3", "--look", "0,0,0"},
+        "excludes");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--platform", "wayland"}, "wayland");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--platform", "x11"}, "DISPLAY");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--stats", "no/such/folder.json"}, "folder.json");
+}
+
+TEST_F(RenderProgram, GivesUpAfterTheTimeout)
+{
+    PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    const ProgramResult result = run({"terrain.osgb", "-o", "out.png", "--timeout", "0.000001"});
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_NE(result.standardError.find("did not arrive"), std::string::npos) << result.standardError;
+    EXPECT_FALSE(fs::exists(folder / "out.png"));
+    expectPicture({"terrain.osgb", "-o", "out.png", "--timeout", "0.000001", "--no-wait-for-tiles"});
+}
+
+TEST_F(RenderProgram, NothingIsLeftOnAFullDisk)
+{
+    if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+    PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    fs::create_symlink("/dev/full", folder / "out.png.part");
+    expectRefusal({"terrain.osgb", "-o", "out.png"}, "space");
+}

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The textures of a built database: colours and classes at known places, and no seams between tiles.
+#include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <tools/DatabaseReader.h>
+#include <tools/TempDir.h>
+#include <tools/TestRasters.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+using Color = std::array<int, 3>;
+
+Color colorAt(const osg::Image& image, int column, int row)
+{
+    const unsigned char* texel = image.data(static_cast<unsigned>(column), static_cast<unsigned>(row));
+    return {texel[0], texel[1], texel[2]};
+}
+
+int distance(const Color& a, const Color& b)
+{
+    return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+}
+
+/// Calls for each texel of a level: its place in the grid's CRS, its tile, column and row.
+template<typename Visit>
+void forEachTexel(const std::string& folder, int level, unsigned int unit, const Visit& visit)
+{
+    const FinestLevel finest(folder);
+    const int last = DatabaseRoot(folder).finestLevel();
+    int texels = 0;
+    readDatabase(folder,
+                 [&](const DatabaseTile& tile)
+                 {
+                     if (tile.level != level || !tile.geometry) return;
+                     const osg::Image* image = tile.image(unit);
+                     ASSERT_NE(image, nullptr) << tile.transform->getName();
+                     const int span = finest.tileIntervals << (last - level);
+                     for (int row = 0; row < image->t(); ++row)
+                         for (int column = 0; column < image->s(); ++column)
+                         {
+                             // Counted in finest posts; beyond the ground's end is its end.
+                             const double c = (tile.x + column / (image->s() - 1.0)) * span;
+                             const double r = (tile.y + row / (image->t() - 1.0)) * span;
+                             if (c > finest.columns - 1 || r > finest.rows - 1) continue;
+                             visit(finest.x0 + c * finest.dx, finest.y0 + r * finest.dy, *image, column, row);
+                             ++texels;
+                         }
+                 });
+    EXPECT_GT(texels, 0);
+}
+
+BuildOptions options(const std::string& dem, const std::filesystem::path& output)
+{
+    BuildOptions result;
+    result.dems = {dem};
+    result.tileSize = 16;
+    result.output = output.string();
+    return result;
+}
+
+/// On each level the texels along the edges that tiles share are equal, and so are texture coordinates there.
+void expectNoSeams(const std::string& folder, unsigned int unit)
+{
+    std::map<std::array<int, 3>, Color> shared; // level and place, counted in texels
+    int compared = 0;
+    readDatabase(folder,
+                 [&](const DatabaseTile& tile)
+                 {
+                     const osg::Image* image = tile.image(unit);
+                     ASSERT_NE(image, nullptr);
+                     const int m = image->s() - 1;
+                     ASSERT_EQ(image->t() - 1, m);
+                     for (int k = 0; k <= m; ++k)
+                         for (const auto& [column, row] :
+                              {std::pair(k, 0), std::pair(k, m), std::pair(0, k), std::pair(m, k)})
+                         {
+                             Color color = colorAt(*image, column, row);
+                             if (unit == 1) color = {color[0], 0, 0};
+                             const auto [place, fresh] =
+                                 shared.emplace(std::array<int, 3>{tile.level, tile.x * m + column, tile.y * m + row}, color);
+                             if (fresh) continue;
+                             ++compared;
+                             ASSERT_EQ(place->second, color)
+                                 << tile.transform->getName() << ", texel " << column << " " << row;
+                         }
+                     // Texel centres lie on the tile's edges.
+                     float low = 1.0f, high = 0.0f;
+                     for (const auto& t : dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0)))
+                     {
+                         low = std::min({low, t.x(), t.y()});
+                         high = std::max({high, t.x(), t.y()});
+                     }
+                     EXPECT_NEAR(low * static_cast<float>(m + 1), 0.5f, 1e-4f);
+                     EXPECT_LE(high * static_cast<float>(m + 1), static_cast<float>(m) * 1.00001f + 0.5f);
+                 });
+    EXPECT_GT(compared, 1000);
+}
+
+TEST(DatabaseSurface, ImageryAtItsPlaces)
+{
+    const TempDir folder;
+    const auto dem = writeRelief(folder / "dem.tif", 100, 80, 10.0, 50.0, 0.001);
+    // Twice as fine as the elevation, over its western half; colours tell where they are.
+    const auto image = TestRaster(100, 160, 3, GDT_Byte)
+                           .placed(10.0, 50.0, 0.0005, 0.0005)
+                           .crs("EPSG:4326")
+                           .fill([](int column, int row, int band)
+                                 { return band == 0 ? 2.0 * column : band == 1 ? 1.5 * row : 5.0; })
+                           .write(folder / "image.tif");
+    auto o = options(dem, folder / "db");
+    o.imagery = {image};
+    buildDatabase(o);
+    const int finest = DatabaseRoot(o.output).finestLevel();
+    for (const int level : {finest, finest - 1})
+        forEachTexel(o.output, level, 0,
+                     [&](double x, double y, const osg::Image& picture, int column, int row)
+                     {
+                         const double px = (x - 10.0) / 0.0005 - 0.5, py = (50.0 - y) / 0.0005 - 0.5;
+                         if (px < 2.0 || px > 96.0 || py < 2.0 || py > 156.0) return;
+                         const Color found = colorAt(picture, column, row);
+                         ASSERT_NEAR(found[0], 2.0 * px, 2.1) << x << " " << y;
+                         ASSERT_NEAR(found[1], 1.5 * py, 2.1) << x << " " << y;
+                         ASSERT_EQ(found[2], 5);
+                     });
+    // East of the image the relief's own colours show.
+    forEachTexel(o.output, finest, 0,
+                 [&](double x, double, const osg::Image& picture, int column, int row)
+                 { ASSERT_TRUE(x < 10.0505 || colorAt(picture, column, row)[2] != 5) << x; });
+    expectNoSeams(o.output, 0);
+}
+
+TEST(DatabaseSurface, LaterImageWins)
+{
+    const TempDir folder;
+    const auto dem = writeRelief(folder / "dem.tif", 60, 60, 10.0, 50.0, 0.001);
+    const auto plain = [&](const std::string& name, double west, double value)
+    {
+        return TestRaster(60, 60, 1, GDT_Byte)
+            .placed(west, 50.0, 0.001, 0.001)
+            .crs("EPSG:4326")
+            .fill([&](int, int, int) { return value; })
+            .write(folder / name);
+    };
+    auto o = options(dem, folder / "db");
+    o.imagery = {plain("a.tif", 10.0, 50.0), plain("b.tif", 10.03, 200.0)};
+    buildDatabase(o);
+    forEachTexel(o.output, DatabaseRoot(o.output).finestLevel(), 0,
+                 [&](double x, double, const osg::Image& picture, int column, int row)
+                 {
+                     const int found = colorAt(picture, column, row)[0];
+                     ASSERT_TRUE(x > 10.0290 || found == 50) << x << " " << found;
+                     ASSERT_TRUE(x < 10.0310 || found == 200) << x << " " << found;
+                 });
+}
+
+TEST(DatabaseSurface, ReprojectedImageryHasNoSeams)
+{
+    const TempDir folder;
+    // Enough tiles for several units on two tiers; an image in another CRS, and coarser than the texels.
+    const auto dem = writeRelief(folder / "dem.tif", 300, 290, -158.0, 21.5, 1.0 / 3600.0);
+    const auto image = TestRaster(300, 300, 3, GDT_Byte)
+                           .placed(603000.0, 2379000.0, 33.0, 33.0)
+                           .crs("EPSG:32604")
+                           .fill([](int column, int row, int band)
+                                 { return (column * 7919 + row * 104729 + band * 31) % 251; })
+                           .write(folder / "image.tif");
+    auto o = options(dem, folder / "db");
+    o.imagery = {image};
+    buildDatabase(o);
+    ASSERT_GE(DatabaseRoot(o.output).finestLevel(), 4);
+    expectNoSeams(o.output, 0);
+    auto flat = options(dem, folder / "flat");
+    flat.epsg = 32604;
+    flat.imagery = {image};
+    flat.textureSize = 16; // coarser than the image: averaged
+    buildDatabase(flat);
+    expectNoSeams(flat.output, 0);
+}
+
+TEST(DatabaseSurface, LandCover)
+{
+    const TempDir folder;
+    const auto dem = writeRelief(folder / "dem.tif", 100, 80, 10.0, 50.0, 0.001);
+    TestRaster raster(100, 80, 1, GDT_Byte);
+    const auto classOf = [](int column, int row) { return row >= 70 ? 9 : column < 50 ? 1 : 2; };
+    raster.placed(10.0, 50.0, 0.001, 0.001).crs("EPSG:4326").fill([&](int column, int row, int) {
+        return classOf(column, row);
+    });
+    auto o = options(dem, folder / "db");
+    o.landCover = raster.write(folder / "landcover.tif");
+    const std::string table = "value,class,name,red,green,blue\n1,sea,Sea,10,20,200\n2,wood,Wood,30,120,40\n";
+    o.landCoverTable = folder.write("table.csv", table);
+    buildDatabase(o);
+    EXPECT_EQ(DatabaseRoot(o.output).value<std::string>("geofx.landCoverTable"), table);
+    const int finest = DatabaseRoot(o.output).finestLevel();
+    for (int level = finest; level >= finest - 1; --level)
+        forEachTexel(o.output, level, 1,
+                     [&](double x, double y, const osg::Image& picture, int column, int row)
+                     {
+                         const double px = (x - 10.0) / 0.001, py = (50.0 - y) / 0.001;
+                         const double toBorder = std::min(std::abs(px - 50.0), std::abs(py - 70.0));
+                         if (toBorder < 0.05) return;
+                         ASSERT_EQ(colorAt(picture, column, row)[0],
+                                   classOf(static_cast<int>(px), static_cast<int>(py)))
+                             << px << " " << py << " level " << level;
+                     });
+    forEachTexel(o.output, finest, 0,
+                 [&](double x, double y, const osg::Image& picture, int column, int row)
+                 {
+                     const double px = (x - 10.0) / 0.001, py = (50.0 - y) / 0.001;
+                     if (std::min(std::abs(px - 50.0), std::abs(py - 70.0)) < 1.1) return;
+                     // A class that the table leaves out is grey.
+                     const Color expected = py > 70.0 ? Color{128, 128, 128} : px < 50.0 ? Color{10, 20, 200} : Color{30, 120, 40};
+                     ASSERT_LE(distance(colorAt(picture, column, row), expected), 1) << px << " " << py;
+                 });
+    expectNoSeams(o.output, 0);
+    expectNoSeams(o.output, 1);
+    readDatabase(o.output,
+                 [](const DatabaseTile& tile)
+                 {
+                     // Plain OSG must not draw the classes.
+                     EXPECT_EQ(tile.geometry->getStateSet()->getTextureMode(1, GL_TEXTURE_2D),
+                               static_cast<GLuint>(osg::StateAttribute::INHERIT));
+                 });
+}
+
+TEST(DatabaseSurface, ReliefIsTintedByHeight)
+{
+    const TempDir folder;
+    // Sea to 50 m deep in the west, land to 2000 m in the east.
+    const auto dem = TestRaster(100, 60)
+                         .placed(10.0, 50.0, 0.001, 0.001)
+                         .crs("EPSG:4326")
+                         .fill([](int column, int, int) { return column < 50 ? column - 50.0 : 40.0 * (column - 49.0); })
+                         .write(folder / "dem.tif");
+    auto o = options(dem, folder / "db");
+    buildDatabase(o);
+    std::map<int, Color> byColumn;
+    forEachTexel(o.output, DatabaseRoot(o.output).finestLevel(), 0,
+                 [&](double x, double, const osg::Image& picture, int column, int row)
+                 {
+                     const Color color = colorAt(picture, column, row);
+                     const int pixel = static_cast<int>((x - 10.0) / 0.001);
+                     const auto [place, fresh] = byColumn.emplace(pixel, color);
+                     ASSERT_LE(distance(place->second, color), 60) << "the colour depends on more than the height";
+                     ASSERT_TRUE(x > 10.0485 || color[2] > color[0]) << "the sea is not blue at " << x;
+                     ASSERT_TRUE(x < 10.0515 || x > 10.06 || color[1] > color[2])
+                         << "the lowland is not green at " << x;
+                 });
+    EXPECT_LE(distance(byColumn.rbegin()->second, {240, 240, 238}), 4) << "the summit is not white";
+    expectNoSeams(o.output, 0);
+}
+
+TEST(DatabaseSurface, HolesHaveNoPillars)
+{
+    const TempDir folder;
+    TestRaster raster(100, 80);
+    raster.placed(600000.0, 2400000.0, 30.0, 30.0).crs("EPSG:32604");
+    raster.dataset().GetRasterBand(1)->SetNoDataValue(-9999.0);
+    const auto hole = [](double column, double row) { return std::hypot(column - 50.0, row - 40.0); };
+    raster.fill([&](int column, int row, int)
+                { return hole(column, row) < 15.0 ? -9999.0 : 300.0 + relief(column, row) * 0.1; });
+    auto o = options(raster.write(folder / "dem.tif"), folder / "db");
+    o.epsg = 32604;
+    buildDatabase(o);
+    const int finest = DatabaseRoot(o.output).finestLevel();
+    int triangles = 0;
+    readDatabase(o.output,
+                 [&](const DatabaseTile& tile)
+                 {
+                     if (!tile.geometry) return;
+                     EXPECT_GT(tile.transform->getMatrix().getTrans().z() +
+                                   static_cast<double>(tile.geometry->getBoundingBox().zMin()),
+                               0.0)
+                         << "a post or a skirt goes down to no-data in " << tile.transform->getName();
+                     if (tile.level != finest) return;
+                     for (const auto& triangle : tile.surface)
+                         for (const unsigned int vertex : triangle)
+                         {
+                             ++triangles;
+                             const osg::Vec3d p = tile.world(vertex);
+                             ASSERT_GT(hole((p.x() - 600000.0) / 30.0 - 0.5, (2400000.0 - p.y()) / 30.0 - 0.5), 14.0)
+                                 << "a triangle reaches into the hole";
+                         }
+                 });
+    EXPECT_GT(triangles, 30000);
+    EXPECT_GT(DatabaseRoot(o.output).value<double>("geofx.minHeight"), 290.0);
+}
+
+} // namespace

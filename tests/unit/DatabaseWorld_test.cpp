@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Databases where the map has an edge and the globe has none, and units other than the metre.
+#include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <tools/DatabaseReader.h>
+#include <tools/TempDir.h>
+#include <tools/TestRasters.h>
+
+#include <GeographicLib/Geocentric.hpp>
+
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+
+#include <cmath>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+BuildOptions options(const std::vector<std::string>& dems, const std::filesystem::path& output)
+{
+    BuildOptions result;
+    result.dems = dems;
+    result.tileSize = 16;
+    result.textureSize = 16;
+    result.output = output.string();
+    return result;
+}
+
+struct Geodetic
+{
+    double latitude, longitude, height;
+};
+
+Geodetic geodetic(const osg::Vec3d& world)
+{
+    Geodetic g{};
+    GeographicLib::Geocentric::WGS84().Reverse(world.x(), world.y(), world.z(), g.latitude, g.longitude, g.height);
+    return g;
+}
+
+/// Longitude from 0 to 360.
+double eastwards(double longitude) { return longitude < 0.0 ? longitude + 360.0 : longitude; }
+
+TEST(DatabaseWorld, AcrossTheAntimeridian)
+{
+    const TempDir folder;
+    // 1 m for each 0.01° east of 178°, so that 2 m are lost or won within a pixel of the border between two files.
+    const auto write = [&](const std::string& name, double west, int columns)
+    {
+        return TestRaster(columns, 40)
+            .placed(west, 1.0, 0.02, 0.02)
+            .crs("EPSG:4326")
+            .fill([&](int column, int, int) { return 100.0 * (eastwards(west + (column + 0.5) * 0.02) - 178.0); })
+            .write(folder / name);
+    };
+    const auto east = write("east.tif", 179.0, 50), west = write("west.tif", -180.0, 50);
+    const auto one = write("one.tif", 179.0, 100);
+    for (const auto& dems : {std::vector{east, west}, std::vector{west, east}, std::vector{one}})
+    {
+        SCOPED_TRACE(dems.front());
+        buildDatabase(options(dems, folder / "db"));
+        const DatabaseRoot root(folder / "db");
+        EXPECT_NEAR(root.east() - root.west(), 1.98, 1e-9) << "from " << root.west() << " to " << root.east();
+        const FinestLevel level(folder / "db");
+        EXPECT_EQ(level.columns, 100);
+        for (std::size_t i = 0; i < level.world.size(); ++i)
+        {
+            ASSERT_TRUE(level.used[i]) << i;
+            const Geodetic g = geodetic(level.world[i]);
+            const double longitude = eastwards(g.longitude);
+            ASSERT_NEAR(g.height, 100.0 * (longitude - 178.0), std::abs(longitude - 180.0) < 0.0101 ? 1.1 : 0.05)
+                << longitude;
+        }
+    }
+}
+
+TEST(DatabaseWorld, WholeGlobeIsClosed)
+{
+    const TempDir folder;
+    const auto dem = TestRaster(144, 72)
+                         .placed(-180.0, 90.0, 2.5, 2.5)
+                         .crs("EPSG:4326")
+                         .fill([](int column, int row, int)
+                               { return 1000.0 + 500.0 * std::sin(column * 2.5 * M_PI / 180.0) + 5.0 * row; })
+                         .write(folder / "dem.tif");
+    buildDatabase(options({dem}, folder / "db"));
+    const FinestLevel level(folder / "db");
+    for (int row = 0; row < level.rows; ++row)
+    {
+        const auto first = level.index(0, row), last = level.index(level.columns - 1, row);
+        ASSERT_LT((level.world[first] - level.world[last]).length(), 1.0) << "row " << row;
+        for (int column = 0; column < level.columns; ++column)
+        {
+            ASSERT_TRUE(level.used[level.index(column, row)]) << column << " " << row;
+            const Geodetic g = geodetic(level.world[level.index(column, row)]);
+            ASSERT_GT(g.height, 490.0);
+            ASSERT_LT(g.height, 1870.0);
+        }
+    }
+    // The levels above are coarse polyhedra; they must still be there.
+    EXPECT_EQ(readTiles(folder / "db").size(), static_cast<std::size_t>(DatabaseRoot(folder / "db").value<double>("geofx.tiles")));
+}
+
+TEST(DatabaseWorld, AroundThePole)
+{
+    const TempDir folder;
+    const std::string crs = "EPSG:3995";
+    const auto dem = TestRaster(120, 120)
+                         .placed(-600000.0, 600000.0, 10000.0, 10000.0)
+                         .crs(crs)
+                         .fill([](int column, int row, int) { return 10.0 * column + row; })
+                         .write(folder / "dem.tif");
+    buildDatabase(options({dem}, folder / "db"));
+    const DatabaseRoot root(folder / "db");
+    EXPECT_EQ(root.north(), 90.0);
+    EXPECT_NEAR(root.east() - root.west(), 360.0, 1e-9);
+    OGRSpatialReference polar, geographic;
+    polar.SetFromUserInput(crs.c_str());
+    geographic.importFromEPSG(4326);
+    for (auto* srs : {&polar, &geographic})
+        srs->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRCoordinateTransformation> toPolar(
+        OGRCreateCoordinateTransformation(&geographic, &polar));
+    const FinestLevel level(folder / "db");
+    int posts = 0;
+    for (int row = 0; row < level.rows; ++row)
+        for (int column = 0; column < level.columns; ++column)
+        {
+            // Where a post should be, not where it is: it may be a hole.
+            double x = root.west() + (root.east() - root.west()) * column / (level.columns - 1.0);
+            double y = root.south() + (root.north() - root.south()) * row / (level.rows - 1.0);
+            ASSERT_TRUE(toPolar->Transform(1, &x, &y));
+            if (std::max(std::abs(x), std::abs(y)) > 594000.0) continue;
+            ++posts;
+            const auto index = level.index(column, row);
+            ASSERT_TRUE(level.used[index]) << "a hole at " << x << " " << y;
+            const double expected = 10.0 * ((x + 600000.0) / 10000.0 - 0.5) + (600000.0 - y) / 10000.0 - 0.5;
+            ASSERT_NEAR(geodetic(level.world[index]).height, expected, 0.05) << x << " " << y;
+        }
+    EXPECT_GT(posts, 10000);
+}
+
+TEST(DatabaseWorld, Egm96)
+{
+    const TempDir folder;
+    // Places and undulations of the test data that NGA publishes with the model (file OUTINTPT.DAT).
+    const double places[][3] = {{38.6281550, 269.7791550, -31.628},
+                                {-14.6212170, 305.0211140, -2.969},
+                                {46.8743190, 102.4487290, -43.575},
+                                {-23.6174460, 133.8747120, 15.871}};
+    for (const auto& [latitude, longitude, undulation] : places)
+    {
+        const double west = longitude > 180.0 ? longitude - 360.0 : longitude;
+        const auto dem = TestRaster(20, 20)
+                             .placed(west - 0.001, latitude + 0.001, 0.0001, 0.0001)
+                             .crs("EPSG:4326")
+                             .fill([](int, int, int) { return 100.0; })
+                             .write(folder / "dem.tif");
+        auto o = options({dem}, folder / "db");
+        for (const auto& [datum, height, tolerance] :
+             {std::tuple{VerticalDatum::None, 100.0, 0.001}, std::tuple{VerticalDatum::Ellipsoid, 100.0, 0.001},
+              // PROJ's grid has 15' and is interpolated bilinearly; NGA's program does it with splines.
+              std::tuple{VerticalDatum::Egm96, 100.0 + undulation, 0.3}})
+        {
+            o.vertical = datum;
+            buildDatabase(o);
+            for (const auto& post : FinestLevel(o.output).world)
+                ASSERT_NEAR(geodetic(post).height, height, tolerance) << latitude << " " << longitude;
+        }
+        o.epsg = 3857;
+        buildDatabase(o);
+        EXPECT_NEAR(DatabaseRoot(o.output).value<double>("geofx.maxHeight"), 100.0 + undulation, 0.3);
+    }
+}
+
+TEST(DatabaseWorld, CrsInFeetIsDrawnInMetres)
+{
+    const TempDir folder;
+    // New York Long Island, US survey feet; heights in metres.
+    const auto dem = writeRelief(folder / "dem.tif", 60, 50, 980000.0, 200000.0, 100.0, "EPSG:2263");
+    auto o = options({dem}, folder / "db");
+    o.epsg = 2263;
+    buildDatabase(o);
+    const double metres = 1200.0 / 3937.0;
+    const DatabaseRoot root(o.output);
+    EXPECT_NEAR(root.west(), 980050.0 * metres, 1e-3);
+    EXPECT_NEAR(root.north(), 199950.0 * metres, 1e-3);
+    const FinestLevel level(o.output);
+    EXPECT_NEAR(level.world.front().x(), 980050.0 * metres, 0.01);
+    EXPECT_NEAR(level.world.back().y(), 199950.0 * metres, 0.01);
+    const auto expected = warpedHeights({dem}, "EPSG:2263", 980050.0, 195050.0, 5900.0 / (level.columns - 1),
+                                        4900.0 / (level.rows - 1), level.columns, level.rows);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        ASSERT_NEAR(level.world[i].z(), static_cast<double>(expected[i]), 0.05);
+}
+
+TEST(DatabaseWorld, OneRowOfHeightsIsNoTerrain)
+{
+    const TempDir folder;
+    const auto dem = writeRelief(folder / "dem.tif", 60, 1, 10.0, 50.0, 0.01);
+    EXPECT_THROW(buildDatabase(options({dem}, folder / "db")), BuildError);
+}
+
+} // namespace
