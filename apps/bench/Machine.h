@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace geofx::bench
+{
+
+/// What the figures depend on, beside the program.
+struct Machine
+{
+    std::string processor;
+    unsigned int processors = 0;
+    std::uint64_t memoryMiB = 0;
+    std::string renderer; ///< why there is none, where there is none
+    std::string glVersion;
+
+    /// Makes an OpenGL context for a moment.
+    static Machine describe();
+};
+
+} // namespace geofx::bench

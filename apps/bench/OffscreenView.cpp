@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "OffscreenView.h"
+
+#include "BenchError.h"
+#include "Interruption.h"
+
+#include <osgGeoFX/offscreen/EglGraphicsContext.h>
+
+#include <osg/Stats>
+
+#include <chrono>
+
+namespace geofx::bench
+{
+
+namespace
+{
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start)
+{
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct FinishCallback : public osg::Camera::DrawCallback
+{
+    using osg::Camera::DrawCallback::operator();
+    void operator()(osg::RenderInfo&) const override { glFinish(); }
+};
+
+class StillViewer : public osgViewer::Viewer
+{
+public:
+    void advance(double time) override
+    {
+        osgViewer::Viewer::advance(time);
+        getFrameStamp()->setReferenceTime(time);
+    }
+};
+
+} // namespace
+
+OffscreenView::OffscreenView(Size size, double fieldOfView, osg::Node* scene) : _viewer(new StillViewer)
+{
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+    traits->width = size.width;
+    traits->height = size.height;
+    const osg::ref_ptr<osgGeoFX::EglGraphicsContext> context = new osgGeoFX::EglGraphicsContext(traits);
+    if (!context->valid()) throw BenchError("Nothing can be drawn: " + context->error());
+
+    camera().setGraphicsContext(context);
+    camera().setViewport(0, 0, size.width, size.height);
+    camera().setProjectionMatrixAsPerspective(osg::RadiansToDegrees(fieldOfView),
+                                              static_cast<double>(size.width) / size.height, 1.0, 1e6);
+    // OSG's default keeps near and far within 1 : 2000, which cuts off the foreground of a wide landscape.
+    camera().setNearFarRatio(0.0002);
+    camera().setStats(new osg::Stats("Camera"));
+    camera().addFinalDrawCallback(new FinishCallback);
+    _capture = osgGeoFX::ImageCapture::attach(&camera());
+    _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    _viewer->setLightingMode(osg::View::HEADLIGHT);
+    _viewer->setSceneData(scene);
+    _viewer->realize();
+    _monitor = std::make_unique<osgGeoFX::PagerMonitor>(_viewer->getDatabasePager(), nullptr, 1);
+}
+
+OffscreenView::~OffscreenView() = default;
+
+double OffscreenView::frame()
+{
+    Interruption::throwIfInterrupted();
+    const auto start = Clock::now();
+    _viewer->frame(0.0);
+    return secondsSince(start);
+}
+
+void OffscreenView::settle()
+{
+    const auto start = Clock::now();
+    _monitor->restart();
+    for (frame(); !_monitor->frameFinished(); frame())
+    {
+        if (secondsSince(start) > 600.0)
+            throw BenchError(
+                "The terrain's tiles did not come within ten minutes; is its disk within reach?");
+        _monitor->waitForReads(1.0);
+    }
+}
+
+OffscreenView::Drawn OffscreenView::count()
+{
+    osg::Stats& stats = *camera().getStats();
+    stats.collectStats("scene", true);
+    frame();
+    stats.collectStats("scene", false);
+    double triangles = 0.0, drawables = 0.0;
+    const unsigned int number = _viewer->getFrameStamp()->getFrameNumber();
+    stats.getAttribute(number, "Visible number of GL_TRIANGLES", triangles);
+    stats.getAttribute(number, "Visible number of drawables", drawables);
+    return {static_cast<std::uint64_t>(triangles), static_cast<std::uint64_t>(drawables)};
+}
+
+osg::ref_ptr<osg::Image> OffscreenView::capture()
+{
+    _capture->request();
+    frame();
+    const osg::ref_ptr<osg::Image> image = _capture->take();
+    if (!image) throw BenchError("The picture could not be read back from OpenGL.");
+    return image;
+}
+
+} // namespace geofx::bench

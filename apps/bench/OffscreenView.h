@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osg/Image>
+#include <osg/Matrixd>
+#include <osg/Node>
+#include <osgViewer/Viewer>
+
+#include <osgGeoFX/offscreen/ImageCapture.h>
+#include <osgGeoFX/paging/PagerMonitor.h>
+
+#include <cstdint>
+#include <memory>
+
+namespace geofx::bench
+{
+
+/** A viewer without a window, for timing: single-threaded, a head light, each frame finished before it
+   counts.
+
+    Its clock stands still between frames, so that tiles of a scene that is switched off do not expire. */
+class OffscreenView
+{
+public:
+    struct Size
+    {
+        int width, height;
+    };
+    struct Drawn
+    {
+        std::uint64_t triangles = 0, drawables = 0;
+    };
+
+    /// Throws BenchError where there is no OpenGL. `fieldOfView` is the vertical one, radians.
+    OffscreenView(Size size, double fieldOfView, osg::Node* scene);
+    ~OffscreenView();
+    OffscreenView(const OffscreenView&) = delete;
+    OffscreenView& operator=(const OffscreenView&) = delete;
+
+    osg::Camera& camera() { return *_viewer->getCamera(); }
+
+    /// World to eye.
+    void look(const osg::Matrixd& view) { camera().setViewMatrix(view); }
+
+    /// Draws until the pager has nothing more to bring; throws BenchError if that takes ten minutes.
+    void settle();
+
+    /// Draws a frame and waits for the end of it; seconds.
+    double frame();
+
+    /// What a frame draws.
+    Drawn count();
+
+    osg::ref_ptr<osg::Image> capture();
+
+private:
+    osg::ref_ptr<osgViewer::Viewer> _viewer;
+    osg::ref_ptr<osgGeoFX::ImageCapture> _capture;
+    std::unique_ptr<osgGeoFX::PagerMonitor> _monitor;
+};
+
+} // namespace geofx::bench

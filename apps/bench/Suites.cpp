@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "Suite.h"
+#include "TerrainSuite.h"
+
+#include <algorithm>
+#include <iostream>
+
+namespace geofx::bench
+{
+
+const std::vector<Suite>& suites()
+{
+    static const std::vector<Suite> all = {terrainSuite()};
+    return all;
+}
+
+const Suite* findSuite(const std::string& name)
+{
+    const auto found = std::find_if(suites().begin(), suites().end(),
+                                    [&](const Suite& suite) { return suite.name == name; });
+    return found == suites().end() ? nullptr : &*found;
+}
+
+bool Settings::wants(const std::string& group) const
+{
+    return only.empty() || std::find(only.begin(), only.end(), group) != only.end();
+}
+
+void announce(const std::string& text)
+{
+    std::cerr << "osggeofx_bench: " << text << std::endl;
+}
+
+} // namespace geofx::bench
