@@ -70,15 +70,6 @@ void list()
     }
 }
 
-void writeJson(const std::string& file, const nlohmann::ordered_json& json)
-{
-    std::ofstream out(file);
-    out << json.dump(2) << "\n";
-    out.close();
-    if (!out)
-        throw BenchError(file + ": the JSON cannot be written; name a file in a folder that can be written.");
-}
-
 int run(const std::vector<std::string>& names, const std::string& jsonFile, bool check,
         geofx::bench::Settings settings)
 {
@@ -94,6 +85,16 @@ int run(const std::vector<std::string>& names, const std::string& jsonFile, bool
         complete(*path);
     if (!settings.pictures.empty()) fs::create_directories(settings.pictures);
 
+    std::ofstream json;
+    if (!jsonFile.empty())
+    {
+        // Now rather than after minutes of measuring.
+        json.open(jsonFile);
+        if (!json)
+            throw BenchError(jsonFile +
+                             ": it cannot be written; name a file in a folder that can be written.");
+    }
+
     const geofx::bench::Interruption interruption;
     std::vector<geofx::bench::SuiteResult> results;
     for (const std::string& name : names)
@@ -101,7 +102,11 @@ int run(const std::vector<std::string>& names, const std::string& jsonFile, bool
     // Last, because drivers are large, and what is large counts into a child's memory.
     const geofx::bench::Machine machine = geofx::bench::Machine::describe();
     geofx::bench::printTable(std::cout, machine, results);
-    if (!jsonFile.empty()) writeJson(jsonFile, geofx::bench::toJson(machine, settings, results));
+    if (json.is_open())
+    {
+        json << geofx::bench::toJson(machine, settings, results).dump(2) << std::endl;
+        if (!json) throw BenchError(jsonFile + ": it cannot be written; is the disk full?");
+    }
     return check && !geofx::bench::allReached(results) ? 1 : 0;
 }
 

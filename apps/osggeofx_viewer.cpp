@@ -8,6 +8,7 @@
 #include <osg/ArgumentParser>
 #include <osg/GraphicsContext>
 #include <osg/Math>
+#include <osgDB/FileUtils>
 #include <osgDB/ReadFile>
 #include <osgGA/AnimationPathManipulator>
 #include <osgGA/DriveManipulator>
@@ -86,10 +87,11 @@ osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> makeManipulators(osg::ArgumentPa
     std::string file;
     for (int key = '8'; arguments.read("-p", file); ++key)
     {
-        osg::ref_ptr<osgGA::AnimationPathManipulator> path = new osgGA::AnimationPathManipulator(file);
-        if (!path->valid())
+        osg::ref_ptr<osgGA::AnimationPathManipulator> path;
+        if (osgDB::fileExists(file)) path = new osgGA::AnimationPathManipulator(file);
+        if (!path || path->getAnimationPath()->empty())
         {
-            arguments.reportError("The camera path \"" + file + "\" cannot be read.");
+            arguments.reportError("The camera path \"" + file + "\" cannot be read");
             continue;
         }
         path->setTimeScale(speed);

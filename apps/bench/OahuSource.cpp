@@ -51,6 +51,8 @@ std::string escaped(const std::string& text)
 void write(const std::filesystem::path& elevation, const Window& window, int samples, const char* resampling,
            const std::filesystem::path& vrt)
 {
+    if (!std::filesystem::exists(elevation))
+        throw BenchError(elevation.string() + ": it does not exist; name the data folder with --data DIR.");
     std::ostringstream text;
     text.imbue(std::locale::classic());
     text << std::setprecision(17) << "<VRTDataset rasterXSize=\"" << samples << "\" rasterYSize=\"" << samples

@@ -29,6 +29,11 @@ Sizes sizes(const Settings& settings)
     return {settings.quick ? 8000 : 16000, 4000, 3};
 }
 
+double square(int samples)
+{
+    return static_cast<double>(samples) * samples;
+}
+
 std::string squared(int samples)
 {
     const std::string text = std::to_string(samples);
@@ -66,7 +71,7 @@ public:
                  (threads == 1 ? " thread" : " threads"));
         Build result;
         result.usage = runChild(command);
-        const double count = static_cast<double>(samples) * samples;
+        const double count = square(samples);
         result.bytesPerSample = static_cast<double>(bytesBelow(database)) / count;
         result.secondsPerMillion = result.usage.seconds / (count * 1e-6);
         std::filesystem::remove_all(database);
@@ -120,10 +125,13 @@ Figure linearityFigure(const Sizes& size, const Runs& runs)
                   runs.large->secondsPerMillion, median(small), runs.large->bytesPerSample,
                   runs.two.front().bytesPerSample);
     figure.remark = remark;
-    figure.details = {{"secondsPerMillionLarge", runs.large->secondsPerMillion},
-                      {"secondsPerMillionSmall", small},
-                      {"bytesPerSampleLarge", runs.large->bytesPerSample},
-                      {"bytesPerSampleSmall", runs.two.front().bytesPerSample}};
+    figure.details = {
+        {"secondsPerMillionLarge", runs.large->secondsPerMillion},
+        {"secondsPerMillionSmall", small},
+        {"processorSecondsPerMillionLarge", runs.large->usage.cpuSeconds * 1e6 / square(size.large)},
+        {"processorSecondsPerMillionSmall", runs.two.front().usage.cpuSeconds * 1e6 / square(size.small)},
+        {"bytesPerSampleLarge", runs.large->bytesPerSample},
+        {"bytesPerSampleSmall", runs.two.front().bytesPerSample}};
     return figure;
 }
 

@@ -271,7 +271,11 @@ const TileFacts& BuildPlan::fact(const TileKey& key) const
 
 double BuildPlan::tolerance(int level) const
 {
-    return level == scheme.finestLevel ? 0.0 : options.pixelError * scheme.tileMetres(level) / options.pixelsPerRadian;
+    // Where a tile is due, its edge then is two pixels long for each pixel of error, so that relief and texture ask
+    // for finer tiles at about the same distance. Finest tiles have all their posts, which is costly: what stands
+    // above them is twice as good, and they stay away twice as long.
+    const int factor = std::min(2, scheme.finestLevel - level);
+    return factor * options.pixelError * scheme.tileMetres(level) / options.pixelsPerRadian;
 }
 
 double BuildPlan::skirt(const TileKey& key, int side) const

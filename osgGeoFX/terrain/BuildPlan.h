@@ -63,8 +63,7 @@ public:
     /// Depth of the skirt on a tile's side (0 south, 1 east, 2 north, 3 west), metres.
     double skirt(const TileKey& key, int side) const;
 
-    /// The vertical error that a mesh of a level above the finest is made with, metres: so much that the tile is due
-    /// where its edge is about as long on the screen as a pixel error is for its relief.
+    /// The vertical error that a level's meshes are made with, metres; 0 on the finest.
     double tolerance(int level) const;
 
     /// Points of a unit's lattice that lie on the extent; those beyond repeat the last of them.

@@ -56,6 +56,11 @@ private:
             return 0.0f;
         if (holes > 0)
             return std::numeric_limits<float>::max();
+        // Posts beyond the end of the ground are drawn on it, so nothing may lie on both sides.
+        const auto crosses = [](int from, int to, int end)
+        { return std::min(from, to) < end && std::max(from, to) > end; };
+        if (crosses(c - dc, c + dc, _lattice.endColumn) || crosses(r - dr, r + dr, _lattice.endRow))
+            return std::numeric_limits<float>::max();
         float result = std::abs(h - 0.5f * (a + b)) * perMetre;
 
         const int step = _lattice.intervals / _slopes.intervals;

@@ -63,18 +63,18 @@ bool sunPlace(const Scene& scene, const osg::Node& terrain, const Georeference& 
     return false;
 }
 
-/// Unit vector to the sun, in the world; not valid, with the reason in `error`, if the place is unknown.
-osg::Vec3d sunDirection(const Scene& scene, const osg::Node& terrain, std::string& error)
+/// Unit vector to the sun, in the world; nothing, with the reason in `error`, if that is unknown.
+std::optional<osg::Vec3d> sunDirection(const Scene& scene, const osg::Node& terrain, std::string& error)
 {
-    const osg::Vec3d none(NAN, NAN, NAN);
     const osg::ref_ptr<Georeference> reference = Georeference::create(&terrain, error);
     double longitude = 0.0, latitude = 0.0;
-    if (!reference || !sunPlace(scene, terrain, *reference, longitude, latitude, error)) return none;
+    if (!reference || !sunPlace(scene, terrain, *reference, longitude, latitude, error))
+        return std::nullopt;
     osg::Matrixd frame;
     if (!reference->localToWorld(longitude, latitude, 0.0, frame))
     {
         error = "The home view lies outside the terrain's projection; correct its longitude and latitude.";
-        return none;
+        return std::nullopt;
     }
     const double azimuth = osg::DegreesToRadians(scene.sun->azimuth);
     const double elevation = osg::DegreesToRadians(scene.sun->elevation);
@@ -129,13 +129,13 @@ osg::ref_ptr<osg::Group> createSceneNode(const Scene& scene, osg::Node* terrain,
     if (scene.background) group->setUserValue("geofx.background", joined(*scene.background));
     if (scene.sun)
     {
-        const osg::Vec3d direction = sunDirection(scene, *terrain, error);
-        if (!error.empty())
+        const std::optional<osg::Vec3d> direction = sunDirection(scene, *terrain, error);
+        if (!direction)
         {
             error = scene.sun->place.message(error);
             return nullptr;
         }
-        addSun(*group, *scene.sun, direction);
+        addSun(*group, *scene.sun, *direction);
         group->setUserValue("geofx.hasLight", true);
     }
     return group;

@@ -55,7 +55,7 @@ std::string collapsed(const std::string& text)
 std::string textOf(const xmlNode* node)
 {
     xmlChar* content = xmlNodeGetContent(node);
-    const std::string text = collapsed(content ? chars(content) : "");
+    std::string text = collapsed(content ? chars(content) : "");
     xmlFree(content);
     return text;
 }
@@ -168,7 +168,10 @@ std::string listed(const std::vector<std::string>& names, const std::string& bef
 {
     std::string text;
     for (const std::string& name : names)
-        text += (text.empty() ? "" : ", ") + before + name + after;
+    {
+        if (!text.empty()) text += ", ";
+        text.append(before).append(name).append(after);
+    }
     return text;
 }
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -23,6 +24,8 @@ namespace
 
 // OSG keeps the centres of its bounding spheres in float: 0.25 m off along each axis, at geocentric coordinates.
 constexpr double CENTER_ROUNDING = 0.44;
+
+constexpr double NO_DISTANCE = std::numeric_limits<double>::max();
 
 const std::string oahu = GEOFX_SOURCE_DIR "/data/oahu/elevation.tif";
 
@@ -227,7 +230,7 @@ Deviation deviation(const DatabaseTile& tile, const DatabaseRoot& root, const Fi
     const int span = finest.tileIntervals << (root.finestLevel() - tile.level);
     const int column0 = tile.x * span, row0 = tile.y * span;
     const int columns = std::min(span + 1, finest.columns - column0), rows = std::min(span + 1, finest.rows - row0);
-    std::vector<double> distance(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), INFINITY);
+    std::vector<double> distance(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), NO_DISTANCE);
     const osg::Matrixd inverse = osg::Matrixd::inverse(tile.transform->getMatrix());
     for (const auto& triangle : tile.surface)
     {
@@ -265,12 +268,14 @@ Deviation deviation(const DatabaseTile& tile, const DatabaseRoot& root, const Fi
     const auto covered = [&](int i, int j)
     {
         return i >= 0 && j >= 0 && i < columns && j < rows &&
-               distance[static_cast<std::size_t>(j * columns + i)] < INFINITY;
+               distance[static_cast<std::size_t>(j * columns + i)] < NO_DISTANCE;
     };
     for (int j = 0; j < rows; ++j)
         for (int i = 0; i < columns; ++i)
         {
             if (!finest.used[finest.index(column0 + i, row0 + j)]) continue;
+            // On the tile's border it may be the neighbour's.
+            if (!covered(i, j) && (i == 0 || j == 0 || i == span || j == span)) continue;
             if (covered(i, j))
             {
                 result.vertical = std::max(result.vertical, distance[static_cast<std::size_t>(j * columns + i)]);

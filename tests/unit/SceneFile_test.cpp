@@ -124,9 +124,9 @@ struct Mistake
     std::string holds;  ///< what was expected
 };
 
-void PrintTo(const Mistake& mistake, std::ostream* stream)
+std::ostream& operator<<(std::ostream& stream, const Mistake& mistake)
 {
-    *stream << mistake.text;
+    return stream << mistake.text;
 }
 
 class SceneMistake : public testing::TestWithParam<Mistake>
