@@ -337,6 +337,7 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
     if (!colored)
         fail("its classes cannot be drawn in colours (" + errors.message() + ")");
     _chain.push_back(std::move(colored));
+    _colorized = true;
 }
 
 Footprint RasterSource::footprint(const GridCrs& crs) const
@@ -530,6 +531,9 @@ void RasterSource::sampleColors(const GridCrs& crs, const Lattice& lattice, unsi
     request.planes = planes;
     request.bands = 4;
     request.alpha = true;
+    // Colours of classes meet in steps of whole pixels; a B-spline rounds them off, as a map's draughtsman would.
+    if (_colorized)
+        request.resampling = GRA_CubicSpline;
     warp(crs, lattice, request);
 }
 

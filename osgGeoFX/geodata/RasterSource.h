@@ -86,6 +86,7 @@ private:
     std::string _file;
     OGRSpatialReference _srs;
     std::array<double, 6> _geoTransform{};
+    bool _colorized = false;
     std::vector<DatasetPtr> _chain; ///< the file, then the virtual datasets on top of it; the last is read
 };
 
