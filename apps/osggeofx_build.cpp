@@ -27,9 +27,9 @@ public:
         const auto percent = 100 * done / total;
         if (_terminal && (now - _last > std::chrono::milliseconds(100) || done == total))
         {
-            std::fprintf(stderr, "\r%-7s %3d %%  (%llu of %llu units)%s", phase.c_str(), static_cast<int>(percent),
-                         static_cast<unsigned long long>(done), static_cast<unsigned long long>(total),
-                         done == total ? "\n" : "");
+            std::fprintf(stderr, "\r%-7s %3d %%  (%llu of %llu units)%s", phase.c_str(),
+                         static_cast<int>(percent), static_cast<unsigned long long>(done),
+                         static_cast<unsigned long long>(total), done == total ? "\n" : "");
             _last = now;
         }
         else if (!_terminal && percent / 10 > _tenths)
@@ -67,14 +67,17 @@ int main(int argc, char** argv)
     app.add_option("--landcover-table", options.landCoverTable,
                    "Its classes: value,class,name,red,green,blue; without imagery they colour the surface")
         ->type_name("CSV");
-    auto* globe = app.add_flag("--geocentric", geocentric, "Curved, in geocentric WGS 84 coordinates (the default)");
+    auto* globe =
+        app.add_flag("--geocentric", geocentric, "Curved, in geocentric WGS 84 coordinates (the default)");
     app.add_option("--srs", srs, "Flat, in a projected CRS: EPSG:N")->excludes(globe)->type_name("EPSG:N");
-    const std::map<std::string, osgGeoFX::VerticalDatum> datums{{"none", osgGeoFX::VerticalDatum::None},
-                                                               {"ellipsoid", osgGeoFX::VerticalDatum::Ellipsoid},
-                                                               {"egm96", osgGeoFX::VerticalDatum::Egm96}};
-    app.add_option("--vertical", options.vertical,
-                   "What the heights are measured from: the ellipsoid, the EGM96 geoid (they are then moved to the "
-                   "ellipsoid), or none: used as they are (the default)")
+    const std::map<std::string, osgGeoFX::VerticalDatum> datums{
+        {"none", osgGeoFX::VerticalDatum::None},
+        {"ellipsoid", osgGeoFX::VerticalDatum::Ellipsoid},
+        {"egm96", osgGeoFX::VerticalDatum::Egm96}};
+    app.add_option(
+           "--vertical", options.vertical,
+           "What the heights are measured from: the ellipsoid, the EGM96 geoid (they are then moved to the "
+           "ellipsoid), or none: used as they are (the default)")
         ->transform(CLI::CheckedTransformer(datums).description("ellipsoid|egm96|none"));
     app.add_option("--tile-size", options.tileSize, "Grid intervals along a tile's edge, at most")
         ->capture_default_str();
@@ -89,7 +92,8 @@ int main(int argc, char** argv)
                    "The screen for which the errors hold; the default is osgviewer's view on 1080 lines")
         ->capture_default_str();
     app.add_option("--memory", options.memoryMiB, "Memory for the data, MiB")->capture_default_str();
-    app.add_option("--threads", options.threads, "Worker threads; 0 for one for each core")->capture_default_str();
+    app.add_option("--threads", options.threads, "Worker threads; 0 for one for each core")
+        ->capture_default_str();
     app.add_flag("--resume", options.resume, "Continue a build that was interrupted");
     app.add_flag("--quiet", quiet, "No progress and no summary");
     app.add_option("-o,--output", options.output, "Folder of the database")->required()->type_name("DIR");
@@ -107,19 +111,22 @@ int main(int argc, char** argv)
         if (!srs.empty())
         {
             const std::string number = srs.rfind("EPSG:", 0) == 0 ? srs.substr(5) : srs;
-            if (number.empty() || number.size() > 9 || number.find_first_not_of("0123456789") != std::string::npos)
-                throw osgGeoFX::BuildError("--srs " + srs + ": write it as EPSG: and a number, such as EPSG:32604.");
+            if (number.empty() || number.size() > 9 ||
+                number.find_first_not_of("0123456789") != std::string::npos)
+                throw osgGeoFX::BuildError("--srs " + srs +
+                                           ": write it as EPSG: and a number, such as EPSG:32604.");
             options.epsg = std::stoi(number);
         }
         const auto summary =
             osgGeoFX::buildDatabase(options, quiet ? osgGeoFX::BuildProgress() : ProgressLine());
         if (!quiet)
-            std::printf("%s: %llu tiles (%llu taken over), %d levels, %.3f million samples, %.1f MB, %.1f s, peak "
-                        "memory %.0f MiB\n",
-                        summary.file.c_str(), static_cast<unsigned long long>(summary.tiles),
-                        static_cast<unsigned long long>(summary.tilesReused), summary.levels,
-                        static_cast<double>(summary.samples) * 1e-6, static_cast<double>(summary.bytes) * 1e-6,
-                        summary.seconds, static_cast<double>(summary.peakMemoryBytes) / (1024.0 * 1024.0));
+            std::printf(
+                "%s: %llu tiles (%llu taken over), %d levels, %.3f million samples, %.1f MB, %.1f s, peak "
+                "memory %.0f MiB\n",
+                summary.file.c_str(), static_cast<unsigned long long>(summary.tiles),
+                static_cast<unsigned long long>(summary.tilesReused), summary.levels,
+                static_cast<double>(summary.samples) * 1e-6, static_cast<double>(summary.bytes) * 1e-6,
+                summary.seconds, static_cast<double>(summary.peakMemoryBytes) / (1024.0 * 1024.0));
         return 0;
     }
     catch (const std::exception& error)

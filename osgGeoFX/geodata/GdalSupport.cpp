@@ -19,15 +19,20 @@ void initialiseGdal()
     std::call_once(once, [] { GDALAllRegister(); });
 }
 
-GdalErrorScope::GdalErrorScope() { CPLPushErrorHandlerEx(&GdalErrorScope::handle, this); }
+GdalErrorScope::GdalErrorScope()
+{
+    CPLPushErrorHandlerEx(&GdalErrorScope::handle, this);
+}
 
-GdalErrorScope::~GdalErrorScope() { CPLPopErrorHandler(); }
+GdalErrorScope::~GdalErrorScope()
+{
+    CPLPopErrorHandler();
+}
 
 void CPL_STDCALL GdalErrorScope::handle(CPLErr severity, CPLErrorNum, const char* text)
 {
     auto* scope = static_cast<GdalErrorScope*>(CPLGetErrorHandlerUserData());
-    if (severity >= CE_Failure && scope->_message.empty())
-        scope->_message = text;
+    if (severity >= CE_Failure && scope->_message.empty()) scope->_message = text;
 }
 
 OGRSpatialReference gisOrder(OGRSpatialReference srs)
@@ -43,7 +48,8 @@ TransformationPtr createTransformation(const OGRSpatialReference& from, const OG
     TransformationPtr result(OGRCreateCoordinateTransformation(&from, &to));
     if (!result)
         throw BuildError(file + ": no transformation is known from the CRS \"" + from.GetName() + "\" to \"" +
-                         to.GetName() + "\" (" + errors.message() + "); reproject the file with gdalwarp first.");
+                         to.GetName() + "\" (" + errors.message() +
+                         "); reproject the file with gdalwarp first.");
     return result;
 }
 

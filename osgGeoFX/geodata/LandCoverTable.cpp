@@ -39,19 +39,15 @@ std::vector<int> recordLines(const std::string& file)
     int line = 1, start = 1;
     for (char c = '\n'; stream.get(c);)
     {
-        if (c == '"')
-            quoted = !quoted;
+        if (c == '"') quoted = !quoted;
         if (c != '\n' && c != '\r')
         {
-            if (blank)
-                start = line;
+            if (blank) start = line;
             blank = false;
         }
-        if (c != '\n')
-            continue;
+        if (c != '\n') continue;
         ++line;
-        if (!quoted && !blank)
-            lines.push_back(start);
+        if (!quoted && !blank) lines.push_back(start);
         blank = blank || !quoted;
     }
     lines.push_back(blank ? line : start);
@@ -65,7 +61,8 @@ std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
     initialiseGdal();
     GdalErrorScope errors;
     const char* drivers[] = {"CSV", nullptr};
-    const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, drivers));
+    const DatasetPtr dataset(
+        GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, drivers));
     if (!dataset || dataset->GetLayerCount() == 0)
         throw BuildError(file + ": the land-cover table cannot be read as CSV" +
                          (errors.failed() ? " (" + errors.message() + ")" : "") +
@@ -98,7 +95,8 @@ std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
                 byteField(*feature, index[3 + channel], where, columns[3 + channel]));
         if (entry.value == 0)
             throw BuildError(where + "the value 0 is kept for \"no data\"; give the class another value.");
-        if (std::any_of(classes.begin(), classes.end(), [&](const auto& c) { return c.value == entry.value; }))
+        if (std::any_of(classes.begin(), classes.end(),
+                        [&](const auto& c) { return c.value == entry.value; }))
             throw BuildError(where + "the value " + std::to_string(entry.value) +
                              " stands in the table twice; remove one of the lines.");
         classes.push_back(std::move(entry));

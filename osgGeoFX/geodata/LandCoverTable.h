@@ -14,9 +14,9 @@ namespace osgGeoFX
 /// What one value of a land-cover raster stands for.
 struct LandCoverClass
 {
-    int value = 0;       ///< 0…255; 0 is kept for "no data" and cannot be a class
-    std::string id;      ///< short and stable, such as evergreen_forest
-    std::string name;    ///< in a person's words
+    int value = 0;                        ///< 0…255; 0 is kept for "no data" and cannot be a class
+    std::string id;                       ///< short and stable, such as evergreen_forest
+    std::string name;                     ///< in a person's words
     std::array<unsigned char, 3> color{}; ///< red, green, blue
 };
 

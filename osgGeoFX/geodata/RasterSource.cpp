@@ -24,12 +24,12 @@ namespace
 constexpr double EDGE_TOLERANCE = 0.02;
 // Largest error of interpolated transformations, in pixels. On a slope of 1:1 in a 30 m grid: 3 mm.
 constexpr double TRANSFORM_TOLERANCE = 1e-4;
-constexpr double WARP_MEMORY_BYTES = 48.0 * 1024 * 1024; // a constant: chunks decide the last bits of a sample
+constexpr double WARP_MEMORY_BYTES =
+    48.0 * 1024 * 1024; // a constant: chunks decide the last bits of a sample
 
 double wrapLongitude(double longitude)
 {
-    if (longitude >= -180.0 && longitude <= 180.0)
-        return longitude;
+    if (longitude >= -180.0 && longitude <= 180.0) return longitude;
     const double turned = std::fmod(longitude + 180.0, 360.0);
     return turned < 0.0 ? turned + 180.0 : turned - 180.0;
 }
@@ -39,9 +39,10 @@ class LatticeTransformer
 {
 public:
     LatticeTransformer(const Lattice& lattice, bool gridGeographic, OGRCoordinateTransformation& gridToSource,
-                       const std::array<double, 6>& geoTransform, bool sourceGeographic, int width, int height)
-        : _lattice(lattice), _gridGeographic(gridGeographic), _gridToSource(gridToSource), _forward(geoTransform),
-          _sourceGeographic(sourceGeographic), _width(width), _height(height)
+                       const std::array<double, 6>& geoTransform, bool sourceGeographic, int width,
+                       int height)
+        : _lattice(lattice), _gridGeographic(gridGeographic), _gridToSource(gridToSource),
+          _forward(geoTransform), _sourceGeographic(sourceGeographic), _width(width), _height(height)
     {
         _invertible = GDALInvGeoTransform(_forward.data(), _inverse.data()) != 0;
         double middleY = 0.0;
@@ -50,8 +51,8 @@ public:
 
     bool invertible() const { return _invertible; }
 
-    static int CPL_STDCALL transform(void* self, int latticeToSource, int count, double* x, double* y, double* z,
-                                     int* success)
+    static int CPL_STDCALL transform(void* self, int latticeToSource, int count, double* x, double* y,
+                                     double* z, int* success)
     {
         auto* t = static_cast<LatticeTransformer*>(self);
         return latticeToSource ? t->toSource(count, x, y, z, success) : t->toLattice(count, x, y, z, success);
@@ -64,16 +65,13 @@ private:
         {
             x[i] = _lattice.x0 + (x[i] - 0.5) * _lattice.dx;
             y[i] = _lattice.y0 + (y[i] - 0.5) * _lattice.dy;
-            if (_gridGeographic)
-                x[i] = wrapLongitude(x[i]);
+            if (_gridGeographic) x[i] = wrapLongitude(x[i]);
         }
         _gridToSource.Transform(count, x, y, z, success);
         for (int i = 0; i < count; ++i)
         {
-            if (!success[i])
-                continue;
-            if (_sourceGeographic)
-                x[i] += 360.0 * std::round((_middleX - x[i]) / 360.0);
+            if (!success[i]) continue;
+            if (_sourceGeographic) x[i] += 360.0 * std::round((_middleX - x[i]) / 360.0);
             const double sx = x[i], sy = y[i];
             GDALApplyGeoTransform(_inverse.data(), sx, sy, &x[i], &y[i]);
             x[i] = ontoEdge(x[i], _width);
@@ -84,10 +82,8 @@ private:
 
     int toLattice(int count, double* x, double* y, double* z, int* success)
     {
-        if (!_sourceToGrid)
-            _sourceToGrid.reset(_gridToSource.GetInverse());
-        if (!_sourceToGrid)
-            return FALSE;
+        if (!_sourceToGrid) _sourceToGrid.reset(_gridToSource.GetInverse());
+        if (!_sourceToGrid) return FALSE;
         for (int i = 0; i < count; ++i)
         {
             const double px = x[i], py = y[i];
@@ -97,10 +93,8 @@ private:
         const double middle = _lattice.x0 + 0.5 * _lattice.columns * _lattice.dx;
         for (int i = 0; i < count; ++i)
         {
-            if (!success[i])
-                continue;
-            if (_gridGeographic)
-                x[i] += 360.0 * std::round((middle - x[i]) / 360.0);
+            if (!success[i]) continue;
+            if (_gridGeographic) x[i] += 360.0 * std::round((middle - x[i]) / 360.0);
             x[i] = (x[i] - _lattice.x0) / _lattice.dx + 0.5;
             y[i] = (y[i] - _lattice.y0) / _lattice.dy + 0.5;
         }
@@ -110,10 +104,8 @@ private:
     static double ontoEdge(double pixel, int size)
     {
         constexpr double inside = 1e-7;
-        if (pixel < inside && pixel > -EDGE_TOLERANCE)
-            return inside;
-        if (pixel > size - inside && pixel < size + EDGE_TOLERANCE)
-            return size - inside;
+        if (pixel < inside && pixel > -EDGE_TOLERANCE) return inside;
+        if (pixel > size - inside && pixel < size + EDGE_TOLERANCE) return size - inside;
         return pixel;
     }
 
@@ -132,10 +124,8 @@ double metresPerHeightUnit(const std::string& bandUnit, const OGRSpatialReferenc
 {
     if (EQUAL(bandUnit.c_str(), "ft") || EQUAL(bandUnit.c_str(), "foot") || EQUAL(bandUnit.c_str(), "feet"))
         return 0.3048;
-    if (EQUAL(bandUnit.c_str(), "us-ft") || EQUAL(bandUnit.c_str(), "US survey foot"))
-        return 1200.0 / 3937.0;
-    if (bandUnit.empty() && srs.IsCompound())
-        return srs.GetTargetLinearUnits("COMPD_CS|VERT_CS");
+    if (EQUAL(bandUnit.c_str(), "us-ft") || EQUAL(bandUnit.c_str(), "US survey foot")) return 1200.0 / 3937.0;
+    if (bandUnit.empty() && srs.IsCompound()) return srs.GetTargetLinearUnits("COMPD_CS|VERT_CS");
     return 1.0;
 }
 
@@ -159,8 +149,9 @@ GridCrs GridCrs::projected(int epsg)
     if (crs.srs.importFromEPSG(epsg) != OGRERR_NONE)
         throw BuildError(name + " is not a CRS that PROJ knows; look up its number with projinfo.");
     if (!crs.srs.IsProjected())
-        throw BuildError(name + " (" + crs.srs.GetName() +
-                         ") is not a projected CRS; name one, such as a UTM zone, or build with --geocentric.");
+        throw BuildError(
+            name + " (" + crs.srs.GetName() +
+            ") is not a projected CRS; name one, such as a UTM zone, or build with --geocentric.");
     crs.srs = gisOrder(crs.srs);
     crs.srs.StripVertical();
     crs.metresPerUnit = crs.srs.GetLinearUnits();
@@ -181,10 +172,8 @@ RasterSource::RasterSource(const std::string& file, RasterKind kind) : _file(fil
 {
     initialiseGdal();
     VSIStatBufL status;
-    if (VSIStatL(file.c_str(), &status) != 0)
-        fail("there is no such file; check the path");
-    if (VSI_ISREG(status.st_mode) && status.st_size == 0)
-        fail("the file is empty; fetch or export it again");
+    if (VSIStatL(file.c_str(), &status) != 0) fail("there is no such file; check the path");
+    if (VSI_ISREG(status.st_mode) && status.st_size == 0) fail("the file is empty; fetch or export it again");
 
     {
         GdalErrorScope errors;
@@ -205,7 +194,10 @@ RasterSource::~RasterSource()
         _chain.pop_back();
 }
 
-void RasterSource::fail(const std::string& what) const { throw BuildError(_file + ": " + what + "."); }
+void RasterSource::fail(const std::string& what) const
+{
+    throw BuildError(_file + ": " + what + ".");
+}
 
 void RasterSource::translate(const std::vector<std::string>& arguments)
 {
@@ -219,7 +211,8 @@ void RasterSource::translate(const std::vector<std::string>& arguments)
     GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(_chain.back().get()), options, nullptr);
     GDALTranslateOptionsFree(options);
     if (!result)
-        fail("its bands cannot be used (" + errors.message() + "); convert it to GeoTIFF with gdal_translate");
+        fail("its bands cannot be used (" + errors.message() +
+             "); convert it to GeoTIFF with gdal_translate");
     _chain.emplace_back(GDALDataset::FromHandle(result));
 }
 
@@ -228,7 +221,8 @@ void RasterSource::openAs(RasterKind kind)
     const bool placed = _chain.back()->GetGeoTransform(_geoTransform.data()) == CE_None;
     if (!placed && _chain.back()->GetGCPCount() == 0)
         fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
-    const OGRSpatialReference* srs = placed ? _chain.back()->GetSpatialRef() : _chain.back()->GetGCPSpatialRef();
+    const OGRSpatialReference* srs =
+        placed ? _chain.back()->GetSpatialRef() : _chain.back()->GetGCPSpatialRef();
     if (!srs || srs->IsEmpty() || srs->IsLocal())
         fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
     _srs = gisOrder(*srs);
@@ -257,8 +251,9 @@ void RasterSource::openAs(RasterKind kind)
         else
         {
             const bool grey = _chain.back()->GetRasterCount() < 3;
-            std::vector<std::string> arguments{"-b", "1", "-b", grey ? "1" : "2", "-b", grey ? "1" : "3", "-b",
-                                               "mask,1", "-ot", "Byte", "-colorinterp", "red,green,blue,alpha"};
+            std::vector<std::string> arguments{
+                "-b", "1",      "-b",  grey ? "1" : "2", "-b",           grey ? "1" : "3",
+                "-b", "mask,1", "-ot", "Byte",           "-colorinterp", "red,green,blue,alpha"};
             if (type == GDT_UInt16)
                 for (const char* scale : {"-scale_1", "-scale_2", "-scale_3"})
                     arguments.insert(arguments.end(), {scale, "0", "65535", "0", "255"});
@@ -268,15 +263,15 @@ void RasterSource::openAs(RasterKind kind)
     else if (type != GDT_Byte)
         fail("land-cover classes must be one byte for each pixel (it has " +
              std::string(GDALGetDataTypeName(type)) + "); convert it with gdal_translate -ot Byte");
-    if (!placed)
-        warpByControlPoints(kind);
+    if (!placed) warpByControlPoints(kind);
     _srs.StripVertical();
 }
 
 void RasterSource::warpByControlPoints(RasterKind kind)
 {
     CPLStringList list;
-    std::vector<const char*> arguments{"-of", "VRT", "-r", kind == RasterKind::LandCover ? "near" : "bilinear"};
+    std::vector<const char*> arguments{"-of", "VRT", "-r",
+                                       kind == RasterKind::LandCover ? "near" : "bilinear"};
     // What lies outside the turned raster is no ground.
     int hasNoData = FALSE;
     _chain.back()->GetRasterBand(1)->GetNoDataValue(&hasNoData);
@@ -294,7 +289,8 @@ void RasterSource::warpByControlPoints(RasterKind kind)
     GDALDatasetH result = GDALWarp("", nullptr, 1, &source, options, nullptr);
     GDALWarpAppOptionsFree(options);
     if (!result)
-        fail("its ground control points fit no plane (" + errors.message() + "); warp it with gdalwarp first");
+        fail("its ground control points fit no plane (" + errors.message() +
+             "); warp it with gdalwarp first");
     _chain.emplace_back(GDALDataset::FromHandle(result));
     _chain.back()->GetGeoTransform(_geoTransform.data());
 }
@@ -318,8 +314,9 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
                                  source.GetRasterXSize(), source.GetRasterYSize());
     xml += "<SRS>" + escaped(wkt) + "</SRS>";
     CPLFree(wkt);
-    xml += CPLSPrintf("<GeoTransform>%.17g,%.17g,%.17g,%.17g,%.17g,%.17g</GeoTransform>", _geoTransform[0],
-                      _geoTransform[1], _geoTransform[2], _geoTransform[3], _geoTransform[4], _geoTransform[5]);
+    xml +=
+        CPLSPrintf("<GeoTransform>%.17g,%.17g,%.17g,%.17g,%.17g,%.17g</GeoTransform>", _geoTransform[0],
+                   _geoTransform[1], _geoTransform[2], _geoTransform[3], _geoTransform[4], _geoTransform[5]);
     const char* interpretation[] = {"Red", "Green", "Blue", "Alpha"};
     for (std::size_t channel = 0; channel < 4; ++channel)
     {
@@ -334,8 +331,7 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
     xml += "</VRTDataset>";
     GdalErrorScope errors;
     DatasetPtr colored(GDALDataset::Open(xml.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-    if (!colored)
-        fail("its classes cannot be drawn in colours (" + errors.message() + ")");
+    if (!colored) fail("its classes cannot be drawn in colours (" + errors.message() + ")");
     _chain.push_back(std::move(colored));
     _colorized = true;
 }
@@ -348,7 +344,10 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
 
     // A mesh of pixel centres, its borders on the outermost pixels.
     constexpr int N = 33;
-    const auto pixel = [](int index, int size) { return 0.5 + (size - 1) * (index / double(N - 1)); };
+    const auto pixel = [](int index, int size)
+    {
+        return 0.5 + (size - 1) * (index / double(N - 1));
+    };
     const auto toCrs = [&](double px, double py, double& x, double& y)
     {
         double gx = 0.0, gy = 0.0;
@@ -358,8 +357,7 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
         int success = 0;
         toGrid->Transform(1, &x, &y, nullptr, &success);
         // PROJ turns longitudes into ±180°; a raster's own longitudes may run on, which is what is wanted.
-        if (success && crs.geographic && _srs.IsGeographic())
-            x += 360.0 * std::round((gx - x) / 360.0);
+        if (success && crs.geographic && _srs.IsGeographic()) x += 360.0 * std::round((gx - x) / 360.0);
         return success != 0 && std::isfinite(x) && std::isfinite(y);
     };
     const auto difference = [&](double a, double b)
@@ -382,13 +380,10 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
         {
             const double px = pixel(i, width), py = pixel(j, height);
             double x = 0.0, y = 0.0, x1 = 0.0, y1 = 0.0, x2 = 0.0, y2 = 0.0;
-            if (!toCrs(px, py, x, y))
-                continue;
-            if (any && crs.geographic && !_srs.IsGeographic())
-                x = previous + difference(x, previous);
+            if (!toCrs(px, py, x, y)) continue;
+            if (any && crs.geographic && !_srs.IsGeographic()) x = previous + difference(x, previous);
             previous = x;
-            if (first)
-                rowStart = x;
+            if (first) rowStart = x;
             first = false;
             any = true;
             result.west = std::min(result.west, x);
@@ -398,8 +393,7 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
 
             // The pixels that one unit of the grid's x or y crosses here, from the transformation's derivative.
             const double sx = px < width * 0.5 ? 0.5 : -0.5, sy = py < height * 0.5 ? 0.5 : -0.5;
-            if (!toCrs(px + sx, py, x1, y1) || !toCrs(px, py + sy, x2, y2))
-                continue;
+            if (!toCrs(px + sx, py, x1, y1) || !toCrs(px, py + sy, x2, y2)) continue;
             const double a = difference(x1, x) / sx, b = difference(x2, x) / sy;
             const double c = (y1 - y) / sx, d = (y2 - y) / sy;
             const double area = std::abs(a * d - b * c);
@@ -426,8 +420,7 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
             double x = result.west, y = pole, px = 0.0, py = 0.0;
             int success = 0;
             toSource->Transform(1, &x, &y, nullptr, &success);
-            if (!success || !_srs.IsProjected())
-                continue;
+            if (!success || !_srs.IsProjected()) continue;
             GDALApplyGeoTransform(inverse.data(), x, y, &px, &py);
             if (px >= 0.0 && px <= width && py >= 0.0 && py <= height)
             {
@@ -435,10 +428,8 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
                 (pole > 0.0 ? result.north : result.south) = pole;
             }
         }
-        if (result.east - result.west + 1.5 * result.stepX >= 360.0)
-            result.wholeCircle = true;
-        if (result.wholeCircle)
-            result.east = result.west + 360.0;
+        if (result.east - result.west + 1.5 * result.stepX >= 360.0) result.wholeCircle = true;
+        if (result.wholeCircle) result.east = result.west + 360.0;
     }
     return result;
 }
@@ -448,8 +439,8 @@ void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRe
     GDALDataset& source = *_chain.back();
     GdalErrorScope errors;
 
-    DatasetPtr target(GetGDALDriverManager()->GetDriverByName("MEM")->Create("", lattice.columns, lattice.rows, 0,
-                                                                            request.type, nullptr));
+    DatasetPtr target(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
+        "", lattice.columns, lattice.rows, 0, request.type, nullptr));
     const std::size_t plane = static_cast<std::size_t>(lattice.columns) * lattice.rows *
                               static_cast<std::size_t>(GDALGetDataTypeSizeBytes(request.type));
     for (int band = 0; band < request.bands; ++band)
@@ -465,8 +456,7 @@ void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRe
     const TransformationPtr gridToSource = createTransformation(crs.srs, _srs, _file);
     LatticeTransformer exact(lattice, crs.geographic, *gridToSource, _geoTransform, _srs.IsGeographic() != 0,
                              source.GetRasterXSize(), source.GetRasterYSize());
-    if (!exact.invertible())
-        fail("its geotransform is singular; mend it with gdal_translate -a_ullr");
+    if (!exact.invertible()) fail("its geotransform is singular; mend it with gdal_translate -a_ullr");
     const std::unique_ptr<void, void (*)(void*)> approximate(
         GDALCreateApproxTransformer(&LatticeTransformer::transform, &exact, TRANSFORM_TOLERANCE),
         &GDALDestroyApproxTransformer);
@@ -532,8 +522,7 @@ void RasterSource::sampleColors(const GridCrs& crs, const Lattice& lattice, unsi
     request.bands = 4;
     request.alpha = true;
     // Colours of classes meet in steps of whole pixels; a B-spline rounds them off, as a map's draughtsman would.
-    if (_colorized)
-        request.resampling = GRA_CubicSpline;
+    if (_colorized) request.resampling = GRA_CubicSpline;
     warp(crs, lattice, request);
 }
 

@@ -31,21 +31,17 @@ void writeFileAtomically(const std::string& path, const char* data, std::size_t 
 {
     std::error_code code;
     std::filesystem::create_directories(std::filesystem::path(path).parent_path(), code);
-    if (code)
-        failToWrite(path, code.value());
+    if (code) failToWrite(path, code.value());
 
     // Each path is written by one thread of one process, so the temporary name need not be unique beyond it.
     const std::string temporary = path + ".tmp";
     std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    if (!file)
-        failToWrite(path, errno);
+    if (!file) failToWrite(path, errno);
     errno = 0;
     const bool written = std::fwrite(data, 1, size, file) == size;
     int error = written ? 0 : errno;
-    if (std::fclose(file) != 0 && error == 0)
-        error = errno;
-    if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0)
-        error = errno;
+    if (std::fclose(file) != 0 && error == 0) error = errno;
+    if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
     if (error != 0)
     {
         std::remove(temporary.c_str());
@@ -56,8 +52,7 @@ void writeFileAtomically(const std::string& path, const char* data, std::size_t 
 ByteReader::ByteReader(const std::string& path)
 {
     std::ifstream stream(path, std::ios::binary | std::ios::ate);
-    if (!stream)
-        return;
+    if (!stream) return;
     _bytes.resize(static_cast<std::size_t>(stream.tellg()));
     stream.seekg(0);
     stream.read(_bytes.data(), static_cast<std::streamsize>(_bytes.size()));
@@ -66,10 +61,8 @@ ByteReader::ByteReader(const std::string& path)
 
 void ByteReader::take(void* target, std::size_t size)
 {
-    if (size > _bytes.size() - _position)
-        _good = false;
-    if (!_good || size == 0)
-        return;
+    if (size > _bytes.size() - _position) _good = false;
+    if (!_good || size == 0) return;
     std::memcpy(target, _bytes.data() + _position, size);
     _position += size;
 }

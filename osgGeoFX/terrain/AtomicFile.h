@@ -64,8 +64,7 @@ public:
     std::vector<T> getVector()
     {
         const auto count = get<std::size_t>();
-        if (count > (_bytes.size() - _position) / sizeof(T))
-            _good = false;
+        if (count > (_bytes.size() - _position) / sizeof(T)) _good = false;
         std::vector<T> values(_good ? count : 0);
         get(values.data(), values.size());
         return values;

@@ -22,8 +22,7 @@ constexpr int MAX_LEVEL = 20;
 
 void require(bool condition, const std::string& sentence)
 {
-    if (!condition)
-        throw BuildError(sentence);
+    if (!condition) throw BuildError(sentence);
 }
 
 std::vector<Footprint> footprints(const std::vector<std::string>& files, RasterKind kind, const GridCrs& crs)
@@ -64,13 +63,10 @@ void gatherLongitudes(std::vector<Footprint>& prints)
 
 bool overlaps(const Footprint& print, const TilingScheme& scheme)
 {
-    if (print.south >= scheme.north || print.north <= scheme.south)
-        return false;
-    if (!scheme.crs.geographic)
-        return print.west < scheme.east && print.east > scheme.west;
+    if (print.south >= scheme.north || print.north <= scheme.south) return false;
+    if (!scheme.crs.geographic) return print.west < scheme.east && print.east > scheme.west;
     for (const double turn : {-360.0, 0.0, 360.0})
-        if (print.west + turn < scheme.east && print.east + turn > scheme.west)
-            return true;
+        if (print.west + turn < scheme.east && print.east + turn > scheme.west) return true;
     return false;
 }
 
@@ -81,11 +77,13 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
     initialiseGdal();
     require(!options.dems.empty(), "No elevation raster is named; give at least one with --dem FILE.");
     require(!options.output.empty(), "No folder for the database is named; give one with -o DIR.");
-    require(options.tileSize >= 8 && options.tileSize <= 256 && (options.tileSize & (options.tileSize - 1)) == 0,
-            "The tile size must be a power of two from 8 to 256 (it is " + std::to_string(options.tileSize) + ").");
+    require(options.tileSize >= 8 && options.tileSize <= 256 &&
+                (options.tileSize & (options.tileSize - 1)) == 0,
+            "The tile size must be a power of two from 8 to 256 (it is " + std::to_string(options.tileSize) +
+                ").");
     require(options.textureSize == 0 || (options.textureSize >= 16 && options.textureSize <= 4096),
-            "The texture size must be 16 to 4096 intervals (it is " +
-                std::to_string(options.textureSize) + ").");
+            "The texture size must be 16 to 4096 intervals (it is " + std::to_string(options.textureSize) +
+                ").");
     require(options.pixelError > 0.0 && options.texelError > 0.0 && options.pixelsPerRadian > 0.0,
             "The pixel error, the texel error and the pixels per radian must be greater than 0.");
     require(options.memoryMiB >= 128,
@@ -113,8 +111,7 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
 void BuildPlan::chooseGrid()
 {
     auto dems = footprints(options.dems, RasterKind::Elevation, scheme.crs);
-    if (scheme.crs.geographic)
-        gatherLongitudes(dems);
+    if (scheme.crs.geographic) gatherLongitudes(dems);
     scheme.west = scheme.south = std::numeric_limits<double>::max();
     scheme.east = scheme.north = std::numeric_limits<double>::lowest();
     double stepX = scheme.west, stepY = scheme.west;
@@ -132,22 +129,24 @@ void BuildPlan::chooseGrid()
     if (scheme.crs.geographic && (wholeCircle || scheme.east - scheme.west > 360.0))
         scheme.east = scheme.west + 360.0;
     require(scheme.east > scheme.west && scheme.north > scheme.south,
-            options.dems.front() + ": the elevation is a single row, column or pixel; a terrain needs at least 2 × 2.");
+            options.dems.front() +
+                ": the elevation is a single row, column or pixel; a terrain needs at least 2 × 2.");
 
     // The colours ask for a resolution of their own.
     const bool fromImagery = !options.imagery.empty();
     std::vector<std::string> colorFiles = options.imagery;
-    if (!options.landCover.empty())
-        colorFiles.push_back(options.landCover);
+    if (!options.landCover.empty()) colorFiles.push_back(options.landCover);
     double colorStepX = std::numeric_limits<double>::max(), colorStepY = colorStepX;
     for (const auto& file : colorFiles)
     {
         const bool imagery = &file != &colorFiles.back() || options.landCover.empty();
         const Footprint print =
             RasterSource(file, imagery ? RasterKind::Imagery : RasterKind::LandCover).footprint(scheme.crs);
-        require(overlaps(print, scheme),
-                file + ": it lies wholly outside the elevation; give an elevation that covers the same region, or "
-                       "leave the file out.");
+        require(
+            overlaps(print, scheme),
+            file +
+                ": it lies wholly outside the elevation; give an elevation that covers the same region, or "
+                "leave the file out.");
         if (imagery == fromImagery)
         {
             colorStepX = std::min(colorStepX, print.stepX);
@@ -155,8 +154,12 @@ void BuildPlan::chooseGrid()
         }
     }
 
-    const auto count = [](double extent, double step) { return std::ceil(extent / step - 1e-4); };
-    const double columns = count(scheme.east - scheme.west, stepX), rows = count(scheme.north - scheme.south, stepY);
+    const auto count = [](double extent, double step)
+    {
+        return std::ceil(extent / step - 1e-4);
+    };
+    const double columns = count(scheme.east - scheme.west, stepX),
+                 rows = count(scheme.north - scheme.south, stepY);
     scheme.intervals = options.tileSize;
     require(std::max(columns, rows) <= static_cast<double>(scheme.intervals << MAX_LEVEL),
             options.dems.front() + ": at its resolution the terrain would need more than " +
@@ -173,16 +176,16 @@ void BuildPlan::chooseGrid()
     const int limit = options.textureSize > 0 ? options.textureSize : 4 * options.tileSize;
     for (;; ++scheme.finestLevel, scheme.lastColumn *= 2, scheme.lastRow *= 2)
     {
-        require(scheme.finestLevel <= MAX_LEVEL, colorFiles.empty() ? options.dems.front() : colorFiles.front() +
-                ": at its resolution the terrain would need more than " + std::to_string(MAX_LEVEL) +
-                " levels; give coarser rasters, a smaller region, or a larger --texture-size.");
-        double texels = scheme.intervals;
+        require(scheme.finestLevel <= MAX_LEVEL,
+                (colorFiles.empty() ? options.dems.front() : colorFiles.front()) +
+                    ": at its resolution the terrain would need more than " + std::to_string(MAX_LEVEL) +
+                    " levels; give coarser rasters, a smaller region, or a larger --texture-size.");
+        double texels = std::min(scheme.intervals, limit);
         if (!colorFiles.empty())
-            texels *= std::max((scheme.east - scheme.west) / colorStepX / scheme.lastColumn,
-                               (scheme.north - scheme.south) / colorStepY / scheme.lastRow);
+            texels = scheme.intervals * std::max((scheme.east - scheme.west) / colorStepX / scheme.lastColumn,
+                                                 (scheme.north - scheme.south) / colorStepY / scheme.lastRow);
         scheme.texels = std::max(2, static_cast<int>(std::ceil(texels - 1e-3)));
-        if (scheme.texels <= limit)
-            break;
+        if (scheme.texels <= limit) break;
     }
     scheme.textureDepth = 0;
     while (scheme.textureDepth < scheme.finestLevel && (scheme.texels << (scheme.textureDepth + 1)) <= limit)
@@ -207,8 +210,7 @@ void BuildPlan::chooseUnits()
             for (int x = 0; x < across; ++x)
                 units.push_back({{rootLevel, x, y}, depth, tier});
         unitsTotal += 2 * units.size();
-        if (rootLevel == 0)
-            break;
+        if (rootLevel == 0) break;
         latticeLevel = rootLevel;
     }
 
@@ -221,7 +223,8 @@ void BuildPlan::chooseUnits()
     const double texels = std::pow(static_cast<double>(scheme.texels << tiers[0][0].depth), 2.0);
     const double posts = std::pow(static_cast<double>(options.tileSize << tiers[0][0].depth) + 3.0, 2.0);
     const double unitMiB = (texels * 24.0 + posts * 28.0) / (1024.0 * 1024.0) + 64.0;
-    const int wanted = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+    const int wanted =
+        options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
     const int affordable = static_cast<int>(0.75 * options.memoryMiB / unitMiB);
     threads = std::clamp(wanted, 1, std::max(1, affordable));
 }
@@ -250,10 +253,12 @@ void BuildPlan::chooseFingerprint()
         source("land cover", options.landCover);
         source("land-cover table", options.landCoverTable);
     }
-    text << "CRS " << (options.epsg ? "EPSG:" + std::to_string(options.epsg) : std::string("geocentric WGS 84"))
+    text << "CRS "
+         << (options.epsg ? "EPSG:" + std::to_string(options.epsg) : std::string("geocentric WGS 84"))
          << "\nvertical datum " << static_cast<int>(options.vertical) << "\ntile size " << options.tileSize
-         << "\ntexture size " << options.textureSize << "\npixel error " << options.pixelError << "\ntexel error "
-         << options.texelError << "\npixels per radian " << options.pixelsPerRadian << "\n";
+         << "\ntexture size " << options.textureSize << "\npixel error " << options.pixelError
+         << "\ntexel error " << options.texelError << "\npixels per radian " << options.pixelsPerRadian
+         << "\n";
     fingerprint = text.str();
 }
 
@@ -293,8 +298,7 @@ double BuildPlan::skirt(const TileKey& key, int side) const
         other = std::max(other, static_cast<double>(fact(self).error));
         const int place = dx != 0 ? self.x : self.y;
         const bool towardsEnd = dx + dy > 0;
-        if (self.level == 0 || (place % 2 == 1) != towardsEnd)
-            break;
+        if (self.level == 0 || (place % 2 == 1) != towardsEnd) break;
     }
     // Rounding alone opens hair lines between meshes of different density, even in a plain.
     const double least = 0.5 + 0.02 * scheme.tileMetres(key.level) / scheme.intervals;
@@ -304,13 +308,17 @@ double BuildPlan::skirt(const TileKey& key, int side) const
 int BuildPlan::validColumns(const Unit& unit) const
 {
     const int step = scheme.step(unit.latticeLevel());
-    return std::min(unit.span() * scheme.intervals, (scheme.lastColumn - scheme.firstColumn(unit.root) + step - 1) / step) + 1;
+    return std::min(unit.span() * scheme.intervals,
+                    (scheme.lastColumn - scheme.firstColumn(unit.root) + step - 1) / step) +
+           1;
 }
 
 int BuildPlan::validRows(const Unit& unit) const
 {
     const int step = scheme.step(unit.latticeLevel());
-    return std::min(unit.span() * scheme.intervals, (scheme.lastRow - scheme.firstRow(unit.root) + step - 1) / step) + 1;
+    return std::min(unit.span() * scheme.intervals,
+                    (scheme.lastRow - scheme.firstRow(unit.root) + step - 1) / step) +
+           1;
 }
 
 std::string BuildPlan::tileFile(const TileKey& parent) const

@@ -20,11 +20,12 @@ namespace osgGeoFX
 struct TileFacts
 {
     float minHeight = 0.0f, maxHeight = 0.0f; ///< of the finest posts below it, metres
-    float latticeError = 0.0f; ///< what the lattice that its mesh is made from misses of the finest heights, metres
-    float rootError = 0.0f;    ///< of a unit's root: what its own posts miss of the finest heights, metres
-    float error = 0.0f;        ///< bound of the vertical distance between its mesh and the finest one, metres
-    float skirtBelow = 0.0f;   ///< the deepest skirt of the tile and all below it, metres
-    std::int32_t any = 0;      ///< it has at least one post with data
+    float latticeError =
+        0.0f; ///< what the lattice that its mesh is made from misses of the finest heights, metres
+    float rootError = 0.0f;  ///< of a unit's root: what its own posts miss of the finest heights, metres
+    float error = 0.0f;      ///< bound of the vertical distance between its mesh and the finest one, metres
+    float skirtBelow = 0.0f; ///< the deepest skirt of the tile and all below it, metres
+    std::int32_t any = 0;    ///< it has at least one post with data
 };
 
 /// A square block of tiles that one worker builds at a time: `root` and the `depth` levels below it. Its arrays

@@ -40,8 +40,7 @@ std::uint64_t bytesBelow(const fs::path& folder)
 {
     std::uint64_t bytes = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_regular_file())
-            bytes += entry.file_size();
+        if (entry.is_regular_file()) bytes += entry.file_size();
     return bytes;
 }
 
@@ -58,15 +57,17 @@ bool prepareFolder(const BuildPlan& plan)
                          "); choose another with -o.");
     const bool ours = fs::exists(origin);
     if (!ours && !fs::is_empty(folder))
-        throw BuildError(folder.string() +
-                         ": the folder holds other files, which a build would mix with its own; choose an empty one "
-                         "with -o.");
+        throw BuildError(
+            folder.string() +
+            ": the folder holds other files, which a build would mix with its own; choose an empty one "
+            "with -o.");
     if (ours && plan.options.resume)
     {
         if (readText(origin) != plan.fingerprint)
-            throw BuildError(folder.string() +
-                             ": the build that was begun here has other sources or options; repeat it with those, or "
-                             "leave out --resume to begin anew.");
+            throw BuildError(
+                folder.string() +
+                ": the build that was begun here has other sources or options; repeat it with those, or "
+                "leave out --resume to begin anew.");
         return fs::exists(root);
     }
     // The root first: without it, what is left of an old database does not look whole.
@@ -87,8 +88,7 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
     plan.scheme.crs.srs.exportToWkt(&wkt);
     osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode("WKT", wkt);
     CPLFree(wkt);
-    if (plan.scheme.crs.geographic)
-        root->setEllipsoidModel(new osg::EllipsoidModel);
+    if (plan.scheme.crs.geographic) root->setEllipsoidModel(new osg::EllipsoidModel);
     root->setName("osgGeoFX terrain");
 
     const double unit = plan.scheme.crs.geographic ? 1.0 : plan.scheme.crs.metresPerUnit;
@@ -136,7 +136,8 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
         const osg::ref_ptr<osg::Node> root = osgDB::readRefNodeFile(summary.file);
         double tiles = 0.0;
         if (!root || !root->getUserValue("geofx.tiles", tiles))
-            throw BuildError(summary.file + ": the finished database cannot be read; build again without --resume.");
+            throw BuildError(summary.file +
+                             ": the finished database cannot be read; build again without --resume.");
         summary.tiles = summary.tilesReused = static_cast<std::uint64_t>(tiles);
     }
     else

@@ -32,7 +32,7 @@ struct BuildOptions
     std::string landCoverTable;       ///< CSV with the columns value, class, name, red, green, blue
     int epsg = 0;                     ///< projected database in this CRS; 0 for a geocentric one (WGS 84)
     VerticalDatum vertical = VerticalDatum::None;
-    int tileSize = 128;      ///< largest number of grid intervals along a tile's edge, 8…240
+    int tileSize = 128; ///< largest number of grid intervals along a tile's edge, 8…240
     /// Largest number of texture intervals along a tile's edge, 16…4096; 0 for 4 × tileSize.
     int textureSize = 0;
     double pixelError = 1.0; ///< bound of the geometric error on the screen, pixels
@@ -50,14 +50,14 @@ struct BuildOptions
 /// Figures of a finished build.
 struct BuildSummary
 {
-    std::uint64_t tiles = 0;         ///< tiles with geometry, all levels
-    std::uint64_t tilesReused = 0;   ///< of these, taken over from an interrupted build
-    int levels = 0;                  ///< levels of detail
-    std::uint64_t samples = 0;       ///< grid posts of the finest level
-    std::uint64_t bytes = 0;         ///< size of the database on disk
-    double seconds = 0.0;            ///< wall-clock time
+    std::uint64_t tiles = 0;           ///< tiles with geometry, all levels
+    std::uint64_t tilesReused = 0;     ///< of these, taken over from an interrupted build
+    int levels = 0;                    ///< levels of detail
+    std::uint64_t samples = 0;         ///< grid posts of the finest level
+    std::uint64_t bytes = 0;           ///< size of the database on disk
+    double seconds = 0.0;              ///< wall-clock time
     std::uint64_t peakMemoryBytes = 0; ///< largest resident size of the process
-    std::string file;                ///< the file to open: OUTPUT/terrain.osgb
+    std::string file;                  ///< the file to open: OUTPUT/terrain.osgb
 };
 
 /// Called from any worker, never from two at once: work units done and in all, and what is being done.
@@ -70,6 +70,7 @@ using BuildProgress = std::function<bool(std::uint64_t done, std::uint64_t total
     plain OpenSceneGraph reads it. `terrain.osgb` is written last, so a folder without it is not a database.
     The same options give the same bytes, for any number of threads and through any interruptions.
     Throws BuildError. Safe to call from any thread; one build for each output folder at a time. */
-OSGGEOFXDATA_EXPORT BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& progress = {});
+OSGGEOFXDATA_EXPORT BuildSummary buildDatabase(const BuildOptions& options,
+                                               const BuildProgress& progress = {});
 
 } // namespace osgGeoFX

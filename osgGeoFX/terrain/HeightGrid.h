@@ -12,7 +12,10 @@ namespace osgGeoFX
 /// Heights on a lattice, metres, NaN where there are none; row 0 is the southernmost.
 struct HeightGrid
 {
-    HeightGrid(int c, int r) : columns(c), rows(r), values(static_cast<std::size_t>(c) * static_cast<std::size_t>(r)) {}
+    HeightGrid(int c, int r)
+        : columns(c), rows(r), values(static_cast<std::size_t>(c) * static_cast<std::size_t>(r))
+    {
+    }
 
     float& at(int column, int row)
     {
@@ -27,10 +30,13 @@ struct HeightGrid
 
 /// Repeats the last valid column and row over the rest of a lattice, of `channels` values a point.
 template<typename T>
-void extendBeyond(std::vector<T>& values, int columns, int rows, int channels, int validColumns, int validRows)
+void extendBeyond(std::vector<T>& values, int columns, int rows, int channels, int validColumns,
+                  int validRows)
 {
     const auto at = [&](int column, int row)
-    { return values.begin() + (static_cast<std::ptrdiff_t>(row) * columns + column) * channels; };
+    {
+        return values.begin() + (static_cast<std::ptrdiff_t>(row) * columns + column) * channels;
+    };
     for (int row = 0; row < std::min(rows, validRows); ++row)
         for (int column = validColumns; column < columns; ++column)
             std::copy_n(at(validColumns - 1, row), channels, at(column, row));

@@ -32,7 +32,8 @@ float meshDeviation(const HeightGrid& grid, int step, float missing)
                 for (int i = 0; i <= step; ++i)
                 {
                     const float u = static_cast<float>(i) * scale, v = static_cast<float>(j) * scale;
-                    const float coarse = i >= j ? sw + u * (se - sw) + v * (ne - se) : sw + v * (nw - sw) + u * (ne - nw);
+                    const float coarse =
+                        i >= j ? sw + u * (se - sw) + v * (ne - se) : sw + v * (nw - sw) + u * (ne - nw);
                     const float fine = grid.at(i0 + i, j0 + j);
                     const float difference = std::abs(fine - coarse);
                     if (difference == difference)
@@ -75,8 +76,7 @@ TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& ke
         for (int i = column; i <= column + n; ++i)
         {
             const float height = grid.at(i, j);
-            if (std::isnan(height))
-                continue;
+            if (std::isnan(height)) continue;
             facts.minHeight = facts.any ? std::min(facts.minHeight, height) : height;
             facts.maxHeight = facts.any ? std::max(facts.maxHeight, height) : height;
             facts.any = 1;
@@ -90,8 +90,7 @@ TileFacts gatheredFacts(const BuildPlan& plan, const Unit& unit, const TileKey& 
     for (int c = 0; c < 4; ++c)
     {
         const TileFacts& child = plan.fact(key.child(c & 1, c >> 1));
-        if (!child.any)
-            continue;
+        if (!child.any) continue;
         facts.minHeight = facts.any ? std::min(facts.minHeight, child.minHeight) : child.minHeight;
         facts.maxHeight = facts.any ? std::max(facts.maxHeight, child.maxHeight) : child.maxHeight;
         facts.any = 1;
@@ -123,15 +122,13 @@ void settleFacts(BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
 bool loadFacts(BuildPlan& plan, const Unit& unit)
 {
     ByteReader reader(plan.workFile("facts", unit));
-    if (!reader.good())
-        return false;
+    if (!reader.good()) return false;
     const auto facts = reader.getVector<TileFacts>();
     std::size_t next = 0;
     forTiles(unit,
              [&](const TileKey& key)
              {
-                 if (next < facts.size())
-                     plan.fact(key) = facts[next];
+                 if (next < facts.size()) plan.fact(key) = facts[next];
                  ++next;
              });
     return next == facts.size();
@@ -172,8 +169,7 @@ void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
         extendBeyond(grid.values, grid.columns, grid.rows, 1, validColumns, validRows);
     }
     settleFacts(plan, unit, grid);
-    if (plan.fact(unit.root).any)
-        writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
+    if (plan.fact(unit.root).any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
 }
 
 void gatherUnit(BuildPlan& plan, const Unit& unit)
@@ -182,8 +178,7 @@ void gatherUnit(BuildPlan& plan, const Unit& unit)
     {
         const HeightGrid grid = gatherRoots(plan, unit);
         settleFacts(plan, unit, grid);
-        if (plan.fact(unit.root).any)
-            writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
+        if (plan.fact(unit.root).any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
     }
 }
 
@@ -200,8 +195,7 @@ HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit)
         {
             Unit below;
             below.root = {unit.latticeLevel(), unit.root.x * unit.span() + x, unit.root.y * unit.span() + y};
-            if (!plan.fact(below.root).any)
-                continue;
+            if (!plan.fact(below.root).any) continue;
             ByteReader reader(plan.workFile("roots", below));
             HeightGrid part(n + 1, n + 1);
             const std::size_t expected = part.values.size();
@@ -212,8 +206,7 @@ HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit)
             for (int j = 0; j <= n; ++j)
                 for (int i = 0; i <= n; ++i)
                     // A neighbour without data must not take away a border that this one has.
-                    if (!std::isnan(part.at(i, j)))
-                        grid.at(x * n + i, y * n + j) = part.at(i, j);
+                    if (!std::isnan(part.at(i, j))) grid.at(x * n + i, y * n + j) = part.at(i, j);
         }
     extendBeyond(grid.values, grid.columns, grid.rows, 1, plan.validColumns(unit), plan.validRows(unit));
     return grid;
@@ -230,8 +223,7 @@ void runHeightPass(BuildPlan& plan)
                          if (!plan.options.resume || !loadFacts(plan, unit))
                          {
                              auto& stack = rasters[static_cast<std::size_t>(worker)];
-                             if (unit.tier == 0 && !stack)
-                                 stack = std::make_unique<RasterStack>(plan);
+                             if (unit.tier == 0 && !stack) stack = std::make_unique<RasterStack>(plan);
                              if (unit.tier == 0)
                                  sampleUnit(plan, unit, *stack);
                              else
@@ -251,13 +243,13 @@ void runHeightPass(BuildPlan& plan)
             {
                 const TileKey key{level, x, y};
                 TileFacts& facts = plan.fact(key);
-                if (!facts.any)
-                    continue;
+                if (!facts.any) continue;
                 for (int side = 0; side < 4; ++side)
                     facts.skirtBelow = std::max(facts.skirtBelow, static_cast<float>(plan.skirt(key, side)));
                 if (level < plan.scheme.finestLevel)
                     for (int c = 0; c < 4; ++c)
-                        facts.skirtBelow = std::max(facts.skirtBelow, plan.fact(key.child(c & 1, c >> 1)).skirtBelow);
+                        facts.skirtBelow =
+                            std::max(facts.skirtBelow, plan.fact(key.child(c & 1, c >> 1)).skirtBelow);
             }
 }
 

@@ -67,15 +67,14 @@ RasterStack::RasterStack(const BuildPlan& plan) : _plan(plan)
 
 std::vector<float> RasterStack::heights(const Lattice& lattice)
 {
-    std::vector<float> result(static_cast<std::size_t>(lattice.columns) * static_cast<std::size_t>(lattice.rows),
+    std::vector<float> result(static_cast<std::size_t>(lattice.columns) *
+                                  static_cast<std::size_t>(lattice.rows),
                               std::numeric_limits<float>::quiet_NaN());
     for (auto& dem : _dems)
         dem.sampleHeights(_plan.scheme.crs, lattice, result.data());
     for (float& height : result)
-        if (!(height >= LOWEST && height <= HIGHEST))
-            height = std::numeric_limits<float>::quiet_NaN();
-    if (_geoid)
-        moveToEllipsoid(lattice, result);
+        if (!(height >= LOWEST && height <= HIGHEST)) height = std::numeric_limits<float>::quiet_NaN();
+    if (_geoid) moveToEllipsoid(lattice, result);
     return result;
 }
 
@@ -85,9 +84,9 @@ void RasterStack::moveToEllipsoid(const Lattice& lattice, std::vector<float>& he
     std::vector<double> x(columns), y(columns), z(columns);
     std::vector<int> success(columns);
     const TransformationPtr toGeographic =
-        _plan.scheme.crs.geographic
-            ? nullptr
-            : createTransformation(_plan.scheme.crs.srs, GridCrs::geocentric().srs, _plan.options.dems.front());
+        _plan.scheme.crs.geographic ? nullptr
+                                    : createTransformation(_plan.scheme.crs.srs, GridCrs::geocentric().srs,
+                                                           _plan.options.dems.front());
     for (int row = 0; row < lattice.rows; ++row)
     {
         float* line = heights.data() + static_cast<std::size_t>(row) * columns;
@@ -106,9 +105,10 @@ void RasterStack::moveToEllipsoid(const Lattice& lattice, std::vector<float>& he
         {
             // Outside ±150 m no geoid undulation lies: PROJ has passed the height through without a grid.
             if (!success[i] || !(std::abs(z[i]) < 150.0))
-                throw BuildError(_plan.options.dems.front() +
-                                 ": PROJ cannot move its heights from EGM96 to the ellipsoid; install the package "
-                                 "proj-data, or build with --vertical none.");
+                throw BuildError(
+                    _plan.options.dems.front() +
+                    ": PROJ cannot move its heights from EGM96 to the ellipsoid; install the package "
+                    "proj-data, or build with --vertical none.");
             line[i] += static_cast<float>(z[i]);
         }
     }
@@ -116,8 +116,7 @@ void RasterStack::moveToEllipsoid(const Lattice& lattice, std::vector<float>& he
 
 std::vector<unsigned char> RasterStack::classes(const Lattice& lattice)
 {
-    if (_landCover.empty())
-        return {};
+    if (_landCover.empty()) return {};
     std::vector<unsigned char> result(static_cast<std::size_t>(lattice.columns) *
                                       static_cast<std::size_t>(lattice.rows));
     _landCover.front().sampleClasses(_plan.scheme.crs, lattice, result.data());
@@ -126,7 +125,8 @@ std::vector<unsigned char> RasterStack::classes(const Lattice& lattice)
 
 std::vector<unsigned char> RasterStack::colors(const Lattice& lattice)
 {
-    const std::size_t count = static_cast<std::size_t>(lattice.columns) * static_cast<std::size_t>(lattice.rows);
+    const std::size_t count =
+        static_cast<std::size_t>(lattice.columns) * static_cast<std::size_t>(lattice.rows);
     std::vector<unsigned char> planes(4 * count, 0);
     // From the ground up: the hypsometric ramp, the land cover's colours, the imagery. Each where it has data.
     if (_landCover.empty())

@@ -44,21 +44,23 @@ public:
 private:
     float& error(int c, int r)
     {
-        return _errors[static_cast<std::size_t>(r) * static_cast<std::size_t>(_side) + static_cast<std::size_t>(c)];
+        return _errors[static_cast<std::size_t>(r) * static_cast<std::size_t>(_side) +
+                       static_cast<std::size_t>(c)];
     }
 
     /// How much the middle of an edge is missed by the straight line between its ends.
     float edgeError(int c, int r, int dc, int dr, float perMetre) const
     {
-        const float h = _lattice.height(c, r), a = _lattice.height(c - dc, r - dr), b = _lattice.height(c + dc, r + dr);
+        const float h = _lattice.height(c, r), a = _lattice.height(c - dc, r - dr),
+                    b = _lattice.height(c + dc, r + dr);
         const int holes = std::isnan(h) + std::isnan(a) + std::isnan(b);
-        if (holes == 3)
-            return 0.0f;
-        if (holes > 0)
-            return std::numeric_limits<float>::max();
+        if (holes == 3) return 0.0f;
+        if (holes > 0) return std::numeric_limits<float>::max();
         // Posts beyond the end of the ground are drawn on it, so nothing may lie on both sides.
         const auto crosses = [](int from, int to, int end)
-        { return std::min(from, to) < end && std::max(from, to) > end; };
+        {
+            return std::min(from, to) < end && std::max(from, to) > end;
+        };
         if (crosses(c - dc, c + dc, _lattice.endColumn) || crosses(r - dr, r + dr, _lattice.endRow))
             return std::numeric_limits<float>::max();
         float result = std::abs(h - 0.5f * (a + b)) * perMetre;
@@ -67,8 +69,10 @@ private:
         if (c % step == 0 && r % step == 0 && dc % step == 0 && dr % step == 0)
         {
             const int sc = c / step, sr = r / step, sdc = dc / step, sdr = dr / step;
-            const float x = _slopes.slopeX(sc, sr) - 0.5f * (_slopes.slopeX(sc - sdc, sr - sdr) + _slopes.slopeX(sc + sdc, sr + sdr));
-            const float y = _slopes.slopeY(sc, sr) - 0.5f * (_slopes.slopeY(sc - sdc, sr - sdr) + _slopes.slopeY(sc + sdc, sr + sdr));
+            const float x = _slopes.slopeX(sc, sr) -
+                            0.5f * (_slopes.slopeX(sc - sdc, sr - sdr) + _slopes.slopeX(sc + sdc, sr + sdr));
+            const float y = _slopes.slopeY(sc, sr) -
+                            0.5f * (_slopes.slopeY(sc - sdc, sr - sdr) + _slopes.slopeY(sc + sdc, sr + sdr));
             result = std::max(result, std::max(std::abs(x), std::abs(y)) / VISIBLE_SLOPE);
         }
         return result;
@@ -80,8 +84,7 @@ private:
         const int n = _lattice.intervals;
         const auto include = [&](float& target, int c, int r)
         {
-            if (c >= 0 && r >= 0 && c <= n && r <= n)
-                target = std::max(target, error(c, r));
+            if (c >= 0 && r >= 0 && c <= n && r <= n) target = std::max(target, error(c, r));
         };
         for (int half = 1; half < n; half *= 2)
         {
@@ -124,8 +127,7 @@ private:
         }
         const float ha = _lattice.height(a.column, a.row), hb = _lattice.height(b.column, b.row),
                     hc = _lattice.height(c.column, c.row);
-        if (std::isnan(ha) || std::isnan(hb) || std::isnan(hc))
-            return;
+        if (std::isnan(ha) || std::isnan(hb) || std::isnan(hc)) return;
         if (std::min({a.column, b.column, c.column}) >= _lattice.endColumn ||
             std::min({a.row, b.row, c.row}) >= _lattice.endRow)
             return;
@@ -156,9 +158,9 @@ private:
             {
                 const int px = col - c.column, py = r - c.row;
                 const int u = px * ax + py * ay, v = px * bx + py * by;
-                if (u < 0 || v < 0 || u + v > squared)
-                    continue;
-                const float plane = hc + scale * (static_cast<float>(u) * (ha - hc) + static_cast<float>(v) * (hb - hc));
+                if (u < 0 || v < 0 || u + v > squared) continue;
+                const float plane =
+                    hc + scale * (static_cast<float>(u) * (ha - hc) + static_cast<float>(v) * (hb - hc));
                 const float difference = std::abs(_lattice.height(col, r) - plane);
                 if (difference > worst) // false for a hole
                     worst = difference;
@@ -171,9 +173,9 @@ private:
         const int n = _lattice.intervals;
         const auto include = [&](int c, int r)
         {
-            const auto index = _indices[static_cast<std::size_t>(r) * static_cast<std::size_t>(_side) + static_cast<std::size_t>(c)];
-            if (index != UNUSED)
-                mesh.edge.push_back(index);
+            const auto index = _indices[static_cast<std::size_t>(r) * static_cast<std::size_t>(_side) +
+                                        static_cast<std::size_t>(c)];
+            if (index != UNUSED) mesh.edge.push_back(index);
         };
         for (int i = 0; i < n; ++i)
             include(i, 0);
@@ -204,8 +206,7 @@ TileMesh createFullMesh(const TileLattice& lattice)
     const auto triangle = [&](Post a, Post b, Post c)
     {
         for (const Post& post : {a, b, c})
-            if (std::isnan(lattice.height(post.column, post.row)))
-                return;
+            if (std::isnan(lattice.height(post.column, post.row))) return;
         for (const Post& post : {a, b, c})
             mesh.triangles.push_back(static_cast<std::uint32_t>(post.row * stride + post.column));
     };
@@ -215,7 +216,10 @@ TileMesh createFullMesh(const TileLattice& lattice)
             triangle({c, r}, {c + 1, r}, {c + 1, r + 1});
             triangle({c, r}, {c + 1, r + 1}, {c, r + 1});
         }
-    const auto edge = [&](int c, int r) { mesh.edge.push_back(static_cast<std::uint32_t>(r * stride + c)); };
+    const auto edge = [&](int c, int r)
+    {
+        mesh.edge.push_back(static_cast<std::uint32_t>(r * stride + c));
+    };
     for (int i = 0; i < n; ++i)
         edge(i, 0);
     for (int i = 0; i < n; ++i)
@@ -235,8 +239,7 @@ TileMesh createAdaptiveMesh(const TileLattice& lattice, const TileSlopes& slopes
     for (;;)
     {
         TileMesh mesh = network.triangulate(static_cast<float>(1.0 / aim));
-        if (mesh.deviation <= tolerance)
-            return mesh;
+        if (mesh.deviation <= tolerance) return mesh;
         aim *= std::min(0.8, 0.95 * tolerance / mesh.deviation);
     }
 }

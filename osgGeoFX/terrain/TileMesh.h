@@ -19,8 +19,9 @@ struct TileMesh
     };
     std::vector<Post> posts;
     std::vector<std::uint32_t> triangles; ///< three indices of posts each, anticlockwise seen from above
-    std::vector<std::uint32_t> edge; ///< posts along the border, anticlockwise from the south-west, the first one repeated
-    double deviation = 0.0;          ///< largest vertical distance of a lattice point from the mesh, metres
+    std::vector<std::uint32_t>
+        edge; ///< posts along the border, anticlockwise from the south-west, the first one repeated
+    double deviation = 0.0; ///< largest vertical distance of a lattice point from the mesh, metres
 };
 
 /// A tile's part of the lattices from which its mesh is made.
@@ -38,7 +39,8 @@ struct TileLattice
     /// Above the tangent plane, so that what is straight in space is straight here.
     float height(int c, int r) const
     {
-        return heights.at(column + c, row + r) - dropX[static_cast<std::size_t>(c)] - dropY[static_cast<std::size_t>(r)];
+        return heights.at(column + c, row + r) - dropX[static_cast<std::size_t>(c)] -
+               dropY[static_cast<std::size_t>(r)];
     }
 };
 
@@ -46,9 +48,9 @@ struct TileLattice
 struct TileSlopes
 {
     const std::vector<float>&x, &y;
-    int stride = 0;            ///< columns of the lattice
-    int column = 0, row = 0;   ///< the tile's south-western post
-    int intervals = 0;         ///< a power of two, at most the heights'
+    int stride = 0;          ///< columns of the lattice
+    int column = 0, row = 0; ///< the tile's south-western post
+    int intervals = 0;       ///< a power of two, at most the heights'
 
     float slopeX(int c, int r) const { return x[index(c, r)]; }
     float slopeY(int c, int r) const { return y[index(c, r)]; }
@@ -56,7 +58,8 @@ struct TileSlopes
 private:
     std::size_t index(int c, int r) const
     {
-        return static_cast<std::size_t>(row + r) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(column + c);
+        return static_cast<std::size_t>(row + r) * static_cast<std::size_t>(stride) +
+               static_cast<std::size_t>(column + c);
     }
 };
 

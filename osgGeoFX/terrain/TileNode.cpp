@@ -25,8 +25,8 @@ namespace
 constexpr double SKIRT_LEAN = 0.1;
 constexpr int COLOR_UNIT = 0, LAND_COVER_UNIT = 1;
 
-osg::ref_ptr<osg::Image> cutImage(const std::vector<unsigned char>& texels, int columns, int x0, int y0, int size,
-                                  int channels)
+osg::ref_ptr<osg::Image> cutImage(const std::vector<unsigned char>& texels, int columns, int x0, int y0,
+                                  int size, int channels)
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(size, size, 1, channels == 3 ? GL_RGB : GL_RED, GL_UNSIGNED_BYTE, 1);
@@ -58,7 +58,10 @@ TileMesh TileNodeFactory::createMesh(const TileKey& key, const LevelArrays& arra
     const int intervals = (arrays.heights.columns - 1) / arrays.span; // of the tile, at the heights' density
     const int posts = scheme.intervals * scheme.step(key.level) / intervals; // finest posts to each of these
     const int firstColumn = scheme.firstColumn(key), firstRow = scheme.firstRow(key);
-    TileLattice lattice{arrays.heights, x * intervals, y * intervals, intervals,
+    TileLattice lattice{arrays.heights,
+                        x * intervals,
+                        y * intervals,
+                        intervals,
                         (scheme.lastColumn - firstColumn + posts - 1) / posts,
                         (scheme.lastRow - firstRow + posts - 1) / posts,
                         {},
@@ -66,8 +69,7 @@ TileMesh TileNodeFactory::createMesh(const TileKey& key, const LevelArrays& arra
     const double middle = scheme.gridY(firstRow + 0.5 * posts * intervals);
     const auto drop = [&](int index, double metres)
     {
-        if (!scheme.crs.geographic)
-            return 0.0f;
+        if (!scheme.crs.geographic) return 0.0f;
         const double radius = GeographicLib::Constants::WGS84_a();
         const double angle = std::min((index - 0.5 * intervals) * posts * metres / radius, osg::PI);
         return static_cast<float>(radius * (1.0 - std::cos(angle)));
@@ -77,15 +79,14 @@ TileMesh TileNodeFactory::createMesh(const TileKey& key, const LevelArrays& arra
         lattice.dropX.push_back(drop(i, scheme.metresX(middle)));
         lattice.dropY.push_back(drop(i, scheme.metresY(middle)));
     }
-    if (key.level == scheme.finestLevel)
-        return createFullMesh(lattice);
-    const TileSlopes slopes{arrays.slopeX,           arrays.slopeY,           arrays.span * scheme.intervals + 1,
+    if (key.level == scheme.finestLevel) return createFullMesh(lattice);
+    const TileSlopes slopes{arrays.slopeX,        arrays.slopeY,        arrays.span * scheme.intervals + 1,
                             x * scheme.intervals, y * scheme.intervals, scheme.intervals};
     return createAdaptiveMesh(lattice, slopes, _plan.tolerance(key.level));
 }
 
-osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, const LevelArrays& arrays, int x, int y,
-                                                            const TileMesh& mesh)
+osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, const LevelArrays& arrays,
+                                                            int x, int y, const TileMesh& mesh)
 {
     const TilingScheme& scheme = _plan.scheme;
     const int n = scheme.intervals, intervals = (arrays.heights.columns - 1) / arrays.span;
@@ -93,8 +94,14 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     const int firstColumn = scheme.firstColumn(key), firstRow = scheme.firstRow(key);
     const double texels = scheme.textureIntervals(key.level);
     const TileFrame frame(scheme, key);
-    const auto gridX = [&](int column) { return scheme.gridX(firstColumn + column * posts); };
-    const auto gridY = [&](int row) { return scheme.gridY(firstRow + row * posts); };
+    const auto gridX = [&](int column)
+    {
+        return scheme.gridX(firstColumn + column * posts);
+    };
+    const auto gridY = [&](int row)
+    {
+        return scheme.gridY(firstRow + row * posts);
+    };
 
     const std::size_t count = mesh.posts.size() + mesh.edge.size();
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
@@ -111,10 +118,14 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     {
         const double c = x * n + static_cast<double>(column) * n / intervals;
         const double r = y * n + static_cast<double>(row) * n / intervals;
-        const int c0 = std::min(static_cast<int>(c), stride - 2), r0 = std::min(static_cast<int>(r), stride - 2);
+        const int c0 = std::min(static_cast<int>(c), stride - 2),
+                  r0 = std::min(static_cast<int>(r), stride - 2);
         const double u = c - c0, v = r - r0;
         const auto at = [&](int i, int j)
-        { return static_cast<double>(values[static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(i)]); };
+        {
+            return static_cast<double>(values[static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) +
+                                              static_cast<std::size_t>(i)]);
+        };
         return (at(c0, r0) * (1.0 - u) + at(c0 + 1, r0) * u) * (1.0 - v) +
                (at(c0, r0 + 1) * (1.0 - u) + at(c0 + 1, r0 + 1) * u) * v;
     };
@@ -134,7 +145,8 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
                                       static_cast<GLshort>(std::lround(normal.y() * 32767.0)),
                                       static_cast<GLshort>(std::lround(normal.z() * 32767.0))));
         // Texels lie on the tile's border, so that neighbours of a level meet without a seam.
-        const double u = std::min<double>(post.column * posts, scheme.lastColumn - firstColumn) / (posts * intervals);
+        const double u =
+            std::min<double>(post.column * posts, scheme.lastColumn - firstColumn) / (posts * intervals);
         const double v = std::min<double>(post.row * posts, scheme.lastRow - firstRow) / (posts * intervals);
         texCoords->push_back(osg::Vec2(static_cast<float>((0.5 + texels * u) / (texels + 1.0)),
                                        static_cast<float>((0.5 + texels * v) / (texels + 1.0))));
@@ -150,8 +162,7 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
         double depth = 0.0, outX = 0.0, outY = 0.0;
         const auto onSide = [&](bool on, int side, double dx, double dy)
         {
-            if (!on)
-                return;
+            if (!on) return;
             depth = std::max(depth, depths[side]);
             outX += dx;
             outY += dy;
@@ -168,8 +179,10 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     }
 
     std::vector<std::uint32_t> elements = mesh.triangles;
-    bool whole = key.level == scheme.finestLevel && firstColumn + n <= scheme.lastColumn && firstRow + n <= scheme.lastRow;
-    whole = whole && elements.size() == std::size_t{6} * static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+    bool whole = key.level == scheme.finestLevel && firstColumn + n <= scheme.lastColumn &&
+                 firstRow + n <= scheme.lastRow;
+    whole = whole &&
+            elements.size() == std::size_t{6} * static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
     // A wall hangs from each edge of the surface along the border; not across a hole, nor beyond the ground's end.
     std::vector<bool> onBorder(mesh.posts.size(), false);
     for (const std::uint32_t index : mesh.edge)
@@ -178,14 +191,12 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     {
         const std::uint32_t a = mesh.triangles[i], b = mesh.triangles[i % 3 == 2 ? i - 2 : i + 1];
-        if (onBorder[a] && onBorder[b])
-            borders.insert({a, b});
+        if (onBorder[a] && onBorder[b]) borders.insert({a, b});
     }
     for (std::size_t k = 0; k + 1 < mesh.edge.size(); ++k)
     {
         const std::uint32_t a = mesh.edge[k], b = mesh.edge[k + 1];
-        if (!borders.count({a, b}))
-            continue;
+        if (!borders.count({a, b})) continue;
         const auto lowA = static_cast<std::uint32_t>(mesh.posts.size() + k);
         for (const std::uint32_t index : {a, lowA, b, b, lowA, lowA + 1})
             elements.push_back(index);
@@ -202,9 +213,11 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     geometry->setNormalArray(normals);
     osg::ref_ptr<osg::PrimitiveSet> primitives;
     if (count <= 65536)
-        primitives = new osg::DrawElementsUShort(osg::PrimitiveSet::TRIANGLES, elements.begin(), elements.end());
+        primitives =
+            new osg::DrawElementsUShort(osg::PrimitiveSet::TRIANGLES, elements.begin(), elements.end());
     else
-        primitives = new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES, elements.begin(), elements.end());
+        primitives =
+            new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES, elements.begin(), elements.end());
     if (whole)
     {
         // The four of a file share what is the same in all of them.
@@ -228,8 +241,8 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const LevelArrays& arra
 {
     const int m = _plan.scheme.textureIntervals(arrays.level);
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
-    osg::ref_ptr<osg::Texture2D> color = new osg::Texture2D(
-        cutImage(arrays.colors, arrays.texelColumns, x * m, y * m, m + 1, 3));
+    osg::ref_ptr<osg::Texture2D> color =
+        new osg::Texture2D(cutImage(arrays.colors, arrays.texelColumns, x * m, y * m, m + 1, 3));
     color->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
     color->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
     color->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
@@ -240,8 +253,8 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const LevelArrays& arra
     if (!arrays.classes.empty())
     {
         // Bound for shaders that want it, but not enabled: the fixed pipeline must not draw it.
-        osg::ref_ptr<osg::Texture2D> classes = new osg::Texture2D(
-            cutImage(arrays.classes, arrays.texelColumns, x * m, y * m, m + 1, 1));
+        osg::ref_ptr<osg::Texture2D> classes =
+            new osg::Texture2D(cutImage(arrays.classes, arrays.texelColumns, x * m, y * m, m + 1, 1));
         classes->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
         classes->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
         classes->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
@@ -256,7 +269,8 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
 {
     const TilingScheme& scheme = _plan.scheme;
     const TileFacts& facts = _plan.fact(key);
-    osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(TileFrame(scheme, key).localToWorld());
+    osg::ref_ptr<osg::MatrixTransform> transform =
+        new osg::MatrixTransform(TileFrame(scheme, key).localToWorld());
     transform->setName("tile " + key.path());
 
     const TileMesh mesh = createMesh(key, arrays, x, y);
@@ -287,13 +301,13 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     }
     transform->setUserValue("geofx.boxMin", osg::Vec3d(box._min));
     transform->setUserValue("geofx.boxMax", osg::Vec3d(box._max));
-    if (key.level == scheme.finestLevel)
-        return transform;
+    if (key.level == scheme.finestLevel) return transform;
 
     // Seen from d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R away, so
     // the finer tiles are due where d < R + e·k/limit.
     const double relief = mesh.deviation + static_cast<double>(facts.latticeError);
-    const double texel = static_cast<double>(arrays.textureError[static_cast<std::size_t>(y * arrays.span + x)]);
+    const double texel =
+        static_cast<double>(arrays.textureError[static_cast<std::size_t>(y * arrays.span + x)]);
     const double error = std::max(relief / _plan.options.pixelError, texel / _plan.options.texelError);
     const double range = error > 0.0 ? radius + error * _plan.options.pixelsPerRadian : 0.0;
 

@@ -18,13 +18,15 @@ namespace osgGeoFX
 struct LevelArrays
 {
     int level = 0;
-    int span = 0;                      ///< tiles along the unit's edge
-    HeightGrid heights{0, 0};          ///< as dense as the unit has them, whatever the level
-    std::vector<float> slopeX, slopeY; ///< smoothed rise to the east and to the north at the level's posts, m in a metre
+    int span = 0;             ///< tiles along the unit's edge
+    HeightGrid heights{0, 0}; ///< as dense as the unit has them, whatever the level
+    std::vector<float> slopeX,
+        slopeY; ///< smoothed rise to the east and to the north at the level's posts, m in a metre
     int texelColumns = 0;
     std::vector<unsigned char> colors;  ///< red, green, blue
     std::vector<unsigned char> classes; ///< empty without land cover
-    std::vector<float> textureError;    ///< by tile: size in metres of a texel that hides something, 0 if none does
+    std::vector<float>
+        textureError; ///< by tile: size in metres of a texel that hides something, 0 if none does
 };
 
 /** Makes the scene graph of a tile: mesh with skirts, normals, base colour, land cover and level-of-detail ranges.

@@ -33,7 +33,8 @@ template<typename T, typename Sum, int Channels>
 std::vector<T> halved(const std::vector<T>& values, int columns, int rows)
 {
     const int halfColumns = (columns - 1) / 2 + 1, halfRows = (rows - 1) / 2 + 1;
-    std::vector<T> result(static_cast<std::size_t>(halfColumns) * static_cast<std::size_t>(halfRows) * Channels);
+    std::vector<T> result(static_cast<std::size_t>(halfColumns) * static_cast<std::size_t>(halfRows) *
+                          Channels);
     const auto at = [&](int column, int row, int channel)
     {
         return static_cast<Sum>(values[(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
@@ -71,8 +72,8 @@ std::vector<T> halved(const std::vector<T>& values, int columns, int rows)
 
 /// Copies a lattice of `partColumns` columns into a larger one.
 template<typename T>
-void paste(const std::vector<T>& part, int partColumns, int channels, std::vector<T>& whole, int wholeColumns, int x0,
-           int y0)
+void paste(const std::vector<T>& part, int partColumns, int channels, std::vector<T>& whole, int wholeColumns,
+           int x0, int y0)
 {
     const std::size_t run = static_cast<std::size_t>(partColumns) * static_cast<std::size_t>(channels);
     const int rows = static_cast<int>(part.size() / run);
@@ -93,10 +94,8 @@ osg::ref_ptr<osg::Node> readRootTile(const BuildPlan& plan, const TileKey& key)
     std::ifstream stream(file, std::ios::binary);
     osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
     osg::ref_ptr<osg::Node> node;
-    if (stream && reader)
-        node = reader->readNode(stream, new osgDB::Options).getNode();
-    if (!node)
-        throw BuildError(file + ": this work file is damaged; build again without --resume.");
+    if (stream && reader) node = reader->readNode(stream, new osgDB::Options).getNode();
+    if (!node) throw BuildError(file + ": this work file is damaged; build again without --resume.");
     return node;
 }
 
@@ -105,20 +104,21 @@ bool losesDetail(const LevelArrays& fine, const LevelArrays& coarse, int x, int 
 {
     const auto texel = [](const LevelArrays& arrays, int column, int row)
     {
-        return arrays.colors.data() + 3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(arrays.texelColumns) +
-                                           static_cast<std::size_t>(column));
+        return arrays.colors.data() +
+               3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(arrays.texelColumns) +
+                    static_cast<std::size_t>(column));
     };
     for (int row = 2 * y * intervals; row <= 2 * (y + 1) * intervals; ++row)
         for (int column = 2 * x * intervals; column <= 2 * (x + 1) * intervals; ++column)
         {
             const unsigned char* value = texel(fine, column, row);
-            const unsigned char* corner[] = {texel(coarse, column / 2, row / 2), texel(coarse, (column + 1) / 2, row / 2),
-                                             texel(coarse, column / 2, (row + 1) / 2),
-                                             texel(coarse, (column + 1) / 2, (row + 1) / 2)};
+            const unsigned char* corner[] = {
+                texel(coarse, column / 2, row / 2), texel(coarse, (column + 1) / 2, row / 2),
+                texel(coarse, column / 2, (row + 1) / 2), texel(coarse, (column + 1) / 2, (row + 1) / 2)};
             for (int channel = 0; channel < 3; ++channel)
-                if (std::abs(value[channel] -
-                             (corner[0][channel] + corner[1][channel] + corner[2][channel] + corner[3][channel]) / 4) >
-                    VISIBLE_DIFFERENCE)
+                if (std::abs(value[channel] - (corner[0][channel] + corner[1][channel] + corner[2][channel] +
+                                               corner[3][channel]) /
+                                                  4) > VISIBLE_DIFFERENCE)
                     return true;
         }
     return false;
@@ -154,10 +154,10 @@ void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArr
     const auto rise = [](float before, float here, float after, double distance)
     {
         const bool hasBefore = !std::isnan(before), hasAfter = !std::isnan(after);
-        if (std::isnan(here) || (!hasBefore && !hasAfter))
-            return 0.0f;
+        if (std::isnan(here) || (!hasBefore && !hasAfter)) return 0.0f;
         const float difference = (hasAfter ? after : here) - (hasBefore ? before : here);
-        return static_cast<float>(static_cast<double>(difference) / (distance * (hasBefore && hasAfter ? 2.0 : 1.0)));
+        return static_cast<float>(static_cast<double>(difference) /
+                                  (distance * (hasBefore && hasAfter ? 2.0 : 1.0)));
     };
     const int validColumns = withApron.columns - 2, validRows = withApron.rows - 2;
     for (int j = 0; j < validRows; ++j)
@@ -166,8 +166,9 @@ void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArr
         const double metresX = scheme.metresX(y), metresY = scheme.metresY(y);
         for (int i = 0; i < validColumns; ++i)
         {
-            const std::size_t index = static_cast<std::size_t>(j) * static_cast<std::size_t>(arrays.heights.columns) +
-                                      static_cast<std::size_t>(i);
+            const std::size_t index =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(arrays.heights.columns) +
+                static_cast<std::size_t>(i);
             const float here = withApron.at(i + 1, j + 1);
             arrays.slopeX[index] = rise(withApron.at(i, j + 1), here, withApron.at(i + 2, j + 1), metresX);
             arrays.slopeY[index] = rise(withApron.at(i + 1, j), here, withApron.at(i + 1, j + 2), metresY);
@@ -201,11 +202,13 @@ LevelArrays UnitBuilder::sampled(const Unit& unit)
     slopes(unit, withApron, arrays);
 
     const double spacing = static_cast<double>(scheme.intervals) / scheme.texels;
-    const auto valid = [&](int last) { return std::min(texels, static_cast<int>(std::floor(last / spacing)) + 1); };
+    const auto valid = [&](int last)
+    {
+        return std::min(texels, static_cast<int>(std::floor(last / spacing)) + 1);
+    };
     const int validColumns = valid(scheme.lastColumn - column), validRows = valid(scheme.lastRow - row);
     const Lattice lattice = scheme.lattice(column, row, spacing, validColumns, validRows);
-    if (!_rasters)
-        _rasters = std::make_unique<RasterStack>(_plan);
+    if (!_rasters) _rasters = std::make_unique<RasterStack>(_plan);
     const auto widened = [&](const std::vector<unsigned char>& part, int channels)
     {
         std::vector<unsigned char> whole(static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels) *
@@ -216,8 +219,7 @@ LevelArrays UnitBuilder::sampled(const Unit& unit)
     };
     arrays.texelColumns = texels;
     arrays.colors = widened(_rasters->colors(lattice), 3);
-    if (!_plan.options.landCover.empty())
-        arrays.classes = widened(_rasters->classes(lattice), 1);
+    if (!_plan.options.landCover.empty()) arrays.classes = widened(_rasters->classes(lattice), 1);
     arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
     return arrays;
 }
@@ -236,16 +238,14 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
     arrays.texelColumns = texels;
     const std::size_t count = static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels);
     arrays.colors.assign(3 * count, 128);
-    if (!_plan.options.landCover.empty())
-        arrays.classes.assign(count, 0);
+    if (!_plan.options.landCover.empty()) arrays.classes.assign(count, 0);
     arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
     for (int y = 0; y < span; ++y)
         for (int x = 0; x < span; ++x)
         {
             Unit below;
             below.root = {arrays.level, unit.root.x * span + x, unit.root.y * span + y};
-            if (!_plan.fact(below.root).any)
-                continue;
+            if (!_plan.fact(below.root).any) continue;
             ByteReader reader(_plan.workFile("tiles", below));
             reader.get<std::uint64_t>();
             const auto slopeX = reader.getVector<float>();
@@ -279,8 +279,8 @@ LevelArrays UnitBuilder::coarser(LevelArrays& fine) const
         {
             float error = 0.0f;
             for (int c = 0; c < 4; ++c)
-                error = std::max(error, fine.textureError[static_cast<std::size_t>((2 * y + (c >> 1)) * 2 * span +
-                                                                                  2 * x + (c & 1))]);
+                error = std::max(error, fine.textureError[static_cast<std::size_t>(
+                                            (2 * y + (c >> 1)) * 2 * span + 2 * x + (c & 1))]);
             coarse.textureError.push_back(error);
         }
     if (_plan.scheme.keepsTexels(coarse.level))
@@ -295,8 +295,9 @@ LevelArrays UnitBuilder::coarser(LevelArrays& fine) const
     if (!fine.classes.empty())
         for (int j = 0; j < fine.texelColumns; j += 2)
             for (int i = 0; i < fine.texelColumns; i += 2)
-                coarse.classes.push_back(fine.classes[static_cast<std::size_t>(j) * static_cast<std::size_t>(fine.texelColumns) +
-                                                      static_cast<std::size_t>(i)]);
+                coarse.classes.push_back(
+                    fine.classes[static_cast<std::size_t>(j) * static_cast<std::size_t>(fine.texelColumns) +
+                                 static_cast<std::size_t>(i)]);
     const int intervals = _plan.scheme.textureIntervals(coarse.level);
     const auto texelMetres = static_cast<float>(_plan.scheme.tileMetres(coarse.level) / intervals);
     for (int y = 0; y < span; ++y)
@@ -314,14 +315,12 @@ std::uint64_t UnitBuilder::writeGroups(const Unit& unit, const LevelArrays& arra
         for (int x = 0; x < span; ++x)
         {
             const TileKey parent{parentLevel, unit.root.x * span + x, unit.root.y * span + y};
-            if (!_plan.fact(parent).any)
-                continue;
+            if (!_plan.fact(parent).any) continue;
             osg::ref_ptr<osg::Group> group = new osg::Group;
             for (int c = 0; c < 4; ++c)
             {
                 const TileKey key = parent.child(c & 1, c >> 1);
-                if (!_plan.fact(key).any)
-                    continue;
+                if (!_plan.fact(key).any) continue;
                 // An upper tier's finest tiles are the roots of the units below it, which made them from their
                 // denser heights.
                 const bool made = unit.tier > 0 && key.level == unit.latticeLevel();
@@ -362,8 +361,9 @@ void writeNodeAtomically(const osg::Node& node, const std::string& path)
 {
     osgDB::ReaderWriter* writer = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
     if (!writer)
-        throw BuildError(path + ": OpenSceneGraph's plugin osgdb_osg cannot be found; install openscenegraph's plugins, "
-                                "or name their folder in OSG_LIBRARY_PATH.");
+        throw BuildError(
+            path + ": OpenSceneGraph's plugin osgdb_osg cannot be found; install openscenegraph's plugins, "
+                   "or name their folder in OSG_LIBRARY_PATH.");
     osg::ref_ptr<osgDB::Options> options = new osgDB::Options("Compressor=zlib WriteImageHint=IncludeData");
     std::ostringstream stream(std::ios::binary);
     const auto result = writer->writeNode(node, stream, options);
@@ -384,7 +384,8 @@ TilePassResult runTilePass(BuildPlan& plan)
                          const Unit& unit = units[index];
                          if (plan.fact(unit.root).any)
                          {
-                             ByteReader reader(plan.options.resume ? plan.workFile("tiles", unit) : std::string());
+                             ByteReader reader(plan.options.resume ? plan.workFile("tiles", unit)
+                                                                   : std::string());
                              if (reader.good())
                              {
                                  const auto before = reader.get<std::uint64_t>();
@@ -394,8 +395,7 @@ TilePassResult runTilePass(BuildPlan& plan)
                              else
                              {
                                  auto& builder = builders[static_cast<std::size_t>(worker)];
-                                 if (!builder)
-                                     builder = std::make_unique<UnitBuilder>(plan);
+                                 if (!builder) builder = std::make_unique<UnitBuilder>(plan);
                                  tiles += builder->build(unit);
                              }
                          }

@@ -16,7 +16,10 @@ namespace
 const double WGS84_A = GeographicLib::Constants::WGS84_a(), WGS84_F = GeographicLib::Constants::WGS84_f();
 
 // Longitudes beyond ±180° are the grid's way across the antimeridian.
-double turned(double longitude) { return longitude - 360.0 * std::round(longitude / 360.0); }
+double turned(double longitude)
+{
+    return longitude - 360.0 * std::round(longitude / 360.0);
+}
 
 } // namespace
 
@@ -36,8 +39,7 @@ Lattice TilingScheme::lattice(double column, double row, double spacing, int col
 double TilingScheme::metresX(double y) const
 {
     const double dx = (east - west) / lastColumn;
-    if (!crs.geographic)
-        return dx * crs.metresPerUnit;
+    if (!crs.geographic) return dx * crs.metresPerUnit;
     // Not at the poles themselves, where slopes to the east would be divided by nothing.
     const double latitude = osg::DegreesToRadians(std::clamp(y, -89.9, 89.9));
     const double e2 = WGS84_F * (2.0 - WGS84_F);
@@ -48,8 +50,7 @@ double TilingScheme::metresX(double y) const
 double TilingScheme::metresY(double y) const
 {
     const double dy = (north - south) / lastRow;
-    if (!crs.geographic)
-        return dy * crs.metresPerUnit;
+    if (!crs.geographic) return dy * crs.metresPerUnit;
     const double e2 = WGS84_F * (2.0 - WGS84_F);
     const double sine = std::sin(osg::DegreesToRadians(y));
     const double w2 = 1.0 - e2 * sine * sine;
@@ -68,18 +69,18 @@ TileFrame::TileFrame(const TilingScheme& scheme, const TileKey& key) : _scheme(s
     const double width = static_cast<double>(scheme.intervals) * scheme.step(key.level);
     _centerX = 0.5 * (scheme.gridX(scheme.firstColumn(key)) + scheme.gridX(scheme.firstColumn(key) + width));
     _centerY = 0.5 * (scheme.gridY(scheme.firstRow(key)) + scheme.gridY(scheme.firstRow(key) + width));
-    if (scheme.crs.geographic)
-        _geodetic.emplace(_centerY, turned(_centerX), 0.0);
+    if (scheme.crs.geographic) _geodetic.emplace(_centerY, turned(_centerX), 0.0);
 }
 
 osg::Matrixd TileFrame::localToWorld() const
 {
     if (!_geodetic)
-        return osg::Matrixd::translate(_centerX * _scheme.crs.metresPerUnit, _centerY * _scheme.crs.metresPerUnit, 0.0);
+        return osg::Matrixd::translate(_centerX * _scheme.crs.metresPerUnit,
+                                       _centerY * _scheme.crs.metresPerUnit, 0.0);
     double x = 0.0, y = 0.0, z = 0.0;
     std::vector<double>& r = _rotation;
-    GeographicLib::Geocentric::WGS84().Forward(_geodetic->LatitudeOrigin(), _geodetic->LongitudeOrigin(), 0.0, x, y, z,
-                                               r);
+    GeographicLib::Geocentric::WGS84().Forward(_geodetic->LatitudeOrigin(), _geodetic->LongitudeOrigin(), 0.0,
+                                               x, y, z, r);
     // GeographicLib's columns are east, north and up; OSG's rows are.
     return osg::Matrixd(r[0], r[3], r[6], 0.0, r[1], r[4], r[7], 0.0, r[2], r[5], r[8], 0.0, x, y, z, 1.0);
 }
@@ -87,7 +88,8 @@ osg::Matrixd TileFrame::localToWorld() const
 osg::Vec3d TileFrame::position(double x, double y, double height) const
 {
     if (!_geodetic)
-        return {(x - _centerX) * _scheme.crs.metresPerUnit, (y - _centerY) * _scheme.crs.metresPerUnit, height};
+        return {(x - _centerX) * _scheme.crs.metresPerUnit, (y - _centerY) * _scheme.crs.metresPerUnit,
+                height};
     osg::Vec3d p;
     _geodetic->Forward(y, turned(x), height, p.x(), p.y(), p.z());
     return p;

@@ -30,12 +30,15 @@ struct TilingScheme
     double west = 0.0, south = 0.0, east = 0.0, north = 0.0; ///< extent, in the grid's CRS
     int lastColumn = 0, lastRow = 0; ///< intervals of the finest level over the extent
     int finestLevel = 0;
-    int intervals = 0;              ///< cells along a tile's edges
-    int texels = 0;                 ///< texture intervals along a finest tile's edges; texels lie on both ends
-    int textureDepth = 0;           ///< levels above the finest that keep the finest texels
+    int intervals = 0;    ///< cells along a tile's edges
+    int texels = 0;       ///< texture intervals along a finest tile's edges; texels lie on both ends
+    int textureDepth = 0; ///< levels above the finest that keep the finest texels
 
     int tilesAcross(int level) const { return 1 << level; }
-    int step(int level) const { return 1 << (finestLevel - level); } ///< finest posts from post to post of a level
+    int step(int level) const
+    {
+        return 1 << (finestLevel - level);
+    } ///< finest posts from post to post of a level
 
     /// Texels of a level are as dense as those of finest tiles, until a texture would grow beyond its limit.
     bool keepsTexels(int level) const { return level >= finestLevel - textureDepth; }
@@ -47,8 +50,14 @@ struct TilingScheme
     bool exists(const TileKey& key) const { return firstColumn(key) < lastColumn && firstRow(key) < lastRow; }
 
     /// Grid position of a finest post, which may be a fraction; beyond the extent, its border.
-    double gridX(double column) const { return west + (east - west) * (std::min<double>(column, lastColumn) / lastColumn); }
-    double gridY(double row) const { return south + (north - south) * (std::min<double>(row, lastRow) / lastRow); }
+    double gridX(double column) const
+    {
+        return west + (east - west) * (std::min<double>(column, lastColumn) / lastColumn);
+    }
+    double gridY(double row) const
+    {
+        return south + (north - south) * (std::min<double>(row, lastRow) / lastRow);
+    }
 
     /// `columns` × `rows` points from a finest post on, `spacing` finest posts apart.
     Lattice lattice(double column, double row, double spacing, int columns, int rows) const;

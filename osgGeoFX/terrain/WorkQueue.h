@@ -32,8 +32,7 @@ void runOnWorkers(int threads, std::size_t count, Work work)
             {
                 next = count;
                 const std::lock_guard<std::mutex> lock(failureMutex);
-                if (!failure)
-                    failure = std::current_exception();
+                if (!failure) failure = std::current_exception();
             }
         }
     };
@@ -43,8 +42,7 @@ void runOnWorkers(int threads, std::size_t count, Work work)
     run(0);
     for (auto& thread : others)
         thread.join();
-    if (failure)
-        std::rethrow_exception(failure);
+    if (failure) std::rethrow_exception(failure);
 }
 
 } // namespace osgGeoFX
