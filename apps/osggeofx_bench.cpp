@@ -135,7 +135,7 @@ int main(int argc, char** argv)
         ->type_name("FILE");
     app.add_option("--data", settings.data, "The data folder, which has the folder oahu")->type_name("DIR");
     app.add_option("--work", settings.work,
-                   "Where temporary files are made (a full run needs 10 GB for a while)")
+                   "Where temporary files are made (a full run needs 7 GB for a while)")
         ->type_name("DIR");
     app.add_option("--pictures", settings.pictures, "Write what was drawn into this folder, to look at")
         ->type_name("DIR");

@@ -16,7 +16,7 @@ namespace
 {
 
 // A build's work files and database together, measured, with a margin.
-constexpr std::uint64_t DISK_BYTES_PER_SAMPLE = 40;
+constexpr std::uint64_t DISK_BYTES_PER_SAMPLE = 25;
 
 struct Sizes
 {

@@ -285,6 +285,13 @@ double BuildPlan::tolerance(int level) const
 
 double BuildPlan::skirt(const TileKey& key, int side) const
 {
+    // On the terrain's own border nobody stands beside it; a skirt would only show below the edge.
+    const int width = scheme.intervals * scheme.step(key.level);
+    const bool outer[] = {key.y == 0, scheme.firstColumn(key) + width >= scheme.lastColumn,
+                          scheme.firstRow(key) + width >= scheme.lastRow, key.x == 0};
+    const bool closed = scheme.crs.geographic && scheme.east - scheme.west > 360.0 - 1e-9 && side % 2 == 1;
+    if (outer[side] && !closed) return 0.0;
+
     // Which neighbour stands on the other side is up to the camera and the pager: any from the coarsest level on
     // which this line divides two tiles. (Below that level both sides lie in one tile.)
     const int dx = side == 1 ? 1 : side == 3 ? -1 : 0, dy = side == 0 ? -1 : side == 2 ? 1 : 0;

@@ -55,6 +55,8 @@ bool prepareFolder(const BuildPlan& plan)
         throw BuildError(folder.string() + ": the folder cannot be made (" +
                          (code ? code.message() : std::string("a file has this name")) +
                          "); choose another with -o.");
+    // A kill in its very first moments leaves only the origin's temporary file.
+    fs::remove(origin.string() + ".tmp", code);
     const bool ours = fs::exists(origin);
     if (!ours && !fs::is_empty(folder))
         throw BuildError(
@@ -70,8 +72,9 @@ bool prepareFolder(const BuildPlan& plan)
                 "leave out --resume to begin anew.");
         return fs::exists(root);
     }
-    // The root first: without it, what is left of an old database does not look whole.
-    for (const fs::path& old : {root, folder / "tiles", folder / "work"})
+    // The root first: without it, what is left of an old database does not look whole. Then the work files: with
+    // them, tiles that are removed already would count as done when a kill here is followed by --resume.
+    for (const fs::path& old : {root, folder / "work", folder / "tiles"})
     {
         fs::remove_all(old, code);
         if (code)

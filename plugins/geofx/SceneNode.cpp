@@ -68,8 +68,7 @@ std::optional<osg::Vec3d> sunDirection(const Scene& scene, const osg::Node& terr
 {
     const osg::ref_ptr<Georeference> reference = Georeference::create(&terrain, error);
     double longitude = 0.0, latitude = 0.0;
-    if (!reference || !sunPlace(scene, terrain, *reference, longitude, latitude, error))
-        return std::nullopt;
+    if (!reference || !sunPlace(scene, terrain, *reference, longitude, latitude, error)) return std::nullopt;
     osg::Matrixd frame;
     if (!reference->localToWorld(longitude, latitude, 0.0, frame))
     {

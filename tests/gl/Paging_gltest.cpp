@@ -374,3 +374,21 @@ TEST_F(Paging, GuardKeepsAnotherReadCallback)
     EXPECT_EQ(counter->count, 1) << "the file of the PagedLOD that has the callback";
     EXPECT_EQ(scene->guard->counts().tilesRead, 5u);
 }
+
+TEST_F(Paging, AFailedTileThatIsAskedForAgainIsAnsweredSilently)
+{
+    const Scene scene = load(PagedScene::write(folder.path(), PagedScene::Kind::Flat));
+    auto* lod = dynamic_cast<osg::PagedLOD*>(scene.node->asGroup()->getChild(0));
+    ASSERT_NE(lod, nullptr);
+    auto* options = dynamic_cast<osgDB::Options*>(lod->getDatabaseOptions());
+    ASSERT_NE(options, nullptr);
+    const auto read = [&](const std::string& file)
+    {
+        return watch().messagesOf(
+            [&] { EXPECT_TRUE(osgDB::Registry::instance()->readNode(file, options, false).validNode()); });
+    };
+    EXPECT_EQ(read("gone.osgb").size(), 1u);
+    EXPECT_EQ(read("gone.osgb").size(), 0u);
+    EXPECT_EQ(read("gone too.osgb").size(), 1u);
+    EXPECT_EQ(scene.guard->failedFiles(), (std::set<std::string>{"gone.osgb", "gone too.osgb"}));
+}

@@ -57,8 +57,8 @@ public:
     std::vector<DatabaseTile> tiles;
 
 private:
-    /// A skirt's triangles stand upright: two of their vertices, the lower one added later, have the same texture
-    /// coordinates.
+    /// A skirt's triangles stand upright: two of their vertices, the lower one added later, have the same
+    /// texture coordinates.
     static void sort(DatabaseTile& tile)
     {
         const auto& coordinates = dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0));
@@ -70,10 +70,11 @@ private:
         std::vector<std::array<unsigned int, 2>> tops;
         for (unsigned int i = 0; i + 2 < primitives.getNumIndices(); i += 3)
         {
-            const std::array<unsigned int, 3> t{primitives.index(i), primitives.index(i + 1), primitives.index(i + 2)};
+            const std::array<unsigned int, 3> t{primitives.index(i), primitives.index(i + 1),
+                                                primitives.index(i + 2)};
             bool upright = false;
-            for (const auto& [a, b, c] : {std::tuple(t[0], t[1], t[2]), std::tuple(t[1], t[2], t[0]),
-                                          std::tuple(t[2], t[0], t[1])})
+            for (const auto& [a, b, c] :
+                 {std::tuple(t[0], t[1], t[2]), std::tuple(t[1], t[2], t[0]), std::tuple(t[2], t[0], t[1])})
             {
                 if (coordinates[a] != coordinates[b]) continue;
                 upright = true;
@@ -119,7 +120,8 @@ osg::Vec3d DatabaseRoot::fromWorld(const osg::Vec3d& world) const
 {
     if (!geocentric()) return world;
     osg::Vec3d place;
-    GeographicLib::Geocentric::WGS84().Reverse(world.x(), world.y(), world.z(), place.y(), place.x(), place.z());
+    GeographicLib::Geocentric::WGS84().Reverse(world.x(), world.y(), world.z(), place.y(), place.x(),
+                                               place.z());
     place.x() += 360.0 * std::round((0.5 * (west() + east()) - place.x()) / 360.0);
     return place;
 }
@@ -128,7 +130,8 @@ osg::Vec3d DatabaseRoot::toWorld(const osg::Vec3d& place) const
 {
     if (!geocentric()) return place;
     osg::Vec3d world;
-    GeographicLib::Geocentric::WGS84().Forward(place.y(), place.x(), place.z(), world.x(), world.y(), world.z());
+    GeographicLib::Geocentric::WGS84().Forward(place.y(), place.x(), place.z(), world.x(), world.y(),
+                                               world.z());
     return world;
 }
 
@@ -167,46 +170,49 @@ FinestLevel::FinestLevel(const std::string& folder)
     std::vector<osg::Vec3d> all;
     std::vector<double> sizes;
     std::vector<bool> drawn;
-    readDatabase(folder,
-                 [&](const DatabaseTile& tile)
-                 {
-                     if (tile.level != level || !tile.geometry) return;
-                     if (all.empty())
-                     {
-                         // (n + 1)² posts row by row, then the 4n + 1 of the skirt.
-                         const auto count = static_cast<int>(tile.vertices().size());
-                         tileIntervals = static_cast<int>(std::lround(std::sqrt(count + 7.0))) - 3;
-                         if (tileIntervals * (tileIntervals + 6) + 2 != count)
-                             throw std::runtime_error(tile.transform->getName() + " is not a full grid");
-                         across = (tileIntervals << level) + 1;
-                         const auto posts = static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
-                         all.resize(posts);
-                         sizes.resize(posts);
-                         drawn.resize(posts);
-                     }
-                     const std::vector<bool> inTile = tile.used();
-                     for (int row = 0; row <= tileIntervals; ++row)
-                         for (int column = 0; column <= tileIntervals; ++column)
-                         {
-                             const auto vertex = static_cast<unsigned int>(row * (tileIntervals + 1) + column);
-                             if (!inTile[vertex]) continue;
-                             const auto i = static_cast<std::size_t>(tile.y * tileIntervals + row) *
-                                                static_cast<std::size_t>(across) +
-                                            static_cast<std::size_t>(tile.x * tileIntervals + column);
-                             const osg::Vec3d local = tile.local(vertex);
-                             all[i] = tile.world(vertex);
-                             sizes[i] = std::max({std::abs(local.x()), std::abs(local.y()), std::abs(local.z())});
-                             drawn[i] = true;
-                         }
-                 });
+    readDatabase(
+        folder,
+        [&](const DatabaseTile& tile)
+        {
+            if (tile.level != level || !tile.geometry) return;
+            if (all.empty())
+            {
+                // (n + 1)² posts row by row, then the 4n + 1 of the skirt.
+                const auto count = static_cast<int>(tile.vertices().size());
+                tileIntervals = static_cast<int>(std::lround(std::sqrt(count + 7.0))) - 3;
+                if (tileIntervals * (tileIntervals + 6) + 2 != count)
+                    throw std::runtime_error(tile.transform->getName() + " is not a full grid");
+                across = (tileIntervals << level) + 1;
+                const auto posts = static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
+                all.resize(posts);
+                sizes.resize(posts);
+                drawn.resize(posts);
+            }
+            const std::vector<bool> inTile = tile.used();
+            for (int row = 0; row <= tileIntervals; ++row)
+                for (int column = 0; column <= tileIntervals; ++column)
+                {
+                    const auto vertex = static_cast<unsigned int>(row * (tileIntervals + 1) + column);
+                    if (!inTile[vertex]) continue;
+                    const auto i = static_cast<std::size_t>(tile.y * tileIntervals + row) *
+                                       static_cast<std::size_t>(across) +
+                                   static_cast<std::size_t>(tile.x * tileIntervals + column);
+                    const osg::Vec3d local = tile.local(vertex);
+                    all[i] = tile.world(vertex);
+                    sizes[i] = std::max({std::abs(local.x()), std::abs(local.y()), std::abs(local.z())});
+                    drawn[i] = true;
+                }
+        });
     if (all.empty()) throw std::runtime_error("no tile of the finest level has a mesh");
 
     // The spacing, from two posts far apart on the best filled line; the file does not tell it.
     const auto spacing = [&](bool alongX, double extent)
     {
         const auto at = [&](int line, int i)
-        { return static_cast<std::size_t>(alongX ? line : i) * static_cast<std::size_t>(across) +
-                 static_cast<std::size_t>(alongX ? i : line); };
+        {
+            return static_cast<std::size_t>(alongX ? line : i) * static_cast<std::size_t>(across) +
+                   static_cast<std::size_t>(alongX ? i : line);
+        };
         std::vector<int> best;
         int bestLine = 0;
         for (int line = 0; line < across; ++line)
@@ -230,7 +236,8 @@ FinestLevel::FinestLevel(const std::string& folder)
     rows = spacing(false, root.north() - y0);
     dx = (root.east() - x0) / (columns - 1);
     dy = (root.north() - y0) / (rows - 1);
-    if (columns > across || rows > across) throw std::runtime_error("the finest level does not fill its extent");
+    if (columns > across || rows > across)
+        throw std::runtime_error("the finest level does not fill its extent");
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column)
         {

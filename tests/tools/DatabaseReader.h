@@ -29,12 +29,15 @@ struct DatabaseTile
     int level = 0, x = 0, y = 0; ///< from the transform's name "tile level/x/y"
     std::string file;            ///< that it was read from
     osg::ref_ptr<osg::MatrixTransform> transform;
-    osg::ref_ptr<osg::PagedLOD> lod;      ///< null on the finest level
-    osg::ref_ptr<osg::Geometry> geometry; ///< null where a tile has ground on finer levels only
+    osg::ref_ptr<osg::PagedLOD> lod;                  ///< null on the finest level
+    osg::ref_ptr<osg::Geometry> geometry;             ///< null where a tile has ground on finer levels only
     std::vector<std::array<unsigned int, 3>> surface; ///< triangles, without the skirt's
     std::vector<Wall> skirt;
 
-    const osg::Vec3Array& vertices() const { return static_cast<const osg::Vec3Array&>(*geometry->getVertexArray()); }
+    const osg::Vec3Array& vertices() const
+    {
+        return static_cast<const osg::Vec3Array&>(*geometry->getVertexArray());
+    }
     osg::Vec3d local(unsigned int vertex) const { return vertices()[vertex]; }
     /// In the world, multiplied in double.
     osg::Vec3d world(unsigned int vertex) const { return local(vertex) * transform->getMatrix(); }
@@ -73,8 +76,8 @@ private:
     osg::ref_ptr<osg::Node> _node;
 };
 
-/// Reads a whole database from DIR/terrain.osgb down, one file at a time, and calls for each tile, parents before
-/// children. Throws std::runtime_error where a file is missing, unreadable or not as it should be.
+/// Reads a whole database from DIR/terrain.osgb down, one file at a time, and calls for each tile, parents
+/// before children. Throws std::runtime_error where a file is missing, unreadable or not as it should be.
 void readDatabase(const std::string& folder, const std::function<void(const DatabaseTile&)>& visit);
 
 /// All tiles of a small database.
@@ -85,8 +88,8 @@ struct FinestLevel
 {
     explicit FinestLevel(const std::string& folder);
 
-    int tileIntervals = 0;     ///< of a finest tile
-    int columns = 0, rows = 0; ///< posts
+    int tileIntervals = 0;                         ///< of a finest tile
+    int columns = 0, rows = 0;                     ///< posts
     double x0 = 0.0, y0 = 0.0, dx = 0.0, dy = 0.0; ///< as DatabaseRoot::fromWorld has it
     std::vector<osg::Vec3d> world;
     std::vector<double> localSize; ///< largest coordinate in the tile's frame, for how floats are rounded
@@ -94,7 +97,8 @@ struct FinestLevel
 
     std::size_t index(int column, int row) const
     {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+               static_cast<std::size_t>(column);
     }
 };
 

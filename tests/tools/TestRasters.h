@@ -20,8 +20,8 @@ struct DatasetCloser
 };
 using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
 
-/** A raster made in memory, to be written as GeoTIFF. It starts without georeference and CRS. What has no method
-    here (no-data, unit, scale, palette, control points) is set on dataset(). */
+/** A raster made in memory, to be written as GeoTIFF. It starts without georeference and CRS. What has no
+    method here (no-data, unit, scale, palette, control points) is set on dataset(). */
 class TestRaster
 {
 public:
@@ -46,21 +46,21 @@ private:
     DatasetPtr _dataset;
 };
 
-/// Mountains and valleys of any size from one formula: metres, between −20 and 1020, for pixels or any other unit.
+/// Mountains and valleys from one formula: metres, between about 0 and 1000, for pixels or any other unit.
 double relief(double x, double y);
 
-/** Writes relief() as Float32, or a plain DEM if you want a different pixel function; north up, EPSG:4326 unless
-    named. */
+/// Writes relief() of columns and rows as Float32, north up, and returns the path.
 std::string writeRelief(const std::filesystem::path& file, int columns, int rows, double west, double north,
                         double pixel, const std::string& crs = "EPSG:4326");
 
 /// Part of a raster file as a GeoTIFF of its own; returns the path.
-std::string writeCrop(const std::string& from, const std::filesystem::path& file, int column, int row, int columns,
-                      int rows);
+std::string writeCrop(const std::string& from, const std::filesystem::path& file, int column, int row,
+                      int columns, int rows);
 
 /** GDAL's own bilinear samples, made by GDAL's warp utility, which knows nothing of osgGeoFX: at the points
-    (x0 + i·dx, y0 + j·dy), row 0 the southernmost, in a CRS; NaN where the files have no data. Later files win. */
-std::vector<float> warpedHeights(const std::vector<std::string>& files, const std::string& crs, double x0, double y0,
-                                 double dx, double dy, int columns, int rows);
+    (x0 + i·dx, y0 + j·dy), row 0 the southernmost, in a CRS; NaN where the files have no data. Later files
+    win. */
+std::vector<float> warpedHeights(const std::vector<std::string>& files, const std::string& crs, double x0,
+                                 double y0, double dx, double dy, int columns, int rows);
 
 } // namespace geofx::test

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// What osggeofx_build cannot use: exit code 2, one line that names the file and the mend, nothing that looks whole.
+// What osggeofx_build cannot use: exit code 2, one line that names the file and the mend, nothing that looks
+// whole.
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
@@ -78,7 +79,8 @@ TEST_F(BuilderInput, MissingAndEmptyFiles)
 {
     expectDemRefusal(_folder / "nothing.tif", {"there is no such file", "check the path"});
     expectDemRefusal(_folder.write("empty.tif", ""), {"the file is empty", "export it again"});
-    expectRefusal({"--dem", goodDem(), "--imagery", _folder / "nothing.jpg"}, {"nothing.jpg: there is no such file"});
+    expectRefusal({"--dem", goodDem(), "--imagery", _folder / "nothing.jpg"},
+                  {"nothing.jpg: there is no such file"});
     const std::string table = _folder.write("t.csv", "value,class,name,red,green,blue\n1,a,A,1,2,3\n");
     expectRefusal({"--dem", goodDem(), "--landcover", _folder / "nothing.tif", "--landcover-table", table},
                   {"nothing.tif: there is no such file"});
@@ -97,14 +99,16 @@ TEST_F(BuilderInput, TruncatedRasters)
         const std::string name = compression;
         expectDemRefusal(cut(file, name + "half.tif", 0.5), {"cannot be read", "cut short"});
         expectDemRefusal(cut(file, name + "nearly.tif", 0.97), {"cannot be read", "cut short"});
-        expectDemRefusal(cut(file, name + "start.tif", 0.0002), {"not a raster that GDAL can read", "gdalinfo"});
+        expectDemRefusal(cut(file, name + "start.tif", 0.0002),
+                         {"not a raster that GDAL can read", "gdalinfo"});
     }
 }
 
 TEST_F(BuilderInput, ThingsThatAreNoRasters)
 {
     expectDemRefusal(_folder.write("notes.txt", "These are notes.\n"), {"not a raster", "gdalinfo"});
-    expectDemRefusal(_folder.write("points.geojson", R"({"type":"FeatureCollection","features":[]})"), {"not a raster"});
+    expectDemRefusal(_folder.write("points.geojson", R"({"type":"FeatureCollection","features":[]})"),
+                     {"not a raster"});
     fs::create_directory(_folder / "folder");
     expectDemRefusal(_folder / "folder", {"not a raster"});
     expectDemRefusal(_folder.write("noise.tif", std::string("II*\0\xff\xff\xff\xff", 8)), {"not a raster"});
@@ -113,12 +117,18 @@ TEST_F(BuilderInput, ThingsThatAreNoRasters)
 
 TEST_F(BuilderInput, RastersWithoutPlace)
 {
-    const auto value = [](int column, int row, int) { return relief(column, row); };
+    const auto value = [](int column, int row, int)
+    {
+        return relief(column, row);
+    };
     expectDemRefusal(TestRaster(20, 20).crs("EPSG:4326").fill(value).write(_folder / "a.tif"),
                      {"no georeference", "gdal_translate -a_ullr"});
     expectDemRefusal(TestRaster(20, 20).placed(10.0, 50.0, 0.1, 0.1).fill(value).write(_folder / "b.tif"),
                      {"no coordinate reference system", "gdal_translate -a_srs"});
-    expectDemRefusal(TestRaster(20, 20).placed(10.0, 50.0, 0.1, 0.1).crs("LOCAL_CS[\"mine\",UNIT[\"m\",1]]").fill(value)
+    expectDemRefusal(TestRaster(20, 20)
+                         .placed(10.0, 50.0, 0.1, 0.1)
+                         .crs("LOCAL_CS[\"mine\",UNIT[\"m\",1]]")
+                         .fill(value)
                          .write(_folder / "c.tif"),
                      {"no coordinate reference system"});
     expectDemRefusal(TestRaster(20, 20)
@@ -131,44 +141,59 @@ TEST_F(BuilderInput, RastersWithoutPlace)
 
 TEST_F(BuilderInput, ValuesThatCannotBeUsed)
 {
-    const auto placed = [](TestRaster raster, double value, const fs::path& file) {
-        return raster.placed(10.0, 50.0, 0.05, 0.05).crs("EPSG:4326").fill([=](int, int, int) { return value; }).write(file);
+    const auto placed = [](TestRaster raster, double value, const fs::path& file)
+    {
+        return raster.placed(10.0, 50.0, 0.05, 0.05)
+            .crs("EPSG:4326")
+            .fill([=](int, int, int) { return value; })
+            .write(file);
     };
     expectDemRefusal(placed(TestRaster(20, 20, 1, GDT_CFloat32), 1.0, _folder / "complex.tif"),
                      {"complex numbers", "-ot Float32"});
     const double nan = std::numeric_limits<double>::quiet_NaN();
     expectDemRefusal(placed(TestRaster(20, 20), nan, _folder / "nan.tif"), {"no data at all", "gdalinfo"});
-    expectDemRefusal(placed(TestRaster(20, 20), -32768.0, _folder / "undeclared.tif"), {"no data at all", "gdalinfo"});
+    expectDemRefusal(placed(TestRaster(20, 20), -32768.0, _folder / "undeclared.tif"),
+                     {"no data at all", "gdalinfo"});
     expectDemRefusal(placed(TestRaster(1, 1), 100.0, _folder / "pixel.tif"), {"at least 2 × 2"});
     const std::string image = placed(TestRaster(20, 20, 3, GDT_Float32), 0.5, _folder / "image.tif");
     expectRefusal({"--dem", goodDem(), "--imagery", image}, {image, "not colours", "-ot Byte"});
     const std::string classes = placed(TestRaster(20, 20, 1, GDT_Int32), 1.0, _folder / "classes.tif");
     const std::string table = _folder.write("t.csv", "value,class,name,red,green,blue\n1,a,A,1,2,3\n");
-    expectRefusal({"--dem", goodDem(), "--landcover", classes, "--landcover-table", table}, {classes, "one byte"});
+    expectRefusal({"--dem", goodDem(), "--landcover", classes, "--landcover-table", table},
+                  {classes, "one byte"});
 }
 
 TEST_F(BuilderInput, RastersThatDoNotMeet)
 {
     const std::string dem = goodDem(), far = goodDem("far.tif", 30.0);
-    const std::string image =
-        TestRaster(20, 20, 3, GDT_Byte).placed(30.0, 50.0, 0.05, 0.05).crs("EPSG:4326").write(_folder / "image.tif");
+    const std::string image = TestRaster(20, 20, 3, GDT_Byte)
+                                  .placed(30.0, 50.0, 0.05, 0.05)
+                                  .crs("EPSG:4326")
+                                  .write(_folder / "image.tif");
     expectRefusal({"--dem", dem, "--imagery", image}, {image, "outside the elevation", "leave the file out"});
     const std::string table = _folder.write("t.csv", "value,class,name,red,green,blue\n1,a,A,1,2,3\n");
-    const std::string classes =
-        TestRaster(20, 20, 1, GDT_Byte).placed(10.0, 20.0, 0.05, 0.05).crs("EPSG:4326").write(_folder / "classes.tif");
+    const std::string classes = TestRaster(20, 20, 1, GDT_Byte)
+                                    .placed(10.0, 20.0, 0.05, 0.05)
+                                    .crs("EPSG:4326")
+                                    .write(_folder / "classes.tif");
     expectRefusal({"--dem", dem, "--landcover", classes, "--landcover-table", table}, {classes, "outside"});
     // A full turn away is the same place.
-    const std::string turned =
-        TestRaster(20, 20, 3, GDT_Byte).placed(370.0, 50.0, 0.05, 0.05).crs("EPSG:4326").write(_folder / "turned.tif");
+    const std::string turned = TestRaster(20, 20, 3, GDT_Byte)
+                                   .placed(370.0, 50.0, 0.05, 0.05)
+                                   .crs("EPSG:4326")
+                                   .write(_folder / "turned.tif");
     EXPECT_EQ(run({"--dem", dem, "--imagery", turned, "-o", output()}).exitCode, 0);
 }
 
 TEST_F(BuilderInput, LandCoverTables)
 {
     const std::string dem = goodDem();
-    const std::string classes =
-        TestRaster(20, 20, 1, GDT_Byte).placed(10.0, 50.0, 0.05, 0.05).crs("EPSG:4326").write(_folder / "classes.tif");
-    const std::string bad = _folder.write("bad.csv", "value,class,name,red,green,blue\n1,a,A,1,2,3\n2,b,B,1,2,300\n");
+    const std::string classes = TestRaster(20, 20, 1, GDT_Byte)
+                                    .placed(10.0, 50.0, 0.05, 0.05)
+                                    .crs("EPSG:4326")
+                                    .write(_folder / "classes.tif");
+    const std::string bad =
+        _folder.write("bad.csv", "value,class,name,red,green,blue\n1,a,A,1,2,3\n2,b,B,1,2,300\n");
     expectRefusal({"--dem", dem, "--landcover", classes, "--landcover-table", bad},
                   {bad + ":3: ", "\"blue\"", "\"300\"", "from 0 to 255"});
     expectRefusal({"--dem", dem, "--landcover", classes}, {classes, "--landcover-table CSV"});
@@ -202,7 +227,8 @@ TEST_F(BuilderInput, OptionsOutOfRange)
 TEST_F(BuilderInput, FoldersThatCannotBeWritten)
 {
     const std::string dem = goodDem(), file = _folder.write("file", "text");
-    for (const std::string& folder : {file + "/db", file, std::string("/proc/osggeofx/db"), std::string("/dev/null")})
+    for (const std::string& folder :
+         {file + "/db", file, std::string("/proc/osggeofx/db"), std::string("/dev/null")})
     {
         SCOPED_TRACE(folder);
         expectRefusalLine(run({"--dem", dem, "-o", folder}), {folder, "-o"});

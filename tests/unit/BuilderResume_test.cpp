@@ -63,26 +63,41 @@ protected:
         dem.fill([](int column, int row, int)
                  { return std::hypot(column - 100, row - 90) < 30 ? -9999.0 : relief(column, row); });
         _dem = dem.write(_folder / "dem.tif");
-        _imagery = TestRaster(150, 120, 3, GDT_Byte)
-                       .placed(601000.0, 2399000.0, 20.0, 20.0)
-                       .crs("EPSG:32604")
-                       .fill([](int column, int row, int band)
-                             { return (column * 7919 + row * 104729 * (band + 1)) % 251; }) // hard to compress
-                       .write(_folder / "imagery.tif");
+        _imagery =
+            TestRaster(150, 120, 3, GDT_Byte)
+                .placed(601000.0, 2399000.0, 20.0, 20.0)
+                .crs("EPSG:32604")
+                .fill([](int column, int row, int band)
+                      { return (column * 7919 + row * 104729 * (band + 1)) % 251; }) // hard to compress
+                .write(_folder / "imagery.tif");
         _landCover = TestRaster(240, 210, 1, GDT_Byte)
                          .placed(600000.0, 2400000.0, 25.0, 25.0)
                          .crs("EPSG:32604")
                          .fill([](int column, int row, int) { return 1 + (column / 20 + row / 30) % 2; })
                          .write(_folder / "landcover.tif");
-        _table = _folder.write("table.csv", "value,class,name,red,green,blue\n1,a,A,40,90,20\n2,b,B,160,150,90\n");
+        _table =
+            _folder.write("table.csv", "value,class,name,red,green,blue\n1,a,A,40,90,20\n2,b,B,160,150,90\n");
     }
 
-    std::vector<std::string> command(const std::string& output, const std::vector<std::string>& more = {}) const
+    std::vector<std::string> command(const std::string& output,
+                                     const std::vector<std::string>& more = {}) const
     {
-        std::vector<std::string> arguments{builtProgram("osggeofx_build"), "--quiet",           "--dem", _dem,
-                                           "--imagery", _imagery,          "--landcover",       _landCover,
-                                           "--landcover-table", _table,    "--tile-size",       "16",   "--texture-size", "128",
-                                           "-o",                           (_folder / output)};
+        std::vector<std::string> arguments{builtProgram("osggeofx_build"),
+                                           "--quiet",
+                                           "--dem",
+                                           _dem,
+                                           "--imagery",
+                                           _imagery,
+                                           "--landcover",
+                                           _landCover,
+                                           "--landcover-table",
+                                           _table,
+                                           "--tile-size",
+                                           "16",
+                                           "--texture-size",
+                                           "128",
+                                           "-o",
+                                           (_folder / output)};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }
@@ -151,8 +166,8 @@ TEST_F(BuilderResume, SameBytesAfterKills)
         ProgramOptions options;
         options.signal = SIGKILL;
         options.seconds = random.uniform(0.005, duration.count());
-        SCOPED_TRACE("killed after " + std::to_string(options.seconds) + " of " + std::to_string(duration.count()) +
-                     " s");
+        SCOPED_TRACE("killed after " + std::to_string(options.seconds) + " of " +
+                     std::to_string(duration.count()) + " s");
         const ProgramResult result = runProgram(command(output), options);
         killed += result.timedOut;
         ASSERT_TRUE(result.timedOut || result.exitCode == 0) << result.standardError;
@@ -205,12 +220,49 @@ TEST_F(BuilderResume, ResumeOfAnotherBuildIsRefused)
             arguments.insert(arguments.end(), more.begin(), more.end());
         const ProgramResult result = runProgram(arguments);
         EXPECT_EQ(result.exitCode, 2) << more[0];
-        EXPECT_NE(result.standardError.find("other sources or options"), std::string::npos) << result.standardError;
+        EXPECT_NE(result.standardError.find("other sources or options"), std::string::npos)
+            << result.standardError;
         EXPECT_EQ(contents(_folder / "db"), before) << more[0];
     }
     // A source that has changed since is another source.
     fs::last_write_time(_dem, fs::last_write_time(_dem) + std::chrono::seconds(5));
     EXPECT_EQ(runProgram(command("db", {"--resume"})).exitCode, 2);
+}
+
+/// A file size limit kills the program in the midst of the first file that is longer.
+TEST_F(BuilderResume, KilledInTheMidstOfAFile)
+{
+    build("whole");
+    const auto whole = contents(_folder / "whole");
+    bool inTiles = false;
+    for (const int blocks : {20, 60, 150, 200, 300})
+    {
+        const std::string name = "db" + std::to_string(blocks);
+        std::vector<std::string> limited{"sh", "-c", "ulimit -f " + std::to_string(blocks) + "; exec \"$@\"",
+                                         "sh"};
+        const auto arguments = command(name, {"--threads", "1"});
+        limited.insert(limited.end(), arguments.begin(), arguments.end());
+        if (runProgram(limited).exitCode != 0)
+            for (const auto& [file, bytes] : contents(_folder / name))
+            {
+                const bool tile = file.rfind("tiles/", 0) == 0;
+                inTiles = inTiles || tile;
+                EXPECT_TRUE(!tile || file.find(".tmp") != std::string::npos || bytes == whole.at(file))
+                    << file << " is cut short but has its name, with " << blocks << " blocks";
+                EXPECT_NE(file, "terrain.osgb");
+            }
+        build(name, {"--resume"});
+        EXPECT_TRUE(sameFiles(_folder / "whole", _folder / name)) << blocks << " blocks";
+    }
+    EXPECT_TRUE(inTiles) << "no tile was cut short";
+}
+
+TEST_F(BuilderResume, KilledBeforeAnythingWasDone)
+{
+    build("whole");
+    _folder.write("db/built-from.txt.tmp", "osgGeoFX terr");
+    build("db", {"--resume"});
+    EXPECT_TRUE(sameFiles(_folder / "whole", _folder / "db"));
 }
 
 TEST_F(BuilderResume, ContinuesAfterTheDiskWasFull)
@@ -220,8 +272,8 @@ TEST_F(BuilderResume, ContinuesAfterTheDiskWasFull)
     bool inTiles = false;
     for (const int blocks : {1, 60, 150, 200, 1000})
     {
-        std::vector<std::string> limited{"sh", "-c",
-                                         "ulimit -f " + std::to_string(blocks) + "; trap '' XFSZ; exec \"$@\"", "sh"};
+        std::vector<std::string> limited{
+            "sh", "-c", "ulimit -f " + std::to_string(blocks) + "; trap '' XFSZ; exec \"$@\"", "sh"};
         const auto arguments = command("db" + std::to_string(blocks));
         limited.insert(limited.end(), arguments.begin(), arguments.end());
         const ProgramResult result = runProgram(limited);
@@ -229,8 +281,10 @@ TEST_F(BuilderResume, ContinuesAfterTheDiskWasFull)
         if (result.exitCode != 0)
         {
             EXPECT_EQ(result.exitCode, 2) << result.standardError;
-            EXPECT_NE(result.standardError.find("cannot be written"), std::string::npos) << result.standardError;
-            EXPECT_NE(result.standardError.find("free some space"), std::string::npos) << result.standardError;
+            EXPECT_NE(result.standardError.find("cannot be written"), std::string::npos)
+                << result.standardError;
+            EXPECT_NE(result.standardError.find("free some space"), std::string::npos)
+                << result.standardError;
             EXPECT_EQ(std::count(result.standardError.begin(), result.standardError.end(), '\n'), 1)
                 << result.standardError;
             EXPECT_FALSE(fs::exists(output / "terrain.osgb"));

@@ -74,36 +74,37 @@ void expectNoSeams(const std::string& folder, unsigned int unit)
 {
     std::map<std::array<int, 3>, Color> shared; // level and place, counted in texels
     int compared = 0;
-    readDatabase(folder,
-                 [&](const DatabaseTile& tile)
-                 {
-                     const osg::Image* image = tile.image(unit);
-                     ASSERT_NE(image, nullptr);
-                     const int m = image->s() - 1;
-                     ASSERT_EQ(image->t() - 1, m);
-                     for (int k = 0; k <= m; ++k)
-                         for (const auto& [column, row] :
-                              {std::pair(k, 0), std::pair(k, m), std::pair(0, k), std::pair(m, k)})
-                         {
-                             Color color = colorAt(*image, column, row);
-                             if (unit == 1) color = {color[0], 0, 0};
-                             const auto [place, fresh] =
-                                 shared.emplace(std::array<int, 3>{tile.level, tile.x * m + column, tile.y * m + row}, color);
-                             if (fresh) continue;
-                             ++compared;
-                             ASSERT_EQ(place->second, color)
-                                 << tile.transform->getName() << ", texel " << column << " " << row;
-                         }
-                     // Texel centres lie on the tile's edges.
-                     float low = 1.0f, high = 0.0f;
-                     for (const auto& t : dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0)))
-                     {
-                         low = std::min({low, t.x(), t.y()});
-                         high = std::max({high, t.x(), t.y()});
-                     }
-                     EXPECT_NEAR(low * static_cast<float>(m + 1), 0.5f, 1e-4f);
-                     EXPECT_LE(high * static_cast<float>(m + 1), static_cast<float>(m) * 1.00001f + 0.5f);
-                 });
+    readDatabase(
+        folder,
+        [&](const DatabaseTile& tile)
+        {
+            const osg::Image* image = tile.image(unit);
+            ASSERT_NE(image, nullptr);
+            const int m = image->s() - 1;
+            ASSERT_EQ(image->t() - 1, m);
+            for (int k = 0; k <= m; ++k)
+                for (const auto& [column, row] :
+                     {std::pair(k, 0), std::pair(k, m), std::pair(0, k), std::pair(m, k)})
+                {
+                    Color color = colorAt(*image, column, row);
+                    if (unit == 1) color = {color[0], 0, 0};
+                    const auto [place, fresh] = shared.emplace(
+                        std::array<int, 3>{tile.level, tile.x * m + column, tile.y * m + row}, color);
+                    if (fresh) continue;
+                    ++compared;
+                    ASSERT_EQ(place->second, color)
+                        << tile.transform->getName() << ", texel " << column << " " << row;
+                }
+            // Texel centres lie on the tile's edges.
+            float low = 1.0f, high = 0.0f;
+            for (const auto& t : dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0)))
+            {
+                low = std::min({low, t.x(), t.y()});
+                high = std::max({high, t.x(), t.y()});
+            }
+            EXPECT_NEAR(low * static_cast<float>(m + 1), 0.5f, 1e-4f);
+            EXPECT_LE(high * static_cast<float>(m + 1), static_cast<float>(m) * 1.00001f + 0.5f);
+        });
     EXPECT_GT(compared, 1000);
 }
 
@@ -116,7 +117,9 @@ TEST(DatabaseSurface, ImageryAtItsPlaces)
                            .placed(10.0, 50.0, 0.0005, 0.0005)
                            .crs("EPSG:4326")
                            .fill([](int column, int row, int band)
-                                 { return band == 0 ? 2.0 * column : band == 1 ? 1.5 * row : 5.0; })
+                                 { return band == 0   ? 2.0 * column
+                                          : band == 1 ? 1.5 * row
+                                                      : 5.0; })
                            .write(folder / "image.tif");
     auto o = options(dem, folder / "db");
     o.imagery = {image};
@@ -193,10 +196,13 @@ TEST(DatabaseSurface, LandCover)
     const TempDir folder;
     const auto dem = writeRelief(folder / "dem.tif", 100, 80, 10.0, 50.0, 0.001);
     TestRaster raster(100, 80, 1, GDT_Byte);
-    const auto classOf = [](int column, int row) { return row >= 70 ? 9 : column < 50 ? 1 : 2; };
-    raster.placed(10.0, 50.0, 0.001, 0.001).crs("EPSG:4326").fill([&](int column, int row, int) {
-        return classOf(column, row);
-    });
+    const auto classOf = [](int column, int row)
+    {
+        return row >= 70 ? 9 : column < 50 ? 1 : 2;
+    };
+    raster.placed(10.0, 50.0, 0.001, 0.001)
+        .crs("EPSG:4326")
+        .fill([&](int column, int row, int) { return classOf(column, row); });
     auto o = options(dem, folder / "db");
     o.landCover = raster.write(folder / "landcover.tif");
     const std::string table = "value,class,name,red,green,blue\n1,sea,Sea,10,20,200\n2,wood,Wood,30,120,40\n";
@@ -221,7 +227,9 @@ TEST(DatabaseSurface, LandCover)
                      const double px = (x - 10.0) / 0.001, py = (50.0 - y) / 0.001;
                      if (std::min(std::abs(px - 50.0), std::abs(py - 70.0)) < 1.1) return;
                      // A class that the table leaves out is grey.
-                     const Color expected = py > 70.0 ? Color{128, 128, 128} : px < 50.0 ? Color{10, 20, 200} : Color{30, 120, 40};
+                     const Color expected = py > 70.0   ? Color{128, 128, 128}
+                                            : px < 50.0 ? Color{10, 20, 200}
+                                                        : Color{30, 120, 40};
                      ASSERT_LE(distance(colorAt(picture, column, row), expected), 1) << px << " " << py;
                  });
     expectNoSeams(o.output, 0);
@@ -239,11 +247,12 @@ TEST(DatabaseSurface, ReliefIsTintedByHeight)
 {
     const TempDir folder;
     // Sea to 50 m deep in the west, land to 2000 m in the east.
-    const auto dem = TestRaster(100, 60)
-                         .placed(10.0, 50.0, 0.001, 0.001)
-                         .crs("EPSG:4326")
-                         .fill([](int column, int, int) { return column < 50 ? column - 50.0 : 40.0 * (column - 49.0); })
-                         .write(folder / "dem.tif");
+    const auto dem =
+        TestRaster(100, 60)
+            .placed(10.0, 50.0, 0.001, 0.001)
+            .crs("EPSG:4326")
+            .fill([](int column, int, int) { return column < 50 ? column - 50.0 : 40.0 * (column - 49.0); })
+            .write(folder / "dem.tif");
     auto o = options(dem, folder / "db");
     buildDatabase(o);
     std::map<int, Color> byColumn;
@@ -253,7 +262,8 @@ TEST(DatabaseSurface, ReliefIsTintedByHeight)
                      const Color color = colorAt(picture, column, row);
                      const int pixel = static_cast<int>((x - 10.0) / 0.001);
                      const auto [place, fresh] = byColumn.emplace(pixel, color);
-                     ASSERT_LE(distance(place->second, color), 60) << "the colour depends on more than the height";
+                     ASSERT_LE(distance(place->second, color), 60)
+                         << "the colour depends on more than the height";
                      ASSERT_TRUE(x > 10.0485 || color[2] > color[0]) << "the sea is not blue at " << x;
                      ASSERT_TRUE(x < 10.0515 || x > 10.06 || color[1] > color[2])
                          << "the lowland is not green at " << x;
@@ -262,13 +272,40 @@ TEST(DatabaseSurface, ReliefIsTintedByHeight)
     expectNoSeams(o.output, 0);
 }
 
+TEST(DatabaseSurface, TexturesKeepTheirLimit)
+{
+    const TempDir folder;
+    const auto dem = writeRelief(folder / "dem.tif", 100, 80, 10.0, 50.0, 0.001);
+    const auto image = TestRaster(200, 160, 1, GDT_Byte)
+                           .placed(10.0, 50.0, 0.0005, 0.0005)
+                           .crs("EPSG:4326")
+                           .write(folder / "image.tif");
+    for (const bool withImage : {false, true})
+        for (const int limit : {16, 48, 0})
+        {
+            auto o = options(dem, folder / "db");
+            o.tileSize = 32;
+            o.textureSize = limit;
+            if (withImage) o.imagery = {image};
+            buildDatabase(o);
+            int widest = 0;
+            readDatabase(o.output, [&](const DatabaseTile& tile)
+                         { widest = std::max(widest, tile.image(0)->s() - 1); });
+            EXPECT_LE(widest, limit ? limit : 4 * 32);
+            EXPECT_GE(widest, 8);
+        }
+}
+
 TEST(DatabaseSurface, HolesHaveNoPillars)
 {
     const TempDir folder;
     TestRaster raster(100, 80);
     raster.placed(600000.0, 2400000.0, 30.0, 30.0).crs("EPSG:32604");
     raster.dataset().GetRasterBand(1)->SetNoDataValue(-9999.0);
-    const auto hole = [](double column, double row) { return std::hypot(column - 50.0, row - 40.0); };
+    const auto hole = [](double column, double row)
+    {
+        return std::hypot(column - 50.0, row - 40.0);
+    };
     raster.fill([&](int column, int row, int)
                 { return hole(column, row) < 15.0 ? -9999.0 : 300.0 + relief(column, row) * 0.1; });
     auto o = options(raster.write(folder / "dem.tif"), folder / "db");
@@ -276,24 +313,25 @@ TEST(DatabaseSurface, HolesHaveNoPillars)
     buildDatabase(o);
     const int finest = DatabaseRoot(o.output).finestLevel();
     int triangles = 0;
-    readDatabase(o.output,
-                 [&](const DatabaseTile& tile)
-                 {
-                     if (!tile.geometry) return;
-                     EXPECT_GT(tile.transform->getMatrix().getTrans().z() +
-                                   static_cast<double>(tile.geometry->getBoundingBox().zMin()),
-                               0.0)
-                         << "a post or a skirt goes down to no-data in " << tile.transform->getName();
-                     if (tile.level != finest) return;
-                     for (const auto& triangle : tile.surface)
-                         for (const unsigned int vertex : triangle)
-                         {
-                             ++triangles;
-                             const osg::Vec3d p = tile.world(vertex);
-                             ASSERT_GT(hole((p.x() - 600000.0) / 30.0 - 0.5, (2400000.0 - p.y()) / 30.0 - 0.5), 14.0)
-                                 << "a triangle reaches into the hole";
-                         }
-                 });
+    readDatabase(
+        o.output,
+        [&](const DatabaseTile& tile)
+        {
+            if (!tile.geometry) return;
+            EXPECT_GT(tile.transform->getMatrix().getTrans().z() +
+                          static_cast<double>(tile.geometry->getBoundingBox().zMin()),
+                      0.0)
+                << "a post or a skirt goes down to no-data in " << tile.transform->getName();
+            if (tile.level != finest) return;
+            for (const auto& triangle : tile.surface)
+                for (const unsigned int vertex : triangle)
+                {
+                    ++triangles;
+                    const osg::Vec3d p = tile.world(vertex);
+                    ASSERT_GT(hole((p.x() - 600000.0) / 30.0 - 0.5, (2400000.0 - p.y()) / 30.0 - 0.5), 14.0)
+                        << "a triangle reaches into the hole";
+                }
+        });
     EXPECT_GT(triangles, 30000);
     EXPECT_GT(DatabaseRoot(o.output).value<double>("geofx.minHeight"), 290.0);
 }

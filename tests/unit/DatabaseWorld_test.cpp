@@ -39,23 +39,29 @@ struct Geodetic
 Geodetic geodetic(const osg::Vec3d& world)
 {
     Geodetic g{};
-    GeographicLib::Geocentric::WGS84().Reverse(world.x(), world.y(), world.z(), g.latitude, g.longitude, g.height);
+    GeographicLib::Geocentric::WGS84().Reverse(world.x(), world.y(), world.z(), g.latitude, g.longitude,
+                                               g.height);
     return g;
 }
 
 /// Longitude from 0 to 360.
-double eastwards(double longitude) { return longitude < 0.0 ? longitude + 360.0 : longitude; }
+double eastwards(double longitude)
+{
+    return longitude < 0.0 ? longitude + 360.0 : longitude;
+}
 
 TEST(DatabaseWorld, AcrossTheAntimeridian)
 {
     const TempDir folder;
-    // 1 m for each 0.01° east of 178°, so that 2 m are lost or won within a pixel of the border between two files.
+    // 1 m for each 0.01° east of 178°, so that 2 m are lost or won within a pixel of the border between two
+    // files.
     const auto write = [&](const std::string& name, double west, int columns)
     {
         return TestRaster(columns, 40)
             .placed(west, 1.0, 0.02, 0.02)
             .crs("EPSG:4326")
-            .fill([&](int column, int, int) { return 100.0 * (eastwards(west + (column + 0.5) * 0.02) - 178.0); })
+            .fill([&](int column, int, int)
+                  { return 100.0 * (eastwards(west + (column + 0.5) * 0.02) - 178.0); })
             .write(folder / name);
     };
     const auto east = write("east.tif", 179.0, 50), west = write("west.tif", -180.0, 50);
@@ -73,7 +79,8 @@ TEST(DatabaseWorld, AcrossTheAntimeridian)
             ASSERT_TRUE(level.used[i]) << i;
             const Geodetic g = geodetic(level.world[i]);
             const double longitude = eastwards(g.longitude);
-            ASSERT_NEAR(g.height, 100.0 * (longitude - 178.0), std::abs(longitude - 180.0) < 0.0101 ? 1.1 : 0.05)
+            ASSERT_NEAR(g.height, 100.0 * (longitude - 178.0),
+                        std::abs(longitude - 180.0) < 0.0101 ? 1.1 : 0.05)
                 << longitude;
         }
     }
@@ -103,7 +110,8 @@ TEST(DatabaseWorld, WholeGlobeIsClosed)
         }
     }
     // The levels above are coarse polyhedra; they must still be there.
-    EXPECT_EQ(readTiles(folder / "db").size(), static_cast<std::size_t>(DatabaseRoot(folder / "db").value<double>("geofx.tiles")));
+    EXPECT_EQ(readTiles(folder / "db").size(),
+              static_cast<std::size_t>(DatabaseRoot(folder / "db").value<double>("geofx.tiles")));
 }
 
 TEST(DatabaseWorld, AroundThePole)
@@ -163,7 +171,8 @@ TEST(DatabaseWorld, Egm96)
                              .write(folder / "dem.tif");
         auto o = options({dem}, folder / "db");
         for (const auto& [datum, height, tolerance] :
-             {std::tuple{VerticalDatum::None, 100.0, 0.001}, std::tuple{VerticalDatum::Ellipsoid, 100.0, 0.001},
+             {std::tuple{VerticalDatum::None, 100.0, 0.001},
+              std::tuple{VerticalDatum::Ellipsoid, 100.0, 0.001},
               // PROJ's grid has 15' and is interpolated bilinearly; NGA's program does it with splines.
               std::tuple{VerticalDatum::Egm96, 100.0 + undulation, 0.3}})
         {

@@ -1,30 +1,24 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The plugins osgdb_geofx and osgdb_geofxdata, through osgDB.
+// The plugin osgdb_geofxdata, through osgDB.
 #include <osgGeoFX/paging/Georeference.h>
 #include <tools/RandomSamples.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
+#include <unit/GeofxPlugins.h>
 
-#include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 #include <gdal_priv.h>
-#include <gtest/gtest.h>
-#include <ogr_spatialref.h>
 #include <osg/CoordinateSystemNode>
-#include <osg/Geode>
 #include <osg/LightSource>
 #include <osg/Math>
-#include <osg/Shape>
-#include <osg/ShapeDrawable>
-#include <osg/ValueObject>
+#include <osg/NodeVisitor>
+#include <osg/PagedLOD>
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
-#include <osgDB/WriteFile>
 
+#include <array>
 #include <atomic>
-#include <filesystem>
 #include <thread>
 
 namespace
@@ -32,54 +26,26 @@ namespace
 
 namespace fs = std::filesystem;
 using geofx::test::TempDir;
+using geofx::test::wktOf;
 using osg::DegreesToRadians;
 using osg::RadiansToDegrees;
 using osgGeoFX::Georeference;
+using GeofxData = geofx::test::GeofxPlugins;
 
-std::string wktOf(int epsg)
+osg::ref_ptr<Georeference> reference(const std::string& wkt, std::string& error)
 {
-    OGRSpatialReference srs;
-    EXPECT_EQ(srs.importFromEPSG(epsg), OGRERR_NONE);
-    char* text = nullptr;
-    srs.exportToWkt(&text);
-    const std::string wkt = text;
-    CPLFree(text);
-    return wkt;
+    const osg::ref_ptr<osg::Node> root = new osg::CoordinateSystemNode("WKT", wkt);
+    return Georeference::create(root, error);
+}
+osg::ref_ptr<Georeference> reference(int epsg)
+{
+    std::string error;
+    osg::ref_ptr<Georeference> result = reference(wktOf(epsg), error);
+    EXPECT_TRUE(result) << error;
+    return result;
 }
 
-class GeofxPlugins : public testing::Test
-{
-protected:
-    static void SetUpTestSuite()
-    {
-        // Before the folders of an installed osgGeoFX.
-        osgDB::Registry::instance()->getLibraryFilePathList().push_front(GEOFX_BUILD_DIR "/lib");
-    }
-
-    static osg::ref_ptr<Georeference> reference(const std::string& wkt, std::string& error)
-    {
-        const osg::ref_ptr<osg::Node> root = new osg::CoordinateSystemNode("WKT", wkt);
-        return Georeference::create(root, error);
-    }
-    static osg::ref_ptr<Georeference> reference(int epsg)
-    {
-        std::string error;
-        osg::ref_ptr<Georeference> result = reference(wktOf(epsg), error);
-        EXPECT_TRUE(result) << error;
-        return result;
-    }
-
-    /// The message of a scene that cannot be read.
-    static std::string messageOf(const fs::path& scene)
-    {
-        const osgDB::ReaderWriter::ReadResult result =
-            osgDB::Registry::instance()->readNode(scene.string(), nullptr);
-        EXPECT_EQ(result.status(), osgDB::ReaderWriter::ReadResult::ERROR_IN_READING_FILE);
-        return result.message();
-    }
-};
-
-TEST_F(GeofxPlugins, ProjectedGeoreferenceIsGeographicLibsUtm)
+TEST_F(GeofxData, ProjectedGeoreferenceIsGeographicLibsUtm)
 {
     const auto utm = reference(32604);
     ASSERT_TRUE(utm);
@@ -121,7 +87,7 @@ TEST_F(GeofxPlugins, ProjectedGeoreferenceIsGeographicLibsUtm)
     }
 }
 
-TEST_F(GeofxPlugins, ProjectedWorldIsInMetres)
+TEST_F(GeofxData, ProjectedWorldIsInMetres)
 {
     // California zone 1 twice: in metres, and in US survey feet.
     const auto metres = reference(26941), feet = reference(2225);
@@ -136,7 +102,7 @@ TEST_F(GeofxPlugins, ProjectedWorldIsInMetres)
     EXPECT_NEAR(RadiansToDegrees(latitude), 41.0, 1e-8);
 }
 
-TEST_F(GeofxPlugins, PoleOfAProjectionHasAFrame)
+TEST_F(GeofxData, PoleOfAProjectionHasAFrame)
 {
     const auto polar = reference(3413); // its meridian towards -y is 45 degrees west
     ASSERT_TRUE(polar);
@@ -146,7 +112,7 @@ TEST_F(GeofxPlugins, PoleOfAProjectionHasAFrame)
     EXPECT_LT((osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), frame) - osg::Vec3d(0, 1, 0)).length(), 1e-6);
 }
 
-TEST_F(GeofxPlugins, OutsideTheProjectionIsFalse)
+TEST_F(GeofxData, OutsideTheProjectionIsFalse)
 {
     const auto utm = reference(32604);
     ASSERT_TRUE(utm);
@@ -158,7 +124,7 @@ TEST_F(GeofxPlugins, OutsideTheProjectionIsFalse)
     EXPECT_FALSE(utm->toGeodetic(osg::Vec3d(1e12, 1e12, 0.0), a, b, c));
 }
 
-TEST_F(GeofxPlugins, GeoreferenceServesThreadsAtOnce)
+TEST_F(GeofxData, GeoreferenceServesThreadsAtOnce)
 {
     // Half of the threads ask for places outside the projection: PROJ notes that in what the others use, too.
     const auto utm = reference(32604);
@@ -190,7 +156,7 @@ TEST_F(GeofxPlugins, GeoreferenceServesThreadsAtOnce)
     EXPECT_EQ(wrong, 0);
 }
 
-TEST_F(GeofxPlugins, GeoreferenceRefusesOtherSystemsInASentence)
+TEST_F(GeofxData, GeoreferenceRefusesOtherSystemsInASentence)
 {
     std::string error;
     EXPECT_FALSE(reference(wktOf(4326), error));
@@ -200,162 +166,6 @@ TEST_F(GeofxPlugins, GeoreferenceRefusesOtherSystemsInASentence)
     EXPECT_NE(error.find("is not understood; build it again"), std::string::npos) << error;
     EXPECT_FALSE(reference("", error));
     EXPECT_NE(error.find("is not understood; build it again"), std::string::npos) << error;
-}
-
-/// A terrain without pages: a box of 2 km around a point of the world, below a node with a coordinate system.
-fs::path writeTerrain(const TempDir& folder, osg::CoordinateSystemNode* root, const osg::Vec3d& center)
-{
-    osg::ref_ptr<osg::Geode> geode = new osg::Geode;
-    geode->addDrawable(new osg::ShapeDrawable(new osg::Box(center, 2000.0f)));
-    root->addChild(geode);
-    const fs::path file = folder / "terrain.osgb";
-    EXPECT_TRUE(osgDB::writeNodeFile(*root, file.string()));
-    return file;
-}
-
-osg::ref_ptr<osg::CoordinateSystemNode> geocentricRoot()
-{
-    osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
-    root->setEllipsoidModel(new osg::EllipsoidModel);
-    return root;
-}
-
-std::string sceneWith(const std::string& more)
-{
-    return "<geofx version='1'>\n<terrain><database file='terrain.osgb'/></terrain>\n" + more + "</geofx>";
-}
-
-const osg::Light* sunOf(const osg::Node* scene)
-{
-    const osg::Group* group = scene ? scene->asGroup() : nullptr;
-    for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
-        if (const auto* source = dynamic_cast<const osg::LightSource*>(group->getChild(i)))
-            return source->getLight();
-    return nullptr;
-}
-
-osg::Vec3d directionOf(const osg::Light* sun)
-{
-    EXPECT_EQ(sun->getPosition().w(), 0.0f);
-    return osg::Vec3d(sun->getPosition().x(), sun->getPosition().y(), sun->getPosition().z());
-}
-
-TEST_F(GeofxPlugins, SceneTellsProgramsWhatItSays)
-{
-    const TempDir folder;
-    writeTerrain(folder, geocentricRoot(), osg::Vec3d(6378137.0, 0.0, 0.0));
-    const auto file = folder.write(
-        "a.geofx", sceneWith("<homeView longitude='-157.905' latitude='21.25' altitude='1400' heading='25' "
-                             "pitch='-12' verticalFieldOfView='35'/><background colour='#ff0033'/>"
-                             "<sun azimuth='0' elevation='0' colour='#00ff00' ambient='#0000ff'/>"));
-    const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(file.string());
-    ASSERT_TRUE(scene);
-    EXPECT_EQ(scene->getName(), "osgGeoFX scene");
-    std::string text;
-    double fov = 0.0;
-    bool hasLight = false;
-    EXPECT_TRUE(scene->getUserValue("geofx.homeView", text));
-    EXPECT_EQ(text, "-157.905,21.25,1400,25,-12,0");
-    EXPECT_TRUE(scene->getUserValue("geofx.background", text));
-    EXPECT_EQ(text, "1,0,0.2");
-    EXPECT_TRUE(scene->getUserValue("geofx.homeFov", fov));
-    EXPECT_EQ(fov, 35.0);
-    EXPECT_TRUE(scene->getUserValue("geofx.hasLight", hasLight) && hasLight);
-    const osg::Light* sun = sunOf(scene);
-    ASSERT_TRUE(sun);
-    EXPECT_EQ(sun->getLightNum(), 0);
-    EXPECT_EQ(sun->getDiffuse(), osg::Vec4(0, 1, 0, 1));
-    EXPECT_EQ(sun->getAmbient(), osg::Vec4(0, 0, 1, 1));
-
-    const auto bare = folder.write("b.geofx", sceneWith(""));
-    const osg::ref_ptr<osg::Node> other = osgDB::readRefNodeFile(bare.string());
-    ASSERT_TRUE(other);
-    EXPECT_FALSE(sunOf(other));
-    EXPECT_FALSE(other->getStateSet());
-    EXPECT_FALSE(other->getUserValue("geofx.homeView", text) || other->getUserValue("geofx.homeFov", fov) ||
-                 other->getUserValue("geofx.background", text) ||
-                 other->getUserValue("geofx.hasLight", hasLight));
-}
-
-TEST_F(GeofxPlugins, SunStandsWhereTheSceneSays)
-{
-    const TempDir folder;
-    const double longitude = -157.8, latitude = 21.4, azimuth = 245.0, elevation = 35.0;
-    const GeographicLib::LocalCartesian local(latitude, longitude, 0.0);
-    const double a = DegreesToRadians(azimuth), e = DegreesToRadians(elevation);
-    osg::Vec3d origin, tip, expected(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
-    double lat = 0.0, lon = 0.0, h = 0.0;
-    const GeographicLib::Geocentric earth(GeographicLib::Constants::WGS84_a(),
-                                          GeographicLib::Constants::WGS84_f());
-    earth.Forward(latitude, longitude, 0.0, origin.x(), origin.y(), origin.z());
-    local.Reverse(expected.x() * 1000.0, expected.y() * 1000.0, expected.z() * 1000.0, lat, lon, h);
-    earth.Forward(lat, lon, h, tip.x(), tip.y(), tip.z());
-    const osg::Vec3d world = (tip - origin) / 1000.0;
-    const std::string sun = "<sun azimuth='245' elevation='35'/>";
-
-    // At the terrain's centre, and at the home view's place, which is where the terrain is not.
-    writeTerrain(folder, geocentricRoot(), origin);
-    osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(folder.write("a.geofx", sceneWith(sun)).string());
-    ASSERT_TRUE(sunOf(scene));
-    EXPECT_LT((directionOf(sunOf(scene)) - world).length(), 1e-5);
-    writeTerrain(folder, geocentricRoot(), osg::Vec3d(6378137.0, 0.0, 0.0));
-    scene = osgDB::readRefNodeFile(folder.write("b.geofx", sceneWith(sun)).string());
-    ASSERT_TRUE(sunOf(scene));
-    EXPECT_GT((directionOf(sunOf(scene)) - world).length(), 0.5);
-    const std::string view =
-        "<homeView longitude='-157.8' latitude='21.4' altitude='0' heading='0' pitch='0'/>";
-    scene = osgDB::readRefNodeFile(folder.write("c.geofx", sceneWith(sun + view)).string());
-    ASSERT_TRUE(sunOf(scene));
-    EXPECT_LT((directionOf(sunOf(scene)) - world).length(), 1e-5);
-
-    // On a projected terrain the azimuth is turned by the grid's convergence.
-    int zone = 0;
-    bool isNorth = false;
-    double x = 0.0, y = 0.0, convergence = 0.0, scale = 0.0;
-    GeographicLib::UTMUPS::Forward(latitude, longitude, zone, isNorth, x, y, convergence, scale, 4);
-    writeTerrain(folder, new osg::CoordinateSystemNode("WKT", wktOf(32604)), osg::Vec3d(x, y, 0.0));
-    scene = osgDB::readRefNodeFile((folder / "a.geofx").string());
-    ASSERT_TRUE(sunOf(scene));
-    const double grid = a - DegreesToRadians(convergence);
-    EXPECT_GT(std::abs(convergence), 0.4);
-    EXPECT_LT((directionOf(sunOf(scene)) -
-               osg::Vec3d(std::sin(grid) * std::cos(e), std::cos(grid) * std::cos(e), std::sin(e)))
-                  .length(),
-              1e-5);
-}
-
-TEST_F(GeofxPlugins, SceneErrorsReachThePersonThroughOsgviewer)
-{
-    const TempDir folder;
-    folder.write("a.geofx", sceneWith("<effects/>"));
-    geofx::test::ProgramOptions options;
-    options.folder = folder.path().string();
-    options.environment = {"OSG_LIBRARY_PATH=" GEOFX_BUILD_DIR "/lib"};
-    const auto result = geofx::test::runProgram({"osgviewer", "a.geofx"}, options);
-    EXPECT_NE(result.exitCode, 0);
-    EXPECT_NE(
-        result.standardError.find("a.geofx:3: <effects>: this element is not known in <geofx>; expected: "),
-        std::string::npos)
-        << result.standardError;
-}
-
-TEST_F(GeofxPlugins, SceneSaysWhyItCannotBeRead)
-{
-    const TempDir folder;
-    EXPECT_NE(messageOf(folder.write("a.geofx", sceneWith(""))).find("a.geofx:2: <database>: the file \""),
-              std::string::npos);
-    folder.write("terrain.osgb", "not a database");
-    EXPECT_NE(messageOf(folder / "a.geofx").find("a.geofx:2: <database>: the terrain \""), std::string::npos);
-
-    // A sun needs to know where north is.
-    writeTerrain(folder, new osg::CoordinateSystemNode("WKT", "nonsense"), osg::Vec3d());
-    EXPECT_TRUE(osgDB::readRefNodeFile((folder / "a.geofx").string()));
-    EXPECT_NE(messageOf(folder.write("b.geofx", sceneWith("<sun azimuth='0' elevation='1'/>")))
-                  .find("b.geofx:3: <sun>: The scene's coordinate system cannot be used: "),
-              std::string::npos);
-
-    EXPECT_EQ(osgDB::Registry::instance()->readNode((folder / "none.geofx").string(), nullptr).status(),
-              osgDB::ReaderWriter::ReadResult::FILE_NOT_FOUND);
 }
 
 /// A hill of 48 × 32 samples near Oahu.
@@ -380,7 +190,7 @@ void writeDem(const fs::path& file)
 std::string rasterScene(const std::string& attributes)
 {
     return "<geofx version='1'>\n<terrain>\n<rasters " + attributes +
-           ">\n<dem file='dem.tif'/></rasters></terrain>\n<sun azimuth='1' elevation='2'/></geofx>";
+           ">\n<dem file='dem.tif'/></rasters></terrain>\n<sun azimuth='0' elevation='90'/></geofx>";
 }
 
 /// The databases in a cache folder.
@@ -392,7 +202,7 @@ std::vector<fs::path> databasesIn(const fs::path& cache)
     return found;
 }
 
-TEST_F(GeofxPlugins, RastersAreBuiltOnceAndAgainWhenTheyChange)
+TEST_F(GeofxData, RastersAreBuiltOnceAndAgainWhenTheyChange)
 {
     const TempDir folder;
     writeDem(folder / "dem.tif");
@@ -417,7 +227,60 @@ TEST_F(GeofxPlugins, RastersAreBuiltOnceAndAgainWhenTheyChange)
     EXPECT_EQ(databasesIn(folder / "cache").size(), 3u);
 }
 
-TEST_F(GeofxPlugins, FilesThatARasterStandsOnCountAsSources)
+TEST_F(GeofxData, SunOfRastersStandsOverTheirMiddle)
+{
+    const TempDir folder;
+    writeDem(folder / "dem.tif");
+    for (const std::string srs : {"geocentric", "EPSG:32604"})
+    {
+        SCOPED_TRACE(srs);
+        const auto file = folder.write("a.geofx", rasterScene("cache='cache' srs='" + srs + "'"));
+        const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(file.string());
+        ASSERT_TRUE(scene);
+        const auto* source = dynamic_cast<osg::LightSource*>(scene->asGroup()->getChild(1));
+        ASSERT_TRUE(source);
+        const osg::Vec4d position = source->getLight()->getPosition();
+        std::string error;
+        const osg::ref_ptr<Georeference> place = Georeference::create(scene, error);
+        ASSERT_TRUE(place) << error;
+        osg::Matrixd frame;
+        place->localToWorld(DegreesToRadians(-157.976), DegreesToRadians(21.484), 0.0, frame);
+        const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), frame);
+        EXPECT_LT((osg::Vec3d(position.x(), position.y(), position.z()) - up).length(), 1e-4);
+    }
+}
+
+/// Whether all PagedLODs below a node read through a callback, as they do with a TileGuard; false without any.
+bool isGuarded(osg::Node& node)
+{
+    class Visitor : public osg::NodeVisitor
+    {
+    public:
+        Visitor() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+        void apply(osg::PagedLOD& lod) override
+        {
+            ++all;
+            const auto* options = dynamic_cast<osgDB::Options*>(lod.getDatabaseOptions());
+            guarded += options && options->getReadFileCallback();
+            traverse(lod);
+        }
+        int all = 0, guarded = 0;
+    } visitor;
+    node.accept(visitor);
+    return visitor.all > 0 && visitor.guarded == visitor.all;
+}
+
+TEST_F(GeofxData, TilesOfASceneAreGuarded)
+{
+    const TempDir folder;
+    writeDem(folder / "dem.tif");
+    const auto file = folder.write("a.geofx", rasterScene("cache='cache' tileSize='8'"));
+    const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(file.string());
+    ASSERT_TRUE(scene);
+    EXPECT_TRUE(isGuarded(*scene));
+}
+
+TEST_F(GeofxData, FilesThatARasterStandsOnCountAsSources)
 {
     const TempDir folder;
     writeDem(folder / "part.tif");
@@ -433,7 +296,7 @@ TEST_F(GeofxPlugins, FilesThatARasterStandsOnCountAsSources)
     EXPECT_EQ(databasesIn(folder / "cache").size(), 2u);
 }
 
-TEST_F(GeofxPlugins, CacheIsThePersonsByDefault)
+TEST_F(GeofxData, CacheIsThePersonsByDefault)
 {
     const TempDir folder;
     writeDem(folder / "dem.tif");
@@ -442,19 +305,19 @@ TEST_F(GeofxPlugins, CacheIsThePersonsByDefault)
     options.folder = folder.path().string();
     options.environment = {"OSG_LIBRARY_PATH=" GEOFX_BUILD_DIR "/lib",
                            "XDG_CACHE_HOME=" + (folder / "xdg").string()};
-    auto result = geofx::test::runProgram({"osgconv", "a.geofx", "a.osgt"}, options);
+    auto result = geofx::test::runProgram({geofx::test::builtProgram("read_scene"), "a.geofx"}, options);
     EXPECT_EQ(result.exitCode, 0) << result.standardError;
     EXPECT_NE(result.standardError.find("osgGeoFX: building the terrain of "), std::string::npos)
         << result.standardError;
     EXPECT_EQ(databasesIn(folder / "xdg/osgGeoFX").size(), 1u);
     options.environment[1] = "XDG_CACHE_HOME=";
     options.environment.push_back("HOME=" + (folder / "home").string());
-    result = geofx::test::runProgram({"osgconv", "a.geofx", "a.osgt"}, options);
+    result = geofx::test::runProgram({geofx::test::builtProgram("read_scene"), "a.geofx"}, options);
     EXPECT_EQ(result.exitCode, 0) << result.standardError;
     EXPECT_EQ(databasesIn(folder / "home/.cache/osgGeoFX").size(), 1u);
 }
 
-TEST_F(GeofxPlugins, ProgramsThatStartAtOnceShareOneBuild)
+TEST_F(GeofxData, ProgramsThatStartAtOnceShareOneBuild)
 {
     const TempDir folder;
     writeDem(folder / "dem.tif");
@@ -464,12 +327,11 @@ TEST_F(GeofxPlugins, ProgramsThatStartAtOnceShareOneBuild)
     options.environment = {"OSG_LIBRARY_PATH=" GEOFX_BUILD_DIR "/lib"};
     std::array<geofx::test::ProgramResult, 3> results;
     std::vector<std::thread> threads;
-    for (std::size_t i = 0; i < results.size(); ++i)
+    for (auto& result : results)
         threads.emplace_back(
-            [&, i]
-            {
-                results[i] = geofx::test::runProgram(
-                    {"osgconv", "a.geofx", "out" + std::to_string(i) + ".osgt"}, options);
+            [&] {
+                result =
+                    geofx::test::runProgram({geofx::test::builtProgram("read_scene"), "a.geofx"}, options);
             });
     for (auto& thread : threads)
         thread.join();
@@ -483,7 +345,7 @@ TEST_F(GeofxPlugins, ProgramsThatStartAtOnceShareOneBuild)
     EXPECT_EQ(databasesIn(folder / "cache").size(), 1u);
 }
 
-TEST_F(GeofxPlugins, RastersThatCannotBeBuiltAreNamed)
+TEST_F(GeofxData, RastersThatCannotBeBuiltAreNamed)
 {
     const TempDir folder;
     folder.write("dem.tif", "not a raster");
@@ -499,7 +361,7 @@ TEST_F(GeofxPlugins, RastersThatCannotBeBuiltAreNamed)
     EXPECT_NE(message.find("; name another folder in the attribute \"cache\""), std::string::npos) << message;
 }
 
-TEST_F(GeofxPlugins, WithoutTheDataPluginRastersSayWhatIsMissing)
+TEST_F(GeofxData, WithoutTheDataPluginRastersSayWhatIsMissing)
 {
     const TempDir folder;
     writeDem(folder / "dem.tif");
@@ -511,7 +373,8 @@ TEST_F(GeofxPlugins, WithoutTheDataPluginRastersSayWhatIsMissing)
     geofx::test::ProgramOptions options;
     options.folder = folder.path().string();
     options.environment = {"OSG_LIBRARY_PATH=" + folder.path().string(), "LD_LIBRARY_PATH="};
-    const auto result = geofx::test::runProgram({"osgviewer", "a.geofx"}, options);
+    const auto result =
+        geofx::test::runProgram({geofx::test::builtProgram("read_scene"), "a.geofx"}, options);
     EXPECT_NE(result.exitCode, 0);
     EXPECT_NE(
         result.standardError.find("a.geofx:3: <rasters>: rasters are built into a database by the OSG plugin "

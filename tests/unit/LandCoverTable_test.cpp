@@ -52,7 +52,8 @@ TEST(LandCoverTable, ColumnsInAnyOrderWithOthersBetween)
 {
     const TempDir folder;
     const auto classes = readLandCoverTable(
-        folder.write("t.csv", "blue,note,name,class,value,green,red\n3,x,\"Wood, dense\",wood,7,2,1\n").string());
+        folder.write("t.csv", "blue,note,name,class,value,green,red\n3,x,\"Wood, dense\",wood,7,2,1\n")
+            .string());
     ASSERT_EQ(classes.size(), 1u);
     EXPECT_EQ(classes[0].value, 7);
     EXPECT_EQ(classes[0].id, "wood");
@@ -63,8 +64,8 @@ TEST(LandCoverTable, ColumnsInAnyOrderWithOthersBetween)
 TEST(LandCoverTable, WindowsLineEndsAndByteOrderMark)
 {
     const TempDir folder;
-    const auto classes =
-        readLandCoverTable(folder.write("t.csv", "\xEF\xBB\xBFvalue,class,name,red,green,blue\r\n255,a,A,0,128,255\r\n"));
+    const auto classes = readLandCoverTable(
+        folder.write("t.csv", "\xEF\xBB\xBFvalue,class,name,red,green,blue\r\n255,a,A,0,128,255\r\n"));
     ASSERT_EQ(classes.size(), 1u);
     EXPECT_EQ(classes[0].value, 255);
     EXPECT_EQ(classes[0].color[2], 255);

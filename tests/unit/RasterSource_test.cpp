@@ -23,7 +23,8 @@ constexpr float NONE = std::numeric_limits<float>::quiet_NaN();
 
 std::vector<float> heights(RasterSource& source, const GridCrs& crs, const Lattice& lattice)
 {
-    std::vector<float> result(static_cast<std::size_t>(lattice.columns) * static_cast<std::size_t>(lattice.rows), NONE);
+    std::vector<float> result(
+        static_cast<std::size_t>(lattice.columns) * static_cast<std::size_t>(lattice.rows), NONE);
     source.sampleHeights(crs, lattice, result.data());
     return result;
 }
@@ -50,12 +51,14 @@ std::vector<Texel> colors(RasterSource& source, const Lattice& lattice)
 }
 
 /// Ten by ten pixels of 0.1° from 10° E 50° N; the western half has `west`, the eastern `east`.
-TestRaster halves(const std::vector<double>& west, const std::vector<double>& east, GDALDataType type = GDT_Byte)
+TestRaster halves(const std::vector<double>& west, const std::vector<double>& east,
+                  GDALDataType type = GDT_Byte)
 {
     TestRaster raster(10, 10, static_cast<int>(west.size()), type);
-    raster.placed(10.0, 50.0, 0.1, 0.1).crs("EPSG:4326").fill([&](int column, int, int band) {
-        return (column < 5 ? west : east)[static_cast<std::size_t>(band)];
-    });
+    raster.placed(10.0, 50.0, 0.1, 0.1)
+        .crs("EPSG:4326")
+        .fill([&](int column, int, int band)
+              { return (column < 5 ? west : east)[static_cast<std::size_t>(band)]; });
     return raster;
 }
 
@@ -82,7 +85,8 @@ TEST(RasterHeights, RandomLatticesOnRandomAffineRasters)
         Random random(static_cast<std::uint64_t>(sample));
         const int width = random.integer(2, 60), height = random.integer(2, 60);
         const double pixelX = random.logarithmic(1.0, 100.0), pixelY = random.logarithmic(1.0, 100.0);
-        const double turn = random.integer(0, 2) ? 0.0 : random.uniform(-3.0, 3.0), shear = random.uniform(-0.3, 0.3);
+        const double turn = random.integer(0, 2) ? 0.0 : random.uniform(-3.0, 3.0),
+                     shear = random.uniform(-0.3, 0.3);
         std::array<double, 6> t{500000.0 + random.uniform(-1e5, 1e5),
                                 pixelX * std::cos(turn),
                                 pixelY * (turn == 0.0 ? 0.0 : shear - std::sin(turn)),
@@ -92,7 +96,10 @@ TEST(RasterHeights, RandomLatticesOnRandomAffineRasters)
         std::array<double, 6> inverse{};
         ASSERT_TRUE(GDALInvGeoTransform(t.data(), inverse.data()));
         const double seed = random.uniform(0.0, 1000.0);
-        const auto value = [&](int column, int row) { return relief(column + seed, row - seed); };
+        const auto value = [&](int column, int row)
+        {
+            return relief(column + seed, row - seed);
+        };
         const std::string file = TestRaster(width, height)
                                      .geoTransform(t)
                                      .crs("EPSG:32604")
@@ -110,8 +117,8 @@ TEST(RasterHeights, RandomLatticesOnRandomAffineRasters)
             for (int column = 0; column < lattice.columns; ++column)
             {
                 double px = 0.0, py = 0.0;
-                GDALApplyGeoTransform(inverse.data(), lattice.x0 + column * lattice.dx, lattice.y0 + row * lattice.dy,
-                                      &px, &py);
+                GDALApplyGeoTransform(inverse.data(), lattice.x0 + column * lattice.dx,
+                                      lattice.y0 + row * lattice.dy, &px, &py);
                 const float h = found[static_cast<std::size_t>(row * lattice.columns + column)];
                 // From centre to centre of the outermost pixels; beyond their outer edges there is nothing.
                 if (px < -0.03 || px > width + 0.03 || py < -0.03 || py > height + 0.03)
@@ -120,18 +127,22 @@ TEST(RasterHeights, RandomLatticesOnRandomAffineRasters)
                     continue;
                 }
                 if (px < 0.0 || px > width || py < 0.0 || py > height) continue;
-                const double x = std::clamp(px - 0.5, 0.0, width - 1.0), y = std::clamp(py - 0.5, 0.0, height - 1.0);
-                const int i = std::min(static_cast<int>(x), width - 2), j = std::min(static_cast<int>(y), height - 2);
+                const double x = std::clamp(px - 0.5, 0.0, width - 1.0),
+                             y = std::clamp(py - 0.5, 0.0, height - 1.0);
+                const int i = std::min(static_cast<int>(x), width - 2),
+                          j = std::min(static_cast<int>(y), height - 2);
                 const double u = x - i, v = y - j;
                 const double expected = (1 - v) * ((1 - u) * value(i, j) + u * value(i + 1, j)) +
                                         v * ((1 - u) * value(i, j + 1) + u * value(i + 1, j + 1));
                 ASSERT_NEAR(static_cast<double>(h), expected, 0.02)
-                    << "Random(" << sample << "), pixel " << px << " " << py << " of " << width << "x" << height;
+                    << "Random(" << sample << "), pixel " << px << " " << py << " of " << width << "x"
+                    << height;
             }
     }
 }
 
-/// A hole of no-data in ground of `ground` metres: the samples are ground or nothing, and nothing in the hole's midst.
+/// A hole of no-data in ground of `ground` metres: the samples are ground or nothing, and nothing in the
+/// hole's midst.
 void expectHole(const std::string& file, float ground)
 {
     const auto found = heights(file, {10.05, 49.05, 0.013, 0.013, 70, 70});
@@ -175,8 +186,8 @@ TEST(RasterHeights, MaskBandIsAHole)
     raster.dataset().CreateMaskBand(GMF_PER_DATASET);
     std::vector<unsigned char> mask(100, 255);
     std::fill(mask.begin() + 50, mask.end(), 0);
-    ASSERT_EQ(raster.dataset().GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, 10, 10, mask.data(), 10, 10,
-                                                                         GDT_Byte, 0, 0, nullptr),
+    ASSERT_EQ(raster.dataset().GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, 10, 10, mask.data(),
+                                                                         10, 10, GDT_Byte, 0, 0, nullptr),
               CE_None);
     const auto found = heights(raster.write(folder / "dem.tif"), {10.25, 49.25, 0.5, 0.5, 2, 2});
     EXPECT_TRUE(std::isnan(found[0]) && std::isnan(found[1])) << found[0] << " " << found[1];
@@ -259,12 +270,24 @@ TEST(RasterHeights, GroundControlPoints)
 TEST(RasterHeights, AcrossTheAntimeridian)
 {
     const TempDir folder;
-    const auto east = [](double longitude) { return longitude < 0.0 ? longitude + 360.0 : longitude; };
-    const auto plane = [&](double west) {
-        return [=](int column, int, int) { return 100.0 * (east(west + (column + 0.5) * 0.1) - 170.0); };
+    const auto east = [](double longitude)
+    {
+        return longitude < 0.0 ? longitude + 360.0 : longitude;
     };
-    const auto write = [&](const std::string& name, double west, int columns) {
-        return TestRaster(columns, 20).placed(west, 1.0, 0.1, 0.1).crs("EPSG:4326").fill(plane(west)).write(folder / name);
+    const auto plane = [&](double west)
+    {
+        return [=](int column, int, int)
+        {
+            return 100.0 * (east(west + (column + 0.5) * 0.1) - 170.0);
+        };
+    };
+    const auto write = [&](const std::string& name, double west, int columns)
+    {
+        return TestRaster(columns, 20)
+            .placed(west, 1.0, 0.1, 0.1)
+            .crs("EPSG:4326")
+            .fill(plane(west))
+            .write(folder / name);
     };
     const auto before = write("before.tif", 179.0, 10), after = write("after.tif", -180.0, 10);
     const auto one = write("one.tif", 170.0, 200);
@@ -339,7 +362,8 @@ TEST(RasterHeights, PolarStereographic)
             double x = lattice.x0 + column * lattice.dx, y = lattice.y0 + row * lattice.dy;
             ASSERT_TRUE(toPolar->Transform(1, &x, &y));
             const float h = found[static_cast<std::size_t>(row * lattice.columns + column)];
-            ASSERT_TRUE(std::max(std::abs(x), std::abs(y)) < 500300.0 || std::isnan(h)) << column << " " << row;
+            ASSERT_TRUE(std::max(std::abs(x), std::abs(y)) < 500300.0 || std::isnan(h))
+                << column << " " << row;
             if (std::max(std::abs(x), std::abs(y)) > 495000.0) continue;
             ++inside;
             const double expected = 10.0 * ((x + 500000.0) / 10000.0 - 0.5) + (500000.0 - y) / 10000.0 - 0.5;
@@ -351,7 +375,8 @@ TEST(RasterHeights, PolarStereographic)
 TEST(RasterColors, GreyRgbAndAlpha)
 {
     EXPECT_EQ(colorsOf(halves({40}, {200})), (std::vector<Texel>{{40, 40, 40, 255}, {200, 200, 200, 255}}));
-    EXPECT_EQ(colorsOf(halves({1, 2, 3}, {250, 150, 50})), (std::vector<Texel>{{1, 2, 3, 255}, {250, 150, 50, 255}}));
+    EXPECT_EQ(colorsOf(halves({1, 2, 3}, {250, 150, 50})),
+              (std::vector<Texel>{{1, 2, 3, 255}, {250, 150, 50, 255}}));
     TestRaster rgba = halves({9, 8, 7, 255}, {100, 100, 100, 0});
     rgba.dataset().GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
     const auto found = colorsOf(rgba);

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <cpl_conv.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+#include <osgDB/Registry>
+
+#include <filesystem>
+#include <string>
+
+namespace geofx::test
+{
+
+inline std::string wktOf(int epsg)
+{
+    OGRSpatialReference srs;
+    EXPECT_EQ(srs.importFromEPSG(epsg), OGRERR_NONE);
+    char* text = nullptr;
+    srs.exportToWkt(&text);
+    std::string wkt = text;
+    CPLFree(text);
+    return wkt;
+}
+
+/// Tests of the osgDB plugins of this build.
+class GeofxPlugins : public testing::Test
+{
+protected:
+    static void SetUpTestSuite()
+    {
+        // Before the folders of an installed osgGeoFX.
+        osgDB::Registry::instance()->getLibraryFilePathList().push_front(GEOFX_BUILD_DIR "/lib");
+    }
+
+    /// The message of a scene that cannot be read.
+    static std::string messageOf(const std::filesystem::path& scene)
+    {
+        const osgDB::ReaderWriter::ReadResult result =
+            osgDB::Registry::instance()->readNode(scene.string(), nullptr);
+        EXPECT_EQ(result.status(), osgDB::ReaderWriter::ReadResult::ERROR_IN_READING_FILE);
+        return result.message();
+    }
+};
+
+} // namespace geofx::test
