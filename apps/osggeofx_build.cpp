@@ -3,50 +3,14 @@
 //
 // osggeofx_build: rasters to a paged terrain database.
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <osgGeoFX/terrain/ProgressLine.h>
 
 #include <CLI/CLI.hpp>
 
-#include <unistd.h>
-
-#include <chrono>
 #include <cstdio>
-#include <filesystem>
+#include <functional>
 #include <iostream>
 #include <map>
-
-namespace
-{
-
-/// One line that is rewritten on a terminal; a line for each tenth of the way where output goes to a file.
-class ProgressLine
-{
-public:
-    bool operator()(std::uint64_t done, std::uint64_t total, const std::string& phase)
-    {
-        const auto now = std::chrono::steady_clock::now();
-        const auto percent = 100 * done / total;
-        if (_terminal && (now - _last > std::chrono::milliseconds(100) || done == total))
-        {
-            std::fprintf(stderr, "\r%-7s %3d %%  (%llu of %llu units)%s", phase.c_str(),
-                         static_cast<int>(percent), static_cast<unsigned long long>(done),
-                         static_cast<unsigned long long>(total), done == total ? "\n" : "");
-            _last = now;
-        }
-        else if (!_terminal && percent / 10 > _tenths)
-        {
-            _tenths = percent / 10;
-            std::fprintf(stderr, "%s: %d %%\n", phase.c_str(), static_cast<int>(percent));
-        }
-        return true;
-    }
-
-private:
-    bool _terminal = isatty(STDERR_FILENO) != 0;
-    std::uint64_t _tenths = 0;
-    std::chrono::steady_clock::time_point _last;
-};
-
-} // namespace
 
 int main(int argc, char** argv)
 {
@@ -117,8 +81,9 @@ int main(int argc, char** argv)
                                            ": write it as EPSG: and a number, such as EPSG:32604.");
             options.epsg = std::stoi(number);
         }
+        osgGeoFX::ProgressLine line("osggeofx_build");
         const auto summary =
-            osgGeoFX::buildDatabase(options, quiet ? osgGeoFX::BuildProgress() : ProgressLine());
+            osgGeoFX::buildDatabase(options, quiet ? osgGeoFX::BuildProgress() : std::ref(line));
         if (!quiet)
             std::printf(
                 "%s: %llu tiles (%llu taken over), %d levels, %.3f million samples, %.1f MB, %.1f s, peak "

@@ -5,8 +5,11 @@
 #include <osg/BoundingBox>
 #include <osg/Math>
 #include <osg/ValueObject>
+#include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 #include <osgDB/Registry>
+
+#include <dlfcn.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +42,17 @@ std::vector<osg::Vec3d> outlineOf(const TerrainInfo& info, const Georeference* r
         points.push_back(world);
     }
     return points;
+}
+
+/// Our plugins lie below the folder of this library, in the build tree and in a prefix alike; OSG looks only in
+/// its own prefix and in OSG_LIBRARY_PATH.
+void addPluginFolder()
+{
+    Dl_info self{};
+    if (dladdr(reinterpret_cast<void*>(&addPluginFolder), &self) == 0 || !self.dli_fname) return;
+    const std::string folder = osgDB::getFilePath(self.dli_fname);
+    osgDB::FilePathList& folders = osgDB::Registry::instance()->getLibraryFilePathList();
+    if (std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
 }
 
 } // namespace
@@ -86,6 +100,7 @@ std::optional<SceneSettings> SceneSettings::read(const osg::Node& root, std::str
 
 std::optional<Scene> Scene::load(const std::string& file, std::string& error)
 {
+    addPluginFolder();
     // Names such as "cow.osgt.10.scale" are no files, and yet OSG reads them.
     std::string reason = osgDB::fileExists(file) ? TileGuard::faultOf(file) : std::string();
     osgDB::ReaderWriter::ReadResult result;

@@ -289,8 +289,10 @@ double BuildPlan::skirt(const TileKey& key, int side) const
     const int width = scheme.intervals * scheme.step(key.level);
     const bool outer[] = {key.y == 0, scheme.firstColumn(key) + width >= scheme.lastColumn,
                           scheme.firstRow(key) + width >= scheme.lastRow, key.x == 0};
-    const bool closed = scheme.crs.geographic && scheme.east - scheme.west > 360.0 - 1e-9 && side % 2 == 1;
-    if (outer[side] && !closed) return 0.0;
+    // But the globe's eastern and western end are one line, which no level has inside a tile.
+    const bool seam =
+        outer[side] && scheme.crs.geographic && scheme.east - scheme.west > 360.0 - 1e-9 && side % 2 == 1;
+    if (outer[side] && !seam) return 0.0;
 
     // Which neighbour stands on the other side is up to the camera and the pager: any from the coarsest level on
     // which this line divides two tiles. (Below that level both sides lie in one tile.)
@@ -298,14 +300,17 @@ double BuildPlan::skirt(const TileKey& key, int side) const
     double other = 0.0;
     for (TileKey self = key;; self = {self.level - 1, self.x / 2, self.y / 2})
     {
-        const TileKey neighbour{self.level, self.x + dx, self.y + dy};
+        TileKey neighbour{self.level, self.x + dx, self.y + dy};
+        if (seam)
+            neighbour.x =
+                side == 1 ? 0 : (scheme.lastColumn - 1) / (scheme.intervals * scheme.step(self.level));
         const int across = scheme.tilesAcross(self.level);
         if (neighbour.x >= 0 && neighbour.y >= 0 && neighbour.x < across && neighbour.y < across)
             other = std::max(other, static_cast<double>(fact(neighbour).error));
         other = std::max(other, static_cast<double>(fact(self).error));
         const int place = dx != 0 ? self.x : self.y;
         const bool towardsEnd = dx + dy > 0;
-        if (self.level == 0 || (place % 2 == 1) != towardsEnd) break;
+        if (self.level == 0 || (!seam && (place % 2 == 1) != towardsEnd)) break;
     }
     // Rounding alone opens hair lines between meshes of different density, even in a plain.
     const double least = 0.5 + 0.02 * scheme.tileMetres(key.level) / scheme.intervals;

@@ -170,20 +170,20 @@ private:
 
     void gatherEdge(TileMesh& mesh) const
     {
-        const int n = _lattice.intervals;
+        const int east = _lattice.eastColumn(), north = _lattice.northRow();
         const auto include = [&](int c, int r)
         {
             const auto index = _indices[static_cast<std::size_t>(r) * static_cast<std::size_t>(_side) +
                                         static_cast<std::size_t>(c)];
             if (index != UNUSED) mesh.edge.push_back(index);
         };
-        for (int i = 0; i < n; ++i)
+        for (int i = 0; i < east; ++i)
             include(i, 0);
-        for (int i = 0; i < n; ++i)
-            include(n, i);
-        for (int i = n; i > 0; --i)
-            include(i, n);
-        for (int i = n; i >= 0; --i)
+        for (int i = 0; i < north; ++i)
+            include(east, i);
+        for (int i = east; i > 0; --i)
+            include(i, north);
+        for (int i = north; i >= 0; --i)
             include(0, i);
     }
 
@@ -216,17 +216,18 @@ TileMesh createFullMesh(const TileLattice& lattice)
             triangle({c, r}, {c + 1, r}, {c + 1, r + 1});
             triangle({c, r}, {c + 1, r + 1}, {c, r + 1});
         }
+    const int east = lattice.eastColumn(), north = lattice.northRow();
     const auto edge = [&](int c, int r)
     {
         mesh.edge.push_back(static_cast<std::uint32_t>(r * stride + c));
     };
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < east; ++i)
         edge(i, 0);
-    for (int i = 0; i < n; ++i)
-        edge(n, i);
-    for (int i = n; i > 0; --i)
-        edge(i, n);
-    for (int i = n; i >= 0; --i)
+    for (int i = 0; i < north; ++i)
+        edge(east, i);
+    for (int i = east; i > 0; --i)
+        edge(i, north);
+    for (int i = north; i >= 0; --i)
         edge(0, i);
     return mesh;
 }

@@ -4,6 +4,7 @@
 
 #include "HeightGrid.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -35,6 +36,10 @@ struct TileLattice
     int endColumn = 0, endRow = 0;
     /// How far the Earth curves away below the tile's tangent plane at each column and row, metres.
     std::vector<float> dropX, dropY;
+
+    /// Where the tile's ground ends in the east and in the north.
+    int eastColumn() const { return std::min(intervals, endColumn); }
+    int northRow() const { return std::min(intervals, endRow); }
 
     /// Above the tangent plane, so that what is straight in space is straight here.
     float height(int c, int r) const

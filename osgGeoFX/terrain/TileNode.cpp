@@ -25,6 +25,13 @@ namespace
 constexpr double SKIRT_LEAN = 0.1;
 constexpr int COLOR_UNIT = 0, LAND_COVER_UNIT = 1;
 
+/// The side of a tile (0 south, 1 east, 2 north, 3 west) along which two neighbours on its border lie.
+int sideOf(const TileMesh::Post& a, const TileMesh::Post& b, int intervals)
+{
+    if (a.row == b.row) return a.row == 0 ? 0 : 2;
+    return a.column == intervals ? 1 : 3;
+}
+
 osg::ref_ptr<osg::Image> cutImage(const std::vector<unsigned char>& texels, int columns, int x0, int y0,
                                   int size, int channels)
 {
@@ -160,17 +167,21 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     {
         const TileMesh::Post post = mesh.posts[index];
         double depth = 0.0, outX = 0.0, outY = 0.0;
+        bool ends = false; // a wall that ends on the terrain's border, where all levels have the same post
         const auto onSide = [&](bool on, int side, double dx, double dy)
         {
             if (!on) return;
+            ends = ends || depths[side] <= 0.0;
             depth = std::max(depth, depths[side]);
             outX += dx;
             outY += dy;
         };
         onSide(post.row == 0, 0, 0.0, -1.0);
-        onSide(post.column == intervals, 1, 1.0, 0.0);
-        onSide(post.row == intervals, 2, 0.0, 1.0);
+        onSide(post.column == intervals || firstColumn + post.column * posts >= scheme.lastColumn, 1, 1.0,
+               0.0);
+        onSide(post.row == intervals || firstRow + post.row * posts >= scheme.lastRow, 2, 0.0, 1.0);
         onSide(post.column == 0, 3, -1.0, 0.0);
+        if (ends) depth = 0.0;
         frame.axes(gridX(post.column), gridY(post.row), east, north, up);
         const osg::Vec3d offset = (east * outX + north * outY) * (SKIRT_LEAN * depth) - up * depth;
         vertices->push_back((*vertices)[index] + osg::Vec3(offset));
@@ -181,7 +192,7 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     std::vector<std::uint32_t> elements = mesh.triangles;
     bool whole = key.level == scheme.finestLevel && firstColumn + n <= scheme.lastColumn &&
                  firstRow + n <= scheme.lastRow;
-    whole = whole &&
+    whole = whole && *std::min_element(std::begin(depths), std::end(depths)) > 0.0 &&
             elements.size() == std::size_t{6} * static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
     // A wall hangs from each edge of the surface along the border; not across a hole, nor beyond the ground's end.
     std::vector<bool> onBorder(mesh.posts.size(), false);
@@ -196,7 +207,8 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     for (std::size_t k = 0; k + 1 < mesh.edge.size(); ++k)
     {
         const std::uint32_t a = mesh.edge[k], b = mesh.edge[k + 1];
-        if (!borders.count({a, b})) continue;
+        if (!borders.count({a, b}) || depths[sideOf(mesh.posts[a], mesh.posts[b], intervals)] <= 0.0)
+            continue;
         const auto lowA = static_cast<std::uint32_t>(mesh.posts.size() + k);
         for (const std::uint32_t index : {a, lowA, b, b, lowA, lowA + 1})
             elements.push_back(index);

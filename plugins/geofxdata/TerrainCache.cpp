@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "TerrainCache.h"
 
-#include "ProgressLine.h"
+#include <osgGeoFX/terrain/ProgressLine.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>

@@ -177,10 +177,13 @@ FinestLevel::FinestLevel(const std::string& folder)
             if (tile.level != level || !tile.geometry) return;
             if (all.empty())
             {
-                // (n + 1)² posts row by row, then the 4n + 1 of the skirt.
-                const auto count = static_cast<int>(tile.vertices().size());
-                tileIntervals = static_cast<int>(std::lround(std::sqrt(count + 7.0))) - 3;
-                if (tileIntervals * (tileIntervals + 6) + 2 != count)
+                // Posts lie row by row, and a row has one texture coordinate t; the skirt's vertices follow.
+                const auto& t = static_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0));
+                while (t[static_cast<std::size_t>(tileIntervals)].y() == t[0].y())
+                    ++tileIntervals;
+                --tileIntervals;
+                if (tile.vertices().size() <
+                    static_cast<std::size_t>((tileIntervals + 1) * (tileIntervals + 1)))
                     throw std::runtime_error(tile.transform->getName() + " is not a full grid");
                 across = (tileIntervals << level) + 1;
                 const auto posts = static_cast<std::size_t>(across) * static_cast<std::size_t>(across);

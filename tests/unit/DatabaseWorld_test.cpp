@@ -114,6 +114,79 @@ TEST(DatabaseWorld, WholeGlobeIsClosed)
               static_cast<std::size_t>(DatabaseRoot(folder / "db").value<double>("geofx.tiles")));
 }
 
+/// A wall of a skirt on a meridian, in that meridian's half plane: distance from the axis, and along it.
+struct MeridianWall
+{
+    osg::Vec2d top[2], up[2];
+    double depth[2] = {};
+
+    /// How high the wall's edge passes over a place, measured along a direction; NaN where it does not.
+    double heightOver(const osg::Vec2d& place, const osg::Vec2d& direction,
+                      double* depthThere = nullptr) const
+    {
+        const osg::Vec2d along = top[1] - top[0], from = place - top[0];
+        const double determinant = along.x() * -direction.y() + direction.x() * along.y();
+        const double s = (from.x() * -direction.y() + direction.x() * from.y()) / determinant;
+        if (s < -1e-9 || s > 1.0 + 1e-9) return std::nan("");
+        if (depthThere) *depthThere = depth[0] + s * (depth[1] - depth[0]);
+        return (top[0] + along * s - place) * direction;
+    }
+};
+
+/// Where the globe's eastern end meets its western one, tiles of all levels stand beside each other too.
+TEST(DatabaseWorld, SkirtsCloseTheGlobe)
+{
+    const TempDir folder;
+    // 100 columns, so that the last tiles reach beyond the end.
+    const auto dem =
+        TestRaster(100, 50)
+            .placed(-180.0, 90.0, 3.6, 3.6)
+            .crs("EPSG:4326")
+            .fill([](int column, int row, int) { return 4.0 * relief(10.0 * (column % 100), 10.0 * row); })
+            .write(folder / "dem.tif");
+    buildDatabase(options({dem}, folder / "db"));
+    const double seam = DatabaseRoot(folder / "db").west();
+    std::vector<MeridianWall> east, west;
+    readDatabase(folder / "db",
+                 [&](const DatabaseTile& tile)
+                 {
+                     for (const auto& piece : tile.skirt)
+                     {
+                         MeridianWall wall;
+                         bool onSeam = true;
+                         for (std::size_t k = 0; k < 2; ++k)
+                         {
+                             const osg::Vec3d top = tile.world(piece.top[k]),
+                                              bottom = tile.world(piece.bottom[k]);
+                             const Geodetic g = geodetic(top);
+                             onSeam = onSeam && std::abs(std::remainder(g.longitude - seam, 360.0)) < 1e-4;
+                             const double latitude = osg::DegreesToRadians(g.latitude);
+                             wall.top[k].set(std::hypot(top.x(), top.y()), top.z());
+                             wall.up[k].set(std::cos(latitude), std::sin(latitude));
+                             wall.depth[k] = g.height - geodetic(bottom).height;
+                         }
+                         // The walls of a tile's western side come last and run southwards.
+                         if (onSeam) (wall.top[1].y() < wall.top[0].y() ? west : east).push_back(wall);
+                     }
+                 });
+    ASSERT_GT(east.size(), 50u);
+    ASSERT_GT(west.size(), 50u);
+    int compared = 0;
+    for (const auto& [walls, others] : {std::pair(&east, &west), std::pair(&west, &east)})
+        for (const auto& wall : *walls)
+            for (const auto& other : *others)
+                for (std::size_t k = 0; k < 2; ++k)
+                {
+                    const double below = other.heightOver(wall.top[k], wall.up[k]);
+                    double depth = 0.0;
+                    const double above = wall.heightOver(other.top[k], other.up[k], &depth);
+                    compared += !std::isnan(below) + !std::isnan(above);
+                    ASSERT_FALSE(-below > wall.depth[k]) << "a gap of " << -below - wall.depth[k] << " m";
+                    ASSERT_FALSE(above > depth) << "a gap of " << above - depth << " m";
+                }
+    EXPECT_GT(compared, 500);
+}
+
 TEST(DatabaseWorld, AroundThePole)
 {
     const TempDir folder;

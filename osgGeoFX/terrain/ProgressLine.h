@@ -18,10 +18,7 @@ class ProgressLine
 {
 public:
     explicit ProgressLine(std::string title) : _title(std::move(title)) {}
-    ~ProgressLine()
-    {
-        if (_open) std::fputc('\n', stderr);
-    }
+    ~ProgressLine() { end(); }
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
@@ -35,6 +32,7 @@ public:
             std::fflush(stderr);
             _last = now;
             _open = true;
+            if (done >= total) end();
         }
         else if (!_terminal && percent / 10 > _tenths)
         {
@@ -45,6 +43,12 @@ public:
     }
 
 private:
+    void end()
+    {
+        if (_open) std::fputc('\n', stderr);
+        _open = false;
+    }
+
     std::string _title;
     bool _terminal = isatty(STDERR_FILENO) != 0;
     bool _open = false; ///< the line on the terminal is not ended
