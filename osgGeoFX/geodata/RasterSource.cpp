@@ -402,8 +402,11 @@ void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRe
         warpOptions = CSLSetNameValue(warpOptions, "YSCALE", "1");
     }
     options->papszWarpOptions = warpOptions;
-    options->pfnTransformer = &GDALApproxTransform;
-    options->pTransformerArg = approximate.get();
+    // The approximation looks at both ends and the middle of a line. Longitudes that jump in between may look straight
+    // to it, but only where a line goes half around the globe or more.
+    const bool exactly = crs.geographic && lattice.dx * lattice.columns >= 180.0;
+    options->pfnTransformer = exactly ? &LatticeTransformer::transform : &GDALApproxTransform;
+    options->pTransformerArg = exactly ? &exact : approximate.get();
 
     GDALWarpOperation operation;
     if (operation.Initialize(options.get()) != CE_None ||

@@ -289,7 +289,7 @@ double BuildPlan::skirt(const TileKey& key, int side) const
     const int width = scheme.intervals * scheme.step(key.level);
     const bool outer[] = {key.y == 0, scheme.firstColumn(key) + width >= scheme.lastColumn,
                           scheme.firstRow(key) + width >= scheme.lastRow, key.x == 0};
-    // But the globe's eastern and western end are one line, which no level has inside a tile.
+    // But the globe's eastern and western end are one line, with tiles of all levels on both sides.
     const bool seam =
         outer[side] && scheme.crs.geographic && scheme.east - scheme.west > 360.0 - 1e-9 && side % 2 == 1;
     if (outer[side] && !seam) return 0.0;
@@ -300,10 +300,7 @@ double BuildPlan::skirt(const TileKey& key, int side) const
     double other = 0.0;
     for (TileKey self = key;; self = {self.level - 1, self.x / 2, self.y / 2})
     {
-        TileKey neighbour{self.level, self.x + dx, self.y + dy};
-        if (seam)
-            neighbour.x =
-                side == 1 ? 0 : (scheme.lastColumn - 1) / (scheme.intervals * scheme.step(self.level));
+        const TileKey neighbour{self.level, self.x + dx, self.y + dy};
         const int across = scheme.tilesAcross(self.level);
         if (neighbour.x >= 0 && neighbour.y >= 0 && neighbour.x < across && neighbour.y < across)
             other = std::max(other, static_cast<double>(fact(neighbour).error));

@@ -78,8 +78,6 @@ private:
             {
                 if (coordinates[a] != coordinates[b]) continue;
                 upright = true;
-                // Posts beyond the end of the ground lie on its end: no wall, and nothing to see.
-                if (tile.vertices()[a] == tile.vertices()[b]) continue;
                 const unsigned int top = std::min(a, b), other = c;
                 below[top] = std::max(a, b);
                 if (coordinates[other] != coordinates[top]) tops.push_back({top, other});

@@ -59,6 +59,27 @@ TestRaster& TestRaster::geoTransform(std::array<double, 6> transform)
     return *this;
 }
 
+TestRaster& TestRaster::placedByPoints(double x, double y, double step)
+{
+    std::vector<GDAL_GCP> points(4);
+    GDALInitGCPs(4, points.data());
+    for (int i = 0; i < 4; ++i)
+    {
+        GDAL_GCP& point = points[static_cast<std::size_t>(i)];
+        point.dfGCPPixel = i % 2 ? _dataset->GetRasterXSize() : 0;
+        point.dfGCPLine = i / 2 ? _dataset->GetRasterYSize() : 0;
+        point.dfGCPX = x + step * (point.dfGCPPixel - point.dfGCPLine);
+        point.dfGCPY = y - step * (point.dfGCPPixel + point.dfGCPLine);
+    }
+    OGRSpatialReference srs;
+    srs.importFromEPSG(4326);
+    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const CPLErr result = _dataset->SetGCPs(4, points.data(), &srs);
+    GDALDeinitGCPs(4, points.data());
+    if (result != CE_None) throw std::runtime_error("GDAL cannot take control points");
+    return *this;
+}
+
 TestRaster& TestRaster::crs(const std::string& definition)
 {
     OGRSpatialReference srs;

@@ -33,6 +33,9 @@ public:
     /// North up: the outer corner of the north-western pixel, and the pixels' sizes, both positive.
     TestRaster& placed(double west, double north, double pixelWidth, double pixelHeight);
     TestRaster& geoTransform(std::array<double, 6> transform);
+    /// By ground control points in EPSG:4326, turned by 45°: the corner of pixel (c, r) lies at x + step · (c − r),
+    /// y − step · (c + r) degrees.
+    TestRaster& placedByPoints(double x, double y, double step);
     /// Anything that OGRSpatialReference takes, in GIS order: x is longitude or easting.
     TestRaster& crs(const std::string& definition);
     TestRaster& fill(const Value& value);
