@@ -28,6 +28,19 @@ namespace fs = std::filesystem;
 
 constexpr const char* ORIGIN_FILE = "built-from.txt";
 
+/// GDAL's cache is one for the whole process; the application gets its own limit back.
+class GdalCacheLimit
+{
+public:
+    explicit GdalCacheLimit(GIntBig bytes) : _before(GDALGetCacheMax64()) { GDALSetCacheMax64(bytes); }
+    ~GdalCacheLimit() { GDALSetCacheMax64(_before); }
+    GdalCacheLimit(const GdalCacheLimit&) = delete;
+    GdalCacheLimit& operator=(const GdalCacheLimit&) = delete;
+
+private:
+    const GIntBig _before;
+};
+
 std::string readText(const fs::path& path)
 {
     std::ifstream stream(path, std::ios::binary);
@@ -127,7 +140,7 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
     const auto start = std::chrono::steady_clock::now();
     BuildPlan plan(options);
     plan.progress = progress;
-    GDALSetCacheMax64(static_cast<GIntBig>(options.memoryMiB) * 1024 * 1024 / 4);
+    const GdalCacheLimit cache(static_cast<GIntBig>(options.memoryMiB) * 1024 * 1024 / 4);
 
     BuildSummary summary;
     summary.file = options.output + "/terrain.osgb";

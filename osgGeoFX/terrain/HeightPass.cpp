@@ -115,8 +115,13 @@ void settleFacts(BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
              });
     // What the next tier will miss. Coverage is off by at most a cell.
     TileFacts& root = plan.fact(unit.root);
-    const auto cell = static_cast<float>(plan.scheme.tileMetres(unit.root.level) / plan.scheme.intervals);
-    root.rootError = root.any ? root.latticeError + meshDeviation(grid, unit.span(), cell) : 0.0f;
+    const double cell = plan.scheme.tileMetres(unit.root.level) / plan.scheme.intervals;
+    // Between its posts the Earth is round: by this much above a chord across a cell.
+    const double sag = plan.scheme.crs.geographic ? 0.25 * cell * cell / 6378137.0 : 0.0;
+    root.rootError = 0.0f;
+    if (root.any)
+        root.rootError = root.latticeError + static_cast<float>(sag) +
+                         meshDeviation(grid, unit.span(), static_cast<float>(cell));
 }
 
 bool loadFacts(BuildPlan& plan, const Unit& unit)

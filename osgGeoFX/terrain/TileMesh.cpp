@@ -64,6 +64,11 @@ private:
         if (crosses(c - dc, c + dc, _lattice.endColumn) || crosses(r - dr, r + dr, _lattice.endRow))
             return std::numeric_limits<float>::max();
         float result = std::abs(h - 0.5f * (a + b)) * perMetre;
+        if (!_lattice.places.empty())
+            result = (_lattice.place(c, r) -
+                      (_lattice.place(c - dc, r - dr) + _lattice.place(c + dc, r + dr)) * 0.5f)
+                         .length() *
+                     perMetre;
 
         const int step = _lattice.intervals / _slopes.intervals;
         if (c % step == 0 && r % step == 0 && dc % step == 0 && dr % step == 0)
@@ -159,9 +164,16 @@ private:
                 const int px = col - c.column, py = r - c.row;
                 const int u = px * ax + py * ay, v = px * bx + py * by;
                 if (u < 0 || v < 0 || u + v > squared) continue;
-                const float plane =
-                    hc + scale * (static_cast<float>(u) * (ha - hc) + static_cast<float>(v) * (hb - hc));
-                const float difference = std::abs(_lattice.height(col, r) - plane);
+                const float s = scale * static_cast<float>(u), t = scale * static_cast<float>(v);
+                float difference = std::abs(_lattice.height(col, r) - (hc + s * (ha - hc) + t * (hb - hc)));
+                if (!_lattice.places.empty())
+                {
+                    const osg::Vec3f& corner = _lattice.place(c.column, c.row);
+                    difference =
+                        (_lattice.place(col, r) - corner - (_lattice.place(a.column, a.row) - corner) * s -
+                         (_lattice.place(b.column, b.row) - corner) * t)
+                            .length();
+                }
                 if (difference > worst) // false for a hole
                     worst = difference;
             }

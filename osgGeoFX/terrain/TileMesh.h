@@ -4,6 +4,8 @@
 
 #include "HeightGrid.h"
 
+#include <osg/Vec3f>
+
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -22,7 +24,7 @@ struct TileMesh
     std::vector<std::uint32_t> triangles; ///< three indices of posts each, anticlockwise seen from above
     std::vector<std::uint32_t>
         edge; ///< posts along the border, anticlockwise from the south-west, the first one repeated
-    double deviation = 0.0; ///< largest vertical distance of a lattice point from the mesh, metres
+    double deviation = 0.0; ///< largest distance of a lattice point from its place on the mesh, metres
 };
 
 /// A tile's part of the lattices from which its mesh is made.
@@ -34,12 +36,20 @@ struct TileLattice
     /// The ground ends at these columns and rows (posts beyond lie on the end as well); at least `intervals` where
     /// it does not end inside.
     int endColumn = 0, endRow = 0;
-    /// How far the Earth curves away below the tile's tangent plane at each column and row, metres.
+    /// How far the Earth curves away below the tile's tangent plane at each column and row, metres. Near enough for
+    /// tiles of some 20 km; larger ones have their posts' places instead, row by row, in the tile's frame.
     std::vector<float> dropX, dropY;
+    std::vector<osg::Vec3f> places;
 
     /// Where the tile's ground ends in the east and in the north.
     int eastColumn() const { return std::min(intervals, endColumn); }
     int northRow() const { return std::min(intervals, endRow); }
+
+    const osg::Vec3f& place(int c, int r) const
+    {
+        return places[static_cast<std::size_t>(r) * static_cast<std::size_t>(intervals + 1) +
+                      static_cast<std::size_t>(c)];
+    }
 
     /// Above the tangent plane, so that what is straight in space is straight here.
     float height(int c, int r) const

@@ -23,13 +23,15 @@ namespace
 
 // A skirt leans outwards a little, so that it also closes hair lines when one looks straight down.
 constexpr double SKIRT_LEAN = 0.1;
+// Metres along an edge from which on a tile's part of the globe must be taken exactly.
+constexpr double LARGE_TILE = 25000.0;
 constexpr int COLOR_UNIT = 0, LAND_COVER_UNIT = 1;
 
 /// The side of a tile (0 south, 1 east, 2 north, 3 west) along which two neighbours on its border lie.
-int sideOf(const TileMesh::Post& a, const TileMesh::Post& b, int intervals)
+int sideOf(const TileMesh::Post& a, const TileMesh::Post& b)
 {
     if (a.row == b.row) return a.row == 0 ? 0 : 2;
-    return a.column == intervals ? 1 : 3;
+    return a.column > 0 ? 1 : 3;
 }
 
 osg::ref_ptr<osg::Image> cutImage(const std::vector<unsigned char>& texels, int columns, int x0, int y0,
@@ -72,6 +74,7 @@ TileMesh TileNodeFactory::createMesh(const TileKey& key, const LevelArrays& arra
                         (scheme.lastColumn - firstColumn + posts - 1) / posts,
                         (scheme.lastRow - firstRow + posts - 1) / posts,
                         {},
+                        {},
                         {}};
     const double middle = scheme.gridY(firstRow + 0.5 * posts * intervals);
     const auto drop = [&](int index, double metres)
@@ -87,6 +90,15 @@ TileMesh TileNodeFactory::createMesh(const TileKey& key, const LevelArrays& arra
         lattice.dropY.push_back(drop(i, scheme.metresY(middle)));
     }
     if (key.level == scheme.finestLevel) return createFullMesh(lattice);
+    if (scheme.crs.geographic && scheme.tileMetres(key.level) > LARGE_TILE)
+    {
+        const TileFrame frame(scheme, key);
+        for (int r = 0; r <= intervals; ++r)
+            for (int c = 0; c <= intervals; ++c)
+                lattice.places.push_back(osg::Vec3f(frame.position(
+                    scheme.gridX(firstColumn + c * posts), scheme.gridY(firstRow + r * posts),
+                    static_cast<double>(arrays.heights.at(lattice.column + c, lattice.row + r)))));
+    }
     const TileSlopes slopes{arrays.slopeX,        arrays.slopeY,        arrays.span * scheme.intervals + 1,
                             x * scheme.intervals, y * scheme.intervals, scheme.intervals};
     return createAdaptiveMesh(lattice, slopes, _plan.tolerance(key.level));
@@ -167,7 +179,7 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     {
         const TileMesh::Post post = mesh.posts[index];
         double depth = 0.0, outX = 0.0, outY = 0.0;
-        bool ends = false; // a wall that ends on the terrain's border, where all levels have the same post
+        bool ends = false; // on the terrain's border, where all levels have the same post
         const auto onSide = [&](bool on, int side, double dx, double dy)
         {
             if (!on) return;
@@ -181,7 +193,13 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
                0.0);
         onSide(post.row == intervals || firstRow + post.row * posts >= scheme.lastRow, 2, 0.0, 1.0);
         onSide(post.column == 0, 3, -1.0, 0.0);
-        if (ends) depth = 0.0;
+        // Above the first posts of a finer neighbour it may still stand, by its own error; deeper, or leaning, the
+        // wall's end would show below the terrain's border.
+        if (ends)
+        {
+            depth = std::min(depth, 1.5 * static_cast<double>(_plan.fact(key).error));
+            outX = outY = 0.0;
+        }
         frame.axes(gridX(post.column), gridY(post.row), east, north, up);
         const osg::Vec3d offset = (east * outX + north * outY) * (SKIRT_LEAN * depth) - up * depth;
         vertices->push_back((*vertices)[index] + osg::Vec3(offset));
@@ -207,8 +225,7 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     for (std::size_t k = 0; k + 1 < mesh.edge.size(); ++k)
     {
         const std::uint32_t a = mesh.edge[k], b = mesh.edge[k + 1];
-        if (!borders.count({a, b}) || depths[sideOf(mesh.posts[a], mesh.posts[b], intervals)] <= 0.0)
-            continue;
+        if (!borders.count({a, b}) || depths[sideOf(mesh.posts[a], mesh.posts[b])] <= 0.0) continue;
         const auto lowA = static_cast<std::uint32_t>(mesh.posts.size() + k);
         for (const std::uint32_t index : {a, lowA, b, b, lowA, lowA + 1})
             elements.push_back(index);

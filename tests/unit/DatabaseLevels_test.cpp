@@ -202,6 +202,18 @@ TEST(DatabaseLevels, RangesKeepThePixelErrorAroundHoles)
         EXPECT_LE(share, 1.0) << "level " << level;
 }
 
+TEST(DatabaseLevels, RangesKeepThePixelErrorWhereTheEarthIsRound)
+{
+    const TempDir folder;
+    auto o = options({writeRelief(folder / "dem.tif", 240, 120, -30.0, 50.0, 0.25)}, folder / "db");
+    o.texelError = 1e9;
+    buildDatabase(o);
+    const auto shares = largestShareOfBound(o.output);
+    ASSERT_GE(shares.size(), 3u);
+    for (const auto& [level, share] : shares)
+        EXPECT_LE(share, 1.0) << "level " << level;
+}
+
 TEST(DatabaseLevels, BoxesAreExact)
 {
     const TempDir folder;
