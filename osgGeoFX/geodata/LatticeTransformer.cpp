@@ -43,8 +43,29 @@ LatticeTransformer::LatticeTransformer(const Lattice& lattice, bool gridGeograph
     GDALApplyGeoTransform(_forward.data(), width * 0.5, height * 0.5, &_middleX, &middleY);
 }
 
+void LatticeTransformer::approximate(double pixels)
+{
+    _approximation.reset(GDALCreateApproxTransformer(&LatticeTransformer::exactly, this, pixels));
+}
+
 int CPL_STDCALL LatticeTransformer::transform(void* self, int latticeToSource, int count, double* x,
                                               double* y, double* z, int* success)
+{
+    auto* t = static_cast<LatticeTransformer*>(self);
+    const int result = t->_approximation ? GDALApproxTransform(t->_approximation.get(), latticeToSource,
+                                                               count, x, y, z, success)
+                                         : exactly(self, latticeToSource, count, x, y, z, success);
+    // After the interpolation, which a bend in the line would mislead.
+    for (int i = 0; result && latticeToSource && i < count; ++i)
+    {
+        x[i] = ontoEdge(x[i], t->_width);
+        y[i] = ontoEdge(y[i], t->_height);
+    }
+    return result;
+}
+
+int CPL_STDCALL LatticeTransformer::exactly(void* self, int latticeToSource, int count, double* x, double* y,
+                                            double* z, int* success)
 {
     auto* t = static_cast<LatticeTransformer*>(self);
     return latticeToSource ? t->toSource(count, x, y, z, success) : t->toLattice(count, x, y, z, success);
@@ -65,8 +86,6 @@ int LatticeTransformer::toSource(int count, double* x, double* y, double* z, int
         if (_sourceGeographic) x[i] += 360.0 * std::round((_middleX - x[i]) / 360.0);
         const double sx = x[i], sy = y[i];
         GDALApplyGeoTransform(_inverse.data(), sx, sy, &x[i], &y[i]);
-        x[i] = ontoEdge(x[i], _width);
-        y[i] = ontoEdge(y[i], _height);
     }
     return TRUE;
 }

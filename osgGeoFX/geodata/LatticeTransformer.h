@@ -4,7 +4,10 @@
 
 #include "RasterSource.h"
 
+#include <gdal_alg.h>
+
 #include <array>
+#include <memory>
 
 namespace osgGeoFX
 {
@@ -24,11 +27,17 @@ public:
     /// Whether the raster's geotransform is not singular.
     bool invertible() const { return _invertible; }
 
+    /// Takes points that are transformed nearly: interpolated with an error of up to `pixels`. Not for lattices that
+    /// go half around the globe: GDAL looks at the ends and the middle of a line, and misses a jump in between.
+    void approximate(double pixels);
+
     /// A GDALTransformerFunc; `self` is the LatticeTransformer, the lattice is the destination.
     static int CPL_STDCALL transform(void* self, int latticeToSource, int count, double* x, double* y,
                                      double* z, int* success);
 
 private:
+    static int CPL_STDCALL exactly(void* self, int latticeToSource, int count, double* x, double* y,
+                                   double* z, int* success);
     int toSource(int count, double* x, double* y, double* z, int* success);
     int toLattice(int count, double* x, double* y, double* z, int* success);
 
@@ -41,6 +50,7 @@ private:
     bool _invertible = false;
     int _width, _height;
     double _middleX = 0.0;
+    std::unique_ptr<void, void (*)(void*)> _approximation{nullptr, &GDALDestroyApproxTransformer};
 };
 
 } // namespace osgGeoFX

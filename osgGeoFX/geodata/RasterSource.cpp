@@ -360,12 +360,11 @@ void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRe
     }
 
     const TransformationPtr gridToSource = createTransformation(crs.srs, _srs, _file);
-    LatticeTransformer exact(lattice, crs.geographic, *gridToSource, _geoTransform, _srs.IsGeographic() != 0,
-                             source.GetRasterXSize(), source.GetRasterYSize());
-    if (!exact.invertible()) fail("its geotransform is singular; mend it with gdal_translate -a_ullr");
-    const std::unique_ptr<void, void (*)(void*)> approximate(
-        GDALCreateApproxTransformer(&LatticeTransformer::transform, &exact, TRANSFORM_TOLERANCE),
-        &GDALDestroyApproxTransformer);
+    LatticeTransformer transformer(lattice, crs.geographic, *gridToSource, _geoTransform,
+                                   _srs.IsGeographic() != 0, source.GetRasterXSize(),
+                                   source.GetRasterYSize());
+    if (!transformer.invertible()) fail("its geotransform is singular; mend it with gdal_translate -a_ullr");
+    if (!crs.geographic || lattice.dx * lattice.columns < 180.0) transformer.approximate(TRANSFORM_TOLERANCE);
 
     const std::unique_ptr<GDALWarpOptions, void (*)(GDALWarpOptions*)> options(GDALCreateWarpOptions(),
                                                                                &GDALDestroyWarpOptions);
@@ -402,11 +401,8 @@ void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRe
         warpOptions = CSLSetNameValue(warpOptions, "YSCALE", "1");
     }
     options->papszWarpOptions = warpOptions;
-    // The approximation looks at both ends and the middle of a line. Longitudes that jump in between may look straight
-    // to it, but only where a line goes half around the globe or more.
-    const bool exactly = crs.geographic && lattice.dx * lattice.columns >= 180.0;
-    options->pfnTransformer = exactly ? &LatticeTransformer::transform : &GDALApproxTransform;
-    options->pTransformerArg = exactly ? &exact : approximate.get();
+    options->pfnTransformer = &LatticeTransformer::transform;
+    options->pTransformerArg = &transformer;
 
     GDALWarpOperation operation;
     if (operation.Initialize(options.get()) != CE_None ||
