@@ -249,10 +249,10 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
     const TransformationPtr toGrid = createTransformation(_srs, crs.srs, _file);
 
     // A mesh of pixel centres, its borders on the outermost pixels.
-    constexpr int N = 33;
+    constexpr int side = 33;
     const auto pixel = [](int index, int size)
     {
-        return 0.5 + (size - 1) * (index / double(N - 1));
+        return 0.5 + (size - 1) * (index / double(side - 1));
     };
     const auto toCrs = [&](double px, double py, double& x, double& y)
     {
@@ -278,11 +278,11 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
     bool any = false;
     double rowStart = 0.0;
     GdalErrorScope errors;
-    for (int j = 0; j < N; ++j)
+    for (int j = 0; j < side; ++j)
     {
         bool first = true;
         double previous = rowStart;
-        for (int i = 0; i < N; ++i)
+        for (int i = 0; i < side; ++i)
         {
             const double px = pixel(i, width), py = pixel(j, height);
             double x = 0.0, y = 0.0, x1 = 0.0, y1 = 0.0, x2 = 0.0, y2 = 0.0;

@@ -77,18 +77,18 @@ public:
         number(); // version
         const std::uint32_t attributes = number();
         if (!_stream) return "it is cut off";
-        if (type > 3 || (attributes & ~7u) != 0) return damaged;
+        if (type > 3 || (attributes & ~7u) != 0) return _damaged;
         if (attributes & 1u)
         {
             const std::uint32_t domains = number();
-            if (domains > 1000) return damaged;
+            if (domains > 1000) return _damaged;
             for (std::uint32_t i = 0; i < domains; ++i)
             {
-                if (!skipString()) return damaged;
+                if (!skipString()) return _damaged;
                 number();
             }
         }
-        return skipString() ? std::string() : damaged;
+        return skipString() ? std::string() : _damaged;
     }
 
 private:
@@ -111,7 +111,7 @@ private:
         return (value >> 24) | ((value >> 8) & 0xff00u) | ((value << 8) & 0xff0000u) | (value << 24);
     }
 
-    const std::string damaged = "its header is damaged";
+    const std::string _damaged = "its header is damaged";
     osgDB::ifstream _stream;
 };
 

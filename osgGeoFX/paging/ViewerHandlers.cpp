@@ -39,8 +39,8 @@ bool LodScaleFollower::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAct
     return false;
 }
 
-CursorReadout::CursorReadout(osg::ref_ptr<Georeference> reference, const std::string& whyNone)
-    : _reference(std::move(reference)), _whyNone(whyNone), _overlay(new osg::Camera), _text(new osgText::Text)
+CursorReadout::CursorReadout(Georeference* reference, const std::string& whyNone)
+    : _reference(reference), _whyNone(whyNone), _overlay(new osg::Camera), _text(new osgText::Text)
 {
     _text->setDataVariance(osg::Object::DYNAMIC);
     _text->setCharacterSize(18.0f);

@@ -34,7 +34,7 @@ private:
 class OSGGEOFX_EXPORT CursorReadout : public osgGA::GUIEventHandler
 {
 public:
-    CursorReadout(osg::ref_ptr<Georeference> reference, const std::string& whyNone);
+    CursorReadout(Georeference* reference, const std::string& whyNone);
 
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
     void getUsage(osg::ApplicationUsage& usage) const override;
