@@ -7,6 +7,7 @@
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/paging/CameraPath.h>
 #include <osgGeoFX/paging/Scene.h>
+#include <osgGeoFX/scene/EffectKinds.h>
 
 #include <CLI/CLI.hpp>
 #include <osg/Math>
@@ -42,7 +43,10 @@ struct Arguments
     std::string stats;
     double fieldOfView = 0.0;
     unsigned int frames = 0;
+    std::vector<std::string> effects;
     bool noCull = false;
+    bool noCompensation = false;
+    bool debugBounds = false;
     osgGeoFX::SceneRenderer::Options renderer;
 };
 
@@ -93,6 +97,16 @@ void addOptions(CLI::App& app, Arguments& arguments)
                        ->needs(path);
     path->needs(frames);
 
+    app.add_option(
+           "--effect", arguments.effects,
+           "Add an effect to the scene's: KIND PROPERTY=VALUE …, in one word; kinds and properties are "
+           "the scene file's. As often as wanted")
+        ->type_name("'KIND …'")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_flag("--no-compensation", arguments.noCompensation,
+                 "Cull as if nothing were deformed, to see what that would draw");
+    app.add_flag("--debug-bounds", arguments.debugBounds, "Draw the deformed bounds that culling decides on");
     app.add_flag("--no-cull", arguments.noCull, "Switch frustum and small-feature culling off");
     app.add_option("--samples", arguments.renderer.samples, "Samples per pixel (multisampling)")
         ->type_name("N")
@@ -121,6 +135,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
         "Examples:\n"
         "  osggeofx_render oahu.geofx -o oahu.png\n"
         "  osggeofx_render terrain.osgb -o ridge.jpg --size 1920x1080 --view -157.86,21.27,900,45,-8\n"
+        "  osggeofx_render oahu.geofx -o bird.png --view -157.95,21.2,5000,20,-45 --effect 'birdsEyeView "
+        "focusLine=0.4 horizonLine=0.85'\n"
         "  osggeofx_render oahu.geofx -o f%04d.png --path flight.csv --frames 240 --stats flight.json");
 }
 
@@ -227,6 +243,19 @@ private:
     unsigned int _count = 1;
 };
 
+void addEffects(const Arguments& arguments, osgGeoFX::EffectScene& scene)
+{
+    for (const std::string& text : arguments.effects)
+    {
+        std::string error;
+        const osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::parseEffect(text, error);
+        if (!effect) throw Failure(badInput, "--effect: " + error);
+        scene.addEffect(effect);
+    }
+    scene.setCompensation(!arguments.noCompensation);
+    scene.setDebugBounds(arguments.debugBounds);
+}
+
 void run(Arguments& arguments)
 {
     std::string error;
@@ -238,6 +267,7 @@ void run(Arguments& arguments)
 
     const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(arguments.scene, error);
     if (!scene) throw Failure(badInput, error);
+    addEffects(arguments, *scene->effects);
     osgGeoFX::SceneRenderer::Options& options = arguments.renderer;
     options.fieldOfView =
         arguments.fieldOfView != 0.0 ? arguments.fieldOfView : scene->settings.homeFov.value_or(30.0);

@@ -3,6 +3,7 @@
 #include <osgGeoFX/paging/Scene.h>
 
 #include <osg/BoundingBox>
+#include <osg/LOD>
 #include <osg/Math>
 #include <osg/ValueObject>
 #include <osgDB/FileNameUtils>
@@ -98,6 +99,23 @@ std::optional<SceneSettings> SceneSettings::read(const osg::Node& root, std::str
     return settings;
 }
 
+namespace
+{
+
+EffectScene* findEffects(osg::Node* node, int depth)
+{
+    if (auto* found = dynamic_cast<EffectScene*>(node)) return found;
+    osg::Group* group = node->asGroup();
+    if (!group || depth == 0 || dynamic_cast<osg::LOD*>(node)) return nullptr;
+    for (unsigned int i = 0; i < group->getNumChildren(); ++i)
+    {
+        if (EffectScene* found = findEffects(group->getChild(i), depth - 1)) return found;
+    }
+    return nullptr;
+}
+
+} // namespace
+
 std::optional<Scene> Scene::load(const std::string& file, std::string& error)
 {
     addPluginFolder();
@@ -141,6 +159,13 @@ std::optional<Scene> Scene::adopt(osg::Node* node, std::string& error)
     }
     scene.guard = TileGuard::install(node);
     scene.reference = Georeference::create(node, scene.referenceError);
+    scene.effects = findEffects(node, 4);
+    if (!scene.effects)
+    {
+        scene.effects = new EffectScene;
+        scene.effects->addChild(node);
+        scene.node = scene.effects;
+    }
     return scene;
 }
 

@@ -7,6 +7,7 @@
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/paging/ViewPoint.h>
+#include <osgGeoFX/scene/EffectScene.h>
 
 #include <osg/Node>
 #include <osg/Vec4>
@@ -38,6 +39,8 @@ struct OSGGEOFX_EXPORT SceneSettings
 struct OSGGEOFX_EXPORT Scene
 {
     osg::ref_ptr<osg::Node> node;
+    /// The first EffectScene in the file, or an empty one that was put above it and is `node`. Never null.
+    osg::ref_ptr<EffectScene> effects;
     osg::ref_ptr<TileGuard> guard;
     SceneSettings settings;
     std::optional<TerrainInfo> terrain;

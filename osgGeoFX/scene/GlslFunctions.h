@@ -26,6 +26,8 @@ using glm::clamp;
 using glm::dot;
 using glm::length;
 using glm::max;
+using glm::mix;
+using glm::normalize;
 using glm::sqrt;
 } // namespace glslBuiltIns
 
@@ -37,10 +39,15 @@ using Length = double;
 using Angle = double;
 using PerMetre = double;
 using Vector2 = glm::dvec2;
+using Vector3 = glm::dvec3;
 using Profile = glm::dvec2;
+using Position = glm::dvec3;
 #include <shaders/lib/series.glsl>
 
 #include <shaders/lib/bend.glsl>
+
+#include <shaders/lib/bendview.glsl>
+#include <shaders/lib/exaggeration.glsl>
 } // namespace glsl
 
 namespace glslf
@@ -51,10 +58,15 @@ using Length = float;
 using Angle = float;
 using PerMetre = float;
 using Vector2 = glm::vec2;
+using Vector3 = glm::vec3;
 using Profile = glm::vec2;
+using Position = glm::vec3;
 #include <shaders/lib/series.glsl>
 
 #include <shaders/lib/bend.glsl>
+
+#include <shaders/lib/bendview.glsl>
+#include <shaders/lib/exaggeration.glsl>
 } // namespace glslf
 
 } // namespace osgGeoFX

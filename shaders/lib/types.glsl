@@ -11,3 +11,5 @@
 #define PerMetre float // radians per metre
 #define Vector2 vec2   // each component without a unit, a direction
 #define Profile vec2   // a point (s, h) of a profile, metres
+#define Vector3 vec3   // each component without a unit, a direction
+#define Position vec3  // a point in eye space, metres

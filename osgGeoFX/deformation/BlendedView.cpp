@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/deformation/BlendedView.h>
+
+#include <osg/CopyOp>
+#include <osg/Notify>
+
+#include <algorithm>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// The other view's placement without its bend: from there a bend grows in place.
+BendPlacement flattened(BendPlacement place)
+{
+    place.angle = 0.0;
+    return place;
+}
+
+} // namespace
+
+BlendedView::BlendedView() : _birdsEye(new BirdsEyeView), _pedestrian(new PedestrianView) {}
+
+BlendedView::BlendedView(const BlendedView& other, const osg::CopyOp& copy)
+    : PerspectiveBend(other, copy), _lowHeight(other._lowHeight), _highHeight(other._highHeight),
+      _birdsEye(other._birdsEye), _pedestrian(other._pedestrian)
+{
+    if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
+    {
+        _birdsEye = osg::clone(other._birdsEye.get(), copy);
+        _pedestrian = osg::clone(other._pedestrian.get(), copy);
+    }
+}
+
+BlendedView::~BlendedView() = default;
+
+bool BlendedView::setBirdsEyeView(BirdsEyeView* view)
+{
+    if (!view)
+    {
+        OSG_WARN << "osgGeoFX: BlendedView needs a bird's-eye view. The former one stays." << std::endl;
+        return false;
+    }
+    _birdsEye = view;
+    touch();
+    return true;
+}
+
+bool BlendedView::setPedestrianView(PedestrianView* view)
+{
+    if (!view)
+    {
+        OSG_WARN << "osgGeoFX: BlendedView needs a pedestrian's view. The former one stays." << std::endl;
+        return false;
+    }
+    _pedestrian = view;
+    touch();
+    return true;
+}
+
+const Properties& BlendedView::properties() const
+{
+    using Self = BlendedView;
+    static const Properties all = []
+    {
+        Properties list = bendProperties();
+        list.push_back(Property::number("lowHeight", 300.0, -12000.0, 1e7, "m").of<&Self::_lowHeight>());
+        list.push_back(Property::number("highHeight", 1500.0, -12000.0, 1e7, "m").of<&Self::_highHeight>());
+        return list;
+    }();
+    return all;
+}
+
+std::string BlendedView::inconsistency() const
+{
+    return _lowHeight < _highHeight ? "" : "lowHeight must be less than highHeight.";
+}
+
+std::optional<BendPlacement> BlendedView::placement(const ViewGeometry& view) const
+{
+    const double share = std::clamp((view.eyeHeight - _lowHeight) / (_highHeight - _lowHeight), 0.0, 1.0);
+    const double weight = share * share * (3.0 - 2.0 * share);
+    std::optional<BendPlacement> low;
+    std::optional<BendPlacement> high;
+    if (weight < 1.0) low = _pedestrian->placement(view);
+    if (weight > 0.0) high = _birdsEye->placement(view);
+    if (!low && !high) return std::nullopt;
+    if (!low) return BendPlacement::between(flattened(*high), *high, weight);
+    if (!high) return BendPlacement::between(*low, flattened(*low), weight);
+    return BendPlacement::between(*low, *high, weight);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,618 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/deformation/CompensatingCullVisitor.h>
+
+#include <osgGeoFX/deformation/RigidReference.h>
+
+#include <osg/Billboard>
+#include <osg/LOD>
+#include <osg/OcclusionQueryNode>
+#include <osg/Projection>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Members of OSG's cull visitor that have no accessors; a pointer to member may be formed in a derived class.
+struct Access : public osgUtil::CullVisitor
+{
+    static unsigned int& order(osgUtil::CullVisitor& visitor)
+    {
+        return visitor.*(&Access::_traversalOrderNumber);
+    }
+    static unsigned int& overrides(osgUtil::CullVisitor& visitor)
+    {
+        return visitor.*(&Access::_numberOfEncloseOverrideRenderBinDetails);
+    }
+    static std::vector<osgUtil::RenderBin*>& bins(osgUtil::CullVisitor& visitor)
+    {
+        return visitor.*(&Access::_renderBinStack);
+    }
+};
+
+/// Largest length that a matrix gives to a unit vector along an axis.
+double scaleOf(const osg::Matrixd& matrix)
+{
+    double square = 0.0;
+    for (int row = 0; row < 3; ++row)
+    {
+        square = std::max(square, matrix(row, 0) * matrix(row, 0) + matrix(row, 1) * matrix(row, 1) +
+                                      matrix(row, 2) * matrix(row, 2));
+    }
+    // Matrices that only turn and move are off by rounding; the bound must not shrink by it.
+    return std::abs(square - 1.0) < 1e-6 ? 1.0 + 1e-6 : std::sqrt(square);
+}
+
+double planeDistance(const osg::Vec4d& plane, const osg::Vec3d& point)
+{
+    return plane.x() * point.x() + plane.y() * point.y() + plane.z() * point.z() + plane.w();
+}
+
+bool leftOut(const osg::StateSet* state)
+{
+    if (!state || state->getDefineList().empty()) return false;
+    const osg::StateSet::DefinePair* define = state->getDefinePair("GEOFX_DEFORMATION");
+    return define && !(define->second & osg::StateAttribute::ON);
+}
+
+/// What rounding of positions on the GPU may add at a distance.
+double rounding(const osg::Vec3d& point)
+{
+    return 1e-6 * (std::abs(point.x()) + std::abs(point.y()) + std::abs(point.z())) + 1e-4;
+}
+
+} // namespace
+
+/// Restores the mode at its end; says whether the node is out of sight.
+class CompensatingCullVisitor::Scope
+{
+public:
+    Scope(CompensatingCullVisitor& visitor, const osg::Node& node) : _visitor(visitor), _former(visitor._mode)
+    {
+        if (!visitor._mode.ours) return;
+        if (leftOut(node.getStateSet())) visitor._mode.chain = visitor._nothing.get();
+        if (visitor._task.compensate) _skip = visitor.outOfSight(node);
+    }
+    ~Scope() { _visitor._mode = _former; }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+    bool skip() const { return _skip; }
+
+private:
+    CompensatingCullVisitor& _visitor;
+    const Mode _former;
+    bool _skip = false;
+};
+
+CompensatingCullVisitor::CompensatingCullVisitor() : _nothing(new DeformationChain) {}
+
+CompensatingCullVisitor::~CompensatingCullVisitor() = default;
+
+bool CompensatingCullVisitor::startsFrame(osgUtil::CullVisitor& outer)
+{
+    // The outer visitor's leaves of the last frame have been drawn when it begins a new one; so have ours.
+    const unsigned int frame = outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
+    const bool starts = frame != _frame || Access::order(outer) < _order;
+    _frame = frame;
+    if (starts) reset();
+    return starts;
+}
+
+void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& task)
+{
+    _task = task;
+    if (_program != task.program)
+    {
+        _program = task.program;
+        _looks.clear();
+    }
+
+    setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
+    setTraversalNumber(outer.getTraversalNumber());
+    setTraversalMode(outer.getTraversalMode());
+    setTraversalMask(outer.getTraversalMask());
+    setNodeMaskOverride(outer.getNodeMaskOverride());
+    setDatabaseRequestHandler(outer.getDatabaseRequestHandler());
+    setImageRequestHandler(outer.getImageRequestHandler());
+    getNodePath() = outer.getNodePath();
+    setUserDataContainer(outer.getUserDataContainer());
+    setIdentifier(outer.getIdentifier());
+    setRenderInfo(outer.getRenderInfo());
+    setCullSettings(outer);
+
+    _rootStateGraph = outer.getRootStateGraph();
+    _currentStateGraph = outer.getCurrentStateGraph();
+    _rootRenderStage = outer.getRenderStage();
+    _currentRenderBin = outer.getCurrentRenderBin();
+    _renderBinStack = Access::bins(outer);
+    _traversalOrderNumber = Access::order(outer);
+    _numberOfEncloseOverrideRenderBinDetails = Access::overrides(outer);
+    _entry = _currentStateGraph;
+
+    _outerCullingMode = outer.getCullingMode();
+    _outerNearFar = outer.getComputeNearFarMode();
+    if (task.compensate)
+    {
+        setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
+    }
+    pushViewport(outer.getViewport());
+    pushProjectionMatrix(outer.getProjectionMatrix());
+    _planes.clear();
+    if (_outerCullingMode & VIEW_FRUSTUM_CULLING)
+    {
+        for (const osg::Plane& plane : getProjectionCullingStack().back().getFrustum().getPlaneList())
+        {
+            _planes.push_back(plane.asVec4());
+        }
+    }
+    // OSG's own tests, which the base class makes, pass everything.
+    if (task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
+    pushReferenceViewPoint(outer.getReferenceViewPoint());
+    pushModelViewMatrix(outer.getModelViewMatrix(), osg::Transform::RELATIVE_RF);
+    if (task.compensate) getCurrentCullingSet().setCullingMask(NO_CULLING);
+
+    const double height = getViewport() ? getViewport()->height() : 0.0;
+    _cullSmall = (_outerCullingMode & SMALL_FEATURE_CULLING) && height > 0.0;
+    _smallPixels = getSmallFeatureCullingPixelSize();
+    if (height > 0.0)
+    {
+        _pixelSize =
+            osg::CullingSet::computePixelSizeVector(*getViewport(), *getProjectionMatrix(), osg::Matrix());
+    }
+    _mode = Mode();
+    _mode.chain = task.chain.get();
+    _mode.planes = (1u << _planes.size()) - 1u;
+    _scale = scaleOf(*getModelViewMatrix());
+    _near = DBL_MAX;
+    _far = -DBL_MAX;
+    _complaint.clear();
+    if (task.debugBounds)
+    {
+        _bounds.lines = new osg::Vec3Array;
+        _bounds.colours = new osg::Vec4Array;
+    }
+}
+
+void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
+{
+    _order = _traversalOrderNumber;
+    Access::order(outer) = _traversalOrderNumber;
+    if (!_task.compensate)
+    {
+        // Found by the base class, as OSG finds it.
+        computeNearPlane();
+        _near = _computed_znear;
+        _far = _computed_zfar;
+        _computed_znear = FLT_MAX;
+        _computed_zfar = -FLT_MAX;
+    }
+    if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && _far >= _near)
+    {
+        outer.setCalculatedNearPlane(std::min(outer.getCalculatedNearPlane(), _near));
+        outer.setCalculatedFarPlane(std::max(outer.getCalculatedFarPlane(), _far));
+    }
+    popModelViewMatrix();
+    popReferenceViewPoint();
+    setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
+    popProjectionMatrix();
+    popViewport();
+}
+
+void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task)
+{
+    begin(outer, task);
+    pushStateSet(task.state);
+    for (unsigned int i = 0; i < scene.getNumChildren(); ++i)
+        scene.getChild(i)->accept(*this);
+    popStateSet();
+    if (task.debugBounds) drawBounds();
+    end(outer);
+}
+
+Ball CompensatingCullVisitor::eyeBall(const osg::BoundingSphere& sphere) const
+{
+    const auto* modelView = _modelviewStack.back().get();
+    return {osg::Vec3d(sphere.center()) * *modelView, static_cast<double>(sphere.radius()) * _scale};
+}
+
+CompensatingCullVisitor::Side CompensatingCullVisitor::side(const Ball& ball, PlaneMask& planes) const
+{
+    const double radius = ball.radius + rounding(ball.centre);
+    for (std::size_t i = 0; i < _planes.size(); ++i)
+    {
+        if (!(planes & (1u << i))) continue;
+        const double distance = planeDistance(_planes[i], ball.centre);
+        if (distance < -radius) return Side::Outside;
+        if (distance >= radius) planes &= ~(1u << i);
+    }
+    return planes ? Side::Crossing : Side::Inside;
+}
+
+bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
+{
+    if (!node.isCullingActive())
+    {
+        _mode.planes = (1u << _planes.size()) - 1u;
+        return false;
+    }
+    if (_mode.planes == 0 && !_cullSmall) return false;
+    const osg::BoundingSphere& sphere = node.getBound();
+    if (!sphere.valid()) return false;
+    const Ball ball = _mode.chain->bound(eyeBall(sphere));
+    if (side(ball, _mode.planes) == Side::Outside) return true;
+    if (!_cullSmall) return false;
+    const double pixelsOfOne = planeDistance(_pixelSize, ball.centre);
+    return pixelsOfOne * _smallPixels > ball.radius;
+}
+
+void CompensatingCullVisitor::apply(osg::Node& node)
+{
+    const Scope scope(*this, node);
+    if (!scope.skip()) CullVisitor::apply(node);
+}
+
+void CompensatingCullVisitor::apply(osg::Geode& node)
+{
+    const Scope scope(*this, node);
+    if (!scope.skip()) CullVisitor::apply(node);
+}
+
+void CompensatingCullVisitor::apply(osg::Group& node)
+{
+    if (_mode.ours)
+    {
+        if (auto* rigid = dynamic_cast<RigidReference*>(&node))
+        {
+            applyRigid(*rigid);
+            return;
+        }
+    }
+    const Scope scope(*this, node);
+    if (!scope.skip()) CullVisitor::apply(node);
+}
+
+void CompensatingCullVisitor::applyRigid(RigidReference& node)
+{
+    // Moved as a whole, and then culled and drawn as if nothing were deformed.
+    const Mode former = _mode;
+    const osg::Matrixd& modelView = *getModelViewMatrix();
+    const osg::Vec3d reference = node.referencePoint() * modelView;
+    const osg::Matrixd placement = node.getTurn()
+                                       ? _mode.chain->placement(reference)
+                                       : osg::Matrixd::translate(_mode.chain->deform(reference) - reference);
+    pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
+    _mode.chain = _nothing.get();
+    pushStateSet(_task.untouched);
+    {
+        const Scope scope(*this, node);
+        if (!scope.skip()) CullVisitor::apply(node);
+    }
+    popStateSet();
+    popModelViewMatrix();
+    _mode = former;
+}
+
+void CompensatingCullVisitor::apply(osg::Transform& node)
+{
+    const Scope scope(*this, node);
+    if (scope.skip()) return;
+    if (!_mode.ours || !_task.compensate)
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    // As the base class has it, and with the matrix' scale.
+    pushCurrentMask();
+    osg::StateSet* state = node.getStateSet();
+    if (state) pushStateSet(state);
+    osg::RefMatrix* matrix = createOrReuseMatrix(*getModelViewMatrix());
+    node.computeLocalToWorldMatrix(*matrix, this);
+    pushModelViewMatrix(matrix, node.getReferenceFrame());
+    const double formerScale = _scale;
+    _scale = scaleOf(*matrix);
+    handle_cull_callbacks_and_traverse(node);
+    _scale = formerScale;
+    popModelViewMatrix();
+    if (state) popStateSet();
+    popCurrentMask();
+}
+
+void CompensatingCullVisitor::apply(osg::LOD& node)
+{
+    const Scope scope(*this, node);
+    if (scope.skip()) return;
+    if (!_mode.ours || !_task.compensate)
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    _mode.lodRadius = static_cast<double>(node.getBound().radius()) * _scale;
+    if (node.getRangeMode() != osg::LOD::PIXEL_SIZE_ON_SCREEN)
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    // OSG divides the undeformed size in pixels by the LOD scale; the scale makes it the deformed one.
+    const float former = getLODScale();
+    const Ball ball = eyeBall(node.getBound());
+    const Ball deformed = _mode.chain->bound(ball);
+    const double undeformedSize = static_cast<double>(clampedPixelSize(node.getBound()));
+    const double deformedSize =
+        std::abs(ball.radius / planeDistance(_pixelSize, deformed.centre)) * _mode.chain->detail(ball);
+    if (deformedSize > 0.0 && std::isfinite(undeformedSize / deformedSize))
+    {
+        setLODScale(static_cast<float>(static_cast<double>(former) * undeformedSize / deformedSize));
+    }
+    CullVisitor::apply(node);
+    setLODScale(former);
+}
+
+void CompensatingCullVisitor::apply(osg::Billboard& node)
+{
+    const Scope scope(*this, node);
+    if (scope.skip()) return;
+    if (_mode.ours && _task.compensate) includeDepths(_mode.chain->bound(eyeBall(node.getBound())));
+    CullVisitor::apply(node);
+}
+
+void CompensatingCullVisitor::apply(osg::OcclusionQueryNode& node)
+{
+    // Its query would ask for the box where the box is not.
+    if (_mode.ours)
+        apply(static_cast<osg::Group&>(node));
+    else
+        CullVisitor::apply(node);
+}
+
+template<typename NodeType>
+void CompensatingCullVisitor::passUntouched(NodeType& node)
+{
+    if (!_mode.ours)
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    const Mode formerMode = _mode;
+    const osg::CullSettings formerSettings(*this);
+    osgUtil::StateGraph* const formerGraph = _currentStateGraph;
+    // The state from the entry on, without ours.
+    std::vector<const osg::StateSet*> below;
+    for (osgUtil::StateGraph* graph = _currentStateGraph; graph && graph != _entry; graph = graph->_parent)
+    {
+        const osg::StateSet* set = graph->getStateSet();
+        if (set != _task.state && set != _task.untouched) below.push_back(set);
+    }
+    _currentStateGraph = _entry;
+    for (auto set = below.rbegin(); set != below.rend(); ++set)
+    {
+        _currentStateGraph = _currentStateGraph->find_or_insert(*set);
+    }
+    _mode.ours = false;
+    _mode.chain = _nothing.get();
+    setCullingMode(_outerCullingMode);
+    setComputeNearFarMode(_outerNearFar);
+    const value_type formerNear = _computed_znear;
+    const value_type formerFar = _computed_zfar;
+    CullVisitor::apply(node);
+    _computed_znear = formerNear;
+    _computed_zfar = formerFar;
+    setCullSettings(formerSettings);
+    _currentStateGraph = formerGraph;
+    _mode = formerMode;
+}
+
+void CompensatingCullVisitor::apply(osg::Camera& node)
+{
+    passUntouched(node);
+}
+
+void CompensatingCullVisitor::apply(osg::Projection& node)
+{
+    passUntouched(node);
+}
+
+bool CompensatingCullVisitor::outside(const Hull& hull) const
+{
+    for (std::size_t i = 0; i < _planes.size(); ++i)
+    {
+        if (!(_mode.planes & (1u << i))) continue;
+        const bool all =
+            std::all_of(hull.points.begin(), hull.points.end(),
+                        [&](const osg::Vec3d& point)
+                        { return planeDistance(_planes[i], point) < -(hull.margin + rounding(point)); });
+        if (all) return true;
+    }
+    return false;
+}
+
+void CompensatingCullVisitor::includeDepths(const Hull& hull)
+{
+    double nearest = DBL_MAX;
+    double farthest = -DBL_MAX;
+    for (const osg::Vec3d& point : hull.points)
+    {
+        nearest = std::min(nearest, -point.z());
+        farthest = std::max(farthest, -point.z());
+    }
+    farthest += hull.margin;
+    // What is behind the eye has no say, as in OSG.
+    if (farthest < 0.0) return;
+    _near = std::min(_near, nearest - hull.margin);
+    _far = std::max(_far, farthest);
+}
+
+void CompensatingCullVisitor::includeDepths(const Ball& ball)
+{
+    const double depth = -ball.centre.z();
+    if (depth + ball.radius < 0.0) return;
+    _near = std::min(_near, depth - ball.radius);
+    _far = std::max(_far, depth + ball.radius);
+}
+
+bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, double& depth)
+{
+    const osg::BoundingBox& bounds = drawable.getBoundingBox();
+    depth = 0.0;
+    if (!bounds.valid()) return true;
+    const EyeBox box = EyeBox::of(bounds, *getModelViewMatrix());
+    const Ball ball = box.ball();
+    const Ball deformed = _mode.chain->bound(ball);
+    depth = -deformed.centre.z();
+    const bool test = drawable.isCullingActive();
+    if (test && _cullSmall && planeDistance(_pixelSize, deformed.centre) * _smallPixels > deformed.radius)
+        return false;
+    PlaneMask planes = test ? _mode.planes : 0;
+    if (planes && side(deformed, planes) == Side::Outside) return false;
+    const bool extends = _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR &&
+                         (depth - deformed.radius < _near || depth + deformed.radius > _far);
+    if (planes || extends || _task.debugBounds)
+    {
+        _mode.chain->bound(box, _hull);
+        const PlaneMask former = _mode.planes;
+        _mode.planes = planes;
+        const bool gone = planes && outside(_hull);
+        _mode.planes = former;
+        if (gone) return false;
+        if (extends) includeDepths(_hull);
+        if (_complaint.empty() && _hull.points.size() > 8)
+        {
+            for (const auto& frame : _mode.chain->frames())
+            {
+                if (_complaint.empty()) _complaint = frame->complaint(box);
+            }
+        }
+        if (_task.debugBounds)
+        {
+            const osg::Vec4 colour =
+                _hull.points.size() > 8 ? osg::Vec4(1, 0.2f, 0.1f, 1) : osg::Vec4(1, 0.9f, 0.2f, 1);
+            // The hull's points in their order are a grid; its outline shows what the box became.
+            for (std::size_t i = 0; i + 1 < _hull.points.size(); ++i)
+            {
+                _bounds.lines->push_back(_hull.points[i]);
+                _bounds.lines->push_back(_hull.points[i + 1]);
+                _bounds.colours->push_back(colour);
+                _bounds.colours->push_back(colour);
+            }
+        }
+    }
+    return true;
+}
+
+osg::StateSet* CompensatingCullVisitor::lookFor(const osg::Drawable& drawable)
+{
+    if (!_task.program) return nullptr;
+    const FixedFunctionLook look =
+        FixedFunctionLook::find(*_currentStateGraph, drawable.getStateSet(), _task.mapUnit);
+    if (look.ownProgram) return nullptr;
+    if (look.unsupported && !_warnedOfLook)
+    {
+        _warnedOfLook = true;
+        OSG_NOTICE
+            << "osgGeoFX: something in the scene uses a texture that is not two-dimensional, or a texture "
+               "environment or generation mode that the kit's shaders do not have; it is drawn without. Give "
+               "it "
+               "a shader that calls geofx_vertex()."
+            << std::endl;
+    }
+    osg::ref_ptr<osg::StateSet>& set = _looks[look.key()];
+    if (!set) set = look.createStateSet(_task.program);
+    return set;
+}
+
+void CompensatingCullVisitor::apply(osg::Drawable& drawable)
+{
+    if (!_mode.ours)
+    {
+        CullVisitor::apply(drawable);
+        return;
+    }
+    const Mode former = _mode;
+    const bool untouched = leftOut(drawable.getStateSet());
+    if (untouched) _mode.chain = _nothing.get();
+    osg::StateSet* look = lookFor(drawable);
+    if (!_task.compensate)
+    {
+        if (look) pushStateSet(look);
+        CullVisitor::apply(drawable);
+        if (look) popStateSet();
+        _mode = former;
+        return;
+    }
+    if (osg::Callback* callback = drawable.getCullCallback())
+    {
+        osg::DrawableCullCallback* cull = callback->asDrawableCullCallback();
+        if (cull && cull->cull(this, &drawable, &_renderInfo))
+        {
+            _mode = former;
+            return;
+        }
+        if (!cull) callback->run(&drawable, this);
+    }
+    double depth = 0.0;
+    if (drawableInSight(drawable, depth) && std::isfinite(depth))
+    {
+        if (look) pushStateSet(look);
+        osg::StateSet* state = drawable.getStateSet();
+        if (state) pushStateSet(state);
+        addDrawableAndDepth(&drawable, getModelViewMatrix(), static_cast<float>(depth));
+        if (state) popStateSet();
+        if (look) popStateSet();
+    }
+    _mode = former;
+}
+
+float CompensatingCullVisitor::getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const
+{
+    if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceToViewPoint(position, withLodScale);
+    const Ball ball = {osg::Vec3d(position) * *_modelviewStack.back(), _mode.lodRadius};
+    // The reference view point is in eye space: the origin but for cameras that inherit another one's.
+    const double distance = _mode.chain->lodDistance(ball, getReferenceViewPoint());
+    return static_cast<float>(withLodScale ? distance * static_cast<double>(getLODScale()) : distance);
+}
+
+float CompensatingCullVisitor::getDistanceToEyePoint(const osg::Vec3& position, bool withLodScale) const
+{
+    if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceToEyePoint(position, withLodScale);
+    const Ball ball = {osg::Vec3d(position) * *_modelviewStack.back(), _mode.lodRadius};
+    const double distance = _mode.chain->lodDistance(ball, osg::Vec3d());
+    return static_cast<float>(withLodScale ? distance * static_cast<double>(getLODScale()) : distance);
+}
+
+float CompensatingCullVisitor::getDistanceFromEyePoint(const osg::Vec3& position, bool withLodScale) const
+{
+    if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceFromEyePoint(position, withLodScale);
+    const osg::Vec3d deformed = _mode.chain->deform(osg::Vec3d(position) * *_modelviewStack.back());
+    return static_cast<float>(withLodScale ? -deformed.z() * static_cast<double>(getLODScale())
+                                           : -deformed.z());
+}
+
+void CompensatingCullVisitor::drawBounds()
+{
+    if (!_bounds.geometry)
+    {
+        _bounds.geometry = new osg::Geometry;
+        _bounds.geometry->setUseDisplayList(false);
+        _bounds.geometry->setUseVertexBufferObjects(false);
+        _bounds.geometry->setCullingActive(false);
+        osg::StateSet* state = _bounds.geometry->getOrCreateStateSet();
+        state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+        state->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
+    }
+    osg::Geometry& geometry = *_bounds.geometry;
+    geometry.setVertexArray(_bounds.lines);
+    geometry.setColorArray(_bounds.colours, osg::Array::BIND_PER_VERTEX);
+    geometry.removePrimitiveSet(0, geometry.getNumPrimitiveSets());
+    geometry.addPrimitiveSet(new osg::DrawArrays(GL_LINES, 0, static_cast<GLsizei>(_bounds.lines->size())));
+    pushStateSet(geometry.getStateSet());
+    addDrawableAndDepth(&geometry, createOrReuseMatrix(osg::Matrix()), 0.0f);
+    popStateSet();
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/scene/FixedFunctionLook.h>
+
+#include <osg/Geometry>
+#include <osgUtil/CullVisitor>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+class RigidReference;
+
+/** Culls what the GPU is going to deform.
+
+    One stands in for a cull visitor of OSG below an EffectScene: it shares the other one's state graph, render stage
+    and bins, and hands back what it found of near and far. One belongs to one cull visitor, and so to one thread at a
+    time and to one of the frames that are on their way.
+
+    What it does instead of OSG's:
+    - frustum and small-feature culling by a ball around what the deformation makes of a node's bounding sphere, then
+      by the hull of what it makes of a drawable's box;
+    - levels of detail by DeformationChain::lodDistance;
+    - near and far planes from the deformed boxes;
+    - below cameras and projections it is OSG's cull visitor, without our state. */
+class CompensatingCullVisitor : public osgUtil::CullVisitor
+{
+public:
+    CompensatingCullVisitor();
+
+    /// What a scene wants for one traversal.
+    struct Task
+    {
+        osg::ref_ptr<const DeformationChain> chain;
+        osg::StateSet* state = nullptr;     ///< uniforms and defines of the effects
+        osg::Program* program = nullptr;    ///< for what has none
+        osg::StateSet* untouched = nullptr; ///< takes the deformation away
+        int mapUnit = -1;
+        bool compensate = true;
+        bool debugBounds = false;
+    };
+
+    /// Whether `outer` begins a new frame; if so, forgets what was drawn in the last one. To be asked before run().
+    bool startsFrame(osgUtil::CullVisitor& outer);
+    /// Traverses a group's children in the place of `outer`.
+    void run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task);
+
+    /// What is to be said once, from the last run; empty as a rule.
+    const std::string& complaint() const { return _complaint; }
+
+    using osgUtil::CullVisitor::apply;
+    void apply(osg::Node& node) override;
+    void apply(osg::Geode& node) override;
+    void apply(osg::Group& node) override;
+    void apply(osg::Transform& node) override;
+    void apply(osg::LOD& node) override;
+    void apply(osg::Billboard& node) override;
+    void apply(osg::OcclusionQueryNode& node) override;
+    void apply(osg::Camera& node) override;
+    void apply(osg::Projection& node) override;
+    void apply(osg::Drawable& drawable) override;
+
+    float getDistanceToEyePoint(const osg::Vec3& position, bool withLodScale) const override;
+    float getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const override;
+    float getDistanceFromEyePoint(const osg::Vec3& position, bool withLodScale) const override;
+
+protected:
+    ~CompensatingCullVisitor() override;
+
+private:
+    using PlaneMask = unsigned int;
+    /// What is in force for a subgraph.
+    struct Mode
+    {
+        const DeformationChain* chain = nullptr; ///< empty below what keeps its shape or is left out
+        PlaneMask planes = 0;                    ///< frustum planes that bounds may still cross
+        bool ours = true;                        ///< false below cameras: OSG's culling, no state of ours
+        double lodRadius = 0.0;                  ///< of the LOD that is asking for distances
+    };
+    class Scope;
+    enum class Side
+    {
+        Outside,
+        Crossing,
+        Inside
+    };
+
+    void applyRigid(RigidReference& node);
+    void begin(osgUtil::CullVisitor& outer, const Task& task);
+    void end(osgUtil::CullVisitor& outer);
+    /// Whether a node is out of sight; narrows the planes for what is below it.
+    bool outOfSight(const osg::Node& node);
+    Ball eyeBall(const osg::BoundingSphere& sphere) const;
+    Side side(const Ball& ball, PlaneMask& planes) const;
+    bool outside(const Hull& hull) const;
+    void includeDepths(const Hull& hull);
+    void includeDepths(const Ball& ball);
+    /// Culls a drawable by its box. False where it is out of sight; `depth` of its middle otherwise.
+    bool drawableInSight(const osg::Drawable& drawable, double& depth);
+    osg::StateSet* lookFor(const osg::Drawable& drawable);
+    template<typename NodeType>
+    void passUntouched(NodeType& node);
+    void drawBounds();
+
+    Task _task;
+    Mode _mode;
+    osg::ref_ptr<const DeformationChain> _nothing;
+    std::vector<osg::Vec4d> _planes; ///< of the frustum, in eye space, inside positive
+    CullingMode _outerCullingMode = 0;
+    ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;
+    bool _cullSmall = false;
+    double _smallPixels = 0.0;
+    osg::Vec4d _pixelSize; ///< for eye space
+    double _near = 0.0;
+    double _far = 0.0;
+    double _scale = 1.0; ///< of the current modelview matrix
+    Hull _hull;
+    std::string _complaint;
+    osgUtil::StateGraph* _entry = nullptr; ///< the outer visitor's, where our state begins
+
+    unsigned int _frame = 0;
+    unsigned int _order = 0;
+    osg::ref_ptr<osg::Program> _program;
+    std::map<FixedFunctionLook::Key, osg::ref_ptr<osg::StateSet>> _looks;
+    bool _warnedOfLook = false;
+    /// Deformed boxes to show: lines in eye space, by whether they are in the transition zone.
+    struct Bounds
+    {
+        osg::ref_ptr<osg::Geometry> geometry;
+        osg::ref_ptr<osg::Vec3Array> lines;
+        osg::ref_ptr<osg::Vec4Array> colours;
+    };
+    Bounds _bounds;
+};
+
+} // namespace osgGeoFX

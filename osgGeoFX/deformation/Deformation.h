@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/scene/Effect.h>
+#include <osgGeoFX/scene/ViewGeometry.h>
+
+#include <osg/BoundingBox>
+#include <osg/Matrixd>
+#include <osg/Referenced>
+#include <osg/Vec3d>
+#include <osg/Vec4d>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// A ball in eye space, metres.
+struct Ball
+{
+    osg::Vec3d centre;
+    double radius = 0.0;
+};
+
+/// A box in eye space, metres: any parallelepiped.
+struct OSGGEOFX_EXPORT EyeBox
+{
+    osg::Vec3d centre;
+    osg::Vec3d half[3]; ///< from the centre to the middle of three faces
+
+    static EyeBox of(const osg::BoundingBox& box, const osg::Matrixd& modelView);
+    /// A ball around it.
+    Ball ball() const;
+};
+
+/** A deformation as one camera has it in one frame: a function of eye space, and what culling must know of it.
+
+    Immutable, so every thread may use it. All positions are in eye space, metres. */
+class OSGGEOFX_EXPORT DeformationFrame : public osg::Referenced
+{
+public:
+    virtual osg::Vec3d deform(const osg::Vec3d& position) const = 0;
+    /// The inverse of deform().
+    virtual osg::Vec3d undeform(const osg::Vec3d& position) const = 0;
+    /// What becomes of the unit normal of a surface at a position that has not been deformed.
+    virtual osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const = 0;
+    /// The turn of what stands at a position and keeps its shape; a pure rotation.
+    virtual osg::Matrixd turn(const osg::Vec3d& position) const;
+    /// 0 in the focus, 1 in the context.
+    virtual double style(const osg::Vec3d&) const { return 0.0; }
+
+    /// What the function does to a ball at most.
+    enum class Reach
+    {
+        Identity, ///< nothing
+        Affine,   ///< the same affine map everywhere in it
+        Curved
+    };
+    virtual Reach reach(const Ball& ball) const = 0;
+    /// By how much distances within a ball grow at most; at least 1.
+    virtual double lipschitz(const Ball& ball) const = 0;
+
+    /// How far from straight the image of a straight edge within a ball is: a bound of the second derivative along
+    /// it, and of the jump of the first, both for the whole edge. Between the ends of an edge, straight
+    /// interpolation is off by `curve / 8 + kink / 4` at most.
+    struct Sag
+    {
+        double curve = 0.0; ///< metres
+        double kink = 0.0;  ///< metres
+    };
+    virtual Sag sag(const Ball& ball, const osg::Vec3d& edge) const = 0;
+
+    /// How much more detail a ball deserves, beside what follows from lipschitz(): 1 as much as ever, 2 twice.
+    virtual double detail(const Ball&) const { return 1.0; }
+    /// A sentence where something in this box cannot be drawn well; said once by the scene.
+    virtual std::string complaint(const EyeBox&) const { return {}; }
+
+    /// The uniforms of the deformation's shader code, by their names without the prefix. All finite.
+    using Uniforms = std::vector<std::pair<std::string, osg::Vec4d>>;
+    virtual Uniforms uniforms() const = 0;
+
+protected:
+    ~DeformationFrame() override;
+};
+
+/** An effect that moves the geometry below its scene, on the GPU, as a continuous function of eye space.
+
+    To write a new one:
+    - put the function into shaders/lib, where the GPU, the culling and the tests run the same text, and list it in
+      shaders/CMakeLists.txt;
+    - derive a DeformationFrame, which calls that text in double and bounds it;
+    - derive a Deformation, which makes the frame for a camera, lists its properties, and names the shader file with
+      `vec3 SLOT_deform(vec3)`, `vec3 SLOT_normal(vec3 position, vec3 normal)` and `float SLOT_style(vec3)`.
+    Culling, level of detail, near and far planes, picking, serializers, scene files and the tests of all of them then
+    work by themselves. VerticalExaggeration is an example.
+
+    Several deformations in one scene act one after the other, in the order in which the scene has them. */
+class OSGGEOFX_EXPORT Deformation : public Effect
+{
+public:
+    const Deformation* asDeformation() const override { return this; }
+
+    /// What it does for this camera; null where it does nothing.
+    virtual osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const = 0;
+
+    /// The shader file in which `SLOT_` stands for the prefix of its names.
+    virtual std::string vertexFile() const = 0;
+    /// The file with `vec4 SLOT_restyle(vec4 colour, vec4 map, float style)`; empty where it has none.
+    virtual std::string fragmentFile() const { return {}; }
+    /// Text that goes before the files: constants that are worth compiling in.
+    virtual std::string constants() const { return {}; }
+    /// Texture unit of a map that the context shows in place of its colours; −1 for none.
+    virtual int mapUnit() const { return -1; }
+
+protected:
+    Deformation() = default;
+    Deformation(const Deformation& other, const osg::CopyOp& copy) : Effect(other, copy) {}
+    ~Deformation() override;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/deformation/DeformationChain.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+using Reach = DeformationFrame::Reach;
+
+/// At most this many cells along one axis of a box.
+constexpr int mostCells = 8;
+/// The sag that is worth no further cells, as a share of the box's radius.
+constexpr double fineSag = 0.004;
+
+double sagOf(const DeformationFrame::Sag& sag, int cells)
+{
+    return sag.curve / (8.0 * cells * cells) + sag.kink / (4.0 * cells);
+}
+
+/// The deformed corners of a grid over the box, and how far the image of the box can be from their hull.
+void sample(const DeformationFrame& frame, const EyeBox& box, const Ball& ball, Hull& hull)
+{
+    hull.points.clear();
+    hull.margin = 0.0;
+    const Reach reach = frame.reach(ball);
+    std::array<int, 3> cells = {1, 1, 1};
+    if (reach == Reach::Curved)
+    {
+        // Interpolation over a cell of the grid is off by the sum of what it is off along its three edges.
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const DeformationFrame::Sag sag = frame.sag(ball, box.half[axis] * 2.0);
+            int& count = cells[axis];
+            while (count < mostCells && sagOf(sag, count) > fineSag * ball.radius)
+                ++count;
+            hull.margin += sagOf(sag, count);
+        }
+    }
+    for (int i = 0; i <= cells[0]; ++i)
+    {
+        const osg::Vec3d atI = box.centre + box.half[0] * (2.0 * i / cells[0] - 1.0);
+        for (int j = 0; j <= cells[1]; ++j)
+        {
+            const osg::Vec3d atJ = atI + box.half[1] * (2.0 * j / cells[1] - 1.0);
+            for (int k = 0; k <= cells[2]; ++k)
+            {
+                const osg::Vec3d point = atJ + box.half[2] * (2.0 * k / cells[2] - 1.0);
+                hull.points.push_back(reach == Reach::Identity ? point : frame.deform(point));
+            }
+        }
+    }
+}
+
+/// A box with the axes of another one around a hull.
+EyeBox around(const Hull& hull, const EyeBox& former)
+{
+    EyeBox box;
+    osg::Vec3d axes[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        axes[axis] = former.half[axis];
+        // An axis without a length gets the direction that the others leave.
+        if (axes[axis].normalize() == 0.0) axes[axis] = axes[(axis + 1) % 3] ^ axes[(axis + 2) % 3];
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        double low = HUGE_VAL;
+        double high = -HUGE_VAL;
+        for (const osg::Vec3d& point : hull.points)
+        {
+            const double along = (point - hull.points[0]) * axes[axis];
+            low = std::min(low, along);
+            high = std::max(high, along);
+        }
+        box.half[axis] = axes[axis] * ((high - low) / 2.0 + hull.margin);
+        box.centre += axes[axis] * ((high + low) / 2.0);
+    }
+    box.centre += hull.points[0];
+    return box;
+}
+
+} // namespace
+
+DeformationChain::~DeformationChain() = default;
+
+osg::Vec3d DeformationChain::deform(const osg::Vec3d& position) const
+{
+    osg::Vec3d result = position;
+    for (const auto& frame : _frames)
+        result = frame->deform(result);
+    return result;
+}
+
+osg::Vec3d DeformationChain::undeform(const osg::Vec3d& position) const
+{
+    osg::Vec3d result = position;
+    for (auto frame = _frames.rbegin(); frame != _frames.rend(); ++frame)
+        result = (*frame)->undeform(result);
+    return result;
+}
+
+osg::Vec3d DeformationChain::deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const
+{
+    osg::Vec3d at = position;
+    osg::Vec3d result = normal;
+    for (const auto& frame : _frames)
+    {
+        result = frame->deformNormal(at, result);
+        at = frame->deform(at);
+    }
+    return result;
+}
+
+double DeformationChain::style(const osg::Vec3d& position) const
+{
+    osg::Vec3d at = position;
+    double style = 0.0;
+    for (const auto& frame : _frames)
+    {
+        style = std::max(style, frame->style(at));
+        at = frame->deform(at);
+    }
+    return style;
+}
+
+osg::Matrixd DeformationChain::placement(const osg::Vec3d& reference) const
+{
+    osg::Vec3d at = reference;
+    osg::Matrixd turn;
+    for (const auto& frame : _frames)
+    {
+        turn.postMult(frame->turn(at));
+        at = frame->deform(at);
+    }
+    return osg::Matrixd::translate(-reference) * turn * osg::Matrixd::translate(at);
+}
+
+bool DeformationChain::leavesAlone(const Ball& ball) const
+{
+    return std::all_of(_frames.begin(), _frames.end(),
+                       [&](const auto& frame) { return frame->reach(ball) == Reach::Identity; });
+}
+
+Ball DeformationChain::bound(const Ball& ball) const
+{
+    Ball result = ball;
+    for (const auto& frame : _frames)
+    {
+        const double factor = frame->lipschitz(result);
+        result.centre = frame->deform(result.centre);
+        result.radius *= factor;
+    }
+    return result;
+}
+
+void DeformationChain::bound(const EyeBox& box, Hull& hull) const
+{
+    if (_frames.empty())
+    {
+        hull.points.clear();
+        hull.margin = 0.0;
+        for (const double a : {-1.0, 1.0})
+        {
+            for (const double b : {-1.0, 1.0})
+            {
+                for (const double c : {-1.0, 1.0})
+                {
+                    hull.points.push_back(box.centre + box.half[0] * a + box.half[1] * b + box.half[2] * c);
+                }
+            }
+        }
+        return;
+    }
+    EyeBox current = box;
+    for (std::size_t i = 0; i < _frames.size(); ++i)
+    {
+        if (i > 0) current = around(hull, current);
+        sample(*_frames[i], current, current.ball(), hull);
+    }
+}
+
+double DeformationChain::detail(const Ball& ball) const
+{
+    Ball current = ball;
+    double detail = 1.0;
+    for (const auto& frame : _frames)
+    {
+        const double factor = frame->lipschitz(current);
+        detail *= frame->detail(current) * factor;
+        current.centre = frame->deform(current.centre);
+        current.radius *= factor;
+    }
+    return detail;
+}
+
+double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoint) const
+{
+    Ball current = ball;
+    double detail = 1.0;
+    for (const auto& frame : _frames)
+    {
+        const double factor = frame->lipschitz(current);
+        detail *= frame->detail(current) * factor;
+        current.centre = frame->deform(current.centre);
+        current.radius *= factor;
+    }
+    const double distance = (current.centre - viewPoint).length();
+    if (detail == 1.0 && current.radius == ball.radius) return distance;
+    // A range is the ball's radius and what must lie between it and the eye. What lies between is divided.
+    const double gap = distance - current.radius;
+    return gap > 0.0 ? ball.radius + gap / detail : distance * ball.radius / std::max(current.radius, 1e-30);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/deformation/Deformation.h>
+
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// What a deformed box lies within: the convex hull of points, and a margin around it, metres.
+struct Hull
+{
+    std::vector<osg::Vec3d> points;
+    double margin = 0.0;
+};
+
+/** All deformations of one camera and frame, one after the other. Immutable; every thread may use it.
+
+    The bounds are safe: nothing that the deformations make of a ball or a box lies outside of them. */
+class OSGGEOFX_EXPORT DeformationChain : public osg::Referenced
+{
+public:
+    void add(osg::ref_ptr<const DeformationFrame> frame) { _frames.push_back(std::move(frame)); }
+    bool empty() const { return _frames.empty(); }
+    const std::vector<osg::ref_ptr<const DeformationFrame>>& frames() const { return _frames; }
+
+    osg::Vec3d deform(const osg::Vec3d& position) const;
+    osg::Vec3d undeform(const osg::Vec3d& position) const;
+    osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const;
+    double style(const osg::Vec3d& position) const;
+    /// What takes an object that keeps its shape to its deformed place: eye space to eye space.
+    osg::Matrixd placement(const osg::Vec3d& reference) const;
+
+    /// Whether nothing happens to any point of a ball.
+    bool leavesAlone(const Ball& ball) const;
+    /// A ball around what becomes of a ball.
+    Ball bound(const Ball& ball) const;
+    /// A hull around what becomes of a box. `hull` is reused for speed.
+    void bound(const EyeBox& box, Hull& hull) const;
+
+    /// The distance, metres, at which an undeformed ball would deserve the level of detail that the deformed one does:
+    /// what LOD ranges are compared with. `viewPoint` is in eye space.
+    double lodDistance(const Ball& ball, const osg::Vec3d& viewPoint) const;
+    /// By how much lodDistance() asks for more detail than the distance to the deformed ball alone.
+    double detail(const Ball& ball) const;
+
+protected:
+    ~DeformationChain() override;
+
+private:
+    std::vector<osg::ref_ptr<const DeformationFrame>> _frames;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/deformation/PerspectiveBend.h>
+
+#include <osgGeoFX/deformation/EyeVector.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Within this share of the curve's radius nothing folds.
+constexpr double foldMargin = 0.9;
+
+class BendFrame : public DeformationFrame
+{
+public:
+    struct Look
+    {
+        double transitionDetail, contextDetail, saturation, brightness, map;
+    };
+
+    BendFrame(const glsl::geofx_BendView& view, const Look& look) : _view(view), _look(look)
+    {
+        const glsl::geofx_Bend& bend = view.bend;
+        const double d = std::max(bend.size, 1e-9);
+        const double slope = std::abs(bend.slope);
+        switch (bend.curve)
+        {
+        case glsl::GEOFX_CURVE_BEZIER:
+            _curvature = 2.0 * std::abs(bend.bisector.y) / d;
+            _turnRate = 2.0 * slope / d;
+            _borderTurnRate = slope / (d * (1.0 + slope * slope)) * 2.0;
+            _turnChange = 2.6 * slope * slope / (d * d);
+            break;
+        case glsl::GEOFX_CURVE_ARC_LENGTH:
+            _turnRate = bend.arc * slope / d;
+            _curvature = _turnRate;
+            _borderTurnRate = _turnRate;
+            _borderSlowness = 1.0 - bend.arc * bend.bisector.x / 2.0;
+            _turnChange = 4.2 * slope * slope / (d * d);
+            break;
+        default:
+            _turnRate = std::abs(bend.angle) / d;
+            _curvature = _turnRate;
+            _borderTurnRate = _turnRate;
+        }
+    }
+
+    osg::Vec3d deform(const osg::Vec3d& position) const override
+    {
+        return toOsg(glsl::geofx_bendViewDeform(_view, toGlm(position)));
+    }
+    osg::Vec3d undeform(const osg::Vec3d& position) const override
+    {
+        return toOsg(glsl::geofx_bendViewUndeform(_view, toGlm(position)));
+    }
+    osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const override
+    {
+        return toOsg(glsl::geofx_bendViewNormal(_view, toGlm(position), toGlm(normal)));
+    }
+    osg::Matrixd turn(const osg::Vec3d& position) const override
+    {
+        const glsl::geofx_BendFrame frame =
+            glsl::geofx_bendFrame(_view.bend, glsl::geofx_bendViewProfile(_view, toGlm(position)).x);
+        // From D towards n.
+        const osg::Vec3d axis = toOsg(_view.forward) ^ toOsg(_view.normal);
+        return osg::Matrixd::rotate(std::atan2(frame.tangent.y, frame.tangent.x), axis);
+    }
+    double style(const osg::Vec3d& position) const override
+    {
+        return glsl::geofx_bendViewStyle(_view, toGlm(position));
+    }
+
+    Reach reach(const Ball& ball) const override
+    {
+        const double s = profile(ball.centre).x;
+        if (s + ball.radius <= 0.0) return Reach::Identity;
+        return s - ball.radius >= _view.bend.size ? Reach::Affine : Reach::Curved;
+    }
+    double lipschitz(const Ball& ball) const override
+    {
+        const glm::dvec2 at = profile(ball.centre);
+        if (at.x + ball.radius <= 0.0 || at.x - ball.radius >= _view.bend.size) return 1.0;
+        // Along h lengths stay; along s they grow by speed − h·turnRate, and the speed is at most 1.
+        return std::max(1.0, 1.0 + (std::abs(at.y) + ball.radius) * _turnRate);
+    }
+    Sag sag(const Ball& ball, const osg::Vec3d& edge) const override
+    {
+        const glm::dvec2 at = profile(ball.centre);
+        const double height = std::abs(at.y) + ball.radius;
+        const double along = std::abs(edge * toOsg(_view.forward));
+        const double up = std::abs(edge * toOsg(_view.normal));
+        Sag sag;
+        // P = C(s) + h·N(s)
+        sag.curve = (_curvature + height * (_turnChange + _turnRate * _turnRate)) * along * along +
+                    2.0 * _turnRate * along * up;
+        const bool border = at.x - ball.radius < 0.0 || at.x + ball.radius > _view.bend.size;
+        if (border) sag.kink = (_borderSlowness + height * _borderTurnRate) * along;
+        return sag;
+    }
+    double detail(const Ball& ball) const override
+    {
+        const double s = profile(ball.centre).x;
+        if (s + ball.radius <= 0.0) return 1.0;
+        return s - ball.radius >= _view.bend.size ? _look.contextDetail : _look.transitionDetail;
+    }
+    std::string complaint(const EyeBox& box) const override
+    {
+        const osg::Vec3d normal = toOsg(_view.normal);
+        double inner = profile(box.centre).y * (_view.bend.angle > 0.0 ? 1.0 : -1.0);
+        for (const osg::Vec3d& half : box.half)
+            inner += std::abs(half * normal);
+        if (inner * std::abs(glsl::geofx_bendCurvature(_view.bend)) < 1.0) return {};
+        return "something in the transition zone reaches " + std::to_string(std::lround(inner)) + " m " +
+               (_view.bend.angle > 0.0 ? "above" : "below") +
+               " the reference plane, beyond the radius of the bend, and folds over; set `tallest` to that "
+               "or more.";
+    }
+    Uniforms uniforms() const override
+    {
+        const glsl::geofx_Bend& bend = _view.bend;
+        return {{"plane", {toOsg(_view.normal), _view.height}},
+                {"forward", {toOsg(_view.forward), _view.start}},
+                {"bend", {bend.size, bend.angle, bend.slope, bend.arc}},
+                {"angle", {bend.direction.x, bend.direction.y, bend.bisector.x, bend.bisector.y}},
+                {"end", {bend.end.x, bend.end.y, 0.0, 0.0}},
+                {"look", {_look.saturation, _look.brightness, _look.map, 0.0}}};
+    }
+
+private:
+    glm::dvec2 profile(const osg::Vec3d& position) const
+    {
+        return glsl::geofx_bendViewProfile(_view, toGlm(position));
+    }
+
+    glsl::geofx_BendView _view;
+    Look _look;
+    double _curvature = 0.0;      ///< of |C''|, at most
+    double _turnRate = 0.0;       ///< of the frame, at most
+    double _borderTurnRate = 0.0; ///< at the zone's borders
+    double _borderSlowness = 0.0; ///< 1 − speed there
+    double _turnChange = 0.0;     ///< of the turn rate's derivative, at most
+};
+
+} // namespace
+
+BendPlacement BendPlacement::between(const BendPlacement& from, const BendPlacement& to, double share)
+{
+    const auto mix = [share](double a, double b)
+    {
+        return a + share * (b - a);
+    };
+    return {mix(from.planeHeight, to.planeHeight), mix(from.start, to.start), mix(from.size, to.size),
+            mix(from.angle, to.angle)};
+}
+
+PerspectiveBend::PerspectiveBend(const PerspectiveBend& other, const osg::CopyOp& copy)
+    : Deformation(other, copy), _curve(other._curve), _planeElevation(other._planeElevation),
+      _planeReference(other._planeReference), _tallest(other._tallest),
+      _transitionDetail(other._transitionDetail), _contextDetail(other._contextDetail),
+      _contextSaturation(other._contextSaturation), _contextBrightness(other._contextBrightness),
+      _mapUnit(other._mapUnit)
+{
+}
+
+PerspectiveBend::~PerspectiveBend() = default;
+
+Properties PerspectiveBend::bendProperties()
+{
+    using Self = PerspectiveBend;
+    return {
+        enabledProperty(),
+        Property::choice("curve", ARC_LENGTH, {"bezier", "arcLength", "circularArc"}).of<&Self::_curve>(),
+        Property::number("planeElevation", 0.0, -12000.0, 1e7, "m").of<&Self::_planeElevation>(),
+        Property::choice("planeReference", GROUND, {"ground", "eye"}).of<&Self::_planeReference>(),
+        Property::number("tallest", -1.0, -1.0, 1e6, "m").of<&Self::_tallest>(),
+        Property::number("transitionDetail", 2.0, 1.0, 16.0).of<&Self::_transitionDetail>(),
+        Property::number("contextDetail", 1.0, 0.1, 16.0).of<&Self::_contextDetail>(),
+        Property::number("contextSaturation", 1.0, 0.0, 2.0).of<&Self::_contextSaturation>(),
+        Property::number("contextBrightness", 1.0, 0.0, 2.0).of<&Self::_contextBrightness>(),
+        Property::integer("mapUnit", -1, -1, 3).of<&Self::_mapUnit>(),
+    };
+}
+
+double PerspectiveBend::planeHeight(const ViewGeometry& view) const
+{
+    return _planeReference == EYE ? -_planeElevation : view.eyeHeight - _planeElevation;
+}
+
+double PerspectiveBend::planeLevel(const ViewGeometry& view) const
+{
+    return view.eyeHeight - planeHeight(view);
+}
+
+double PerspectiveBend::mostCurvature(const ViewGeometry& view, double angle, double reach) const
+{
+    double extent = 0.0;
+    if (_tallest >= 0.0)
+    {
+        extent = _tallest;
+    }
+    else if (angle > 0.0)
+    {
+        extent = view.ground.maxHeight - planeLevel(view);
+    }
+    else
+    {
+        extent = planeLevel(view) - view.ground.minHeight;
+    }
+    if (angle < 0.0 && view.ground.ellipsoid)
+    {
+        // The globe falls away below T.
+        extent += reach * reach / (2.0 * view.ground.ellipsoid->getRadiusPolar());
+    }
+    return foldMargin / std::max(extent, 1.0);
+}
+
+osg::Vec3d PerspectiveBend::heading(const ViewGeometry& view)
+{
+    const osg::Vec3d right = osg::Vec3d(1.0, 0.0, 0.0) - view.up * view.up.x();
+    osg::Vec3d heading = view.up ^ right;
+    // Where the camera's right vector is vertical, there is no direction; the bend is gone before.
+    const double length = heading.normalize();
+    const double share = std::clamp((length - 0.05) / 0.2, 0.0, 1.0);
+    return heading * (share * share * (3.0 - 2.0 * share));
+}
+
+osg::ref_ptr<const DeformationFrame> PerspectiveBend::frame(const ViewGeometry& view) const
+{
+    const std::optional<BendPlacement> place = placement(view);
+    if (!place) return nullptr;
+    osg::Vec3d forward = heading(view);
+    const double share = forward.normalize();
+    const double angle = place->angle * share;
+    glsl::geofx_BendView bend;
+    bend.normal = toGlm(view.up);
+    bend.forward = toGlm(forward);
+    bend.height = place->planeHeight;
+    bend.start = place->start;
+    bend.bend = glsl::geofx_makeBend(_curve, place->size, angle);
+    const double sum = place->planeHeight + place->start + place->size + angle + forward * view.up;
+    // Below this angle nothing moves by a visible amount, and floats could not tell.
+    if (!std::isfinite(sum) || std::abs(angle) < 1e-5 || share <= 0.0) return nullptr;
+    const BendFrame::Look look = {_transitionDetail, _contextDetail, _contextSaturation, _contextBrightness,
+                                  _mapUnit < 0 ? 0.0 : 1.0};
+    return new BendFrame(bend, look);
+}
+
+std::string PerspectiveBend::constants() const
+{
+    return "const int SLOT_curve = " + std::to_string(_curve) + ";\n";
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+
+#include <osgGeoFX/deformation/EyeVector.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+class ExaggerationFrame : public DeformationFrame
+{
+public:
+    ExaggerationFrame(const glsl::geofx_Exaggeration& view, bool relight) : _view(view), _relight(relight) {}
+
+    osg::Vec3d deform(const osg::Vec3d& position) const override
+    {
+        return toOsg(glsl::geofx_exaggerate(_view, toGlm(position)));
+    }
+    osg::Vec3d undeform(const osg::Vec3d& position) const override
+    {
+        return toOsg(glsl::geofx_unexaggerate(_view, toGlm(position)));
+    }
+    osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const override
+    {
+        return toOsg(glsl::geofx_exaggerationNormal(_view, toGlm(position), toGlm(normal)));
+    }
+    Reach reach(const Ball&) const override { return _view.curvature > 0.0 ? Reach::Curved : Reach::Affine; }
+    double lipschitz(const Ball& ball) const override
+    {
+        // Horizontally (R + factor·h)/(R + h) on a globe, and a little for the turn of the vertical.
+        const double lift =
+            std::abs(_view.factor - 1.0) * (std::abs(height(ball.centre) - _view.base) + ball.radius);
+        return std::max(1.0, _view.factor) * (1.0 + 1.1 * lift * _view.curvature);
+    }
+    Sag sag(const Ball& ball, const osg::Vec3d& edge) const override
+    {
+        // lift·up: the height's second derivative is at most the curvature k, its first 1, up's first k and its second
+        // 3k²; 1.3 covers the ellipsoid's flattening and heights of a tenth of the radius.
+        const double lift = std::abs(height(ball.centre) - _view.base) + ball.radius;
+        const double k = _view.curvature;
+        const double second = std::abs(_view.factor - 1.0) * 1.3 * (3.0 * k + 3.0 * k * k * lift);
+        return {second * edge.length2(), 0.0};
+    }
+    Uniforms uniforms() const override
+    {
+        const osg::Vec3d up = toOsg(_view.up);
+        const osg::Vec3d axis = toOsg(_view.axis);
+        return {{"up", {up, _view.height}},
+                {"axis", {axis, _view.flattening}},
+                {"scale", {_view.curvature, _view.scale, _view.factor, _view.base}},
+                {"relight", {_relight ? 1.0 : 0.0, 0.0, 0.0, 0.0}}};
+    }
+
+private:
+    double height(const osg::Vec3d& position) const
+    {
+        return glsl::geofx_exaggerationHeight(_view, toGlm(position));
+    }
+
+    glsl::geofx_Exaggeration _view;
+    bool _relight;
+};
+
+} // namespace
+
+VerticalExaggeration::VerticalExaggeration(const VerticalExaggeration& other, const osg::CopyOp& copy)
+    : Deformation(other, copy), _factor(other._factor), _base(other._base), _relight(other._relight)
+{
+}
+
+VerticalExaggeration::~VerticalExaggeration() = default;
+
+const Properties& VerticalExaggeration::properties() const
+{
+    using Self = VerticalExaggeration;
+    static const Properties all = {
+        enabledProperty(),
+        Property::number("factor", 1.0, 0.01, 100.0).of<&Self::_factor>(),
+        Property::number("base", 0.0, -12000.0, 12000.0, "m").of<&Self::_base>(),
+        Property::flag("relight", true).of<&Self::_relight>(),
+    };
+    return all;
+}
+
+osg::ref_ptr<const DeformationFrame> VerticalExaggeration::frame(const ViewGeometry& view) const
+{
+    if (_factor == 1.0) return nullptr;
+    glsl::geofx_Exaggeration frame{};
+    frame.up = toGlm(view.up);
+    frame.axis = toGlm(view.polarAxis);
+    frame.height = view.eyeHeight;
+    frame.factor = _factor;
+    frame.base = _base;
+    if (view.ground.ellipsoid)
+    {
+        // The ellipsoid's equation at the eye's foot: half of its gradient has the length N(φ)/a² · … = 1/(a²·k).
+        const double a = view.ground.ellipsoid->getRadiusEquator();
+        const double b = view.ground.ellipsoid->getRadiusPolar();
+        const double sine = view.up * view.polarAxis;
+        const double cosine2 = 1.0 - sine * sine;
+        // The support function: distance of the tangent plane from the centre, 1/|gradient|.
+        const double support = std::sqrt(a * a * cosine2 + b * b * sine * sine);
+        frame.curvature = support / (a * a);
+        frame.scale = 1.0 / support;
+        frame.flattening = a * a / (b * b) - 1.0;
+    }
+    return new ExaggerationFrame(frame, _relight);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/EffectKinds.h>
+
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+
+#include <cctype>
+#include <sstream>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+template<typename Class>
+osg::ref_ptr<Effect> make()
+{
+    return new Class;
+}
+
+struct Kind
+{
+    const char* name;
+    osg::ref_ptr<Effect> (*create)();
+};
+
+/// The one list of effects: scene files, options and tests go by it. A name is the class's with a small first letter.
+constexpr Kind kinds[] = {
+    {"birdsEyeView", make<BirdsEyeView>},
+    {"pedestrianView", make<PedestrianView>},
+    {"blendedView", make<BlendedView>},
+    {"verticalExaggeration", make<VerticalExaggeration>},
+};
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string text;
+    for (const std::string& word : words)
+        text += (text.empty() ? "" : ", ") + word;
+    return text;
+}
+
+} // namespace
+
+std::vector<std::string> effectKinds()
+{
+    std::vector<std::string> names;
+    for (const Kind& kind : kinds)
+        names.emplace_back(kind.name);
+    return names;
+}
+
+osg::ref_ptr<Effect> createEffect(const std::string& name)
+{
+    for (const Kind& kind : kinds)
+    {
+        if (name == kind.name) return kind.create();
+    }
+    return nullptr;
+}
+
+std::string kindOf(const Effect& effect)
+{
+    std::string name = effect.className();
+    if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+    return name;
+}
+
+osg::ref_ptr<Effect> parseEffect(const std::string& text, std::string& error)
+{
+    std::istringstream words(text);
+    std::string word;
+    words >> word;
+    osg::ref_ptr<Effect> effect = createEffect(word);
+    if (!effect)
+    {
+        error = "There is no effect \"" + word + "\"; there are " + joined(effectKinds()) + ".";
+        return nullptr;
+    }
+    while (words >> word)
+    {
+        const std::size_t equals = word.find('=');
+        if (equals == std::string::npos)
+        {
+            error = "\"" + word + "\" sets nothing; write property=value.";
+            return nullptr;
+        }
+        if (!effect->setPropertyText(word.substr(0, equals), word.substr(equals + 1), error)) return nullptr;
+    }
+    return effect;
+}
+
+} // namespace osgGeoFX

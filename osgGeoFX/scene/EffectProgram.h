@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/scene/Effect.h>
+
+#include <osg/Program>
+
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The shaders of a scene's effects, put together.
+
+    Effect i of the scene has the prefix geofx_<i>_ and the define GEOFX_EFFECT_<i>, which is set where the effect is in
+    force, so that switching effects changes defines and nothing else. */
+class EffectProgram
+{
+public:
+    using Effects = std::vector<osg::ref_ptr<Effect>>;
+
+    static std::string prefix(std::size_t effect);
+    static std::string define(std::size_t effect);
+
+    /// Changes where the shaders' text does.
+    static std::string key(const Effects& effects);
+    /// The text of a function shader; ShaderError as ShaderLibrary has it.
+    static std::string functions(const Effects& effects, osg::Shader::Type stage);
+    /// A program for geometry that has none. A new one each time, since one that is in use must not change. Null, after a
+    /// warning, where a shader file is missing.
+    static osg::ref_ptr<osg::Program> create(const Effects& effects);
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/EffectScene.h>
+
+#include <osgGeoFX/deformation/CompensatingCullVisitor.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/ShaderLibrary.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/LOD>
+#include <osg/Notify>
+#include <osg/observer_ptr>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <set>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr int deepestTerrainRoot = 8;
+
+const osg::CoordinateSystemNode* findCoordinateSystem(const osg::Node* node, int depth)
+{
+    if (const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node)) return found;
+    const osg::Group* group = node->asGroup();
+    if (!group || depth == 0 || dynamic_cast<const osg::LOD*>(node)) return nullptr;
+    for (unsigned int i = 0; i < group->getNumChildren(); ++i)
+    {
+        if (const auto* found = findCoordinateSystem(group->getChild(i), depth - 1)) return found;
+    }
+    return nullptr;
+}
+
+/// One vector, for one traversal of one camera.
+void setUniform(osg::StateSet& state, const std::string& name, const osg::Vec4d& value)
+{
+    state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
+}
+
+void setDefine(osg::StateSet& state, const std::string& name, bool on)
+{
+    state.setDefine(name, on ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
+}
+
+/// The deformations of a camera, by their effects.
+using Frames = std::vector<osg::ref_ptr<const DeformationFrame>>;
+
+bool finite(const DeformationFrame& frame)
+{
+    const DeformationFrame::Uniforms uniforms = frame.uniforms();
+    return std::all_of(uniforms.begin(), uniforms.end(),
+                       [](const auto& uniform)
+                       {
+                           const osg::Vec4d& value = uniform.second;
+                           return std::isfinite(static_cast<float>(value.x())) &&
+                                  std::isfinite(static_cast<float>(value.y())) &&
+                                  std::isfinite(static_cast<float>(value.z())) &&
+                                  std::isfinite(static_cast<float>(value.w()));
+                       });
+}
+
+void fill(osg::StateSet& state, const Frames& frames)
+{
+    setDefine(state, "GEOFX_DEFORMATION", true);
+    for (std::size_t i = 0; i < frames.size(); ++i)
+    {
+        setDefine(state, EffectProgram::define(i), frames[i].valid());
+        if (!frames[i]) continue;
+        for (const auto& [name, value] : frames[i]->uniforms())
+        {
+            setUniform(state, EffectProgram::prefix(i) + name, value);
+        }
+    }
+}
+
+osg::ref_ptr<osg::StateSet> createState(int mapUnit)
+{
+    osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    for (int unit = 0; unit < FixedFunctionLook::units; ++unit)
+    {
+        state->addUniform(new osg::Uniform(("geofx_texture" + std::to_string(unit)).c_str(), unit));
+    }
+    state->addUniform(new osg::Uniform("geofx_map", std::max(mapUnit, 0)));
+    return state;
+}
+
+} // namespace
+
+/// What drawing needs and no one else sees.
+struct EffectScene::Drawing
+{
+    /// For one cull visitor of OSG: so for one camera, and one of the frames that are on their way.
+    struct Camera
+    {
+        osg::observer_ptr<osgUtil::CullVisitor> outer;
+        osg::ref_ptr<CompensatingCullVisitor> visitor = new CompensatingCullVisitor;
+        std::vector<osg::ref_ptr<osg::StateSet>> states; ///< one for each traversal of a frame
+        std::size_t used = 0;
+    };
+
+    Drawing()
+    {
+        untouched->setDefine("GEOFX_DEFORMATION", osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
+    }
+
+    /// The camera's own data; other threads may ask for theirs at the same time.
+    Camera& camera(osgUtil::CullVisitor& outer)
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        std::unique_ptr<Camera>& found = cameras[&outer];
+        if (!found || !found->outer.valid())
+        {
+            for (auto entry = cameras.begin(); entry != cameras.end();)
+            {
+                const bool gone = entry->first != &outer && !entry->second->outer.valid();
+                entry = gone ? cameras.erase(entry) : std::next(entry);
+            }
+            found = std::make_unique<Camera>();
+            found->outer = &outer;
+        }
+        return *found;
+    }
+
+    osg::ref_ptr<osg::Program> programFor(const EffectProgram::Effects& effects)
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        const std::string key = EffectProgram::key(effects);
+        if (!programMade || key != programKey)
+        {
+            programKey = key;
+            programMade = true;
+            program = EffectProgram::create(effects);
+            updateFunctions(effects);
+        }
+        return program;
+    }
+
+    void updateFunctions(const EffectProgram::Effects& effects)
+    {
+        for (const osg::ref_ptr<osg::Shader>& shader : {vertexFunctions, fragmentFunctions})
+        {
+            if (!shader) continue;
+            const std::string source = EffectProgram::functions(effects, shader->getType());
+            if (source != shader->getShaderSource()) shader->setShaderSource(source);
+        }
+    }
+
+    void sayOnce(const std::string& sentence)
+    {
+        if (sentence.empty()) return;
+        const std::lock_guard<std::mutex> lock(mutex);
+        // Numbers change from frame to frame; the rest tells what it is about.
+        std::string kind;
+        std::copy_if(sentence.begin(), sentence.end(), std::back_inserter(kind),
+                     [](char letter) { return letter < '0' || letter > '9'; });
+        if (said.insert(kind).second) OSG_WARN << "osgGeoFX: " << sentence << std::endl;
+    }
+
+    std::mutex mutex;
+    std::map<osgUtil::CullVisitor*, std::unique_ptr<Camera>> cameras;
+    std::string programKey;
+    bool programMade = false;
+    osg::ref_ptr<osg::Program> program;
+    osg::ref_ptr<osg::Shader> vertexFunctions;
+    osg::ref_ptr<osg::Shader> fragmentFunctions;
+    osg::ref_ptr<osg::StateSet> untouched = new osg::StateSet;
+    std::set<std::string> said;
+};
+
+EffectScene::EffectScene() : _drawing(std::make_unique<Drawing>())
+{
+    // What its bound becomes is known below it only.
+    setCullingActive(false);
+}
+
+EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
+    : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
+      _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
+      _terrainFrame(other._terrainFrame), _drawing(std::make_unique<Drawing>())
+{
+    if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
+    {
+        for (osg::ref_ptr<Effect>& effect : _effects)
+            effect = osg::clone(effect.get(), copy);
+    }
+}
+
+EffectScene::~EffectScene() = default;
+
+bool EffectScene::addEffect(Effect* effect)
+{
+    if (!effect || std::find(_effects.begin(), _effects.end(), effect) != _effects.end())
+    {
+        OSG_WARN << "osgGeoFX: EffectScene::addEffect got "
+                 << (effect ? "an effect that the scene has already" : "no effect") << "; nothing changes."
+                 << std::endl;
+        return false;
+    }
+    _effects.emplace_back(effect);
+    return true;
+}
+
+bool EffectScene::removeEffect(Effect* effect)
+{
+    const auto found = std::find(_effects.begin(), _effects.end(), effect);
+    if (found == _effects.end()) return false;
+    _effects.erase(found);
+    return true;
+}
+
+void EffectScene::addFunctions(osg::Program& program)
+{
+    const std::lock_guard<std::mutex> lock(_drawing->mutex);
+    if (!_drawing->vertexFunctions)
+    {
+        _drawing->vertexFunctions = new osg::Shader(osg::Shader::VERTEX);
+        _drawing->fragmentFunctions = new osg::Shader(osg::Shader::FRAGMENT);
+        _drawing->vertexFunctions->setName("stages/functions.vert");
+        _drawing->fragmentFunctions->setName("stages/functions.frag");
+    }
+    try
+    {
+        _drawing->updateFunctions(_effects);
+    }
+    catch (const ShaderError& error)
+    {
+        OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
+        return;
+    }
+    program.addShader(_drawing->vertexFunctions);
+    program.addShader(_drawing->fragmentFunctions);
+}
+
+Ground EffectScene::ground(const osg::NodePath& above) const
+{
+    const osg::CoordinateSystemNode* system = nullptr;
+    for (const osg::Node* node : above)
+    {
+        const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node);
+        if (found) system = found;
+    }
+    if (!system) system = findCoordinateSystem(this, deepestTerrainRoot);
+    Ground ground;
+    if (system && _terrainFrame != PROJECTED) ground.ellipsoid = system->getEllipsoidModel();
+    if (!ground.ellipsoid && _terrainFrame == GEOCENTRIC) ground.ellipsoid = new osg::EllipsoidModel;
+    std::string error;
+    if (const std::optional<TerrainInfo> info =
+            TerrainInfo::read(system ? static_cast<const osg::Node*>(system) : this, error))
+    {
+        ground.minHeight = info->minHeight;
+        ground.maxHeight = info->maxHeight;
+    }
+    return ground;
+}
+
+namespace
+{
+
+Frames framesFor(const EffectProgram::Effects& effects, const ViewGeometry& view)
+{
+    Frames frames(effects.size());
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        const Deformation* deformation = effects[i]->asDeformation();
+        if (!deformation || !effects[i]->getEnabled()) continue;
+        osg::ref_ptr<const DeformationFrame> frame = deformation->frame(view);
+        if (frame && finite(*frame)) frames[i] = frame;
+    }
+    return frames;
+}
+
+osg::ref_ptr<DeformationChain> chainOf(const Frames& frames)
+{
+    osg::ref_ptr<DeformationChain> chain = new DeformationChain;
+    for (const auto& frame : frames)
+    {
+        if (frame) chain->add(frame);
+    }
+    return chain;
+}
+
+int mapUnitOf(const EffectProgram::Effects& effects)
+{
+    for (const auto& effect : effects)
+    {
+        const Deformation* deformation = effect->asDeformation();
+        if (deformation && effect->getEnabled() && deformation->mapUnit() >= 0) return deformation->mapUnit();
+    }
+    return -1;
+}
+
+} // namespace
+
+osg::ref_ptr<const DeformationChain> EffectScene::deformation(const osg::Matrixd& modelView,
+                                                              const osg::Matrixd& projection,
+                                                              const osg::NodePath& above) const
+{
+    return chainOf(framesFor(_effects, ViewGeometry(modelView, projection, ground(above))));
+}
+
+bool EffectScene::cull(osgUtil::CullVisitor& outer)
+{
+    const bool wanted =
+        std::any_of(_effects.begin(), _effects.end(), [](const auto& each) { return each->getEnabled(); });
+    if (!wanted || dynamic_cast<CompensatingCullVisitor*>(&outer)) return false;
+    const osg::Camera* camera = outer.getRenderStage() ? outer.getCurrentCamera() : nullptr;
+    if (!camera) return false;
+    const osg::NodePath& path = outer.getNodePath();
+    const bool nested =
+        camera->getNumParents() > 0 ||
+        std::any_of(path.begin(), path.end(),
+                    [](osg::Node* node) { return node->asCamera() != nullptr && node->getNumParents() > 0; });
+    if (nested && !_nestedCameras) return false;
+
+    const ViewGeometry view(*outer.getModelViewMatrix(), *outer.getProjectionMatrix(), ground(path));
+    const Frames frames = framesFor(_effects, view);
+    CompensatingCullVisitor::Task task;
+    task.chain = chainOf(frames);
+    if (task.chain->empty() && !_debugBounds) return false;
+
+    task.program = _drawing->programFor(_effects);
+    task.mapUnit = mapUnitOf(_effects);
+    Drawing::Camera& own = _drawing->camera(outer);
+    if (own.visitor->startsFrame(outer)) own.used = 0;
+    if (own.used == own.states.size()) own.states.push_back(createState(task.mapUnit));
+    osg::StateSet& state = *own.states[own.used++];
+    state.getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(task.mapUnit, 0));
+    fill(state, frames);
+    task.state = &state;
+    task.untouched = _drawing->untouched;
+    task.compensate = _compensation;
+    task.debugBounds = _debugBounds;
+    own.visitor->run(outer, *this, task);
+    _drawing->sayOnce(own.visitor->complaint());
+    return true;
+}
+
+void EffectScene::traverse(osg::NodeVisitor& visitor)
+{
+    osgUtil::CullVisitor* culling = visitor.asCullVisitor();
+    if (culling && cull(*culling)) return;
+    osg::Group::traverse(visitor);
+}
+
+void EffectScene::resizeGLObjectBuffers(unsigned int size)
+{
+    if (_drawing->program) _drawing->program->resizeGLObjectBuffers(size);
+    osg::Group::resizeGLObjectBuffers(size);
+}
+
+void EffectScene::releaseGLObjects(osg::State* state) const
+{
+    if (_drawing->program) _drawing->program->releaseGLObjects(state);
+    osg::Group::releaseGLObjects(state);
+}
+
+} // namespace osgGeoFX

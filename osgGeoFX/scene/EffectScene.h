@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/scene/Effect.h>
+#include <osgGeoFX/scene/ViewGeometry.h>
+
+#include <osg/Group>
+#include <osg/Program>
+#include <osg/Shader>
+#include <osgUtil/CullVisitor>
+
+#include <memory>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The group that a program puts above its terrain to have the kit's effects.
+
+    @code
+    osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
+    scene->addEffect(new osgGeoFX::BirdsEyeView);
+    scene->addChild(terrain);
+    viewer.setSceneData(scene);
+    @endcode
+
+    **What it draws.** Everything below it, deformed by its effects in their order. Geometry without a shader keeps its
+    look: materials, lights, up to four 2D textures with their environments, fog. Geometry with shaders of its own is
+    deformed if these call geofx_vertex() and geofx_fragment() (shaders/stages/functions.*), after addFunctions();
+    else it stays where it is. A subgraph is left out with `stateSet->setDefine("GEOFX_DEFORMATION", OFF)`.
+    Cameras and projections below it (render to texture, head-up displays) are drawn as ever. So is everything in
+    cameras that stand above it in the graph, such as a shadow map's, unless nestedCameras is on.
+
+    **Culling.** The terrain's nodes are not touched, whoever loads them, and may be shared with other scenes. Below the
+    group a cull visitor of our own takes the place of the camera's: it culls by what the deformation makes of bounds,
+    and chooses levels of detail by the deformed distance, for osg::LOD, osg::PagedLOD and whatever asks the visitor for
+    distances; near and far planes come out right. Without an enabled effect that does something for the camera,
+    the group is a plain osg::Group. See osgGeoFX/README.md.
+
+    **Frames.** World coordinates are those of the group's children: geocentric below an osg::CoordinateSystemNode with an
+    ellipsoid, which may stand above or below, else projected with z up. Transforms above must not scale.
+
+    **Threads.** May be drawn by any number of cameras, views and contexts, in every threading model. Effects are added,
+    removed and changed between frames. Several scenes may share a terrain, each with its own effects; one inside
+    another is drawn without the inner one's effects. */
+class OSGGEOFX_EXPORT EffectScene : public osg::Group
+{
+public:
+    EffectScene();
+    EffectScene(const EffectScene& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
+    META_Node(osgGeoFX, EffectScene);
+
+    enum TerrainFrame
+    {
+        AUTOMATIC, ///< what an osg::CoordinateSystemNode above or below says; projected where there is none
+        GEOCENTRIC,
+        PROJECTED
+    };
+
+    /// Null and an effect that is there already are refused.
+    bool addEffect(Effect* effect);
+    bool removeEffect(Effect* effect);
+    unsigned int getNumEffects() const { return static_cast<unsigned int>(_effects.size()); }
+    Effect* getEffect(unsigned int i) { return _effects[i].get(); }
+    const Effect* getEffect(unsigned int i) const { return _effects[i].get(); }
+
+    /// False: only the GPU deforms, and the CPU culls as if it did not. For comparison. True by default.
+    void setCompensation(bool on) { _compensation = on; }
+    bool getCompensation() const { return _compensation; }
+    /// Draws the deformed bounds that culling decides on, yellow, and those in the transition zone red. False by default.
+    void setDebugBounds(bool on) { _debugBounds = on; }
+    bool getDebugBounds() const { return _debugBounds; }
+    /// Whether cameras that stand above in the graph are deformed, too. False by default.
+    void setNestedCameras(bool on) { _nestedCameras = on; }
+    bool getNestedCameras() const { return _nestedCameras; }
+    void setTerrainFrame(TerrainFrame frame) { _terrainFrame = frame; }
+    TerrainFrame getTerrainFrame() const { return _terrainFrame; }
+
+    /// Adds the functions geofx_vertex, geofx_normal and geofx_fragment to a program. They follow the scene's effects.
+    void addFunctions(osg::Program& program);
+
+    /// The deformation of a camera: `modelView` from the children's frame to eye space. Never null; empty where
+    /// nothing is deformed.
+    osg::ref_ptr<const DeformationChain> deformation(const osg::Matrixd& modelView,
+                                                     const osg::Matrixd& projection,
+                                                     const osg::NodePath& above = {}) const;
+    /// What is known of the ground.
+    Ground ground(const osg::NodePath& above = {}) const;
+
+    void traverse(osg::NodeVisitor& visitor) override;
+    void resizeGLObjectBuffers(unsigned int size) override;
+    void releaseGLObjects(osg::State* state = nullptr) const override;
+
+protected:
+    ~EffectScene() override;
+
+private:
+    struct Drawing;
+    bool cull(osgUtil::CullVisitor& outer);
+
+    std::vector<osg::ref_ptr<Effect>> _effects;
+    bool _compensation = true;
+    bool _debugBounds = false;
+    bool _nestedCameras = false;
+    TerrainFrame _terrainFrame = AUTOMATIC;
+    std::unique_ptr<Drawing> _drawing;
+};
+
+} // namespace osgGeoFX

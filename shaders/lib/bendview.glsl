@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// A bend placed before a camera: positions in eye space to the bend's profile and back, after Sections 3 and 4
+// of Lorenz et al. (2008). The CPU works out the placement, once for each camera and frame.
+#ifndef __cplusplus
+#include "lib/types.glsl"
+#include "lib/bend.glsl"
+#endif
+
+struct geofx_BendView
+{
+    Vector3 normal;  // n of the reference plane T, towards the sky
+    Vector3 forward; // D: in T, across the parallel lines, away from the focus
+    Length height;   // of the eye above T
+    Length start;    // where the line b lies, along D from the point of T below the eye
+    geofx_Bend bend;
+};
+
+// Where a position lies in the profile.
+GEOFX_INLINE Profile geofx_bendViewProfile(geofx_BendView view, Position position)
+{
+    return Vector2(dot(position, view.forward) - view.start, dot(position, view.normal) + view.height);
+}
+
+// Where the view takes a position. The focus stays as it is, to the last bit.
+GEOFX_INLINE Position geofx_bendViewDeform(geofx_BendView view, Position position)
+{
+    Profile point = geofx_bendViewProfile(view, position);
+    if (!(point.x > 0))
+    {
+        return position;
+    }
+    Vector2 offset = geofx_bend(view.bend, point) - point;
+    return position + offset.x * view.forward + offset.y * view.normal;
+}
+
+// The inverse of geofx_bendViewDeform, as exact as geofx_unbend.
+GEOFX_INLINE Position geofx_bendViewUndeform(geofx_BendView view, Position position)
+{
+    Profile point = geofx_bendViewProfile(view, position);
+    if (!(point.x > 0))
+    {
+        return position;
+    }
+    Vector2 offset = geofx_unbend(view.bend, point) - point;
+    return position + offset.x * view.forward + offset.y * view.normal;
+}
+
+// What becomes of a surface's unit normal at a position that has not been deformed yet.
+GEOFX_INLINE Vector3 geofx_bendViewNormal(geofx_BendView view, Position position, Vector3 normal)
+{
+    Profile point = geofx_bendViewProfile(view, position);
+    if (!(point.x > 0))
+    {
+        return normal;
+    }
+    geofx_BendFrame frame = geofx_bendFrame(view.bend, point.x);
+    Vector2 inside = Vector2(dot(normal, view.forward), dot(normal, view.normal));
+    Number stretch = max(geofx_bendStretch(frame, point.y), Number(1e-3));
+    Vector2 turned = geofx_bendTurn(frame, Vector2(inside.x / stretch, inside.y));
+    Vector2 change = turned - inside;
+    return normalize(normal + change.x * view.forward + change.y * view.normal);
+}
+
+// q, the paper's value for blending styles: 0 in the focus, 1 in the context.
+GEOFX_INLINE Number geofx_bendViewStyle(geofx_BendView view, Position position)
+{
+    Length s = dot(position, view.forward) - view.start;
+    return s > 0 ? clamp(s / max(view.bend.size, Number(1e-3)), Number(0), Number(1)) : Number(0);
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// PerspectiveBend in the vertex stage. SLOT_ stands for the effect's prefix; SLOT_curve is a constant.
+#include "lib/bendview.glsl"
+
+uniform vec4 SLOT_plane;
+uniform vec4 SLOT_forward;
+uniform vec4 SLOT_bend;
+uniform vec4 SLOT_angle;
+uniform vec4 SLOT_end;
+
+geofx_BendView SLOT_view()
+{
+    geofx_Bend bend = geofx_Bend(SLOT_curve, SLOT_bend.x, SLOT_bend.y, SLOT_angle.xy, SLOT_angle.zw, SLOT_bend.z,
+                                 SLOT_bend.w, SLOT_end.xy);
+    return geofx_BendView(SLOT_plane.xyz, SLOT_forward.xyz, SLOT_plane.w, SLOT_forward.w, bend);
+}
+
+vec3 SLOT_deform(vec3 position)
+{
+    return geofx_bendViewDeform(SLOT_view(), position);
+}
+
+// The ground is lit as it lies, not as it is bent.
+vec3 SLOT_normal(vec3 position, vec3 normal)
+{
+    return normal;
+}
+
+float SLOT_style(vec3 position)
+{
+    return geofx_bendViewStyle(SLOT_view(), position);
+}

@@ -1,0 +1,70 @@
+#version 330 compatibility
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// OpenGL's fixed fragment stage: texture environments, the separate specular colour and fog, OpenGL 2.1, Sections
+// 3.8 to 3.10, with the effects before the fog.
+#pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
+#pragma import_defines(GEOFX_SEPARATE_SPECULAR, GEOFX_FOG, GEOFX_MAP)
+
+vec4 geofx_fragment(vec4 colour, vec4 map);
+
+// The environments' numbers: 1 modulate, 2 replace, 3 decal, 4 blend, 5 add.
+vec4 environment(int mode, vec4 colour, vec4 texel, vec4 constant)
+{
+    if (mode == 2) return texel;
+    if (mode == 3) return vec4(mix(colour.rgb, texel.rgb, texel.a), colour.a);
+    if (mode == 4) return vec4(mix(colour.rgb, constant.rgb, texel.rgb), colour.a * texel.a);
+    if (mode == 5) return clamp(vec4(colour.rgb + texel.rgb, colour.a * texel.a), 0.0, 1.0);
+    return colour * texel;
+}
+
+#ifdef GEOFX_TEXTURE_0
+uniform sampler2D geofx_texture0;
+#endif
+#ifdef GEOFX_TEXTURE_1
+uniform sampler2D geofx_texture1;
+#endif
+#ifdef GEOFX_TEXTURE_2
+uniform sampler2D geofx_texture2;
+#endif
+#ifdef GEOFX_TEXTURE_3
+uniform sampler2D geofx_texture3;
+#endif
+#ifdef GEOFX_MAP
+uniform sampler2D geofx_map;
+#endif
+
+void main()
+{
+    vec4 colour = gl_Color;
+#ifdef GEOFX_TEXTURE_0
+    colour = environment(GEOFX_TEXTURE_0, colour, texture2DProj(geofx_texture0, gl_TexCoord[0]), gl_TextureEnvColor[0]);
+#endif
+#ifdef GEOFX_TEXTURE_1
+    colour = environment(GEOFX_TEXTURE_1, colour, texture2DProj(geofx_texture1, gl_TexCoord[1]), gl_TextureEnvColor[1]);
+#endif
+#ifdef GEOFX_TEXTURE_2
+    colour = environment(GEOFX_TEXTURE_2, colour, texture2DProj(geofx_texture2, gl_TexCoord[2]), gl_TextureEnvColor[2]);
+#endif
+#ifdef GEOFX_TEXTURE_3
+    colour = environment(GEOFX_TEXTURE_3, colour, texture2DProj(geofx_texture3, gl_TexCoord[3]), gl_TextureEnvColor[3]);
+#endif
+#ifdef GEOFX_SEPARATE_SPECULAR
+    colour.rgb += gl_SecondaryColor.rgb;
+#endif
+#ifdef GEOFX_MAP
+    colour = geofx_fragment(colour, gl_Color * texture2DProj(geofx_map, gl_TexCoord[0]));
+#else
+    colour = geofx_fragment(colour, vec4(0.0));
+#endif
+#ifdef GEOFX_FOG
+    float distance = gl_FogFragCoord;
+    float clear = 1.0;
+    if (GEOFX_FOG == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;
+    if (GEOFX_FOG == 2) clear = exp(-gl_Fog.density * distance);
+    if (GEOFX_FOG == 3) clear = exp(-gl_Fog.density * gl_Fog.density * distance * distance);
+    colour.rgb = mix(gl_Fog.color.rgb, clamp(colour.rgb, 0.0, 1.0), clamp(clear, 0.0, 1.0));
+#endif
+    gl_FragColor = colour;
+}

@@ -1,0 +1,37 @@
+#version 330 compatibility
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The effects of a scene in the vertex stage. Declare and call these in a vertex shader of your own:
+//
+//     vec4 geofx_vertex(vec4 eyePosition);                    // where it goes, in eye space; sets what fragments need
+//     vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);    // the normal to light with
+//
+// EffectScene puts the code of its effects in the place of the words in capitals.
+#pragma import_defines(GEOFX_DEFORMATION)
+GEOFX_IMPORTED_EFFECTS
+out float geofx_styleBlend;
+GEOFX_EFFECT_FUNCTIONS
+vec4 geofx_vertex(vec4 eyePosition)
+{
+    geofx_styleBlend = 0.0;
+#ifdef GEOFX_DEFORMATION
+    vec3 position = eyePosition.xyz / eyePosition.w;
+GEOFX_DEFORM_CALLS
+    return vec4(position, 1.0);
+#else
+    return eyePosition;
+#endif
+}
+
+vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal)
+{
+#ifdef GEOFX_DEFORMATION
+    vec3 position = eyePosition.xyz / eyePosition.w;
+    vec3 normal = eyeNormal;
+GEOFX_NORMAL_CALLS
+    return normal;
+#else
+    return eyeNormal;
+#endif
+}
