@@ -3,6 +3,7 @@
 #include <osgGeoFX/deformation/CompensatingCullVisitor.h>
 
 #include <osgGeoFX/deformation/RigidReference.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <osg/Billboard>
 #include <osg/LOD>
@@ -59,6 +60,34 @@ bool leftOut(const osg::StateSet* state)
     if (!state || state->getDefineList().empty()) return false;
     const osg::StateSet::DefinePair* define = state->getDefinePair("GEOFX_DEFORMATION");
     return define && !(define->second & osg::StateAttribute::ON);
+}
+
+double cross(const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c)
+{
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// The convex hull of points, counter-clockwise; Andrew's monotone chain. The points are sorted.
+std::vector<osg::Vec2d> convexOutline(std::vector<osg::Vec2d>& points)
+{
+    std::sort(points.begin(), points.end());
+    std::vector<osg::Vec2d> outline(2 * points.size());
+    std::size_t count = 0;
+    for (const osg::Vec2d& point : points)
+    {
+        while (count >= 2 && cross(outline[count - 2], outline[count - 1], point) <= 0.0)
+            --count;
+        outline[count++] = point;
+    }
+    const std::size_t lower = count + 1;
+    for (auto point = points.rbegin() + 1; point != points.rend(); ++point)
+    {
+        while (count >= lower && cross(outline[count - 2], outline[count - 1], *point) <= 0.0)
+            --count;
+        outline[count++] = *point;
+    }
+    outline.resize(count > 1 ? count - 1 : count);
+    return outline;
 }
 
 /// What rounding of positions on the GPU may add at a distance.
@@ -152,6 +181,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
             _planes.push_back(plane.asVec4());
         }
     }
+    _frustumSides = (_outerCullingMode & VIEW_FRUSTUM_SIDES_CULLING) != 0;
     // OSG's own tests, which the base class makes, pass everything.
     if (task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
     pushReferenceViewPoint(outer.getReferenceViewPoint());
@@ -333,6 +363,7 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
         CullVisitor::apply(node);
         return;
     }
+    if (tileOutOfSight(node)) return;
     _mode.lodRadius = static_cast<double>(node.getBound().radius()) * _scale;
     if (node.getRangeMode() != osg::LOD::PIXEL_SIZE_ON_SCREEN)
     {
@@ -418,18 +449,77 @@ void CompensatingCullVisitor::apply(osg::Projection& node)
     passUntouched(node);
 }
 
-bool CompensatingCullVisitor::outside(const Hull& hull) const
+bool CompensatingCullVisitor::outside(const Hull& hull, PlaneMask planes) const
 {
     for (std::size_t i = 0; i < _planes.size(); ++i)
     {
-        if (!(_mode.planes & (1u << i))) continue;
+        if (!(planes & (1u << i))) continue;
         const bool all =
             std::all_of(hull.points.begin(), hull.points.end(),
                         [&](const osg::Vec3d& point)
                         { return planeDistance(_planes[i], point) < -(hull.margin + rounding(point)); });
         if (all) return true;
     }
+    return planes && _frustumSides && missesPicture(hull);
+}
+
+bool CompensatingCullVisitor::missesPicture(const Hull& hull) const
+{
+    // A hull beside a corner of the picture crosses planes and yet misses the picture. Where all of it lies before the
+    // eye, its outline in the picture tells.
+    const osg::Matrixd& projection = *_projectionStack.back();
+    const bool perspective = projection(3, 3) == 0.0;
+    double nearest = DBL_MAX;
+    double widest = 0.0;
+    _outline.clear();
+    for (const osg::Vec3d& point : hull.points)
+    {
+        const double depth = perspective ? -point.z() : 1.0;
+        nearest = std::min(nearest, depth);
+        if (nearest <= 0.0) return false;
+        const osg::Vec3d projected = point * projection;
+        _outline.emplace_back(projected.x(), projected.y());
+        widest = std::max({widest, std::abs(projected.x()), std::abs(projected.y())});
+    }
+    // What the margin is at most in the picture.
+    const double margin = hull.margin + 1e-6 * nearest;
+    if (perspective && nearest <= 2.0 * margin) return false;
+    const double zoom = std::max(std::abs(projection(0, 0)), std::abs(projection(1, 1)));
+    const double skew = std::max(std::abs(projection(2, 0)), std::abs(projection(2, 1)));
+    const double slack = perspective ? margin * (zoom + skew + widest) / (nearest - margin) : margin * zoom;
+    const double edge = 1.0 + 2.0 * slack + 1e-5 * (1.0 + widest);
+    const std::vector<osg::Vec2d>& outline = convexOutline(_outline);
+    for (std::size_t i = 0; i < outline.size(); ++i)
+    {
+        const osg::Vec2d along = outline[(i + 1) % outline.size()] - outline[i];
+        const osg::Vec2d outward(along.y(), -along.x());
+        // The corner of the widened picture that is nearest to the hull on this side.
+        const double corner = -edge * (std::abs(outward.x()) + std::abs(outward.y()));
+        if (corner > outward * outline[i]) return true;
+    }
     return false;
+}
+
+bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
+{
+    // Its sphere is wide for a flat tile; the mesh that stands for it has a box.
+    if (_task.tileError <= 0.0 || _mode.planes == 0 || node.getNumChildren() == 0 || node.getNumRanges() < 2)
+        return false;
+    const osg::Transform* tile = node.getChild(0)->asTransform();
+    if (!tile || !TileInfo::isTile(*tile) || tile->getNumChildren() != 1) return false;
+    const osg::Drawable* mesh = tile->getChild(0)->asDrawable();
+    if (!mesh || !mesh->getBoundingBox().valid()) return false;
+    osg::Matrixd matrix = *getModelViewMatrix();
+    tile->computeLocalToWorldMatrix(matrix, this);
+    const double range = static_cast<double>(node.getMaxRange(1));
+    const double error =
+        std::max(0.0, range - static_cast<double>(node.getBound().radius())) * _task.tileError;
+    osg::BoundingBox bounds = mesh->getBoundingBox();
+    const osg::Vec3 more(osg::Vec3d(error, error, error));
+    bounds._min -= more;
+    bounds._max += more;
+    _mode.chain->bound(EyeBox::of(bounds, matrix), _hull);
+    return outside(_hull, _mode.planes);
 }
 
 void CompensatingCullVisitor::includeDepths(const Hull& hull)
@@ -475,11 +565,7 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
     if (planes || extends || _task.debugBounds)
     {
         _mode.chain->bound(box, _hull);
-        const PlaneMask former = _mode.planes;
-        _mode.planes = planes;
-        const bool gone = planes && outside(_hull);
-        _mode.planes = former;
-        if (gone) return false;
+        if (planes && outside(_hull, planes)) return false;
         if (extends) includeDepths(_hull);
         if (_complaint.empty() && _hull.points.size() > 8)
         {

@@ -44,6 +44,7 @@ public:
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;
+        double tileError = 0.0; ///< Ground::tileError
     };
 
     /// Whether `outer` begins a new frame; if so, forgets what was drawn in the last one. To be asked before run().
@@ -98,7 +99,11 @@ private:
     bool outOfSight(const osg::Node& node);
     Ball eyeBall(const osg::BoundingSphere& sphere) const;
     Side side(const Ball& ball, PlaneMask& planes) const;
-    bool outside(const Hull& hull) const;
+    /// Whether a hull misses the planes of a mask, or the picture.
+    bool outside(const Hull& hull, PlaneMask planes) const;
+    bool missesPicture(const Hull& hull) const;
+    /// Whether a paged tile of the kit's databases, with all that is finer, is out of sight.
+    bool tileOutOfSight(const osg::LOD& node);
     void includeDepths(const Hull& hull);
     void includeDepths(const Ball& ball);
     /// Culls a drawable by its box. False where it is out of sight; `depth` of its middle otherwise.
@@ -121,6 +126,8 @@ private:
     double _far = 0.0;
     double _scale = 1.0; ///< of the current modelview matrix
     Hull _hull;
+    mutable std::vector<osg::Vec2d> _outline;
+    bool _frustumSides = false;
     std::string _complaint;
     osgUtil::StateGraph* _entry = nullptr; ///< the outer visitor's, where our state begins
 

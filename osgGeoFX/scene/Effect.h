@@ -8,7 +8,10 @@
 #include <osg/Object>
 #include <osg/ref_ptr>
 
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -36,8 +39,15 @@ public:
     /// The same as the typed setter and getter. False, with a sentence in `error`, where the value is refused.
     bool setProperty(const std::string& name, double value, std::string& error);
     double getProperty(const std::string& name) const;
+    /// Several at once, by name: they need to fit each other in the end only, not on the way. Where some are refused,
+    /// these keep their former values and the others are taken; then it is false, with a sentence for each in `error`.
+    bool setProperties(const std::map<std::string, double>& values, std::string& error);
     /// From the texts that a person types: "bendAngleDegrees", "30"; of a part, "birdsEyeView.focusLine".
     bool setPropertyText(const std::string& name, const std::string& value, std::string& error);
+    /// Several at once, in any order; of a name that comes twice the last counts. False at the first mistake, with a
+    /// sentence in `error`.
+    using Texts = std::vector<std::pair<std::string, std::string>>;
+    bool setPropertyTexts(const Texts& texts, std::string& error);
 
     /// Effects that this one is made of, by their kinds' names in text; most have none.
     struct Part

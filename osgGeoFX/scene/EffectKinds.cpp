@@ -81,6 +81,7 @@ osg::ref_ptr<Effect> parseEffect(const std::string& text, std::string& error)
         error = "There is no effect \"" + word + "\"; there are " + joined(effectKinds()) + ".";
         return nullptr;
     }
+    Effect::Texts texts;
     while (words >> word)
     {
         const std::size_t equals = word.find('=');
@@ -89,8 +90,9 @@ osg::ref_ptr<Effect> parseEffect(const std::string& text, std::string& error)
             error = "\"" + word + "\" sets nothing; write property=value.";
             return nullptr;
         }
-        if (!effect->setPropertyText(word.substr(0, equals), word.substr(equals + 1), error)) return nullptr;
+        texts.emplace_back(word.substr(0, equals), word.substr(equals + 1));
     }
+    if (!effect->setPropertyTexts(texts, error)) return nullptr;
     return effect;
 }
 

@@ -256,6 +256,8 @@ Ground EffectScene::ground(const osg::NodePath& above) const
     {
         ground.minHeight = info->minHeight;
         ground.maxHeight = info->maxHeight;
+        // A range is the radius and error / pixelError · pixelsPerRadian; both meshes may be off by their error.
+        if (info->pixelsPerRadian > 0.0) ground.tileError = 2.0 * info->pixelError / info->pixelsPerRadian;
     }
     return ground;
 }
@@ -337,6 +339,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     task.untouched = _drawing->untouched;
     task.compensate = _compensation;
     task.debugBounds = _debugBounds;
+    task.tileError = view.ground.tileError;
     own.visitor->run(outer, *this, task);
     _drawing->sayOnce(own.visitor->complaint());
     return true;

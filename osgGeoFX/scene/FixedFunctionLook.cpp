@@ -3,13 +3,17 @@
 #include <osgGeoFX/scene/FixedFunctionLook.h>
 
 #include <osg/Fog>
+#include <osg/Image>
 #include <osg/LightModel>
 #include <osg/Material>
+#include <osg/Point>
 #include <osg/TexEnv>
 #include <osg/TexGen>
+#include <osg/Texture>
 
 #include <algorithm>
-#include <array>
+#include <iterator>
+#include <string>
 
 namespace osgGeoFX
 {
@@ -17,31 +21,10 @@ namespace osgGeoFX
 namespace
 {
 
-/// The state sets from the root to a drawable.
-class Path
-{
-public:
-    Path(const osgUtil::StateGraph& state, const osg::StateSet* drawable)
-    {
-        if (drawable) push(drawable);
-        for (const osgUtil::StateGraph* graph = &state; graph; graph = graph->_parent)
-        {
-            if (graph->getStateSet()) push(graph->getStateSet());
-        }
-        std::reverse(_sets.begin(), _sets.begin() + _count);
-    }
-    const osg::StateSet* const* begin() const { return _sets.data(); }
-    const osg::StateSet* const* end() const { return _sets.data() + _count; }
-
-private:
-    void push(const osg::StateSet* set)
-    {
-        // Deeper graphs than this lose what is nearest to the root.
-        if (_count < static_cast<int>(_sets.size())) _sets[static_cast<std::size_t>(_count++)] = set;
-    }
-    std::array<const osg::StateSet*, 64> _sets{};
-    int _count = 0;
-};
+// Names of OpenGL that OSG's headers lack.
+constexpr GLenum colorSumMode = 0x8458;         // GL_COLOR_SUM
+constexpr GLenum programTwoSideMode = 0x8643;   // GL_VERTEX_PROGRAM_TWO_SIDE
+constexpr GLenum programPointSizeMode = 0x8642; // GL_VERTEX_PROGRAM_POINT_SIZE
 
 /// A value that is handed down the path, as osg::State does it.
 template<typename Value>
@@ -68,17 +51,25 @@ using Attribute = Inherited<const osg::StateAttribute*>;
 /// One pass over the path for all that the look depends on.
 struct Gathered
 {
-    Mode lighting{false}, normalize{false}, rescale{false}, fog{false};
+    Mode lighting{false}, normalize{false}, rescale{false}, fog{false}, colorSum{false};
     std::array<Mode, 8> lights{Mode(false), Mode(false), Mode(false), Mode(false),
                                Mode(false), Mode(false), Mode(false), Mode(false)};
-    Attribute program{nullptr}, material{nullptr}, model{nullptr}, fogSettings{nullptr};
+    Attribute program{nullptr}, material{nullptr}, model{nullptr}, fogSettings{nullptr}, point{nullptr};
     struct Unit
     {
-        Mode texture{false}, other{false}, genS{false}, genR{false};
+        Mode texture{false}, other{false};
+        std::array<Mode, 4> generates{Mode(false), Mode(false), Mode(false), Mode(false)}; ///< s, t, r, q
         Attribute image{nullptr}, environment{nullptr}, gen{nullptr};
     };
     std::array<Unit, FixedFunctionLook::units> units;
+    bool beyond = false; ///< a texture on a unit that the shaders do not have
 
+    /// The state sets from the root down to a node of the state graph.
+    void meetAll(const osgUtil::StateGraph& state)
+    {
+        if (state._parent) meetAll(*state._parent);
+        if (state.getStateSet()) meet(*state.getStateSet());
+    }
     void meetMode(GLenum mode, unsigned int flags)
     {
         const bool on = (flags & osg::StateAttribute::ON) != 0;
@@ -95,6 +86,9 @@ struct Gathered
             break;
         case GL_FOG:
             fog.meet(on, flags);
+            break;
+        case colorSumMode:
+            colorSum.meet(on, flags);
             break;
         default:
             if (mode >= GL_LIGHT0 && mode < GL_LIGHT0 + 8) lights[mode - GL_LIGHT0].meet(on, flags);
@@ -114,14 +108,9 @@ struct Gathered
         case GL_TEXTURE_RECTANGLE:
             unit.other.meet(on, flags);
             break;
-        case GL_TEXTURE_GEN_S:
-            unit.genS.meet(on, flags);
-            break;
-        case GL_TEXTURE_GEN_R:
-            unit.genR.meet(on, flags);
-            break;
         default:
-            break;
+            if (mode >= GL_TEXTURE_GEN_S && mode <= GL_TEXTURE_GEN_Q)
+                unit.generates[mode - GL_TEXTURE_GEN_S].meet(on, flags);
         }
     }
     void meet(const osg::StateSet& set)
@@ -144,6 +133,9 @@ struct Gathered
             case osg::StateAttribute::FOG:
                 fogSettings.meet(entry.first.get(), entry.second);
                 break;
+            case osg::StateAttribute::POINT:
+                point.meet(entry.first.get(), entry.second);
+                break;
             default:
                 break;
             }
@@ -153,6 +145,11 @@ struct Gathered
         {
             for (const auto& [mode, flags] : modes[i])
                 meetTextureMode(units[i], mode, flags);
+        }
+        for (std::size_t i = units.size(); i < modes.size(); ++i)
+        {
+            const auto found = modes[i].find(GL_TEXTURE_2D);
+            if (found != modes[i].end() && (found->second & osg::StateAttribute::ON)) beyond = true;
         }
         const auto& attributes = set.getTextureAttributeList();
         for (std::size_t i = 0; i < std::min(attributes.size(), units.size()); ++i)
@@ -172,11 +169,120 @@ struct Gathered
     }
 };
 
-int environmentOf(const osg::StateAttribute* attribute, bool& unsupported)
+/// What OpenGL calls the base format, as far as texture environments tell them apart.
+enum class BaseFormat
 {
-    const auto* environment = static_cast<const osg::TexEnv*>(attribute);
-    if (!environment) return 1;
-    switch (environment->getMode())
+    Full, ///< or luminance with alpha
+    Opaque,
+    Alpha,
+    Intensity
+};
+
+BaseFormat baseFormat(GLint format)
+{
+    switch (format)
+    {
+    case GL_ALPHA:
+    case GL_ALPHA4:
+    case GL_ALPHA8:
+    case GL_ALPHA12:
+    case GL_ALPHA16:
+    case GL_ALPHA16F_ARB:
+    case GL_ALPHA32F_ARB:
+        return BaseFormat::Alpha;
+    case GL_INTENSITY:
+    case GL_INTENSITY4:
+    case GL_INTENSITY8:
+    case GL_INTENSITY12:
+    case GL_INTENSITY16:
+    case GL_INTENSITY16F_ARB:
+    case GL_INTENSITY32F_ARB:
+        return BaseFormat::Intensity;
+    case 1:
+    case 3:
+    case GL_LUMINANCE:
+    case GL_LUMINANCE4:
+    case GL_LUMINANCE8:
+    case GL_LUMINANCE12:
+    case GL_LUMINANCE16:
+    case GL_LUMINANCE16F_ARB:
+    case GL_LUMINANCE32F_ARB:
+    case GL_RGB:
+    case GL_BGR:
+    case GL_R3_G3_B2:
+    case GL_RGB4:
+    case GL_RGB5:
+    case GL_RGB8:
+    case GL_RGB10:
+    case GL_RGB12:
+    case GL_RGB16:
+    case GL_RGB16F_ARB:
+    case GL_RGB32F_ARB:
+    case GL_SRGB:
+    case GL_SRGB8:
+    case GL_SLUMINANCE:
+    case GL_SLUMINANCE8:
+    case GL_RED:
+    case GL_R8:
+    case GL_R16:
+    case GL_R16F:
+    case GL_R32F:
+    case GL_RG:
+    case GL_RG8:
+    case GL_RG16:
+    case GL_RG16F:
+    case GL_RG32F:
+    case GL_R11F_G11F_B10F:
+    case GL_COMPRESSED_RGB:
+    case GL_COMPRESSED_RGB_S3TC_DXT1_EXT:
+    case GL_COMPRESSED_RED:
+    case GL_COMPRESSED_RG:
+    case GL_COMPRESSED_LUMINANCE:
+    case GL_DEPTH_COMPONENT:
+    case GL_DEPTH_COMPONENT16:
+    case GL_DEPTH_COMPONENT24:
+    case GL_DEPTH_COMPONENT32:
+        return BaseFormat::Opaque;
+    case GL_COMPRESSED_ALPHA:
+        return BaseFormat::Alpha;
+    case GL_COMPRESSED_INTENSITY:
+        return BaseFormat::Intensity;
+    default:
+        return BaseFormat::Full;
+    }
+}
+
+/// The base format that a texture gets, also before it is uploaded, when OSG settles it.
+BaseFormat baseFormat(const osg::Texture& texture)
+{
+    const osg::Image* image = texture.getImage(0);
+    switch (texture.getInternalFormatMode())
+    {
+    case osg::Texture::USE_USER_DEFINED_FORMAT:
+        return baseFormat(texture.getInternalFormat());
+    case osg::Texture::USE_IMAGE_DATA_FORMAT:
+        return baseFormat(image ? image->getInternalTextureFormat() : texture.getInternalFormat());
+    default:
+        return baseFormat(image ? static_cast<GLint>(image->getPixelFormat()) : texture.getInternalFormat());
+    }
+}
+
+/// A texture that OpenGL would draw with where GL_TEXTURE_2D is on. Without pixels it is as if it were off.
+const osg::Texture* texture2D(const osg::StateAttribute* attribute)
+{
+    const auto* texture = static_cast<const osg::Texture*>(attribute);
+    if (!texture || texture->getTextureTarget() != GL_TEXTURE_2D) return nullptr;
+    const osg::Image* image = texture->getImage(0);
+    const bool pixels = image ? image->s() > 0 : texture->getTextureWidth() > 0;
+    return pixels || texture->getReadPBuffer() ? texture : nullptr;
+}
+
+int modeOf(const osg::StateAttribute* attribute, bool& unsupported)
+{
+    if (!attribute) return 1;
+    // osg::TexEnvCombine has the same type.
+    const auto* environment = dynamic_cast<const osg::TexEnv*>(attribute);
+    switch (environment ? environment->getMode() : -1)
     {
     case osg::TexEnv::MODULATE:
         return 1;
@@ -194,20 +300,46 @@ int environmentOf(const osg::StateAttribute* attribute, bool& unsupported)
     }
 }
 
-int texGenOf(const osg::StateAttribute* attribute, bool& unsupported)
+int environmentOf(const Gathered::Unit& unit, bool& unsupported)
 {
-    const auto* gen = static_cast<const osg::TexGen*>(attribute);
-    if (gen && gen->getMode() == osg::TexGen::OBJECT_LINEAR) return 1;
-    if (gen && gen->getMode() == osg::TexGen::EYE_LINEAR) return 2;
-    unsupported = true;
-    return 0;
+    const osg::Texture* texture = texture2D(unit.image.value());
+    if (!texture) return 0;
+    if (texture->getShadowComparison()) unsupported = true;
+    return modeOf(unit.environment.value(), unsupported) + 8 * static_cast<int>(baseFormat(*texture));
+}
+
+int texGenOf(const Gathered::Unit& unit)
+{
+    int coordinates = 0;
+    for (std::size_t i = 0; i < unit.generates.size(); ++i)
+    {
+        if (unit.generates[i].value()) coordinates |= 8 << i;
+    }
+    if (coordinates == 0) return 0;
+    const auto* gen = static_cast<const osg::TexGen*>(unit.gen.value());
+    switch (gen ? gen->getMode() : osg::TexGen::EYE_LINEAR)
+    {
+    case osg::TexGen::OBJECT_LINEAR:
+        return coordinates + 1;
+    case osg::TexGen::SPHERE_MAP:
+        return coordinates + 3;
+    case osg::TexGen::NORMAL_MAP:
+        return coordinates + 4;
+    case osg::TexGen::REFLECTION_MAP:
+        return coordinates + 5;
+    default:
+        // As OpenGL has it by itself, which is what an osg::TexGenNode leaves too.
+        return coordinates + 2;
+    }
 }
 
 int fogOf(const osg::StateAttribute* attribute)
 {
     const auto* fog = static_cast<const osg::Fog*>(attribute);
-    if (!fog || fog->getMode() == osg::Fog::EXP) return 2;
-    return fog->getMode() == osg::Fog::LINEAR ? 1 : 3;
+    if (!fog) return 2;
+    const int source = fog->getFogCoordinateSource() == osg::Fog::FOG_COORDINATE ? 4 : 0;
+    if (fog->getMode() == osg::Fog::EXP) return source + 2;
+    return source + (fog->getMode() == osg::Fog::LINEAR ? 1 : 3);
 }
 
 int colorMaterialOf(const osg::StateAttribute* attribute)
@@ -237,8 +369,8 @@ FixedFunctionLook FixedFunctionLook::find(const osgUtil::StateGraph& state, cons
                                           int mapUnit)
 {
     Gathered gathered;
-    for (const osg::StateSet* set : Path(state, drawable))
-        gathered.meet(*set);
+    gathered.meetAll(state);
+    if (drawable) gathered.meet(*drawable);
 
     FixedFunctionLook look;
     const auto* program = static_cast<const osg::Program*>(gathered.program.value());
@@ -258,44 +390,55 @@ FixedFunctionLook FixedFunctionLook::find(const osgUtil::StateGraph& state, cons
         {
             look.twoSided = model->getTwoSided();
             look.localViewer = model->getLocalViewer();
-            look.separateSpecular = model->getColorControl() == osg::LightModel::SEPARATE_SPECULAR_COLOR;
+            look.colorSum = model->getColorControl() == osg::LightModel::SEPARATE_SPECULAR_COLOR;
         }
         look.colorMaterial = colorMaterialOf(gathered.material.value());
-        look.normalize = gathered.normalize.value();
-        look.rescale = gathered.rescale.value();
     }
+    else
+    {
+        look.colorSum = gathered.colorSum.value();
+    }
+    look.normalize = gathered.normalize.value();
+    look.rescale = gathered.rescale.value() && !look.normalize;
+    if (const auto* point = static_cast<const osg::Point*>(gathered.point.value()))
+    {
+        look.pointSize = point->getDistanceAttenuation() != osg::Vec3(1.0f, 0.0f, 0.0f);
+    }
+    look.unsupported = gathered.beyond;
     if (gathered.fog.value()) look.fog = fogOf(gathered.fogSettings.value());
     for (std::size_t i = 0; i < gathered.units.size(); ++i)
     {
         const Gathered::Unit& unit = gathered.units[i];
         if (unit.other.value()) look.unsupported = true;
-        if (!unit.texture.value() || !unit.image.value()) continue;
-        look.texture[i] = environmentOf(unit.environment.value(), look.unsupported);
-        if (unit.genS.value()) look.texGen[i] = texGenOf(unit.gen.value(), look.unsupported);
+        if (!unit.texture.value()) continue;
+        look.texture[i] = environmentOf(unit, look.unsupported);
+        if (look.texture[i] > 0) look.texGen[i] = texGenOf(unit);
     }
-    look.map =
-        mapUnit >= 0 && mapUnit < units && gathered.units[static_cast<std::size_t>(mapUnit)].image.value();
+    look.map = mapUnit >= 0 && mapUnit < units &&
+               texture2D(gathered.units[static_cast<std::size_t>(mapUnit)].image.value());
     return look;
 }
 
 FixedFunctionLook::Key FixedFunctionLook::key() const
 {
-    int textures = 0;
-    int gens = 0;
-    for (int i = 0; i < units; ++i)
-    {
-        textures = textures * 8 + texture[i];
-        gens = gens * 4 + texGen[i];
-    }
-    const int flags = (twoSided ? 1 : 0) | (localViewer ? 2 : 0) | (separateSpecular ? 4 : 0) |
-                      (normalize ? 8 : 0) | (rescale ? 16 : 0) | (map ? 32 : 0);
-    return {lights, flags, colorMaterial, fog, textures, gens, ownProgram ? 1 : 0};
+    Key key = {lights,
+               (twoSided ? 1 : 0) | (localViewer ? 2 : 0) | (colorSum ? 4 : 0) | (normalize ? 8 : 0) |
+                   (rescale ? 16 : 0) | (map ? 32 : 0) | (pointSize ? 64 : 0),
+               colorMaterial, fog};
+    std::copy(std::begin(texture), std::end(texture), key.begin() + 4);
+    std::copy(std::begin(texGen), std::end(texGen), key.begin() + 4 + units);
+    return key;
 }
 
 osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* program) const
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    set->setAttributeAndModes(program);
+    // Whatever says that there is no program, an OVERRIDE too, means the fixed functions, which this is.
+    constexpr auto always =
+        osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
+    set->setAttributeAndModes(program, always);
+    if (twoSided) set->setMode(programTwoSideMode, always);
+    if (pointSize) set->setMode(programPointSizeMode, always);
     const auto define = [&](const std::string& name, bool there, int value)
     {
         if (there) set->setDefine(name, std::to_string(value));
@@ -303,9 +446,10 @@ osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* prog
     define("GEOFX_LIGHTS", lights >= 0, lights);
     define("GEOFX_TWO_SIDED", twoSided, 1);
     define("GEOFX_LOCAL_VIEWER", localViewer, 1);
-    define("GEOFX_SEPARATE_SPECULAR", separateSpecular, 1);
+    define("GEOFX_COLOR_SUM", colorSum, 1);
+    define("GEOFX_POINT_SIZE", pointSize, 1);
     define("GEOFX_NORMALIZE", normalize, 1);
-    define("GEOFX_RESCALE", rescale && !normalize, 1);
+    define("GEOFX_RESCALE", rescale, 1);
     define("GEOFX_COLOR_MATERIAL", colorMaterial > 0, colorMaterial);
     define("GEOFX_FOG", fog > 0, fog);
     define("GEOFX_MAP", map, 1);

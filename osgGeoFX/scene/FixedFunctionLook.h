@@ -6,9 +6,7 @@
 #include <osg/StateSet>
 #include <osgUtil/StateGraph>
 
-#include <map>
-#include <string>
-#include <tuple>
+#include <array>
 
 namespace osgGeoFX
 {
@@ -24,13 +22,14 @@ struct FixedFunctionLook
     int lights = -1;         ///< a bit for each of eight; −1 without lighting
     bool twoSided = false;
     bool localViewer = false;
-    bool separateSpecular = false;
+    bool colorSum = false; ///< the secondary colour is added after the textures
     bool normalize = false;
     bool rescale = false;
-    int colorMaterial = 0; ///< OSG's colour modes, 1 ambient … 5 emission
-    int fog = 0;           ///< 1 linear, 2 exp, 3 exp2
-    int texture[units] = {};
-    int texGen[units] = {};
+    bool pointSize = false;   ///< points get smaller with the distance
+    int colorMaterial = 0;    ///< OSG's colour modes, 1 ambient … 5 emission
+    int fog = 0;              ///< 1 linear, 2 exp, 3 exp2; 4 more with the vertices' fog coordinates
+    int texture[units] = {};  ///< the code of an environment, as stages/fixed.frag has it; 0 for none
+    int texGen[units] = {};   ///< the code of generated coordinates, as stages/fixed.vert has it; 0 for none
     bool map = false;         ///< there is a texture on the map's unit
     bool unsupported = false; ///< something is in force that the shaders do not know
 
@@ -38,7 +37,7 @@ struct FixedFunctionLook
     static FixedFunctionLook find(const osgUtil::StateGraph& state, const osg::StateSet* drawable,
                                   int mapUnit);
 
-    using Key = std::tuple<int, int, int, int, int, int, int>;
+    using Key = std::array<int, 4 + 2 * units>;
     Key key() const;
     /// The defines of stages/fixed.vert and .frag, with the program.
     osg::ref_ptr<osg::StateSet> createStateSet(osg::Program* program) const;

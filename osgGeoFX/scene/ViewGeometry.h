@@ -17,6 +17,9 @@ struct OSGGEOFX_EXPORT Ground
     osg::ref_ptr<const osg::EllipsoidModel> ellipsoid; ///< null: heights are z of a projected terrain
     double minHeight = 0.0;                            ///< metres; of the terrain where known, else both 0
     double maxHeight = 0.0;
+    /// Of the kit's databases: by how much finer tiles can stick out of a coarser one's box, for each metre that the
+    /// coarser one's LOD range is longer than its radius; 0 for other databases.
+    double tileError = 0.0;
 };
 
 /** One camera over a terrain, in double and in eye space (x right, y up, −z forward, metres).

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <tools/CullHarness.h>
+
+#include <osg/TriangleFunctor>
+#include <osgDB/ReadFile>
+#include <osgUtil/RenderStage>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+
+namespace geofx::test
+{
+
+namespace
+{
+
+void collect(const osgUtil::RenderBin& bin, std::vector<Culled::Leaf>& leaves)
+{
+    const auto take = [&](const osgUtil::RenderLeaf& leaf)
+    {
+        if (leaf._modelview) leaves.push_back({leaf._drawable, *leaf._modelview});
+    };
+    for (const osgUtil::RenderLeaf* leaf : bin.getRenderLeafList())
+        take(*leaf);
+    for (const osgUtil::StateGraph* graph : bin.getStateGraphList())
+    {
+        for (const auto& leaf : graph->_leaves)
+            take(*leaf);
+    }
+    for (const auto& entry : bin.getRenderBinList())
+        collect(*entry.second, leaves);
+}
+
+/// Whether a triangle in clip space has a point before the eye and within the picture's sides.
+bool visible(const std::array<osg::Vec4d, 3>& corners)
+{
+    std::vector<osg::Vec4d> polygon(corners.begin(), corners.end());
+    const std::array<osg::Vec4d, 5> planes = {osg::Vec4d(1, 0, 0, 1), osg::Vec4d(-1, 0, 0, 1),
+                                              osg::Vec4d(0, 1, 0, 1), osg::Vec4d(0, -1, 0, 1),
+                                              osg::Vec4d(0, 0, 0, 1)};
+    for (const osg::Vec4d& plane : planes)
+    {
+        std::vector<osg::Vec4d> kept;
+        for (std::size_t i = 0; i < polygon.size(); ++i)
+        {
+            const osg::Vec4d& a = polygon[i];
+            const osg::Vec4d& b = polygon[(i + 1) % polygon.size()];
+            const double da = a * plane;
+            const double db = b * plane;
+            if (da >= 0.0) kept.push_back(a);
+            if ((da >= 0.0) != (db >= 0.0)) kept.push_back(a + (b - a) * (da / (da - db)));
+        }
+        polygon.swap(kept);
+        if (polygon.empty()) return false;
+    }
+    return true;
+}
+
+struct VisibleTriangle
+{
+    void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)
+    {
+        if (found) return;
+        const auto place = [this](const osg::Vec3& vertex)
+        {
+            const osg::Vec3d eye = chain->deform(osg::Vec3d(vertex) * modelView);
+            return osg::Vec4d(eye, 1.0) * projection;
+        };
+        found = visible({place(a), place(b), place(c)});
+    }
+
+    const osgGeoFX::DeformationChain* chain = nullptr;
+    osg::Matrixd modelView;
+    osg::Matrixd projection;
+    bool found = false;
+};
+
+} // namespace
+
+void RequestRecorder::requestNodeFile(const std::string& file, osg::NodePath& path, float priority,
+                                      const osg::FrameStamp*, osg::ref_ptr<osg::Referenced>&,
+                                      const osg::Referenced*)
+{
+    requests.push_back({file, dynamic_cast<osg::PagedLOD*>(path.back()), priority});
+}
+
+std::set<const osg::Drawable*> Culled::drawables() const
+{
+    std::set<const osg::Drawable*> result;
+    for (const Leaf& leaf : leaves)
+        result.insert(leaf.drawable);
+    return result;
+}
+
+std::set<const osg::PagedLOD*> Culled::requesting() const
+{
+    std::set<const osg::PagedLOD*> result;
+    for (const auto& request : requests)
+        result.insert(request.group);
+    return result;
+}
+
+CullHarness::CullHarness(osg::GraphicsContext& context, osg::Node* scene, int width, int height)
+    : _context(&context), _view(new osgUtil::SceneView), _stamp(new osg::FrameStamp)
+{
+    _view->setDefaults(osgUtil::SceneView::HEADLIGHT);
+    _view->setState(context.getState());
+    _view->setFrameStamp(_stamp);
+    osg::Camera& own = *_view->getCamera();
+    own.setViewport(0, 0, width, height);
+    own.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    own.getOrCreateStateSet()->setRenderBinDetails(0, "TraversalOrderBin");
+    setScene(scene);
+}
+
+void CullHarness::setScene(osg::Node* scene)
+{
+    _view->setSceneData(scene);
+}
+
+void CullHarness::setCamera(const osg::Matrixd& view, const osg::Matrixd& projection)
+{
+    camera().setViewMatrix(view);
+    camera().setProjectionMatrix(projection);
+    _stamp->setFrameNumber(_stamp->getFrameNumber() + 1);
+}
+
+Culled CullHarness::frame(bool cull, bool draw)
+{
+    const osg::CullSettings::CullingMode former = camera().getCullingMode();
+    if (!cull) camera().setCullingMode(osg::CullSettings::NO_CULLING);
+    _recorder->requests.clear();
+    _view->getCullVisitor()->setDatabaseRequestHandler(_recorder);
+    _context->makeCurrent();
+    const auto start = std::chrono::steady_clock::now();
+    _view->cull();
+    Culled result;
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    camera().setCullingMode(former);
+    collect(*_view->getRenderStage(), result.leaves);
+    result.requests = _recorder->requests;
+    result.projection = camera().getProjectionMatrix();
+    for (const osgUtil::RenderBin* bin = _view->getRenderStage(); bin && !result.leaves.empty();)
+    {
+        const osgUtil::RenderLeaf* leaf = nullptr;
+        if (!bin->getRenderLeafList().empty())
+            leaf = bin->getRenderLeafList().front();
+        else if (!bin->getStateGraphList().empty())
+            leaf = bin->getStateGraphList().front()->_leaves.front().get();
+        if (leaf)
+        {
+            result.projection = *leaf->_projection;
+            break;
+        }
+        const auto& bins = bin->getRenderBinList();
+        bin = bins.empty() ? nullptr : bins.begin()->second.get();
+    }
+    if (draw)
+    {
+        _view->draw();
+        const osg::Viewport& port = *camera().getViewport();
+        result.image = new osg::Image;
+        result.image->readPixels(0, 0, static_cast<int>(port.width()), static_cast<int>(port.height()),
+                                 GL_RGB, GL_UNSIGNED_BYTE);
+    }
+    return result;
+}
+
+int CullHarness::load(const std::vector<RequestRecorder::Request>& requests, Random& random,
+                      double probability)
+{
+    int loaded = 0;
+    for (const auto& request : requests)
+    {
+        if (random.uniform(0.0, 1.0) > probability) continue;
+        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(request.file);
+        if (!node) continue;
+        request.group->addChild(node);
+        // As the pager does on its own thread.
+        node->getBound();
+        ++loaded;
+    }
+    return loaded;
+}
+
+std::set<const osg::PagedLOD*> CullHarness::groupsAbove(const Culled& culled,
+                                                        const std::set<const osg::Drawable*>& drawables)
+{
+    std::set<const osg::PagedLOD*> result;
+    for (const Culled::Leaf& leaf : culled.leaves)
+    {
+        if (!drawables.count(leaf.drawable)) continue;
+        for (const osg::NodePath& path : leaf.drawable->getParentalNodePaths())
+        {
+            for (const osg::Node* node : path)
+            {
+                if (const auto* group = dynamic_cast<const osg::PagedLOD*>(node)) result.insert(group);
+            }
+        }
+    }
+    return result;
+}
+
+std::set<const osg::Drawable*> CullHarness::needed(const Culled& everything,
+                                                   const osgGeoFX::DeformationChain& chain)
+{
+    std::set<const osg::Drawable*> result;
+    for (const Culled::Leaf& leaf : everything.leaves)
+    {
+        osg::TriangleFunctor<VisibleTriangle> functor;
+        functor.chain = &chain;
+        functor.modelView = leaf.modelView;
+        functor.projection = everything.projection;
+        leaf.drawable->accept(functor);
+        if (functor.found) result.insert(leaf.drawable);
+    }
+    return result;
+}
+
+} // namespace geofx::test

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <tools/RandomSamples.h>
+
+#include <osg/GraphicsContext>
+#include <osg/Image>
+#include <osg/Node>
+#include <osg/PagedLOD>
+#include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgUtil/SceneView>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace geofx::test
+{
+
+/// Takes down what nodes ask of the pager, and answers when it is told to.
+class RequestRecorder : public osg::NodeVisitor::DatabaseRequestHandler
+{
+public:
+    struct Request
+    {
+        std::string file;
+        osg::PagedLOD* group;
+        float priority;
+    };
+
+    void requestNodeFile(const std::string& file, osg::NodePath& path, float priority, const osg::FrameStamp*,
+                         osg::ref_ptr<osg::Referenced>&, const osg::Referenced*) override;
+    std::vector<Request> requests;
+};
+
+/// What one cull traversal left to be drawn.
+struct Culled
+{
+    struct Leaf
+    {
+        osg::Drawable* drawable;
+        osg::Matrixd modelView;
+    };
+
+    osg::ref_ptr<osg::Image> image;
+    std::vector<Leaf> leaves;
+    std::vector<RequestRecorder::Request> requests;
+    osg::Matrixd projection; ///< after near and far were computed
+    double seconds = 0.0;    ///< of the cull traversal
+
+    std::set<const osg::Drawable*> drawables() const;
+    std::set<const osg::PagedLOD*> requesting() const;
+};
+
+/** One scene view that is culled and drawn by hand, without a viewer or a pager's threads, so that two pictures of the
+    same camera see the same tiles. */
+class CullHarness
+{
+public:
+    CullHarness(osg::GraphicsContext& context, osg::Node* scene, int width, int height);
+
+    osg::Camera& camera() { return *_view->getCamera(); }
+    void setScene(osg::Node* scene);
+    void setCamera(const osg::Matrixd& view, const osg::Matrixd& projection);
+    /// Culls, and draws where `draw` is set.
+    Culled frame(bool cull, bool draw = true);
+
+    /// Loads what was asked for, each with a probability.
+    static int load(const std::vector<RequestRecorder::Request>& requests, Random& random,
+                    double probability);
+
+    /// The paged groups above drawables.
+    static std::set<const osg::PagedLOD*> groupsAbove(const Culled& culled,
+                                                      const std::set<const osg::Drawable*>& drawables);
+    /// The drawables with at least one deformed triangle within the view volume's sides and before the eye.
+    static std::set<const osg::Drawable*> needed(const Culled& everything,
+                                                 const osgGeoFX::DeformationChain& chain);
+
+private:
+    osg::ref_ptr<osg::GraphicsContext> _context;
+    osg::ref_ptr<osgUtil::SceneView> _view;
+    osg::ref_ptr<osg::FrameStamp> _stamp;
+    osg::ref_ptr<RequestRecorder> _recorder = new RequestRecorder;
+};
+
+} // namespace geofx::test

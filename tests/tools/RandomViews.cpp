@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <tools/RandomViews.h>
+
+#include <osgGeoFX/deformation/PerspectiveBend.h>
+#include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/scene/GlslFunctions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <ostream>
+#include <sstream>
+
+namespace geofx::test
+{
+
+namespace
+{
+
+using osgGeoFX::Effect;
+using osgGeoFX::Property;
+
+constexpr double pi = 3.14159265358979323846;
+
+const osg::EllipsoidModel* wgs84()
+{
+    static const osg::ref_ptr<const osg::EllipsoidModel> ellipsoid = new osg::EllipsoidModel;
+    return ellipsoid;
+}
+
+/// Values that people would choose, and now and then the edges of what is taken.
+double sensibleValue(const std::string& name, Random& random)
+{
+    const int die = random.integer(0, 9);
+    if (name == "planeElevation") return die < 5 ? 0.0 : random.uniform(-300.0, 3000.0);
+    if (name == "tallest") return die < 5 ? -1.0 : random.logarithmic(1.0, 9000.0);
+    if (name == "contextTilt") return die < 5 ? 0.0 : random.uniform(0.0, 0.9);
+    if (name == "focusDistance") return random.sign() * random.logarithmic(1.0, 2e4);
+    if (name == "zoneWidth") return die == 0 ? 0.0 : random.logarithmic(1.0, 2e4);
+    if (name == "lowHeight") return random.uniform(0.0, 1000.0);
+    if (name == "highHeight") return random.uniform(500.0, 5000.0);
+    if (name == "factor") return die < 7 ? random.logarithmic(0.2, 5.0) : random.logarithmic(0.01, 100.0);
+    if (name == "base") return die < 5 ? 0.0 : random.uniform(-100.0, 4000.0);
+    return std::nan("");
+}
+
+double randomValue(const Property& property, Random& random)
+{
+    const double sensible = sensibleValue(property.name, random);
+    if (!std::isnan(sensible)) return sensible;
+    const double value = random.uniform(property.minimum, property.maximum);
+    const bool number = property.kind == Property::Kind::Number || property.kind == Property::Kind::Angle;
+    return number ? value : std::round(value);
+}
+
+} // namespace
+
+osg::Matrixd CameraPose::modelView() const
+{
+    osg::Matrixd localToWorld;
+    if (globe)
+    {
+        wgs84()->computeLocalToWorldTransformFromLatLongHeight(y, x, height, localToWorld);
+    }
+    else
+    {
+        localToWorld.makeTranslate(x, y, height);
+    }
+    // From OSG's camera, which looks along −z with y up, to one that looks north.
+    const osg::Matrixd cameraToLocal = osg::Matrixd::rotate(-roll, 0.0, 0.0, 1.0) *
+                                       osg::Matrixd::rotate(pi / 2.0 + pitch, 1.0, 0.0, 0.0) *
+                                       osg::Matrixd::rotate(-heading, 0.0, 0.0, 1.0);
+    return osg::Matrixd::inverse(cameraToLocal * localToWorld);
+}
+
+osg::Matrixd CameraPose::projection() const
+{
+    if (lens == ORTHOGRAPHIC)
+    {
+        const double top = pictureSize / 2.0;
+        return osg::Matrixd::ortho(-top * aspect, top * aspect, -top, top, -1e5, 1e6);
+    }
+    const double near = 1.0;
+    const double top = near * std::tan(fieldOfView / 2.0);
+    const double dx = lens == OFF_AXIS ? shiftX * top * aspect : 0.0;
+    const double dy = lens == OFF_AXIS ? shiftY * top : 0.0;
+    return osg::Matrixd::frustum(dx - top * aspect, dx + top * aspect, dy - top, dy + top, near, 1e6);
+}
+
+osgGeoFX::Ground CameraPose::ground() const
+{
+    return {globe ? wgs84() : nullptr, lowestGround, highestGround};
+}
+
+osgGeoFX::ViewGeometry CameraPose::view() const
+{
+    return {modelView(), projection(), ground()};
+}
+
+std::ostream& operator<<(std::ostream& stream, const CameraPose& pose)
+{
+    static const char* const lenses[] = {"perspective", "off-axis", "orthographic"};
+    return stream << lenses[pose.lens] << (pose.globe ? " on the globe at " : " at ") << pose.x << ", "
+                  << pose.y << ", height " << pose.height << ", heading " << pose.heading << ", pitch "
+                  << pose.pitch << ", roll " << pose.roll << ", field of view " << pose.fieldOfView
+                  << ", picture " << pose.pictureSize << " m, aspect " << pose.aspect << ", shift "
+                  << pose.shiftX << ", " << pose.shiftY << ", ground " << pose.lowestGround << " to "
+                  << pose.highestGround;
+}
+
+CameraPose randomCommonPose(Random& random)
+{
+    CameraPose pose;
+    pose.globe = random.integer(0, 1) == 1;
+    pose.x = pose.globe ? random.uniform(-pi, pi) : random.uniform(-1e6, 1e6);
+    pose.y = pose.globe ? random.uniform(-1.5, 1.5) : random.uniform(-1e6, 1e6);
+    pose.height = random.logarithmic(2.0, 3e4);
+    pose.heading = random.uniform(-pi, pi);
+    pose.pitch = -random.uniform(0.0, 1.4);
+    pose.lens = static_cast<CameraPose::Lens>(random.integer(0, 2));
+    pose.fieldOfView = random.uniform(0.3, 1.8);
+    pose.pictureSize = random.logarithmic(100.0, 1e5);
+    pose.aspect = random.uniform(0.6, 2.5);
+    pose.shiftX = random.uniform(-0.5, 0.5);
+    pose.shiftY = random.uniform(-0.5, 0.5);
+    if (random.integer(0, 3)) // else unknown
+    {
+        pose.lowestGround = random.uniform(-400.0, 100.0);
+        pose.highestGround = pose.lowestGround + random.logarithmic(50.0, 8500.0);
+    }
+    return pose;
+}
+
+CameraPose randomPose(Random& random)
+{
+    CameraPose pose = randomCommonPose(random);
+    switch (random.integer(0, 9))
+    {
+    case 0:
+        pose.pitch = -pi / 2.0; // straight down
+        break;
+    case 1:
+        pose.pitch = random.uniform(-pi / 2.0, pi / 2.0);
+        break;
+    case 2:
+        pose.pitch = -pi / 2.0 - random.uniform(0.0, 1.0); // beyond straight down
+        break;
+    default:
+        break;
+    }
+    switch (random.integer(0, 5))
+    {
+    case 0:
+        pose.roll = random.uniform(-pi, pi);
+        break;
+    case 1:
+        pose.roll = random.sign() * pi / 2.0 + random.uniform(-0.3, 0.3);
+        break;
+    case 2:
+        pose.roll = random.uniform(-0.6, 0.6);
+        break;
+    default:
+        break;
+    }
+    switch (random.integer(0, 9))
+    {
+    case 0:
+        pose.height = -random.logarithmic(1.0, 1000.0);
+        break;
+    case 1:
+        pose.height = random.logarithmic(3e4, 3e5);
+        break;
+    default:
+        break;
+    }
+    return pose;
+}
+
+void randomizeProperties(Effect& effect, Random& random)
+{
+    std::string refusal;
+    for (const Property& property : effect.properties())
+    {
+        // What does not fit the other properties is refused, and the former value, which does, stays.
+        if (property.name != "enabled")
+            effect.setProperty(property.name, randomValue(property, random), refusal);
+    }
+    if (effect.getProperty("planeReference") == osgGeoFX::PerspectiveBend::EYE)
+        effect.setProperty("planeElevation", -random.logarithmic(1.0, 1e4), refusal);
+    for (const Effect::Part& part : effect.parts())
+        randomizeProperties(*part.effect, random);
+}
+
+osg::ref_ptr<osgGeoFX::Deformation> randomDeformation(const std::string& kind, Random& random)
+{
+    const osg::ref_ptr<Effect> effect = osgGeoFX::createEffect(kind);
+    osg::ref_ptr<osgGeoFX::Deformation> deformation = dynamic_cast<osgGeoFX::Deformation*>(effect.get());
+    if (deformation) randomizeProperties(*deformation, random);
+    return deformation;
+}
+
+osg::ref_ptr<osgGeoFX::Deformation> randomDeformation(Random& random)
+{
+    static const std::vector<std::string> kinds = deformationKinds();
+    return randomDeformation(
+        kinds[static_cast<std::size_t>(random.integer(0, static_cast<int>(kinds.size()) - 1))], random);
+}
+
+std::vector<std::string> deformationKinds()
+{
+    std::vector<std::string> kinds;
+    for (const std::string& kind : osgGeoFX::effectKinds())
+    {
+        if (osgGeoFX::createEffect(kind)->asDeformation()) kinds.push_back(kind);
+    }
+    return kinds;
+}
+
+std::string describe(Effect& effect)
+{
+    std::ostringstream text;
+    text << osgGeoFX::kindOf(effect);
+    for (const Property& property : effect.properties())
+    {
+        const double value = property.get(effect);
+        if (value != property.defaultValue) text << " " << property.textName() << "=" << property.text(value);
+    }
+    for (const Effect::Part& part : effect.parts())
+        text << " {" << part.name << ": " << describe(*part.effect) << "}";
+    return text.str();
+}
+
+osg::Vec3d randomDirection(Random& random)
+{
+    const double z = random.uniform(-1.0, 1.0);
+    const double turn = random.uniform(-pi, pi);
+    const double radius = std::sqrt(1.0 - z * z);
+    return {radius * std::cos(turn), radius * std::sin(turn), z};
+}
+
+osg::Vec3d randomGroundPoint(Random& random, const osgGeoFX::ViewGeometry& view, double reach)
+{
+    osg::Vec3d across = view.up ^ randomDirection(random);
+    across.normalize();
+    const double distance = random.logarithmic(1.0, reach);
+    double height = random.uniform(-400.0, 9000.0);
+    // What is near is near the ground below the eye.
+    if (distance < 1e4) height = std::min(height, 100.0 + 0.9 * distance);
+    if (view.ground.ellipsoid)
+        height -= distance * distance / (2.0 * view.ground.ellipsoid->getRadiusEquator());
+    return across * distance + view.up * (height - view.eyeHeight);
+}
+
+bool bendNumbers(const osgGeoFX::DeformationFrame& frame, BendNumbers& numbers)
+{
+    std::map<std::string, osg::Vec4d> uniforms;
+    for (const auto& [name, value] : frame.uniforms())
+        uniforms[name] = value;
+    if (!uniforms.count("bend")) return false;
+    const osg::Vec4d plane = uniforms["plane"];
+    const osg::Vec4d forward = uniforms["forward"];
+    numbers.normal.set(plane.x(), plane.y(), plane.z());
+    numbers.forward.set(forward.x(), forward.y(), forward.z());
+    numbers.height = plane.w();
+    numbers.start = forward.w();
+    numbers.size = uniforms["bend"].x();
+    numbers.angle = uniforms["bend"].y();
+    return true;
+}
+
+double bendCurvature(const BendNumbers& numbers, int curve)
+{
+    return osgGeoFX::glsl::geofx_bendCurvature(
+        osgGeoFX::glsl::geofx_makeBend(curve, numbers.size, numbers.angle));
+}
+
+osg::Vec3d randomPointFor(const osgGeoFX::DeformationFrame& frame, const osgGeoFX::ViewGeometry& view,
+                          Random& random)
+{
+    BendNumbers numbers;
+    if (random.integer(0, 3) == 0 || !bendNumbers(frame, numbers)) return randomGroundPoint(random, view);
+    const double s = random.uniform(-1.0, 2.0) * std::min(numbers.size, 3e5);
+    const double across = random.sign() * random.logarithmic(1.0, 1e5);
+    return numbers.point(s, random.uniform(-400.0, 9000.0), across);
+}
+
+} // namespace geofx::test
