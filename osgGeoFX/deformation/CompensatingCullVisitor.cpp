@@ -55,13 +55,6 @@ double planeDistance(const osg::Vec4d& plane, const osg::Vec3d& point)
     return plane.x() * point.x() + plane.y() * point.y() + plane.z() * point.z() + plane.w();
 }
 
-bool leftOut(const osg::StateSet* state)
-{
-    if (!state || state->getDefineList().empty()) return false;
-    const osg::StateSet::DefinePair* define = state->getDefinePair("GEOFX_DEFORMATION");
-    return define && !(define->second & osg::StateAttribute::ON);
-}
-
 double cross(const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c)
 {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -105,7 +98,7 @@ public:
     Scope(CompensatingCullVisitor& visitor, const osg::Node& node) : _visitor(visitor), _former(visitor._mode)
     {
         if (!visitor._mode.ours) return;
-        if (leftOut(node.getStateSet())) visitor._mode.chain = visitor._nothing.get();
+        if (leavesDeformation(node.getStateSet())) visitor._mode.chain = visitor._nothing.get();
         if (visitor._task.compensate) _skip = visitor.outOfSight(node);
     }
     ~Scope() { _visitor._mode = _former; }
@@ -131,6 +124,7 @@ bool CompensatingCullVisitor::startsFrame(osgUtil::CullVisitor& outer)
     const bool starts = frame != _frame || Access::order(outer) < _order;
     _frame = frame;
     if (starts) reset();
+    if (starts && frame % 256 == 0) _meshBoxes.purge();
     return starts;
 }
 
@@ -314,9 +308,7 @@ void CompensatingCullVisitor::applyRigid(RigidReference& node)
     const Mode former = _mode;
     const osg::Matrixd& modelView = *getModelViewMatrix();
     const osg::Vec3d reference = node.referencePoint() * modelView;
-    const osg::Matrixd placement = node.getTurn()
-                                       ? _mode.chain->placement(reference)
-                                       : osg::Matrixd::translate(_mode.chain->deform(reference) - reference);
+    const osg::Matrixd placement = rigidPlacement(*_mode.chain, reference, node.getTurn());
     pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
     _mode.chain = _nothing.get();
     pushStateSet(_task.untouched);
@@ -500,6 +492,18 @@ bool CompensatingCullVisitor::missesPicture(const Hull& hull) const
     return false;
 }
 
+bool CompensatingCullVisitor::meshOutside(const osg::Drawable& drawable, PlaneMask planes)
+{
+    const MeshBoxes::Boxes& boxes = _meshBoxes.of(drawable);
+    return !boxes.empty() &&
+           std::all_of(boxes.begin(), boxes.end(),
+                       [&](const osg::BoundingBox& box)
+                       {
+                           _mode.chain->bound(EyeBox::of(box, *getModelViewMatrix()), _smallHull);
+                           return outside(_smallHull, planes);
+                       });
+}
+
 bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
 {
     // Its sphere is wide for a flat tile; the mesh that stands for it has a box.
@@ -565,7 +569,7 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
     if (planes || extends || _task.debugBounds)
     {
         _mode.chain->bound(box, _hull);
-        if (planes && outside(_hull, planes)) return false;
+        if (planes && (outside(_hull, planes) || meshOutside(drawable, planes))) return false;
         if (extends) includeDepths(_hull);
         if (_complaint.empty() && _hull.points.size() > 8)
         {
@@ -620,7 +624,7 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         return;
     }
     const Mode former = _mode;
-    const bool untouched = leftOut(drawable.getStateSet());
+    const bool untouched = leavesDeformation(drawable.getStateSet());
     if (untouched) _mode.chain = _nothing.get();
     osg::StateSet* look = lookFor(drawable);
     if (!_task.compensate)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/deformation/MeshBoxes.h>
 #include <osgGeoFX/scene/FixedFunctionLook.h>
 
 #include <osg/Geometry>
@@ -102,6 +103,8 @@ private:
     /// Whether a hull misses the planes of a mask, or the picture.
     bool outside(const Hull& hull, PlaneMask planes) const;
     bool missesPicture(const Hull& hull) const;
+    /// Whether all smaller boxes of a drawable miss the picture; false where it has none.
+    bool meshOutside(const osg::Drawable& drawable, PlaneMask planes);
     /// Whether a paged tile of the kit's databases, with all that is finer, is out of sight.
     bool tileOutOfSight(const osg::LOD& node);
     void includeDepths(const Hull& hull);
@@ -126,6 +129,8 @@ private:
     double _far = 0.0;
     double _scale = 1.0; ///< of the current modelview matrix
     Hull _hull;
+    Hull _smallHull;
+    MeshBoxes _meshBoxes;
     mutable std::vector<osg::Vec2d> _outline;
     bool _frustumSides = false;
     std::string _complaint;

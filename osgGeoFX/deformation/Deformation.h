@@ -106,6 +106,9 @@ public:
     /// What it does for this camera; null where it does nothing.
     virtual osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const = 0;
 
+    /// What the ground is like after this deformation, for those that follow it in the scene.
+    virtual void changeGround(Ground&) const {}
+
     /// The shader file in which `SLOT_` stands for the prefix of its names.
     virtual std::string vertexFile() const = 0;
     /// The file with `vec4 SLOT_restyle(vec4 colour, vec4 map, float style)`; empty where it has none.

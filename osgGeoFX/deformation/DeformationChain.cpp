@@ -218,4 +218,16 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
     return gap > 0.0 ? ball.radius + gap / detail : distance * ball.radius / std::max(current.radius, 1e-30);
 }
 
+bool leavesDeformation(const osg::StateSet* state)
+{
+    if (!state || state->getDefineList().empty()) return false;
+    const osg::StateSet::DefinePair* define = state->getDefinePair("GEOFX_DEFORMATION");
+    return define && !(define->second & osg::StateAttribute::ON);
+}
+
+osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn)
+{
+    return turn ? chain.placement(reference) : osg::Matrixd::translate(chain.deform(reference) - reference);
+}
+
 } // namespace osgGeoFX

@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/deformation/Deformation.h>
 
+#include <osg/StateSet>
+
 #include <vector>
 
 namespace osgGeoFX
@@ -52,5 +54,11 @@ protected:
 private:
     std::vector<osg::ref_ptr<const DeformationFrame>> _frames;
 };
+
+/// Whether a state set takes its subgraph out of the deformation: the define GEOFX_DEFORMATION, set OFF.
+bool leavesDeformation(const osg::StateSet* state);
+
+/// Where an object that keeps its shape goes: eye space to eye space; upright where it does not `turn`.
+osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn);
 
 } // namespace osgGeoFX

@@ -22,6 +22,7 @@ public:
     struct Look
     {
         double transitionDetail, contextDetail, saturation, brightness, map;
+        bool foldPossible; ///< the heights of what stands in the zone are not known for sure
     };
 
     BendFrame(const glsl::geofx_BendView& view, const Look& look) : _view(view), _look(look)
@@ -111,6 +112,7 @@ public:
     }
     std::string complaint(const EyeBox& box) const override
     {
+        if (!_look.foldPossible) return {};
         const osg::Vec3d normal = toOsg(_view.normal);
         double inner = profile(box.centre).y * (_view.bend.angle > 0.0 ? 1.0 : -1.0);
         for (const osg::Vec3d& half : box.half)
@@ -246,8 +248,11 @@ osg::ref_ptr<const DeformationFrame> PerspectiveBend::frame(const ViewGeometry& 
     const double sum = place->planeHeight + place->start + place->size + angle + forward * view.up;
     // Below this angle nothing moves by a visible amount, and floats could not tell.
     if (!std::isfinite(sum) || std::abs(angle) < 1e-5 || share <= 0.0) return nullptr;
-    const BendFrame::Look look = {_transitionDetail, _contextDetail, _contextSaturation, _contextBrightness,
-                                  _mapUnit < 0 ? 0.0 : 1.0};
+    // A database that tells its heights needs no watching, unless someone says that they do not matter; and what hangs
+    // below T in it are skirts.
+    const bool foldPossible = !view.ground.heightsKnown || (_tallest >= 0.0 && angle > 0.0);
+    const BendFrame::Look look = {_transitionDetail,  _contextDetail,           _contextSaturation,
+                                  _contextBrightness, _mapUnit < 0 ? 0.0 : 1.0, foldPossible};
     return new BendFrame(bend, look);
 }
 

@@ -113,4 +113,10 @@ osg::ref_ptr<const DeformationFrame> VerticalExaggeration::frame(const ViewGeome
     return new ExaggerationFrame(frame, _relight);
 }
 
+void VerticalExaggeration::changeGround(Ground& ground) const
+{
+    ground.minHeight = _base + _factor * (ground.minHeight - _base);
+    ground.maxHeight = _base + _factor * (ground.maxHeight - _base);
+}
+
 } // namespace osgGeoFX

@@ -36,6 +36,7 @@ public:
 
     const Properties& properties() const override;
     osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
+    void changeGround(Ground& ground) const override;
     std::string vertexFile() const override { return "stages/exaggeration.glsl"; }
 
 protected:

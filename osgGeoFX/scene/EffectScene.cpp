@@ -254,6 +254,7 @@ Ground EffectScene::ground(const osg::NodePath& above) const
     if (const std::optional<TerrainInfo> info =
             TerrainInfo::read(system ? static_cast<const osg::Node*>(system) : this, error))
     {
+        ground.heightsKnown = true;
         ground.minHeight = info->minHeight;
         ground.maxHeight = info->maxHeight;
         // A range is the radius and error / pixelError · pixelsPerRadian; both meshes may be off by their error.
@@ -265,15 +266,18 @@ Ground EffectScene::ground(const osg::NodePath& above) const
 namespace
 {
 
-Frames framesFor(const EffectProgram::Effects& effects, const ViewGeometry& view)
+Frames framesFor(const EffectProgram::Effects& effects, const ViewGeometry& first)
 {
+    ViewGeometry view = first;
     Frames frames(effects.size());
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
         const Deformation* deformation = effects[i]->asDeformation();
         if (!deformation || !effects[i]->getEnabled()) continue;
         osg::ref_ptr<const DeformationFrame> frame = deformation->frame(view);
-        if (frame && finite(*frame)) frames[i] = frame;
+        if (!frame || !finite(*frame)) continue;
+        frames[i] = frame;
+        deformation->changeGround(view.ground);
     }
     return frames;
 }

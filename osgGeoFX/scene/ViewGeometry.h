@@ -20,6 +20,7 @@ struct OSGGEOFX_EXPORT Ground
     /// Of the kit's databases: by how much finer tiles can stick out of a coarser one's box, for each metre that the
     /// coarser one's LOD range is longer than its radius; 0 for other databases.
     double tileError = 0.0;
+    bool heightsKnown = false; ///< whether the database tells its heights
 };
 
 /** One camera over a terrain, in double and in eye space (x right, y up, −z forward, metres).

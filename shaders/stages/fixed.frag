@@ -5,18 +5,30 @@
 // OpenGL's fixed fragment stage: texture environments, the separate specular colour and fog, OpenGL 2.1, Sections
 // 3.8 to 3.10, with the effects before the fog.
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
-#pragma import_defines(GEOFX_SEPARATE_SPECULAR, GEOFX_FOG, GEOFX_MAP)
+#pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP)
 
 vec4 geofx_fragment(vec4 colour, vec4 map);
 
-// The environments' numbers: 1 modulate, 2 replace, 3 decal, 4 blend, 5 add.
-vec4 environment(int mode, vec4 colour, vec4 texel, vec4 constant)
+// The environments of OpenGL 2.1, Tables 3.22 and 3.23. `code` is 1 modulate, 2 replace, 3 decal, 4 blend, 5 add; and, as
+// they depend on the texture's base format, 8 for those without alpha, 16 for alpha alone, 24 for intensity.
+vec4 environment(int code, vec4 colour, vec4 texel, vec4 constant)
 {
-    if (mode == 2) return texel;
+    int mode = code & 7;
+    int format = code >> 3;
+    if (mode == 2) return vec4(format == 2 ? colour.rgb : texel.rgb, format == 1 ? colour.a : texel.a);
     if (mode == 3) return vec4(mix(colour.rgb, texel.rgb, texel.a), colour.a);
-    if (mode == 4) return vec4(mix(colour.rgb, constant.rgb, texel.rgb), colour.a * texel.a);
-    if (mode == 5) return clamp(vec4(colour.rgb + texel.rgb, colour.a * texel.a), 0.0, 1.0);
-    return colour * texel;
+    float alpha = colour.a * texel.a;
+    if (mode == 4)
+    {
+        if (format == 3) alpha = mix(colour.a, constant.a, texel.a);
+        return vec4(mix(colour.rgb, constant.rgb, texel.rgb), alpha);
+    }
+    if (mode == 5)
+    {
+        if (format == 3) alpha = colour.a + texel.a;
+        return clamp(vec4(colour.rgb + texel.rgb, alpha), 0.0, 1.0);
+    }
+    return vec4(format == 2 ? colour.rgb : colour.rgb * texel.rgb, alpha);
 }
 
 #ifdef GEOFX_TEXTURE_0
@@ -50,8 +62,8 @@ void main()
 #ifdef GEOFX_TEXTURE_3
     colour = environment(GEOFX_TEXTURE_3, colour, texture2DProj(geofx_texture3, gl_TexCoord[3]), gl_TextureEnvColor[3]);
 #endif
-#ifdef GEOFX_SEPARATE_SPECULAR
-    colour.rgb += gl_SecondaryColor.rgb;
+#ifdef GEOFX_COLOR_SUM
+    colour.rgb = clamp(colour.rgb + gl_SecondaryColor.rgb, 0.0, 1.0);
 #endif
 #ifdef GEOFX_MAP
     colour = geofx_fragment(colour, gl_Color * texture2DProj(geofx_map, gl_TexCoord[0]));
@@ -59,11 +71,12 @@ void main()
     colour = geofx_fragment(colour, vec4(0.0));
 #endif
 #ifdef GEOFX_FOG
+    // 1 linear, 2 exp, 3 exp2; 4 more where the distance comes with the vertex.
     float distance = gl_FogFragCoord;
     float clear = 1.0;
-    if (GEOFX_FOG == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;
-    if (GEOFX_FOG == 2) clear = exp(-gl_Fog.density * distance);
-    if (GEOFX_FOG == 3) clear = exp(-gl_Fog.density * gl_Fog.density * distance * distance);
+    if ((GEOFX_FOG & 3) == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;
+    if ((GEOFX_FOG & 3) == 2) clear = exp(-gl_Fog.density * distance);
+    if ((GEOFX_FOG & 3) == 3) clear = exp(-gl_Fog.density * gl_Fog.density * distance * distance);
     colour.rgb = mix(gl_Fog.color.rgb, clamp(colour.rgb, 0.0, 1.0), clamp(clear, 0.0, 1.0));
 #endif
     gl_FragColor = colour;

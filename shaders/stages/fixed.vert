@@ -5,11 +5,15 @@
 // OpenGL's fixed vertex stage, for geometry that has no shader of its own: what OpenGL 2.1, Section 2.14, says, with
 // the effects in between. scene/FixedFunctionLook.cpp sets the defines from the modes that are in force.
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_LOCAL_VIEWER)
-#pragma import_defines(GEOFX_COLOR_MATERIAL, GEOFX_SEPARATE_SPECULAR)
-#pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE, GEOFX_FOG)
+#pragma import_defines(GEOFX_COLOR_MATERIAL, GEOFX_COLOR_SUM)
+#pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE, GEOFX_FOG, GEOFX_POINT_SIZE)
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_TEXGEN_0, GEOFX_TEXGEN_1, GEOFX_TEXGEN_2, GEOFX_TEXGEN_3)
 #pragma import_defines(GEOFX_MAP)
+
+#if defined(GEOFX_TEXGEN_0) || defined(GEOFX_TEXGEN_1) || defined(GEOFX_TEXGEN_2) || defined(GEOFX_TEXGEN_3)
+#define GEOFX_GENERATES
+#endif
 
 vec4 geofx_vertex(vec4 eyePosition);
 vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);
@@ -75,7 +79,7 @@ void illuminate(vec3 position, vec3 normal, Material material, out vec4 primary,
             shine += strength * lobe * gl_LightSource[i].specular * material.specular;
         }
     }
-#ifdef GEOFX_SEPARATE_SPECULAR
+#ifdef GEOFX_COLOR_SUM
     primary = vec4(clamp(sum.rgb, 0.0, 1.0), clamp(material.diffuse.a, 0.0, 1.0));
     secondary = vec4(clamp(shine.rgb, 0.0, 1.0), 0.0);
 #else
@@ -85,17 +89,39 @@ void illuminate(vec3 position, vec3 normal, Material material, out vec4 primary,
 }
 #endif
 
-// Generated texture coordinates: 1 object linear, 2 eye linear.
-vec4 generated(int mode, vec4 given, vec4 eye, vec4 objectS, vec4 objectT, vec4 eyeS, vec4 eyeT)
+#ifdef GEOFX_GENERATES
+// Generated texture coordinates, OpenGL 2.1, Section 2.11.4. `code` is 1 object linear, 2 eye linear, 3 sphere map, 4
+// normal map, 5 reflection map; and 8 for s, 16 for t, 32 for r, 64 for q.
+vec4 generated(int unit, int code, vec4 given, vec4 eye, vec3 normal)
 {
-    if (mode == 1) return vec4(dot(gl_Vertex, objectS), dot(gl_Vertex, objectT), given.zw);
-    return vec4(dot(eye, eyeS), dot(eye, eyeT), given.zw);
+    int mode = code & 7;
+    vec4 made;
+    if (mode == 1)
+    {
+        made = vec4(dot(gl_Vertex, gl_ObjectPlaneS[unit]), dot(gl_Vertex, gl_ObjectPlaneT[unit]),
+                    dot(gl_Vertex, gl_ObjectPlaneR[unit]), dot(gl_Vertex, gl_ObjectPlaneQ[unit]));
+    }
+    else if (mode == 2)
+    {
+        made = vec4(dot(eye, gl_EyePlaneS[unit]), dot(eye, gl_EyePlaneT[unit]), dot(eye, gl_EyePlaneR[unit]),
+                    dot(eye, gl_EyePlaneQ[unit]));
+    }
+    else if (mode == 4)
+    {
+        made = vec4(normal, given.w);
+    }
+    else
+    {
+        made = vec4(reflect(normalize(eye.xyz), normal), given.w);
+        if (mode == 3) made.xyz = made.xyz / (2.0 * length(made.xyz + vec3(0.0, 0.0, 1.0))) + 0.5;
+    }
+    return vec4((code & 8) != 0 ? made.x : given.x, (code & 16) != 0 ? made.y : given.y,
+                (code & 32) != 0 ? made.z : given.z, (code & 64) != 0 ? made.w : given.w);
 }
+#endif
 
 #define GEOFX_COORDINATES(unit, given) gl_TexCoord[unit] = gl_TextureMatrix[unit] * (given);
-#define GEOFX_GENERATED(unit, mode, given)                                                                       \
-    GEOFX_COORDINATES(unit, generated(mode, given, eye, gl_ObjectPlaneS[unit], gl_ObjectPlaneT[unit],           \
-                                      gl_EyePlaneS[unit], gl_EyePlaneT[unit]))
+#define GEOFX_GENERATED(unit, code, given) GEOFX_COORDINATES(unit, generated(unit, code, given, eye, normal))
 
 void main()
 {
@@ -105,22 +131,34 @@ void main()
     gl_Position = deformed == eye ? ftransform() : gl_ProjectionMatrix * deformed;
     gl_ClipVertex = eye;
 
-    gl_FrontColor = gl_Color;
-    gl_BackColor = gl_Color;
-    gl_FrontSecondaryColor = vec4(0.0);
-    gl_BackSecondaryColor = vec4(0.0);
-#ifdef GEOFX_LIGHTS
     vec3 normal = gl_NormalMatrix * gl_Normal;
 #ifdef GEOFX_RESCALE
     normal *= gl_NormalScale;
 #endif
-#ifdef GEOFX_NORMALIZE
-    normal = normalize(normal);
+    // The effects turn a normal of length 1. Without GL_NORMALIZE, OpenGL lights with the length that it has.
+    float size = length(normal);
+    normal = size > 0.0 ? normal / size : normal;
+    normal = size > 0.0 ? geofx_normal(eye, normal) : normal;
+#ifndef GEOFX_NORMALIZE
+    normal *= size;
 #endif
-    normal = geofx_normal(eye, normal);
-    illuminate(eye.xyz, normal, coloured(gl_FrontMaterial), gl_FrontColor, gl_FrontSecondaryColor);
+
+    gl_FrontColor = gl_Color;
+    gl_BackColor = gl_Color;
+#ifdef GEOFX_COLOR_SUM
+    gl_FrontSecondaryColor = gl_SecondaryColor;
+    gl_BackSecondaryColor = gl_SecondaryColor;
+#endif
+#ifdef GEOFX_LIGHTS
+    vec4 primary;
+    vec4 secondary;
+    illuminate(eye.xyz, normal, coloured(gl_FrontMaterial), primary, secondary);
+    gl_FrontColor = primary;
+    gl_FrontSecondaryColor = secondary;
 #ifdef GEOFX_TWO_SIDED
-    illuminate(eye.xyz, -normal, coloured(gl_BackMaterial), gl_BackColor, gl_BackSecondaryColor);
+    illuminate(eye.xyz, -normal, coloured(gl_BackMaterial), primary, secondary);
+    gl_BackColor = primary;
+    gl_BackSecondaryColor = secondary;
 #endif
 #endif
 
@@ -145,6 +183,12 @@ void main()
     GEOFX_COORDINATES(3, gl_MultiTexCoord3)
 #endif
 #ifdef GEOFX_FOG
-    gl_FogFragCoord = abs(deformed.z);
+    gl_FogFragCoord = GEOFX_FOG >= 4 ? gl_FogCoord : abs(deformed.z);
+#endif
+#ifdef GEOFX_POINT_SIZE
+    float far = length(deformed.xyz);
+    float fading = gl_Point.distanceConstantAttenuation +
+                   far * (gl_Point.distanceLinearAttenuation + far * gl_Point.distanceQuadraticAttenuation);
+    gl_PointSize = clamp(gl_Point.size * inversesqrt(fading), gl_Point.sizeMin, gl_Point.sizeMax);
 #endif
 }

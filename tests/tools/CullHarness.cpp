@@ -105,7 +105,7 @@ std::set<const osg::PagedLOD*> Culled::requesting() const
 CullHarness::CullHarness(osg::GraphicsContext& context, osg::Node* scene, int width, int height)
     : _context(&context), _view(new osgUtil::SceneView), _stamp(new osg::FrameStamp)
 {
-    _view->setDefaults(osgUtil::SceneView::HEADLIGHT);
+    _view->setDefaults(osgUtil::SceneView::STANDARD_SETTINGS);
     _view->setState(context.getState());
     _view->setFrameStamp(_stamp);
     osg::Camera& own = *_view->getCamera();
@@ -133,6 +133,8 @@ Culled CullHarness::frame(bool cull, bool draw)
     if (!cull) camera().setCullingMode(osg::CullSettings::NO_CULLING);
     _recorder->requests.clear();
     _view->getCullVisitor()->setDatabaseRequestHandler(_recorder);
+    // As osgViewer's renderer does it.
+    _view->inheritCullSettings(camera());
     _context->makeCurrent();
     const auto start = std::chrono::steady_clock::now();
     _view->cull();

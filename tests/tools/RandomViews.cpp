@@ -90,7 +90,12 @@ osg::Matrixd CameraPose::projection() const
 
 osgGeoFX::Ground CameraPose::ground() const
 {
-    return {globe ? wgs84() : nullptr, lowestGround, highestGround};
+    osgGeoFX::Ground ground;
+    if (globe) ground.ellipsoid = wgs84();
+    ground.minHeight = lowestGround;
+    ground.maxHeight = highestGround;
+    ground.heightsKnown = lowestGround < highestGround;
+    return ground;
 }
 
 osgGeoFX::ViewGeometry CameraPose::view() const

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osg/BoundingBox>
+#include <osg/Drawable>
+#include <osg/observer_ptr>
+
+#include <unordered_map>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** Smaller boxes within a drawable's: a few on each side, each around the triangles whose middle is in its cell.
+
+    A terrain tile's box is as high as its highest peak everywhere. Where it crosses the border of the picture, the
+    smaller ones tell whether the terrain does. Made when first asked for, and kept while the drawable lives. For one
+    thread at a time. */
+class MeshBoxes
+{
+public:
+    using Boxes = std::vector<osg::BoundingBox>;
+
+    const Boxes& of(const osg::Drawable& drawable);
+    /// Forgets what has been deleted; to be called now and then.
+    void purge();
+
+private:
+    struct Entry
+    {
+        osg::observer_ptr<const osg::Drawable> drawable;
+        unsigned int modified = 0; ///< of the drawable's vertices
+        Boxes boxes;
+    };
+    std::unordered_map<const osg::Drawable*, Entry> _entries;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Picking through the deformation: pixel → ground → pixel, against what the GPU drew at the pixel, and that the ground is the
+// terrain's.
+#include <tools/CullHarness.h>
+#include <tools/GlFixture.h>
+#include <tools/OahuScene.h>
+
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/DeformedView.h>
+#include <osgUtil/LineSegmentIntersector>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+constexpr int WIDTH = 240, HEIGHT = 180;
+
+class Picking : public GlFixture, public ::testing::WithParamInterface<const char*>
+{
+protected:
+    Picking() : GlFixture(WIDTH, HEIGHT) {}
+};
+
+/// Eye depth from a depth buffer's value, metres.
+double depthOf(float value, const osg::Matrixd& projection)
+{
+    osg::Matrixd inverse;
+    inverse.invert(projection);
+    return -(osg::Vec3d(0.0, 0.0, 2.0 * static_cast<double>(value) - 1.0) * inverse).z();
+}
+
+} // namespace
+
+TEST_P(Picking, PixelToGroundToPixel)
+{
+    const std::optional<Scene> oahu = loadOahu(GetParam());
+    if (!oahu) return;
+    CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
+    const int cameras = fullTest() ? 50 : 8;
+    const int pixels = 20;
+    int checked = 0;
+    int inZone = 0;
+    double worst = 0.0;
+    for (int camera = 0; camera < cameras; ++camera)
+    {
+        SCOPED_TRACE("camera " + std::to_string(camera));
+        Random random(static_cast<std::uint64_t>(camera) + 1000);
+        addRandomEffects(*oahu->effects, random);
+        const osg::Matrixd view = randomOahuView(random, *oahu->reference);
+        // Near and far as close as may be, for the depth buffer's sake.
+        const double half = 50.0 * std::tan(random.uniform(0.2, 0.7));
+        const osg::Matrixd projection =
+            osg::Matrixd::frustum(-half * WIDTH / HEIGHT, half * WIDTH / HEIGHT, -half, half, 50.0, 2e5);
+        harness.setCamera(view, projection);
+        for (int step = 0; step < 4; ++step)
+            CullHarness::load(harness.frame(true, false).requests, random, 1.0);
+        harness.frame(true);
+        osg::ref_ptr<osg::Image> depths = new osg::Image;
+        depths->readPixels(0, 0, WIDTH, HEIGHT, GL_DEPTH_COMPONENT, GL_FLOAT);
+
+        const DeformedView picture(*oahu->effects, view, projection, WIDTH, HEIGHT);
+        for (int i = 0; i < pixels; ++i)
+        {
+            const int x = random.integer(0, WIDTH - 1);
+            const int y = random.integer(0, HEIGHT - 1);
+            const float depth = *reinterpret_cast<const float*>(
+                depths->data(static_cast<unsigned int>(x), static_cast<unsigned int>(y)));
+            const auto hit = picture.pick(x + 0.5, y + 0.5);
+            if (depth >= 1.0f)
+            {
+                // Sky; at the skyline the pixel's middle may just miss what its neighbours show.
+                continue;
+            }
+            double longitude = 0.0;
+            double latitude = 0.0;
+            double height = 0.0;
+            ASSERT_TRUE(hit) << "pixel " << x << ' ' << y;
+            ASSERT_TRUE(picture.unproject(x + 0.5, y + 0.5, *oahu->reference, longitude, latitude, height));
+            osg::Vec2d pixel;
+            ASSERT_TRUE(picture.project(longitude, latitude, height, *oahu->reference, pixel));
+            const double off = (pixel - osg::Vec2d(x + 0.5, y + 0.5)).length();
+            worst = std::max(worst, off);
+            EXPECT_LT(off, 0.5) << "pixel " << x << ' ' << y;
+            // What the GPU drew there: 24 bits of depth, and a pixel's width of ground seen at a slant.
+            const double drawn = depthOf(depth, projection);
+            const double precision = drawn * drawn / 50.0 * 3e-7;
+            const double pixelSize = -hit->deformed.z() * 2.0 * half / 50.0 / HEIGHT;
+            EXPECT_NEAR(-hit->deformed.z(), drawn, 10.0 * pixelSize + precision + 1e-4 * drawn)
+                << "pixel " << x << ' ' << y;
+            const double style = picture.chain().style(hit->world * picture.modelView());
+            inZone += style > 0.0 && style < 1.0 ? 1 : 0;
+            ++checked;
+        }
+    }
+    std::cout << checked << " pixels, " << inZone << " in the transition zone, worst " << worst
+              << " pixels\n";
+    EXPECT_GT(checked, cameras * pixels / 4);
+    EXPECT_GT(inZone, checked / 20);
+}
+
+TEST_P(Picking, WithoutEffectsItIsOsgsOwnIntersector)
+{
+    const std::optional<Scene> oahu = loadOahu(GetParam());
+    if (!oahu) return;
+    Random random(5);
+    osg::ref_ptr<BirdsEyeView> off = new BirdsEyeView;
+    off->setEnabled(false);
+    oahu->effects->addEffect(off);
+    int hits = 0;
+    for (int i = 0; i < 20; ++i)
+    {
+        const osg::Matrixd view = randomOahuView(random, *oahu->reference);
+        const osg::Matrixd projection = osg::Matrixd::perspective(40.0, 1.0, 1.0, 2e5);
+        const DeformedView picture(*oahu->effects, view, projection, 100, 100);
+        const osg::Vec2d pixel(random.uniform(0.0, 100.0), random.uniform(0.0, 100.0));
+        const auto hit = picture.pick(pixel.x(), pixel.y());
+
+        osg::Matrixd toWorld;
+        toWorld.invert(view * projection);
+        const osg::Vec3d start = osg::Vec3d(pixel.x() / 50.0 - 1.0, pixel.y() / 50.0 - 1.0, -1.0) * toWorld;
+        const osg::Vec3d end = osg::Vec3d(pixel.x() / 50.0 - 1.0, pixel.y() / 50.0 - 1.0, 1.0) * toWorld;
+        const osg::ref_ptr<osgUtil::LineSegmentIntersector> segment =
+            new osgUtil::LineSegmentIntersector(start, end);
+        // Only what is in memory: the root's tile.
+        osgUtil::IntersectionVisitor visitor(segment);
+        oahu->effects->accept(visitor);
+        ASSERT_EQ(hit.has_value(), segment->containsIntersections()) << i;
+        if (!hit) continue;
+        ++hits;
+        EXPECT_LT((hit->world - segment->getFirstIntersection().getWorldIntersectPoint()).length(),
+                  1e-6 * (start - hit->world).length() + 0.01);
+    }
+    EXPECT_GT(hits, 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Oahu, Picking, ::testing::Values("oahu", "oahu_projected"));

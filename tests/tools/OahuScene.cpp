@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <tools/OahuScene.h>
+
+#include <gtest/gtest.h>
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+
+#include <cmath>
+
+using namespace osgGeoFX;
+
+namespace geofx::test
+{
+
+namespace
+{
+
+void randomizeBend(PerspectiveBend& bend, Random& random)
+{
+    bend.setCurve(static_cast<PerspectiveBend::Curve>(random.integer(0, 2)));
+    bend.setPlaneElevation(random.integer(0, 2) == 0 ? random.uniform(-100.0, 800.0) : 0.0);
+    bend.setTransitionDetail(random.uniform(1.0, 4.0));
+    bend.setContextDetail(random.uniform(0.5, 1.5));
+}
+
+osg::ref_ptr<BirdsEyeView> randomBirdsEye(Random& random)
+{
+    osg::ref_ptr<BirdsEyeView> view = new BirdsEyeView;
+    randomizeBend(*view, random);
+    view->setHorizonLine(random.uniform(0.5, 0.98));
+    view->setFocusLine(random.uniform(0.0, 0.95) * view->getHorizonLine());
+    view->setContextTilt(random.integer(0, 1) ? random.uniform(0.0, 0.9) : 0.0);
+    return view;
+}
+
+osg::ref_ptr<PedestrianView> randomPedestrian(Random& random)
+{
+    osg::ref_ptr<PedestrianView> view = new PedestrianView;
+    randomizeBend(*view, random);
+    view->setBendAngle(random.uniform(0.0, osg::PI_2));
+    view->setFocusDistance(random.logarithmic(100.0, 8000.0));
+    view->setZoneWidth(random.logarithmic(100.0, 8000.0));
+    return view;
+}
+
+} // namespace
+
+std::optional<Scene> loadOahu(const std::string& name)
+{
+    std::string error;
+    const std::string file = GEOFX_BUILD_DIR "/test-data/" + name + "/terrain.osgb";
+    std::optional<Scene> scene = Scene::load(file, error);
+    EXPECT_TRUE(scene) << error << " The fixture oahu_database builds it.";
+    EXPECT_TRUE(!scene || scene->reference) << scene->referenceError;
+    return scene && scene->reference ? scene : std::nullopt;
+}
+
+osg::Matrixd randomProjection(Random& random)
+{
+    const double aspect = random.uniform(0.5, 2.0);
+    const int kind = random.integer(0, 9);
+    if (kind == 0)
+    {
+        const double half = random.logarithmic(500.0, 30000.0);
+        return osg::Matrixd::ortho(-half * aspect, half * aspect, -half, half, 1.0, 2e5);
+    }
+    const double near = 5.0;
+    const double half = near * std::tan(osg::DegreesToRadians(random.uniform(10.0, 100.0)) / 2.0);
+    const double shiftX = kind == 1 ? random.uniform(-1.0, 1.0) * half : 0.0;
+    const double shiftY = kind == 1 ? random.uniform(-1.0, 1.0) * half : 0.0;
+    return osg::Matrixd::frustum(shiftX - half * aspect, shiftX + half * aspect, shiftY - half, shiftY + half,
+                                 near, 3e5);
+}
+
+/// A camera over Oahu.
+osg::Matrixd randomOahuView(Random& random, const Georeference& reference)
+{
+    ViewPoint point;
+    point.longitude = osg::DegreesToRadians(random.uniform(-158.3, -157.6));
+    point.latitude = osg::DegreesToRadians(random.uniform(21.2, 21.75));
+    point.altitude = random.logarithmic(100.0, 30000.0);
+    point.heading = random.uniform(0.0, 2.0 * osg::PI);
+    point.pitch = osg::DegreesToRadians(random.integer(0, 9) == 0 ? -90.0 : random.uniform(-80.0, 5.0));
+    point.roll = random.integer(0, 4) == 0 ? random.uniform(-1.0, 1.0) : 0.0;
+    osg::Matrixd view;
+    EXPECT_TRUE(point.viewMatrix(reference, view));
+    return view;
+}
+
+void addRandomEffects(EffectScene& scene, Random& random)
+{
+    while (scene.getNumEffects())
+        scene.removeEffect(scene.getEffect(0));
+    const int kind = random.integer(0, 5);
+    if (kind == 4 || kind == 5)
+    {
+        osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+        exaggeration->setFactor(random.logarithmic(0.2, 6.0));
+        scene.addEffect(exaggeration);
+    }
+    if (kind == 0 || kind == 5) scene.addEffect(randomBirdsEye(random));
+    if (kind == 1) scene.addEffect(randomBirdsEye(random));
+    if (kind == 2) scene.addEffect(randomPedestrian(random));
+    if (kind == 3)
+    {
+        osg::ref_ptr<BlendedView> blend = new BlendedView;
+        blend->setHighHeight(random.uniform(1000.0, 20000.0));
+        blend->setBirdsEyeView(randomBirdsEye(random));
+        blend->setPedestrianView(randomPedestrian(random));
+        scene.addEffect(blend);
+    }
+}
+
+} // namespace geofx::test

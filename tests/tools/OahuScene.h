@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <tools/RandomSamples.h>
+
+#include <osg/Matrixd>
+#include <osgGeoFX/paging/Scene.h>
+
+#include <optional>
+#include <string>
+
+namespace geofx::test
+{
+
+/// A database of Oahu, "oahu" (geocentric) or "oahu_projected", as the fixture oahu_database builds them. Nothing, after a
+/// failure of the test, where it is not there.
+std::optional<osgGeoFX::Scene> loadOahu(const std::string& name);
+
+/// Perspective mostly, of any field of view and aspect; some off axis, some orthographic.
+osg::Matrixd randomProjection(Random& random);
+
+/// A camera over Oahu, world to eye: 100 m to 30 km high, some rolled, some looking straight down.
+osg::Matrixd randomOahuView(Random& random, const osgGeoFX::Georeference& reference);
+
+/// Puts random effects in the place of a scene's: each kind alone, and bends after exaggeration.
+void addRandomEffects(osgGeoFX::EffectScene& scene, Random& random);
+
+} // namespace geofx::test
