@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_viewer: osgviewer, made for terrain.
+#include <osgGeoFX/deformation/EffectHandlers.h>
 #include <osgGeoFX/paging/Scene.h>
 #include <osgGeoFX/paging/ViewerHandlers.h>
+#include <osgGeoFX/scene/EffectKinds.h>
 
 #include <osg/ArgumentParser>
 #include <osg/GraphicsContext>
@@ -45,6 +47,8 @@ void describe(osg::ApplicationUsage& usage)
         "It takes osgviewer's options and keys; press h in the window for the keys.");
     usage.setCommandLineUsage("osggeofx_viewer [options] FILE ...");
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
+    usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
+                               "Add an effect to the scene's, as in osggeofx_render; as often as wanted.");
     usage.addCommandLineOption("-p <file>", "Play a camera path that was saved with the key z.");
     usage.addCommandLineOption("--speed <factor>", "How fast the path is played; 1 is as recorded.");
 }
@@ -132,8 +136,10 @@ void addHandlers(osgViewer::Viewer& viewer, osg::ArgumentParser& arguments, cons
     viewer.addEventHandler(new osgViewer::RecordCameraPathHandler);
     viewer.addEventHandler(new osgViewer::LODScaleHandler);
     viewer.addEventHandler(new osgViewer::ScreenCaptureHandler);
-    viewer.addEventHandler(new osgGeoFX::CursorReadout(scene.reference, scene.referenceError));
+    viewer.addEventHandler(new osgGeoFX::CursorReadout(scene));
     viewer.addEventHandler(new osgGeoFX::LodScaleFollower(scene));
+    viewer.addEventHandler(new osgGeoFX::EffectKeys(*scene.effects));
+    viewer.addEventHandler(new osgGeoFX::ClickAndFly(*scene.effects));
 }
 
 } // namespace
@@ -151,6 +157,14 @@ int main(int argc, char** argv)
         arguments.getApplicationUsage()->write(std::cout, help);
         return 0;
     }
+    std::vector<osg::ref_ptr<osgGeoFX::Effect>> effects;
+    std::string text;
+    std::string effectFault;
+    while (arguments.read("--effect", text) && effectFault.empty())
+    {
+        effects.push_back(osgGeoFX::parseEffect(text, effectFault));
+    }
+    if (!effectFault.empty()) return refuse("--effect: " + effectFault);
     double fieldOfView = 0.0;
     const bool fieldOfViewGiven = arguments.read("--fov", fieldOfView);
     const osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> manipulators = makeManipulators(arguments);
@@ -193,6 +207,8 @@ int main(int argc, char** argv)
         return refuse(error);
     }
 
+    for (const auto& effect : effects)
+        scene->effects->addEffect(effect);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
     viewer.setSceneData(scene->node);
     const osg::Vec4 color = viewer.getCamera()->getClearColor();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "DeformationSuite.h"
 #include "Suite.h"
 #include "TerrainSuite.h"
 
@@ -11,7 +12,7 @@ namespace geofx::bench
 
 const std::vector<Suite>& suites()
 {
-    static const std::vector<Suite> all = {terrainSuite()};
+    static const std::vector<Suite> all = {terrainSuite(), deformationSuite()};
     return all;
 }
 

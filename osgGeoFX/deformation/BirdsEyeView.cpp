@@ -34,6 +34,23 @@ std::optional<LineOnGround> unproject(const ViewGeometry& view, const osg::Vec3d
     return LineOnGround{origin * forward + height * along / down, std::atan2(down, along)};
 }
 
+/// 0…1 where a value goes from `from` to `to`, without a kink.
+double fade(double from, double to, double value)
+{
+    const double share = std::clamp((value - from) / (to - from), 0.0, 1.0);
+    return share * share * (3.0 - 2.0 * share);
+}
+
+/// The bend's share for a camera that sees the ground in a way that a bend of 90° at most cannot serve: beyond straight
+/// down the horizon's plane would stand on its head, and lines behind the eye run away to infinity. On an orthographic
+/// camera that looks level the zone, as wide as the picture's rays are long, would not fade by itself.
+double servedShare(double focusDepression, double horizonDepression, bool perspective)
+{
+    const double level = perspective ? 1.0 : fade(0.0, osg::DegreesToRadians(3.0), horizonDepression);
+    return level * fade(osg::DegreesToRadians(105.0), osg::PI_2, horizonDepression) *
+           fade(osg::PI, osg::DegreesToRadians(165.0), focusDepression);
+}
+
 double curvature(int curve, double size, double angle)
 {
     return std::abs(glsl::geofx_bendCurvature(glsl::geofx_makeBend(curve, size, angle)));
@@ -68,7 +85,7 @@ std::string BirdsEyeView::inconsistency() const
     return _focusLine < _horizonLine ? "" : "focusLine must lie below horizonLine.";
 }
 
-std::optional<BendPlacement> BirdsEyeView::placement(const ViewGeometry& view) const
+std::optional<BendPlacement> BirdsEyeView::placementOf(Curve curve, const ViewGeometry& view) const
 {
     const double height = planeHeight(view);
     const bool perspective = view.projection(3, 3) == 0.0;
@@ -79,15 +96,15 @@ std::optional<BendPlacement> BirdsEyeView::placement(const ViewGeometry& view) c
     const std::optional<LineOnGround> horizon = unproject(view, forward, height, _horizonLine);
     if (!focus || !horizon) return std::nullopt;
     const double reach = (horizon->distance - focus->distance) * (1.0 - _contextTilt);
-    // A horizon beyond the foot would need more than a right angle.
-    if (!(reach > 0.0) || !(horizon->depression < osg::PI_2)) return std::nullopt;
+    if (!(reach > 0.0)) return std::nullopt;
 
     BendPlacement place;
     place.planeHeight = height;
     place.start = focus->distance;
-    const double angle = horizon->depression;
+    // A horizon beyond the foot would need more than a right angle.
+    const double angle = std::min(horizon->depression, osg::PI_2);
     // Tangents of the curve at its ends meet at the axis.
-    const bool arc = getCurve() == CIRCULAR_ARC;
+    const bool arc = curve == CIRCULAR_ARC;
     const auto sizeFor = [&](double bend)
     {
         return arc ? reach * bend / std::tan(bend / 2.0) : 2.0 * reach;
@@ -95,7 +112,7 @@ std::optional<BendPlacement> BirdsEyeView::placement(const ViewGeometry& view) c
     place.size = sizeFor(angle);
     place.angle = -angle;
     const double most = mostCurvature(view, -1.0, std::abs(place.start) + place.size);
-    if (curvature(getCurve(), place.size, angle) > most)
+    if (curvature(curve, place.size, angle) > most)
     {
         // Less of a bend, as much as what lies below T allows. The curvature grows with the angle.
         double low = 0.0;
@@ -103,11 +120,12 @@ std::optional<BendPlacement> BirdsEyeView::placement(const ViewGeometry& view) c
         for (int i = 0; i < 50; ++i)
         {
             const double middle = (low + high) / 2.0;
-            (curvature(getCurve(), sizeFor(std::max(middle, 1e-12)), middle) > most ? high : low) = middle;
+            (curvature(curve, sizeFor(std::max(middle, 1e-12)), middle) > most ? high : low) = middle;
         }
         place.angle = -low;
         if (low > 1e-12) place.size = sizeFor(low);
     }
+    place.angle *= servedShare(focus->depression, horizon->depression, perspective);
     return place;
 }
 

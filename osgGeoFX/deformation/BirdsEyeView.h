@@ -14,8 +14,9 @@ namespace osgGeoFX
     Lines are fractions of the picture's height from its bottom. With a rolled camera the horizon rolls too.
 
     The view is there where the rays of both lines meet the reference plane; where they do not (the eye is below it, or the
-    natural horizon is below horizonLine) nothing is deformed, and the bend fades out before. Any projection: off
-    axis, orthographic, stereo. */
+    natural horizon is below horizonLine) nothing is deformed, and the bend fades out before. It bends by 90° at most, and
+    fades where the horizon's ray points backwards by up to 15°, or the focus line's by more than 75°; so a camera may
+    look straight down and beyond. Any projection: off axis, orthographic (fading below a pitch of 3°), stereo. */
 class OSGGEOFX_EXPORT BirdsEyeView : public PerspectiveBend
 {
 public:
@@ -35,7 +36,7 @@ public:
     double getContextTilt() const { return _contextTilt; }
 
     const Properties& properties() const override;
-    std::optional<BendPlacement> placement(const ViewGeometry& view) const override;
+    std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const override;
 
 protected:
     ~BirdsEyeView() override;

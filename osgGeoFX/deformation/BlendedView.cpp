@@ -6,21 +6,10 @@
 #include <osg/Notify>
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGeoFX
 {
-
-namespace
-{
-
-/// The other view's placement without its bend: from there a bend grows in place.
-BendPlacement flattened(BendPlacement place)
-{
-    place.angle = 0.0;
-    return place;
-}
-
-} // namespace
 
 BlendedView::BlendedView() : _birdsEye(new BirdsEyeView), _pedestrian(new PedestrianView) {}
 
@@ -79,18 +68,16 @@ std::string BlendedView::inconsistency() const
     return _lowHeight < _highHeight ? "" : "lowHeight must be less than highHeight.";
 }
 
-std::optional<BendPlacement> BlendedView::placement(const ViewGeometry& view) const
+std::optional<BendPlacement> BlendedView::placementOf(Curve curve, const ViewGeometry& view) const
 {
+    // Not the mean of both: where one of the views has no bend it is endlessly wide, or has no width.
     const double share = std::clamp((view.eyeHeight - _lowHeight) / (_highHeight - _lowHeight), 0.0, 1.0);
-    const double weight = share * share * (3.0 - 2.0 * share);
-    std::optional<BendPlacement> low;
-    std::optional<BendPlacement> high;
-    if (weight < 1.0) low = _pedestrian->placement(view);
-    if (weight > 0.0) high = _birdsEye->placement(view);
-    if (!low && !high) return std::nullopt;
-    if (!low) return BendPlacement::between(flattened(*high), *high, weight);
-    if (!high) return BendPlacement::between(*low, flattened(*low), weight);
-    return BendPlacement::between(*low, *high, weight);
+    const PerspectiveBend* part = _pedestrian.get();
+    if (share > 0.5) part = _birdsEye.get();
+    std::optional<BendPlacement> place = part->placementOf(curve, view);
+    const double strength = std::abs(2.0 * share - 1.0);
+    if (place) place->angle *= strength * strength * (3.0 - 2.0 * strength);
+    return place;
 }
 
 } // namespace osgGeoFX

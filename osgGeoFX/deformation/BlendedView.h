@@ -10,10 +10,10 @@ namespace osgGeoFX
 
 /** A bird's-eye view from high up, a pedestrian's view near the ground, and one bend between them on the way.
 
-    Below `lowHeight` of the eye the pedestrian's view alone is in force, above `highHeight` the bird's-eye view alone.
-    Between them start, width, angle and reference plane of the bend pass from one to the other smoothly, so the ground
-    unfolds through the plain view. Where one of the views has no bend, as for a bird's eye that sees the natural
-    horizon, its part of the blend is none.
+    Below `lowHeight` of the eye the pedestrian's view is in force as it is, above `highHeight` the bird's-eye view.
+    On the way up between them the first one's bend unfolds until, halfway, the ground lies as it is, and then the
+    second one's bends it down; both smoothly, and each with its own start, width and reference plane. Where one of the
+    views has no bend, as a bird's eye that sees the natural horizon, its part of the way is plain.
 
     Curve, styles and details are this effect's own; the two views add what is their own: lines, distances, angles,
     reference planes, `tallest`. Their `enabled` is left out of account. */
@@ -44,7 +44,7 @@ public:
         return {{"birdsEyeView", _birdsEye.get()}, {"pedestrianView", _pedestrian.get()}};
     }
     const Properties& properties() const override;
-    std::optional<BendPlacement> placement(const ViewGeometry& view) const override;
+    std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const override;
 
 protected:
     ~BlendedView() override;

@@ -492,14 +492,29 @@ bool CompensatingCullVisitor::missesPicture(const Hull& hull) const
     return false;
 }
 
+bool CompensatingCullVisitor::inSight(const osg::Vec3d& deformed, PlaneMask planes) const
+{
+    for (std::size_t i = 0; i < _planes.size(); ++i)
+    {
+        if ((planes & (1u << i)) && planeDistance(_planes[i], deformed) < 0.0) return false;
+    }
+    return true;
+}
+
 bool CompensatingCullVisitor::meshOutside(const osg::Drawable& drawable, PlaneMask planes)
 {
     const MeshBoxes::Boxes& boxes = _meshBoxes.of(drawable);
-    return !boxes.empty() &&
-           std::all_of(boxes.begin(), boxes.end(),
+    if (boxes.empty()) return false;
+    const osg::Matrixd& modelView = *getModelViewMatrix();
+    for (const osg::BoundingBox& box : boxes)
+    {
+        const Ball middle = {osg::Vec3d(box.center()) * modelView, 0.0};
+        if (inSight(_mode.chain->bound(middle).centre, planes)) return false;
+    }
+    return std::all_of(boxes.begin(), boxes.end(),
                        [&](const osg::BoundingBox& box)
                        {
-                           _mode.chain->bound(EyeBox::of(box, *getModelViewMatrix()), _smallHull);
+                           _mode.chain->bound(EyeBox::of(box, modelView), _smallHull);
                            return outside(_smallHull, planes);
                        });
 }
@@ -522,7 +537,9 @@ bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
     const osg::Vec3 more(osg::Vec3d(error, error, error));
     bounds._min -= more;
     bounds._max += more;
-    _mode.chain->bound(EyeBox::of(bounds, matrix), _hull);
+    const EyeBox box = EyeBox::of(bounds, matrix);
+    if (inSight(_mode.chain->bound(Ball{box.centre, 0.0}).centre, _mode.planes)) return false;
+    _mode.chain->bound(box, _hull);
     return outside(_hull, _mode.planes);
 }
 
@@ -564,6 +581,8 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
         return false;
     PlaneMask planes = test ? _mode.planes : 0;
     if (planes && side(deformed, planes) == Side::Outside) return false;
+    // Where the box's middle shows there is no more to be found out.
+    if (planes && inSight(deformed.centre, planes)) planes = 0;
     const bool extends = _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR &&
                          (depth - deformed.radius < _near || depth + deformed.radius > _far);
     if (planes || extends || _task.debugBounds)

@@ -105,6 +105,7 @@ private:
     bool missesPicture(const Hull& hull) const;
     /// Whether all smaller boxes of a drawable miss the picture; false where it has none.
     bool meshOutside(const osg::Drawable& drawable, PlaneMask planes);
+    bool inSight(const osg::Vec3d& deformed, PlaneMask planes) const;
     /// Whether a paged tile of the kit's databases, with all that is finer, is out of sight.
     bool tileOutOfSight(const osg::LOD& node);
     void includeDepths(const Hull& hull);

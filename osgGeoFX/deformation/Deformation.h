@@ -43,6 +43,9 @@ class OSGGEOFX_EXPORT DeformationFrame : public osg::Referenced
 {
 public:
     virtual osg::Vec3d deform(const osg::Vec3d& position) const = 0;
+    /// The same for bounds, faster, and off by roughness() at most within a ball.
+    virtual osg::Vec3d roughly(const osg::Vec3d& position) const { return deform(position); }
+    virtual double roughness(const Ball&) const { return 0.0; }
     /// The inverse of deform().
     virtual osg::Vec3d undeform(const osg::Vec3d& position) const = 0;
     /// What becomes of the unit normal of a surface at a position that has not been deformed.
@@ -70,6 +73,7 @@ public:
     {
         double curve = 0.0; ///< metres
         double kink = 0.0;  ///< metres
+        double most = 1e30; ///< metres that it can be off in any case
     };
     virtual Sag sag(const Ball& ball, const osg::Vec3d& edge) const = 0;
 

@@ -17,11 +17,11 @@ using Reach = DeformationFrame::Reach;
 /// At most this many cells along one axis of a box.
 constexpr int mostCells = 8;
 /// The sag that is worth no further cells, as a share of the box's radius.
-constexpr double fineSag = 0.004;
+constexpr double fineSag = 0.02;
 
 double sagOf(const DeformationFrame::Sag& sag, int cells)
 {
-    return sag.curve / (8.0 * cells * cells) + sag.kink / (4.0 * cells);
+    return std::min(sag.curve / (8.0 * cells * cells) + sag.kink / (4.0 * cells), sag.most);
 }
 
 /// The deformed corners of a grid over the box, and how far the image of the box can be from their hull.
@@ -42,6 +42,7 @@ void sample(const DeformationFrame& frame, const EyeBox& box, const Ball& ball, 
                 ++count;
             hull.margin += sagOf(sag, count);
         }
+        hull.margin += frame.roughness(ball);
     }
     for (int i = 0; i <= cells[0]; ++i)
     {
@@ -52,10 +53,16 @@ void sample(const DeformationFrame& frame, const EyeBox& box, const Ball& ball, 
             for (int k = 0; k <= cells[2]; ++k)
             {
                 const osg::Vec3d point = atJ + box.half[2] * (2.0 * k / cells[2] - 1.0);
-                hull.points.push_back(reach == Reach::Identity ? point : frame.deform(point));
+                hull.points.push_back(reach == Reach::Identity ? point : frame.roughly(point));
             }
         }
     }
+}
+
+Ball boundBy(const DeformationFrame& frame, const Ball& ball)
+{
+    if (frame.reach(ball) == Reach::Identity) return ball;
+    return {frame.roughly(ball.centre), ball.radius * frame.lipschitz(ball) + frame.roughness(ball)};
 }
 
 /// A box with the axes of another one around a hull.
@@ -152,11 +159,7 @@ Ball DeformationChain::bound(const Ball& ball) const
 {
     Ball result = ball;
     for (const auto& frame : _frames)
-    {
-        const double factor = frame->lipschitz(result);
-        result.centre = frame->deform(result.centre);
-        result.radius *= factor;
-    }
+        result = boundBy(*frame, result);
     return result;
 }
 
@@ -192,10 +195,8 @@ double DeformationChain::detail(const Ball& ball) const
     double detail = 1.0;
     for (const auto& frame : _frames)
     {
-        const double factor = frame->lipschitz(current);
-        detail *= frame->detail(current) * factor;
-        current.centre = frame->deform(current.centre);
-        current.radius *= factor;
+        detail *= frame->detail(current) * frame->lipschitz(current);
+        current = boundBy(*frame, current);
     }
     return detail;
 }
@@ -206,10 +207,9 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
     double detail = 1.0;
     for (const auto& frame : _frames)
     {
-        const double factor = frame->lipschitz(current);
-        detail *= frame->detail(current) * factor;
-        current.centre = frame->deform(current.centre);
-        current.radius *= factor;
+        if (frame->reach(current) == Reach::Identity) continue;
+        detail *= frame->detail(current) * frame->lipschitz(current);
+        current = boundBy(*frame, current);
     }
     const double distance = (current.centre - viewPoint).length();
     if (detail == 1.0 && current.radius == ball.radius) return distance;

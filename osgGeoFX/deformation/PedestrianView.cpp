@@ -36,14 +36,14 @@ const Properties& PedestrianView::properties() const
     return all;
 }
 
-std::optional<BendPlacement> PedestrianView::placement(const ViewGeometry& view) const
+std::optional<BendPlacement> PedestrianView::placementOf(Curve curve, const ViewGeometry& view) const
 {
     BendPlacement place;
     place.planeHeight = planeHeight(view);
     place.start = _focusDistance;
     place.angle = _bendAngle;
     // Every curve's curvature is its angle's share of 1/d.
-    const double curvature = glsl::geofx_bendCurvature(glsl::geofx_makeBend(getCurve(), 1.0, _bendAngle));
+    const double curvature = glsl::geofx_bendCurvature(glsl::geofx_makeBend(curve, 1.0, _bendAngle));
     place.size = std::max(_zoneWidth, curvature / mostCurvature(view, 1.0, 0.0));
     return place;
 }

@@ -29,7 +29,7 @@ public:
     double getZoneWidth() const { return _zoneWidth; }
 
     const Properties& properties() const override;
-    std::optional<BendPlacement> placement(const ViewGeometry& view) const override;
+    std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const override;
 
 protected:
     ~PedestrianView() override;

@@ -5,6 +5,7 @@
 #include <osgGeoFX/deformation/EyeVector.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace osgGeoFX
@@ -50,8 +51,31 @@ public:
             _curvature = _turnRate;
             _borderTurnRate = _turnRate;
         }
+        fillTable();
     }
 
+    osg::Vec3d roughly(const osg::Vec3d& position) const override
+    {
+        const glm::dvec2 point = profile(position);
+        if (!(point.x > 0.0) || point.x >= _view.bend.size) return deform(position);
+        const double cell = point.x * static_cast<double>(tableCells) / _view.bend.size;
+        const auto below = std::min(static_cast<std::size_t>(cell), tableCells - 1);
+        const double share = cell - static_cast<double>(below);
+        const TableEntry& a = _table[below];
+        const TableEntry& b = _table[below + 1];
+        const glm::dvec2 to =
+            a.foot + share * (b.foot - a.foot) + point.y * (a.normal + share * (b.normal - a.normal));
+        const glm::dvec2 offset = to - point;
+        return position + toOsg(_view.forward) * offset.x + toOsg(_view.normal) * offset.y;
+    }
+    double roughness(const Ball& ball) const override
+    {
+        const glm::dvec2 at = profile(ball.centre);
+        if (at.x + ball.radius <= 0.0 || at.x - ball.radius >= _view.bend.size) return 0.0;
+        const double cell = _view.bend.size / static_cast<double>(tableCells);
+        const double height = std::abs(at.y) + ball.radius;
+        return (_curvature + height * (_turnChange + _turnRate * _turnRate)) * cell * cell / 8.0;
+    }
     osg::Vec3d deform(const osg::Vec3d& position) const override
     {
         return toOsg(glsl::geofx_bendViewDeform(_view, toGlm(position)));
@@ -102,6 +126,9 @@ public:
                     2.0 * _turnRate * along * up;
         const bool border = at.x - ball.radius < 0.0 || at.x + ball.radius > _view.bend.size;
         if (border) sag.kink = (_borderSlowness + height * _borderTurnRate) * along;
+        // However narrow the zone, directions turn by the bend's angle at most: along the edge, and at the height's end.
+        const double turn = 2.0 * std::abs(_view.bend.bisector.y);
+        sag.most = turn * (along / 2.0 + up + 2.0 * height);
         return sag;
     }
     double detail(const Ball& ball) const override
@@ -140,8 +167,26 @@ private:
         return glsl::geofx_bendViewProfile(_view, toGlm(position));
     }
 
+    static constexpr std::size_t tableCells = 32;
+    struct TableEntry
+    {
+        glm::dvec2 foot;
+        glm::dvec2 normal;
+    };
+    /// The zone's frames at even distances: bounds ask for them often, and Newton's method takes its time.
+    void fillTable()
+    {
+        for (std::size_t i = 0; i <= tableCells; ++i)
+        {
+            const double s = _view.bend.size * static_cast<double>(i) / static_cast<double>(tableCells);
+            const glsl::geofx_BendFrame frame = glsl::geofx_bendFrame(_view.bend, s);
+            _table[i] = {frame.foot, {-frame.tangent.y, frame.tangent.x}};
+        }
+    }
+
     glsl::geofx_BendView _view;
     Look _look;
+    std::array<TableEntry, tableCells + 1> _table;
     double _curvature = 0.0;      ///< of |C''|, at most
     double _turnRate = 0.0;       ///< of the frame, at most
     double _borderTurnRate = 0.0; ///< at the zone's borders
@@ -150,16 +195,6 @@ private:
 };
 
 } // namespace
-
-BendPlacement BendPlacement::between(const BendPlacement& from, const BendPlacement& to, double share)
-{
-    const auto mix = [share](double a, double b)
-    {
-        return a + share * (b - a);
-    };
-    return {mix(from.planeHeight, to.planeHeight), mix(from.start, to.start), mix(from.size, to.size),
-            mix(from.angle, to.angle)};
-}
 
 PerspectiveBend::PerspectiveBend(const PerspectiveBend& other, const osg::CopyOp& copy)
     : Deformation(other, copy), _curve(other._curve), _planeElevation(other._planeElevation),
@@ -238,16 +273,19 @@ osg::ref_ptr<const DeformationFrame> PerspectiveBend::frame(const ViewGeometry& 
     if (!place) return nullptr;
     osg::Vec3d forward = heading(view);
     const double share = forward.normalize();
-    const double angle = place->angle * share;
+    // What little is left of a bend at its end goes smoothly, too, and then there is nothing to draw.
+    const double rest = std::clamp(std::abs(place->angle) * share / 1e-5 - 1.0, 0.0, 1.0);
+    const double angle = place->angle * share * (rest * rest * (3.0 - 2.0 * rest));
     glsl::geofx_BendView bend;
     bend.normal = toGlm(view.up);
     bend.forward = toGlm(forward);
     bend.height = place->planeHeight;
     bend.start = place->start;
     bend.bend = glsl::geofx_makeBend(_curve, place->size, angle);
-    const double sum = place->planeHeight + place->start + place->size + angle + forward * view.up;
-    // Below this angle nothing moves by a visible amount, and floats could not tell.
-    if (!std::isfinite(sum) || std::abs(angle) < 1e-5 || share <= 0.0) return nullptr;
+    // Not a number, or beyond what floats can work with: no camera over a terrain is like this.
+    const double sum = std::abs(place->planeHeight) + std::abs(place->start) + place->size + std::abs(angle) +
+                       std::abs(forward * view.up);
+    if (!(sum < 1e15) || angle == 0.0) return nullptr;
     // A database that tells its heights needs no watching, unless someone says that they do not matter; and what hangs
     // below T in it are skirts.
     const bool foldPossible = !view.ground.heightsKnown || (_tallest >= 0.0 && angle > 0.0);

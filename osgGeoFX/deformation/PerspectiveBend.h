@@ -16,9 +16,6 @@ struct OSGGEOFX_EXPORT BendPlacement
     double start = 0.0;       ///< s_b, the line b
     double size = 0.0;        ///< d, the width of the transition zone
     double angle = 0.0;       ///< β, positive upwards
-
-    /// The placement between two, 0…1; of `to` alone where there is no `from`.
-    static BendPlacement between(const BendPlacement& from, const BendPlacement& to, double share);
 };
 
 /** What the multi-perspective views have in common: the terrain bends along a straight line across the view.
@@ -78,7 +75,12 @@ public:
     int getMapUnit() const { return _mapUnit; }
 
     /// Where the bend lies for this camera; nothing where there is none.
-    virtual std::optional<BendPlacement> placement(const ViewGeometry& view) const = 0;
+    std::optional<BendPlacement> placement(const ViewGeometry& view) const
+    {
+        return placementOf(getCurve(), view);
+    }
+    /// The same with a curve that need not be its own.
+    virtual std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const = 0;
 
     osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
     std::string vertexFile() const override { return "stages/bendview.glsl"; }

@@ -110,6 +110,9 @@ osg::ref_ptr<const DeformationFrame> VerticalExaggeration::frame(const ViewGeome
         frame.scale = 1.0 / support;
         frame.flattening = a * a / (b * b) - 1.0;
     }
+    // Not a number, or beyond what floats can work with: no camera over a terrain is like this.
+    const double sum = std::abs(view.eyeHeight) + std::abs(view.up * view.polarAxis) + frame.curvature;
+    if (!(sum < 1e15)) return nullptr;
     return new ExaggerationFrame(frame, _relight);
 }
 

@@ -14,8 +14,8 @@ namespace osgGeoFX
     exaggerated surface unless `relight` is off.
 
     The result does not depend on the camera. Positions are exact within 1e-5 of the viewing distance, heights on the
-    Earth's ellipsoid within 4 cm at 9 km. In a scene with a bend it stands before it. For collision with the ground
-    and for picking, see DeformedView. Not in the papers; users of globes ask for it. */
+    Earth's ellipsoid within 1 mm at 9 km, times the factor. In a scene with a bend it stands before it. For collision
+    with the ground and for picking, see DeformedView. Not in the papers; users of globes ask for it. */
 class OSGGEOFX_EXPORT VerticalExaggeration : public Deformation
 {
 public:

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/paging/ViewerHandlers.h>
 
+#include <osgGeoFX/deformation/DeformedView.h>
+
 #include <osg/Math>
-#include <osgUtil/IntersectionVisitor>
-#include <osgUtil/LineSegmentIntersector>
 
 #include <cmath>
 #include <cstdio>
@@ -39,8 +39,9 @@ bool LodScaleFollower::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAct
     return false;
 }
 
-CursorReadout::CursorReadout(Georeference* reference, const std::string& whyNone)
-    : _reference(reference), _whyNone(whyNone), _overlay(new osg::Camera), _text(new osgText::Text)
+CursorReadout::CursorReadout(const Scene& scene)
+    : _effects(scene.effects), _reference(scene.reference), _whyNone(scene.referenceError),
+      _overlay(new osg::Camera), _text(new osgText::Text)
 {
     _text->setDataVariance(osg::Object::DYNAMIC);
     _text->setCharacterSize(18.0f);
@@ -87,17 +88,13 @@ void CursorReadout::toggle(osgViewer::View& view)
 
 void CursorReadout::show(osgViewer::View& view, float x, float y)
 {
-    osg::ref_ptr<osgUtil::LineSegmentIntersector> ray = new osgUtil::LineSegmentIntersector(
-        osgUtil::Intersector::WINDOW, static_cast<double>(x), static_cast<double>(y));
-    ray->setIntersectionLimit(osgUtil::Intersector::LIMIT_NEAREST);
-    osgUtil::IntersectionVisitor visitor(ray.get());
-    view.getCamera()->accept(visitor);
+    const DeformedView picture(*_effects, *view.getCamera());
+    const osg::Viewport& port = *view.getCamera()->getViewport();
     double longitude = 0.0;
     double latitude = 0.0;
     double height = 0.0;
-    if (!ray->containsIntersections() ||
-        !_reference->toGeodetic(ray->getFirstIntersection().getWorldIntersectPoint(), longitude, latitude,
-                                height))
+    if (!picture.unproject(static_cast<double>(x) - port.x(), static_cast<double>(y) - port.y(), *_reference,
+                           longitude, latitude, height))
     {
         _text->setText("");
         return;

@@ -29,12 +29,12 @@ private:
     float _base = 1.0f;
 };
 
-/** Shows longitude, latitude and height of the ground below the pointer, in the window's lower left corner; key c.
-    Serves one view. The reference may be null; then `whyNone` is shown. */
+/** Shows longitude, latitude and height of the ground below the pointer, as the effects show it, in the window's lower
+    left corner; key c. Serves one view. Where the scene has no reference, it shows why. */
 class OSGGEOFX_EXPORT CursorReadout : public osgGA::GUIEventHandler
 {
 public:
-    CursorReadout(Georeference* reference, const std::string& whyNone);
+    explicit CursorReadout(const Scene& scene);
 
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
     void getUsage(osg::ApplicationUsage& usage) const override;
@@ -46,6 +46,7 @@ private:
     void toggle(osgViewer::View& view);
     void show(osgViewer::View& view, float x, float y);
 
+    osg::ref_ptr<EffectScene> _effects;
     osg::ref_ptr<Georeference> _reference;
     std::string _whyNone;
     osg::ref_ptr<osg::Camera> _overlay;

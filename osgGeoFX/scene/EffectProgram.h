@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/Export.h>
 #include <osgGeoFX/scene/Effect.h>
 
 #include <osg/Program>
@@ -16,7 +17,7 @@ namespace osgGeoFX
 
     Effect i of the scene has the prefix geofx_<i>_ and the define GEOFX_EFFECT_<i>, which is set where the effect is in
     force, so that switching effects changes defines and nothing else. */
-class EffectProgram
+class OSGGEOFX_EXPORT EffectProgram
 {
 public:
     using Effects = std::vector<osg::ref_ptr<Effect>>;

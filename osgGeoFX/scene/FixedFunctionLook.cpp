@@ -363,6 +363,20 @@ int colorMaterialOf(const osg::StateAttribute* attribute)
     }
 }
 
+/// OpenGL's default material does not shine.
+bool shines(const osg::StateAttribute* attribute)
+{
+    const auto* material = static_cast<const osg::Material*>(attribute);
+    if (!material) return false;
+    if (material->getColorMode() == osg::Material::SPECULAR) return true;
+    const auto dark = [](const osg::Vec4& colour)
+    {
+        return colour.r() == 0.0f && colour.g() == 0.0f && colour.b() == 0.0f;
+    };
+    return !dark(material->getSpecular(osg::Material::FRONT)) ||
+           !dark(material->getSpecular(osg::Material::BACK));
+}
+
 } // namespace
 
 FixedFunctionLook FixedFunctionLook::find(const osgUtil::StateGraph& state, const osg::StateSet* drawable,
@@ -393,6 +407,7 @@ FixedFunctionLook FixedFunctionLook::find(const osgUtil::StateGraph& state, cons
             look.colorSum = model->getColorControl() == osg::LightModel::SEPARATE_SPECULAR_COLOR;
         }
         look.colorMaterial = colorMaterialOf(gathered.material.value());
+        look.specular = shines(gathered.material.value());
     }
     else
     {
@@ -423,7 +438,7 @@ FixedFunctionLook::Key FixedFunctionLook::key() const
 {
     Key key = {lights,
                (twoSided ? 1 : 0) | (localViewer ? 2 : 0) | (colorSum ? 4 : 0) | (normalize ? 8 : 0) |
-                   (rescale ? 16 : 0) | (map ? 32 : 0) | (pointSize ? 64 : 0),
+                   (rescale ? 16 : 0) | (map ? 32 : 0) | (pointSize ? 64 : 0) | (specular ? 128 : 0),
                colorMaterial, fog};
     std::copy(std::begin(texture), std::end(texture), key.begin() + 4);
     std::copy(std::begin(texGen), std::end(texGen), key.begin() + 4 + units);
@@ -444,6 +459,7 @@ osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* prog
         if (there) set->setDefine(name, std::to_string(value));
     };
     define("GEOFX_LIGHTS", lights >= 0, lights);
+    define("GEOFX_SPECULAR", specular, 1);
     define("GEOFX_TWO_SIDED", twoSided, 1);
     define("GEOFX_LOCAL_VIEWER", localViewer, 1);
     define("GEOFX_COLOR_SUM", colorSum, 1);

@@ -23,6 +23,7 @@ struct FixedFunctionLook
     bool twoSided = false;
     bool localViewer = false;
     bool colorSum = false; ///< the secondary colour is added after the textures
+    bool specular = false; ///< the material shines
     bool normalize = false;
     bool rescale = false;
     bool pointSize = false;   ///< points get smaller with the distance

@@ -6,7 +6,7 @@
 // Nothing here is as large as the Earth, so that floats suffice: positions are taken from the eye's foot on the
 // ellipsoid, q, and there the ellipsoid is F(q) = 2 n.q + k (q.q + e (q.p)^2) = 0, in metres, with the normal n,
 // the axis of revolution p, k = 1/(a^2 |grad|) and e = a^2/b^2 - 1. A plane has k = 0. The height follows from F
-// and its gradient: exactly for a plane and for a sphere, within h^2/2000 km for the Earth (4 cm at 9 km).
+// and its gradient: exactly for a plane and for a sphere, within a millimetre at 9 km for the Earth.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #endif

@@ -4,6 +4,7 @@
 //
 // OpenGL's fixed vertex stage, for geometry that has no shader of its own: what OpenGL 2.1, Section 2.14, says, with
 // the effects in between. scene/FixedFunctionLook.cpp sets the defines from the modes that are in force.
+#pragma import_defines(GEOFX_SPECULAR)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_LOCAL_VIEWER)
 #pragma import_defines(GEOFX_COLOR_MATERIAL, GEOFX_COLOR_SUM)
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE, GEOFX_FOG, GEOFX_POINT_SIZE)
@@ -40,50 +41,61 @@ Material coloured(gl_MaterialParameters given)
     return material;
 }
 
+// Adds what one lamp gives. `lamp` is a constant where it is called, so that no driver makes a loop of it.
+void shine(int lamp, vec3 position, vec3 normal, Material material, inout vec4 sum, inout vec4 glitter)
+{
+    vec3 direction = gl_LightSource[lamp].position.xyz;
+    float strength = 1.0;
+    if (gl_LightSource[lamp].position.w != 0.0)
+    {
+        direction = direction / gl_LightSource[lamp].position.w - position;
+        float distance = length(direction);
+        strength = 1.0 / (gl_LightSource[lamp].constantAttenuation +
+                          distance * (gl_LightSource[lamp].linearAttenuation +
+                                      distance * gl_LightSource[lamp].quadraticAttenuation));
+    }
+    direction = normalize(direction);
+    if (gl_LightSource[lamp].spotCutoff <= 90.0)
+    {
+        float spot = dot(-direction, normalize(gl_LightSource[lamp].spotDirection));
+        strength *= spot < gl_LightSource[lamp].spotCosCutoff ? 0.0 : pow(max(spot, 0.0), gl_LightSource[lamp].spotExponent);
+    }
+    float facing = max(dot(normal, direction), 0.0);
+    sum += strength * (gl_LightSource[lamp].ambient * material.ambient +
+                       facing * gl_LightSource[lamp].diffuse * material.diffuse);
+#ifdef GEOFX_SPECULAR
+    if (facing > 0.0)
+    {
+#ifdef GEOFX_LOCAL_VIEWER
+        vec3 viewer = -normalize(position);
+#else
+        vec3 viewer = vec3(0.0, 0.0, 1.0);
+#endif
+        float glance = max(dot(normal, normalize(direction + viewer)), 0.0);
+        float lobe = material.shininess > 0.0 ? pow(glance, material.shininess) : 1.0;
+        glitter += strength * lobe * gl_LightSource[lamp].specular * material.specular;
+    }
+#endif
+}
+
 // The light of all lamps on one side of the surface.
 void illuminate(vec3 position, vec3 normal, Material material, out vec4 primary, out vec4 secondary)
 {
     vec4 sum = material.emission + gl_LightModel.ambient * material.ambient;
-    vec4 shine = vec4(0.0);
-    for (int i = 0; i < 8; ++i)
-    {
-        if (((GEOFX_LIGHTS >> i) & 1) == 0) continue;
-        vec3 direction = gl_LightSource[i].position.xyz;
-        float strength = 1.0;
-        if (gl_LightSource[i].position.w != 0.0)
-        {
-            direction = direction / gl_LightSource[i].position.w - position;
-            float distance = length(direction);
-            strength = 1.0 / (gl_LightSource[i].constantAttenuation +
-                              distance * (gl_LightSource[i].linearAttenuation +
-                                          distance * gl_LightSource[i].quadraticAttenuation));
-        }
-        direction = normalize(direction);
-        if (gl_LightSource[i].spotCutoff <= 90.0)
-        {
-            float spot = dot(-direction, normalize(gl_LightSource[i].spotDirection));
-            strength *= spot < gl_LightSource[i].spotCosCutoff ? 0.0 : pow(max(spot, 0.0), gl_LightSource[i].spotExponent);
-        }
-        float facing = max(dot(normal, direction), 0.0);
-        sum += strength * (gl_LightSource[i].ambient * material.ambient +
-                           facing * gl_LightSource[i].diffuse * material.diffuse);
-        if (facing > 0.0)
-        {
-#ifdef GEOFX_LOCAL_VIEWER
-            vec3 viewer = -normalize(position);
-#else
-            vec3 viewer = vec3(0.0, 0.0, 1.0);
-#endif
-            float glance = max(dot(normal, normalize(direction + viewer)), 0.0);
-            float lobe = material.shininess > 0.0 ? pow(glance, material.shininess) : 1.0;
-            shine += strength * lobe * gl_LightSource[i].specular * material.specular;
-        }
-    }
+    vec4 glitter = vec4(0.0);
+    if ((GEOFX_LIGHTS & 1) != 0) shine(0, position, normal, material, sum, glitter);
+    if ((GEOFX_LIGHTS & 2) != 0) shine(1, position, normal, material, sum, glitter);
+    if ((GEOFX_LIGHTS & 4) != 0) shine(2, position, normal, material, sum, glitter);
+    if ((GEOFX_LIGHTS & 8) != 0) shine(3, position, normal, material, sum, glitter);
+    if ((GEOFX_LIGHTS & 16) != 0) shine(4, position, normal, material, sum, glitter);
+    if ((GEOFX_LIGHTS & 32) != 0) shine(5, position, normal, material, sum, glitter);
+    if ((GEOFX_LIGHTS & 64) != 0) shine(6, position, normal, material, sum, glitter);
+    if ((GEOFX_LIGHTS & 128) != 0) shine(7, position, normal, material, sum, glitter);
 #ifdef GEOFX_COLOR_SUM
     primary = vec4(clamp(sum.rgb, 0.0, 1.0), clamp(material.diffuse.a, 0.0, 1.0));
-    secondary = vec4(clamp(shine.rgb, 0.0, 1.0), 0.0);
+    secondary = vec4(clamp(glitter.rgb, 0.0, 1.0), 0.0);
 #else
-    primary = vec4(clamp(sum.rgb + shine.rgb, 0.0, 1.0), clamp(material.diffuse.a, 0.0, 1.0));
+    primary = vec4(clamp(sum.rgb + glitter.rgb, 0.0, 1.0), clamp(material.diffuse.a, 0.0, 1.0));
     secondary = vec4(0.0);
 #endif
 }
@@ -186,7 +198,7 @@ void main()
     gl_FogFragCoord = GEOFX_FOG >= 4 ? gl_FogCoord : abs(deformed.z);
 #endif
 #ifdef GEOFX_POINT_SIZE
-    float far = length(deformed.xyz);
+    float far = abs(deformed.z); // Section 3.3 allows it for the distance, and Mesa takes it
     float fading = gl_Point.distanceConstantAttenuation +
                    far * (gl_Point.distanceLinearAttenuation + far * gl_Point.distanceQuadraticAttenuation);
     gl_PointSize = clamp(gl_Point.size * inversesqrt(fading), gl_Point.sizeMin, gl_Point.sizeMax);

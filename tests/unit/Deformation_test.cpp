@@ -32,6 +32,11 @@ struct Case
     bool bends = false;
     int curve = 0;
 
+    /// Whether the whole height of a point lies on this side of the fold: behind it, places have several originals.
+    bool unfolded(const Vec3d& point) const
+    {
+        return !bends || bend.heightOf(point) * bendCurvature(bend, curve) < 0.95;
+    }
     /// By how much a bend stretches at a point: 1 outside of the zone, 0 at the fold.
     double stretch(const Vec3d& point) const
     {
@@ -95,7 +100,7 @@ Vec3d unfoldedPoint(const Case& found, Random& random)
     for (;;)
     {
         const Vec3d point = randomPointFor(*found.frame, found.view, random);
-        if (found.stretch(point) > 0.05) return point;
+        if (found.unfolded(point)) return point;
     }
 }
 
@@ -333,7 +338,7 @@ TEST(DeformationChain, ActsInItsOrderAndIsUndoneInTheReverse)
             normal = frame->deformNormal(expected, normal);
             const Vec3d next = frame->deform(expected);
             BendNumbers numbers;
-            // Only what is certainly not folded: the curves' curvature is at most the hinge-like 2 tan(π/4) / (d cos π/4).
+            // Only what is certainly not folded: a curve's curvature is at most 2 tan(π/4) / (d cos(π/4)).
             if (bendNumbers(*frame, numbers))
             {
                 folds = folds || std::abs(numbers.heightOf(expected)) * 2.9 > 0.9 * numbers.size;

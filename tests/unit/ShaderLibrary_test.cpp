@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-// Assembling shader text without OpenGL, and what glslangValidator thinks of every shader file of the kit.
+// Assembling shader text without OpenGL, and what glslangValidator thinks of the kit's shaders.
+#include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/scene/EffectProgram.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
+#include <tools/RandomSamples.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 
@@ -11,10 +14,14 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
+#include <regex>
 #include <sstream>
 
+using geofx::test::Random;
 using geofx::test::TempDir;
+using osgGeoFX::EffectProgram;
 using osgGeoFX::ShaderError;
 using osgGeoFX::ShaderLibrary;
 
@@ -32,6 +39,74 @@ std::string errorOf(const std::function<void()>& action)
         return error.what();
     }
     return "no error";
+}
+
+void expectAccepted(const geofx::test::ProgramResult& result)
+{
+    EXPECT_EQ(result.exitCode, 0) << result.standardOutput << result.standardError;
+    EXPECT_EQ(result.standardOutput.find("WARNING"), std::string::npos) << result.standardOutput;
+}
+
+/// The names of the defines that a shader takes from OSG.
+std::vector<std::string> importedDefines(const std::string& text)
+{
+    std::vector<std::string> names;
+    const std::regex pragma(R"(#pragma import_defines\(([^)]*)\))");
+    for (std::sregex_iterator each(text.begin(), text.end(), pragma), end; each != end; ++each)
+    {
+        std::string list = (*each)[1];
+        std::replace(list.begin(), list.end(), ',', ' ');
+        std::istringstream words(list);
+        std::copy(std::istream_iterator<std::string>(words), {}, std::back_inserter(names));
+    }
+    return names;
+}
+
+/// The text as OSG gives it to the compiler: the defines that are set stand behind the line with the version.
+std::string withDefines(const std::string& text, const std::map<std::string, std::string>& defines)
+{
+    std::string lines;
+    for (const std::string& name : importedDefines(text))
+    {
+        const auto found = defines.find(name);
+        if (found != defines.end()) lines += "#define " + name + " " + found->second + "\n";
+    }
+    const std::size_t end = text.find('\n') + 1;
+    EXPECT_EQ(text.rfind("#version", 0), 0u);
+    return text.substr(0, end) + lines + text.substr(end);
+}
+
+/// Compiles all shaders of a program, each as a unit, with a share of their defines set. The validator cannot link
+/// several units that use the compatibility profile's own variables; drivers do that in the tests with OpenGL.
+void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random, double share)
+{
+    const osg::ref_ptr<osg::Program> program = EffectProgram::create(effects);
+    ASSERT_TRUE(program);
+    // The stages share their defines.
+    std::map<std::string, std::string> defines;
+    for (unsigned int i = 0; i < program->getNumShaders(); ++i)
+    {
+        for (const std::string& name : importedDefines(program->getShader(i)->getShaderSource()))
+        {
+            if (random.uniform(0.0, 1.0) <= share && share > 0.0)
+                defines.emplace(name, std::to_string(random.integer(1, 3)));
+        }
+    }
+    const TempDir folder;
+    std::vector<std::string> arguments = {"glslangValidator"};
+    for (unsigned int i = 0; i < program->getNumShaders(); ++i)
+    {
+        const osg::Shader& shader = *program->getShader(i);
+        const std::string name =
+            "unit" + std::to_string(i) + (shader.getType() == osg::Shader::VERTEX ? ".vert" : ".frag");
+        folder.write(name, withDefines(shader.getShaderSource(), defines));
+        arguments.push_back((std::filesystem::path(folder.path()) / name).string());
+    }
+    std::string set;
+    for (const auto& [name, value] : defines)
+        set += name + "=" + value + " ";
+    SCOPED_TRACE(set);
+    expectAccepted(geofx::test::runProgram(arguments));
 }
 
 std::string readFile(const std::filesystem::path& path)
@@ -165,25 +240,69 @@ TEST(ShaderLibrary, MakesNamedOsgShaders)
     EXPECT_EQ(shader->getShaderSource(), library.source("lib/bend.glsl"));
 }
 
-TEST(ShaderLibrary, EveryFileIsAcceptedByGlslangValidator)
+TEST(ShaderLibrary, EveryLibraryFileIsAcceptedByGlslangValidator)
 {
     const ShaderLibrary library{std::filesystem::path()};
-    const std::map<std::string, std::string> stages = {
-        {".vert", "vert"}, {".geom", "geom"}, {".frag", "frag"}};
     for (const std::string& name : ShaderLibrary::files())
     {
+        // What lies in stages/ is put together from several files; see below.
+        if (name.rfind("lib/", 0) != 0) continue;
         SCOPED_TRACE(name);
-        const auto stage = stages.find(std::filesystem::path(name).extension());
         geofx::test::ProgramOptions options;
         // A file of functions alone becomes a stage.
-        options.input = stage != stages.end()
-                            ? library.source(name)
-                            : library.assemble("#version 330 compatibility\n#include \"" + name +
-                                                   "\"\nvoid main() { gl_Position = vec4(0.0); }\n",
-                                               "stage");
-        const auto result = geofx::test::runProgram(
-            {"glslangValidator", "--stdin", "-S", stage != stages.end() ? stage->second : "vert"}, options);
-        EXPECT_EQ(result.exitCode, 0) << result.standardOutput << result.standardError;
-        EXPECT_EQ(result.standardOutput.find("WARNING"), std::string::npos) << result.standardOutput;
+        options.input = library.assemble("#version 330 compatibility\n#include \"" + name +
+                                             "\"\nvoid main() { gl_Position = vec4(0.0); }\n",
+                                         "stage");
+        expectAccepted(geofx::test::runProgram({"glslangValidator", "--stdin", "-S", "vert"}, options));
+    }
+}
+
+TEST(ShaderLibrary, ThePutTogetherStagesAreAcceptedByGlslangValidator)
+{
+    std::vector<EffectProgram::Effects> lists(1);
+    EffectProgram::Effects all;
+    for (const std::string& kind : osgGeoFX::effectKinds())
+    {
+        const osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::createEffect(kind);
+        lists.push_back({effect});
+        all.push_back(effect);
+        std::string refusal;
+        // The other curves are other constants.
+        for (double curve = 0.0; kind == "birdsEyeView" && curve <= effect->property("curve")->maximum;
+             ++curve)
+        {
+            const osg::ref_ptr<osgGeoFX::Effect> other = osgGeoFX::createEffect(kind);
+            EXPECT_TRUE(other->setProperty("curve", curve, refusal));
+            lists.push_back({other});
+        }
+    }
+    lists.push_back(all);
+    all.insert(all.end(), all.rbegin(), all.rend()); // each twice
+    lists.push_back(all);
+    for (const EffectProgram::Effects& effects : lists)
+    {
+        SCOPED_TRACE(EffectProgram::key(effects));
+        // Every define on; off and on by chance, for the shortest and the longest.
+        Random random(effects.size());
+        expectProgramAccepted(effects, random, 1.0);
+        if (effects.empty() || effects.size() > 1)
+        {
+            expectProgramAccepted(effects, random, 0.0);
+            expectProgramAccepted(effects, random, 0.5);
+        }
+    }
+}
+
+TEST(ShaderLibrary, TheFixedStagesAreAcceptedWithAnyDefines)
+{
+    const osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::createEffect("birdsEyeView");
+    const int samples = geofx::test::fullTest() ? 500 : 15;
+    for (int sample = 0; sample < samples; ++sample)
+    {
+        SCOPED_TRACE(sample);
+        Random random(static_cast<std::uint64_t>(sample));
+        const double share = random.uniform(0.0, 1.0);
+        expectProgramAccepted({effect}, random, share);
+        if (HasFailure()) return;
     }
 }

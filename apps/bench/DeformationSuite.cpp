@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "DeformationSuite.h"
+
+#include "BenchError.h"
+#include "ChildProcess.h"
+#include "OffscreenView.h"
+#include "TerrainSuite.h"
+#include "WorkFolder.h"
+
+#include <osgGeoFX/deformation/DeformedView.h>
+#include <osgGeoFX/paging/Scene.h>
+#include <osgGeoFX/scene/EffectKinds.h>
+
+#include <osg/Math>
+#include <osg/MatrixTransform>
+#include <osg/Stats>
+#include <osg/Switch>
+#include <osgDB/WriteFile>
+#include <osgUtil/SceneView>
+#include <osgViewer/Renderer>
+
+#include <chrono>
+#include <cstdio>
+#include <random>
+
+namespace geofx::bench
+{
+
+namespace
+{
+
+using osgGeoFX::EffectScene;
+
+constexpr OffscreenView::Size SIZE = {1600, 900};
+const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
+
+/// One of the paper's situations on Oahu.
+struct Case
+{
+    const char* name;
+    const char* what;
+    const char* effect;
+    osgGeoFX::ViewPoint place;
+};
+
+osgGeoFX::ViewPoint place(double longitude, double latitude, double altitude, double heading, double pitch)
+{
+    return {osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude), altitude,
+            osg::DegreesToRadians(heading),   osg::DegreesToRadians(pitch),    0.0};
+}
+
+std::vector<Case> cases()
+{
+    return {
+        {"birdsEye", "bird's-eye view of Honolulu, the Koolau as its skyline",
+         "birdsEyeView focusLine=0.4 horizonLine=0.85", place(-157.862, 21.281, 5000.0, 20.0, -50.0)},
+        {"pedestrian", "pedestrian's view from Honolulu, Oahu folded up ahead",
+         "pedestrianView bendAngleDegrees=50 focusDistance=1500 zoneWidth=2500 planeElevation=20 tallest=700",
+         place(-157.862, 21.281, 250.0, 20.0, 2.0)},
+        {"exaggeration", "vertical exaggeration by 2, over Honolulu", "verticalExaggeration factor=2",
+         place(-157.862, 21.24, 3500.0, 20.0, -20.0)}};
+}
+
+/// Takes down what is about to be drawn.
+class TileCollector : public osg::Camera::DrawCallback
+{
+public:
+    using osg::Camera::DrawCallback::operator();
+    void operator()(osg::RenderInfo& info) const override
+    {
+        auto* renderer = dynamic_cast<osgViewer::Renderer*>(info.getCurrentCamera()->getRenderer());
+        if (!renderer) return;
+        osg::Matrixd toWorld;
+        toWorld.invert(info.getCurrentCamera()->getViewMatrix());
+        add(*renderer->getSceneView(0)->getRenderStage(), toWorld);
+    }
+
+    /// The drawn tiles without the hierarchy above them.
+    mutable osg::ref_ptr<osg::Group> tiles = new osg::Group;
+
+private:
+    void add(const osgUtil::RenderBin& bin, const osg::Matrixd& toWorld) const
+    {
+        for (const osgUtil::StateGraph* graph : bin.getStateGraphList())
+        {
+            for (const auto& leaf : graph->_leaves)
+            {
+                if (!leaf->_modelview) continue;
+                osg::ref_ptr<osg::MatrixTransform> tile =
+                    new osg::MatrixTransform(*leaf->_modelview * toWorld);
+                tile->addChild(leaf->_drawable);
+                tiles->addChild(tile);
+            }
+        }
+        for (const auto& inner : bin.getRenderBinList())
+            add(*inner.second, toWorld);
+    }
+};
+
+/// Milliseconds of two things that take turns.
+struct Pair
+{
+    double first;
+    double second;
+};
+
+class Bench
+{
+public:
+    Bench(const std::filesystem::path& terrain, const Settings& settings)
+        : _pictures(settings.pictures), _rounds(settings.smoke ? 2 : 15), _picks(settings.smoke ? 5 : 200)
+    {
+        std::string error;
+        const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(terrain.string(), error);
+        if (!scene) throw BenchError(error);
+        if (!scene->terrain || !scene->reference)
+            throw BenchError(terrain.string() + ": it is no terrain database; name one with --terrain FILE.");
+        _scene = *scene;
+        _root->addChild(_scene.node);
+        _view = std::make_unique<OffscreenView>(SIZE, FIELD_OF_VIEW, _root);
+        _view->camera().setLODScale(
+            osgGeoFX::lodScaleFor(*scene->terrain, osgGeoFX::pixelsPerRadian(SIZE.height, FIELD_OF_VIEW)));
+    }
+
+    std::vector<Figure> measure(const Case& each)
+    {
+        announce(std::string("drawing the ") + each.what);
+        std::string error;
+        const osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::parseEffect(each.effect, error);
+        if (!effect) throw BenchError(error);
+        osg::Matrixd matrix;
+        if (!each.place.viewMatrix(*_scene.reference, matrix))
+            throw BenchError("The terrain database has no place for the views; take one that covers Oahu.");
+        _view->look(matrix);
+
+        std::vector<Figure> figures;
+        const OffscreenView::Drawn straight = settled(each, "straight");
+        _scene.effects->addEffect(effect);
+        const OffscreenView::Drawn bent = settled(each, "bent");
+        figures.push_back(path(each, straight, bent, *effect));
+        const osg::ref_ptr<osg::Group> tiles = collect();
+        figures.push_back(picking(each));
+        _scene.effects->removeEffect(effect);
+        for (const Figure& figure : sameTiles(each, *effect, *tiles))
+            figures.push_back(figure);
+        return figures;
+    }
+
+    Figure cullOfPagedScene(const Case& each)
+    {
+        // An exaggeration that no one sees keeps every tile where it is, and goes through all that culling does.
+        std::string error;
+        const osg::ref_ptr<osgGeoFX::Effect> nothing =
+            osgGeoFX::parseEffect("verticalExaggeration factor=1.0000001", error);
+        osg::Matrixd matrix;
+        each.place.viewMatrix(*_scene.reference, matrix);
+        _view->look(matrix);
+        _scene.effects->addEffect(nothing);
+        _view->settle();
+        const Pair cull =
+            compare([&] { nothing->setEnabled(false); }, [&] { nothing->setEnabled(true); }, true);
+        _scene.effects->removeEffect(nothing);
+        Figure figure{"cull-paged",
+                      "time to cull the paged terrain with compensation over OSG's own, same tiles", "",
+                      Bound::AtMost, 1.5};
+        figure.measured = cull.second / cull.first;
+        describe(figure, cull, "OSG", "compensating");
+        return figure;
+    }
+
+private:
+    void draw(osg::Node* what)
+    {
+        _root->removeChildren(0, _root->getNumChildren());
+        _root->addChild(what);
+    }
+
+    OffscreenView::Drawn settled(const Case& each, const char* kind)
+    {
+        _view->settle();
+        if (!_pictures.empty())
+        {
+            const std::filesystem::path file = _pictures / (std::string(each.name) + "-" + kind + ".png");
+            if (!osgDB::writeImageFile(*_view->capture(), file.string()))
+                throw BenchError(file.string() + ": the picture cannot be written; name another folder.");
+        }
+        return _view->count();
+    }
+
+    osg::ref_ptr<osg::Group> collect()
+    {
+        const osg::ref_ptr<TileCollector> collector = new TileCollector;
+        _view->camera().addInitialDrawCallback(collector);
+        _view->frame();
+        _view->camera().removeInitialDrawCallback(collector);
+        if (collector->tiles->getNumChildren() == 0)
+            throw BenchError("Nothing of the terrain is in the view.");
+        return collector->tiles;
+    }
+
+    /// Medians of frames that take turns; of the cull traversal alone where `cull` is set. Milliseconds.
+    template<typename First, typename Second>
+    Pair compare(First first, Second second, bool cull)
+    {
+        std::vector<double> times[2];
+        osg::Stats& stats = *_view->camera().getStats();
+        stats.collectStats("rendering", true);
+        for (int round = 0; round < _rounds; ++round)
+        {
+            for (int which = 0; which < 2; ++which)
+            {
+                if (which == 0)
+                    first();
+                else
+                    second();
+                _view->frame();
+                for (int frame = 0; frame < (cull ? 5 : 1); ++frame)
+                {
+                    double seconds = _view->frame();
+                    if (cull)
+                    {
+                        stats.getAttribute(stats.getLatestFrameNumber(), "Cull traversal time taken",
+                                           seconds);
+                    }
+                    times[which].push_back(1000.0 * seconds);
+                }
+            }
+        }
+        stats.collectStats("rendering", false);
+        return {median(times[0]), median(times[1])};
+    }
+
+    static void describe(Figure& figure, const Pair& times, const char* first, const char* second)
+    {
+        char remark[200];
+        std::snprintf(remark, sizeof remark, "%s %.3f ms, %s %.3f ms", first, times.first, second,
+                      times.second);
+        figure.remark = remark;
+        figure.details = {{"firstMilliseconds", times.first}, {"secondMilliseconds", times.second}};
+    }
+
+    /// The paper's Table 1: frames with and without the deformation, each with the tiles it needs.
+    Figure path(const Case& each, const OffscreenView::Drawn& straight, const OffscreenView::Drawn& bent,
+                osgGeoFX::Effect& effect)
+    {
+        const Pair frames =
+            compare([&] { effect.setEnabled(false); }, [&] { effect.setEnabled(true); }, false);
+        Figure figure{
+            std::string("frames-") + each.name,
+            std::string("frames a second with the deformation over those without, each with its tiles: ") +
+                each.what,
+            ""};
+        figure.measured = frames.first / frames.second;
+        char remark[200];
+        std::snprintf(remark, sizeof remark,
+                      "%.1f frames/s, %.0f thousand triangles, without; %.1f frames/s, %.0f thousand, with",
+                      1000.0 / frames.first, static_cast<double>(straight.triangles) * 1e-3,
+                      1000.0 / frames.second, static_cast<double>(bent.triangles) * 1e-3);
+        figure.remark = remark;
+        figure.details = {{"straightMilliseconds", frames.first},
+                          {"bentMilliseconds", frames.second},
+                          {"straightTriangles", straight.triangles},
+                          {"bentTriangles", bent.triangles}};
+        return figure;
+    }
+
+    Figure picking(const Case& each)
+    {
+        const osgGeoFX::DeformedView picture(*_scene.effects, _view->camera());
+        std::mt19937 engine(1);
+        std::uniform_real_distribution<double> across(0.0, SIZE.width);
+        std::uniform_real_distribution<double> up(0.0, 0.8 * SIZE.height);
+        std::vector<double> times;
+        for (int i = 0; i < _picks; ++i)
+        {
+            const auto start = std::chrono::steady_clock::now();
+            picture.pick(across(engine), up(engine));
+            times.push_back(
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        }
+        Figure figure{std::string("picking-") + each.name, std::string("time to pick a pixel: ") + each.what,
+                      "milliseconds"};
+        figure.measured = median(times);
+        return figure;
+    }
+
+    /// Frame and cull over the very same tiles, without a hierarchy.
+    std::vector<Figure> sameTiles(const Case& each, osgGeoFX::Effect& effect, osg::Group& tiles)
+    {
+        const osg::ref_ptr<EffectScene> bent = new EffectScene;
+        bent->setTerrainFrame(_scene.reference->isGeocentric() ? EffectScene::GEOCENTRIC
+                                                               : EffectScene::PROJECTED);
+        bent->addEffect(&effect);
+        bent->addChild(&tiles);
+        const osg::ref_ptr<osg::Group> straight = new osg::Group;
+        straight->addChild(&tiles);
+        const auto first = [&]
+        {
+            draw(straight);
+        };
+        const auto second = [&]
+        {
+            draw(bent);
+        };
+
+        osg::Camera& camera = _view->camera();
+        const osg::CullSettings::CullingMode mode = camera.getCullingMode();
+        camera.setCullingMode(osg::CullSettings::NO_CULLING);
+        const Pair frames = compare(first, second, false);
+        camera.setCullingMode(mode);
+        Figure frame{std::string("bent-") + each.name,
+                     std::string("time of a deformed frame over a straight one, same camera and tiles: ") +
+                         each.what,
+                     "", Bound::AtMost, 1.1};
+        frame.measured = frames.second / frames.first;
+        describe(frame, frames, "straight", "deformed");
+
+        // OSG's camera goes where it sees them all.
+        const osg::Matrixd view = camera.getViewMatrix();
+        const osg::BoundingSphere& bound = tiles.getBound();
+        const osg::Vec3d middle(bound.center());
+        osg::Vec3d upwards(0.0, 0.0, 1.0);
+        if (_scene.reference->isGeocentric())
+        {
+            upwards = middle;
+            upwards.normalize();
+        }
+        const double distance = static_cast<double>(bound.radius()) / std::sin(FIELD_OF_VIEW / 2.0);
+        const osg::Matrixd above =
+            osg::Matrixd::lookAt(middle + upwards * distance, middle, osg::Vec3d(1.0, 2.0, 3.0));
+        const Pair culls = compare(
+            [&]
+            {
+                first();
+                camera.setViewMatrix(above);
+            },
+            [&]
+            {
+                second();
+                camera.setViewMatrix(view);
+            },
+            true);
+        camera.setViewMatrix(view);
+        draw(_scene.node);
+        Figure cull{
+            std::string("cull-") + each.name,
+            std::string("time to cull deformed tiles over OSG's own for the same tiles, all in sight: ") +
+                each.what,
+            "", Bound::AtMost, 1.5};
+        cull.measured = culls.second / culls.first;
+        describe(cull, culls, "OSG", "compensating");
+        return {frame, cull};
+    }
+
+    const std::filesystem::path _pictures;
+    const int _rounds;
+    const int _picks;
+    osgGeoFX::Scene _scene;
+    osg::ref_ptr<osg::Group> _root = new osg::Group;
+    std::unique_ptr<OffscreenView> _view;
+};
+
+std::vector<Figure> run(const Settings& settings)
+{
+    const WorkFolder folder(settings.work);
+    std::filesystem::path terrain = settings.terrain;
+    if (terrain.empty())
+    {
+        const std::filesystem::path oahu = settings.data / "oahu";
+        std::vector<std::string> command =
+            builderCommand(settings, oahu / "elevation.tif", folder.path() / "oahu", 2);
+        command.insert(command.end(), {"--landcover", (oahu / "landcover.tif").string(), "--landcover-table",
+                                       (oahu / "landcover.csv").string()});
+        announce("building the terrain to draw");
+        runChild(command);
+        terrain = folder.path() / "oahu" / "terrain.osgb";
+    }
+    Bench bench(terrain, settings);
+    std::vector<Figure> figures;
+    for (const Case& each : cases())
+    {
+        if (!settings.wants(each.name)) continue;
+        for (const Figure& figure : bench.measure(each))
+            figures.push_back(figure);
+    }
+    if (settings.wants("cull")) figures.push_back(bench.cullOfPagedScene(cases().back()));
+    return figures;
+}
+
+} // namespace
+
+Suite deformationSuite()
+{
+    return {"deformation",
+            "Draws Oahu bent and straight: frames, culling, picking (birdsEye, pedestrian, exaggeration), "
+            "and the culling "
+            "of the paged terrain (cull)",
+            {"birdsEye", "pedestrian", "exaggeration", "cull"},
+            run};
+}
+
+} // namespace geofx::bench

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/deformation/DeformedView.h>
+
+#include <osgGA/GUIEventHandler>
+#include <osgViewer/View>
+
+namespace osgGeoFX
+{
+
+/** Keys for the effects of a scene: F5 switches them on and off together, F6 to the next one alone, and ( and ) turn the
+    main property of the effect that is in force: the horizon's line, the bend's angle, the exaggeration. F7 shows the
+    deformed bounds, F8 switches the compensation off and on. Serves one scene. */
+class OSGGEOFX_EXPORT EffectKeys : public osgGA::GUIEventHandler
+{
+public:
+    explicit EffectKeys(EffectScene& scene) : _scene(&scene) {}
+
+    bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
+    void getUsage(osg::ApplicationUsage& usage) const override;
+
+private:
+    void toggleAll();
+    void next();
+    void turn(double steps);
+
+    osg::ref_ptr<EffectScene> _scene;
+};
+
+/** Click and fly (Mackinlay et al. 1990; paper: multi-perspective views, Section 3.2): Ctrl and the left button fly to the
+    ground that the picture shows there, also in the transition zone and in the context. Works on any camera manipulator,
+    through its matrices. Serves one view. */
+class OSGGEOFX_EXPORT ClickAndFly : public osgGA::GUIEventHandler
+{
+public:
+    /// `share` of the way, 0…1, that is flown, in so many seconds.
+    explicit ClickAndFly(EffectScene& scene, double share = 0.7, double seconds = 1.5)
+        : _scene(&scene), _share(share), _seconds(seconds)
+    {
+    }
+
+    bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
+    void getUsage(osg::ApplicationUsage& usage) const override;
+    bool flying() const { return _start >= 0.0; }
+
+private:
+    bool aim(osgViewer::View& view, const osgGA::GUIEventAdapter& event);
+    void fly(osgViewer::View& view, double time);
+
+    osg::ref_ptr<EffectScene> _scene;
+    double _share;
+    double _seconds;
+    double _start = -1.0;
+    osg::Vec3d _from; ///< eye, world
+    osg::Vec3d _to;
+    osg::Matrixd _attitude; ///< the view without its translation
+};
+
+} // namespace osgGeoFX
