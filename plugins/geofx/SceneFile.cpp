@@ -4,6 +4,8 @@
 
 #include "SceneValidator.h"
 
+#include <osgGeoFX/scene/EffectKinds.h>
+
 #include <charconv>
 #include <cstring>
 #include <filesystem>
@@ -34,11 +36,14 @@ T number(const std::string& text, int base = 10)
 class Reader
 {
 public:
-    Reader(const std::string& file, const std::string& folder) : _file(file), _folder(folder) {}
-
-    Scene scene(xmlNode* root) const
+    Reader(const std::string& file, const std::string& folder, std::vector<std::string>& errors)
+        : _file(file), _folder(folder), _errors(errors)
     {
-        Scene result;
+    }
+
+    SceneFile scene(xmlNode* root) const
+    {
+        SceneFile result;
         xmlNode* terrain = child(root, "terrain");
         if (xmlNode* database = child(terrain, "database")) result.database = path(database, "file");
         if (xmlNode* rasterNode = child(terrain, "rasters")) result.rasters = rasters(rasterNode);
@@ -47,6 +52,7 @@ public:
             result.sun = SceneSun{place(sunNode), real(sunNode, "azimuth"), real(sunNode, "elevation"),
                                   colour(sunNode, "colour"), colour(sunNode, "ambient")};
         if (xmlNode* background = child(root, "background")) result.background = colour(background, "colour");
+        if (xmlNode* effectsNode = child(root, "effects")) result.effects = effects(effectsNode);
         return result;
     }
 
@@ -128,7 +134,40 @@ private:
         return view;
     }
 
+    std::vector<osg::ref_ptr<Effect>> effects(xmlNode* parent) const
+    {
+        std::vector<osg::ref_ptr<Effect>> result;
+        for (xmlNode* node = parent->children; node; node = node->next)
+        {
+            if (node->type != XML_ELEMENT_NODE) continue;
+            result.push_back(createEffect(reinterpret_cast<const char*>(node->name)));
+            set(*result.back(), node);
+        }
+        return result;
+    }
+
+    /// What the schema cannot say is found here: properties that do not fit each other.
+    void set(Effect& effect, xmlNode* node) const
+    {
+        Effect::Texts texts;
+        for (const xmlAttr* attribute = node->properties; attribute; attribute = attribute->next)
+        {
+            if (attribute->ns) continue;
+            const std::string name = reinterpret_cast<const char*>(attribute->name);
+            const std::string value = attributeOf(node, name.c_str());
+            texts.emplace_back(name, value.substr(value.rfind('+', 0) == 0 ? 1 : 0));
+        }
+        std::string error;
+        const bool fits = effect.setPropertyTexts(texts, error);
+        if (!fits && _errors.size() < mostErrors) _errors.push_back(place(node).message(error));
+        for (const Effect::Part& part : effect.parts())
+        {
+            if (xmlNode* below = child(node, part.name)) set(*part.effect, below);
+        }
+    }
+
     std::string _file, _folder;
+    std::vector<std::string>& _errors;
 };
 
 /// What keeps a path from being read; empty if nothing does, or if it is not a file (GDAL's /vsi…, an
@@ -155,11 +194,13 @@ SceneResult parseScene(const std::string& text, const std::string& file, const s
 {
     SceneResult result;
     const XmlDocument document = readSceneXml(text, file, result.errors);
-    if (document) result.scene = Reader(file, folder).scene(xmlDocGetRootElement(document.get()));
+    if (document)
+        result.scene = Reader(file, folder, result.errors).scene(xmlDocGetRootElement(document.get()));
+    if (!result.errors.empty()) result.scene.reset();
     return result;
 }
 
-std::vector<std::string> missingFiles(const Scene& scene)
+std::vector<std::string> missingFiles(const SceneFile& scene)
 {
     std::vector<ScenePath> paths;
     if (scene.database) paths.push_back(*scene.database);

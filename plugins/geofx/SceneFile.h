@@ -2,6 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/scene/Effect.h>
+
+#include <osg/ref_ptr>
+
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -69,8 +73,8 @@ struct SceneSun
 
 /** What a .geofx file says; data/geofx.xsd has the meaning, range and default of everything.
 
-    Plain values. All functions may be called from any thread. */
-struct Scene
+    All functions may be called from any thread. The effects belong to whoever has the value. */
+struct SceneFile
 {
     // One of these two.
     std::optional<ScenePath> database;
@@ -79,12 +83,13 @@ struct Scene
     std::optional<SceneView> homeView;
     std::optional<SceneSun> sun;
     std::optional<SceneColour> background;
+    std::vector<osg::ref_ptr<Effect>> effects; ///< in their order
 };
 
 /// A scene, or else at least one sentence of the form `FILE:LINE: <element>: what was expected`.
 struct SceneResult
 {
-    std::optional<Scene> scene;
+    std::optional<SceneFile> scene;
     std::vector<std::string> errors;
 };
 
@@ -95,6 +100,6 @@ constexpr std::size_t largestScene = 16 * 1024 * 1024;
 SceneResult parseScene(const std::string& text, const std::string& file, const std::string& folder);
 
 /// One sentence for each file that the scene names and that is not there.
-std::vector<std::string> missingFiles(const Scene& scene);
+std::vector<std::string> missingFiles(const SceneFile& scene);
 
 } // namespace osgGeoFX

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/scene/EffectScene.h>
 
 #include <osg/LightModel>
 #include <osg/LightSource>
@@ -35,8 +36,8 @@ std::string joined(const Numbers& numbers)
 
 /// Longitude and latitude (radians) of the place from which a scene's sun is seen. False, with the reason in
 /// `error`.
-bool sunPlace(const Scene& scene, const osg::Node& terrain, const Georeference& reference, double& longitude,
-              double& latitude, std::string& error)
+bool sunPlace(const SceneFile& scene, const osg::Node& terrain, const Georeference& reference,
+              double& longitude, double& latitude, std::string& error)
 {
     if (scene.homeView)
     {
@@ -64,7 +65,7 @@ bool sunPlace(const Scene& scene, const osg::Node& terrain, const Georeference& 
 }
 
 /// Unit vector to the sun, in the world; nothing, with the reason in `error`, if that is unknown.
-std::optional<osg::Vec3d> sunDirection(const Scene& scene, const osg::Node& terrain, std::string& error)
+std::optional<osg::Vec3d> sunDirection(const SceneFile& scene, const osg::Node& terrain, std::string& error)
 {
     const osg::ref_ptr<Georeference> reference = Georeference::create(&terrain, error);
     double longitude = 0.0, latitude = 0.0;
@@ -112,9 +113,20 @@ void addSun(osg::Group& group, const SceneSun& sun, const osg::Vec3d& direction)
 
 } // namespace
 
-osg::ref_ptr<osg::Group> createSceneNode(const Scene& scene, osg::Node* terrain, std::string& error)
+osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terrain, std::string& error)
 {
-    osg::ref_ptr<osg::Group> group = new osg::Group;
+    osg::ref_ptr<osg::Group> group;
+    if (scene.effects.empty())
+    {
+        group = new osg::Group;
+    }
+    else
+    {
+        osg::ref_ptr<EffectScene> effects = new EffectScene;
+        for (const osg::ref_ptr<Effect>& effect : scene.effects)
+            effects->addEffect(effect);
+        group = effects;
+    }
     group->setName("osgGeoFX scene");
     group->addChild(terrain);
     if (scene.homeView)

@@ -10,13 +10,14 @@ namespace osgGeoFX
 {
 
 /** The node of a scene: a group named "osgGeoFX scene" with the terrain and, for a sun, a directional light
-   with number 0, which takes the place of a viewer's headlight.
+   with number 0, which takes the place of a viewer's headlight. Where the scene has effects, the group is an
+   EffectScene.
 
     For programs it carries user values: string "geofx.homeView" = "LON,LAT,ALT,HEADING,PITCH,ROLL" (degrees
    and metres), double "geofx.homeFov" (vertical, degrees; only where the scene says it), string
    "geofx.background" = "R,G,B" (0…1), bool "geofx.hasLight" = true where there is a sun.
 
     Null, with a sentence in `error`, where the sun's direction cannot be told. */
-osg::ref_ptr<osg::Group> createSceneNode(const Scene& scene, osg::Node* terrain, std::string& error);
+osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terrain, std::string& error);
 
 } // namespace osgGeoFX

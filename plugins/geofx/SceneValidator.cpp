@@ -20,8 +20,6 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr std::size_t mostErrors = 20;
-
 const char* chars(const xmlChar* text)
 {
     return reinterpret_cast<const char*>(text);
@@ -112,12 +110,21 @@ public:
 private:
     const xmlNode* root() const { return xmlDocGetRootElement(_document.get()); }
 
-    /// The first descendant of a kind with a name. Element names mean the same wherever they stand.
-    static const xmlNode* find(const xmlNode* parent, const char* kind, const std::string& name)
+    /// The group of attributes that a node refers to; the node itself where it is no reference.
+    const xmlNode* referred(const xmlNode* node) const
     {
-        for (const xmlNode* node = parent->children; node; node = node->next)
+        const std::string name =
+            is(node, "attributeGroup") ? attributeOf(const_cast<xmlNode*>(node), "ref") : std::string();
+        return name.empty() ? node : find(root(), "attributeGroup", name);
+    }
+
+    /// The first descendant of a kind with a name. Element names mean the same wherever they stand.
+    const xmlNode* find(const xmlNode* parent, const char* kind, const std::string& name) const
+    {
+        for (const xmlNode* child = parent->children; child; child = child->next)
         {
-            if (node->type != XML_ELEMENT_NODE) continue;
+            if (child->type != XML_ELEMENT_NODE) continue;
+            const xmlNode* node = std::strcmp(kind, "attribute") == 0 ? referred(child) : child;
             if (is(node, kind) && attributeOf(const_cast<xmlNode*>(node), "name") == name) return node;
             if (const xmlNode* below = find(node, kind, name)) return below;
         }
@@ -140,14 +147,14 @@ private:
         return node != nullptr;
     }
 
-    static void collect(const xmlNode* parent, const char* kind, bool requiredOnly,
-                        std::vector<std::string>& names)
+    void collect(const xmlNode* parent, const char* kind, bool requiredOnly,
+                 std::vector<std::string>& names) const
     {
         for (xmlNode* node = parent->children; node; node = node->next)
         {
             if (node->type != XML_ELEMENT_NODE) continue;
             if (!is(node, kind))
-                collect(node, kind, requiredOnly, names);
+                collect(referred(node), kind, requiredOnly, names);
             else if (!requiredOnly || attributeOf(node, "use") == "required")
                 names.push_back(attributeOf(node, "name"));
         }

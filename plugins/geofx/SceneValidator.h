@@ -4,12 +4,16 @@
 
 #include <libxml/tree.h>
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace osgGeoFX
 {
+
+/// No more sentences than this are said of one scene.
+constexpr std::size_t mostErrors = 20;
 
 struct XmlDocumentFree
 {

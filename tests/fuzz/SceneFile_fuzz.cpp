@@ -4,6 +4,7 @@
 // Any bytes are a scene or give sentences that say why not; what comes out as a scene keeps the schema's
 // promises.
 #include <geofx/SceneFile.h>
+#include <osgGeoFX/scene/Effect.h>
 
 #include <cmath>
 #include <cstdint>
@@ -30,7 +31,19 @@ bool isColour(const osgGeoFX::SceneColour& c)
     return within(c[0], 0.0, 1.0) && within(c[1], 0.0, 1.0) && within(c[2], 0.0, 1.0);
 }
 
-void check(const osgGeoFX::Scene& scene)
+void check(osgGeoFX::Effect& effect)
+{
+    for (const osgGeoFX::Property& property : effect.properties())
+    {
+        std::string error;
+        require(effect.setProperty(property.name, property.get(effect), error),
+                "properties that fit each other");
+    }
+    for (const osgGeoFX::Effect::Part& part : effect.parts())
+        check(*part.effect);
+}
+
+void check(const osgGeoFX::SceneFile& scene)
 {
     require(scene.database.has_value() != scene.rasters.has_value(), "one terrain");
     if (scene.rasters)
@@ -55,6 +68,11 @@ void check(const osgGeoFX::Scene& scene)
         require(isColour(scene.sun->colour) && isColour(scene.sun->ambient), "colours in their range");
     }
     require(!scene.background || isColour(*scene.background), "background in its range");
+    for (const auto& effect : scene.effects)
+    {
+        require(effect.valid(), "an effect");
+        check(*effect);
+    }
 }
 
 } // namespace

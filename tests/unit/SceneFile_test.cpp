@@ -3,6 +3,8 @@
 //
 // The parser of the scene file alone, without osgDB.
 #include <geofx/SceneFile.h>
+#include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/scene/EffectKinds.h>
 #include <tools/TempDir.h>
 
 #include <gtest/gtest.h>
@@ -15,7 +17,7 @@ namespace
 {
 
 using osgGeoFX::parseScene;
-using osgGeoFX::Scene;
+using osgGeoFX::SceneFile;
 using osgGeoFX::SceneResult;
 
 const std::string terrain = "<terrain><database file='terrain.osgb'/></terrain>";
@@ -33,17 +35,17 @@ std::string rastersWith(const std::string& attributes, const std::string& inside
            "\n</rasters></terrain></geofx>";
 }
 
-Scene parsed(const std::string& text)
+SceneFile parsed(const std::string& text)
 {
     const SceneResult result = parseScene(text, "x.geofx", "/scenes");
     for (const std::string& error : result.errors)
         ADD_FAILURE() << error;
-    return result.scene.value_or(Scene());
+    return result.scene.value_or(SceneFile());
 }
 
 TEST(SceneFile, ReadsAllThatASceneSays)
 {
-    const Scene scene = parsed(R"(<geofx version="1">
+    const SceneFile scene = parsed(R"(<geofx version="1">
   <background colour="#ff8000"/>
   <sun azimuth="-115.5" elevation="35" colour="#ffffff" ambient="#003300"/>
   <homeView longitude="-157.905" latitude="+21.245" altitude="1400" heading="25" pitch="-12" roll=".5"
@@ -92,7 +94,7 @@ TEST(SceneFile, ReadsAllThatASceneSays)
 
 TEST(SceneFile, HasTheSchemasDefaults)
 {
-    const Scene scene = parsed(rastersWith("", "<dem file='a.tif'/>"));
+    const SceneFile scene = parsed(rastersWith("", "<dem file='a.tif'/>"));
     ASSERT_TRUE(scene.rasters);
     EXPECT_EQ(scene.rasters->cache, "");
     EXPECT_EQ(scene.rasters->epsg, 0);
@@ -105,7 +107,7 @@ TEST(SceneFile, HasTheSchemasDefaults)
     EXPECT_TRUE(scene.rasters->imagery.empty());
     EXPECT_FALSE(scene.rasters->landCover || scene.homeView || scene.sun || scene.background);
 
-    const Scene other =
+    const SceneFile other =
         parsed(sceneWith("<homeView longitude='1' latitude='2' altitude='3' heading='4' pitch='5'/>"
                          "<sun azimuth='1' elevation='2'/>"));
     ASSERT_TRUE(other.database && other.homeView && other.sun);
@@ -114,6 +116,63 @@ TEST(SceneFile, HasTheSchemasDefaults)
     EXPECT_FALSE(other.homeView->verticalFieldOfView);
     EXPECT_EQ(other.sun->colour, (osgGeoFX::SceneColour{1.0, 244.0 / 255.0, 224.0 / 255.0}));
     EXPECT_EQ(other.sun->ambient, (osgGeoFX::SceneColour{76.0 / 255.0, 85.0 / 255.0, 102.0 / 255.0}));
+}
+
+/// The effects of a scene, as someone types them, on line 3.
+SceneFile withEffects(const std::string& effects)
+{
+    return parsed(sceneWith("<effects>\n" + effects + "</effects>"));
+}
+
+TEST(SceneFile, ReadsEffectsInTheirOrder)
+{
+    const SceneFile scene = withEffects(R"(
+        <verticalExaggeration factor="2" base="-10" relight="false"/>
+        <birdsEyeView horizonLine="0.95" focusLine="0.9" contextTilt=".25" curve="bezier" mapUnit="2"/>
+        <blendedView lowHeight="5000" highHeight="+6000" enabled="false">
+          <pedestrianView bendAngleDegrees="90" planeReference="eye" planeElevation="-2"/>
+          <birdsEyeView focusLine="0.1" horizonLine="0.2"/>
+        </blendedView>
+        <pedestrianView focusDistance="-5.5" zoneWidth="750" contextSaturation="0" contextBrightness="2"
+                        tallest="40" transitionDetail="4" contextDetail="0.5"/>
+        <verticalExaggeration/>)");
+    ASSERT_EQ(scene.effects.size(), 5u);
+    const auto value = [&](std::size_t i, const char* name)
+    {
+        return scene.effects[i]->getProperty(name);
+    };
+    EXPECT_EQ(osgGeoFX::kindOf(*scene.effects[0]), "verticalExaggeration");
+    EXPECT_EQ(value(0, "factor"), 2.0);
+    EXPECT_EQ(value(0, "base"), -10.0);
+    EXPECT_EQ(value(0, "relight"), 0.0);
+    EXPECT_EQ(value(0, "enabled"), 1.0);
+    EXPECT_EQ(osgGeoFX::kindOf(*scene.effects[1]), "birdsEyeView");
+    EXPECT_EQ(value(1, "focusLine"), 0.9);
+    EXPECT_EQ(value(1, "horizonLine"), 0.95);
+    EXPECT_EQ(value(1, "contextTilt"), 0.25);
+    EXPECT_EQ(value(1, "curve"), osgGeoFX::PerspectiveBend::BEZIER);
+    EXPECT_EQ(value(1, "mapUnit"), 2.0);
+    const auto* blended = dynamic_cast<const osgGeoFX::BlendedView*>(scene.effects[2].get());
+    ASSERT_TRUE(blended);
+    EXPECT_EQ(value(2, "lowHeight"), 5000.0);
+    EXPECT_EQ(value(2, "highHeight"), 6000.0);
+    EXPECT_FALSE(blended->getEnabled());
+    EXPECT_EQ(blended->getPedestrianView()->getBendAngle(), osg::PI_2);
+    EXPECT_EQ(blended->getPedestrianView()->getPlaneReference(), osgGeoFX::PerspectiveBend::EYE);
+    EXPECT_EQ(blended->getPedestrianView()->getPlaneElevation(), -2.0);
+    EXPECT_EQ(blended->getBirdsEyeView()->getFocusLine(), 0.1);
+    EXPECT_EQ(blended->getBirdsEyeView()->getHorizonLine(), 0.2);
+    EXPECT_EQ(osgGeoFX::kindOf(*scene.effects[3]), "pedestrianView");
+    EXPECT_EQ(value(3, "focusDistance"), -5.5);
+    EXPECT_EQ(value(3, "zoneWidth"), 750.0);
+    EXPECT_EQ(value(3, "contextSaturation"), 0.0);
+    EXPECT_EQ(value(3, "contextBrightness"), 2.0);
+    EXPECT_EQ(value(3, "tallest"), 40.0);
+    EXPECT_EQ(value(3, "transitionDetail"), 4.0);
+    EXPECT_EQ(value(3, "contextDetail"), 0.5);
+    EXPECT_EQ(value(4, "factor"), 1.0);
+    EXPECT_TRUE(withEffects("").effects.empty());
+    EXPECT_TRUE(parsed(sceneWith("")).effects.empty());
 }
 
 struct Mistake
@@ -171,9 +230,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "<geofx version='1'><terrain><database file='a'/>\n<rasters><dem "
                 "file='b'/></rasters></terrain></geofx>",
                 "x.geofx:2: <rasters>: ", "expected: only one of <database>, <rasters>."},
-        Mistake{"UnknownElement", sceneWith("<effects/>"),
-                "x.geofx:2: <effects>: this element is not known in <geofx>",
-                "expected: <terrain>, <homeView>, <sun>, <background>."},
+        Mistake{"UnknownElement", sceneWith("<panorama/>"),
+                "x.geofx:2: <panorama>: this element is not known in <geofx>",
+                "expected: <terrain>, <homeView>, <sun>, <background>, <effects>."},
         Mistake{"UnknownElementBelow", rastersWith("", "<dem file='a'/><bathymetry/>"),
                 "x.geofx:3: <bathymetry>: this element is not known in <rasters>",
                 "expected: <dem> or <imagery> or <landCover>."},
@@ -214,6 +273,53 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:2: <sun>: elevation=\"91\" ", "from -90 to 90."},
         Mistake{"Colour", sceneWith("<sun azimuth='0' elevation='9' colour='red'/>"),
                 "x.geofx:2: <sun>: colour=\"red\" ", "two hexadecimal digits each"},
+        Mistake{"TwoEffects", sceneWith("<effects/>\n<effects/>"),
+                "x.geofx:3: <effects>: ", "expected: at most one each of <terrain>"},
+        Mistake{"UnknownEffect", sceneWith("<effects>\n<fishEye/></effects>"),
+                "x.geofx:3: <fishEye>: this element is not known in <effects>",
+                "expected: <birdsEyeView> or <pedestrianView> or <blendedView> or <verticalExaggeration>."},
+        Mistake{"UnknownProperty", sceneWith("<effects>\n<verticalExaggeration power='2'/></effects>"),
+                "x.geofx:3: <verticalExaggeration>: the attribute \"power\" is not known here",
+                "expected: enabled, factor, base, relight."},
+        Mistake{"UnknownPropertyOfBend", sceneWith("<effects>\n<birdsEyeView bendAngle='2'/></effects>"),
+                "x.geofx:3: <birdsEyeView>: the attribute \"bendAngle\" is not known here",
+                "expected: enabled, curve, planeElevation, "},
+        Mistake{"PropertyOutOfRange",
+                sceneWith("<effects>\n<pedestrianView bendAngleDegrees='91'/></effects>"),
+                "x.geofx:3: <pedestrianView>: bendAngleDegrees=\"91\" ",
+                "expected: degrees by which the ground ahead is folded up, from 0 to 90."},
+        Mistake{"PropertyOfAllBends", sceneWith("<effects>\n<pedestrianView curve='spline'/></effects>"),
+                "x.geofx:3: <pedestrianView>: curve=\"spline\" ", "\"arcLength\""},
+        Mistake{"PropertyOfAllEffects", sceneWith("<effects>\n<pedestrianView enabled='1'/></effects>"),
+                "x.geofx:3: <pedestrianView>: enabled=\"1\" ", "true or false."},
+        Mistake{"PropertyNotANumber", sceneWith("<effects>\n<verticalExaggeration factor='NaN'/></effects>"),
+                "x.geofx:3: <verticalExaggeration>: factor=\"NaN\" ", "from 0.01 to 100."},
+        Mistake{"PropertyNotWhole", sceneWith("<effects>\n<birdsEyeView mapUnit='0.5'/></effects>"),
+                "x.geofx:3: <birdsEyeView>: mapUnit=\"0.5\" ", "a whole number from 0 to 3"},
+        Mistake{"LinesDoNotFit",
+                sceneWith("<effects>\n<birdsEyeView focusLine='0.9' horizonLine='0.5'/></effects>"),
+                "x.geofx:3: <birdsEyeView>: BirdsEyeView: focusLine must lie below horizonLine.", ""},
+        Mistake{"LineDoesNotFitTheDefault", sceneWith("<effects>\n<birdsEyeView focusLine='0.9'/></effects>"),
+                "x.geofx:3: <birdsEyeView>: BirdsEyeView: focusLine must lie below horizonLine.", ""},
+        Mistake{"HeightsDoNotFit",
+                sceneWith("<effects>\n<blendedView lowHeight='20' highHeight='10'/></effects>"),
+                "x.geofx:3: <blendedView>: BlendedView: lowHeight must be less than highHeight.", ""},
+        Mistake{
+            "LinesOfAPartDoNotFit",
+            sceneWith("<effects><blendedView>\n<birdsEyeView horizonLine='0.4'/></blendedView></effects>"),
+            "x.geofx:3: <birdsEyeView>: BirdsEyeView: focusLine must lie below horizonLine.", ""},
+        Mistake{"PartTwice",
+                sceneWith("<effects><blendedView><birdsEyeView/>\n<birdsEyeView/></blendedView></effects>"),
+                "x.geofx:3: <birdsEyeView>: ", "at most one each of <birdsEyeView>, <pedestrianView>."},
+        Mistake{"NoPart",
+                sceneWith("<effects><blendedView>\n<verticalExaggeration/></blendedView></effects>"),
+                "x.geofx:3: <verticalExaggeration>: this element is not known in <blendedView>",
+                "expected: <birdsEyeView>"},
+        Mistake{"InsideAnEffect",
+                sceneWith("<effects>\n<birdsEyeView><pedestrianView/></birdsEyeView></effects>"),
+                "x.geofx:3: <birdsEyeView>: something stands inside", "expected: nothing"},
+        Mistake{"TextBetweenEffects", sceneWith("<effects>hello</effects>"),
+                "x.geofx:2: <effects>: ", "expected: elements only."},
         Mistake{"ForeignAttribute", sceneWith("<background colour='#000000' xml:lang='de'/>"),
                 "x.geofx:2: <background>: the attribute ", "expected: colour."}),
     [](const auto& mistake) { return std::string(mistake.param.name); });
@@ -221,11 +327,26 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(SceneFile, NamesSeveralMistakesOfAScene)
 {
     const SceneResult result =
-        parseScene(sceneWith("<sun azimuth='x' elevation='y'/>\n<effects/>"), "x.geofx", "/");
+        parseScene(sceneWith("<sun azimuth='x' elevation='y'/>\n<panorama/>"), "x.geofx", "/");
     ASSERT_EQ(result.errors.size(), 3u) << testing::PrintToString(result.errors);
     EXPECT_EQ(result.errors[0].rfind("x.geofx:2: <sun>: azimuth", 0), 0u) << result.errors[0];
     EXPECT_EQ(result.errors[1].rfind("x.geofx:2: <sun>: elevation", 0), 0u) << result.errors[1];
-    EXPECT_EQ(result.errors[2].rfind("x.geofx:3: <effects>: ", 0), 0u) << result.errors[2];
+    EXPECT_EQ(result.errors[2].rfind("x.geofx:3: <panorama>: ", 0), 0u) << result.errors[2];
+}
+
+TEST(SceneFile, NamesEachEffectThatDoesNotFitAndNotWithoutEnd)
+{
+    const std::string wrong = "<birdsEyeView focusLine='0.9'/>\n";
+    SceneResult result = parseScene(sceneWith("<effects>\n" + wrong + wrong + "</effects>"), "x.geofx", "/");
+    EXPECT_FALSE(result.scene);
+    ASSERT_EQ(result.errors.size(), 2u);
+    EXPECT_EQ(result.errors[0].rfind("x.geofx:3: <birdsEyeView>: ", 0), 0u) << result.errors[0];
+    EXPECT_EQ(result.errors[1].rfind("x.geofx:4: <birdsEyeView>: ", 0), 0u) << result.errors[1];
+    std::string many;
+    for (int i = 0; i < 100; ++i)
+        many += wrong;
+    result = parseScene(sceneWith("<effects>" + many + "</effects>"), "x.geofx", "/");
+    EXPECT_EQ(result.errors.size(), 20u);
 }
 
 TEST(SceneFile, OpensNoSchemaThatASceneNames)

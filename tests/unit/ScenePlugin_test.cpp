@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // The plugin osgdb_geofx, through osgDB.
+#include <osgGeoFX/paging/Scene.h>
+#include <osgGeoFX/scene/EffectScene.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 #include <unit/GeofxPlugins.h>
@@ -104,6 +106,93 @@ TEST_F(ScenePlugin, SceneTellsProgramsWhatItSays)
                  other->getUserValue("geofx.hasLight", hasLight));
 }
 
+TEST_F(ScenePlugin, EffectsStandAboveTerrainAndSun)
+{
+    const TempDir folder;
+    writeTerrain(folder, geocentricRoot(), osg::Vec3d(6378137.0, 0.0, 0.0));
+    const auto file = folder.write(
+        "a.geofx",
+        sceneWith("<effects><verticalExaggeration factor='2'/><birdsEyeView focusLine='0.3'/></effects>"
+                  "<sun azimuth='0' elevation='0'/><background colour='#ff0033'/>"));
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file.string());
+    auto* effects = dynamic_cast<osgGeoFX::EffectScene*>(node.get());
+    ASSERT_TRUE(effects);
+    EXPECT_EQ(effects->getName(), "osgGeoFX scene");
+    EXPECT_TRUE(sunOf(effects));
+    EXPECT_TRUE(dynamic_cast<const osg::CoordinateSystemNode*>(effects->getChild(0)));
+    ASSERT_EQ(effects->getNumEffects(), 2u);
+    EXPECT_EQ(effects->getEffect(0)->getProperty("factor"), 2.0);
+    EXPECT_EQ(effects->getEffect(1)->getProperty("focusLine"), 0.3);
+    EXPECT_TRUE(effects->ground().ellipsoid);
+
+    // Programs find them, and the scene's wishes.
+    std::string error;
+    const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::adopt(node, error);
+    ASSERT_TRUE(scene) << error;
+    EXPECT_EQ(scene->effects, effects);
+    EXPECT_EQ(scene->node, node);
+    EXPECT_TRUE(scene->settings.hasLight);
+    EXPECT_EQ(scene->settings.background, osg::Vec4(1.0f, 0.0f, 0.2f, 1.0f));
+
+    // Two readings have effects of their own.
+    const osg::ref_ptr<osg::Node> again = osgDB::readRefNodeFile(file.string());
+    auto* others = dynamic_cast<osgGeoFX::EffectScene*>(again.get());
+    ASSERT_TRUE(others);
+    EXPECT_NE(others->getEffect(0), effects->getEffect(0));
+}
+
+TEST_F(ScenePlugin, ASceneWithoutEffectsIsAPlainGroup)
+{
+    const TempDir folder;
+    writeTerrain(folder, geocentricRoot(), osg::Vec3d(6378137.0, 0.0, 0.0));
+    for (const char* text : {"", "<effects/>"})
+    {
+        const osg::ref_ptr<osg::Node> node =
+            osgDB::readRefNodeFile(folder.write("a.geofx", sceneWith(text)).string());
+        ASSERT_TRUE(node);
+        EXPECT_FALSE(dynamic_cast<osgGeoFX::EffectScene*>(node.get()));
+        std::string error;
+        const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::adopt(node, error);
+        ASSERT_TRUE(scene) << error;
+        ASSERT_EQ(scene->effects->getNumChildren(), 1u);
+        EXPECT_EQ(scene->effects->getChild(0), node);
+        EXPECT_EQ(scene->node, scene->effects);
+    }
+}
+
+TEST_F(ScenePlugin, ASceneWithEffectsIsSavedForOtherPrograms)
+{
+    const TempDir folder;
+    writeTerrain(folder, geocentricRoot(), osg::Vec3d(6378137.0, 0.0, 0.0));
+    const auto file =
+        folder.write("a.geofx", sceneWith("<effects><pedestrianView zoneWidth='750'/></effects>"));
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file.string());
+    ASSERT_TRUE(node);
+    for (const char* name : {"a.osgt", "a.osgb", "a.osgx"})
+    {
+        const std::string saved = (folder / name).string();
+        ASSERT_TRUE(osgDB::writeNodeFile(*node, saved)) << name;
+        const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(saved);
+        auto* scene = dynamic_cast<osgGeoFX::EffectScene*>(read.get());
+        ASSERT_TRUE(scene) << name;
+        ASSERT_EQ(scene->getNumEffects(), 1u) << name;
+        EXPECT_EQ(scene->getEffect(0)->getProperty("zoneWidth"), 750.0) << name;
+        EXPECT_EQ(scene->getNumChildren(), 1u) << name;
+    }
+}
+
+TEST_F(ScenePlugin, EffectsThatDoNotFitAreSaidBeforeTheTerrainIsRead)
+{
+    const TempDir folder;
+    folder.write("terrain.osgb", "not a database");
+    const auto file =
+        folder.write("a.geofx", sceneWith("<effects>\n<birdsEyeView focusLine='0.9'/></effects>"));
+    EXPECT_NE(messageOf(file).find(
+                  "a.geofx:4: <birdsEyeView>: BirdsEyeView: focusLine must lie below horizonLine."),
+              std::string::npos)
+        << messageOf(file);
+}
+
 TEST_F(ScenePlugin, SunStandsWhereTheSceneSays)
 {
     const TempDir folder;
@@ -154,7 +243,7 @@ TEST_F(ScenePlugin, SunStandsWhereTheSceneSays)
 TEST_F(ScenePlugin, SceneErrorsReachThePerson)
 {
     const TempDir folder;
-    folder.write("a.geofx", sceneWith("<effects/>"));
+    folder.write("a.geofx", sceneWith("<panorama/>"));
     geofx::test::ProgramOptions options;
     options.folder = folder.path().string();
     options.environment = {"OSG_LIBRARY_PATH=" GEOFX_BUILD_DIR "/lib"};
@@ -162,7 +251,7 @@ TEST_F(ScenePlugin, SceneErrorsReachThePerson)
         geofx::test::runProgram({geofx::test::builtProgram("read_scene"), "a.geofx"}, options);
     EXPECT_NE(result.exitCode, 0);
     EXPECT_NE(
-        result.standardError.find("a.geofx:3: <effects>: this element is not known in <geofx>; expected: "),
+        result.standardError.find("a.geofx:3: <panorama>: this element is not known in <geofx>; expected: "),
         std::string::npos)
         << result.standardError;
 }

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Wrappers of the nodes.
+#include "PropertySerializers.h"
+
+#include <osgGeoFX/deformation/RigidReference.h>
+#include <osgGeoFX/scene/EffectScene.h>
+
+#include <osg/Notify>
+#include <osgDB/InputStream>
+#include <osgDB/OutputStream>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+bool hasEffects(const EffectScene& scene)
+{
+    return scene.getNumEffects() > 0;
+}
+
+bool readEffects(osgDB::InputStream& stream, EffectScene& scene)
+{
+    unsigned int count = 0;
+    stream >> count >> stream.BEGIN_BRACKET;
+    for (unsigned int i = 0; i < count && !stream.getException(); ++i)
+    {
+        // Null where this version of the kit does not know the class; OSG has said so.
+        const osg::ref_ptr<Effect> effect = stream.readObjectOfType<Effect>();
+        if (effect) scene.addEffect(effect);
+    }
+    stream >> stream.END_BRACKET;
+    return true;
+}
+
+bool writeEffects(osgDB::OutputStream& stream, const EffectScene& scene)
+{
+    stream << scene.getNumEffects() << stream.BEGIN_BRACKET << std::endl;
+    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+        stream.writeObject(scene.getEffect(i));
+    stream << stream.END_BRACKET << std::endl;
+    return true;
+}
+
+constexpr const char* terrainFrames[] = {"AUTOMATIC", "GEOCENTRIC", "PROJECTED"};
+
+bool hasTerrainFrame(const EffectScene& scene)
+{
+    return scene.getTerrainFrame() != EffectScene::AUTOMATIC;
+}
+
+bool readTerrainFrame(osgDB::InputStream& stream, EffectScene& scene)
+{
+    std::string text;
+    stream >> text;
+    const auto* end = std::end(terrainFrames);
+    const auto* found = std::find(std::begin(terrainFrames), end, text);
+    if (found != end)
+        scene.setTerrainFrame(static_cast<EffectScene::TerrainFrame>(found - std::begin(terrainFrames)));
+    else
+        OSG_WARN << "osgGeoFX: A file is wrong: EffectScene: TerrainFrame must be AUTOMATIC, GEOCENTRIC or "
+                    "PROJECTED, "
+                    "not \""
+                 << text << "\". The default stays." << std::endl;
+    return true;
+}
+
+bool writeTerrainFrame(osgDB::OutputStream& stream, const EffectScene& scene)
+{
+    stream << std::string(terrainFrames[scene.getTerrainFrame()]) << std::endl;
+    return true;
+}
+
+bool hasReference(const RigidReference& node)
+{
+    return node.getReference() != osg::Vec3d();
+}
+
+bool readReference(osgDB::InputStream& stream, RigidReference& node)
+{
+    osg::Vec3d point;
+    bool good = true;
+    for (int i = 0; i < 3; ++i)
+    {
+        std::string text;
+        stream >> text;
+        good = parseExact(text, point[i]) && std::isfinite(point[i]) && good;
+    }
+    if (good)
+        node.setReference(point);
+    else
+        OSG_WARN << "osgGeoFX: A file is wrong: RigidReference: Reference must be three finite numbers. The "
+                    "default "
+                    "stays."
+                 << std::endl;
+    return true;
+}
+
+bool writeReference(osgDB::OutputStream& stream, const RigidReference& node)
+{
+    for (int i = 0; i < 3; ++i)
+        stream << exactText(node.getReference()[i]);
+    stream << std::endl;
+    return true;
+}
+
+template<typename Class>
+void addFlag(osgDB::ObjectWrapper& wrapper, const char* name, bool (Class::*getter)() const,
+             void (Class::*setter)(bool))
+{
+    const osg::ref_ptr<Class> sample = new Class;
+    wrapper.addSerializer(
+        new osgDB::PropByValSerializer<Class, bool>(name, (sample.get()->*getter)(), getter, setter),
+        osgDB::BaseSerializer::RW_BOOL);
+}
+
+void addSceneProperties(const char*, osgDB::ObjectWrapper* wrapper)
+{
+    using Effects = osgDB::UserSerializer<EffectScene>;
+    wrapper->addSerializer(new Effects("Effects", hasEffects, readEffects, writeEffects),
+                           osgDB::BaseSerializer::RW_USER);
+    addFlag(*wrapper, "Compensation", &EffectScene::getCompensation, &EffectScene::setCompensation);
+    addFlag(*wrapper, "DebugBounds", &EffectScene::getDebugBounds, &EffectScene::setDebugBounds);
+    addFlag(*wrapper, "NestedCameras", &EffectScene::getNestedCameras, &EffectScene::setNestedCameras);
+    wrapper->addSerializer(new Effects("TerrainFrame", hasTerrainFrame, readTerrainFrame, writeTerrainFrame),
+                           osgDB::BaseSerializer::RW_USER);
+}
+
+void addReferenceProperties(const char*, osgDB::ObjectWrapper* wrapper)
+{
+    wrapper->addSerializer(
+        new osgDB::UserSerializer<RigidReference>("Reference", hasReference, readReference, writeReference),
+        osgDB::BaseSerializer::RW_USER);
+    addFlag(*wrapper, "UseBoundCenter", &RigidReference::getUseBoundCenter,
+            &RigidReference::setUseBoundCenter);
+    addFlag(*wrapper, "Turn", &RigidReference::getTurn, &RigidReference::setTurn);
+}
+
+const osgDB::RegisterCustomWrapperProxy sceneWrapper([]() -> osg::Object* { return new EffectScene; },
+                                                     serializerDomain, "osgGeoFX::EffectScene",
+                                                     "osg::Object osg::Node osg::Group osgGeoFX::EffectScene",
+                                                     &addSceneProperties);
+const osgDB::RegisterCustomWrapperProxy referenceWrapper([]() -> osg::Object* { return new RigidReference; },
+                                                         serializerDomain, "osgGeoFX::RigidReference",
+                                                         "osg::Object osg::Node osg::Group "
+                                                         "osgGeoFX::RigidReference",
+                                                         &addReferenceProperties);
+
+} // namespace
+
+} // namespace osgGeoFX

@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Every property of every effect, from the classes' own tables: a new class or property is in these tests by itself,
+// but for typed setters, whose test says which one it misses. What files do with properties: Serializers_test.cpp.
+#include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <tools/NotifyWatch.h>
+#include <tools/RandomSamples.h>
+#include <unit/PropertySamples.h>
+
+#include <osg/CopyOp>
+
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace
+{
+
+using geofx::test::allProperties;
+using geofx::test::alteredEffect;
+using geofx::test::expectSame;
+using geofx::test::isWhole;
+using geofx::test::NotifyWatch;
+using geofx::test::otherValues;
+using geofx::test::PropertyRow;
+using geofx::test::Random;
+using geofx::test::sampleCount;
+using osgGeoFX::BirdsEyeView;
+using osgGeoFX::BlendedView;
+using osgGeoFX::createEffect;
+using osgGeoFX::Effect;
+using osgGeoFX::effectKinds;
+using osgGeoFX::PedestrianView;
+using osgGeoFX::PerspectiveBend;
+using osgGeoFX::Property;
+using osgGeoFX::VerticalExaggeration;
+
+using Kind = Property::Kind;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();
+
+/// One sentence that begins with the class and names the property as people type it.
+void expectSentence(const std::string& error, const Effect& effect, const Property& property)
+{
+    EXPECT_EQ(error.rfind(std::string(effect.className()) + ": ", 0), 0u) << error;
+    EXPECT_NE(error.find(property.textName()), std::string::npos) << error;
+    EXPECT_EQ(error.back(), '.') << error;
+}
+
+class EveryProperty : public testing::TestWithParam<PropertyRow>
+{
+protected:
+    const Property& _property = GetParam().property();
+    const osg::ref_ptr<Effect> _effect = createEffect(GetParam().kind);
+    std::string _error;
+
+    bool set(double value) { return _effect->setProperty(_property.name, value, _error); }
+    double value() const { return _effect->getProperty(_property.name); }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, EveryProperty, testing::ValuesIn(allProperties()),
+                         [](const auto& row) { return row.param.kind + "_" + row.param.name; });
+
+TEST_P(EveryProperty, HasTheTablesDefault)
+{
+    EXPECT_TRUE(std::islower(static_cast<unsigned char>(_property.name[0])));
+    EXPECT_LT(_property.minimum, _property.maximum);
+    EXPECT_EQ(_property.refusal(_property.defaultValue), "");
+    EXPECT_EQ(value(), _property.defaultValue);
+    EXPECT_EQ(_property.choices.empty(), _property.kind != Kind::Choice);
+    EXPECT_GE(otherValues(GetParam().kind, _property).size(), 1u);
+}
+
+TEST_P(EveryProperty, TakesWhatIsInRangeAndRaisesTheRevision)
+{
+    for (const double wanted : otherValues(GetParam().kind, _property))
+    {
+        ASSERT_TRUE(set(_property.defaultValue)) << _error;
+        const unsigned int before = _effect->revision();
+        EXPECT_TRUE(set(wanted)) << _error;
+        EXPECT_EQ(_error, "");
+        EXPECT_EQ(value(), wanted);
+        EXPECT_GT(_effect->revision(), before);
+        const unsigned int after = _effect->revision();
+        EXPECT_TRUE(set(wanted));
+        EXPECT_EQ(_effect->revision(), after) << "nothing has changed";
+    }
+}
+
+TEST_P(EveryProperty, RefusesTheRestWithASentenceAndKeepsTheLastGoodState)
+{
+    const double good = otherValues(GetParam().kind, _property).at(0);
+    ASSERT_TRUE(set(good));
+    const unsigned int before = _effect->revision();
+    std::vector<double> wrong = {std::nextafter(_property.minimum, -infinity),
+                                 std::nextafter(_property.maximum, infinity),
+                                 -infinity,
+                                 infinity,
+                                 notANumber,
+                                 -1e300,
+                                 1e300};
+    if (isWhole(_property)) wrong.insert(wrong.end(), {_property.minimum + 0.5, _property.maximum - 0.25});
+    for (const double value : wrong)
+    {
+        EXPECT_FALSE(set(value)) << value;
+        expectSentence(_error, *_effect, _property);
+        EXPECT_FALSE(_effect->setProperties({{_property.name, value}}, _error)) << value;
+        expectSentence(_error, *_effect, _property);
+        EXPECT_EQ(this->value(), good) << value;
+    }
+    EXPECT_EQ(_effect->revision(), before);
+}
+
+TEST_P(EveryProperty, ComesBackFromItsText)
+{
+    std::vector<double> values = otherValues(GetParam().kind, _property);
+    values.insert(values.end(), {_property.defaultValue, _property.minimum, _property.maximum});
+    for (int i = 0; i < sampleCount() / 50; ++i)
+    {
+        Random random(static_cast<std::uint64_t>(i));
+        const double value = random.uniform(_property.minimum, _property.maximum);
+        values.push_back(isWhole(_property) ? std::floor(value) : value);
+    }
+    for (const double value : values)
+    {
+        double parsed = notANumber;
+        ASSERT_TRUE(_property.parse(_property.text(value), parsed, _error))
+            << _property.text(value) << ": " << _error;
+        // Degrees and back may round.
+        if (_property.kind == Kind::Angle)
+            EXPECT_DOUBLE_EQ(parsed, value);
+        else
+            EXPECT_EQ(parsed, value) << _property.text(value);
+    }
+    const double other = otherValues(GetParam().kind, _property).at(0);
+    EXPECT_TRUE(_effect->setPropertyText(_property.textName(), _property.text(other), _error)) << _error;
+    EXPECT_DOUBLE_EQ(value(), other);
+    const double last = value();
+    for (const char* text : {"", " ", "x", "1 x", " 1", "0x1", "nan", "inf", "-inf", "1e999", "TRUE", "1,5"})
+    {
+        double untouched = 42.0;
+        EXPECT_FALSE(_property.parse(text, untouched, _error)) << text;
+        EXPECT_EQ(untouched, 42.0) << text;
+        EXPECT_FALSE(_effect->setPropertyText(_property.textName(), text, _error)) << text;
+        expectSentence(_error, *_effect, _property);
+        EXPECT_EQ(value(), last) << text;
+    }
+}
+
+TEST_P(EveryProperty, IsCloned)
+{
+    for (const double wanted : otherValues(GetParam().kind, _property))
+    {
+        ASSERT_TRUE(set(wanted));
+        for (const osg::CopyOp& copy :
+             {osg::CopyOp(osg::CopyOp::SHALLOW_COPY), osg::CopyOp(osg::CopyOp::DEEP_COPY_ALL)})
+        {
+            const osg::ref_ptr<Effect> clone = osg::clone(_effect.get(), copy);
+            EXPECT_NE(clone, _effect);
+            expectSame(*clone, *_effect);
+        }
+    }
+}
+
+/// A typed setter and getter.
+struct Typed
+{
+    std::function<bool(Effect&, double)> set;
+    std::function<double(const Effect&)> get;
+};
+
+template<typename Class, typename Value>
+Typed typed(bool (Class::*setter)(Value), Value (Class::*getter)() const)
+{
+    return {[setter](Effect& effect, double value)
+            { return (static_cast<Class&>(effect).*setter)(static_cast<Value>(value)); },
+            [getter](const Effect& effect)
+            {
+                return static_cast<double>((static_cast<const Class&>(effect).*getter)());
+            }};
+}
+
+const std::map<std::string, Typed>& typedSetters()
+{
+    using Bend = PerspectiveBend;
+    using Exaggeration = VerticalExaggeration;
+    static const std::map<std::string, Typed> all = {
+        {"enabled", typed(&Effect::setEnabled, &Effect::getEnabled)},
+        {"curve", typed(&Bend::setCurve, &Bend::getCurve)},
+        {"planeElevation", typed(&Bend::setPlaneElevation, &Bend::getPlaneElevation)},
+        {"planeReference", typed(&Bend::setPlaneReference, &Bend::getPlaneReference)},
+        {"tallest", typed(&Bend::setTallest, &Bend::getTallest)},
+        {"transitionDetail", typed(&Bend::setTransitionDetail, &Bend::getTransitionDetail)},
+        {"contextDetail", typed(&Bend::setContextDetail, &Bend::getContextDetail)},
+        {"contextSaturation", typed(&Bend::setContextSaturation, &Bend::getContextSaturation)},
+        {"contextBrightness", typed(&Bend::setContextBrightness, &Bend::getContextBrightness)},
+        {"mapUnit", typed(&Bend::setMapUnit, &Bend::getMapUnit)},
+        {"focusLine", typed(&BirdsEyeView::setFocusLine, &BirdsEyeView::getFocusLine)},
+        {"horizonLine", typed(&BirdsEyeView::setHorizonLine, &BirdsEyeView::getHorizonLine)},
+        {"contextTilt", typed(&BirdsEyeView::setContextTilt, &BirdsEyeView::getContextTilt)},
+        {"bendAngle", typed(&PedestrianView::setBendAngle, &PedestrianView::getBendAngle)},
+        {"focusDistance", typed(&PedestrianView::setFocusDistance, &PedestrianView::getFocusDistance)},
+        {"zoneWidth", typed(&PedestrianView::setZoneWidth, &PedestrianView::getZoneWidth)},
+        {"lowHeight", typed(&BlendedView::setLowHeight, &BlendedView::getLowHeight)},
+        {"highHeight", typed(&BlendedView::setHighHeight, &BlendedView::getHighHeight)},
+        {"factor", typed(&Exaggeration::setFactor, &Exaggeration::getFactor)},
+        {"base", typed(&Exaggeration::setBase, &Exaggeration::getBase)},
+        {"relight", typed(&Exaggeration::setRelight, &Exaggeration::getRelight)},
+    };
+    return all;
+}
+
+TEST_P(EveryProperty, HasATypedSetterThatAgrees)
+{
+    NotifyWatch watch;
+    ASSERT_TRUE(typedSetters().count(_property.name)) << "add its setter to this file's table";
+    const Typed& setter = typedSetters().at(_property.name);
+    EXPECT_EQ(setter.get(*_effect), _property.defaultValue);
+    for (const double wanted : otherValues(GetParam().kind, _property))
+    {
+        EXPECT_TRUE(setter.set(*_effect, wanted));
+        EXPECT_EQ(value(), wanted);
+        EXPECT_EQ(setter.get(*_effect), wanted);
+        ASSERT_TRUE(set(_property.defaultValue));
+        EXPECT_EQ(setter.get(*_effect), _property.defaultValue);
+    }
+    if (_property.kind == Kind::Flag || _property.kind == Kind::Choice) return;
+    // A refusal is one warning of OSG.
+    const std::vector<std::string> said =
+        watch.messagesOf([&] { EXPECT_FALSE(setter.set(*_effect, _property.maximum + 1.0)); });
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].find("osgGeoFX: "), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find(_property.textName()), std::string::npos) << said[0];
+    EXPECT_EQ(value(), _property.defaultValue);
+}
+
+TEST(Effects, HaveKindsAndNoPropertyTwice)
+{
+    for (const std::string& kind : effectKinds())
+    {
+        const osg::ref_ptr<Effect> effect = createEffect(kind);
+        ASSERT_TRUE(effect) << kind;
+        EXPECT_EQ(osgGeoFX::kindOf(*effect), kind);
+        EXPECT_STREQ(effect->libraryName(), "osgGeoFX");
+        EXPECT_EQ(effect->properties().at(0).name, "enabled");
+        std::set<std::string> names;
+        for (const Property& property : effect->properties())
+            EXPECT_TRUE(names.insert(property.textName()).second) << kind << " " << property.name;
+        std::string error;
+        EXPECT_FALSE(effect->setProperty("nothing", 1.0, error));
+        EXPECT_NE(error.find("has no property nothing."), std::string::npos) << error;
+        EXPECT_FALSE(effect->setProperties({{"nothing", 1.0}}, error));
+        EXPECT_NE(error.find("nothing."), std::string::npos) << error;
+        EXPECT_FALSE(effect->setPropertyText("nothing", "1", error));
+        EXPECT_FALSE(effect->setPropertyText("nothing.enabled", "true", error));
+    }
+    EXPECT_FALSE(createEffect("nothing"));
+}
+
+TEST(Effects, ClonesOfPartsAreDeepOrShared)
+{
+    const osg::ref_ptr<Effect> effect = alteredEffect("blendedView");
+    auto& view = static_cast<BlendedView&>(*effect);
+    const osg::ref_ptr<BlendedView> shallow = osg::clone(&view, osg::CopyOp::SHALLOW_COPY);
+    const osg::ref_ptr<BlendedView> deep = osg::clone(&view, osg::CopyOp::DEEP_COPY_ALL);
+    EXPECT_EQ(shallow->getBirdsEyeView(), view.getBirdsEyeView());
+    EXPECT_EQ(shallow->getPedestrianView(), view.getPedestrianView());
+    EXPECT_NE(deep->getBirdsEyeView(), view.getBirdsEyeView());
+    EXPECT_NE(deep->getPedestrianView(), view.getPedestrianView());
+    expectSame(*deep, view);
+}
+
+TEST(Effects, PartsCannotBeTakenAway)
+{
+    NotifyWatch watch;
+    const osg::ref_ptr<BlendedView> view = new BlendedView;
+    const auto said = watch.messagesOf(
+        [&]
+        {
+            EXPECT_FALSE(view->setBirdsEyeView(nullptr));
+            EXPECT_FALSE(view->setPedestrianView(nullptr));
+        });
+    EXPECT_EQ(said.size(), 2u);
+    EXPECT_TRUE(view->getBirdsEyeView() && view->getPedestrianView());
+    const unsigned int before = view->revision();
+    EXPECT_TRUE(view->setBirdsEyeView(new BirdsEyeView));
+    EXPECT_GT(view->revision(), before);
+    std::string error;
+    const unsigned int after = view->revision();
+    EXPECT_TRUE(view->setPropertyText("pedestrianView.zoneWidth", "7", error)) << error;
+    EXPECT_EQ(view->getPedestrianView()->getZoneWidth(), 7.0);
+    EXPECT_GT(view->revision(), after);
+}
+
+/// Two properties of which the first must be the lesser.
+struct Pair
+{
+    const char* kind;
+    const char* less;
+    const char* more;
+};
+
+class PropertyPair : public testing::TestWithParam<Pair>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(All, PropertyPair,
+                         testing::Values(Pair{"birdsEyeView", "focusLine", "horizonLine"},
+                                         Pair{"blendedView", "lowHeight", "highHeight"}),
+                         [](const auto& pair) { return std::string(pair.param.kind); });
+
+TEST_P(PropertyPair, RefusesWhatDoesNotFit)
+{
+    const auto [kind, less, more] = GetParam();
+    const osg::ref_ptr<Effect> effect = createEffect(kind);
+    const Property& lesser = *effect->property(less);
+    const Property& greater = *effect->property(more);
+    std::string error;
+    for (const double value : {greater.defaultValue, greater.maximum})
+    {
+        EXPECT_FALSE(effect->setProperty(less, value, error)) << value;
+        expectSentence(error, *effect, lesser);
+        EXPECT_NE(error.find(more), std::string::npos) << error;
+        EXPECT_EQ(effect->getProperty(less), lesser.defaultValue);
+    }
+    EXPECT_FALSE(effect->setProperty(more, lesser.defaultValue, error));
+    EXPECT_EQ(effect->getProperty(more), greater.defaultValue);
+    EXPECT_EQ(effect->revision(), 0u);
+}
+
+TEST_P(PropertyPair, FitsInTheEndWhateverTheOrder)
+{
+    const auto [kind, less, more] = GetParam();
+    const osg::ref_ptr<Effect> effect = createEffect(kind);
+    const Property& range = *effect->property(less);
+    std::string error;
+    int taken = 0;
+    for (int i = 0; i < sampleCount(); ++i)
+    {
+        Random random(static_cast<std::uint64_t>(i));
+        const double low = random.uniform(range.minimum, range.maximum);
+        const double high = random.integer(0, 9) == 0 ? low : random.uniform(range.minimum, range.maximum);
+        const double formerLow = effect->getProperty(less);
+        const double formerHigh = effect->getProperty(more);
+        const unsigned int before = effect->revision();
+        const bool fits = low < high;
+        EXPECT_EQ(effect->setProperties({{less, low}, {more, high}}, error), fits) << "sample " << i;
+        EXPECT_LT(effect->getProperty(less), effect->getProperty(more)) << "sample " << i;
+        EXPECT_EQ(error.empty(), fits) << error;
+        if (fits)
+        {
+            EXPECT_EQ(effect->getProperty(less), low) << "sample " << i;
+            EXPECT_EQ(effect->getProperty(more), high) << "sample " << i;
+            EXPECT_GT(effect->revision(), before);
+            ++taken;
+            continue;
+        }
+        // One of them may still be taken, never both, and one is whenever it can be.
+        const bool hasLow = effect->getProperty(less) == low;
+        const bool hasHigh = effect->getProperty(more) == high;
+        EXPECT_EQ(hasLow || hasHigh, low < formerHigh || formerLow < high) << "sample " << i;
+        EXPECT_EQ(effect->getProperty(less), hasLow ? low : formerLow);
+        EXPECT_EQ(effect->getProperty(more), hasHigh ? high : formerHigh);
+    }
+    EXPECT_GT(taken, sampleCount() / 4);
+}
+
+/// An effect in which two properties must fit each other, and two others, too.
+class TwoPairs : public Effect
+{
+public:
+    TwoPairs() = default;
+    TwoPairs(const TwoPairs& other, const osg::CopyOp& copy) : Effect(other, copy) {}
+    META_Object(test, TwoPairs);
+
+    const osgGeoFX::Properties& properties() const override
+    {
+        static const osgGeoFX::Properties all = {
+            enabledProperty(),
+            Property::number("a", 1.0, 0.0, 100.0).of<&TwoPairs::_a>(),
+            Property::number("b", 2.0, 0.0, 100.0).of<&TwoPairs::_b>(),
+            Property::number("c", 1.0, 0.0, 100.0).of<&TwoPairs::_c>(),
+            Property::number("d", 2.0, 0.0, 100.0).of<&TwoPairs::_d>(),
+        };
+        return all;
+    }
+
+protected:
+    ~TwoPairs() override = default;
+    std::string inconsistency() const override
+    {
+        if (_a >= _b) return "a must be less than b.";
+        return _c >= _d ? "c must be less than d." : "";
+    }
+
+private:
+    double _a = 1.0, _b = 2.0, _c = 1.0, _d = 2.0;
+};
+
+TEST(Effects, TakeAllThatFitsBesideWhatDoesNot)
+{
+    const osg::ref_ptr<TwoPairs> effect = new TwoPairs;
+    std::string error;
+    // c fits only when d has been set, which comes after it.
+    EXPECT_FALSE(
+        effect->setProperties({{"a", 9.0}, {"b", 8.0}, {"c", 5.0}, {"d", 6.0}, {"enabled", 7.0}}, error));
+    EXPECT_EQ(effect->getProperty("a"), 1.0);
+    EXPECT_EQ(effect->getProperty("b"), 8.0);
+    EXPECT_EQ(effect->getProperty("c"), 5.0);
+    EXPECT_EQ(effect->getProperty("d"), 6.0);
+    EXPECT_EQ(error, "TwoPairs: enabled must lie between 0 and 1, not 7. TwoPairs: a must be less than b.");
+    EXPECT_TRUE(effect->setProperties({}, error));
+    EXPECT_EQ(error, "");
+}
+
+TEST(Effects, AreParsedFromALineInAnyOrder)
+{
+    std::string error;
+    const osg::ref_ptr<Effect> view = osgGeoFX::parseEffect(
+        "birdsEyeView focusLine=0.9 horizonLine=0.95 enabled=false curve=bezier", error);
+    ASSERT_TRUE(view) << error;
+    EXPECT_EQ(view->getProperty("focusLine"), 0.9);
+    EXPECT_EQ(view->getProperty("horizonLine"), 0.95);
+    EXPECT_EQ(view->getProperty("enabled"), 0.0);
+    EXPECT_EQ(view->getProperty("curve"), PerspectiveBend::BEZIER);
+    const osg::ref_ptr<Effect> blended = osgGeoFX::parseEffect(
+        "blendedView birdsEyeView.horizonLine=0.2 highHeight=10000 birdsEyeView.focusLine=0.1 "
+        "pedestrianView.bendAngleDegrees=45 lowHeight=5000 lowHeight=6000",
+        error);
+    ASSERT_TRUE(blended) << error;
+    auto& parts = static_cast<BlendedView&>(*blended);
+    EXPECT_EQ(parts.getBirdsEyeView()->getFocusLine(), 0.1);
+    EXPECT_EQ(parts.getBirdsEyeView()->getHorizonLine(), 0.2);
+    EXPECT_DOUBLE_EQ(parts.getPedestrianView()->getBendAngle(), osg::PI_4);
+    EXPECT_EQ(parts.getLowHeight(), 6000.0);
+    EXPECT_EQ(parts.getHighHeight(), 10000.0);
+    for (const char* wrong :
+         {"", "nothing", "birdsEyeView focusLine", "birdsEyeView focusLine=0.9",
+          "birdsEyeView focusLine=0.95 horizonLine=0.9", "birdsEyeView lowHeight=1",
+          "blendedView birdsEyeView.focusLine=0.9", "blendedView birdsEyeView.zoneWidth=1",
+          "blendedView birdsEyeView=1", "pedestrianView bendAngle=1", "pedestrianView bendAngleDegrees=91"})
+    {
+        EXPECT_FALSE(osgGeoFX::parseEffect(wrong, error)) << wrong;
+        EXPECT_GT(error.size(), 10u) << wrong;
+    }
+}
+
+} // namespace

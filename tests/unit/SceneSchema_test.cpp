@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// What data/geofx.xsd says of effects, against the classes' own tables of properties.
+#include <geofx/SceneFile.h>
+#include <unit/PropertySamples.h>
+
+#include <osgDB/XmlParser>
+
+#include <fstream>
+#include <map>
+#include <set>
+
+namespace
+{
+
+using geofx::test::expectSame;
+using osgDB::XmlNode;
+using osgGeoFX::createEffect;
+using osgGeoFX::Effect;
+using osgGeoFX::effectKinds;
+using osgGeoFX::parseScene;
+using osgGeoFX::Property;
+using osgGeoFX::SceneResult;
+
+using Kind = Property::Kind;
+
+std::string attributeOf(const XmlNode& node, const std::string& name)
+{
+    const auto found = node.properties.find(name);
+    return found == node.properties.end() ? "" : found->second;
+}
+
+/// One line, with single spaces.
+std::string collapsed(const std::string& text)
+{
+    std::istringstream words(text);
+    std::string result, word;
+    while (words >> word)
+        result += (result.empty() ? "" : " ") + word;
+    return result;
+}
+
+class SceneSchema : public testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        std::ifstream stream(GEOFX_SOURCE_DIR "/data/geofx.xsd");
+        _document = osgDB::readXmlStream(stream);
+        ASSERT_TRUE(_document);
+        for (const osg::ref_ptr<XmlNode>& node : _document->children)
+        {
+            if (node->name == "xs:schema") _schema = node;
+        }
+        ASSERT_TRUE(_schema);
+    }
+
+    const XmlNode* named(const std::string& tag, const std::string& name) const
+    {
+        for (const osg::ref_ptr<XmlNode>& node : _schema->children)
+            if (node->name == tag && attributeOf(*node, "name") == name) return node;
+        return nullptr;
+    }
+
+    static const XmlNode* child(const XmlNode* node, const std::string& tag)
+    {
+        if (!node) return nullptr;
+        for (const osg::ref_ptr<XmlNode>& each : node->children)
+            if (each->name == tag) return each;
+        return nullptr;
+    }
+
+    static std::string documentation(const XmlNode* node)
+    {
+        const XmlNode* words = child(child(node, "xs:annotation"), "xs:documentation");
+        return words ? collapsed(words->contents) : "";
+    }
+
+    /// The elements of a type, by their names, with the names of their types.
+    std::map<std::string, std::string> elementsOf(const std::string& type,
+                                                  const std::string& compositor) const
+    {
+        std::map<std::string, std::string> result;
+        if (const XmlNode* list = child(named("xs:complexType", type), compositor))
+            for (const osg::ref_ptr<XmlNode>& node : list->children)
+                result[attributeOf(*node, "name")] = attributeOf(*node, "type");
+        return result;
+    }
+
+    /// The attributes of a type or of a group, with those of the groups that it refers to, in their order.
+    std::vector<const XmlNode*> attributesOf(const XmlNode& parent) const
+    {
+        std::vector<const XmlNode*> result;
+        for (const osg::ref_ptr<XmlNode>& node : parent.children)
+        {
+            if (node->name == "xs:attribute") result.push_back(node);
+            if (node->name != "xs:attributeGroup") continue;
+            const XmlNode* group = named("xs:attributeGroup", attributeOf(*node, "ref"));
+            EXPECT_TRUE(group) << attributeOf(*node, "ref");
+            EXPECT_NE(documentation(group), "");
+            if (!group) continue;
+            const std::vector<const XmlNode*> more = attributesOf(*group);
+            result.insert(result.end(), more.begin(), more.end());
+        }
+        return result;
+    }
+
+    /// What restricts an attribute, its own or its type's.
+    const XmlNode* restrictionOf(const XmlNode& attribute) const
+    {
+        const std::string type = attributeOf(attribute, "type");
+        return child(type.empty() ? child(&attribute, "xs:simpleType") : named("xs:simpleType", type),
+                     "xs:restriction");
+    }
+
+    static std::vector<std::string> facets(const XmlNode& restriction, const std::string& tag)
+    {
+        std::vector<std::string> result;
+        for (const osg::ref_ptr<XmlNode>& node : restriction.children)
+            if (node->name == tag) result.push_back(attributeOf(*node, "value"));
+        return result;
+    }
+
+    void expectAttribute(const XmlNode& attribute, const Property& property) const
+    {
+        std::string error;
+        double value = 0.0;
+        EXPECT_TRUE(property.parse(attributeOf(attribute, "default"), value, error)) << error;
+        EXPECT_EQ(value, property.defaultValue) << "the default";
+        const XmlNode* restriction = restrictionOf(attribute);
+        ASSERT_TRUE(restriction);
+        const std::string words = documentation(&attribute);
+        EXPECT_NE(words, "");
+        if (property.kind == Kind::Choice || property.kind == Kind::Flag)
+        {
+            const std::vector<std::string> choices =
+                property.kind == Kind::Flag ? std::vector<std::string>{"false", "true"} : property.choices;
+            EXPECT_EQ(facets(*restriction, "xs:enumeration"), choices);
+            for (const std::string& choice : choices)
+                EXPECT_NE(words.find(choice), std::string::npos) << choice << " is not explained: " << words;
+            return;
+        }
+        EXPECT_EQ(attributeOf(*restriction, "base"),
+                  property.kind == Kind::Integer ? "xs:int" : "xs:decimal");
+        const std::pair<const char*, double> limits[] = {{"xs:minInclusive", property.minimum},
+                                                         {"xs:maxInclusive", property.maximum}};
+        for (const auto& [tag, limit] : limits)
+        {
+            const std::vector<std::string> found = facets(*restriction, tag);
+            ASSERT_EQ(found.size(), 1u) << tag;
+            EXPECT_TRUE(property.parse(found[0], value, error)) << tag << ": " << error;
+            EXPECT_EQ(value, limit) << tag;
+            EXPECT_NE(words.find(found[0]), std::string::npos) << found[0] << " is not told: " << words;
+        }
+        const std::string unit = property.kind == Kind::Angle ? "degrees"
+                                 : property.unit == "m"       ? "metres"
+                                                              : "";
+        EXPECT_NE(words.find(unit), std::string::npos) << unit << " is not told: " << words;
+    }
+
+private:
+    osg::ref_ptr<XmlNode> _document, _schema;
+};
+
+TEST_F(SceneSchema, HasEachKindOfEffectAndNoOther)
+{
+    const auto elements = elementsOf("Effects", "xs:choice");
+    std::set<std::string> names;
+    for (const auto& [name, type] : elements)
+    {
+        names.insert(name);
+        EXPECT_NE(documentation(named("xs:complexType", type)), "") << type;
+    }
+    const std::vector<std::string> kinds = effectKinds();
+    EXPECT_EQ(names, std::set<std::string>(kinds.begin(), kinds.end()));
+}
+
+TEST_F(SceneSchema, HasThePropertiesOfEachEffect)
+{
+    const auto elements = elementsOf("Effects", "xs:choice");
+    for (const std::string& kind : effectKinds())
+    {
+        ASSERT_TRUE(elements.count(kind)) << kind;
+        const XmlNode* type = named("xs:complexType", elements.at(kind));
+        ASSERT_TRUE(type) << kind;
+        const osg::ref_ptr<Effect> effect = createEffect(kind);
+        const std::vector<const XmlNode*> attributes = attributesOf(*type);
+        ASSERT_EQ(attributes.size(), effect->properties().size()) << kind;
+        for (std::size_t i = 0; i < attributes.size(); ++i)
+        {
+            const Property& property = effect->properties()[i];
+            SCOPED_TRACE(kind + "." + property.textName());
+            EXPECT_EQ(attributeOf(*attributes[i], "name"), property.textName()) << "the same order, too";
+            expectAttribute(*attributes[i], property);
+        }
+        std::map<std::string, std::string> parts;
+        for (const Effect::Part& part : effect->parts())
+            parts[part.name] = elements.at(osgGeoFX::kindOf(*part.effect));
+        EXPECT_EQ(elementsOf(elements.at(kind), "xs:all"), parts) << kind;
+    }
+}
+
+/// A scene with one effect.
+SceneResult sceneOf(const std::string& kind, const std::string& attribute = {}, const std::string& value = {})
+{
+    const std::string setting = attribute.empty() ? "" : " " + attribute + "='" + value + "'";
+    return parseScene("<geofx version='1'><terrain><database file='a'/></terrain><effects>\n<" + kind +
+                          setting + "/></effects></geofx>",
+                      "x.geofx", "/");
+}
+
+TEST(SceneEffects, HaveTheDefaultsOfTheirClasses)
+{
+    for (const std::string& kind : effectKinds())
+    {
+        const SceneResult result = sceneOf(kind);
+        ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
+        ASSERT_EQ(result.scene->effects.size(), 1u);
+        expectSame(*result.scene->effects[0], *createEffect(kind));
+    }
+}
+
+TEST(SceneEffects, TakeWhatTheTableTakesAndNameTheRest)
+{
+    for (const geofx::test::PropertyRow& row : geofx::test::allProperties())
+    {
+        SCOPED_TRACE(row.kind + "." + row.name);
+        const Property& property = row.property();
+        for (const double value : geofx::test::otherValues(row.kind, property))
+        {
+            // XML's decimals have no exponent.
+            const std::string text = property.text(value);
+            if (text.find('e') != std::string::npos && property.choices.empty() &&
+                property.kind != Kind::Flag)
+                continue;
+            const SceneResult result = sceneOf(row.kind, property.textName(), text);
+            ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
+            EXPECT_DOUBLE_EQ(result.scene->effects[0]->getProperty(row.name), value);
+        }
+        for (const char* text : {"", "x", "NaN", "INF", "-99999999", "99999999", "1 2"})
+        {
+            const SceneResult result = sceneOf(row.kind, property.textName(), text);
+            EXPECT_FALSE(result.scene) << text;
+            ASSERT_EQ(result.errors.size(), 1u) << text;
+            EXPECT_EQ(result.errors[0].rfind("x.geofx:2: <" + row.kind + ">: " + property.textName(), 0), 0u)
+                << result.errors[0];
+            EXPECT_EQ(result.errors[0].back(), '.') << result.errors[0];
+        }
+    }
+}
+
+} // namespace
