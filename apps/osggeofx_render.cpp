@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <osg/Math>
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <map>
@@ -44,6 +45,7 @@ struct Arguments
     double fieldOfView = 0.0;
     unsigned int frames = 0;
     std::vector<std::string> effects;
+    bool inset = false;
     bool noCull = false;
     bool noCompensation = false;
     bool debugBounds = false;
@@ -104,6 +106,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("'KIND …'")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_flag("--inset", arguments.inset,
+                 "Put the same view without effects, a quarter as wide, into the lower right corner");
     app.add_flag("--no-compensation", arguments.noCompensation,
                  "Cull as if nothing were deformed, to see what that would draw");
     app.add_flag("--debug-bounds", arguments.debugBounds, "Draw the deformed bounds that culling decides on");
@@ -256,6 +260,42 @@ void addEffects(const Arguments& arguments, osgGeoFX::EffectScene& scene)
     scene.setDebugBounds(arguments.debugBounds);
 }
 
+/// The picture of a camera without effects, small, in the corner of the one with them.
+void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const Camera& camera, unsigned int frame,
+              osgGeoFX::EffectScene& scene)
+{
+    std::vector<bool> enabled;
+    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+    {
+        enabled.push_back(scene.getEffect(i)->getEnabled());
+        scene.getEffect(i)->setEnabled(false);
+    }
+    std::string error;
+    osgGeoFX::FrameStatistics unused;
+    const osg::ref_ptr<osg::Image> straight =
+        renderer.render(camera.view(frame), camera.time(frame), unused, error);
+    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+        scene.getEffect(i)->setEnabled(enabled[i]);
+    if (!straight) throw Failure(tookTooLong, error);
+
+    const int width = std::max(image.s() / 4, 1);
+    const int height = std::max(image.t() / 4, 1);
+    straight->scaleImage(width, height, 1);
+    const int margin = std::max(image.s() / 80, 1);
+    const int frameWidth = std::max(image.s() / 600, 1);
+    const int left = std::max(image.s() - width - margin, 0);
+    for (int y = margin - frameWidth; y < margin + height + frameWidth; ++y)
+    {
+        for (int x = left - frameWidth; x < left + width + frameWidth; ++x)
+        {
+            if (x < 0 || y < 0 || x >= image.s() || y >= image.t()) continue;
+            image.setColor(osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f), static_cast<unsigned int>(x),
+                           static_cast<unsigned int>(y));
+        }
+    }
+    image.copySubImage(left, margin, 0, straight);
+}
+
 void run(Arguments& arguments)
 {
     std::string error;
@@ -287,6 +327,7 @@ void run(Arguments& arguments)
         osgGeoFX::FrameStatistics figures;
         const auto image = renderer->render(camera.view(frame), camera.time(frame), figures, error);
         if (!image) throw Failure(tookTooLong, error);
+        if (arguments.inset) addInset(*image, *renderer, camera, frame, *scene->effects);
         if (!pictures.write(*image, frame)) throw Failure(badInput, pictures.error());
         statistics.add(figures);
     }
