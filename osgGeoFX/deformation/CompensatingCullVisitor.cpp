@@ -98,7 +98,7 @@ public:
     Scope(CompensatingCullVisitor& visitor, const osg::Node& node) : _visitor(visitor), _former(visitor._mode)
     {
         if (!visitor._mode.ours) return;
-        if (leavesDeformation(node.getStateSet())) visitor._mode.chain = visitor._nothing.get();
+        visitor.meet(node.getStateSet());
         if (visitor._task.compensate) _skip = visitor.outOfSight(node);
     }
     ~Scope() { _visitor._mode = _former; }
@@ -191,7 +191,8 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
             osg::CullingSet::computePixelSizeVector(*getViewport(), *getProjectionMatrix(), osg::Matrix());
     }
     _mode = Mode();
-    _mode.chain = task.chain.get();
+    meetAll(*_entry);
+    meet(task.state);
     _mode.planes = (1u << _planes.size()) - 1u;
     _scale = scaleOf(*getModelViewMatrix());
     _near = DBL_MAX;
@@ -302,15 +303,28 @@ void CompensatingCullVisitor::apply(osg::Group& node)
     if (!scope.skip()) CullVisitor::apply(node);
 }
 
+void CompensatingCullVisitor::meet(const osg::StateSet* state)
+{
+    _mode.deformation.meet(state);
+    _mode.chain = _mode.deformation.on ? _task.chain.get() : _nothing.get();
+}
+
+void CompensatingCullVisitor::meetAll(const osgUtil::StateGraph& state)
+{
+    if (state._parent) meetAll(*state._parent);
+    meet(state.getStateSet());
+}
+
 void CompensatingCullVisitor::applyRigid(RigidReference& node)
 {
     // Moved as a whole, and then culled and drawn as if nothing were deformed.
     const Mode former = _mode;
+    meet(node.getStateSet());
     const osg::Matrixd& modelView = *getModelViewMatrix();
     const osg::Vec3d reference = node.referencePoint() * modelView;
     const osg::Matrixd placement = rigidPlacement(*_mode.chain, reference, node.getTurn());
     pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
-    _mode.chain = _nothing.get();
+    meet(_task.untouched);
     pushStateSet(_task.untouched);
     {
         const Scope scope(*this, node);
@@ -643,8 +657,7 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         return;
     }
     const Mode former = _mode;
-    const bool untouched = leavesDeformation(drawable.getStateSet());
-    if (untouched) _mode.chain = _nothing.get();
+    meet(drawable.getStateSet());
     osg::StateSet* look = lookFor(drawable);
     if (!_task.compensate)
     {

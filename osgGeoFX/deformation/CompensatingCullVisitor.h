@@ -81,9 +81,10 @@ private:
     struct Mode
     {
         const DeformationChain* chain = nullptr; ///< empty below what keeps its shape or is left out
-        PlaneMask planes = 0;                    ///< frustum planes that bounds may still cross
-        bool ours = true;                        ///< false below cameras: OSG's culling, no state of ours
-        double lodRadius = 0.0;                  ///< of the LOD that is asking for distances
+        DeformationSwitch deformation;
+        PlaneMask planes = 0;   ///< frustum planes that bounds may still cross
+        bool ours = true;       ///< false below cameras: OSG's culling, no state of ours
+        double lodRadius = 0.0; ///< of the LOD that is asking for distances
     };
     class Scope;
     enum class Side
@@ -94,6 +95,9 @@ private:
     };
 
     void applyRigid(RigidReference& node);
+    /// Takes a state set's word on whether what is below it is deformed.
+    void meet(const osg::StateSet* state);
+    void meetAll(const osgUtil::StateGraph& state);
     void begin(osgUtil::CullVisitor& outer, const Task& task);
     void end(osgUtil::CullVisitor& outer);
     /// Whether a node is out of sight; narrows the planes for what is below it.

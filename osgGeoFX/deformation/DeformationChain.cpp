@@ -218,11 +218,13 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
     return gap > 0.0 ? ball.radius + gap / detail : distance * ball.radius / std::max(current.radius, 1e-30);
 }
 
-bool leavesDeformation(const osg::StateSet* state)
+void DeformationSwitch::meet(const osg::StateSet* state)
 {
-    if (!state || state->getDefineList().empty()) return false;
+    if (!state || state->getDefineList().empty()) return;
     const osg::StateSet::DefinePair* define = state->getDefinePair("GEOFX_DEFORMATION");
-    return define && !(define->second & osg::StateAttribute::ON);
+    if (!define || (overridden && !(define->second & osg::StateAttribute::PROTECTED))) return;
+    on = (define->second & osg::StateAttribute::ON) != 0;
+    overridden = (define->second & osg::StateAttribute::OVERRIDE) != 0;
 }
 
 osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn)

@@ -55,8 +55,15 @@ private:
     std::vector<osg::ref_ptr<const DeformationFrame>> _frames;
 };
 
-/// Whether a state set takes its subgraph out of the deformation: the define GEOFX_DEFORMATION, set OFF.
-bool leavesDeformation(const osg::StateSet* state);
+/// Whether a subgraph is deformed: the define GEOFX_DEFORMATION of the state sets down to it, by OSG's rules of
+/// inheritance, which are the GPU's.
+struct DeformationSwitch
+{
+    bool on = true;
+    bool overridden = false;
+    /// Goes down into a state set; null is nothing.
+    void meet(const osg::StateSet* state);
+};
 
 /// Where an object that keeps its shape goes: eye space to eye space; upright where it does not `turn`.
 osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn);

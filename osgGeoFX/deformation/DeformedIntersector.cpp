@@ -173,10 +173,12 @@ class DeformedIntersectionVisitor::Scope
 {
 public:
     Scope(DeformedIntersectionVisitor& visitor, const osg::Node& node)
-        : _visitor(visitor), _chain(visitor._chain), _radius(visitor._lodRadius)
+        : _visitor(visitor), _chain(visitor._chain), _radius(visitor._lodRadius),
+          _deformation(visitor._deformation)
     {
-        if (!leavesDeformation(node.getStateSet())) return;
-        visitor._chain = visitor._nothing;
+        visitor._deformation.meet(node.getStateSet());
+        if (visitor._deformation.on == _deformation.on) return;
+        visitor._chain = visitor._deformation.on ? visitor._whole : visitor._nothing;
         visitor.push_clone();
         _cloned = true;
     }
@@ -185,6 +187,7 @@ public:
         if (_cloned) _visitor.pop_clone();
         _visitor._chain = _chain;
         _visitor._lodRadius = _radius;
+        _visitor._deformation = _deformation;
     }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
@@ -193,14 +196,15 @@ private:
     DeformedIntersectionVisitor& _visitor;
     osg::ref_ptr<const DeformationChain> _chain;
     double _radius;
+    DeformationSwitch _deformation;
     bool _cloned = false;
 };
 
 DeformedIntersectionVisitor::DeformedIntersectionVisitor(osgUtil::Intersector* intersector,
                                                          const DeformationChain& chain,
                                                          const osg::Matrixd& modelView, double lodScale)
-    : osgUtil::IntersectionVisitor(intersector), _chain(&chain), _nothing(new DeformationChain),
-      _view(modelView), _lodScale(lodScale)
+    : osgUtil::IntersectionVisitor(intersector), _chain(&chain), _whole(&chain),
+      _nothing(new DeformationChain), _view(modelView), _lodScale(lodScale)
 {
     // The first one collects; from the second one on they know where they are.
     push_clone();
@@ -239,18 +243,18 @@ void DeformedIntersectionVisitor::apply(osg::Group& node)
 
 void DeformedIntersectionVisitor::applyRigid(RigidReference& node)
 {
-    const osg::ref_ptr<const DeformationChain> former = _chain;
+    const Scope scope(*this, node);
     const osg::Matrixd view = _view;
     const osg::Matrixd here = modelView();
     const osg::Matrixd placement = rigidPlacement(*_chain, node.referencePoint() * here, node.getTurn());
     // Places on it are told as it stands, undeformed: only the view is moved.
     _view = _view * placement;
     _chain = _nothing;
+    _deformation = {false, true};
     push_clone();
     IntersectionVisitor::apply(node);
     pop_clone();
     _view = view;
-    _chain = former;
 }
 
 void DeformedIntersectionVisitor::apply(osg::Transform& node)

@@ -101,7 +101,9 @@ private:
     void applyRigid(RigidReference& node);
 
     osg::ref_ptr<const DeformationChain> _chain;
+    osg::ref_ptr<const DeformationChain> _whole;
     osg::ref_ptr<const DeformationChain> _nothing;
+    DeformationSwitch _deformation;
     osg::Matrixd _view;
     double _lodScale;
     double _lodRadius = 0.0;

@@ -151,7 +151,15 @@ public:
         auto* callback = options ? dynamic_cast<Callback*>(options->getReadFileCallback()) : nullptr;
         if (callback && !found) found = callback->guard.get();
         if (!callback && _guard) lod.setDatabaseOptions(_guard->guardedOptions(options).get());
-        traverse(lod);
+        apply(static_cast<osg::Node&>(lod));
+    }
+
+    /// Bounds are computed here, on the thread that reads: a PagedLOD that brings its own does not ask those below it,
+    /// and two cull threads must not compute them at once.
+    void apply(osg::Node& node) override
+    {
+        traverse(node);
+        node.getBound();
     }
 
     TileGuard* found = nullptr;

@@ -132,8 +132,21 @@ vec4 generated(int unit, int code, vec4 given, vec4 eye, vec3 normal)
 }
 #endif
 
-#define GEOFX_COORDINATES(unit, given) gl_TexCoord[unit] = gl_TextureMatrix[unit] * (given);
-#define GEOFX_GENERATED(unit, code, given) GEOFX_COORDINATES(unit, generated(unit, code, given, eye, normal))
+// Interpolated within the covered part of a pixel, so that multisampling does not take colours from beyond a border.
+#if defined(GEOFX_TEXTURE_0) || defined(GEOFX_MAP)
+centroid out vec4 geofx_coordinates0;
+#endif
+#ifdef GEOFX_TEXTURE_1
+centroid out vec4 geofx_coordinates1;
+#endif
+#ifdef GEOFX_TEXTURE_2
+centroid out vec4 geofx_coordinates2;
+#endif
+#ifdef GEOFX_TEXTURE_3
+centroid out vec4 geofx_coordinates3;
+#endif
+
+#define GEOFX_GENERATED(unit, code, given) gl_TextureMatrix[unit] * generated(unit, code, given, eye, normal)
 
 void main()
 {
@@ -175,24 +188,24 @@ void main()
 #endif
 
 #ifdef GEOFX_TEXGEN_0
-    GEOFX_GENERATED(0, GEOFX_TEXGEN_0, gl_MultiTexCoord0)
+    geofx_coordinates0 = GEOFX_GENERATED(0, GEOFX_TEXGEN_0, gl_MultiTexCoord0);
 #elif defined(GEOFX_TEXTURE_0) || defined(GEOFX_MAP)
-    GEOFX_COORDINATES(0, gl_MultiTexCoord0)
+    geofx_coordinates0 = gl_TextureMatrix[0] * gl_MultiTexCoord0;
 #endif
 #ifdef GEOFX_TEXGEN_1
-    GEOFX_GENERATED(1, GEOFX_TEXGEN_1, gl_MultiTexCoord1)
+    geofx_coordinates1 = GEOFX_GENERATED(1, GEOFX_TEXGEN_1, gl_MultiTexCoord1);
 #elif defined(GEOFX_TEXTURE_1)
-    GEOFX_COORDINATES(1, gl_MultiTexCoord1)
+    geofx_coordinates1 = gl_TextureMatrix[1] * gl_MultiTexCoord1;
 #endif
 #ifdef GEOFX_TEXGEN_2
-    GEOFX_GENERATED(2, GEOFX_TEXGEN_2, gl_MultiTexCoord2)
+    geofx_coordinates2 = GEOFX_GENERATED(2, GEOFX_TEXGEN_2, gl_MultiTexCoord2);
 #elif defined(GEOFX_TEXTURE_2)
-    GEOFX_COORDINATES(2, gl_MultiTexCoord2)
+    geofx_coordinates2 = gl_TextureMatrix[2] * gl_MultiTexCoord2;
 #endif
 #ifdef GEOFX_TEXGEN_3
-    GEOFX_GENERATED(3, GEOFX_TEXGEN_3, gl_MultiTexCoord3)
+    geofx_coordinates3 = GEOFX_GENERATED(3, GEOFX_TEXGEN_3, gl_MultiTexCoord3);
 #elif defined(GEOFX_TEXTURE_3)
-    GEOFX_COORDINATES(3, gl_MultiTexCoord3)
+    geofx_coordinates3 = gl_TextureMatrix[3] * gl_MultiTexCoord3;
 #endif
 #ifdef GEOFX_FOG
     gl_FogFragCoord = GEOFX_FOG >= 4 ? gl_FogCoord : abs(deformed.z);
