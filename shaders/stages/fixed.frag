@@ -9,13 +9,13 @@
 
 vec4 geofx_fragment(vec4 colour, vec4 map);
 
-// Where the terrain is seen from its edge, coordinates run through the whole texture within a pixel, and beyond a
+// Where the terrain is seen from its edge, coordinates run through the whole texture and more within a pixel, and beyond a
 // triangle's border to infinity. The coarsest level is all that can be seen there; but Mesa's llvmpipe, when it filters
 // anisotropically, visits every texel between the neighbours, for minutes.
-vec2 tame(vec4 coordinates)
+vec4 tame(vec4 coordinates)
 {
     vec2 place = coordinates.xy / coordinates.w;
-    return all(lessThan(fwidth(place), vec2(1.0))) ? place : clamp(place, 0.0, 1.0);
+    return all(lessThan(fwidth(place), vec2(2.0))) ? coordinates : vec4(clamp(place, 0.0, 1.0), 0.0, 1.0);
 }
 
 // The environments of OpenGL 2.1, Tables 3.22 and 3.23. `code` is 1 modulate, 2 replace, 3 decal, 4 blend, 5 add; and, as
@@ -40,26 +40,14 @@ vec4 environment(int code, vec4 colour, vec4 texel, vec4 constant)
     return vec4(format == 2 ? colour.rgb : colour.rgb * texel.rgb, alpha);
 }
 
-#if defined(GEOFX_TEXTURE_0) || defined(GEOFX_MAP)
-centroid in vec4 geofx_coordinates0;
-#endif
 #ifdef GEOFX_TEXTURE_0
 uniform sampler2D geofx_texture0;
-#endif
-#ifdef GEOFX_TEXTURE_1
-centroid in vec4 geofx_coordinates1;
 #endif
 #ifdef GEOFX_TEXTURE_1
 uniform sampler2D geofx_texture1;
 #endif
 #ifdef GEOFX_TEXTURE_2
-centroid in vec4 geofx_coordinates2;
-#endif
-#ifdef GEOFX_TEXTURE_2
 uniform sampler2D geofx_texture2;
-#endif
-#ifdef GEOFX_TEXTURE_3
-centroid in vec4 geofx_coordinates3;
 #endif
 #ifdef GEOFX_TEXTURE_3
 uniform sampler2D geofx_texture3;
@@ -72,22 +60,22 @@ void main()
 {
     vec4 colour = gl_Color;
 #ifdef GEOFX_TEXTURE_0
-    colour = environment(GEOFX_TEXTURE_0, colour, texture2D(geofx_texture0, tame(geofx_coordinates0)), gl_TextureEnvColor[0]);
+    colour = environment(GEOFX_TEXTURE_0, colour, texture2DProj(geofx_texture0, tame(gl_TexCoord[0])), gl_TextureEnvColor[0]);
 #endif
 #ifdef GEOFX_TEXTURE_1
-    colour = environment(GEOFX_TEXTURE_1, colour, texture2D(geofx_texture1, tame(geofx_coordinates1)), gl_TextureEnvColor[1]);
+    colour = environment(GEOFX_TEXTURE_1, colour, texture2DProj(geofx_texture1, tame(gl_TexCoord[1])), gl_TextureEnvColor[1]);
 #endif
 #ifdef GEOFX_TEXTURE_2
-    colour = environment(GEOFX_TEXTURE_2, colour, texture2D(geofx_texture2, tame(geofx_coordinates2)), gl_TextureEnvColor[2]);
+    colour = environment(GEOFX_TEXTURE_2, colour, texture2DProj(geofx_texture2, tame(gl_TexCoord[2])), gl_TextureEnvColor[2]);
 #endif
 #ifdef GEOFX_TEXTURE_3
-    colour = environment(GEOFX_TEXTURE_3, colour, texture2D(geofx_texture3, tame(geofx_coordinates3)), gl_TextureEnvColor[3]);
+    colour = environment(GEOFX_TEXTURE_3, colour, texture2DProj(geofx_texture3, tame(gl_TexCoord[3])), gl_TextureEnvColor[3]);
 #endif
 #ifdef GEOFX_COLOR_SUM
     colour.rgb = clamp(colour.rgb + gl_SecondaryColor.rgb, 0.0, 1.0);
 #endif
 #ifdef GEOFX_MAP
-    colour = geofx_fragment(colour, gl_Color * texture2D(geofx_map, tame(geofx_coordinates0)));
+    colour = geofx_fragment(colour, gl_Color * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
 #else
     colour = geofx_fragment(colour, vec4(0.0));
 #endif

@@ -132,22 +132,6 @@ vec4 generated(int unit, int code, vec4 given, vec4 eye, vec3 normal)
 }
 #endif
 
-// Interpolated within the covered part of a pixel, so that multisampling does not take colours from beyond a border.
-#if defined(GEOFX_TEXTURE_0) || defined(GEOFX_MAP)
-centroid out vec4 geofx_coordinates0;
-#endif
-#ifdef GEOFX_TEXTURE_1
-centroid out vec4 geofx_coordinates1;
-#endif
-#ifdef GEOFX_TEXTURE_2
-centroid out vec4 geofx_coordinates2;
-#endif
-#ifdef GEOFX_TEXTURE_3
-centroid out vec4 geofx_coordinates3;
-#endif
-
-#define GEOFX_GENERATED(unit, code, given) gl_TextureMatrix[unit] * generated(unit, code, given, eye, normal)
-
 void main()
 {
     vec4 eye = gl_ModelViewMatrix * gl_Vertex;
@@ -187,25 +171,29 @@ void main()
 #endif
 #endif
 
+#if defined(GEOFX_TEXTURE_0) || defined(GEOFX_MAP)
+    gl_TexCoord[0] = gl_TextureMatrix[0] * gl_MultiTexCoord0;
 #ifdef GEOFX_TEXGEN_0
-    geofx_coordinates0 = GEOFX_GENERATED(0, GEOFX_TEXGEN_0, gl_MultiTexCoord0);
-#elif defined(GEOFX_TEXTURE_0) || defined(GEOFX_MAP)
-    geofx_coordinates0 = gl_TextureMatrix[0] * gl_MultiTexCoord0;
+    gl_TexCoord[0] = gl_TextureMatrix[0] * generated(0, GEOFX_TEXGEN_0, gl_MultiTexCoord0, eye, normal);
 #endif
+#endif
+#ifdef GEOFX_TEXTURE_1
+    gl_TexCoord[1] = gl_TextureMatrix[1] * gl_MultiTexCoord1;
 #ifdef GEOFX_TEXGEN_1
-    geofx_coordinates1 = GEOFX_GENERATED(1, GEOFX_TEXGEN_1, gl_MultiTexCoord1);
-#elif defined(GEOFX_TEXTURE_1)
-    geofx_coordinates1 = gl_TextureMatrix[1] * gl_MultiTexCoord1;
+    gl_TexCoord[1] = gl_TextureMatrix[1] * generated(1, GEOFX_TEXGEN_1, gl_MultiTexCoord1, eye, normal);
 #endif
+#endif
+#ifdef GEOFX_TEXTURE_2
+    gl_TexCoord[2] = gl_TextureMatrix[2] * gl_MultiTexCoord2;
 #ifdef GEOFX_TEXGEN_2
-    geofx_coordinates2 = GEOFX_GENERATED(2, GEOFX_TEXGEN_2, gl_MultiTexCoord2);
-#elif defined(GEOFX_TEXTURE_2)
-    geofx_coordinates2 = gl_TextureMatrix[2] * gl_MultiTexCoord2;
+    gl_TexCoord[2] = gl_TextureMatrix[2] * generated(2, GEOFX_TEXGEN_2, gl_MultiTexCoord2, eye, normal);
 #endif
+#endif
+#ifdef GEOFX_TEXTURE_3
+    gl_TexCoord[3] = gl_TextureMatrix[3] * gl_MultiTexCoord3;
 #ifdef GEOFX_TEXGEN_3
-    geofx_coordinates3 = GEOFX_GENERATED(3, GEOFX_TEXGEN_3, gl_MultiTexCoord3);
-#elif defined(GEOFX_TEXTURE_3)
-    geofx_coordinates3 = gl_TextureMatrix[3] * gl_MultiTexCoord3;
+    gl_TexCoord[3] = gl_TextureMatrix[3] * generated(3, GEOFX_TEXGEN_3, gl_MultiTexCoord3, eye, normal);
+#endif
 #endif
 #ifdef GEOFX_FOG
     gl_FogFragCoord = GEOFX_FOG >= 4 ? gl_FogCoord : abs(deformed.z);

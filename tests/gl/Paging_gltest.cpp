@@ -378,7 +378,7 @@ TEST_F(Paging, GuardKeepsAnotherReadCallback)
 TEST_F(Paging, AFailedTileThatIsAskedForAgainIsAnsweredSilently)
 {
     const Scene scene = load(PagedScene::write(folder.path(), PagedScene::Kind::Flat));
-    auto* lod = dynamic_cast<osg::PagedLOD*>(scene.node->asGroup()->getChild(0));
+    auto* lod = dynamic_cast<osg::PagedLOD*>(scene.effects->getChild(0)->asGroup()->getChild(0));
     ASSERT_NE(lod, nullptr);
     auto* options = dynamic_cast<osgDB::Options*>(lod->getDatabaseOptions());
     ASSERT_NE(options, nullptr);
