@@ -184,7 +184,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
 
     const double height = getViewport() ? getViewport()->height() : 0.0;
     _cullSmall = (_outerCullingMode & SMALL_FEATURE_CULLING) && height > 0.0;
-    _smallPixels = getSmallFeatureCullingPixelSize();
+    _smallPixels = static_cast<double>(getSmallFeatureCullingPixelSize());
     if (height > 0.0)
     {
         _pixelSize =
@@ -215,8 +215,8 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
         computeNearPlane();
         _near = _computed_znear;
         _far = _computed_zfar;
-        _computed_znear = FLT_MAX;
-        _computed_zfar = -FLT_MAX;
+        _computed_znear = static_cast<value_type>(FLT_MAX);
+        _computed_zfar = -static_cast<value_type>(FLT_MAX);
     }
     if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && _far >= _near)
     {

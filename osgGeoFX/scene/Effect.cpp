@@ -140,7 +140,7 @@ bool Effect::setPropertyTexts(const Texts& texts, std::string& error)
         }
         if (!found->parse(text, values[found->name], error))
         {
-            error = std::string(className()) + ": " + error;
+            error.insert(0, std::string(className()) + ": ");
             return false;
         }
     }

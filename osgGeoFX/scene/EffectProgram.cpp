@@ -62,12 +62,15 @@ Parts partsOf(const std::vector<osg::ref_ptr<Effect>>& effects, const ShaderLibr
         const std::string file = vertex ? deformation->vertexFile() : deformation->fragmentFile();
         if (file.empty()) continue;
         parts.functions += replaced(deformation->constants() + library.read(file), "SLOT_", prefix);
-        parts.deform +=
-            conditional(define, "    geofx_styleBlend = max(geofx_styleBlend, " + prefix +
-                                    "style(position));\n    position = " + prefix + "deform(position);\n");
-        parts.normal += conditional(define, "    normal = " + prefix +
-                                                "normal(position, normal);\n    position = " + prefix +
-                                                "deform(position);\n");
+        const std::string move = "    position = " + prefix + "deform(position);\n";
+        std::string deform = "    geofx_styleBlend = max(geofx_styleBlend, ";
+        deform += prefix + "style(position));\n";
+        deform += move;
+        parts.deform += conditional(define, deform);
+        std::string normal = "    normal = ";
+        normal += prefix + "normal(position, normal);\n";
+        normal += move;
+        parts.normal += conditional(define, normal);
         parts.restyle +=
             conditional(define, "    result = " + prefix + "restyle(result, map, geofx_styleBlend);\n");
     }

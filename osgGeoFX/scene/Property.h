@@ -44,7 +44,7 @@ struct OSGGEOFX_EXPORT Property
     static Property choice(std::string name, int value, std::vector<std::string> choices);
 
     /// Binds a member: `Property::number(...).of<&Class::_member>()`.
-    template<auto member>
+    template<auto Member>
     Property of() &&;
 
     /// The name for a person's text: degrees are said in it ("bendAngleDegrees").
@@ -67,18 +67,18 @@ template<typename Class, typename Value>
 Value valueOf(Value Class::*);
 } // namespace detail
 
-template<auto member>
+template<auto Member>
 Property Property::of() &&
 {
-    using Class = decltype(detail::ownerOf(member));
-    using Value = decltype(detail::valueOf(member));
+    using Class = decltype(detail::ownerOf(Member));
+    using Value = decltype(detail::valueOf(Member));
     get = [](const osg::Object& object)
     {
-        return static_cast<double>(static_cast<const Class&>(object).*member);
+        return static_cast<double>(static_cast<const Class&>(object).*Member);
     };
     put = [](osg::Object& object, double value)
     {
-        static_cast<Class&>(object).*member = static_cast<Value>(value);
+        static_cast<Class&>(object).*Member = static_cast<Value>(value);
     };
     return std::move(*this);
 }

@@ -15,7 +15,7 @@ vec4 geofx_fragment(vec4 colour, vec4 map);
 vec4 tame(vec4 coordinates)
 {
     vec2 place = coordinates.xy / coordinates.w;
-    return all(lessThan(fwidth(place), vec2(2.0))) ? coordinates : vec4(clamp(place, 0.0, 1.0), 0.0, 1.0);
+    return all(lessThan(fwidth(place), vec2(4.0))) ? coordinates : vec4(clamp(place, 0.0, 1.0), 0.0, 1.0);
 }
 
 // The environments of OpenGL 2.1, Tables 3.22 and 3.23. `code` is 1 modulate, 2 replace, 3 decal, 4 blend, 5 add; and, as

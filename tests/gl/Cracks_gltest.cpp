@@ -154,13 +154,13 @@ protected:
 
     static void TearDownTestSuite()
     {
-        _geocentric.reset();
-        _projected.reset();
+        geocentricDatabase.reset();
+        projectedDatabase.reset();
     }
 
     static const LoadedDatabase& database(bool geocentric = true)
     {
-        auto& result = geocentric ? _geocentric : _projected;
+        auto& result = geocentric ? geocentricDatabase : projectedDatabase;
         if (!result) result = std::make_unique<LoadedDatabase>(geocentric);
         return *result;
     }
@@ -227,10 +227,10 @@ protected:
     static int pictures() { return fullTest() ? 100 : 20; }
 
 private:
-    static std::unique_ptr<LoadedDatabase> _geocentric, _projected;
+    static std::unique_ptr<LoadedDatabase> geocentricDatabase, projectedDatabase;
 };
 
-std::unique_ptr<LoadedDatabase> Cracks::_geocentric, Cracks::_projected;
+std::unique_ptr<LoadedDatabase> Cracks::geocentricDatabase, Cracks::projectedDatabase;
 
 /// What a PagedLOD does when all its files are there.
 Refine settled(const osg::Vec3d& eye)
