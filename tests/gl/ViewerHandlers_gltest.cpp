@@ -54,8 +54,7 @@ protected:
 
 TEST_F(ViewerHandlers, CursorReadoutTellsThePlaceBelowThePointer)
 {
-    osg::ref_ptr<osgGeoFX::CursorReadout> readout =
-        new osgGeoFX::CursorReadout(*scene);
+    osg::ref_ptr<osgGeoFX::CursorReadout> readout = new osgGeoFX::CursorReadout(*scene);
     viewer().addEventHandler(readout);
     viewer().getEventQueue()->setMouseInputRange(0.0f, 0.0f, 256.0f, 256.0f);
     viewer().getEventQueue()->mouseMotion(128.0f, 128.0f);
