@@ -11,7 +11,8 @@ namespace osgGeoFX
 
     The ground up to `focusLine` (b_i in the paper) is drawn as ever. Behind it the ground bends down until it lies along
     the ray of `horizonLine` (r_i), so that the horizon stays on that line of the picture, whatever the camera does.
-    Lines are fractions of the picture's height from its bottom. With a rolled camera the horizon rolls too.
+    Lines are fractions of the picture's height from its bottom. With a rolled camera the line runs through the
+    middle of horizonLine to the vanishing point of the level direction across the view, as a real horizon does.
 
     The view is there where the rays of both lines meet the reference plane; where they do not (the eye is below it, or the
     natural horizon is below horizonLine) nothing is deformed, and the bend fades out before. It bends by 90° at most, and

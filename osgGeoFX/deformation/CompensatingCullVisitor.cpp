@@ -37,19 +37,6 @@ struct Access : public osgUtil::CullVisitor
     }
 };
 
-/// Largest length that a matrix gives to a unit vector along an axis.
-double scaleOf(const osg::Matrixd& matrix)
-{
-    double square = 0.0;
-    for (int row = 0; row < 3; ++row)
-    {
-        square = std::max(square, matrix(row, 0) * matrix(row, 0) + matrix(row, 1) * matrix(row, 1) +
-                                      matrix(row, 2) * matrix(row, 2));
-    }
-    // Matrices that only turn and move are off by rounding; the bound must not shrink by it.
-    return std::abs(square - 1.0) < 1e-6 ? 1.0 + 1e-6 : std::sqrt(square);
-}
-
 double planeDistance(const osg::Vec4d& plane, const osg::Vec3d& point)
 {
     return plane.x() * point.x() + plane.y() * point.y() + plane.z() * point.z() + plane.w();
@@ -194,7 +181,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     meetAll(*_entry);
     meet(task.state);
     _mode.planes = (1u << _planes.size()) - 1u;
-    _scale = scaleOf(*getModelViewMatrix());
+    _scale = largestScale(*getModelViewMatrix());
     _near = DBL_MAX;
     _far = -DBL_MAX;
     _complaint.clear();
@@ -352,7 +339,7 @@ void CompensatingCullVisitor::apply(osg::Transform& node)
     node.computeLocalToWorldMatrix(*matrix, this);
     pushModelViewMatrix(matrix, node.getReferenceFrame());
     const double formerScale = _scale;
-    _scale = scaleOf(*matrix);
+    _scale = largestScale(*matrix);
     handle_cull_callbacks_and_traverse(node);
     _scale = formerScale;
     popModelViewMatrix();
@@ -595,6 +582,10 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
         return false;
     PlaneMask planes = test ? _mode.planes : 0;
     if (planes && side(deformed, planes) == Side::Outside) return false;
+    for (const auto& frame : _mode.chain->frames())
+    {
+        if (_complaint.empty()) _complaint = frame->complaint(box);
+    }
     // Where the box's middle shows there is no more to be found out.
     if (planes && inSight(deformed.centre, planes)) planes = 0;
     const bool extends = _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR &&
@@ -604,13 +595,6 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
         _mode.chain->bound(box, _hull);
         if (planes && (outside(_hull, planes) || meshOutside(drawable, planes))) return false;
         if (extends) includeDepths(_hull);
-        if (_complaint.empty() && _hull.points.size() > 8)
-        {
-            for (const auto& frame : _mode.chain->frames())
-            {
-                if (_complaint.empty()) _complaint = frame->complaint(box);
-            }
-        }
         if (_task.debugBounds)
         {
             const osg::Vec4 colour =

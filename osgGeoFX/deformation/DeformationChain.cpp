@@ -227,6 +227,16 @@ void DeformationSwitch::meet(const osg::StateSet* state)
     overridden = (define->second & osg::StateAttribute::OVERRIDE) != 0;
 }
 
+double largestScale(const osg::Matrixd& matrix)
+{
+    double square = 0.0;
+    for (int row = 0; row < 3; ++row)
+    {
+        square = std::max(square, osg::Vec3d(matrix(row, 0), matrix(row, 1), matrix(row, 2)).length2());
+    }
+    return std::sqrt(square) * (1.0 + 1e-6);
+}
+
 osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn)
 {
     return turn ? chain.placement(reference) : osg::Matrixd::translate(chain.deform(reference) - reference);

@@ -65,6 +65,9 @@ struct DeformationSwitch
     void meet(const osg::StateSet* state);
 };
 
+/// By how much a matrix lengthens a unit vector along an axis at most, rounded up, so that bounds do not shrink.
+double largestScale(const osg::Matrixd& matrix);
+
 /// Where an object that keeps its shape goes: eye space to eye space; upright where it does not `turn`.
 osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn);
 

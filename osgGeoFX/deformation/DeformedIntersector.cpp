@@ -63,16 +63,6 @@ double meet(const osg::Vec3d& origin, const osg::Vec3d& direction, const osg::Ve
     return (ac * q) / determinant;
 }
 
-double scaleOf(const osg::Matrixd& matrix)
-{
-    double square = 0.0;
-    for (int row = 0; row < 3; ++row)
-    {
-        square = std::max(square, osg::Vec3d(matrix(row, 0), matrix(row, 1), matrix(row, 2)).length2());
-    }
-    return std::sqrt(square) * (1.0 + 1e-6);
-}
-
 } // namespace
 
 DeformedLineIntersector::DeformedLineIntersector(const osg::Vec3d& origin, const osg::Vec3d& direction)
@@ -107,7 +97,7 @@ osgUtil::Intersector* DeformedLineIntersector::clone(osgUtil::IntersectionVisito
     {
         result->_chain = &ours->chain();
         result->_modelView = ours->modelView();
-        result->_scale = scaleOf(result->_modelView);
+        result->_scale = largestScale(result->_modelView);
     }
     return result;
 }
@@ -266,7 +256,7 @@ void DeformedIntersectionVisitor::apply(osg::Transform& node)
 void DeformedIntersectionVisitor::apply(osg::LOD& node)
 {
     const Scope scope(*this, node);
-    _lodRadius = static_cast<double>(node.getBound().radius()) * scaleOf(modelView());
+    _lodRadius = static_cast<double>(node.getBound().radius()) * largestScale(modelView());
     IntersectionVisitor::apply(static_cast<osg::Group&>(node));
 }
 

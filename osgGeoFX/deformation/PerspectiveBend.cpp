@@ -139,7 +139,7 @@ public:
     }
     std::string complaint(const EyeBox& box) const override
     {
-        if (!_look.foldPossible) return {};
+        if (!_look.foldPossible || reach(box.ball()) != Reach::Curved) return {};
         const osg::Vec3d normal = toOsg(_view.normal);
         double inner = profile(box.centre).y * (_view.bend.angle > 0.0 ? 1.0 : -1.0);
         for (const osg::Vec3d& half : box.half)

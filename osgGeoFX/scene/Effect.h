@@ -29,7 +29,8 @@ class Deformation;
 class OSGGEOFX_EXPORT Effect : public osg::Object
 {
 public:
-    /// Whether it is in force. Switching is free: no shader is compiled and nothing is uploaded anew.
+    /// Whether it is in force. Switching changes defines and uploads nothing; the first time that a combination of effects is
+    /// in force, its variant of the shaders is compiled.
     bool setEnabled(bool enabled) { return assign("enabled", enabled ? 1.0 : 0.0); }
     bool getEnabled() const { return _enabled; }
 

@@ -225,6 +225,8 @@ void EffectScene::addFunctions(osg::Program& program)
         _drawing->vertexFunctions->setName("stages/functions.vert");
         _drawing->fragmentFunctions->setName("stages/functions.frag");
     }
+    // The effects may differ from those that were drawn last; the next frame looks again.
+    _drawing->programMade = false;
     try
     {
         _drawing->updateFunctions(_effects);
@@ -358,13 +360,19 @@ void EffectScene::traverse(osg::NodeVisitor& visitor)
 
 void EffectScene::resizeGLObjectBuffers(unsigned int size)
 {
-    if (_drawing->program) _drawing->program->resizeGLObjectBuffers(size);
+    {
+        const std::lock_guard<std::mutex> lock(_drawing->mutex);
+        if (_drawing->program) _drawing->program->resizeGLObjectBuffers(size);
+    }
     osg::Group::resizeGLObjectBuffers(size);
 }
 
 void EffectScene::releaseGLObjects(osg::State* state) const
 {
-    if (_drawing->program) _drawing->program->releaseGLObjects(state);
+    {
+        const std::lock_guard<std::mutex> lock(_drawing->mutex);
+        if (_drawing->program) _drawing->program->releaseGLObjects(state);
+    }
     osg::Group::releaseGLObjects(state);
 }
 

@@ -30,7 +30,9 @@ namespace osgGeoFX
     **What it draws.** Everything below it, deformed by its effects in their order. Geometry without a shader keeps its
     look: materials, lights, up to four 2D textures with their environments, fog. Geometry with shaders of its own is
     deformed if these call geofx_vertex() and geofx_fragment() (shaders/stages/functions.*), after addFunctions();
-    else it stays where it is. A subgraph is left out with `stateSet->setDefine("GEOFX_DEFORMATION", OFF)`.
+    else it is drawn where it is, and should be left out. A subgraph is left out with
+    `stateSet->setDefine("GEOFX_DEFORMATION", OFF)` and, since the groups above it are culled by what the deformation
+    makes of their bounds, `setCullingActive(false)` on its node.
     Cameras and projections below it (render to texture, head-up displays) are drawn as ever. So is everything in
     cameras that stand above it in the graph, such as a shadow map's, unless nestedCameras is on.
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <tools/CullHarness.h>
 
+#include <osg/GLObjects>
 #include <osg/TriangleFunctor>
 #include <osgDB/ReadFile>
 #include <osgUtil/RenderStage>
@@ -118,6 +119,8 @@ CullHarness::CullHarness(osg::GraphicsContext& context, osg::Node* scene, int wi
 void CullHarness::setScene(osg::Node* scene)
 {
     _view->setSceneData(scene);
+    // Or OpenGL's buffers of the former scene would be used for tiles of this one, which Mesa finds slow.
+    if (_context->makeCurrent()) osg::flushAllDeletedGLObjects(_context->getState()->getContextID());
 }
 
 void CullHarness::setCamera(const osg::Matrixd& view, const osg::Matrixd& projection)
