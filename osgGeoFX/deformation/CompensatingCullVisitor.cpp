@@ -111,6 +111,7 @@ bool CompensatingCullVisitor::startsFrame(osgUtil::CullVisitor& outer)
     const bool starts = frame != _frame || Access::order(outer) < _order;
     _frame = frame;
     if (starts) reset();
+    if (starts) _placedUsed = 0;
     if (starts && frame % 256 == 0) _meshBoxes.purge();
     return starts;
 }
@@ -313,13 +314,28 @@ void CompensatingCullVisitor::applyRigid(RigidReference& node)
     pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
     meet(_task.untouched);
     pushStateSet(_task.untouched);
+    pushStateSet(placed(placement));
     {
         const Scope scope(*this, node);
         if (!scope.skip()) CullVisitor::apply(node);
     }
     popStateSet();
+    popStateSet();
     popModelViewMatrix();
     _mode = former;
+}
+
+osg::StateSet* CompensatingCullVisitor::placed(const osg::Matrixd& placement)
+{
+    if (_placedUsed == _placed.size())
+    {
+        _placed.push_back(new osg::StateSet);
+        _placed.back()->setDefine("GEOFX_PLACED");
+    }
+    osg::StateSet* state = _placed[_placedUsed++];
+    state->getOrCreateUniform("geofx_unplaced", osg::Uniform::FLOAT_MAT4)
+        ->set(osg::Matrixf(osg::Matrixd::inverse(placement)));
+    return state;
 }
 
 void CompensatingCullVisitor::apply(osg::Transform& node)
@@ -411,7 +427,7 @@ void CompensatingCullVisitor::passUntouched(NodeType& node)
     for (osgUtil::StateGraph* graph = _currentStateGraph; graph && graph != _entry; graph = graph->_parent)
     {
         const osg::StateSet* set = graph->getStateSet();
-        if (set != _task.state && set != _task.untouched) below.push_back(set);
+        if (set != _task.state && set != _task.untouched && !isPlaced(set)) below.push_back(set);
     }
     _currentStateGraph = _entry;
     for (auto set = below.rbegin(); set != below.rend(); ++set)

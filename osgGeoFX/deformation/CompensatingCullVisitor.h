@@ -9,6 +9,7 @@
 #include <osg/Geometry>
 #include <osgUtil/CullVisitor>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 #include <vector>
@@ -94,6 +95,12 @@ private:
         Inside
     };
 
+    /// For what is below an object that was moved as a whole: the way back.
+    osg::StateSet* placed(const osg::Matrixd& placement);
+    bool isPlaced(const osg::StateSet* state) const
+    {
+        return std::find(_placed.begin(), _placed.end(), state) != _placed.end();
+    }
     void applyRigid(RigidReference& node);
     /// Takes a state set's word on whether what is below it is deformed.
     void meet(const osg::StateSet* state);
@@ -136,6 +143,8 @@ private:
     Hull _hull;
     Hull _smallHull;
     MeshBoxes _meshBoxes;
+    std::vector<osg::ref_ptr<osg::StateSet>> _placed; ///< one for each such object of a frame
+    std::size_t _placedUsed = 0;
     mutable std::vector<osg::Vec2d> _outline;
     bool _frustumSides = false;
     std::string _complaint;

@@ -3,6 +3,7 @@
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 
 #include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/scene/GlobeFrame.h>
 
 #include <algorithm>
 #include <cmath>
@@ -97,19 +98,7 @@ osg::ref_ptr<const DeformationFrame> VerticalExaggeration::frame(const ViewGeome
     frame.height = view.eyeHeight;
     frame.factor = _factor;
     frame.base = _base;
-    if (view.ground.ellipsoid)
-    {
-        // The ellipsoid's equation at the eye's foot: half of its gradient has the length N(φ)/a² · … = 1/(a²·k).
-        const double a = view.ground.ellipsoid->getRadiusEquator();
-        const double b = view.ground.ellipsoid->getRadiusPolar();
-        const double sine = view.up * view.polarAxis;
-        const double cosine2 = 1.0 - sine * sine;
-        // The support function: distance of the tangent plane from the centre, 1/|gradient|.
-        const double support = std::sqrt(a * a * cosine2 + b * b * sine * sine);
-        frame.curvature = support / (a * a);
-        frame.scale = 1.0 / support;
-        frame.flattening = a * a / (b * b) - 1.0;
-    }
+    if (view.ground.ellipsoid) setGlobe(frame, *view.ground.ellipsoid, view.up * view.polarAxis);
     // Not a number, or beyond what floats can work with: no camera over a terrain is like this.
     const double sum = std::abs(view.eyeHeight) + std::abs(view.up * view.polarAxis) + frame.curvature;
     if (!(sum < 1e15)) return nullptr;

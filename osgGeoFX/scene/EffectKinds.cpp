@@ -6,6 +6,7 @@
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
 
 #include <cctype>
 #include <sstream>
@@ -34,6 +35,7 @@ constexpr Kind kinds[] = {
     {"pedestrianView", make<PedestrianView>},
     {"blendedView", make<BlendedView>},
     {"verticalExaggeration", make<VerticalExaggeration>},
+    {"projectiveMappings", make<ProjectiveMappings>},
 };
 
 std::string joined(const std::vector<std::string>& words)
@@ -63,9 +65,9 @@ osg::ref_ptr<Effect> createEffect(const std::string& name)
     return nullptr;
 }
 
-std::string kindOf(const Effect& effect)
+std::string kindOf(const osg::Object& object)
 {
-    std::string name = effect.className();
+    std::string name = object.className();
     if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
     return name;
 }

@@ -18,7 +18,7 @@ OSGGEOFX_EXPORT std::vector<std::string> effectKinds();
 OSGGEOFX_EXPORT osg::ref_ptr<Effect> createEffect(const std::string& kind);
 
 /// The kind's name of an effect; its class name where it is none of the kit's.
-OSGGEOFX_EXPORT std::string kindOf(const Effect& effect);
+OSGGEOFX_EXPORT std::string kindOf(const osg::Object& object);
 
 /// An effect from one line: "birdsEyeView focusLine=0.3 horizonLine=0.9". Null, with a sentence in `error`, where
 /// it says something that makes no sense.

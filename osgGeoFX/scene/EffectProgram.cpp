@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/deformation/Deformation.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
+#include <osgGeoFX/scene/SurfaceEffect.h>
 
 #include <osg/Notify>
 
@@ -25,15 +26,16 @@ std::string replaced(std::string text, const std::string& word, const std::strin
 /// What stands in the place of the words in capitals in stages/functions.*.
 struct Parts
 {
-    std::string imports, functions, deform, normal, restyle;
+    std::string imports, functions, locate, deform, normal, colour;
 
     std::string fill(std::string text) const
     {
         text = replaced(std::move(text), "GEOFX_IMPORTED_EFFECTS", imports);
         text = replaced(std::move(text), "GEOFX_EFFECT_FUNCTIONS", functions);
+        text = replaced(std::move(text), "GEOFX_LOCATE_CALLS", locate);
         text = replaced(std::move(text), "GEOFX_DEFORM_CALLS", deform);
         text = replaced(std::move(text), "GEOFX_NORMAL_CALLS", normal);
-        return replaced(std::move(text), "GEOFX_RESTYLE_CALLS", restyle);
+        return replaced(std::move(text), "GEOFX_COLOUR_CALLS", colour);
     }
 };
 
@@ -42,9 +44,32 @@ std::string fileOf(osg::Shader::Type stage)
     return stage == osg::Shader::VERTEX ? "stages/functions.vert" : "stages/functions.frag";
 }
 
-std::string conditional(const std::string& define, const std::string& text)
+std::string conditional(const std::string& condition, const std::string& text)
 {
-    return "#ifdef " + define + "\n" + text + "#endif\n";
+    return "#if " + condition + "\n" + text + "#endif\n";
+}
+
+void addDeformation(Parts& parts, const Deformation& deformation, const std::string& prefix,
+                    const std::string& define)
+{
+    const std::string move = "    position = " + prefix + "deform(position);\n";
+    std::string deform = "    geofx_styleBlend = max(geofx_styleBlend, ";
+    deform += prefix + "style(position));\n";
+    deform += move;
+    parts.deform += conditional("defined(" + define + ")", deform);
+    std::string normal = "    normal = ";
+    normal += prefix + "normal(position, normal);\n";
+    normal += move;
+    parts.normal += conditional("defined(" + define + ")", normal);
+    if (deformation.fragmentFile().empty()) return;
+    parts.colour += conditional("defined(GEOFX_DEFORMATION) && defined(" + define + ")",
+                                "    result = " + prefix + "restyle(result, map, geofx_styleBlend);\n");
+}
+
+void addSurface(Parts& parts, const std::string& prefix, const std::string& define)
+{
+    parts.locate += conditional("defined(" + define + ")", "    " + prefix + "locate(located);\n");
+    parts.colour += conditional("defined(" + define + ")", "    result = " + prefix + "colour(result);\n");
 }
 
 /// The code of all effects for one stage.
@@ -54,25 +79,25 @@ Parts partsOf(const std::vector<osg::ref_ptr<Effect>>& effects, const ShaderLibr
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
         const Deformation* deformation = effects[i]->asDeformation();
-        if (!deformation) continue;
+        const SurfaceEffect* surface = effects[i]->asSurfaceEffect();
+        if (!deformation && !surface) continue;
         const std::string prefix = EffectProgram::prefix(i);
         const std::string define = EffectProgram::define(i);
         // Short lines: some drivers broke on long ones.
         parts.imports += "#pragma import_defines(" + define + ")\n";
-        const std::string file = vertex ? deformation->vertexFile() : deformation->fragmentFile();
-        if (file.empty()) continue;
-        parts.functions += replaced(deformation->constants() + library.read(file), "SLOT_", prefix);
-        const std::string move = "    position = " + prefix + "deform(position);\n";
-        std::string deform = "    geofx_styleBlend = max(geofx_styleBlend, ";
-        deform += prefix + "style(position));\n";
-        deform += move;
-        parts.deform += conditional(define, deform);
-        std::string normal = "    normal = ";
-        normal += prefix + "normal(position, normal);\n";
-        normal += move;
-        parts.normal += conditional(define, normal);
-        parts.restyle +=
-            conditional(define, "    result = " + prefix + "restyle(result, map, geofx_styleBlend);\n");
+        std::string text;
+        if (deformation)
+        {
+            const std::string file = vertex ? deformation->vertexFile() : deformation->fragmentFile();
+            if (!file.empty()) text = deformation->constants() + library.read(file);
+            addDeformation(parts, *deformation, prefix, define);
+        }
+        else
+        {
+            text = library.read(vertex ? surface->vertexFile() : surface->fragmentFile());
+            addSurface(parts, prefix, define);
+        }
+        parts.functions += replaced(text, "SLOT_", prefix);
     }
     return parts;
 }
@@ -104,6 +129,8 @@ std::string EffectProgram::key(const Effects& effects)
         const Deformation* deformation = effect->asDeformation();
         if (deformation)
             key += deformation->vertexFile() + deformation->fragmentFile() + deformation->constants();
+        if (const SurfaceEffect* surface = effect->asSurfaceEffect())
+            key += surface->vertexFile() + surface->fragmentFile();
         key += ';';
     }
     return key;

@@ -6,6 +6,7 @@
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectProgram.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
+#include <osgGeoFX/scene/SurfaceEffect.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/LOD>
@@ -66,6 +67,7 @@ bool finite(const DeformationFrame& frame)
                        });
 }
 
+/// Of the deformations, the defines of all effects.
 void fill(osg::StateSet& state, const Frames& frames)
 {
     setDefine(state, "GEOFX_DEFORMATION", true);
@@ -284,6 +286,25 @@ Frames framesFor(const EffectProgram::Effects& effects, const ViewGeometry& firs
     return frames;
 }
 
+/// Of the effects that colour surfaces; whether there are any at work.
+bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, const ViewGeometry& geometry,
+                  osgUtil::CullVisitor& outer)
+{
+    bool any = false;
+    const osg::Viewport* viewport = outer.getViewport();
+    const SurfaceView view = {geometry, *outer.getModelViewMatrix(), viewport ? viewport->width() : 0.0,
+                              viewport ? viewport->height() : 0.0};
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        SurfaceEffect* surface = effects[i]->asSurfaceEffect();
+        if (!surface || !effects[i]->getEnabled()) continue;
+        const bool draws = surface->fill(state, EffectProgram::prefix(i), view);
+        setDefine(state, EffectProgram::define(i), draws);
+        any = any || draws;
+    }
+    return any;
+}
+
 osg::ref_ptr<DeformationChain> chainOf(const Frames& frames)
 {
     osg::ref_ptr<DeformationChain> chain = new DeformationChain;
@@ -331,19 +352,22 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     const Frames frames = framesFor(_effects, view);
     CompensatingCullVisitor::Task task;
     task.chain = chainOf(frames);
-    if (task.chain->empty() && !_debugBounds) return false;
-
-    task.program = _drawing->programFor(_effects);
     task.mapUnit = mapUnitOf(_effects);
     Drawing::Camera& own = _drawing->camera(outer);
     if (own.visitor->startsFrame(outer)) own.used = 0;
     if (own.used == own.states.size()) own.states.push_back(createState(task.mapUnit));
-    osg::StateSet& state = *own.states[own.used++];
+    osg::StateSet& state = *own.states[own.used];
     state.getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(task.mapUnit, 0));
     fill(state, frames);
+    const bool surfaces = fillSurfaces(_effects, state, view, outer);
+    if (task.chain->empty() && !surfaces && !_debugBounds) return false;
+
+    ++own.used;
+    task.program = _drawing->programFor(_effects);
     task.state = &state;
     task.untouched = _drawing->untouched;
-    task.compensate = _compensation;
+    // Where nothing moves, OSG's own tests are right, and faster.
+    task.compensate = _compensation && (_debugBounds || !task.chain->empty());
     task.debugBounds = _debugBounds;
     task.tileError = view.ground.tileError;
     own.visitor->run(outer, *this, task);
@@ -372,6 +396,10 @@ void EffectScene::releaseGLObjects(osg::State* state) const
     {
         const std::lock_guard<std::mutex> lock(_drawing->mutex);
         if (_drawing->program) _drawing->program->releaseGLObjects(state);
+    }
+    for (const osg::ref_ptr<Effect>& effect : _effects)
+    {
+        if (const SurfaceEffect* surface = effect->asSurfaceEffect()) surface->releaseGLObjects(state);
     }
     osg::Group::releaseGLObjects(state);
 }

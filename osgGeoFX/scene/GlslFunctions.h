@@ -22,10 +22,13 @@ namespace osgGeoFX
 namespace glslBuiltIns
 {
 using glm::abs;
+using glm::ceil;
 using glm::clamp;
 using glm::dot;
 using glm::length;
+using glm::log2;
 using glm::max;
+using glm::min;
 using glm::mix;
 using glm::normalize;
 using glm::sqrt;
@@ -42,12 +45,15 @@ using Vector2 = glm::dvec2;
 using Vector3 = glm::dvec3;
 using Profile = glm::dvec2;
 using Position = glm::dvec3;
+using Rgb = glm::dvec3;
+using Rgba = glm::dvec4;
 #include <shaders/lib/series.glsl>
 
 #include <shaders/lib/bend.glsl>
 
 #include <shaders/lib/bendview.glsl>
 #include <shaders/lib/exaggeration.glsl>
+#include <shaders/lib/mapping.glsl>
 } // namespace glsl
 
 namespace glslf
@@ -61,12 +67,15 @@ using Vector2 = glm::vec2;
 using Vector3 = glm::vec3;
 using Profile = glm::vec2;
 using Position = glm::vec3;
+using Rgb = glm::vec3;
+using Rgba = glm::vec4;
 #include <shaders/lib/series.glsl>
 
 #include <shaders/lib/bend.glsl>
 
 #include <shaders/lib/bendview.glsl>
 #include <shaders/lib/exaggeration.glsl>
+#include <shaders/lib/mapping.glsl>
 } // namespace glslf
 
 } // namespace osgGeoFX

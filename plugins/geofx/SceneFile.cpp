@@ -147,9 +147,9 @@ private:
     }
 
     /// What the schema cannot say is found here: properties that do not fit each other.
-    void set(Effect& effect, xmlNode* node) const
+    void set(PropertyHolder& object, xmlNode* node) const
     {
-        Effect::Texts texts;
+        PropertyHolder::Texts texts;
         for (const xmlAttr* attribute = node->properties; attribute; attribute = attribute->next)
         {
             if (attribute->ns) continue;
@@ -158,11 +158,11 @@ private:
             texts.emplace_back(name, value.substr(value.rfind('+', 0) == 0 ? 1 : 0));
         }
         std::string error;
-        const bool fits = effect.setPropertyTexts(texts, error);
+        const bool fits = object.setPropertyTexts(texts, error);
         if (!fits && _errors.size() < mostErrors) _errors.push_back(place(node).message(error));
-        for (const Effect::Part& part : effect.parts())
+        for (const PropertyHolder::Part& part : object.parts())
         {
-            if (xmlNode* below = child(node, part.name)) set(*part.effect, below);
+            if (xmlNode* below = child(node, part.name)) set(*part.object, below);
         }
     }
 

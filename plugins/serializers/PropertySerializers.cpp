@@ -18,7 +18,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// More properties than any effect has: a binary file that says so is damaged.
+/// More properties than any class has: a binary file that says so is damaged.
 constexpr unsigned int mostProperties = 1000;
 
 std::string osgName(const std::string& name)
@@ -50,11 +50,11 @@ bool parseFileText(const Property& property, const std::string& text, double& va
     return false;
 }
 
-/// Collects what a file says of an effect.
+/// Collects what a file says of an object.
 class Reading
 {
 public:
-    explicit Reading(Effect& effect) : _effect(effect) {}
+    explicit Reading(PropertyHolder& holder) : _holder(holder) {}
 
     void take(const Property& property, const std::string& text)
     {
@@ -63,7 +63,7 @@ public:
         if (parseFileText(property, text, value, error))
             _values[property.name] = value;
         else
-            warn(std::string(_effect.className()) + ": " + error);
+            warn(std::string(_holder.className()) + ": " + error);
     }
     void warn(const std::string& sentence) const
     {
@@ -72,11 +72,11 @@ public:
     void finish()
     {
         std::string error;
-        if (!_effect.setProperties(_values, error)) warn(error);
+        if (!_holder.setProperties(_values, error)) warn(error);
     }
 
 private:
-    Effect& _effect;
+    PropertyHolder& _holder;
     std::map<std::string, double> _values;
 };
 
@@ -133,20 +133,20 @@ bool parseExact(const std::string& text, double& value)
 
 bool PropertiesSerializer::read(osgDB::InputStream& stream, osg::Object& object)
 {
-    auto& effect = static_cast<Effect&>(object);
-    Reading reading(effect);
-    (stream.isBinary() ? readBinary : readText)(stream, effect.properties(), reading);
+    auto& holder = static_cast<PropertyHolder&>(object);
+    Reading reading(holder);
+    (stream.isBinary() ? readBinary : readText)(stream, holder.properties(), reading);
     reading.finish();
     return true;
 }
 
 bool PropertiesSerializer::write(osgDB::OutputStream& stream, const osg::Object& object)
 {
-    const auto& effect = static_cast<const Effect&>(object);
+    const auto& holder = static_cast<const PropertyHolder&>(object);
     std::map<std::string, std::string> texts;
-    for (const Property& property : effect.properties())
+    for (const Property& property : holder.properties())
     {
-        const double value = property.get(effect);
+        const double value = property.get(holder);
         if (value != property.defaultValue) texts[osgName(property.name)] = fileText(property, value);
     }
     if (stream.isBinary()) stream << static_cast<unsigned int>(texts.size());
@@ -187,7 +187,7 @@ osgDB::BaseSerializer::Type PropertyAccess::type() const
 
 bool PropertyAccess::write(osgDB::OutputStream& stream, const osg::Object& object)
 {
-    const double value = static_cast<const Effect&>(object).getProperty(_property);
+    const double value = static_cast<const PropertyHolder&>(object).getProperty(_property);
     if (type() == RW_DOUBLE)
         stream << value;
     else if (type() == RW_BOOL)
@@ -210,15 +210,15 @@ bool PropertyAccess::read(osgDB::InputStream& stream, osg::Object& object)
         stream >> whole;
     if (type() != RW_DOUBLE) value = type() == RW_BOOL ? static_cast<double>(flag) : whole;
     std::string error;
-    if (static_cast<Effect&>(object).setProperty(_property, value, error)) return true;
+    if (static_cast<PropertyHolder&>(object).setProperty(_property, value, error)) return true;
     OSG_WARN << "osgGeoFX: " << error << " The former value stays." << std::endl;
     return false;
 }
 
-void addProperties(osgDB::ObjectWrapper& wrapper, const Effect& effect)
+void addProperties(osgDB::ObjectWrapper& wrapper, const PropertyHolder& holder)
 {
     wrapper.addSerializer(new PropertiesSerializer, osgDB::BaseSerializer::RW_USER);
-    for (const Property& property : effect.properties())
+    for (const Property& property : holder.properties())
     {
         osg::ref_ptr<PropertyAccess> access = new PropertyAccess(property);
         wrapper.addSerializer(access, access->type());

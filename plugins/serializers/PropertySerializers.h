@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/scene/Effect.h>
+#include <osgGeoFX/scene/PropertyHolder.h>
 
 #include <osgDB/ObjectWrapper>
 #include <osgDB/Serializer>
@@ -22,13 +22,13 @@ std::string exactText(double value);
 /// The reverse; false where it is no number.
 bool parseExact(const std::string& text, double& value);
 
-/** Writes and reads all properties of an effect.
+/** Writes and reads all properties of an object.
 
     In text, a line for each one that is not at its default: its name as OSG has it, "FocusLine", and its value in
     radians and metres; they may stand in any order. In binary files, their number and the same names and values as
     texts, so that a file with properties of a later version can be read.
 
-    What has been read is set in one go, since properties may depend on each other. What the effect refuses stays at its
+    What has been read is set in one go, since properties may depend on each other. What the object refuses stays at its
     default, with a warning. */
 class PropertiesSerializer : public osgDB::BaseSerializer
 {
@@ -63,7 +63,7 @@ private:
     osgDB::IntLookup _choices;
 };
 
-/// Adds what the effect's table of properties asks for.
-void addProperties(osgDB::ObjectWrapper& wrapper, const Effect& effect);
+/// Adds what the table of properties asks for.
+void addProperties(osgDB::ObjectWrapper& wrapper, const PropertyHolder& holder);
 
 } // namespace osgGeoFX

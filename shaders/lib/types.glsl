@@ -13,3 +13,5 @@
 #define Profile vec2   // a point (s, h) of a profile, metres
 #define Vector3 vec3   // each component without a unit, a direction
 #define Position vec3  // a point in eye space, metres
+#define Rgb vec3       // 0 to 1
+#define Rgba vec4      // 0 to 1

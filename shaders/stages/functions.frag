@@ -14,8 +14,6 @@ GEOFX_EFFECT_FUNCTIONS
 vec4 geofx_fragment(vec4 colour, vec4 map)
 {
     vec4 result = colour;
-#ifdef GEOFX_DEFORMATION
-GEOFX_RESTYLE_CALLS
-#endif
+GEOFX_COLOUR_CALLS
     return result;
 }

@@ -9,12 +9,21 @@
 //
 // EffectScene puts the code of its effects in the place of the words in capitals.
 #pragma import_defines(GEOFX_DEFORMATION)
+#pragma import_defines(GEOFX_PLACED)
 GEOFX_IMPORTED_EFFECTS
 out float geofx_styleBlend;
+#ifdef GEOFX_PLACED
+uniform mat4 geofx_unplaced; // of an object that was moved as a whole: back to where it stands
+#endif
 GEOFX_EFFECT_FUNCTIONS
 vec4 geofx_vertex(vec4 eyePosition)
 {
     geofx_styleBlend = 0.0;
+    vec3 located = eyePosition.xyz / eyePosition.w;
+#ifdef GEOFX_PLACED
+    located = (geofx_unplaced * vec4(located, 1.0)).xyz;
+#endif
+GEOFX_LOCATE_CALLS
 #ifdef GEOFX_DEFORMATION
     vec3 position = eyePosition.xyz / eyePosition.w;
 GEOFX_DEFORM_CALLS

@@ -182,7 +182,7 @@ CameraPose randomPose(Random& random)
     return pose;
 }
 
-void randomizeProperties(Effect& effect, Random& random)
+void randomizeProperties(osgGeoFX::PropertyHolder& effect, Random& random)
 {
     std::string refusal;
     for (const Property& property : effect.properties())
@@ -193,8 +193,8 @@ void randomizeProperties(Effect& effect, Random& random)
     }
     if (effect.getProperty("planeReference") == osgGeoFX::PerspectiveBend::EYE)
         effect.setProperty("planeElevation", -random.logarithmic(1.0, 1e4), refusal);
-    for (const Effect::Part& part : effect.parts())
-        randomizeProperties(*part.effect, random);
+    for (const osgGeoFX::PropertyHolder::Part& part : effect.parts())
+        randomizeProperties(*part.object, random);
 }
 
 osg::ref_ptr<osgGeoFX::Deformation> randomDeformation(const std::string& kind, Random& random)
@@ -222,7 +222,7 @@ std::vector<std::string> deformationKinds()
     return kinds;
 }
 
-std::string describe(Effect& effect)
+std::string describe(osgGeoFX::PropertyHolder& effect)
 {
     std::ostringstream text;
     text << osgGeoFX::kindOf(effect);
@@ -231,8 +231,8 @@ std::string describe(Effect& effect)
         const double value = property.get(effect);
         if (value != property.defaultValue) text << " " << property.textName() << "=" << property.text(value);
     }
-    for (const Effect::Part& part : effect.parts())
-        text << " {" << part.name << ": " << describe(*part.effect) << "}";
+    for (const osgGeoFX::PropertyHolder::Part& part : effect.parts())
+        text << " {" << part.name << ": " << describe(*part.object) << "}";
     return text.str();
 }
 

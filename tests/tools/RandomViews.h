@@ -56,7 +56,7 @@ CameraPose randomPose(Random& random);
 CameraPose randomCommonPose(Random& random);
 
 /// Gives every property, also those of the effect's parts, a random value, most often a sensible one.
-void randomizeProperties(osgGeoFX::Effect& effect, Random& random);
+void randomizeProperties(osgGeoFX::PropertyHolder& effect, Random& random);
 /// A deformation of a kind of effectKinds() with random properties; null where the kind is none.
 osg::ref_ptr<osgGeoFX::Deformation> randomDeformation(const std::string& kind, Random& random);
 /// Of any kind.
@@ -65,7 +65,7 @@ osg::ref_ptr<osgGeoFX::Deformation> randomDeformation(Random& random);
 std::vector<std::string> deformationKinds();
 
 /// The properties as text, for messages.
-std::string describe(osgGeoFX::Effect& effect);
+std::string describe(osgGeoFX::PropertyHolder& effect);
 
 /// A point of eye space on or near the ground, up to `reach` metres from the eye's foot.
 osg::Vec3d randomGroundPoint(Random& random, const osgGeoFX::ViewGeometry& view, double reach = 3e5);

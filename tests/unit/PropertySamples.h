@@ -55,7 +55,12 @@ inline std::vector<double> otherValues(const std::string& kind, const osgGeoFX::
     const double high = property.maximum;
     if (isWhole(property))
     {
-        for (double value = low; value <= high; ++value)
+        // All of a short range; of a long one its ends, the default's neighbours and the powers of two.
+        const bool all = high - low < 32.0;
+        for (double value = low; value <= high;
+             value = all ? value + 1.0 : std::max(2.0 * value, value + 1.0))
+            candidates.push_back(value);
+        for (const double value : {property.defaultValue - 1.0, property.defaultValue + 1.0, high})
             candidates.push_back(value);
     }
     else
@@ -80,7 +85,7 @@ inline std::vector<double> otherValues(const std::string& kind, const osgGeoFX::
 }
 
 /// An effect in which no property is at its default, of its parts neither.
-inline void alter(osgGeoFX::Effect& effect)
+inline void alter(osgGeoFX::PropertyHolder& effect)
 {
     for (const osgGeoFX::Property& property : effect.properties())
     {
@@ -89,8 +94,8 @@ inline void alter(osgGeoFX::Effect& effect)
             effect.setProperty(property.name, otherValues(osgGeoFX::kindOf(effect), property).at(0), error))
             << error;
     }
-    for (const osgGeoFX::Effect::Part& part : effect.parts())
-        alter(*part.effect);
+    for (const osgGeoFX::PropertyHolder::Part& part : effect.parts())
+        alter(*part.object);
 }
 
 inline osg::ref_ptr<osgGeoFX::Effect> alteredEffect(const std::string& kind)
@@ -101,7 +106,7 @@ inline osg::ref_ptr<osgGeoFX::Effect> alteredEffect(const std::string& kind)
 }
 
 /// Fails for each property in which two effects differ, with those of their parts.
-inline void expectSame(osgGeoFX::Effect& actual, osgGeoFX::Effect& expected)
+inline void expectSame(osgGeoFX::PropertyHolder& actual, osgGeoFX::PropertyHolder& expected)
 {
     ASSERT_STREQ(actual.className(), expected.className());
     for (const osgGeoFX::Property& property : expected.properties())
@@ -109,7 +114,7 @@ inline void expectSame(osgGeoFX::Effect& actual, osgGeoFX::Effect& expected)
             << expected.className() << "." << property.name;
     ASSERT_EQ(actual.parts().size(), expected.parts().size());
     for (std::size_t i = 0; i < expected.parts().size(); ++i)
-        expectSame(*actual.parts()[i].effect, *expected.parts()[i].effect);
+        expectSame(*actual.parts()[i].object, *expected.parts()[i].object);
 }
 
 } // namespace geofx::test

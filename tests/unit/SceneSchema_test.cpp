@@ -196,7 +196,7 @@ TEST_F(SceneSchema, HasThePropertiesOfEachEffect)
         }
         std::map<std::string, std::string> parts;
         for (const Effect::Part& part : effect->parts())
-            parts[part.name] = elements.at(osgGeoFX::kindOf(*part.effect));
+            parts[part.name] = elements.at(osgGeoFX::kindOf(*part.object));
         EXPECT_EQ(elementsOf(elements.at(kind), "xs:all"), parts) << kind;
     }
 }

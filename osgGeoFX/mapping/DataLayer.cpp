@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/mapping/DataLayer.h>
+
+namespace osgGeoFX
+{
+
+DataLayer::DataLayer(const DataLayer& other, const osg::CopyOp& copy)
+    : PropertyHolder(other, copy), _image(copy(other._image.get())), _kind(other._kind),
+      _smooth(other._smooth), _sRgb(other._sRgb), _hasNoData(other._hasNoData), _noData(other._noData),
+      _importance(other._importance)
+{
+}
+
+DataLayer::~DataLayer() = default;
+
+void DataLayer::setImage(osg::Image* image)
+{
+    if (_image == image) return;
+    _image = image;
+    touch();
+}
+
+const Properties& DataLayer::properties() const
+{
+    using Self = DataLayer;
+    static const Properties all = {
+        Property::choice("kind", COLOR, {"color", "value", "class"}).of<&Self::_kind>(),
+        Property::flag("smooth", true).of<&Self::_smooth>(),
+        Property::flag("sRgb", true).of<&Self::_sRgb>(),
+        Property::flag("hasNoData", false).of<&Self::_hasNoData>(),
+        Property::number("noData", 0.0, -3.5e38, 3.5e38).of<&Self::_noData>(),
+        Property::number("importance", 0.5, 0.0, 1.0).of<&Self::_importance>(),
+    };
+    return all;
+}
+
+} // namespace osgGeoFX

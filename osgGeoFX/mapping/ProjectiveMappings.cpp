@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
+
+#include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/mapping/MappingDrawing.h>
+#include <osgGeoFX/scene/GlobeFrame.h>
+
+#include <glm/glm.hpp>
+#include <osg/Math>
+#include <osg/Notify>
+#include <osg/observer_ptr>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+/// What drawing needs and no one else sees.
+class ProjectiveMappings::Drawing : public MappingDrawing
+{
+public:
+    /// One camera's, in one of the frames that are on their way.
+    struct Camera
+    {
+        osg::observer_ptr<osg::StateSet> state;
+        /// Two of each, in turn: OSG does not apply anew what it has applied last.
+        std::array<std::array<osg::ref_ptr<StoreTexture>, 3>, 2> textures;
+        osg::ref_ptr<GpuStore> store;
+        std::size_t turn = 0;
+        std::array<int, 3> units = {};
+        CameraList list;
+    };
+
+    Camera& camera(osg::StateSet& state)
+    {
+        const std::lock_guard<std::mutex> lock(_cameraMutex);
+        std::unique_ptr<Camera>& found = _cameras[&state];
+        if (!found || !found->state.valid())
+        {
+            found = std::make_unique<Camera>();
+            found->state = &state;
+        }
+        return *found;
+    }
+
+private:
+    std::mutex _cameraMutex;
+    std::map<osg::StateSet*, std::unique_ptr<Camera>> _cameras;
+};
+
+namespace
+{
+
+glsl::geofx_Exaggeration globeOf(const osg::EllipsoidModel& ellipsoid, double latitude)
+{
+    glsl::geofx_Exaggeration globe{};
+    globe.up = {0.0, 0.0, 1.0};
+    globe.axis = {0.0, std::cos(latitude), std::sin(latitude)};
+    setGlobe(globe, ellipsoid, std::sin(latitude));
+    return globe;
+}
+
+template<typename Value>
+void setUniform(osg::StateSet& state, const std::string& name, osg::Uniform::Type type, const Value& value)
+{
+    state.getOrCreateUniform(name, type)->set(value);
+}
+
+constexpr double texelsInMegabyte = 65536.0;
+
+bool isPowerOfTwo(int value)
+{
+    return value > 0 && (value & (value - 1)) == 0;
+}
+
+} // namespace
+
+ProjectiveMappings::ProjectiveMappings() : _drawing(std::make_unique<Drawing>()) {}
+
+ProjectiveMappings::ProjectiveMappings(const ProjectiveMappings& other, const osg::CopyOp& copy)
+    : SurfaceEffect(other, copy), _drawing(std::make_unique<Drawing>())
+{
+    for (const Property& property : ProjectiveMappings::properties())
+        property.put(*this, property.get(other));
+    const bool deep = (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS) != 0;
+    for (const osg::ref_ptr<ProjectiveMapping>& mapping : other._mappings)
+        addMapping(deep ? osg::clone(mapping.get(), copy) : mapping.get());
+}
+
+ProjectiveMappings::~ProjectiveMappings()
+{
+    removeMappings();
+}
+
+const Properties& ProjectiveMappings::properties() const
+{
+    using Self = ProjectiveMappings;
+    static const Properties all = {
+        enabledProperty(),
+        Property::number("originX", 0.0, -5e7, 5e7, "m").of<&Self::_originX>(),
+        Property::number("originY", 0.0, -5e7, 5e7, "m").of<&Self::_originY>(),
+        Property::angle("longitude", 0.0, -osg::PI, osg::PI).of<&Self::_longitude>(),
+        Property::angle("latitude", 0.0, -osg::PI_2, osg::PI_2).of<&Self::_latitude>(),
+        Property::flag("wholeList", false).of<&Self::_wholeList>(),
+        Property::integer("anisotropy", 8, 1, 16).of<&Self::_anisotropy>(),
+        Property::flag("linear", false).of<&Self::_linear>(),
+        Property::integer("dataUnit", 8, 4, 31).of<&Self::_dataUnit>(),
+        Property::integer("layerUnit", 9, 4, 31).of<&Self::_layerUnit>(),
+        Property::integer("tableUnit", 10, 4, 31).of<&Self::_tableUnit>(),
+        Property::integer("pageSide", 2048, 64, 16384).of<&Self::_pageSide>(),
+        Property::integer("maxPages", 64, 1, 2048).of<&Self::_maxPages>(),
+        Property::number("maxDataSize", 2048.0, 0.001, 32000.0, "MiB").of<&Self::_maxDataSize>(),
+    };
+    return all;
+}
+
+std::string ProjectiveMappings::inconsistency() const
+{
+    if (_dataUnit == _layerUnit || _dataUnit == _tableUnit || _layerUnit == _tableUnit)
+        return "dataUnit, layerUnit and tableUnit must differ.";
+    if (!isPowerOfTwo(_pageSide))
+        return "pageSide must be a power of two, not " + std::to_string(_pageSide) + ".";
+    return {};
+}
+
+osg::Matrixd ProjectiveMappings::frameToWorld(const osg::EllipsoidModel* ellipsoid) const
+{
+    osg::Matrixd result = osg::Matrixd::translate(_originX, _originY, 0.0);
+    if (ellipsoid)
+        ellipsoid->computeLocalToWorldTransformFromLatLongHeight(_latitude, _longitude, 0.0, result);
+    return result;
+}
+
+osg::Vec3d ProjectiveMappings::placeOf(const osg::Vec3d& world, const osg::EllipsoidModel* ellipsoid) const
+{
+    const osg::Vec3d position = world * osg::Matrixd::inverse(frameToWorld(ellipsoid));
+    if (!ellipsoid) return position;
+    const glsl::geofx_Exaggeration globe = globeOf(*ellipsoid, _latitude);
+    const glm::dvec3 p(position.x(), position.y(), position.z());
+    const glm::dvec3 foot = glsl::geofx_exaggerate(globe, p);
+    return {foot.x, foot.y, glsl::geofx_exaggerationHeight(globe, p)};
+}
+
+osg::Vec3d ProjectiveMappings::positionOf(const osg::Vec3d& place, const osg::EllipsoidModel* ellipsoid) const
+{
+    if (!ellipsoid) return place;
+    const glsl::geofx_Exaggeration globe = globeOf(*ellipsoid, _latitude);
+    // Newton's method for the height at which the ellipsoid lies below the tangent plane.
+    glm::dvec3 p(place.x(), place.y(), 0.0);
+    for (int i = 0; i < 20; ++i)
+    {
+        const double step = glsl::geofx_exaggerationHeight(globe, p) /
+                            std::max(glm::normalize(glsl::geofx_exaggerationGradient(globe, p)).z, 0.1);
+        p.z -= step;
+        if (std::abs(step) < 1e-6) break;
+    }
+    p += place.z() * glm::normalize(glsl::geofx_exaggerationGradient(globe, p));
+    return {p.x, p.y, p.z};
+}
+
+bool ProjectiveMappings::addMapping(ProjectiveMapping* mapping)
+{
+    if (!mapping || _drawing->has(*mapping))
+    {
+        OSG_WARN << "osgGeoFX: ProjectiveMappings::addMapping got "
+                 << (mapping ? "a mapping that it has already" : "no mapping") << "; nothing changes."
+                 << std::endl;
+        return false;
+    }
+    _mappings.emplace_back(mapping);
+    mapping->addListener(*this);
+    _drawing->add(*mapping);
+    touch();
+    return true;
+}
+
+bool ProjectiveMappings::removeMapping(ProjectiveMapping* mapping)
+{
+    const auto found = std::find(_mappings.begin(), _mappings.end(), mapping);
+    if (found == _mappings.end()) return false;
+    mapping->removeListener(*this);
+    _drawing->remove(*mapping);
+    _mappings.erase(found);
+    touch();
+    return true;
+}
+
+void ProjectiveMappings::removeMappings()
+{
+    for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
+    {
+        mapping->removeListener(*this);
+        _drawing->remove(*mapping);
+    }
+    _mappings.clear();
+    touch();
+}
+
+void ProjectiveMappings::propertyChanged(PropertyHolder& mapping)
+{
+    _drawing->change(static_cast<ProjectiveMapping&>(mapping));
+}
+
+std::vector<ProjectiveMapping*> ProjectiveMappings::mappingsAt(const osg::Vec2d& place) const
+{
+    std::vector<ProjectiveMapping*> found;
+    for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
+    {
+        if (!mapping->getEnabled()) continue;
+        const glm::dvec3 raster = mapping->placeToRaster() * glm::dvec3(place.x(), place.y(), 1.0);
+        const double u = raster.x / raster.z;
+        const double v = raster.y / raster.z;
+        const bool within = u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0;
+        if (within && mapping->getProjector() == ProjectiveMapping::PLANE) found.push_back(mapping);
+    }
+    std::reverse(found.begin(), found.end());
+    std::stable_sort(found.begin(), found.end(),
+                     [](const ProjectiveMapping* a, const ProjectiveMapping* b)
+                     { return a->getOrder() > b->getOrder(); });
+    return found;
+}
+
+ProjectiveMappings::Capacity ProjectiveMappings::capacity() const
+{
+    return _drawing->capacity();
+}
+
+bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view)
+{
+    if (_mappings.empty()) return false;
+    const osg::EllipsoidModel* ellipsoid = view.geometry.ground.ellipsoid.get();
+    std::uint64_t number =
+        _drawing->commit({_pageSide, _maxPages, static_cast<int>(_maxDataSize * texelsInMegabyte), ellipsoid,
+                          ellipsoid ? _longitude : 0.0, ellipsoid ? _latitude : 0.0},
+                         [&](const osg::Vec3d& place) { return positionOf(place, ellipsoid); });
+
+    const osg::Matrixd frameToEye = frameToWorld(ellipsoid) * view.modelView;
+    const osg::Matrixd eyeToFrame = osg::Matrixd::inverse(frameToEye);
+    // What a pixel spans, metres: at a metre from the eye, and whatever the distance.
+    const osg::Matrixd& projection = view.geometry.projection;
+    const double span =
+        2.0 / std::max(std::abs(projection(1, 1)) * std::max(view.viewportHeight, 1.0), 1e-30);
+    const bool parallel = projection(3, 3) != 0.0;
+
+    Drawing::Camera& camera = _drawing->camera(state);
+    int start = 0;
+    if (_wholeList)
+    {
+        const osg::Vec3d eye = eyeToFrame.getTrans();
+        number = _drawing->setList(
+            camera.list,
+            [&](const ProjectiveMapping& mapping)
+            {
+                if (mapping.getPixelsNone() <= 0.0 || mapping.getProjector() == ProjectiveMapping::PINHOLE)
+                    return true;
+                const osg::Vec2d centre = mapping.getCentre();
+                const osg::Vec3d at = positionOf({centre.x(), centre.y(), mapping.getHeight()}, ellipsoid);
+                const double metres = parallel ? span : (at - eye).length() * span;
+                const double size = 2.0 * std::sqrt(mapping.getU().length() * mapping.getV().length());
+                // A little more than what the shader draws.
+                return size / metres > 0.99 * mapping.getPixelsNone();
+            });
+        start = static_cast<int>(camera.list.offset);
+    }
+    const MappingIndex::Root root = _drawing->root();
+    if (root.block == 0 || (_wholeList && start == 0)) return false;
+
+    if (camera.store != _drawing->store())
+    {
+        camera.store = _drawing->store();
+        for (auto& textures : camera.textures)
+        {
+            textures = {new StoreTexture(camera.store, GpuStore::Part::Data),
+                        new StoreTexture(camera.store, GpuStore::Part::Layers),
+                        new StoreTexture(camera.store, GpuStore::Part::Tables)};
+        }
+    }
+    camera.turn = 1 - camera.turn;
+    const std::array<int, 3> units = {_dataUnit, _layerUnit, _tableUnit};
+    if (units != camera.units)
+    {
+        for (const int unit : camera.units)
+            state.removeTextureAttribute(static_cast<unsigned int>(unit), osg::StateAttribute::TEXTURE);
+        camera.units = units;
+    }
+    const char* const names[3] = {"data", "layers", "tables"};
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        StoreTexture* texture = camera.textures[camera.turn][i];
+        texture->show(number);
+        state.setTextureAttribute(static_cast<unsigned int>(units[i]), texture);
+        setUniform(state, prefix + names[i], osg::Uniform::INT, units[i]);
+    }
+    setUniform(state, prefix + "toFrame", osg::Uniform::FLOAT_MAT4, osg::Matrixf(eyeToFrame));
+    setUniform(state, prefix + "root", osg::Uniform::FLOAT_VEC4,
+               osg::Vec4(osg::Vec4d(root.origin.x(), root.origin.y(), 1.0 / root.size, 0.0)));
+    setUniform(state, prefix + "pixel", osg::Uniform::FLOAT_VEC4,
+               osg::Vec4(osg::Vec4d(parallel ? 0.0 : span, parallel ? span : 0.0, 0.0, 0.0)));
+    state.getOrCreateUniform(prefix + "start", osg::Uniform::INT_VEC2)
+        ->set(static_cast<int>(root.block), start);
+    setUniform(state, prefix + "quality", osg::Uniform::FLOAT_VEC4,
+               osg::Vec4(static_cast<float>(_anisotropy), _linear ? 1.0f : 0.0f,
+                         1.0f / static_cast<float>(_drawing->store()->pageSide()),
+                         1.0f / GpuStore::tableWidth));
+    osg::Vec4d globe, curve;
+    if (ellipsoid)
+    {
+        const glsl::geofx_Exaggeration frame = globeOf(*ellipsoid, _latitude);
+        globe.set(frame.axis.x, frame.axis.y, frame.axis.z, frame.flattening);
+        curve.set(frame.curvature, frame.scale, 0.0, 0.0);
+    }
+    setUniform(state, prefix + "globe", osg::Uniform::FLOAT_VEC4, osg::Vec4(globe));
+    setUniform(state, prefix + "curve", osg::Uniform::FLOAT_VEC4, osg::Vec4(curve));
+    return true;
+}
+
+void ProjectiveMappings::releaseGLObjects(osg::State* state) const
+{
+    _drawing->releaseGLObjects(state);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/scene/Effect.h>
+#include <osgGeoFX/scene/ViewGeometry.h>
+
+#include <osg/StateSet>
+
+#include <string>
+
+namespace osgGeoFX
+{
+
+/// One camera's look at the scene while it culls.
+struct SurfaceView
+{
+    const ViewGeometry& geometry;
+    const osg::Matrixd& modelView; ///< from the frame of the EffectScene's children to eye space
+    double viewportWidth;          ///< pixels
+    double viewportHeight;
+};
+
+/** An effect that colours what is drawn, fragment by fragment, in the geometry's undeformed place.
+
+    To write a new one: derive from this, name the shader file with `void SLOT_locate(vec3 eyePosition)`, which writes the
+    effect's own varyings for an undeformed position in eye space, and the one with `vec4 SLOT_colour(vec4 colour)`, and
+    fill the state of a camera. The effects of a scene colour in their order, bends' styles among them. */
+class OSGGEOFX_EXPORT SurfaceEffect : public Effect
+{
+public:
+    using Effect::asSurfaceEffect;
+    SurfaceEffect* asSurfaceEffect() override { return this; }
+
+    /// The shader files in which `SLOT_` stands for the prefix of names.
+    virtual std::string vertexFile() const = 0;
+    virtual std::string fragmentFile() const = 0;
+
+    /** Puts what the shaders need into a camera's state: uniforms with the prefix, and textures. False where there is
+        nothing to draw. Several cameras' threads may call it at once; the state is the caller's own. */
+    virtual bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) = 0;
+
+    virtual void releaseGLObjects(osg::State*) const {}
+
+protected:
+    SurfaceEffect() = default;
+    SurfaceEffect(const SurfaceEffect& other, const osg::CopyOp& copy) : Effect(other, copy) {}
+    ~SurfaceEffect() override;
+};
+
+} // namespace osgGeoFX

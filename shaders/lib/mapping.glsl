@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Projective mappings, after Sections 3.1 to 3.3 and 4.3 of Trapp and Doellner (2009): where a raster lies on the ground,
+// how strongly it shows, and how its colour meets the scene's.
+//
+// A place is a point of the mappings' frame: x and y on the reference plane and the height above it, metres. On a globe
+// the plane is the tangent plane at the frame's origin, onto which the ellipsoid is projected along the origin's normal
+// (the orthographic projection of PROJ), and a point above the ground goes to the place of its foot.
+#ifndef __cplusplus
+#include "lib/types.glsl"
+#endif
+
+// O and the rows that take a place to the raster, with the extra transform M_T in them: (u, v) = 1/2 + A d / (1 + w.d)
+// with d = P - O. The paper's printed matrices have the bias' sign and the scale the wrong way round.
+struct geofx_Projector
+{
+    Vector2 centre; // metres
+    Vector2 rowU;   // per metre
+    Vector2 rowV;   // per metre
+    Vector2 rowW;   // per metre; 0 unless M_T is projective
+};
+
+// Raster coordinates of a place: 0 to 1 from the left and from the bottom. Far outside where the projection has no image.
+GEOFX_INLINE Vector2 geofx_projectPlane(geofx_Projector projector, Vector2 place)
+{
+    Vector2 d = place - projector.centre;
+    Number w = 1 + dot(projector.rowW, d);
+    Vector2 uv = Vector2(dot(projector.rowU, d), dot(projector.rowV, d));
+    return w > Number(1e-6) ? Number(0.5) + uv / w : Vector2(-1, -1);
+}
+
+// A camera with lens distortion after Brown: radial k1 k2 k3, tangential p1 p2, in tangents of the view's angles.
+struct geofx_Pinhole
+{
+    Position eye;    // metres, in the mappings' frame
+    Vector3 right;   // unit vector over the tangent of half the angle of view across
+    Vector3 up;      // the same, upwards
+    Vector3 forward; // unit vector
+    Vector3 radial;
+    Vector2 tangential;
+    Vector2 tangents; // of half the angles of view
+    Number reach;     // square of the tangents' radius to which the distortion grows with the angle
+};
+
+GEOFX_INLINE Vector2 geofx_projectPinhole(geofx_Pinhole camera, Position position)
+{
+    Vector3 d = position - camera.eye;
+    Length depth = dot(d, camera.forward);
+    if (!(depth > 0))
+    {
+        return Vector2(-1, -1);
+    }
+    Vector2 t = Vector2(dot(d, camera.right), dot(d, camera.up)) / depth * camera.tangents;
+    Number r2 = dot(t, t);
+    // Beyond, polynomials fold the world back into the picture.
+    if (!(r2 < camera.reach))
+    {
+        return Vector2(-1, -1);
+    }
+    Number radial = 1 + r2 * (camera.radial.x + r2 * (camera.radial.y + r2 * camera.radial.z));
+    Number cross = 2 * t.x * t.y;
+    Vector2 bent = radial * t + Vector2(camera.tangential.x * cross + camera.tangential.y * (r2 + 2 * t.x * t.x),
+                                        camera.tangential.x * (r2 + 2 * t.y * t.y) + camera.tangential.y * cross);
+    return Number(0.5) + Number(0.5) * bent / camera.tangents;
+}
+
+// How much of a pixel lies within the raster along one axis: 0 at its edge, 1 from a pixel inwards on. `width` is the
+// pixel's, in raster coordinates.
+GEOFX_INLINE Number geofx_edge(Number coordinate, Number width)
+{
+    Number inwards = Number(0.5) - abs(coordinate - Number(0.5));
+    return clamp(inwards / max(width, Number(1e-9)), Number(0), Number(1));
+}
+
+// 0 at `none`, 1 at `full` and beyond, straight between them; a step where they are equal.
+GEOFX_INLINE Number geofx_ramp(Number value, Number none, Number full)
+{
+    if (none == full)
+    {
+        return value >= full ? Number(1) : Number(0);
+    }
+    return clamp((value - none) / (full - none), Number(0), Number(1));
+}
+
+// OpenGL's blend functions, numbered as osgGeoFX/mapping/ColorTransfer.h does.
+GEOFX_INLINE Rgb geofx_blendFactor(int factor, Rgba source, Rgba destination, Rgba constant)
+{
+    Rgb one = Rgb(1, 1, 1);
+    if (factor == 0) return Rgb(0, 0, 0);
+    if (factor == 1) return one;
+    if (factor == 2) return Rgb(source.x, source.y, source.z);
+    if (factor == 3) return one - Rgb(source.x, source.y, source.z);
+    if (factor == 4) return Rgb(destination.x, destination.y, destination.z);
+    if (factor == 5) return one - Rgb(destination.x, destination.y, destination.z);
+    if (factor == 6) return source.w * one;
+    if (factor == 7) return (1 - source.w) * one;
+    if (factor == 8) return destination.w * one;
+    if (factor == 9) return (1 - destination.w) * one;
+    if (factor == 10) return Rgb(constant.x, constant.y, constant.z);
+    if (factor == 11) return one - Rgb(constant.x, constant.y, constant.z);
+    if (factor == 12) return constant.w * one;
+    if (factor == 13) return (1 - constant.w) * one;
+    return min(source.w, 1 - destination.w) * one; // GL_SRC_ALPHA_SATURATE
+}
+
+GEOFX_INLINE Number geofx_overlay(Number source, Number destination)
+{
+    return destination <= Number(0.5) ? 2 * source * destination : 1 - 2 * (1 - source) * (1 - destination);
+}
+
+// Blend equations: OpenGL's five, and multiply, screen and overlay, which take the source's alpha as their share.
+GEOFX_INLINE Rgb geofx_blend(int equation, int sourceFactor, int destinationFactor, Rgba source, Rgba destination,
+                             Rgba constant)
+{
+    Rgb s = Rgb(source.x, source.y, source.z);
+    Rgb d = Rgb(destination.x, destination.y, destination.z);
+    Rgb result = d;
+    if (equation < 3)
+    {
+        Rgb first = s * geofx_blendFactor(sourceFactor, source, destination, constant);
+        Rgb second = d * geofx_blendFactor(destinationFactor, source, destination, constant);
+        result = equation == 0 ? first + second : equation == 1 ? first - second : second - first;
+    }
+    else if (equation == 3)
+    {
+        result = min(s, d);
+    }
+    else if (equation == 4)
+    {
+        result = max(s, d);
+    }
+    else if (equation == 5)
+    {
+        result = mix(d, s * d, source.w);
+    }
+    else if (equation == 6)
+    {
+        result = mix(d, s + d - s * d, source.w);
+    }
+    else
+    {
+        Rgb over = Rgb(geofx_overlay(s.x, d.x), geofx_overlay(s.y, d.y), geofx_overlay(s.z, d.z));
+        result = mix(d, over, source.w);
+    }
+    return clamp(result, Number(0), Number(1));
+}
+
+// How a raster is filtered: level of the pyramid, and how many probes along which axis (raster coordinates).
+struct geofx_Filter
+{
+    Number level;
+    Number probes;
+    Vector2 step; // from probe to probe
+};
+
+// `across` and `up` are what raster coordinates change by from pixel to pixel; `size` is the raster's, in texels.
+GEOFX_INLINE geofx_Filter geofx_filter(Vector2 across, Vector2 up, Vector2 size, Number mostProbes, Number lastLevel)
+{
+    Vector2 a = across * size;
+    Vector2 b = up * size;
+    Number longest = sqrt(max(dot(a, a), dot(b, b)));
+    Number shortest = max(sqrt(min(dot(a, a), dot(b, b))), Number(1e-6));
+    // Where the texels are larger than pixels, one probe is all there is to see.
+    Number probes = longest <= 1 ? Number(1) : clamp(ceil(longest / max(shortest, Number(1))), Number(1), mostProbes);
+    Vector2 axis = dot(a, a) > dot(b, b) ? across : up;
+    geofx_Filter result;
+    result.level = clamp(log2(max(longest / probes, Number(1e-6))), Number(0), lastLevel);
+    result.probes = probes;
+    result.step = axis / probes;
+    return result;
+}

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// ProjectiveMappings in the fragment stage: all mappings over a fragment, the lowest first. SLOT_ stands for the effect's
+// prefix. osgGeoFX/mapping/MappingRecord.cpp writes the records, osgGeoFX/mapping/MappingIndex.cpp the grid.
+#include "lib/mapping.glsl"
+
+#pragma import_defines(GEOFX_MAPPING_CHANNELS)
+
+uniform usamplerBuffer SLOT_data;
+uniform sampler2DArray SLOT_layers;
+uniform sampler2D SLOT_tables;
+uniform mat4 SLOT_toFrame; // from eye space
+uniform vec4 SLOT_root;    // the grid's origin and one over its size
+uniform vec4 SLOT_pixel;   // what a pixel spans, metres: at a metre from the eye, and at any distance beside that
+uniform ivec2 SLOT_start;  // the grid's first block and, where all mappings are gone through instead, their list
+uniform vec4 SLOT_quality; // probes at most; whether colours are wanted linear; one over the pages' and tables' sides
+
+in vec3 SLOT_position;
+in vec3 SLOT_place;
+
+const uint SLOT_block = 0x80000000u;
+
+uint SLOT_word(uvec4 words, uint which)
+{
+    return which < 2u ? (which == 0u ? words.x : words.y) : (which == 2u ? words.z : words.w);
+}
+
+// The list of the mappings over a place; 0 where there is none.
+uint SLOT_find(vec2 place)
+{
+    vec2 p = (place - SLOT_root.xy) * SLOT_root.z;
+    if (SLOT_start.x == 0 || !all(greaterThanEqual(p, vec2(0.0))) || !all(lessThan(p, vec2(1.0))))
+    {
+        return 0u;
+    }
+    uint word = SLOT_block | uint(SLOT_start.x);
+    while ((word & SLOT_block) != 0u)
+    {
+        p *= 8.0;
+        vec2 cell = min(floor(p), vec2(7.0));
+        p -= cell;
+        uint index = uint(cell.y) * 8u + uint(cell.x);
+        uvec4 words = texelFetch(SLOT_data, int((word & ~SLOT_block) + (index >> 2u)));
+        word = SLOT_word(words, index & 3u);
+    }
+    return word;
+}
+
+// What a mapping needs to know of the fragment.
+struct SLOT_Fragment
+{
+    vec3 place;
+    vec3 across; // to the next pixel
+    vec3 up;
+    vec3 positionAcross; // the same of SLOT_position
+    vec3 positionUp;
+    vec3 eye; // in the mappings' frame
+};
+
+vec3 SLOT_linear(vec3 colour)
+{
+    return mix(colour / 12.92, pow((colour + 0.055) / 1.055, vec3(2.4)), greaterThan(colour, vec3(0.04045)));
+}
+
+struct SLOT_Slot
+{
+    float page;
+    vec2 corner; // texels
+    vec2 size;
+    float last; // level
+};
+
+SLOT_Slot SLOT_slotOf(uvec4 words)
+{
+    return SLOT_Slot(float(words.x), vec2(words.y & 0xffffu, words.y >> 16u), vec2(words.z & 0xffffu, words.z >> 16u),
+                     float(words.w));
+}
+
+// Texel coordinates in a slot's picture, kept away from the borders of a level by half of its texel.
+vec2 SLOT_inside(SLOT_Slot slot, vec2 uv, float level)
+{
+    vec2 inset = min(vec2(0.5 * exp2(ceil(level))), 0.5 * slot.size);
+    return clamp(uv * slot.size, inset, slot.size - inset);
+}
+
+vec4 SLOT_colourOf(SLOT_Slot slot, vec2 uv, float level)
+{
+    return textureLod(SLOT_layers, vec3((slot.corner + SLOT_inside(slot, uv, level)) * SLOT_quality.z, slot.page), level);
+}
+
+// The value of a texel: the four bytes are those of a float.
+float SLOT_texel(SLOT_Slot slot, ivec2 texel, int level)
+{
+    ivec2 most = max((ivec2(slot.size) - 1) >> level, ivec2(0));
+    ivec2 corner = ivec2(slot.corner) >> level;
+    vec4 bytes = texelFetch(SLOT_layers, ivec3(corner + clamp(texel, ivec2(0), most), int(slot.page)), level);
+    uvec4 b = uvec4(bytes * 255.0 + 0.5);
+    return uintBitsToFloat(b.x | b.y << 8u | b.z << 16u | b.w << 24u);
+}
+
+// x: sum of the weighted values that are data; y: their weights.
+vec2 SLOT_weighted(float value, float weight)
+{
+    // By its bits: compilers may take it that there are no NaNs.
+    return (floatBitsToUint(value) & 0x7f800000u) == 0x7f800000u ? vec2(0.0) : vec2(value * weight, weight);
+}
+
+vec2 SLOT_valueOf(SLOT_Slot slot, vec2 uv, float level, bool smoothly)
+{
+    int whole = int(level + 0.5);
+    vec2 at = uv * slot.size * exp2(-float(whole));
+    if (!smoothly)
+    {
+        return SLOT_weighted(SLOT_texel(slot, ivec2(floor(at)), whole), 1.0);
+    }
+    at -= 0.5;
+    ivec2 low = ivec2(floor(at));
+    vec2 t = at - vec2(low);
+    return SLOT_weighted(SLOT_texel(slot, low, whole), (1.0 - t.x) * (1.0 - t.y)) +
+           SLOT_weighted(SLOT_texel(slot, low + ivec2(1, 0), whole), t.x * (1.0 - t.y)) +
+           SLOT_weighted(SLOT_texel(slot, low + ivec2(0, 1), whole), (1.0 - t.x) * t.y) +
+           SLOT_weighted(SLOT_texel(slot, low + ivec2(1, 1), whole), t.x * t.y);
+}
+
+// A colour with the share of the place that has data. Colours are averaged by their alphas.
+struct SLOT_Sample
+{
+    vec4 colour;
+    float value; // of value layers
+    float cover;
+};
+
+SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how)
+{
+    uint kind = flags & 3u;
+    bool smoothly = (flags & 4u) != 0u;
+    float level = smoothly ? how.level : floor(how.level + 0.5);
+    vec2 first = uv - how.step * (0.5 * (how.probes - 1.0));
+    SLOT_Sample result = SLOT_Sample(vec4(0.0), 0.0, 0.0);
+    vec2 values = vec2(0.0);
+    for (float i = 0.0; i < how.probes; ++i)
+    {
+        vec2 at = clamp(first + i * how.step, vec2(0.0), vec2(1.0));
+        if (kind == 1u)
+        {
+            if (!smoothly) at = (floor(at * slot.size * exp2(-level)) + 0.5) * exp2(level) / slot.size;
+            vec4 texel = SLOT_colourOf(slot, at, level);
+            result.colour += vec4(texel.rgb * texel.a, texel.a);
+        }
+        else
+        {
+            values += SLOT_valueOf(slot, at, level, smoothly);
+        }
+    }
+    if (kind == 1u)
+    {
+        result.colour = vec4(result.colour.rgb / max(result.colour.a, 1e-6), result.colour.a / how.probes);
+        result.cover = 1.0;
+    }
+    else
+    {
+        result.cover = values.y / how.probes;
+        result.value = values.y > 0.0 ? values.x / values.y : 0.0;
+    }
+    return result;
+}
+
+// Where the raster is looked up at a place, and the same for the pixels beside it.
+void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 uv, out vec2 across, out vec2 up,
+                      out float pixels)
+{
+    vec4 rows = uintBitsToFloat(texelFetch(SLOT_data, record));
+    vec2 centre = uintBitsToFloat(texelFetch(SLOT_data, record + 1).xy);
+    geofx_Projector projector = geofx_Projector(centre, rows.xy, rows.zw, vec2(0.0));
+    pixels = 0.0;
+    if ((flags & 0x20u) != 0u) // pinhole
+    {
+        vec4 eye = uintBitsToFloat(texelFetch(SLOT_data, record + 16));
+        vec4 right = uintBitsToFloat(texelFetch(SLOT_data, record + 17));
+        vec4 upwards = uintBitsToFloat(texelFetch(SLOT_data, record + 18));
+        vec4 forward = uintBitsToFloat(texelFetch(SLOT_data, record + 19));
+        vec4 radial = uintBitsToFloat(texelFetch(SLOT_data, record + 20));
+        vec4 more = uintBitsToFloat(texelFetch(SLOT_data, record + 21));
+        geofx_Pinhole camera = geofx_Pinhole(eye.xyz, right.xyz, upwards.xyz, forward.xyz, radial.xyz, more.xy,
+                                             more.zw, radial.w);
+        uv = distance(camera.eye, SLOT_position) <= eye.w ? geofx_projectPinhole(camera, SLOT_position) : vec2(-1.0);
+        across = geofx_projectPinhole(camera, SLOT_position + fragment.positionAcross) - uv;
+        up = geofx_projectPinhole(camera, SLOT_position + fragment.positionUp) - uv;
+        return;
+    }
+    if ((flags & 0x6c0u) != 0u) // fades by distance and size, size in pixels, turned to the camera
+    {
+        vec4 symbol = uintBitsToFloat(texelFetch(SLOT_data, record + 10)); // centre, its height, half size
+        vec3 way = fragment.eye - symbol.xyz;
+        float metres = max(length(way) * SLOT_pixel.x + SLOT_pixel.y, 1e-9); // that a pixel spans there
+        pixels = 2.0 * symbol.w / metres;
+        float wanted = uintBitsToFloat(texelFetch(SLOT_data, record + 12).z);
+        if ((flags & 0x200u) != 0u)
+        {
+            // Not larger than the footprint, which the grid knows.
+            float scale = max(pixels / wanted, 1.0);
+            projector.rowU *= scale;
+            projector.rowV *= scale;
+            pixels = min(pixels, wanted);
+        }
+        if ((flags & 0x400u) != 0u)
+        {
+            vec2 north = normalize(-way.xy + vec2(0.0, 1e-6));
+            vec2 u = projector.rowU;
+            vec2 v = projector.rowV;
+            projector.rowU = vec2(u.x * north.y + u.y * north.x, u.y * north.y - u.x * north.x);
+            projector.rowV = vec2(v.x * north.y + v.y * north.x, v.y * north.y - v.x * north.x);
+        }
+    }
+    if ((flags & 0x10u) != 0u)
+    {
+        projector.rowW = uintBitsToFloat(texelFetch(SLOT_data, record + 9).xy);
+        uv = geofx_projectPlane(projector, fragment.place.xy);
+        across = geofx_projectPlane(projector, fragment.place.xy + fragment.across.xy) - uv;
+        up = geofx_projectPlane(projector, fragment.place.xy + fragment.up.xy) - uv;
+        return;
+    }
+    vec2 d = fragment.place.xy - centre;
+    uv = 0.5 + vec2(dot(projector.rowU, d), dot(projector.rowV, d));
+    across = vec2(dot(projector.rowU, fragment.across.xy), dot(projector.rowV, fragment.across.xy));
+    up = vec2(dot(projector.rowU, fragment.up.xy), dot(projector.rowV, fragment.up.xy));
+}
+
+float SLOT_fade(int record, uint flags, SLOT_Fragment fragment, float pixels)
+{
+    float strength = 1.0;
+    vec4 fade = uintBitsToFloat(texelFetch(SLOT_data, record + 11));
+    if ((flags & 0x40u) != 0u)
+    {
+        float away = distance(fragment.eye, SLOT_position);
+        float soft = uintBitsToFloat(texelFetch(SLOT_data, record + 12).w);
+        strength *= geofx_ramp(away, fade.x * (1.0 - soft), fade.x) * geofx_ramp(-away, -fade.y * (1.0 + soft), -fade.y);
+    }
+    if ((flags & 0x80u) != 0u) strength *= geofx_ramp(pixels, fade.z, fade.w);
+    if ((flags & 0x100u) != 0u)
+    {
+        vec3 normal = cross(fragment.across, fragment.up);
+        float cosine = abs(normal.z) / max(length(normal), 1e-12);
+        vec2 slope = uintBitsToFloat(texelFetch(SLOT_data, record + 12).xy);
+        strength *= geofx_ramp(cosine, slope.x, slope.y);
+    }
+    return strength;
+}
+
+vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
+{
+    uvec4 head = texelFetch(SLOT_data, record + 1);
+    uint flags = head.w;
+#ifdef GEOFX_MAPPING_CHANNELS
+    if (((flags >> 24u) & uint(GEOFX_MAPPING_CHANNELS)) == 0u) return colour;
+#endif
+    vec2 uv;
+    vec2 across;
+    vec2 up;
+    float pixels;
+    SLOT_coordinates(record, flags, fragment, uv, across, up, pixels);
+    if (!all(greaterThanEqual(uv, vec2(0.0))) || !all(lessThanEqual(uv, vec2(1.0)))) return colour;
+
+    uvec4 codes = texelFetch(SLOT_data, record + 3);
+    float strength = uintBitsToFloat(head.z);
+    if ((flags & 0x2000u) != 0u)
+    {
+        vec2 heights = uintBitsToFloat(codes.xy);
+        if (!(fragment.place.z >= heights.x && fragment.place.z <= heights.y)) return colour;
+    }
+    if ((flags & 0x1000u) != 0u)
+    {
+        strength *= geofx_edge(uv.x, max(abs(across.x), abs(up.x))) * geofx_edge(uv.y, max(abs(across.y), abs(up.y)));
+    }
+    if ((flags & 0x1c0u) != 0u) strength *= SLOT_fade(record, flags, fragment, pixels);
+    if (strength <= 0.0) return colour;
+
+    uint sourceOf = (codes.w >> 12u) & 3u;
+    uint alphaOf = (codes.w >> 14u) & 3u;
+    SLOT_Sample found = SLOT_Sample(vec4(1.0), 0.0, 1.0);
+    if ((flags & 3u) != 0u)
+    {
+        SLOT_Slot slot = SLOT_slotOf(texelFetch(SLOT_data, record + 2));
+        float probes = (flags & 3u) == 1u ? SLOT_quality.x : min(SLOT_quality.x, 4.0);
+        found = SLOT_sample(slot, flags, uv, geofx_filter(across, up, slot.size, probes, slot.last));
+        if (found.cover <= 0.0) return colour;
+    }
+    vec4 constant = vec4(0.0);
+    vec4 range = vec4(0.0, 1.0, 0.0, 1.0);
+    // What only few mappings need is fetched for these only.
+    if ((flags & 0x8008u) != 0u)
+    {
+        range = uintBitsToFloat(texelFetch(SLOT_data, record + 4));
+        constant = uintBitsToFloat(texelFetch(SLOT_data, record + 8));
+    }
+    vec4 source = found.colour;
+    float grey = (flags & 3u) == 1u ? dot(found.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) : found.value;
+    if (sourceOf == 1u)
+    {
+        float share = (grey - range.x) * range.y;
+        if ((flags & 0x100000u) != 0u && clamp(share, 0.0, 1.0) != share) return colour;
+        float t = clamp(share, 0.0, 1.0) * (1.0 - SLOT_quality.w) + 0.5 * SLOT_quality.w;
+        if ((flags & 0x10000u) != 0u) t = (floor(t / SLOT_quality.w) + 0.5) * SLOT_quality.w;
+        vec4 entry = textureLod(SLOT_tables, vec2(t, uintBitsToFloat(codes.z) / float(textureSize(SLOT_tables, 0).y)), 0.0);
+        // The table speaks of what is drawn, the layer of where.
+        source = vec4(entry.rgb, entry.a * ((flags & 3u) == 1u ? source.a : 1.0));
+    }
+    else if ((flags & 3u) > 1u)
+    {
+        source = vec4(vec3(clamp((grey - range.x) * range.y, 0.0, 1.0)), 1.0);
+    }
+    if (sourceOf == 2u) source = vec4(colour.rgb, 1.0);
+    if (sourceOf == 3u) source.rgb = constant.rgb;
+    if (SLOT_quality.y > 0.0 && sourceOf != 2u) source.rgb = SLOT_linear(source.rgb);
+    if ((flags & 8u) != 0u)
+    {
+        vec4 red = uintBitsToFloat(texelFetch(SLOT_data, record + 5));
+        vec4 green = uintBitsToFloat(texelFetch(SLOT_data, record + 6));
+        vec4 blue = uintBitsToFloat(texelFetch(SLOT_data, record + 7));
+        vec4 rgb = vec4(source.rgb, 1.0);
+        source.rgb = clamp(vec3(dot(red, rgb), dot(green, rgb), dot(blue, rgb)), 0.0, 1.0);
+    }
+    if (alphaOf == 0u) source.a = 1.0;
+    if (alphaOf == 2u)
+    {
+        uvec4 words = texelFetch(SLOT_data, record + 13);
+        SLOT_Slot slot = SLOT_slotOf(words);
+        uint kind = (flags >> 17u) & 7u; // of the mask, as the layer's own
+        SLOT_Sample mask = SLOT_sample(slot, kind, uv, geofx_filter(across, up, slot.size, min(SLOT_quality.x, 4.0), slot.last));
+        float share = (kind & 3u) == 1u ? dot(mask.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) * mask.colour.a : mask.value;
+        source.a = mask.cover * geofx_ramp(share, range.z, range.w);
+    }
+    if (alphaOf == 3u) source.a = geofx_ramp(grey, range.z, range.w);
+    strength *= found.cover;
+
+    int equation = int((codes.w >> 8u) & 15u);
+    if (equation == 8)
+    {
+        if (strength * source.a >= 0.5) discard;
+        return colour;
+    }
+    if ((codes.w & 0xfffu) == 0x076u) // the usual: source over destination
+    {
+        return vec4(mix(colour.rgb, source.rgb, strength * source.a), colour.a);
+    }
+    vec3 blended = geofx_blend(equation, int(codes.w & 15u), int((codes.w >> 4u) & 15u), source, colour, constant);
+    return vec4(mix(colour.rgb, blended, strength), colour.a);
+}
+
+vec4 SLOT_colour(vec4 colour)
+{
+    SLOT_Fragment fragment = SLOT_Fragment(SLOT_place, dFdx(SLOT_place), dFdy(SLOT_place), dFdx(SLOT_position),
+                                           dFdy(SLOT_position), SLOT_toFrame[3].xyz);
+    uint list = SLOT_start.y != 0 ? uint(SLOT_start.y) : SLOT_find(SLOT_place.xy);
+    if (list == 0u) return colour;
+    uvec4 words = texelFetch(SLOT_data, int(list));
+    uint count = words.x;
+    for (uint i = 1u; i <= count; ++i)
+    {
+        if ((i & 3u) == 0u) words = texelFetch(SLOT_data, int(list + (i >> 2u)));
+        colour = SLOT_apply(int(SLOT_word(words, i & 3u)), colour, fragment);
+    }
+    return colour;
+}
