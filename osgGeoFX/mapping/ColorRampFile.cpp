@@ -323,9 +323,8 @@ bool ColorRampFile::write(const ColorTable& table, const std::string& path, std:
     for (std::size_t i = 0; i < stops.size(); ++i)
     {
         // A step is flat up to the next stop.
-        const bool jump =
-            table.getMode() == ColorTable::STEPS && i > 0 && stops[i - 1].value < stops[i].value;
-        if (jump) stream << lineOf(text(stops[i].value), stops[i - 1].color);
+        if (table.getMode() == ColorTable::STEPS && i > 0)
+            stream << lineOf(text(stops[i].value), stops[i - 1].color);
         stream << lineOf(text(stops[i].value), stops[i].color);
     }
     stream << lineOf("nv", table.getNoDataColor());

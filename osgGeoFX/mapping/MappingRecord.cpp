@@ -128,22 +128,20 @@ void writeProjector(const ProjectiveMapping& mapping, double opacity, std::uint3
     record[9] = numbers(w.x, w.y);
 }
 
-/// The square of the largest radius up to which the distorted one grows with it, a little beyond the corners at most.
+/// The square of the largest radius up to which the distorted one grows with it, or is well outside of the picture.
 double reachOf(const ProjectiveMapping::Camera& camera, double tangentX, double tangentY)
 {
-    const double corner = std::hypot(tangentX, tangentY);
-    const double most = 2.0 * corner;
-    constexpr int steps = 1000;
+    const double outside = 2.0 * std::hypot(tangentX, tangentY);
+    constexpr double growth = 1.002;
     double former = 0.0;
-    for (int i = 1; i <= steps; ++i)
+    for (double r = 1e-3; r < 100.0; r *= growth)
     {
-        const double r = most * i / steps;
         const double r2 = r * r;
         const double distorted = r * (1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3)));
-        if (distorted <= former) return r2;
+        if (distorted <= former || distorted > outside) return r2;
         former = distorted;
     }
-    return most * most;
+    return 1e4;
 }
 
 void writePinhole(const ProjectiveMapping::Camera& camera, Texel* record)

@@ -53,9 +53,9 @@ ProjectiveMapping::ProjectiveMapping(const ProjectiveMapping& other, const osg::
         property.put(*this, property.get(other));
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
     {
-        _layer = osg::clone(_layer.get(), copy);
-        _mask = osg::clone(_mask.get(), copy);
-        _table = osg::clone(_table.get(), copy);
+        if (_layer) _layer = osg::clone(_layer.get(), copy);
+        if (_mask) _mask = osg::clone(_mask.get(), copy);
+        if (_table) _table = osg::clone(_table.get(), copy);
         _transfer = osg::clone(_transfer.get(), copy);
     }
     _transfer->addListener(*this);

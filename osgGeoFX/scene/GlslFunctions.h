@@ -25,6 +25,7 @@ using glm::abs;
 using glm::ceil;
 using glm::clamp;
 using glm::dot;
+using glm::floor;
 using glm::length;
 using glm::log2;
 using glm::max;

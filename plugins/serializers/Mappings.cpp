@@ -10,6 +10,9 @@
 #include <osgDB/InputStream>
 #include <osgDB/OutputStream>
 
+#include <algorithm>
+#include <iterator>
+
 namespace osgGeoFX
 {
 
@@ -143,7 +146,7 @@ double readNumber(osgDB::InputStream& stream)
     std::string text;
     stream >> text;
     double value = 0.0;
-    if (!parseExact(text, value))
+    if (!stream.getException() && !parseExact(text, value))
         OSG_WARN << "osgGeoFX: A file is wrong: ColorTable needs a number, not \"" << text
                  << "\". It is taken as 0." << std::endl;
     return value;
@@ -162,10 +165,14 @@ bool readTable(osgDB::InputStream& stream, ColorTable& table)
     std::string mode;
     unsigned int count = 0;
     stream >> mode;
-    for (int i = 0; i < 4; ++i)
-    {
-        if (mode == tableModes[i]) table.setMode(static_cast<ColorTable::Mode>(i));
-    }
+    const auto* end = std::end(tableModes);
+    const auto* found = std::find(std::begin(tableModes), end, mode);
+    if (found != end)
+        table.setMode(static_cast<ColorTable::Mode>(found - std::begin(tableModes)));
+    else
+        OSG_WARN << "osgGeoFX: A file is wrong: ColorTable: the mode must be LINEAR, NEAREST, EXACT or "
+                    "STEPS, not \""
+                 << mode << "\". The default stays." << std::endl;
     table.setNoDataColor(readColor(stream));
     stream >> count >> stream.BEGIN_BRACKET;
     ColorTable::Stops stops;
@@ -175,7 +182,9 @@ bool readTable(osgDB::InputStream& stream, ColorTable& table)
         stops.push_back({value, readColor(stream)});
     }
     stream >> stream.END_BRACKET;
-    return table.setStops(stops);
+    // A refusal has its own warning, and the rest of the file is fine.
+    table.setStops(stops);
+    return true;
 }
 
 bool writeTable(osgDB::OutputStream& stream, const ColorTable& table)

@@ -84,7 +84,7 @@ void readBinary(osgDB::InputStream& stream, const Properties& properties, Readin
 {
     unsigned int count = 0;
     stream >> count;
-    if (count > mostProperties) stream.throwException("osgGeoFX: An effect has too many properties.");
+    if (count > mostProperties) stream.throwException("osgGeoFX: An object has too many properties.");
     for (unsigned int i = 0; i < count && !stream.getException(); ++i)
     {
         std::string name;

@@ -157,16 +157,24 @@ struct geofx_Filter
 // `across` and `up` are what raster coordinates change by from pixel to pixel; `size` is the raster's, in texels.
 GEOFX_INLINE geofx_Filter geofx_filter(Vector2 across, Vector2 up, Vector2 size, Number mostProbes, Number lastLevel)
 {
+    // The pixel's footprint is an ellipse: the eigenvalues of its matrix are the squares of the half axes.
     Vector2 a = across * size;
     Vector2 b = up * size;
-    Number longest = sqrt(max(dot(a, a), dot(b, b)));
-    Number shortest = max(sqrt(min(dot(a, a), dot(b, b))), Number(1e-6));
+    Number p = a.x * a.x + b.x * b.x;
+    Number q = a.x * a.y + b.x * b.y;
+    Number r = a.y * a.y + b.y * b.y;
+    Number root = sqrt((p - r) * (p - r) / 4 + q * q);
+    Number longest2 = (p + r) / 2 + root;
+    Number shortest2 = max((p + r) / 2 - root, Number(0));
+    Number longest = sqrt(longest2);
     // Where the texels are larger than pixels, one probe is all there is to see.
-    Number probes = longest <= 1 ? Number(1) : clamp(ceil(longest / max(shortest, Number(1))), Number(1), mostProbes);
-    Vector2 axis = dot(a, a) > dot(b, b) ? across : up;
+    Number ratio = longest / max(sqrt(shortest2), Number(1));
+    Number probes = clamp(floor(ratio + Number(0.5)), Number(1), mostProbes);
+    Vector2 axis = p > r ? Vector2(longest2 - r, q) : Vector2(q, longest2 - p);
+    axis *= longest / max(length(axis), Number(1e-9));
     geofx_Filter result;
     result.level = clamp(log2(max(longest / probes, Number(1e-6))), Number(0), lastLevel);
     result.probes = probes;
-    result.step = axis / probes;
+    result.step = axis / probes / size;
     return result;
 }

@@ -77,11 +77,12 @@ SLOT_Slot SLOT_slotOf(uvec4 words)
                      float(words.w));
 }
 
-// Texel coordinates in a slot's picture, kept away from the borders of a level by half of its texel.
+// Texel coordinates in a slot's picture, kept away from the borders of a level by half of its texel, so that nothing of
+// the slots beside it comes in. Where a level's texel is larger than the picture, that is the texel's middle.
 vec2 SLOT_inside(SLOT_Slot slot, vec2 uv, float level)
 {
-    vec2 inset = min(vec2(0.5 * exp2(ceil(level))), 0.5 * slot.size);
-    return clamp(uv * slot.size, inset, slot.size - inset);
+    vec2 inset = vec2(0.5 * exp2(ceil(level)));
+    return clamp(uv * slot.size, inset, max(slot.size - inset, inset));
 }
 
 vec4 SLOT_colourOf(SLOT_Slot slot, vec2 uv, float level)
@@ -160,10 +161,39 @@ SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how)
     }
     else
     {
+        result.colour = vec4(1.0);
         result.cover = values.y / how.probes;
         result.value = values.y > 0.0 ? values.x / values.y : 0.0;
     }
     return result;
+}
+
+// A color table's entry for a value; w negative where the table has none. `row` in rows.
+vec4 SLOT_entry(float value, vec4 range, float row, uint flags)
+{
+    float share = (value - range.x) * range.y;
+    if ((flags & 0x100000u) != 0u && clamp(share, 0.0, 1.0) != share) return vec4(-1.0);
+    float t = clamp(share, 0.0, 1.0) * (1.0 - SLOT_quality.w) + 0.5 * SLOT_quality.w;
+    if ((flags & 0x10000u) != 0u) t = (floor(t / SLOT_quality.w) + 0.5) * SLOT_quality.w;
+    return textureLod(SLOT_tables, vec2(t, row / float(textureSize(SLOT_tables, 0).y)), 0.0);
+}
+
+// Classes have colours to average, but no values in between.
+SLOT_Sample SLOT_classes(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how, vec4 range, float row)
+{
+    float level = floor(how.level + 0.5);
+    vec2 first = uv - how.step * (0.5 * (how.probes - 1.0));
+    vec4 sum = vec4(0.0);
+    float count = 0.0;
+    for (float i = 0.0; i < how.probes; ++i)
+    {
+        vec2 value = SLOT_valueOf(slot, clamp(first + i * how.step, vec2(0.0), vec2(1.0)), level, false);
+        vec4 entry = value.y > 0.0 ? SLOT_entry(value.x, range, row, flags) : vec4(-1.0);
+        if (entry.a < 0.0) continue;
+        sum += vec4(entry.rgb * entry.a, entry.a);
+        ++count;
+    }
+    return SLOT_Sample(vec4(sum.rgb / max(sum.a, 1e-6), sum.a / max(count, 1.0)), 0.0, count / how.probes);
 }
 
 // Where the raster is looked up at a place, and the same for the pixels beside it.
@@ -278,14 +308,6 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
 
     uint sourceOf = (codes.w >> 12u) & 3u;
     uint alphaOf = (codes.w >> 14u) & 3u;
-    SLOT_Sample found = SLOT_Sample(vec4(1.0), 0.0, 1.0);
-    if ((flags & 3u) != 0u)
-    {
-        SLOT_Slot slot = SLOT_slotOf(texelFetch(SLOT_data, record + 2));
-        float probes = (flags & 3u) == 1u ? SLOT_quality.x : min(SLOT_quality.x, 4.0);
-        found = SLOT_sample(slot, flags, uv, geofx_filter(across, up, slot.size, probes, slot.last));
-        if (found.cover <= 0.0) return colour;
-    }
     vec4 constant = vec4(0.0);
     vec4 range = vec4(0.0, 1.0, 0.0, 1.0);
     // What only few mappings need is fetched for these only.
@@ -294,19 +316,31 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
         range = uintBitsToFloat(texelFetch(SLOT_data, record + 4));
         constant = uintBitsToFloat(texelFetch(SLOT_data, record + 8));
     }
-    vec4 source = found.colour;
-    float grey = (flags & 3u) == 1u ? dot(found.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) : found.value;
-    if (sourceOf == 1u)
+    float row = uintBitsToFloat(codes.z);
+    uint kind = flags & 3u;
+    bool colouredClasses = kind == 3u && sourceOf == 1u;
+    SLOT_Sample found = SLOT_Sample(vec4(1.0), 0.0, 1.0);
+    if (kind != 0u)
     {
-        float share = (grey - range.x) * range.y;
-        if ((flags & 0x100000u) != 0u && clamp(share, 0.0, 1.0) != share) return colour;
-        float t = clamp(share, 0.0, 1.0) * (1.0 - SLOT_quality.w) + 0.5 * SLOT_quality.w;
-        if ((flags & 0x10000u) != 0u) t = (floor(t / SLOT_quality.w) + 0.5) * SLOT_quality.w;
-        vec4 entry = textureLod(SLOT_tables, vec2(t, uintBitsToFloat(codes.z) / float(textureSize(SLOT_tables, 0).y)), 0.0);
-        // The table speaks of what is drawn, the layer of where.
-        source = vec4(entry.rgb, entry.a * ((flags & 3u) == 1u ? source.a : 1.0));
+        SLOT_Slot slot = SLOT_slotOf(texelFetch(SLOT_data, record + 2));
+        float probes = kind == 1u ? SLOT_quality.x : kind == 2u || colouredClasses ? min(SLOT_quality.x, 4.0) : 1.0;
+        geofx_Filter how = geofx_filter(across, up, slot.size, probes, slot.last);
+        if (colouredClasses)
+            found = SLOT_classes(slot, flags, uv, how, range, row);
+        else
+            found = SLOT_sample(slot, flags, uv, how);
+        if (found.cover <= 0.0) return colour;
     }
-    else if ((flags & 3u) > 1u)
+    vec4 source = found.colour;
+    float grey = kind == 1u ? dot(found.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) : found.value;
+    if (sourceOf == 1u && !colouredClasses)
+    {
+        vec4 entry = SLOT_entry(grey, range, row, flags);
+        if (entry.a < 0.0) return colour;
+        // The table speaks of what is drawn, the layer of where.
+        source = vec4(entry.rgb, entry.a * (kind == 1u ? source.a : 1.0));
+    }
+    else if (kind > 1u && sourceOf == 0u)
     {
         source = vec4(vec3(clamp((grey - range.x) * range.y, 0.0, 1.0)), 1.0);
     }
@@ -326,9 +360,11 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
     {
         uvec4 words = texelFetch(SLOT_data, record + 13);
         SLOT_Slot slot = SLOT_slotOf(words);
-        uint kind = (flags >> 17u) & 7u; // of the mask, as the layer's own
-        SLOT_Sample mask = SLOT_sample(slot, kind, uv, geofx_filter(across, up, slot.size, min(SLOT_quality.x, 4.0), slot.last));
-        float share = (kind & 3u) == 1u ? dot(mask.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) * mask.colour.a : mask.value;
+        uint maskKind = (flags >> 17u) & 7u; // as the layer's own
+        float probes = (maskKind & 3u) == 3u ? 1.0 : min(SLOT_quality.x, 4.0);
+        SLOT_Sample mask = SLOT_sample(slot, maskKind, uv, geofx_filter(across, up, slot.size, probes, slot.last));
+        float share = mask.value;
+        if ((maskKind & 3u) == 1u) share = dot(mask.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) * mask.colour.a;
         source.a = mask.cover * geofx_ramp(share, range.z, range.w);
     }
     if (alphaOf == 3u) source.a = geofx_ramp(grey, range.z, range.w);

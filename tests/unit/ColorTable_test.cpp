@@ -256,7 +256,12 @@ TEST(ColorTableRow, JumpsBlurOnlyBelow)
     {
         Random random(sample);
         const double jump = random.uniform(0.1, 0.9), texel = 1.0 / 1023.0;
-        const auto table = makeTable({{0, red}, {jump, green}, {jump, blue}, {1, red}});
+        // Above it a steep ramp: 10/255 per texel.
+        const auto table = makeTable({{0, red},
+                                      {jump, green},
+                                      {jump, osg::Vec4(0.4f, 0.4f, 0.6f, 1)},
+                                      {jump + 0.0125, osg::Vec4(0.9f, 0.1f, 0.2f, 1)},
+                                      {1, red}});
         const auto row = rowOf(*table, 0, 1);
         for (int i = 0; i < 200; ++i)
         {
@@ -266,6 +271,18 @@ TEST(ColorTableRow, JumpsBlurOnlyBelow)
             ASSERT_LT(difference(lookUp(row, ColorTable::LINEAR, 0, 1, under), table->at(under)), 1.0);
         }
         ASSERT_LT(difference(lookUp(row, ColorTable::LINEAR, 0, 1, jump), table->at(jump)), 1.0);
+    }
+}
+
+TEST(ColorTableRow, JumpsAtATexelsOwnValueBeginThere)
+{
+    // Tenths are not what floating-point numbers hold.
+    for (int texel = 1; texel < 1023; ++texel)
+    {
+        const double jump = texel * 0.1;
+        const auto row = rowOf(*makeTable({{0, red}, {jump, red}, {jump, blue}, {102.3, blue}}), 0, 102.3);
+        ASSERT_EQ(row[texel - 1], osg::Vec4ub(255, 0, 0, 255)) << texel;
+        ASSERT_EQ(row[texel], osg::Vec4ub(0, 0, 255, 255)) << texel;
     }
 }
 

@@ -535,6 +535,13 @@ TEST(LayerPixels, ReductionAveragesLightAndAlpha)
     const auto thirds =
         makePicture(3, 1, [](int x, int) { return x ? rgba(0, 255, 0, 0) : rgba(255, 0, 0); });
     EXPECT_EQ(make(*thirds, options).levels[0][0], rgba(255, 0, 0, 85));
+
+    // Two pixels of three: one and a half below each.
+    options.maxSide = 2;
+    options.sRGB = false;
+    const auto steps = makePicture(3, 1, [](int x, int) { return rgba(90 * x, 0, 0); });
+    EXPECT_EQ(at(make(*steps, options), 0, 0, 0), rgba(30, 0, 0));
+    EXPECT_EQ(at(make(*steps, options), 0, 1, 0), rgba(150, 0, 0));
 }
 
 /// The sentence with which an image is refused.

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Every property of every effect, from the classes' own tables: a new class or property is in these tests by itself,
+// Every property of every class, from the classes' own tables: a new class or property is in these tests by itself,
 // but for typed setters, whose test says which one it misses. What files do with properties: Serializers_test.cpp.
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <tools/NotifyWatch.h>
 #include <tools/RandomSamples.h>
 #include <unit/PropertySamples.h>
 
 #include <osg/CopyOp>
 
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <functional>
@@ -23,7 +25,9 @@ namespace
 
 using geofx::test::allProperties;
 using geofx::test::alteredEffect;
+using geofx::test::createHolder;
 using geofx::test::expectSame;
+using geofx::test::holderKinds;
 using geofx::test::isWhole;
 using geofx::test::NotifyWatch;
 using geofx::test::otherValues;
@@ -32,12 +36,17 @@ using geofx::test::Random;
 using geofx::test::sampleCount;
 using osgGeoFX::BirdsEyeView;
 using osgGeoFX::BlendedView;
+using osgGeoFX::ColorTransfer;
 using osgGeoFX::createEffect;
+using osgGeoFX::DataLayer;
 using osgGeoFX::Effect;
 using osgGeoFX::effectKinds;
 using osgGeoFX::PedestrianView;
 using osgGeoFX::PerspectiveBend;
+using osgGeoFX::ProjectiveMapping;
+using osgGeoFX::ProjectiveMappings;
 using osgGeoFX::Property;
+using osgGeoFX::PropertyHolder;
 using osgGeoFX::VerticalExaggeration;
 
 using Kind = Property::Kind;
@@ -46,9 +55,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();
 
 /// One sentence that begins with the class and names the property as people type it.
-void expectSentence(const std::string& error, const Effect& effect, const Property& property)
+void expectSentence(const std::string& error, const PropertyHolder& holder, const Property& property)
 {
-    EXPECT_EQ(error.rfind(std::string(effect.className()) + ": ", 0), 0u) << error;
+    EXPECT_EQ(error.rfind(std::string(holder.className()) + ": ", 0), 0u) << error;
     EXPECT_NE(error.find(property.textName()), std::string::npos) << error;
     EXPECT_EQ(error.back(), '.') << error;
 }
@@ -57,11 +66,11 @@ class EveryProperty : public testing::TestWithParam<PropertyRow>
 {
 protected:
     const Property& _property = GetParam().property();
-    const osg::ref_ptr<Effect> _effect = createEffect(GetParam().kind);
+    const osg::ref_ptr<PropertyHolder> _holder = GetParam().create();
     std::string _error;
 
-    bool set(double value) { return _effect->setProperty(_property.name, value, _error); }
-    double value() const { return _effect->getProperty(_property.name); }
+    bool set(double value) { return _holder->setProperty(_property.name, value, _error); }
+    double value() const { return _holder->getProperty(_property.name); }
 };
 
 INSTANTIATE_TEST_SUITE_P(All, EveryProperty, testing::ValuesIn(allProperties()),
@@ -74,30 +83,30 @@ TEST_P(EveryProperty, HasTheTablesDefault)
     EXPECT_EQ(_property.refusal(_property.defaultValue), "");
     EXPECT_EQ(value(), _property.defaultValue);
     EXPECT_EQ(_property.choices.empty(), _property.kind != Kind::Choice);
-    EXPECT_GE(otherValues(GetParam().kind, _property).size(), 1u);
+    EXPECT_GE(otherValues(GetParam()).size(), 1u);
 }
 
 TEST_P(EveryProperty, TakesWhatIsInRangeAndRaisesTheRevision)
 {
-    for (const double wanted : otherValues(GetParam().kind, _property))
+    for (const double wanted : otherValues(GetParam()))
     {
         ASSERT_TRUE(set(_property.defaultValue)) << _error;
-        const unsigned int before = _effect->revision();
+        const unsigned int before = _holder->revision();
         EXPECT_TRUE(set(wanted)) << _error;
         EXPECT_EQ(_error, "");
         EXPECT_EQ(value(), wanted);
-        EXPECT_GT(_effect->revision(), before);
-        const unsigned int after = _effect->revision();
+        EXPECT_GT(_holder->revision(), before);
+        const unsigned int after = _holder->revision();
         EXPECT_TRUE(set(wanted));
-        EXPECT_EQ(_effect->revision(), after) << "nothing has changed";
+        EXPECT_EQ(_holder->revision(), after) << "nothing has changed";
     }
 }
 
 TEST_P(EveryProperty, RefusesTheRestWithASentenceAndKeepsTheLastGoodState)
 {
-    const double good = otherValues(GetParam().kind, _property).at(0);
+    const double good = otherValues(GetParam()).at(0);
     ASSERT_TRUE(set(good));
-    const unsigned int before = _effect->revision();
+    const unsigned int before = _holder->revision();
     std::vector<double> wrong = {std::nextafter(_property.minimum, -infinity),
                                  std::nextafter(_property.maximum, infinity),
                                  -infinity,
@@ -109,17 +118,17 @@ TEST_P(EveryProperty, RefusesTheRestWithASentenceAndKeepsTheLastGoodState)
     for (const double value : wrong)
     {
         EXPECT_FALSE(set(value)) << value;
-        expectSentence(_error, *_effect, _property);
-        EXPECT_FALSE(_effect->setProperties({{_property.name, value}}, _error)) << value;
-        expectSentence(_error, *_effect, _property);
+        expectSentence(_error, *_holder, _property);
+        EXPECT_FALSE(_holder->setProperties({{_property.name, value}}, _error)) << value;
+        expectSentence(_error, *_holder, _property);
         EXPECT_EQ(this->value(), good) << value;
     }
-    EXPECT_EQ(_effect->revision(), before);
+    EXPECT_EQ(_holder->revision(), before);
 }
 
 TEST_P(EveryProperty, ComesBackFromItsText)
 {
-    std::vector<double> values = otherValues(GetParam().kind, _property);
+    std::vector<double> values = otherValues(GetParam());
     values.insert(values.end(), {_property.defaultValue, _property.minimum, _property.maximum});
     for (int i = 0; i < sampleCount() / 50; ++i)
     {
@@ -138,8 +147,8 @@ TEST_P(EveryProperty, ComesBackFromItsText)
         else
             EXPECT_EQ(parsed, value) << _property.text(value);
     }
-    const double other = otherValues(GetParam().kind, _property).at(0);
-    EXPECT_TRUE(_effect->setPropertyText(_property.textName(), _property.text(other), _error)) << _error;
+    const double other = otherValues(GetParam()).at(0);
+    EXPECT_TRUE(_holder->setPropertyText(_property.textName(), _property.text(other), _error)) << _error;
     EXPECT_DOUBLE_EQ(value(), other);
     const double last = value();
     for (const char* text : {"", " ", "x", "1 x", " 1", "0x1", "nan", "inf", "-inf", "1e999", "TRUE", "1,5"})
@@ -147,23 +156,24 @@ TEST_P(EveryProperty, ComesBackFromItsText)
         double untouched = 42.0;
         EXPECT_FALSE(_property.parse(text, untouched, _error)) << text;
         EXPECT_EQ(untouched, 42.0) << text;
-        EXPECT_FALSE(_effect->setPropertyText(_property.textName(), text, _error)) << text;
-        expectSentence(_error, *_effect, _property);
+        EXPECT_FALSE(_holder->setPropertyText(_property.textName(), text, _error)) << text;
+        expectSentence(_error, *_holder, _property);
         EXPECT_EQ(value(), last) << text;
     }
 }
 
 TEST_P(EveryProperty, IsCloned)
 {
-    for (const double wanted : otherValues(GetParam().kind, _property))
+    const NotifyWatch watch;
+    for (const double wanted : otherValues(GetParam()))
     {
         ASSERT_TRUE(set(wanted));
         for (const osg::CopyOp& copy :
              {osg::CopyOp(osg::CopyOp::SHALLOW_COPY), osg::CopyOp(osg::CopyOp::DEEP_COPY_ALL)})
         {
-            const osg::ref_ptr<Effect> clone = osg::clone(_effect.get(), copy);
-            EXPECT_NE(clone, _effect);
-            expectSame(*clone, *_effect);
+            const osg::ref_ptr<PropertyHolder> clone = osg::clone(_holder.get(), copy);
+            EXPECT_NE(clone, _holder);
+            expectSame(*clone, *_holder);
         }
     }
 }
@@ -171,26 +181,75 @@ TEST_P(EveryProperty, IsCloned)
 /// A typed setter and getter.
 struct Typed
 {
-    std::function<bool(Effect&, double)> set;
-    std::function<double(const Effect&)> get;
+    std::function<bool(PropertyHolder&, double)> set;
+    std::function<double(const PropertyHolder&)> get;
 };
 
 template<typename Class, typename Value>
 Typed typed(bool (Class::*setter)(Value), Value (Class::*getter)() const)
 {
-    return {[setter](Effect& effect, double value)
-            { return (static_cast<Class&>(effect).*setter)(static_cast<Value>(value)); },
-            [getter](const Effect& effect)
+    return {[setter](PropertyHolder& holder, double value)
+            { return (static_cast<Class&>(holder).*setter)(static_cast<Value>(value)); },
+            [getter](const PropertyHolder& holder)
             {
-                return static_cast<double>((static_cast<const Class&>(effect).*getter)());
+                return static_cast<double>((static_cast<const Class&>(holder).*getter)());
             }};
 }
 
-const std::map<std::string, Typed>& typedSetters()
+/// Of a setter for several values.
+template<typename Class>
+Typed typed(bool (*set)(Class&, double), double (*get)(const Class&))
+{
+    return {[set](PropertyHolder& holder, double value) { return set(static_cast<Class&>(holder), value); },
+            [get](const PropertyHolder& holder)
+            {
+                return get(static_cast<const Class&>(holder));
+            }};
+}
+
+/// Of a component of a value that is set as a whole.
+template<typename Class, typename Whole, typename Access>
+Typed component(bool (Class::*setter)(const Whole&), Whole (Class::*getter)() const, Access access)
+{
+    return {[=](PropertyHolder& holder, double value)
+            {
+                auto& object = static_cast<Class&>(holder);
+                Whole whole = (object.*getter)();
+                access(whole) = value;
+                return (object.*setter)(whole);
+            },
+            [=](const PropertyHolder& holder)
+            {
+                Whole whole = (static_cast<const Class&>(holder).*getter)();
+                return static_cast<double>(access(whole));
+            }};
+}
+
+/// Sets one of two values that have a setter in common.
+template<typename Class, bool (Class::*Set)(double, double), double (Class::*First)() const,
+         double (Class::*Second)() const>
+struct Two
+{
+    static bool setFirst(Class& object, double value) { return (object.*Set)(value, (object.*Second)()); }
+    static bool setSecond(Class& object, double value) { return (object.*Set)((object.*First)(), value); }
+    static Typed first()
+    {
+        return typed<Class>(&setFirst, [](const Class& c) { return (c.*First)(); });
+    }
+    static Typed second()
+    {
+        return typed<Class>(&setSecond, [](const Class& c) { return (c.*Second)(); });
+    }
+};
+
+using TypedSetters = std::map<std::string, Typed>;
+
+/// Of effects that deform; their names mean one thing in all classes.
+TypedSetters deformationSetters()
 {
     using Bend = PerspectiveBend;
     using Exaggeration = VerticalExaggeration;
-    static const std::map<std::string, Typed> all = {
+    return {
         {"enabled", typed(&Effect::setEnabled, &Effect::getEnabled)},
         {"curve", typed(&Bend::setCurve, &Bend::getCurve)},
         {"planeElevation", typed(&Bend::setPlaneElevation, &Bend::getPlaneElevation)},
@@ -213,52 +272,288 @@ const std::map<std::string, Typed>& typedSetters()
         {"base", typed(&Exaggeration::setBase, &Exaggeration::getBase)},
         {"relight", typed(&Exaggeration::setRelight, &Exaggeration::getRelight)},
     };
+}
+
+TypedSetters mappingsSetters()
+{
+    using Self = ProjectiveMappings;
+    using Geodetic = Two<Self, &Self::setGeodeticOrigin, &Self::getLongitude, &Self::getLatitude>;
+    const auto unit = [](int which)
+    {
+        const auto units = [](const PropertyHolder& holder)
+        {
+            const auto& mappings = static_cast<const Self&>(holder);
+            return std::array<int, 3>{mappings.getDataUnit(), mappings.getLayerUnit(),
+                                      mappings.getTableUnit()};
+        };
+        return Typed{[=](PropertyHolder& holder, double value)
+                     {
+                         std::array<int, 3> all = units(holder);
+                         all[static_cast<std::size_t>(which)] = static_cast<int>(value);
+                         return static_cast<Self&>(holder).setUnits(all[0], all[1], all[2]);
+                     },
+                     [=](const PropertyHolder& holder)
+                     {
+                         return static_cast<double>(units(holder)[static_cast<std::size_t>(which)]);
+                     }};
+    };
+    return {
+        {"enabled", typed(&Effect::setEnabled, &Effect::getEnabled)},
+        {"originX", component(
+                        &Self::setOrigin, &Self::getOrigin, [](auto& v) -> auto& { return v.x(); })},
+        {"originY", component(
+                        &Self::setOrigin, &Self::getOrigin, [](auto& v) -> auto& { return v.y(); })},
+        {"longitude", Geodetic::first()},
+        {"latitude", Geodetic::second()},
+        {"wholeList", typed(&Self::setWholeList, &Self::getWholeList)},
+        {"anisotropy", typed(&Self::setAnisotropy, &Self::getAnisotropy)},
+        {"linear", typed(&Self::setLinear, &Self::getLinear)},
+        {"dataUnit", unit(0)},
+        {"layerUnit", unit(1)},
+        {"tableUnit", unit(2)},
+        {"pageSide", typed(&Self::setPageSide, &Self::getPageSide)},
+        {"maxPages", typed(&Self::setMaxPages, &Self::getMaxPages)},
+        {"maxDataSize", typed(&Self::setMaxDataSize, &Self::getMaxDataSize)},
+    };
+}
+
+TypedSetters mappingSetters()
+{
+    using Self = ProjectiveMapping;
+    using Camera = Self::Camera;
+    const auto axis = [](bool second, int index)
+    {
+        return Typed{[=](PropertyHolder& holder, double value)
+                     {
+                         auto& mapping = static_cast<Self&>(holder);
+                         osg::Vec2d u = mapping.getU();
+                         osg::Vec2d v = mapping.getV();
+                         (second ? v : u)[index] = value;
+                         return mapping.setAxes(u, v);
+                     },
+                     [=](const PropertyHolder& holder)
+                     {
+                         const auto& mapping = static_cast<const Self&>(holder);
+                         return (second ? mapping.getV() : mapping.getU())[index];
+                     }};
+    };
+    const auto ofCamera = [](double Camera::*member)
+    {
+        return component(&Self::setCamera, &Self::getCamera,
+                         [=](Camera& camera) -> double& { return camera.*member; });
+    };
+    using Heights = Two<Self, &Self::setHeights, &Self::getLowest, &Self::getHighest>;
+    using Pixels = Two<Self, &Self::setPixels, &Self::getPixelsNone, &Self::getPixelsFull>;
+    using Slopes = Two<Self, &Self::setSlopes, &Self::getSlopeFull, &Self::getSlopeNone>;
+    TypedSetters all = {
+        {"enabled", typed(&Self::setEnabled, &Self::getEnabled)},
+        {"order", typed(&Self::setOrder, &Self::getOrder)},
+        {"opacity", typed(&Self::setOpacity, &Self::getOpacity)},
+        {"importance", typed(&Self::setImportance, &Self::getImportance)},
+        {"channels", typed(&Self::setChannels, &Self::getChannels)},
+        {"centreX", component(
+                        &Self::setCentre, &Self::getCentre, [](auto& v) -> auto& { return v.x(); })},
+        {"centreY", component(
+                        &Self::setCentre, &Self::getCentre, [](auto& v) -> auto& { return v.y(); })},
+        {"uX", axis(false, 0)},
+        {"uY", axis(false, 1)},
+        {"vX", axis(true, 0)},
+        {"vY", axis(true, 1)},
+        {"lowest", Heights::first()},
+        {"highest", Heights::second()},
+        {"nearest",
+         typed<Self>([](Self& m, double v) { return m.setDistances(v, m.getFarthest(), m.getSoftness()); },
+                     [](const Self& m) { return m.getNearest(); })},
+        {"farthest",
+         typed<Self>([](Self& m, double v) { return m.setDistances(m.getNearest(), v, m.getSoftness()); },
+                     [](const Self& m) { return m.getFarthest(); })},
+        {"softness",
+         typed<Self>([](Self& m, double v) { return m.setDistances(m.getNearest(), m.getFarthest(), v); },
+                     [](const Self& m) { return m.getSoftness(); })},
+        {"pixelsNone", Pixels::first()},
+        {"pixelsFull", Pixels::second()},
+        {"slopeFull", Slopes::first()},
+        {"slopeNone", Slopes::second()},
+        {"softEdges", typed(&Self::setSoftEdges, &Self::getSoftEdges)},
+        {"sizeInPixels", typed(&Self::setSizeInPixels, &Self::getSizeInPixels)},
+        {"turned", typed(&Self::setTurned, &Self::getTurned)},
+        {"projector", typed(&Self::setProjector, &Self::getProjector)},
+        {"height", typed(&Self::setHeight, &Self::getHeight)},
+        {"heading", ofCamera(&Camera::heading)},
+        {"pitch", ofCamera(&Camera::pitch)},
+        {"roll", ofCamera(&Camera::roll)},
+        {"fieldOfView", ofCamera(&Camera::fieldOfView)},
+        {"aspectRatio", ofCamera(&Camera::aspectRatio)},
+        {"k1", ofCamera(&Camera::k1)},
+        {"k2", ofCamera(&Camera::k2)},
+        {"k3", ofCamera(&Camera::k3)},
+        {"p1", ofCamera(&Camera::p1)},
+        {"p2", ofCamera(&Camera::p2)},
+        {"range", ofCamera(&Camera::range)},
+    };
+    for (int row = 0; row < 3; ++row)
+    {
+        for (int column = 0; column < 3; ++column)
+            all["m" + std::to_string(row) + std::to_string(column)] =
+                component(&Self::setTransform, &Self::getTransform,
+                          [=](glm::dmat3& m) -> double& { return m[column][row]; });
+    }
     return all;
+}
+
+TypedSetters layerSetters()
+{
+    using Self = DataLayer;
+    return {
+        {"kind", typed(&Self::setKind, &Self::getKind)},
+        {"smooth", typed(&Self::setSmooth, &Self::getSmooth)},
+        {"sRgb", typed(&Self::setSRgb, &Self::getSRgb)},
+        {"hasNoData",
+         typed<Self>([](Self& layer, double value)
+                     { return value != 0.0 ? layer.setNoData(layer.getNoData()) : layer.clearNoData(); },
+                     [](const Self& layer) { return layer.getHasNoData() ? 1.0 : 0.0; })},
+        {"noData", typed(&Self::setNoData, &Self::getNoData)},
+        {"importance", typed(&Self::setImportance, &Self::getImportance)},
+    };
+}
+
+TypedSetters transferSetters()
+{
+    using Self = ColorTransfer;
+    using Range = Two<Self, &Self::setValueRange, &Self::getLowValue, &Self::getHighValue>;
+    using Ramp = Two<Self, &Self::setRamp, &Self::getRampLow, &Self::getRampHigh>;
+    TypedSetters all = {
+        {"source", typed(&Self::setSource, &Self::getSource)},
+        {"alpha", typed(&Self::setAlpha, &Self::getAlpha)},
+        {"sourceFactor",
+         typed<Self>([](Self& t, double v)
+                     { return t.setBlendFunction(static_cast<Self::Factor>(v), t.getDestinationFactor()); },
+                     [](const Self& t) { return static_cast<double>(t.getSourceFactor()); })},
+        {"destinationFactor",
+         typed<Self>([](Self& t, double v)
+                     { return t.setBlendFunction(t.getSourceFactor(), static_cast<Self::Factor>(v)); },
+                     [](const Self& t) { return static_cast<double>(t.getDestinationFactor()); })},
+        {"equation", typed(&Self::setEquation, &Self::getEquation)},
+        {"lowValue", Range::first()},
+        {"highValue", Range::second()},
+        {"rampLow", Ramp::first()},
+        {"rampHigh", Ramp::second()},
+        {"brightness", typed(&Self::setBrightness, &Self::getBrightness)},
+        {"contrast", typed(&Self::setContrast, &Self::getContrast)},
+        {"saturation", typed(&Self::setSaturation, &Self::getSaturation)},
+        {"hue", typed(&Self::setHue, &Self::getHue)},
+    };
+    const char* const parts[] = {"red", "green", "blue", "constantAlpha"};
+    for (int i = 0; i < 4; ++i)
+        all[parts[i]] =
+            component(&Self::setConstant, &Self::getConstant, [=](osg::Vec4d& v) -> double& { return v[i]; });
+    const char* const columns[] = {"FromRed", "FromGreen", "FromBlue", "Added"};
+    for (int row = 0; row < 3; ++row)
+    {
+        for (int column = 0; column < 4; ++column)
+            all[std::string(parts[row]) + columns[column]] = component(
+                &Self::setColorMatrix, &Self::getColorMatrix,
+                [=](Self::Matrix& m) -> double& { return m[static_cast<std::size_t>(row)][column]; });
+    }
+    return all;
+}
+
+const TypedSetters& typedSetters(const std::string& kind)
+{
+    static const TypedSetters deformations = deformationSetters();
+    static const std::map<std::string, TypedSetters> others = {
+        {"projectiveMappings", mappingsSetters()},
+        {"projectiveMapping", mappingSetters()},
+        {"dataLayer", layerSetters()},
+        {"colorTransfer", transferSetters()},
+    };
+    const auto found = others.find(kind);
+    return found == others.end() ? deformations : found->second;
 }
 
 TEST_P(EveryProperty, HasATypedSetterThatAgrees)
 {
     NotifyWatch watch;
-    ASSERT_TRUE(typedSetters().count(_property.name)) << "add its setter to this file's table";
-    const Typed& setter = typedSetters().at(_property.name);
-    EXPECT_EQ(setter.get(*_effect), _property.defaultValue);
-    for (const double wanted : otherValues(GetParam().kind, _property))
+    const TypedSetters& setters = typedSetters(GetParam().kind);
+    ASSERT_TRUE(setters.count(_property.name)) << "add its setter to this file's table";
+    const Typed& setter = setters.at(_property.name);
+    EXPECT_EQ(setter.get(*_holder), _property.defaultValue);
+    for (const double wanted : otherValues(GetParam()))
     {
-        EXPECT_TRUE(setter.set(*_effect, wanted));
+        EXPECT_TRUE(setter.set(*_holder, wanted));
         EXPECT_EQ(value(), wanted);
-        EXPECT_EQ(setter.get(*_effect), wanted);
+        EXPECT_EQ(setter.get(*_holder), wanted);
         ASSERT_TRUE(set(_property.defaultValue));
-        EXPECT_EQ(setter.get(*_effect), _property.defaultValue);
+        EXPECT_EQ(setter.get(*_holder), _property.defaultValue);
     }
     if (_property.kind == Kind::Flag || _property.kind == Kind::Choice) return;
     // A refusal is one warning of OSG.
     const std::vector<std::string> said =
-        watch.messagesOf([&] { EXPECT_FALSE(setter.set(*_effect, _property.maximum + 1.0)); });
+        watch.messagesOf([&] { EXPECT_FALSE(setter.set(*_holder, 2.0 * _property.maximum + 1.0)); });
     ASSERT_EQ(said.size(), 1u);
     EXPECT_NE(said[0].find("osgGeoFX: "), std::string::npos) << said[0];
     EXPECT_NE(said[0].find(_property.textName()), std::string::npos) << said[0];
     EXPECT_EQ(value(), _property.defaultValue);
 }
 
-TEST(Effects, HaveKindsAndNoPropertyTwice)
+TEST(Holders, HaveNamesAndNoPropertyTwice)
+{
+    for (const std::string& kind : holderKinds())
+    {
+        const osg::ref_ptr<PropertyHolder> holder = createHolder(kind);
+        ASSERT_TRUE(holder) << kind;
+        EXPECT_EQ(osgGeoFX::kindOf(*holder), kind);
+        EXPECT_STREQ(holder->libraryName(), "osgGeoFX");
+        std::set<std::string> names;
+        for (const Property& property : holder->properties())
+            EXPECT_TRUE(names.insert(property.textName()).second) << kind << " " << property.name;
+        std::string error;
+        EXPECT_FALSE(holder->setProperty("nothing", 1.0, error));
+        EXPECT_NE(error.find("has no property nothing."), std::string::npos) << error;
+        EXPECT_FALSE(holder->setProperties({{"nothing", 1.0}}, error));
+        EXPECT_NE(error.find("nothing."), std::string::npos) << error;
+        EXPECT_FALSE(holder->setPropertyText("nothing", "1", error));
+        EXPECT_FALSE(holder->setPropertyText("nothing.enabled", "true", error));
+    }
+}
+
+TEST(Holders, TellTheirListenersOfEachChange)
+{
+    class Counter final : public osgGeoFX::PropertyListener
+    {
+    public:
+        void propertyChanged(PropertyHolder&) override { ++count; }
+        int count = 0;
+    };
+    for (const std::string& kind : holderKinds())
+    {
+        const osg::ref_ptr<PropertyHolder> holder = createHolder(kind);
+        Counter counter;
+        holder->addListener(counter);
+        int expected = 0;
+        for (const Property& property : holder->properties())
+        {
+            const unsigned int before = holder->revision();
+            std::string error;
+            for (const double value : geofx::test::candidateValues(property))
+                holder->setProperty(property.name, value, error);
+            expected += static_cast<int>(holder->revision() - before);
+            EXPECT_EQ(counter.count, expected) << kind << " " << property.name;
+        }
+        EXPECT_GT(counter.count, 0) << kind;
+        holder->removeListener(counter);
+        geofx::test::alter(*holder);
+        EXPECT_EQ(counter.count, expected) << kind;
+    }
+}
+
+TEST(Effects, HaveKinds)
 {
     for (const std::string& kind : effectKinds())
     {
         const osg::ref_ptr<Effect> effect = createEffect(kind);
         ASSERT_TRUE(effect) << kind;
-        EXPECT_EQ(osgGeoFX::kindOf(*effect), kind);
-        EXPECT_STREQ(effect->libraryName(), "osgGeoFX");
         EXPECT_EQ(effect->properties().at(0).name, "enabled");
-        std::set<std::string> names;
-        for (const Property& property : effect->properties())
-            EXPECT_TRUE(names.insert(property.textName()).second) << kind << " " << property.name;
-        std::string error;
-        EXPECT_FALSE(effect->setProperty("nothing", 1.0, error));
-        EXPECT_NE(error.find("has no property nothing."), std::string::npos) << error;
-        EXPECT_FALSE(effect->setProperties({{"nothing", 1.0}}, error));
-        EXPECT_NE(error.find("nothing."), std::string::npos) << error;
-        EXPECT_FALSE(effect->setPropertyText("nothing", "1", error));
-        EXPECT_FALSE(effect->setPropertyText("nothing.enabled", "true", error));
     }
     EXPECT_FALSE(createEffect("nothing"));
 }

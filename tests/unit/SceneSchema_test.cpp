@@ -225,9 +225,10 @@ TEST(SceneEffects, TakeWhatTheTableTakesAndNameTheRest)
 {
     for (const geofx::test::PropertyRow& row : geofx::test::allProperties())
     {
+        if (!createEffect(row.kind)) continue;
         SCOPED_TRACE(row.kind + "." + row.name);
         const Property& property = row.property();
-        for (const double value : geofx::test::otherValues(row.kind, property))
+        for (const double value : geofx::test::otherValues(row))
         {
             // XML's decimals have no exponent.
             const std::string text = property.text(value);

@@ -53,14 +53,14 @@ protected:
         return result;
     }
 
-    /// What an ASCII file with an effect gives that has these lines.
-    osg::ref_ptr<osgGeoFX::Effect> fromLines(const std::string& className, const std::string& lines)
+    /// What an ASCII file with an object gives that has these lines.
+    osg::ref_ptr<osgGeoFX::PropertyHolder> fromLines(const std::string& className, const std::string& lines)
     {
         const auto file =
             _folder.write("lines.osgt", "#Ascii Object\n#Version 161\n#Generator OpenSceneGraph 3.6.5\n\n" +
                                             className + " {\n  UniqueID 1\n" + lines + "}\n");
         const osg::ref_ptr<osg::Object> read = osgDB::readRefObjectFile(file.string());
-        return dynamic_cast<osgGeoFX::Effect*>(read.get());
+        return dynamic_cast<osgGeoFX::PropertyHolder*>(read.get());
     }
 };
 

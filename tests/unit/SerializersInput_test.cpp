@@ -12,24 +12,24 @@ namespace
 
 using geofx::test::allProperties;
 using geofx::test::contentOf;
+using geofx::test::createHolder;
 using geofx::test::expectFullScene;
 using geofx::test::expectSame;
 using geofx::test::formats;
 using geofx::test::fullScene;
 using geofx::test::nameInFiles;
 using geofx::test::PropertyRow;
-using osgGeoFX::createEffect;
-using osgGeoFX::Effect;
 using osgGeoFX::effectKinds;
 using osgGeoFX::EffectScene;
 using osgGeoFX::PerspectiveBend;
 using osgGeoFX::Property;
+using osgGeoFX::PropertyHolder;
 using osgGeoFX::RigidReference;
 using SerializersInput = geofx::test::Serializers;
 
 TEST_F(SerializersInput, PropertiesMayStandInAnyOrderAndFitInTheEndOnly)
 {
-    osg::ref_ptr<Effect> effect =
+    osg::ref_ptr<PropertyHolder> effect =
         fromLines("osgGeoFX::BirdsEyeView",
                   "  HorizonLine 0.95\n  FocusLine 0.9\n  Enabled FALSE\n  Curve bezier\n  MapUnit 2\n");
     ASSERT_TRUE(effect);
@@ -49,11 +49,11 @@ TEST_F(SerializersInput, WrongValuesLeaveTheDefaultWithAWarning)
     for (const PropertyRow& row : allProperties())
     {
         const Property& property = row.property();
-        const osg::ref_ptr<Effect> plain = createEffect(row.kind);
-        for (const char* text : {"1e30", "-1e30", "nan", "inf", "spline", "1x"})
+        const osg::ref_ptr<PropertyHolder> plain = createHolder(row.kind);
+        for (const char* text : {"1e39", "-1e39", "nan", "inf", "spline", "1x"})
         {
             SCOPED_TRACE(row.kind + "." + row.name + " " + text);
-            osg::ref_ptr<Effect> read;
+            osg::ref_ptr<PropertyHolder> read;
             const std::vector<std::string> said = _watch.messagesOf(
                 [&] {
                     read = fromLines(plain->getCompoundClassName(),
@@ -67,7 +67,7 @@ TEST_F(SerializersInput, WrongValuesLeaveTheDefaultWithAWarning)
         }
     }
     // What else the file says is taken.
-    osg::ref_ptr<Effect> read;
+    osg::ref_ptr<PropertyHolder> read;
     const auto said = _watch.messagesOf(
         [&]
         {

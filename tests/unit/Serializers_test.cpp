@@ -17,12 +17,14 @@ namespace
 {
 
 using geofx::test::allProperties;
-using geofx::test::alteredEffect;
+using geofx::test::alteredHolder;
 using geofx::test::contentOf;
+using geofx::test::createHolder;
 using geofx::test::expectFullScene;
 using geofx::test::expectSame;
 using geofx::test::formats;
 using geofx::test::fullScene;
+using geofx::test::holderKinds;
 using geofx::test::nameInFiles;
 using geofx::test::otherValues;
 using geofx::test::PropertyRow;
@@ -32,17 +34,17 @@ using osgGeoFX::BirdsEyeView;
 using osgGeoFX::BlendedView;
 using osgGeoFX::createEffect;
 using osgGeoFX::Effect;
-using osgGeoFX::effectKinds;
 using osgGeoFX::EffectScene;
 using osgGeoFX::Property;
+using osgGeoFX::PropertyHolder;
 using osgGeoFX::RigidReference;
 
 TEST_F(Serializers, ThereIsAWrapperForEachClass)
 {
     auto* wrappers = osgDB::Registry::instance()->getObjectWrapperManager();
     std::vector<osg::ref_ptr<osg::Object>> objects = {new EffectScene, new RigidReference};
-    for (const std::string& kind : effectKinds())
-        objects.emplace_back(createEffect(kind));
+    for (const std::string& kind : holderKinds())
+        objects.emplace_back(createHolder(kind));
     for (const auto& object : objects)
     {
         const std::string name = object->getCompoundClassName();
@@ -66,42 +68,42 @@ TEST_F(Serializers, ThereIsAWrapperForEachClass)
     }
 }
 
-TEST_F(Serializers, KeepEveryPropertyOfEveryEffect)
+TEST_F(Serializers, KeepEveryPropertyOfEveryClass)
 {
     for (const PropertyRow& row : allProperties())
     {
-        for (const double value : otherValues(row.kind, row.property()))
+        for (const double value : otherValues(row))
         {
-            const osg::ref_ptr<Effect> effect = createEffect(row.kind);
+            const osg::ref_ptr<PropertyHolder> holder = row.create();
             std::string error;
-            ASSERT_TRUE(effect->setProperty(row.name, value, error)) << error;
+            ASSERT_TRUE(holder->setProperty(row.name, value, error)) << error;
             for (const std::string& format : formats)
             {
                 SCOPED_TRACE(row.kind + "." + row.name + " " + format);
-                const osg::ref_ptr<Effect> read = throughFile<Effect>(*effect, format);
+                const osg::ref_ptr<PropertyHolder> read = throughFile<PropertyHolder>(*holder, format);
                 ASSERT_TRUE(read);
-                expectSame(*read, *effect);
+                expectSame(*read, *holder);
             }
         }
     }
 }
 
-TEST_F(Serializers, KeepWholeEffects)
+TEST_F(Serializers, KeepWholeObjects)
 {
-    for (const std::string& kind : effectKinds())
+    for (const std::string& kind : holderKinds())
     {
         for (const std::string& format : formats)
         {
             SCOPED_TRACE(testing::Message() << kind << " " << format);
-            const osg::ref_ptr<Effect> altered = alteredEffect(kind);
-            altered->setName("an effect");
-            const osg::ref_ptr<Effect> read = throughFile<Effect>(*altered, format);
+            const osg::ref_ptr<PropertyHolder> altered = alteredHolder(kind);
+            altered->setName("an object");
+            const osg::ref_ptr<PropertyHolder> read = throughFile<PropertyHolder>(*altered, format);
             ASSERT_TRUE(read);
-            EXPECT_EQ(read->getName(), "an effect");
+            EXPECT_EQ(read->getName(), "an object");
             expectSame(*read, *altered);
             // And a file of defaults stays one, without a word about them.
-            const osg::ref_ptr<Effect> plain = createEffect(kind);
-            const osg::ref_ptr<Effect> other = throughFile<Effect>(*plain, format);
+            const osg::ref_ptr<PropertyHolder> plain = createHolder(kind);
+            const osg::ref_ptr<PropertyHolder> other = throughFile<PropertyHolder>(*plain, format);
             ASSERT_TRUE(other);
             expectSame(*other, *plain);
             const std::string text = contentOf(_folder / ("object" + format));
@@ -287,32 +289,32 @@ TEST_F(Serializers, ScriptsReachEveryProperty)
         SCOPED_TRACE(row.kind + "." + row.name);
         const Property& property = row.property();
         const std::string name = nameInFiles(row.name);
-        const osg::ref_ptr<Effect> effect = createEffect(row.kind);
-        const double wanted = otherValues(row.kind, property).at(0);
+        const osg::ref_ptr<PropertyHolder> holder = row.create();
+        const double wanted = otherValues(row).at(0);
         std::optional<double> found;
         bool set = false;
         if (property.kind == Property::Kind::Flag)
         {
-            set = access.setProperty(effect.get(), name, wanted != 0.0);
+            set = access.setProperty(holder.get(), name, wanted != 0.0);
             bool value = false;
-            if (access.getProperty(effect.get(), name, value)) found = value;
+            if (access.getProperty(holder.get(), name, value)) found = value;
         }
         else if (property.kind == Property::Kind::Choice || property.kind == Property::Kind::Integer)
         {
-            set = access.setProperty(effect.get(), name, static_cast<int>(wanted));
+            set = access.setProperty(holder.get(), name, static_cast<int>(wanted));
             int value = 0;
-            if (access.getProperty(effect.get(), name, value)) found = value;
+            if (access.getProperty(holder.get(), name, value)) found = value;
         }
         else
         {
-            set = access.setProperty(effect.get(), name, wanted);
+            set = access.setProperty(holder.get(), name, wanted);
             double value = 0.0;
-            if (access.getProperty(effect.get(), name, value)) found = value;
+            if (access.getProperty(holder.get(), name, value)) found = value;
         }
         EXPECT_TRUE(set);
-        EXPECT_EQ(effect->getProperty(row.name), wanted);
+        EXPECT_EQ(holder->getProperty(row.name), wanted);
         EXPECT_EQ(found, wanted);
-        EXPECT_FALSE(effect->getUserDataContainer()) << "the value went into user data";
+        EXPECT_FALSE(holder->getUserDataContainer()) << "the value went into user data";
     }
 }
 
