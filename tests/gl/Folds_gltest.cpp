@@ -68,12 +68,12 @@ protected:
     }
 
     static constexpr double high = 60.0;
-    const osg::Vec3d inZone = {0, -30, 0};
-    /// With the ball around a thing that is `high`.
-    const osg::Vec3d inFocus = {0, -90, 0};
-    const osg::Vec3d inContext = {0, 30, 0};
-    const std::string advice = "the reference plane, beyond the radius of the bend, and folds over; set "
-                               "`tallest` to that or more.\n";
+    const osg::Vec3d _inZone = {0, -30, 0};
+    /// With the ball around a thing of that height.
+    const osg::Vec3d _inFocus = {0, -90, 0};
+    const osg::Vec3d _inContext = {0, 30, 0};
+    const std::string _advice = "the reference plane, beyond the radius of the bend, and folds over; set "
+                                "`tallest` to that or more.\n";
 };
 
 } // namespace
@@ -81,12 +81,12 @@ protected:
 TEST_F(Folds, AreToldOnceInOneSentence)
 {
     const osg::ref_ptr<EffectScene> scene =
-        sceneOf(makeFold(), {makeGround(), makeBox(high / 2, inZone), makeBox(high / 2, inZone)});
+        sceneOf(makeFold(), {makeGround(), makeBox(high / 2, _inZone), makeBox(high / 2, _inZone)});
     EXPECT_EQ(said(*scene),
               std::vector<std::string>(
-                  {"OSG: osgGeoFX: something in the transition zone reaches 60 m above " + advice}));
+                  {"OSG: osgGeoFX: something in the transition zone reaches 60 m above " + _advice}));
     scene->removeChildren(0, scene->getNumChildren());
-    scene->addChild(makeBox(high, inZone));
+    scene->addChild(makeBox(high, _inZone));
     EXPECT_EQ(said(*scene), std::vector<std::string>()) << "another height is not another complaint";
 }
 
@@ -96,7 +96,7 @@ TEST_F(Folds, AreToldOfWhatHangsBelowADownwardBend)
     const osg::ref_ptr<osg::Node> deep = makeBox(130, {0, -30, -260});
     EXPECT_EQ(said(*sceneOf(bend, {deep})),
               std::vector<std::string>(
-                  {"OSG: osgGeoFX: something in the transition zone reaches 260 m below " + advice}));
+                  {"OSG: osgGeoFX: something in the transition zone reaches 260 m below " + _advice}));
     EXPECT_EQ(said(*sceneOf(bend, {makeBox(130, {0, -30, 0})})), std::vector<std::string>())
         << "the outer side of the bend";
     bend->setTallest(260.0);
@@ -105,7 +105,7 @@ TEST_F(Folds, AreToldOfWhatHangsBelowADownwardBend)
 
 TEST_F(Folds, AreNotToldOutsideTheZone)
 {
-    EXPECT_EQ(said(*sceneOf(makeFold(), {makeBox(high / 2, inFocus), makeBox(high / 2, inContext)})),
+    EXPECT_EQ(said(*sceneOf(makeFold(), {makeBox(high / 2, _inFocus), makeBox(high / 2, _inContext)})),
               std::vector<std::string>());
     EXPECT_EQ(said(*sceneOf(makeFold(), {makeBox(high / 2, {1000, -30, 0})})), std::vector<std::string>())
         << "beside the picture";
@@ -113,12 +113,12 @@ TEST_F(Folds, AreNotToldOutsideTheZone)
 
 TEST_F(Folds, AreNotToldOfWhatCannotFold)
 {
-    const osg::ref_ptr<osg::Node> tower = makeBox(high / 2, inZone);
-    EXPECT_EQ(said(*sceneOf(makeFold(), {makeGround(), makeBox(10, inZone)})), std::vector<std::string>())
+    const osg::ref_ptr<osg::Node> tower = makeBox(high / 2, _inZone);
+    EXPECT_EQ(said(*sceneOf(makeFold(), {makeGround(), makeBox(10, _inZone)})), std::vector<std::string>())
         << "lower than the radius";
     EXPECT_EQ(said(*sceneOf(makeFold(high), {tower})), std::vector<std::string>())
         << "the advice was followed";
-    EXPECT_EQ(said(*sceneOf(makeFold(), {makeBox(high / 2, inZone - osg::Vec3d(0, 0, high))})),
+    EXPECT_EQ(said(*sceneOf(makeFold(), {makeBox(high / 2, _inZone - osg::Vec3d(0, 0, high))})),
               std::vector<std::string>())
         << "the outer side of the bend";
     osg::ref_ptr<PedestrianView> slight = makeFold();
@@ -128,7 +128,7 @@ TEST_F(Folds, AreNotToldOfWhatCannotFold)
 
 TEST_F(Folds, AreNotToldOfADatabaseThatTellsItsHeights)
 {
-    const osg::ref_ptr<osg::Node> tower = database(0.0, high, makeBox(high / 2, inZone));
+    const osg::ref_ptr<osg::Node> tower = database(0.0, high, makeBox(high / 2, _inZone));
     EXPECT_EQ(said(*sceneOf(makeFold(), {tower})), std::vector<std::string>());
     EXPECT_EQ(said(*sceneOf(makeBend(), {database(0.0, 0.0, makeBox(130, {0, -30, -260}))})),
               std::vector<std::string>())

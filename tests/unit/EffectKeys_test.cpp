@@ -130,7 +130,7 @@ TEST_F(EffectKeysTest, StayWithinTheRangeAndWithWhatFits)
     for (const std::string& kind : effectKinds())
     {
         SCOPED_TRACE(kind);
-        for (const int key : {'(', ')'})
+        for (const int key : {int('('), int(')')})
         {
             Effect& effect = add(kind);
             for (int i = 0; i < 200; ++i)
