@@ -2,9 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_viewer: osgviewer, made for terrain.
-#include <osgGeoFX/deformation/EffectHandlers.h>
+#include <osgGeoFX/deformation/ClickAndFly.h>
 #include <osgGeoFX/paging/Scene.h>
 #include <osgGeoFX/paging/ViewerHandlers.h>
+#include <osgGeoFX/scene/EffectKeys.h>
 #include <osgGeoFX/scene/EffectKinds.h>
 
 #include <osg/ArgumentParser>

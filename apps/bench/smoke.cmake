@@ -1,9 +1,11 @@
-# Runs osggeofx_bench on tiny cases: it must go through, and its JSON must have every figure, measured. What the figures
-# are says nothing here.
+# Runs a suite of osggeofx_bench on tiny cases: it must go through, and its JSON must have every figure, measured. What
+# the figures are says nothing here.
+#   cmake -DBENCH=FILE -DSUITE=NAME -DFIGURES=A,B,C -DOPTIONS=--x,y -DWORK=FOLDER -P smoke.cmake
+file(MAKE_DIRECTORY ${WORK})
 set(json ${WORK}/bench-smoke.json)
 file(REMOVE ${json})
-execute_process(COMMAND ${BENCH} --suite terrain --smoke --json ${json} --builder ${BUILDER} --data ${DATA}
-                        --work ${WORK}
+string(REPLACE "," ";" options "${OPTIONS}")
+execute_process(COMMAND ${BENCH} --suite ${SUITE} --smoke --json ${json} ${options} --work ${WORK}
                 RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "osggeofx_bench exited with ${result}:\n${output}")
@@ -19,9 +21,9 @@ foreach(index RANGE ${last})
   endif()
   list(APPEND names ${name})
 endforeach()
-set(expected memory linearity threads speed-whole outline-whole speed-mid outline-mid speed-low outline-low)
-if(NOT names STREQUAL expected)
-  message(FATAL_ERROR "The figures are ${names}; expected were ${expected}.")
+string(REPLACE ";" "," names "${names}")
+if(NOT names STREQUAL FIGURES)
+  message(FATAL_ERROR "The figures are ${names}; expected were ${FIGURES}.")
 endif()
 foreach(field processor processors memoryMiB renderer glVersion)
   string(JSON value GET "${text}" machine ${field})

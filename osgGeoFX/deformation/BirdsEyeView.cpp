@@ -73,7 +73,8 @@ const Properties& BirdsEyeView::properties() const
     {
         Properties list = bendProperties();
         list.push_back(Property::number("focusLine", 0.4, 0.0, 1.0).of<&Self::_focusLine>());
-        list.push_back(Property::number("horizonLine", 0.85, 0.0, 1.0).of<&Self::_horizonLine>());
+        list.push_back(
+            Property::number("horizonLine", 0.85, 0.0, 1.0).of<&Self::_horizonLine>().turnedBy(0.02));
         list.push_back(Property::number("contextTilt", 0.0, 0.0, 0.9).of<&Self::_contextTilt>());
         return list;
     }();

@@ -57,7 +57,9 @@ const Properties& BlendedView::properties() const
     {
         Properties list = bendProperties();
         list.push_back(Property::number("lowHeight", 300.0, -12000.0, 1e7, "m").of<&Self::_lowHeight>());
-        list.push_back(Property::number("highHeight", 1500.0, -12000.0, 1e7, "m").of<&Self::_highHeight>());
+        list.push_back(Property::number("highHeight", 1500.0, -12000.0, 1e7, "m")
+                           .of<&Self::_highHeight>()
+                           .turnedByFactor(1.15));
         return list;
     }();
     return all;

@@ -25,8 +25,9 @@ const Properties& PedestrianView::properties() const
     {
         Properties list = bendProperties();
         const Self defaults;
-        list.push_back(
-            Property::angle("bendAngle", defaults._bendAngle, 0.0, osg::PI_2).of<&Self::_bendAngle>());
+        list.push_back(Property::angle("bendAngle", defaults._bendAngle, 0.0, osg::PI_2)
+                           .of<&Self::_bendAngle>()
+                           .turnedBy(0.05));
         list.push_back(Property::number("focusDistance", defaults._focusDistance, -1e7, 1e7, "m")
                            .of<&Self::_focusDistance>());
         list.push_back(

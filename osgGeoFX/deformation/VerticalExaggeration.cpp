@@ -82,7 +82,7 @@ const Properties& VerticalExaggeration::properties() const
     using Self = VerticalExaggeration;
     static const Properties all = {
         enabledProperty(),
-        Property::number("factor", 1.0, 0.01, 100.0).of<&Self::_factor>(),
+        Property::number("factor", 1.0, 0.01, 100.0).of<&Self::_factor>().turnedByFactor(1.15),
         Property::number("base", 0.0, -12000.0, 12000.0, "m").of<&Self::_base>(),
         Property::flag("relight", true).of<&Self::_relight>(),
     };

@@ -4,6 +4,7 @@
 
 #include <osg/Math>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -78,6 +79,26 @@ Property Property::choice(std::string name, int value, std::vector<std::string> 
     property.kind = Kind::Choice;
     property.choices = std::move(choices);
     return property;
+}
+
+Property Property::turnedBy(double step) &&
+{
+    keyStep = step;
+    return std::move(*this);
+}
+
+Property Property::turnedByFactor(double factor) &&
+{
+    keyStep = factor;
+    keyScales = true;
+    return std::move(*this);
+}
+
+double Property::turned(double value, double presses) const
+{
+    if (keyStep == 0.0) return value;
+    const double turned = keyScales ? value * std::pow(keyStep, presses) : value + keyStep * presses;
+    return std::clamp(turned, minimum, maximum);
 }
 
 std::string Property::textName() const

@@ -33,6 +33,9 @@ struct OSGGEOFX_EXPORT Property
     double maximum = 0.0;
     std::string unit;                 ///< "m", "rad" or nothing
     std::vector<std::string> choices; ///< of a choice, as a person types them
+    /// What one press of a key adds or, where keyScales is set, multiplies by; 0: keys leave the property alone.
+    double keyStep = 0.0;
+    bool keyScales = false;
     double (*get)(const osg::Object&) = nullptr;
     void (*put)(osg::Object&, double) = nullptr; ///< without any check
 
@@ -46,6 +49,12 @@ struct OSGGEOFX_EXPORT Property
     /// Binds a member: `Property::number(...).of<&Class::_member>()`.
     template<auto Member>
     Property of() &&;
+    /// Makes it what keys turn (EffectKeys) of its effect: `Property::number(...).of<...>().turnedBy(0.02)`.
+    Property turnedBy(double step) &&;
+    /// The same for what grows by a factor.
+    Property turnedByFactor(double factor) &&;
+    /// What a value becomes by some presses of a key, less than 0 for the other way; it stays in the range.
+    double turned(double value, double presses) const;
 
     /// The name for a person's text: degrees are said in it ("bendAngleDegrees").
     std::string textName() const;

@@ -68,7 +68,9 @@ osg::ref_ptr<osg::Node> makeSpheres()
     osg::ref_ptr<osg::Group> group = new osg::Group;
     for (int i = 0; i < 60; ++i)
     {
-        const osg::Vec3 center(static_cast<float>(i % 10) - 4.0f, 0.0f, static_cast<float>(i / 10) - 2.0f);
+        const int column = i % 10;
+        const int row = i / 10;
+        const osg::Vec3 center(static_cast<float>(column) - 4.0f, 0.0f, static_cast<float>(row) - 2.0f);
         osg::ref_ptr<osg::ShapeDrawable> sphere = new osg::ShapeDrawable(new osg::Sphere(center, 0.45f));
         sphere->setColor(osg::Vec4(0.1f + 0.015f * static_cast<float>(i), 0.8f, 0.5f, 1.0f));
         group->addChild(sphere);

@@ -132,7 +132,8 @@ TEST_F(FixedFunctionLook, Lights)
 
 TEST_F(FixedFunctionLook, Materials)
 {
-    const auto lit = [](float shininess, osg::Material::ColorMode mode, osg::ref_ptr<osg::LightModel> model)
+    const auto lit =
+        [](float shininess, osg::Material::ColorMode mode, const osg::ref_ptr<osg::LightModel>& model)
     {
         return [=](const Place& place)
         {

@@ -129,20 +129,20 @@ osg::ref_ptr<osg::Geometry> makeWhite(osg::Vec3Array* vertices, osg::DrawElement
 /// A grid of rows, each closed to a ring.
 osg::ref_ptr<osg::Geometry> makeRings(const std::vector<std::pair<double, double>>& radiiAndHeights)
 {
-    constexpr unsigned int SECTORS = 96;
+    constexpr unsigned int sectors = 96;
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
     osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
     for (unsigned int row = 0; row < radiiAndHeights.size(); ++row)
     {
         const auto& [radius, z] = radiiAndHeights[row];
-        for (unsigned int i = 0; i < SECTORS; ++i)
+        for (unsigned int i = 0; i < sectors; ++i)
         {
-            const double angle = 2.0 * osg::PI * i / SECTORS;
+            const double angle = 2.0 * osg::PI * i / sectors;
             vertices->push_back(osg::Vec3d(radius * std::cos(angle), radius * std::sin(angle), z));
             if (row == 0) continue;
-            const unsigned int a = (row - 1) * SECTORS + i;
-            const unsigned int b = (row - 1) * SECTORS + (i + 1) % SECTORS;
-            for (const unsigned int index : {a, b, a + SECTORS, b, b + SECTORS, a + SECTORS})
+            const unsigned int a = (row - 1) * sectors + i;
+            const unsigned int b = (row - 1) * sectors + (i + 1) % sectors;
+            for (const unsigned int index : {a, b, a + sectors, b, b + sectors, a + sectors})
                 triangles->push_back(index);
         }
     }

@@ -96,7 +96,7 @@ protected:
         return image;
     }
 
-    TempDir folder;
+    TempDir _folder;
 };
 
 struct Damage
@@ -118,13 +118,13 @@ class DamagedTile : public Paging, public ::testing::WithParamInterface<Damage>
 
 TEST_F(Paging, AllTilesArriveAndAreCounted)
 {
-    const Scene scene = load(PagedScene::write(folder.path(), PagedScene::Kind::Flat));
+    const Scene scene = load(PagedScene::write(_folder.path(), PagedScene::Kind::Flat));
     osgGeoFX::FrameStatistics statistics;
     const osg::ref_ptr<osg::Image> image = renderOnce(scene, statistics);
     ASSERT_TRUE(image.valid());
     EXPECT_EQ(quadrants(*image), std::vector<osg::Vec3i>(4, blue));
     std::uint64_t bytes = 0;
-    for (const auto& file : fs::directory_iterator(folder / "tiles"))
+    for (const auto& file : fs::directory_iterator(_folder / "tiles"))
         bytes += file.file_size();
     EXPECT_EQ(statistics.tilesLoaded, 5u);
     EXPECT_EQ(statistics.bytesRead, bytes);
@@ -136,7 +136,7 @@ TEST_F(Paging, AllTilesArriveAndAreCounted)
 
 TEST_F(Paging, DoesNotWaitWhenToldSo)
 {
-    const Scene scene = load(PagedScene::write(folder.path(), PagedScene::Kind::Flat));
+    const Scene scene = load(PagedScene::write(_folder.path(), PagedScene::Kind::Flat));
     SceneRenderer::Options options = rendererOptions();
     options.waitForTiles = false;
     osgGeoFX::FrameStatistics statistics;
@@ -147,7 +147,7 @@ TEST_F(Paging, DoesNotWaitWhenToldSo)
 
 TEST_F(Paging, SaysWhenTilesDoNotArriveInTime)
 {
-    const Scene scene = load(PagedScene::write(folder.path(), PagedScene::Kind::Flat));
+    const Scene scene = load(PagedScene::write(_folder.path(), PagedScene::Kind::Flat));
     SceneRenderer::Options options = rendererOptions();
     options.timeout = 1e-6;
     std::string error;
@@ -160,7 +160,7 @@ TEST_F(Paging, SaysWhenTilesDoNotArriveInTime)
 
 TEST_F(Paging, SameCallGivesSameBytesWithAndWithoutCulling)
 {
-    const fs::path file = PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    const fs::path file = PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
     osgGeoFX::FrameStatistics statistics;
     const osg::ref_ptr<osg::Image> first = renderOnce(load(file), statistics);
     ASSERT_TRUE(first.valid());
@@ -176,7 +176,7 @@ TEST_F(Paging, SameCallGivesSameBytesWithAndWithoutCulling)
 
 TEST_F(Paging, NoCullDrawsWhatIsOutsideTheFrustum)
 {
-    const fs::path file = PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    const fs::path file = PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
     const osg::Matrixd away = osg::Matrixd::lookAt(
         osg::Vec3d(15000.0, 0.0, 1000.0), osg::Vec3d(15000.0, 1000.0, 1000.0), osg::Vec3d(0.0, 0.0, 1.0));
     for (const bool cull : {true, false})
@@ -196,7 +196,7 @@ TEST_F(Paging, NoCullDrawsWhatIsOutsideTheFrustum)
 
 TEST_F(Paging, LodScaleFollowsTheScreen)
 {
-    const Scene scene = load(PagedScene::write(folder.path(), PagedScene::Kind::Geocentric));
+    const Scene scene = load(PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric));
     ASSERT_TRUE(scene.terrain);
     const osg::Matrixd placement = PagedScene::placement(PagedScene::Kind::Geocentric);
     const auto levelFrom = [&](double height, int pixels)
@@ -219,8 +219,8 @@ TEST_F(Paging, LodScaleFollowsTheScreen)
 
 TEST_P(DamagedTile, LeavesItsParentOnScreenWithOneWarning)
 {
-    const fs::path file = PagedScene::write(folder.path(), PagedScene::Kind::Flat);
-    GetParam().inflict(folder / "tiles" / "1_1_0.osgb");
+    const fs::path file = PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
+    GetParam().inflict(_folder / "tiles" / "1_1_0.osgb");
     const Scene scene = load(file);
     osg::ref_ptr<osg::Image> image;
     const std::vector<std::string> warnings = watch().messagesOf(
@@ -299,8 +299,8 @@ INSTANTIATE_TEST_SUITE_P(All, DamagedTile,
 
 TEST_F(Paging, BadTileIsHarmlessInEveryThreadingModel)
 {
-    const fs::path file = PagedScene::write(folder.path(), PagedScene::Kind::Flat);
-    replace(folder / "tiles" / "1_0_1.osgb", "garbage");
+    const fs::path file = PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
+    replace(_folder / "tiles" / "1_0_1.osgb", "garbage");
     using Viewer = osgViewer::Viewer;
     for (auto model : {Viewer::SingleThreaded, Viewer::CullDrawThreadPerContext, Viewer::DrawThreadPerContext,
                        Viewer::CullThreadPerCameraDrawThreadPerContext})
@@ -355,7 +355,7 @@ TEST_F(Paging, GuardKeepsAnotherReadCallback)
         }
         std::atomic<int> count{0};
     };
-    const fs::path file = PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    const fs::path file = PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
     osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file.string());
     ASSERT_TRUE(node.valid());
     osg::ref_ptr<Counter> counter = new Counter;
@@ -377,7 +377,7 @@ TEST_F(Paging, GuardKeepsAnotherReadCallback)
 
 TEST_F(Paging, AFailedTileThatIsAskedForAgainIsAnsweredSilently)
 {
-    const Scene scene = load(PagedScene::write(folder.path(), PagedScene::Kind::Flat));
+    const Scene scene = load(PagedScene::write(_folder.path(), PagedScene::Kind::Flat));
     auto* lod = dynamic_cast<osg::PagedLOD*>(scene.effects->getChild(0)->asGroup()->getChild(0));
     ASSERT_NE(lod, nullptr);
     auto* options = dynamic_cast<osgDB::Options*>(lod->getDatabaseOptions());

@@ -30,7 +30,7 @@ protected:
     {
         arguments.insert(arguments.begin(), geofx::test::builtProgram("osggeofx_render"));
         geofx::test::ProgramOptions options;
-        options.folder = folder.path().string();
+        options.folder = _folder.path().string();
         options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
         return geofx::test::runProgram(arguments, options);
     }
@@ -52,17 +52,17 @@ protected:
         EXPECT_EQ(std::count(result.standardError.begin(), result.standardError.end(), '\n'), 1)
             << result.standardError;
         EXPECT_EQ(result.standardError.rfind("osggeofx_render: ", 0), 0u) << result.standardError;
-        EXPECT_FALSE(fs::exists(folder / "out.png"));
+        EXPECT_FALSE(fs::exists(_folder / "out.png"));
     }
 
     osg::ref_ptr<osg::Image> image(const std::string& name) const
     {
-        return osgDB::readRefImageFile((folder / name).string());
+        return osgDB::readRefImageFile((_folder / name).string());
     }
 
     std::string bytes(const std::string& name) const
     {
-        std::ifstream stream(folder / name, std::ios::binary);
+        std::ifstream stream(_folder / name, std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     }
 
@@ -72,22 +72,22 @@ protected:
         return osg::Vec3i(p[0], p[1], p[2]);
     }
 
-    TempDir folder;
-    const osg::Vec3i blue = {0, 0, 255};
+    TempDir _folder;
+    const osg::Vec3i _blue = {0, 0, 255};
 };
 
 } // namespace
 
 TEST_F(RenderProgram, DrawsFromAboveWithViewAndWithEye)
 {
-    PagedScene::write(folder.path(), PagedScene::Kind::Geocentric);
+    PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric);
     expectPicture({"terrain.osgb", "-o", "a.png", "--size", "160x120", "--view", "-157.8,21.4,8100,0,-90",
                    "--stats", "a.json"});
     const osg::ref_ptr<osg::Image> picture = image("a.png");
     ASSERT_TRUE(picture.valid());
     EXPECT_EQ(picture->s(), 160);
     EXPECT_EQ(picture->t(), 120);
-    EXPECT_EQ(pixel(*picture, 80, 60), blue);
+    EXPECT_EQ(pixel(*picture, 80, 60), _blue);
     EXPECT_EQ(pixel(*picture, 2, 2), osg::Vec3i(184, 204, 224)) << "the background";
 
     const auto stats = nlohmann::json::parse(bytes("a.json"));
@@ -107,7 +107,7 @@ TEST_F(RenderProgram, DrawsFromAboveWithViewAndWithEye)
     EXPECT_GT(frame.at("total_ms"), 0.0);
 
     TempDir other;
-    PagedScene::write(folder / "flat", PagedScene::Kind::Flat);
+    PagedScene::write(_folder / "flat", PagedScene::Kind::Flat);
     expectPicture({"flat/terrain.osgb", "-o", "b.png", "--size", "160x120", "--eye", "0,0,8000", "--look",
                    "0,0,0", "--up", "0,1,0"});
     EXPECT_EQ(bytes("b.png"), bytes("a.png")) << "the same view, told in world coordinates";
@@ -115,7 +115,7 @@ TEST_F(RenderProgram, DrawsFromAboveWithViewAndWithEye)
 
 TEST_F(RenderProgram, SameCommandGivesSameBytesInEachFormat)
 {
-    PagedScene::write(folder.path(), PagedScene::Kind::Geocentric);
+    PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric);
     for (const std::string extension : {"png", "jpg", "tiff"})
     {
         for (const std::string name : {"a.", "b."})
@@ -129,16 +129,16 @@ TEST_F(RenderProgram, SameCommandGivesSameBytesInEachFormat)
 
 TEST_F(RenderProgram, FollowsAPath)
 {
-    PagedScene::write(folder.path(), PagedScene::Kind::Geocentric);
-    folder.write("flight.csv",
-                 "time,lon,lat,alt,heading,pitch\n0,-157.8,21.4,8100,0,-90\n10,-157.8,22.4,8100,0,-90\n");
+    PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric);
+    _folder.write("flight.csv",
+                  "time,lon,lat,alt,heading,pitch\n0,-157.8,21.4,8100,0,-90\n10,-157.8,22.4,8100,0,-90\n");
     expectPicture(
         {"terrain.osgb", "-o", "f%03d.png", "--size", "64x64", "--path", "flight.csv", "--frames", "3"});
     ASSERT_TRUE(image("f000.png").valid());
     ASSERT_TRUE(image("f002.png").valid());
-    EXPECT_EQ(pixel(*image("f000.png"), 32, 32), blue);
-    EXPECT_NE(pixel(*image("f001.png"), 32, 32), blue) << "half a degree away there is no terrain";
-    EXPECT_FALSE(fs::exists(folder / "f003.png"));
+    EXPECT_EQ(pixel(*image("f000.png"), 32, 32), _blue);
+    EXPECT_NE(pixel(*image("f001.png"), 32, 32), _blue) << "half a degree away there is no terrain";
+    EXPECT_FALSE(fs::exists(_folder / "f003.png"));
 }
 
 TEST_F(RenderProgram, HelpIsOnStandardOutput)
@@ -155,11 +155,11 @@ TEST_F(RenderProgram, HelpIsOnStandardOutput)
 
 TEST_F(RenderProgram, RefusesBadInputWithASentence)
 {
-    PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
     expectRefusal({}, "scene");
     expectRefusal({"terrain.osgb"}, "--output");
     expectRefusal({"missing.osgb", "-o", "out.png"}, "missing.osgb");
-    folder.write("broken.osgb", "garbage");
+    _folder.write("broken.osgb", "garbage");
     expectRefusal({"broken.osgb", "-o", "out.png"}, "broken.osgb");
     expectRefusal({"terrain.osgb", "-o", "out.nosuchformat"}, "nosuchformat");
     expectRefusal({"terrain.osgb", "-o", "no/such/folder/out.png"}, "folder");
@@ -183,18 +183,18 @@ TEST_F(RenderProgram, RefusesBadInputWithASentence)
 
 TEST_F(RenderProgram, GivesUpAfterTheTimeout)
 {
-    PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
     const ProgramResult result = run({"terrain.osgb", "-o", "out.png", "--timeout", "0.000001"});
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_NE(result.standardError.find("did not arrive"), std::string::npos) << result.standardError;
-    EXPECT_FALSE(fs::exists(folder / "out.png"));
+    EXPECT_FALSE(fs::exists(_folder / "out.png"));
     expectPicture({"terrain.osgb", "-o", "out.png", "--timeout", "0.000001", "--no-wait-for-tiles"});
 }
 
 TEST_F(RenderProgram, NothingIsLeftOnAFullDisk)
 {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-    PagedScene::write(folder.path(), PagedScene::Kind::Flat);
-    fs::create_symlink("/dev/full", folder / "out.png.part");
+    PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
+    fs::create_symlink("/dev/full", _folder / "out.png.part");
     expectRefusal({"terrain.osgb", "-o", "out.png"}, "space");
 }

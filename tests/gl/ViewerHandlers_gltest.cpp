@@ -27,9 +27,9 @@ protected:
         GlFixture::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
         std::string error;
-        scene = Scene::load(PagedScene::write(folder.path(), PagedScene::Kind::Geocentric).string(), error);
-        ASSERT_TRUE(scene) << error;
-        viewer().setSceneData(scene->node);
+        _scene = Scene::load(PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric).string(), error);
+        ASSERT_TRUE(_scene) << error;
+        viewer().setSceneData(_scene->node);
         viewer().getCamera()->setProjectionMatrixAsPerspective(30.0, 1.0, 1.0, 1e5);
         const osg::Matrixd down =
             osg::Matrixd::lookAt(osg::Vec3d(0.0, 0.0, 8000.0), osg::Vec3d(), osg::Vec3d(0.0, 1.0, 0.0));
@@ -46,15 +46,15 @@ protected:
         }
     }
 
-    geofx::test::TempDir folder;
-    std::optional<Scene> scene;
+    geofx::test::TempDir _folder;
+    std::optional<Scene> _scene;
 };
 
 } // namespace
 
 TEST_F(ViewerHandlers, CursorReadoutTellsThePlaceBelowThePointer)
 {
-    osg::ref_ptr<osgGeoFX::CursorReadout> readout = new osgGeoFX::CursorReadout(*scene);
+    osg::ref_ptr<osgGeoFX::CursorReadout> readout = new osgGeoFX::CursorReadout(*_scene);
     viewer().addEventHandler(readout);
     viewer().getEventQueue()->setMouseInputRange(0.0f, 0.0f, 256.0f, 256.0f);
     viewer().getEventQueue()->mouseMotion(128.0f, 128.0f);
@@ -96,7 +96,7 @@ TEST_F(ViewerHandlers, CursorReadoutTellsThePlaceBelowThePointer)
 
 TEST_F(ViewerHandlers, LodScaleFollowsTheWindowAndKeepsTheKeys)
 {
-    viewer().addEventHandler(new osgGeoFX::LodScaleFollower(*scene));
+    viewer().addEventHandler(new osgGeoFX::LodScaleFollower(*_scene));
     osg::Camera& camera = *viewer().getCamera();
     frames(2);
     EXPECT_FLOAT_EQ(camera.getLODScale(), 1.0f) << "256 lines are less than the database was made for";

@@ -10,6 +10,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 
 namespace geofx::test
 {
@@ -78,6 +79,17 @@ struct VisibleTriangle
     bool found = false;
 };
 
+bool inSight(const Culled::Leaf& leaf, const osg::Matrixd& projection,
+             const osgGeoFX::DeformationChain& chain)
+{
+    osg::TriangleFunctor<VisibleTriangle> functor;
+    functor.chain = &chain;
+    functor.modelView = leaf.modelView;
+    functor.projection = projection;
+    leaf.drawable->accept(functor);
+    return functor.found;
+}
+
 } // namespace
 
 void RequestRecorder::requestNodeFile(const std::string& file, osg::NodePath& path, float priority,
@@ -101,6 +113,38 @@ std::set<const osg::PagedLOD*> Culled::requesting() const
     for (const auto& request : requests)
         result.insert(request.group);
     return result;
+}
+
+Oracle::Oracle(const Culled& everything, const osgGeoFX::DeformationChain& chain) : image(everything.image)
+{
+    const std::set<const osg::PagedLOD*> asking = everything.requesting();
+    for (const Culled::Leaf& leaf : everything.leaves)
+    {
+        if (!inSight(leaf, everything.projection, chain)) continue;
+        needed.insert(leaf.drawable);
+        for (const osg::NodePath& path : leaf.drawable->getParentalNodePaths())
+        {
+            for (const osg::Node* node : path)
+            {
+                const auto* group = dynamic_cast<const osg::PagedLOD*>(node);
+                if (group && asking.count(group)) deserving.insert(group);
+            }
+        }
+    }
+}
+
+Oracle::Mistakes Oracle::mistakesOf(const Culled& culled) const
+{
+    Mistakes mistakes;
+    mistakes.picture = culled.image->getTotalSizeInBytes() != image->getTotalSizeInBytes() ||
+                       std::memcmp(culled.image->data(), image->data(), image->getTotalSizeInBytes()) != 0;
+    const std::set<const osg::Drawable*> drawn = culled.drawables();
+    for (const osg::Drawable* drawable : needed)
+        mistakes.culled += drawn.count(drawable) ? 0 : 1;
+    const std::set<const osg::PagedLOD*> asking = culled.requesting();
+    for (const osg::PagedLOD* group : deserving)
+        mistakes.unasked += asking.count(group) ? 0 : 1;
+    return mistakes;
 }
 
 CullHarness::CullHarness(osg::GraphicsContext& context, osg::Node* scene, int width, int height)
@@ -188,40 +232,6 @@ int CullHarness::load(const std::vector<RequestRecorder::Request>& requests, Ran
         ++loaded;
     }
     return loaded;
-}
-
-std::set<const osg::PagedLOD*> CullHarness::groupsAbove(const Culled& culled,
-                                                        const std::set<const osg::Drawable*>& drawables)
-{
-    std::set<const osg::PagedLOD*> result;
-    for (const Culled::Leaf& leaf : culled.leaves)
-    {
-        if (!drawables.count(leaf.drawable)) continue;
-        for (const osg::NodePath& path : leaf.drawable->getParentalNodePaths())
-        {
-            for (const osg::Node* node : path)
-            {
-                if (const auto* group = dynamic_cast<const osg::PagedLOD*>(node)) result.insert(group);
-            }
-        }
-    }
-    return result;
-}
-
-std::set<const osg::Drawable*> CullHarness::needed(const Culled& everything,
-                                                   const osgGeoFX::DeformationChain& chain)
-{
-    std::set<const osg::Drawable*> result;
-    for (const Culled::Leaf& leaf : everything.leaves)
-    {
-        osg::TriangleFunctor<VisibleTriangle> functor;
-        functor.chain = &chain;
-        functor.modelView = leaf.modelView;
-        functor.projection = everything.projection;
-        leaf.drawable->accept(functor);
-        if (functor.found) result.insert(leaf.drawable);
-    }
-    return result;
 }
 
 } // namespace geofx::test

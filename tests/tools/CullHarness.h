@@ -53,6 +53,26 @@ struct Culled
     std::set<const osg::PagedLOD*> requesting() const;
 };
 
+/// What a cull traversal must leave, by one without culling whose triangles were deformed one by one.
+struct Oracle
+{
+    Oracle(const Culled& everything, const osgGeoFX::DeformationChain& chain);
+
+    osg::ref_ptr<osg::Image> image;
+    /// With at least one deformed triangle within the view volume's sides and before the eye.
+    std::set<const osg::Drawable*> needed;
+    /// Those that are in sight, or have a part in sight, and ask for more detail.
+    std::set<const osg::PagedLOD*> deserving;
+
+    struct Mistakes
+    {
+        bool picture = false; ///< differs in at least one bit
+        int culled = 0;       ///< drawables in sight that are not drawn
+        int unasked = 0;      ///< groups that deserve more detail and do not ask for it
+    };
+    Mistakes mistakesOf(const Culled& culled) const;
+};
+
 /** One scene view that is culled and drawn by hand, without a viewer or a pager's threads, so that two pictures of the
     same camera see the same tiles. */
 class CullHarness
@@ -69,13 +89,6 @@ public:
     /// Loads what was asked for, each with a probability.
     static int load(const std::vector<RequestRecorder::Request>& requests, Random& random,
                     double probability);
-
-    /// The paged groups above drawables.
-    static std::set<const osg::PagedLOD*> groupsAbove(const Culled& culled,
-                                                      const std::set<const osg::Drawable*>& drawables);
-    /// The drawables with at least one deformed triangle within the view volume's sides and before the eye.
-    static std::set<const osg::Drawable*> needed(const Culled& everything,
-                                                 const osgGeoFX::DeformationChain& chain);
 
 private:
     osg::ref_ptr<osg::GraphicsContext> _context;

@@ -241,8 +241,10 @@ TEST_F(OahuData, CulminatesOnKaala)
 {
     const size_t top = size_t(std::max_element(heights.begin(), heights.end()) - heights.begin());
     EXPECT_NEAR(heights[top], 1227.0f, 10.0f);
-    EXPECT_NEAR(north - (double(top / columns) + 0.5) * cell, 21.507, 0.005);
-    EXPECT_NEAR(west + (double(top % columns) + 0.5) * cell, -158.143, 0.005);
+    const size_t row = top / columns;
+    const size_t column = top % columns;
+    EXPECT_NEAR(north - (double(row) + 0.5) * cell, 21.507, 0.005);
+    EXPECT_NEAR(west + (double(column) + 0.5) * cell, -158.143, 0.005);
 }
 
 TEST_F(OahuData, HasTheCraterOfDiamondHead)

@@ -104,7 +104,7 @@ void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random
     }
     std::string set;
     for (const auto& [name, value] : defines)
-        set += name + "=" + value + " ";
+        set.append(name).append("=").append(value).append(" ");
     SCOPED_TRACE(set);
     expectAccepted(geofx::test::runProgram(arguments));
 }

@@ -90,7 +90,7 @@ void expectNear(const osg::Vec3d& actual, const osg::Vec3d& expected)
 class ViewPointOn : public ::testing::TestWithParam<bool>
 {
 protected:
-    osg::ref_ptr<Georeference> reference =
+    osg::ref_ptr<Georeference> _reference =
         GetParam() ? geocentric() : osg::ref_ptr<Georeference>(new FlatReference);
 };
 
@@ -104,26 +104,26 @@ std::optional<CameraPath> pathOf(const std::string& text, std::string& error)
 
 TEST_P(ViewPointOn, HeadingTurnsClockwiseFromNorth)
 {
-    expectNear(seen(*reference, parsed("3,40,1000,0,0"), {0.0, 100.0, 0.0}), {0.0, 0.0, -100.0});
-    expectNear(seen(*reference, parsed("3,40,1000,90,0"), {100.0, 0.0, 0.0}), {0.0, 0.0, -100.0});
-    expectNear(seen(*reference, parsed("3,40,1000,0,0"), {100.0, 0.0, 0.0}), {100.0, 0.0, 0.0});
-    expectNear(seen(*reference, parsed("3,40,1000,-90,0"), {0.0, 0.0, 100.0}), {0.0, 100.0, 0.0});
+    expectNear(seen(*_reference, parsed("3,40,1000,0,0"), {0.0, 100.0, 0.0}), {0.0, 0.0, -100.0});
+    expectNear(seen(*_reference, parsed("3,40,1000,90,0"), {100.0, 0.0, 0.0}), {0.0, 0.0, -100.0});
+    expectNear(seen(*_reference, parsed("3,40,1000,0,0"), {100.0, 0.0, 0.0}), {100.0, 0.0, 0.0});
+    expectNear(seen(*_reference, parsed("3,40,1000,-90,0"), {0.0, 0.0, 100.0}), {0.0, 100.0, 0.0});
 }
 
 TEST_P(ViewPointOn, PitchIsNegativeDownwards)
 {
-    expectNear(seen(*reference, parsed("3,40,1000,0,-90"), {0.0, 0.0, -1000.0}), {0.0, 0.0, -1000.0});
-    expectNear(seen(*reference, parsed("3,40,1000,0,-90"), {0.0, 100.0, -1000.0}), {0.0, 100.0, -1000.0});
-    expectNear(seen(*reference, parsed("3,40,1000,0,-45"), {0.0, 100.0, -100.0}),
+    expectNear(seen(*_reference, parsed("3,40,1000,0,-90"), {0.0, 0.0, -1000.0}), {0.0, 0.0, -1000.0});
+    expectNear(seen(*_reference, parsed("3,40,1000,0,-90"), {0.0, 100.0, -1000.0}), {0.0, 100.0, -1000.0});
+    expectNear(seen(*_reference, parsed("3,40,1000,0,-45"), {0.0, 100.0, -100.0}),
                {0.0, 0.0, -std::sqrt(20000.0)});
 }
 
 TEST_P(ViewPointOn, PositiveRollPutsTheRightWingDown)
 {
     // With the right wing down the horizon turns anticlockwise: what is right of the camera rises in the picture.
-    const osg::Vec3d right = seen(*reference, parsed("3,40,1000,0,0,30"), {100.0, 100.0, 0.0});
+    const osg::Vec3d right = seen(*_reference, parsed("3,40,1000,0,0,30"), {100.0, 100.0, 0.0});
     EXPECT_NEAR(right.y(), 50.0, 1e-5);
-    expectNear(seen(*reference, parsed("3,40,1000,0,0,90"), {0.0, 0.0, 100.0}), {-100.0, 0.0, 0.0});
+    expectNear(seen(*_reference, parsed("3,40,1000,0,0,90"), {0.0, 0.0, 100.0}), {-100.0, 0.0, 0.0});
 }
 
 TEST_P(ViewPointOn, AGroundPointLooksIntoTheImageCentre)
@@ -133,7 +133,7 @@ TEST_P(ViewPointOn, AGroundPointLooksIntoTheImageCentre)
     const double along = 5000.0 / std::tan(osg::DegreesToRadians(37.0));
     const osg::Vec3d target(along * std::sin(osg::DegreesToRadians(123.0)),
                             along * std::cos(osg::DegreesToRadians(123.0)), -5000.0);
-    const osg::Vec3d eye = seen(*reference, point, target);
+    const osg::Vec3d eye = seen(*_reference, point, target);
     const osg::Vec3d image = eye * osg::Matrixd::perspective(30.0, 1.5, 1.0, 1e5);
     EXPECT_NEAR(image.x(), 0.0, 1e-9);
     EXPECT_NEAR(image.y(), 0.0, 1e-9);
