@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "DeformationSuite.h"
+#include "MappingSuite.h"
 #include "Suite.h"
 #include "TerrainSuite.h"
 
@@ -12,7 +13,7 @@ namespace geofx::bench
 
 const std::vector<Suite>& suites()
 {
-    static const std::vector<Suite> all = {terrainSuite(), deformationSuite()};
+    static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite()};
     return all;
 }
 

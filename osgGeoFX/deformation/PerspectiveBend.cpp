@@ -141,6 +141,12 @@ public:
     {
         if (!_look.foldPossible || reach(box.ball()) != Reach::Curved) return {};
         const osg::Vec3d normal = toOsg(_view.normal);
+        // The ball reaches farther than the box does.
+        double along = 0.0;
+        for (const osg::Vec3d& half : box.half)
+            along += std::abs(half * toOsg(_view.forward));
+        const double middle = profile(box.centre).x;
+        if (middle + along <= 0.0 || middle - along >= _view.bend.size) return {};
         double inner = profile(box.centre).y * (_view.bend.angle > 0.0 ? 1.0 : -1.0);
         for (const osg::Vec3d& half : box.half)
             inner += std::abs(half * normal);

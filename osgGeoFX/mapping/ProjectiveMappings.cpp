@@ -228,14 +228,31 @@ ProjectiveMappings::Capacity ProjectiveMappings::capacity() const
     return _drawing->capacity();
 }
 
+std::uint64_t ProjectiveMappings::commit(const osg::EllipsoidModel* ellipsoid)
+{
+    MappingDrawing::Settings settings;
+    settings.pageSide = _pageSide;
+    settings.maxPages = _maxPages;
+    settings.maxTexels = static_cast<int>(std::min(_maxDataSize * texelsInMegabyte, 2147483647.0));
+    settings.ellipsoid = ellipsoid;
+    if (ellipsoid)
+    {
+        settings.longitude = _longitude;
+        settings.latitude = _latitude;
+    }
+    return _drawing->commit(settings, [&](const osg::Vec3d& place) { return positionOf(place, ellipsoid); });
+}
+
+void ProjectiveMappings::update(const osg::EllipsoidModel* ellipsoid)
+{
+    commit(ellipsoid);
+}
+
 bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view)
 {
     if (_mappings.empty()) return false;
     const osg::EllipsoidModel* ellipsoid = view.geometry.ground.ellipsoid.get();
-    std::uint64_t number =
-        _drawing->commit({_pageSide, _maxPages, static_cast<int>(_maxDataSize * texelsInMegabyte), ellipsoid,
-                          ellipsoid ? _longitude : 0.0, ellipsoid ? _latitude : 0.0},
-                         [&](const osg::Vec3d& place) { return positionOf(place, ellipsoid); });
+    std::uint64_t number = commit(ellipsoid);
 
     const osg::Matrixd frameToEye = frameToWorld(ellipsoid) * view.modelView;
     const osg::Matrixd eyeToFrame = osg::Matrixd::inverse(frameToEye);

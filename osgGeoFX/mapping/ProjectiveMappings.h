@@ -119,6 +119,10 @@ public:
     };
     Capacity capacity() const;
 
+    /// Works in now what has changed, for the next frame, which does so by itself otherwise. With the terrain's
+    /// ellipsoid, null on a projected terrain.
+    void update(const osg::EllipsoidModel* ellipsoid);
+
     const Properties& properties() const override;
     std::string vertexFile() const override { return "stages/mappings.vert.glsl"; }
     std::string fragmentFile() const override { return "stages/mappings.frag.glsl"; }
@@ -132,6 +136,7 @@ protected:
 private:
     class Drawing;
     void propertyChanged(PropertyHolder& mapping) override;
+    std::uint64_t commit(const osg::EllipsoidModel* ellipsoid);
 
     double _originX = 0.0, _originY = 0.0, _longitude = 0.0, _latitude = 0.0;
     bool _wholeList = false;
