@@ -196,7 +196,7 @@ private:
         return (_curvature + height * (_turnChange + _turnRate * _turnRate)) * cell * cell / 8.0;
     }
 
-    static constexpr std::size_t tableCells = 16;
+    static constexpr std::size_t tableCells = 32;
     struct TableEntry
     {
         glm::dvec2 foot;
@@ -321,6 +321,12 @@ osg::ref_ptr<const DeformationFrame> PerspectiveBend::frame(const ViewGeometry& 
     const BendFrame::Look look = {_transitionDetail,  _contextDetail,           _contextSaturation,
                                   _contextBrightness, _mapUnit < 0 ? 0.0 : 1.0, foldPossible};
     return new BendFrame(bend, look);
+}
+
+std::string PerspectiveBend::fragmentFile() const
+{
+    const bool plain = _contextSaturation == 1.0 && _contextBrightness == 1.0 && _mapUnit < 0;
+    return plain ? std::string() : "stages/bendstyle.glsl";
 }
 
 std::string PerspectiveBend::constants() const

@@ -447,10 +447,11 @@ osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* prog
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
     // Whatever says that there is no program, an OVERRIDE too, means the fixed functions, which this is.
-    constexpr auto always =
+    constexpr unsigned int always =
         osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
     set->setAttributeAndModes(program, always);
-    if (twoSided) set->setMode(programTwoSideMode, always);
+    // Off, too: the shader has no colours for the back then.
+    set->setMode(programTwoSideMode, twoSided ? always : always & ~osg::StateAttribute::ON);
     if (pointSize) set->setMode(programPointSizeMode, always);
     const auto define = [&](const std::string& name, bool there, int value)
     {

@@ -34,6 +34,7 @@ using glm::sqrt;
 namespace glsl
 {
 using namespace glslBuiltIns;
+constexpr int GEOFX_NEWTON_STEPS = 3;
 using Number = double;
 using Length = double;
 using Angle = double;
@@ -53,6 +54,7 @@ using Position = glm::dvec3;
 namespace glslf
 {
 using namespace glslBuiltIns;
+constexpr int GEOFX_NEWTON_STEPS = 1;
 using Number = float;
 using Length = float;
 using Angle = float;
