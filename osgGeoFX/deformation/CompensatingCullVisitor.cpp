@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <mutex>
 
 namespace osgGeoFX
 {
@@ -42,38 +43,26 @@ double planeDistance(const osg::Vec4d& plane, const osg::Vec3d& point)
     return plane.x() * point.x() + plane.y() * point.y() + plane.z() * point.z() + plane.w();
 }
 
-double cross(const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c)
+/// Whether a transform's children ask for nothing but its matrix: geometry, and no callbacks.
+bool holdsGeometryOnly(const osg::Transform& node)
 {
-    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+    if (node.getCullCallback() || node.getReferenceFrame() != osg::Transform::RELATIVE_RF) return false;
+    for (unsigned int i = 0; i < node.getNumChildren(); ++i)
+    {
+        const osg::Node* child = node.getChild(i);
+        if (!child->asGeometry() || child->getCullCallback()) return false;
+    }
+    return true;
 }
 
-/// The convex hull of points, counter-clockwise; Andrew's monotone chain. The points are sorted.
-std::vector<osg::Vec2d> convexOutline(std::vector<osg::Vec2d>& points)
+/// Tiles that came make the bounds above them unknown, and OSG computes bounds when they are asked for. Below a group
+/// with a bound of its own, as paged ones have, that may be by cull threads, two at once; so one after the other.
+void computeBounds(const osg::Group& group)
 {
-    std::sort(points.begin(), points.end());
-    std::vector<osg::Vec2d> outline(2 * points.size());
-    std::size_t count = 0;
-    for (const osg::Vec2d& point : points)
-    {
-        while (count >= 2 && cross(outline[count - 2], outline[count - 1], point) <= 0.0)
-            --count;
-        outline[count++] = point;
-    }
-    const std::size_t lower = count + 1;
-    for (auto point = points.rbegin() + 1; point != points.rend(); ++point)
-    {
-        while (count >= lower && cross(outline[count - 2], outline[count - 1], *point) <= 0.0)
-            --count;
-        outline[count++] = *point;
-    }
-    outline.resize(count > 1 ? count - 1 : count);
-    return outline;
-}
-
-/// What rounding of positions on the GPU may add at a distance.
-double rounding(const osg::Vec3d& point)
-{
-    return 1e-6 * (std::abs(point.x()) + std::abs(point.y()) + std::abs(point.z())) + 1e-4;
+    static std::mutex mutex;
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (unsigned int i = 0; i < group.getNumChildren(); ++i)
+        group.getChild(i)->getBound();
 }
 
 } // namespace
@@ -123,6 +112,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     {
         _program = task.program;
         _looks.clear();
+        _look = nullptr;
     }
 
     setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
@@ -146,6 +136,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _traversalOrderNumber = Access::order(outer);
     _numberOfEncloseOverrideRenderBinDetails = Access::overrides(outer);
     _entry = _currentStateGraph;
+    _stateGraph = nullptr;
 
     _outerCullingMode = outer.getCullingMode();
     _outerNearFar = outer.getComputeNearFarMode();
@@ -155,15 +146,9 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     }
     pushViewport(outer.getViewport());
     pushProjectionMatrix(outer.getProjectionMatrix());
-    _planes.clear();
-    if (_outerCullingMode & VIEW_FRUSTUM_CULLING)
-    {
-        for (const osg::Plane& plane : getProjectionCullingStack().back().getFrustum().getPlaneList())
-        {
-            _planes.push_back(plane.asVec4());
-        }
-    }
-    _frustumSides = (_outerCullingMode & VIEW_FRUSTUM_SIDES_CULLING) != 0;
+    _frustum.set((_outerCullingMode & VIEW_FRUSTUM_CULLING) ? &getProjectionCullingStack().back().getFrustum()
+                                                            : nullptr,
+                 *getProjectionMatrix(), (_outerCullingMode & VIEW_FRUSTUM_SIDES_CULLING) != 0);
     // OSG's own tests, which the base class makes, pass everything.
     if (task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
     pushReferenceViewPoint(outer.getReferenceViewPoint());
@@ -181,10 +166,9 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _mode = Mode();
     meetAll(*_entry);
     meet(task.state);
-    _mode.planes = (1u << _planes.size()) - 1u;
+    _mode.planes = _frustum.all();
     _scale = largestScale(*getModelViewMatrix());
-    _near = DBL_MAX;
-    _far = -DBL_MAX;
+    _depths.clear();
     _complaint.clear();
     if (task.debugBounds)
     {
@@ -201,15 +185,15 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
     {
         // Found by the base class, as OSG finds it.
         computeNearPlane();
-        _near = _computed_znear;
-        _far = _computed_zfar;
+        if (_computed_zfar >= _computed_znear) _depths.include(_computed_znear, _computed_zfar);
         _computed_znear = static_cast<value_type>(FLT_MAX);
         _computed_zfar = -static_cast<value_type>(FLT_MAX);
     }
-    if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && _far >= _near)
+    _depths.settle();
+    if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && _depths.farthest() >= _depths.nearest())
     {
-        outer.setCalculatedNearPlane(std::min(outer.getCalculatedNearPlane(), _near));
-        outer.setCalculatedFarPlane(std::max(outer.getCalculatedFarPlane(), _far));
+        outer.setCalculatedNearPlane(std::min(outer.getCalculatedNearPlane(), _depths.nearest()));
+        outer.setCalculatedFarPlane(std::max(outer.getCalculatedFarPlane(), _depths.farthest()));
     }
     popModelViewMatrix();
     popReferenceViewPoint();
@@ -235,31 +219,18 @@ Ball CompensatingCullVisitor::eyeBall(const osg::BoundingSphere& sphere) const
     return {osg::Vec3d(sphere.center()) * *modelView, static_cast<double>(sphere.radius()) * _scale};
 }
 
-CompensatingCullVisitor::Side CompensatingCullVisitor::side(const Ball& ball, PlaneMask& planes) const
-{
-    const double radius = ball.radius + rounding(ball.centre);
-    for (std::size_t i = 0; i < _planes.size(); ++i)
-    {
-        if (!(planes & (1u << i))) continue;
-        const double distance = planeDistance(_planes[i], ball.centre);
-        if (distance < -radius) return Side::Outside;
-        if (distance >= radius) planes &= ~(1u << i);
-    }
-    return planes ? Side::Crossing : Side::Inside;
-}
-
 bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
 {
     if (!node.isCullingActive())
     {
-        _mode.planes = (1u << _planes.size()) - 1u;
+        _mode.planes = _frustum.all();
         return false;
     }
     if (_mode.planes == 0 && !_cullSmall) return false;
     const osg::BoundingSphere& sphere = node.getBound();
     if (!sphere.valid()) return false;
     const Ball ball = _mode.chain->bound(eyeBall(sphere));
-    if (side(ball, _mode.planes) == Side::Outside) return true;
+    if (_frustum.side(ball, _mode.planes) == EyeFrustum::Side::Outside) return true;
     if (!_cullSmall) return false;
     const double pixelsOfOne = planeDistance(_pixelSize, ball.centre);
     return pixelsOfOne * _smallPixels > ball.radius;
@@ -338,8 +309,31 @@ osg::StateSet* CompensatingCullVisitor::placed(const osg::Matrixd& placement)
     return state;
 }
 
+void CompensatingCullVisitor::applyTile(osg::Transform& node)
+{
+    // Its geometry is tested by boxes, which are tighter than its sphere, and asks for no more than a matrix: what the
+    // base class would also work out, culling sets and eye points, no one would look at.
+    const Mode former = _mode;
+    osg::StateSet* state = node.getStateSet();
+    meet(state);
+    if (!node.isCullingActive()) _mode.planes = _frustum.all();
+    if (state) pushStateSet(state);
+    osg::RefMatrix* matrix = createOrReuseMatrix(*getModelViewMatrix());
+    node.computeLocalToWorldMatrix(*matrix, this);
+    _modelviewStack.push_back(matrix);
+    node.traverse(*this);
+    _modelviewStack.pop_back();
+    if (state) popStateSet();
+    _mode = former;
+}
+
 void CompensatingCullVisitor::apply(osg::Transform& node)
 {
+    if (_mode.ours && _task.compensate && holdsGeometryOnly(node))
+    {
+        applyTile(node);
+        return;
+    }
     const Scope scope(*this, node);
     if (scope.skip()) return;
     if (!_mode.ours || !_task.compensate)
@@ -372,6 +366,7 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
         CullVisitor::apply(node);
         return;
     }
+    computeBounds(node);
     if (tileOutOfSight(node)) return;
     _mode.lodRadius = static_cast<double>(node.getBound().radius()) * _scale;
     if (node.getRangeMode() != osg::LOD::PIXEL_SIZE_ON_SCREEN)
@@ -398,7 +393,7 @@ void CompensatingCullVisitor::apply(osg::Billboard& node)
 {
     const Scope scope(*this, node);
     if (scope.skip()) return;
-    if (_mode.ours && _task.compensate) includeDepths(_mode.chain->bound(eyeBall(node.getBound())));
+    if (_mode.ours && _task.compensate) _depths.include(_mode.chain->bound(eyeBall(node.getBound())));
     CullVisitor::apply(node);
 }
 
@@ -458,82 +453,39 @@ void CompensatingCullVisitor::apply(osg::Projection& node)
     passUntouched(node);
 }
 
-bool CompensatingCullVisitor::outside(const Hull& hull, PlaneMask planes) const
+bool CompensatingCullVisitor::meshOutside(const osg::Drawable& drawable, EyeFrustum::Mask planes)
 {
-    for (std::size_t i = 0; i < _planes.size(); ++i)
+    MeshBoxes::Entry& mesh = _meshBoxes.of(drawable);
+    const std::size_t count = mesh.boxes.size();
+    const std::size_t former = mesh.witness;
+    if (former < count && !misses(mesh.boxes[former], planes)) return false;
+    // The middles are quick to test, and most often one of them settles it.
+    for (const bool wholly : {false, true})
     {
-        if (!(planes & (1u << i))) continue;
-        const bool all =
-            std::all_of(hull.points.begin(), hull.points.end(),
-                        [&](const osg::Vec3d& point)
-                        { return planeDistance(_planes[i], point) < -(hull.margin + rounding(point)); });
-        if (all) return true;
+        for (mesh.witness = 0; mesh.witness < count; ++mesh.witness)
+        {
+            const osg::BoundingBox& box = mesh.boxes[mesh.witness];
+            if (wholly ? !misses(box, planes) : middleInSight(box, planes)) return false;
+        }
     }
-    return planes && _frustumSides && missesPicture(hull);
+    return count > 0;
 }
 
-bool CompensatingCullVisitor::missesPicture(const Hull& hull) const
+bool CompensatingCullVisitor::misses(const osg::BoundingBox& box, EyeFrustum::Mask planes)
 {
-    // A hull beside a corner of the picture crosses planes and yet misses the picture. Where all of it lies before the
-    // eye, its outline in the picture tells.
-    const osg::Matrixd& projection = *_projectionStack.back();
-    const bool perspective = projection(3, 3) == 0.0;
-    double nearest = DBL_MAX;
-    double widest = 0.0;
-    _outline.clear();
-    for (const osg::Vec3d& point : hull.points)
-    {
-        const double depth = perspective ? -point.z() : 1.0;
-        nearest = std::min(nearest, depth);
-        if (nearest <= 0.0) return false;
-        const osg::Vec3d projected = point * projection;
-        _outline.emplace_back(projected.x(), projected.y());
-        widest = std::max({widest, std::abs(projected.x()), std::abs(projected.y())});
-    }
-    // What the margin is at most in the picture.
-    const double margin = hull.margin + 1e-6 * nearest;
-    if (perspective && nearest <= 2.0 * margin) return false;
-    const double zoom = std::max(std::abs(projection(0, 0)), std::abs(projection(1, 1)));
-    const double skew = std::max(std::abs(projection(2, 0)), std::abs(projection(2, 1)));
-    const double slack = perspective ? margin * (zoom + skew + widest) / (nearest - margin) : margin * zoom;
-    const double edge = 1.0 + 2.0 * slack + 1e-5 * (1.0 + widest);
-    const std::vector<osg::Vec2d>& outline = convexOutline(_outline);
-    for (std::size_t i = 0; i < outline.size(); ++i)
-    {
-        const osg::Vec2d along = outline[(i + 1) % outline.size()] - outline[i];
-        const osg::Vec2d outward(along.y(), -along.x());
-        // The corner of the widened picture that is nearest to the hull on this side.
-        const double corner = -edge * (std::abs(outward.x()) + std::abs(outward.y()));
-        if (corner > outward * outline[i]) return true;
-    }
-    return false;
+    _mode.chain->bound(EyeBox::of(box, *getModelViewMatrix()), _hull);
+    return _frustum.misses(_hull, planes);
 }
 
-bool CompensatingCullVisitor::inSight(const osg::Vec3d& deformed, PlaneMask planes) const
+bool CompensatingCullVisitor::middleInSight(const osg::BoundingBox& box, EyeFrustum::Mask planes) const
 {
-    for (std::size_t i = 0; i < _planes.size(); ++i)
-    {
-        if ((planes & (1u << i)) && planeDistance(_planes[i], deformed) < 0.0) return false;
-    }
-    return true;
+    return _frustum.holds(_mode.chain->roughly(osg::Vec3d(box.center()) * *_modelviewStack.back()), planes);
 }
 
-bool CompensatingCullVisitor::meshOutside(const osg::Drawable& drawable, PlaneMask planes)
+bool CompensatingCullVisitor::witnessInSight(const osg::Drawable& drawable, EyeFrustum::Mask planes)
 {
-    const MeshBoxes::Boxes& boxes = _meshBoxes.of(drawable);
-    if (boxes.empty()) return false;
-    const osg::Matrixd& modelView = *getModelViewMatrix();
-    for (const osg::BoundingBox& box : boxes)
-    {
-        const Ball middle = {osg::Vec3d(box.center()) * modelView, 0.0};
-        if (inSight(_mode.chain->bound(middle).centre, planes)) return false;
-    }
-    return std::all_of(boxes.begin(), boxes.end(),
-                       [&](const osg::BoundingBox& box)
-                       {
-                           _mode.chain->bound(EyeBox::of(box, modelView), _smallHull);
-                           return outside(_smallHull, planes);
-                       });
+    const MeshBoxes::Entry* mesh = _meshBoxes.find(drawable);
+    return mesh && mesh->witness < mesh->boxes.size() && middleInSight(mesh->boxes[mesh->witness], planes);
 }
 
 bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
@@ -555,33 +507,13 @@ bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
     bounds._min -= more;
     bounds._max += more;
     const EyeBox box = EyeBox::of(bounds, matrix);
-    if (inSight(_mode.chain->bound(Ball{box.centre, 0.0}).centre, _mode.planes)) return false;
+    EyeFrustum::Mask planes = _mode.planes;
+    const Ball deformed = _mode.chain->bound(box.ball());
+    const EyeFrustum::Side side = _frustum.side(deformed, planes);
+    if (side != EyeFrustum::Side::Crossing) return side == EyeFrustum::Side::Outside;
+    if (_frustum.holds(deformed.centre, planes)) return false;
     _mode.chain->bound(box, _hull);
-    return outside(_hull, _mode.planes);
-}
-
-void CompensatingCullVisitor::includeDepths(const Hull& hull)
-{
-    double nearest = DBL_MAX;
-    double farthest = -DBL_MAX;
-    for (const osg::Vec3d& point : hull.points)
-    {
-        nearest = std::min(nearest, -point.z());
-        farthest = std::max(farthest, -point.z());
-    }
-    farthest += hull.margin;
-    // What is behind the eye has no say, as in OSG.
-    if (farthest < 0.0) return;
-    _near = std::min(_near, nearest - hull.margin);
-    _far = std::max(_far, farthest);
-}
-
-void CompensatingCullVisitor::includeDepths(const Ball& ball)
-{
-    const double depth = -ball.centre.z();
-    if (depth + ball.radius < 0.0) return;
-    _near = std::min(_near, depth - ball.radius);
-    _far = std::max(_far, depth + ball.radius);
+    return _frustum.misses(_hull, planes);
 }
 
 bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, double& depth)
@@ -596,43 +528,35 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
     const bool test = drawable.isCullingActive();
     if (test && _cullSmall && planeDistance(_pixelSize, deformed.centre) * _smallPixels > deformed.radius)
         return false;
-    PlaneMask planes = test ? _mode.planes : 0;
-    if (planes && side(deformed, planes) == Side::Outside) return false;
+    EyeFrustum::Mask planes = test ? _mode.planes : 0;
+    if (planes && _frustum.side(deformed, planes) == EyeFrustum::Side::Outside) return false;
+    // Where the box's middle shows there is no more to be found out; nor where the part does that showed last time.
+    if (planes && !_frustum.holds(deformed.centre, planes) && !witnessInSight(drawable, planes))
+    {
+        _mode.chain->bound(box, _hull);
+        if (_frustum.misses(_hull, planes) || meshOutside(drawable, planes)) return false;
+    }
     for (const auto& frame : _mode.chain->frames())
     {
         if (_complaint.empty()) _complaint = frame->complaint(box);
     }
-    // Where the box's middle shows there is no more to be found out.
-    if (planes && inSight(deformed.centre, planes)) planes = 0;
-    const bool extends = _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR &&
-                         (depth - deformed.radius < _near || depth + deformed.radius > _far);
-    if (planes || extends || _task.debugBounds)
-    {
-        _mode.chain->bound(box, _hull);
-        if (planes && (outside(_hull, planes) || meshOutside(drawable, planes))) return false;
-        if (extends) includeDepths(_hull);
-        if (_task.debugBounds)
-        {
-            const osg::Vec4 colour =
-                _hull.points.size() > 8 ? osg::Vec4(1, 0.2f, 0.1f, 1) : osg::Vec4(1, 0.9f, 0.2f, 1);
-            // The hull's points in their order are a grid; its outline shows what the box became.
-            for (std::size_t i = 0; i + 1 < _hull.points.size(); ++i)
-            {
-                _bounds.lines->push_back(_hull.points[i]);
-                _bounds.lines->push_back(_hull.points[i + 1]);
-                _bounds.colours->push_back(colour);
-                _bounds.colours->push_back(colour);
-            }
-        }
-    }
+    if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR) _depths.add(box, deformed, *_mode.chain);
+    if (_task.debugBounds) showBounds(box);
     return true;
 }
 
 osg::StateSet* CompensatingCullVisitor::lookFor(const osg::Drawable& drawable)
 {
     if (!_task.program) return nullptr;
-    const FixedFunctionLook look =
-        FixedFunctionLook::find(*_currentStateGraph, drawable.getStateSet(), _task.mapUnit);
+    if (_currentStateGraph != _stateGraph)
+    {
+        _stateGraph = _currentStateGraph;
+        _state = FixedFunctionState();
+        _state.meetAll(*_currentStateGraph);
+    }
+    FixedFunctionState state = _state;
+    if (drawable.getStateSet()) state.meet(*drawable.getStateSet());
+    const FixedFunctionLook look = state.look(_task.mapUnit);
     if (look.ownProgram) return nullptr;
     if (look.unsupported && !_warnedOfLook)
     {
@@ -644,9 +568,15 @@ osg::StateSet* CompensatingCullVisitor::lookFor(const osg::Drawable& drawable)
                "a shader that calls geofx_vertex()."
             << std::endl;
     }
-    osg::ref_ptr<osg::StateSet>& set = _looks[look.key()];
-    if (!set) set = look.createStateSet(_task.program);
-    return set;
+    const FixedFunctionLook::Key key = look.key();
+    if (!_look || key != _lookKey)
+    {
+        osg::ref_ptr<osg::StateSet>& set = _looks[key];
+        if (!set) set = look.createStateSet(_task.program);
+        _look = set;
+        _lookKey = key;
+    }
+    return _look;
 }
 
 void CompensatingCullVisitor::apply(osg::Drawable& drawable)
@@ -713,6 +643,21 @@ float CompensatingCullVisitor::getDistanceFromEyePoint(const osg::Vec3& position
     const osg::Vec3d deformed = _mode.chain->deform(osg::Vec3d(position) * *_modelviewStack.back());
     return static_cast<float>(withLodScale ? -deformed.z() * static_cast<double>(getLODScale())
                                            : -deformed.z());
+}
+
+void CompensatingCullVisitor::showBounds(const EyeBox& box)
+{
+    _mode.chain->bound(box, _hull);
+    const osg::Vec4 colour =
+        _hull.points.size() > 8 ? osg::Vec4(1, 0.2f, 0.1f, 1) : osg::Vec4(1, 0.9f, 0.2f, 1);
+    // The hull's points in their order are a grid; its outline shows what the box became.
+    for (std::size_t i = 0; i + 1 < _hull.points.size(); ++i)
+    {
+        _bounds.lines->push_back(_hull.points[i]);
+        _bounds.lines->push_back(_hull.points[i + 1]);
+        _bounds.colours->push_back(colour);
+        _bounds.colours->push_back(colour);
+    }
 }
 
 void CompensatingCullVisitor::drawBounds()

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/deformation/EyeFrustum.h>
 #include <osgGeoFX/deformation/MeshBoxes.h>
 #include <osgGeoFX/scene/FixedFunctionLook.h>
 
@@ -77,23 +78,16 @@ protected:
     ~CompensatingCullVisitor() override;
 
 private:
-    using PlaneMask = unsigned int;
     /// What is in force for a subgraph.
     struct Mode
     {
         const DeformationChain* chain = nullptr; ///< empty below what keeps its shape or is left out
         DeformationSwitch deformation;
-        PlaneMask planes = 0;   ///< frustum planes that bounds may still cross
-        bool ours = true;       ///< false below cameras: OSG's culling, no state of ours
-        double lodRadius = 0.0; ///< of the LOD that is asking for distances
+        EyeFrustum::Mask planes = 0; ///< frustum planes that bounds may still cross
+        bool ours = true;            ///< false below cameras: OSG's culling, no state of ours
+        double lodRadius = 0.0;      ///< of the LOD that is asking for distances
     };
     class Scope;
-    enum class Side
-    {
-        Outside,
-        Crossing,
-        Inside
-    };
 
     /// For what is below an object that was moved as a whole: the way back.
     osg::StateSet* placed(const osg::Matrixd& placement);
@@ -110,43 +104,39 @@ private:
     /// Whether a node is out of sight; narrows the planes for what is below it.
     bool outOfSight(const osg::Node& node);
     Ball eyeBall(const osg::BoundingSphere& sphere) const;
-    Side side(const Ball& ball, PlaneMask& planes) const;
-    /// Whether a hull misses the planes of a mask, or the picture.
-    bool outside(const Hull& hull, PlaneMask planes) const;
-    bool missesPicture(const Hull& hull) const;
     /// Whether all smaller boxes of a drawable miss the picture; false where it has none.
-    bool meshOutside(const osg::Drawable& drawable, PlaneMask planes);
-    bool inSight(const osg::Vec3d& deformed, PlaneMask planes) const;
+    bool meshOutside(const osg::Drawable& drawable, EyeFrustum::Mask planes);
+    bool misses(const osg::BoundingBox& box, EyeFrustum::Mask planes);
+    /// Whether the middle of one of them shows; of that one which showed last time.
+    bool middleInSight(const osg::BoundingBox& box, EyeFrustum::Mask planes) const;
+    bool witnessInSight(const osg::Drawable& drawable, EyeFrustum::Mask planes);
     /// Whether a paged tile of the kit's databases, with all that is finer, is out of sight.
     bool tileOutOfSight(const osg::LOD& node);
-    void includeDepths(const Hull& hull);
-    void includeDepths(const Ball& ball);
+    /// A transform with nothing but geometry below it.
+    void applyTile(osg::Transform& node);
     /// Culls a drawable by its box. False where it is out of sight; `depth` of its middle otherwise.
     bool drawableInSight(const osg::Drawable& drawable, double& depth);
     osg::StateSet* lookFor(const osg::Drawable& drawable);
     template<typename NodeType>
     void passUntouched(NodeType& node);
+    void showBounds(const EyeBox& box);
     void drawBounds();
 
     Task _task;
     Mode _mode;
     osg::ref_ptr<const DeformationChain> _nothing;
-    std::vector<osg::Vec4d> _planes; ///< of the frustum, in eye space, inside positive
+    EyeFrustum _frustum;
+    DepthRange _depths;
     CullingMode _outerCullingMode = 0;
     ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;
     bool _cullSmall = false;
     double _smallPixels = 0.0;
     osg::Vec4d _pixelSize; ///< for eye space
-    double _near = 0.0;
-    double _far = 0.0;
-    double _scale = 1.0; ///< of the current modelview matrix
+    double _scale = 1.0;   ///< of the current modelview matrix
     Hull _hull;
-    Hull _smallHull;
     MeshBoxes _meshBoxes;
     std::vector<osg::ref_ptr<osg::StateSet>> _placed; ///< one for each such object of a frame
     std::size_t _placedUsed = 0;
-    mutable std::vector<osg::Vec2d> _outline;
-    bool _frustumSides = false;
     std::string _complaint;
     osgUtil::StateGraph* _entry = nullptr; ///< the outer visitor's, where our state begins
 
@@ -154,6 +144,10 @@ private:
     unsigned int _order = 0;
     osg::ref_ptr<osg::Program> _program;
     std::map<FixedFunctionLook::Key, osg::ref_ptr<osg::StateSet>> _looks;
+    osg::StateSet* _look = nullptr; ///< the last one; neighbours mostly look alike
+    FixedFunctionLook::Key _lookKey{};
+    const osgUtil::StateGraph* _stateGraph = nullptr; ///< whose state is gathered
+    FixedFunctionState _state;
     bool _warnedOfLook = false;
     /// Deformed boxes to show: lines in eye space, by whether they are in the transition zone.
     struct Bounds

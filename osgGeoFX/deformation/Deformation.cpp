@@ -39,6 +39,12 @@ Ball EyeBox::ball() const
 
 DeformationFrame::~DeformationFrame() = default;
 
+Ball DeformationFrame::bound(const Ball& ball) const
+{
+    if (reach(ball) == Reach::Identity) return ball;
+    return {roughly(ball.centre), ball.radius * lipschitz(ball) + roughness(ball)};
+}
+
 osg::Matrixd DeformationFrame::turn(const osg::Vec3d&) const
 {
     return {};

@@ -65,6 +65,8 @@ public:
     virtual Reach reach(const Ball& ball) const = 0;
     /// By how much distances within a ball grow at most; at least 1.
     virtual double lipschitz(const Ball& ball) const = 0;
+    /// A ball around what becomes of a ball: what follows from the four above. To be overridden for speed alone.
+    virtual Ball bound(const Ball& ball) const;
 
     /// How far from straight the image of a straight edge within a ball is: a bound of the second derivative along
     /// it, and of the jump of the first, both for the whole edge. Between the ends of an edge, straight

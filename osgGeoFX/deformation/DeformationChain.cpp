@@ -16,34 +16,56 @@ using Reach = DeformationFrame::Reach;
 
 /// At most this many cells along one axis of a box.
 constexpr int mostCells = 8;
-/// The sag that is worth no further cells, as a share of the box's radius.
-constexpr double fineSag = 0.02;
 
 double sagOf(const DeformationFrame::Sag& sag, int cells)
 {
     return std::min(sag.curve / (8.0 * cells * cells) + sag.kink / (4.0 * cells), sag.most);
 }
 
+void addCorners(const EyeBox& box, Hull& hull)
+{
+    for (const double a : {-1.0, 1.0})
+    {
+        for (const double b : {-1.0, 1.0})
+        {
+            for (const double c : {-1.0, 1.0})
+            {
+                hull.points.push_back(box.centre + box.half[0] * a + box.half[1] * b + box.half[2] * c);
+            }
+        }
+    }
+}
+
 /// The deformed corners of a grid over the box, and how far the image of the box can be from their hull.
-void sample(const DeformationFrame& frame, const EyeBox& box, const Ball& ball, Hull& hull)
+void sample(const DeformationFrame& frame, const EyeBox& box, const Ball& ball, double fineness, Hull& hull)
 {
     hull.points.clear();
     hull.margin = 0.0;
     const Reach reach = frame.reach(ball);
     std::array<int, 3> cells = {1, 1, 1};
-    if (reach == Reach::Curved)
+    if (reach != Reach::Curved)
     {
-        // Interpolation over a cell of the grid is off by the sum of what it is off along its three edges.
-        for (std::size_t axis = 0; axis < 3; ++axis)
+        // A box again, from where its middle and the ends of its axes go.
+        EyeBox image = box;
+        if (reach == Reach::Affine)
         {
-            const DeformationFrame::Sag sag = frame.sag(ball, box.half[axis] * 2.0);
-            int& count = cells[axis];
-            while (count < mostCells && sagOf(sag, count) > fineSag * ball.radius)
-                ++count;
-            hull.margin += sagOf(sag, count);
+            image.centre = frame.roughly(box.centre);
+            for (int axis = 0; axis < 3; ++axis)
+                image.half[axis] = frame.roughly(box.centre + box.half[axis]) - image.centre;
         }
-        hull.margin += frame.roughness(ball);
+        addCorners(image, hull);
+        return;
     }
+    // Interpolation over a cell of the grid is off by the sum of what it is off along its three edges.
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const DeformationFrame::Sag sag = frame.sag(ball, box.half[axis] * 2.0);
+        int& count = cells[axis];
+        while (count < mostCells && sagOf(sag, count) > fineness * ball.radius)
+            ++count;
+        hull.margin += sagOf(sag, count);
+    }
+    hull.margin += frame.roughness(ball);
     for (int i = 0; i <= cells[0]; ++i)
     {
         const osg::Vec3d atI = box.centre + box.half[0] * (2.0 * i / cells[0] - 1.0);
@@ -53,16 +75,10 @@ void sample(const DeformationFrame& frame, const EyeBox& box, const Ball& ball, 
             for (int k = 0; k <= cells[2]; ++k)
             {
                 const osg::Vec3d point = atJ + box.half[2] * (2.0 * k / cells[2] - 1.0);
-                hull.points.push_back(reach == Reach::Identity ? point : frame.roughly(point));
+                hull.points.push_back(frame.roughly(point));
             }
         }
     }
-}
-
-Ball boundBy(const DeformationFrame& frame, const Ball& ball)
-{
-    if (frame.reach(ball) == Reach::Identity) return ball;
-    return {frame.roughly(ball.centre), ball.radius * frame.lipschitz(ball) + frame.roughness(ball)};
 }
 
 /// A box with the axes of another one around a hull.
@@ -102,6 +118,14 @@ osg::Vec3d DeformationChain::deform(const osg::Vec3d& position) const
     osg::Vec3d result = position;
     for (const auto& frame : _frames)
         result = frame->deform(result);
+    return result;
+}
+
+osg::Vec3d DeformationChain::roughly(const osg::Vec3d& position) const
+{
+    osg::Vec3d result = position;
+    for (const auto& frame : _frames)
+        result = frame->roughly(result);
     return result;
 }
 
@@ -159,33 +183,24 @@ Ball DeformationChain::bound(const Ball& ball) const
 {
     Ball result = ball;
     for (const auto& frame : _frames)
-        result = boundBy(*frame, result);
+        result = frame->bound(result);
     return result;
 }
 
-void DeformationChain::bound(const EyeBox& box, Hull& hull) const
+void DeformationChain::bound(const EyeBox& box, Hull& hull, double fineness) const
 {
     if (_frames.empty())
     {
         hull.points.clear();
         hull.margin = 0.0;
-        for (const double a : {-1.0, 1.0})
-        {
-            for (const double b : {-1.0, 1.0})
-            {
-                for (const double c : {-1.0, 1.0})
-                {
-                    hull.points.push_back(box.centre + box.half[0] * a + box.half[1] * b + box.half[2] * c);
-                }
-            }
-        }
+        addCorners(box, hull);
         return;
     }
     EyeBox current = box;
     for (std::size_t i = 0; i < _frames.size(); ++i)
     {
         if (i > 0) current = around(hull, current);
-        sample(*_frames[i], current, current.ball(), hull);
+        sample(*_frames[i], current, current.ball(), fineness, hull);
     }
 }
 
@@ -196,7 +211,7 @@ double DeformationChain::detail(const Ball& ball) const
     for (const auto& frame : _frames)
     {
         detail *= frame->detail(current) * frame->lipschitz(current);
-        current = boundBy(*frame, current);
+        current = frame->bound(current);
     }
     return detail;
 }
@@ -209,7 +224,7 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
     {
         if (frame->reach(current) == Reach::Identity) continue;
         detail *= frame->detail(current) * frame->lipschitz(current);
-        current = boundBy(*frame, current);
+        current = frame->bound(current);
     }
     const double distance = (current.centre - viewPoint).length();
     if (detail == 1.0 && current.radius == ball.radius) return distance;

@@ -29,6 +29,8 @@ public:
     const std::vector<osg::ref_ptr<const DeformationFrame>>& frames() const { return _frames; }
 
     osg::Vec3d deform(const osg::Vec3d& position) const;
+    /// The middle of bound(): near deform(), and faster.
+    osg::Vec3d roughly(const osg::Vec3d& position) const;
     osg::Vec3d undeform(const osg::Vec3d& position) const;
     osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const;
     double style(const osg::Vec3d& position) const;
@@ -39,8 +41,9 @@ public:
     bool leavesAlone(const Ball& ball) const;
     /// A ball around what becomes of a ball.
     Ball bound(const Ball& ball) const;
-    /// A hull around what becomes of a box. `hull` is reused for speed.
-    void bound(const EyeBox& box, Hull& hull) const;
+    /// A hull around what becomes of a box. `hull` is reused for speed. Its margin is to be no larger than `fineness`,
+    /// a share of the box's radius, for each of the box's axes, as far as some tens of points allow.
+    void bound(const EyeBox& box, Hull& hull, double fineness = 0.02) const;
 
     /// The distance, metres, at which an undeformed ball would deserve the level of detail that the deformed one does:
     /// what LOD ranges are compared with. `viewPoint` is in eye space.

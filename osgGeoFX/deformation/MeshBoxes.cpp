@@ -68,16 +68,17 @@ unsigned int modifiedCount(const osg::Drawable& drawable)
 
 } // namespace
 
-const MeshBoxes::Boxes& MeshBoxes::of(const osg::Drawable& drawable)
+MeshBoxes::Entry& MeshBoxes::of(const osg::Drawable& drawable)
 {
     Entry& entry = _entries[&drawable];
     const unsigned int modified = modifiedCount(drawable);
-    if (entry.drawable.valid() && entry.modified == modified) return entry.boxes;
+    if (entry.drawable.valid() && entry.modified == modified) return entry;
     entry.drawable = &drawable;
     entry.modified = modified;
     entry.boxes.clear();
+    entry.witness = 0;
     // A callback may draw what the vertices do not tell.
-    if (!onlyTriangles(drawable) || drawable.getComputeBoundingBoxCallback()) return entry.boxes;
+    if (!onlyTriangles(drawable) || drawable.getComputeBoundingBoxCallback()) return entry;
     osg::TriangleFunctor<Sorter> sorter;
     sorter.bounds = drawable.getBoundingBox();
     const osg::Vec3 size = sorter.bounds._max - sorter.bounds._min;
@@ -86,10 +87,18 @@ const MeshBoxes::Boxes& MeshBoxes::of(const osg::Drawable& drawable)
     sorter.second = shortest == 2 ? 1 : 2;
     drawable.accept(sorter);
     // For a handful of triangles the whole box is as good.
-    if (sorter.triangles < 2 * sorter.boxes.size()) return entry.boxes;
+    if (sorter.triangles < 2 * sorter.boxes.size()) return entry;
     std::copy_if(sorter.boxes.begin(), sorter.boxes.end(), std::back_inserter(entry.boxes),
                  [](const osg::BoundingBox& box) { return box.valid(); });
-    return entry.boxes;
+    return entry;
+}
+
+const MeshBoxes::Entry* MeshBoxes::find(const osg::Drawable& drawable) const
+{
+    const auto found = _entries.find(&drawable);
+    if (found == _entries.end()) return nullptr;
+    const Entry& entry = found->second;
+    return entry.drawable.valid() && entry.modified == modifiedCount(drawable) ? &entry : nullptr;
 }
 
 void MeshBoxes::purge()

@@ -22,17 +22,21 @@ class MeshBoxes
 public:
     using Boxes = std::vector<osg::BoundingBox>;
 
-    const Boxes& of(const osg::Drawable& drawable);
-    /// Forgets what has been deleted; to be called now and then.
-    void purge();
-
-private:
     struct Entry
     {
         osg::observer_ptr<const osg::Drawable> drawable;
         unsigned int modified = 0; ///< of the drawable's vertices
         Boxes boxes;
+        std::size_t witness = 0; ///< a box that was in sight when last asked, for who asks to remember
     };
+
+    Entry& of(const osg::Drawable& drawable);
+    /// Null where it has not been made yet or may be out of date.
+    const Entry* find(const osg::Drawable& drawable) const;
+    /// Forgets what has been deleted; to be called now and then.
+    void purge();
+
+private:
     std::unordered_map<const osg::Drawable*, Entry> _entries;
 };
 

@@ -56,25 +56,25 @@ public:
 
     osg::Vec3d roughly(const osg::Vec3d& position) const override
     {
-        const glm::dvec2 point = profile(position);
-        if (!(point.x > 0.0) || point.x >= _view.bend.size) return deform(position);
-        const double cell = point.x * static_cast<double>(tableCells) / _view.bend.size;
-        const auto below = std::min(static_cast<std::size_t>(cell), tableCells - 1);
-        const double share = cell - static_cast<double>(below);
-        const TableEntry& a = _table[below];
-        const TableEntry& b = _table[below + 1];
-        const glm::dvec2 to =
-            a.foot + share * (b.foot - a.foot) + point.y * (a.normal + share * (b.normal - a.normal));
-        const glm::dvec2 offset = to - point;
-        return position + toOsg(_view.forward) * offset.x + toOsg(_view.normal) * offset.y;
+        return roughly(position, profile(position));
     }
     double roughness(const Ball& ball) const override
     {
         const glm::dvec2 at = profile(ball.centre);
-        if (at.x + ball.radius <= 0.0 || at.x - ball.radius >= _view.bend.size) return 0.0;
-        const double cell = _view.bend.size / static_cast<double>(tableCells);
-        const double height = std::abs(at.y) + ball.radius;
-        return (_curvature + height * (_turnChange + _turnRate * _turnRate)) * cell * cell / 8.0;
+        const bool outside = at.x + ball.radius <= 0.0 || at.x - ball.radius >= _view.bend.size;
+        return outside ? 0.0 : roughness(std::abs(at.y) + ball.radius);
+    }
+    Ball bound(const Ball& ball) const override
+    {
+        const glm::dvec2 at = profile(ball.centre);
+        if (at.x + ball.radius <= 0.0) return ball;
+        Ball result = {roughly(ball.centre, at), ball.radius};
+        if (at.x - ball.radius < _view.bend.size)
+        {
+            const double height = std::abs(at.y) + ball.radius;
+            result.radius = ball.radius * (1.0 + height * _turnRate) + roughness(height);
+        }
+        return result;
     }
     osg::Vec3d deform(const osg::Vec3d& position) const override
     {
@@ -112,7 +112,7 @@ public:
         const glm::dvec2 at = profile(ball.centre);
         if (at.x + ball.radius <= 0.0 || at.x - ball.radius >= _view.bend.size) return 1.0;
         // Along h lengths stay; along s they grow by speed − h·turnRate, and the speed is at most 1.
-        return std::max(1.0, 1.0 + (std::abs(at.y) + ball.radius) * _turnRate);
+        return 1.0 + (std::abs(at.y) + ball.radius) * _turnRate;
     }
     Sag sag(const Ball& ball, const osg::Vec3d& edge) const override
     {
@@ -171,6 +171,35 @@ private:
     glm::dvec2 profile(const osg::Vec3d& position) const
     {
         return glsl::geofx_bendViewProfile(_view, toGlm(position));
+    }
+    osg::Vec3d roughly(const osg::Vec3d& position, const glm::dvec2& point) const
+    {
+        const glsl::geofx_Bend& bend = _view.bend;
+        if (!(point.x > 0.0)) return position;
+        glm::dvec2 to;
+        if (point.x >= bend.size)
+        {
+            const glm::dvec2 past(point.x - bend.size, point.y);
+            to =
+                bend.end + past.x * bend.direction + past.y * glm::dvec2(-bend.direction.y, bend.direction.x);
+        }
+        else
+        {
+            const double cell = point.x * static_cast<double>(tableCells) / bend.size;
+            const auto below = std::min(static_cast<std::size_t>(cell), tableCells - 1);
+            const double share = cell - static_cast<double>(below);
+            const TableEntry& a = _table[below];
+            const TableEntry& b = _table[below + 1];
+            to = a.foot + share * (b.foot - a.foot) + point.y * (a.normal + share * (b.normal - a.normal));
+        }
+        const glm::dvec2 offset = to - point;
+        return position + toOsg(_view.forward * offset.x + _view.normal * offset.y);
+    }
+    /// `height` from T at most.
+    double roughness(double height) const
+    {
+        const double cell = _view.bend.size / static_cast<double>(tableCells);
+        return (_curvature + height * (_turnChange + _turnRate * _turnRate)) * cell * cell / 8.0;
     }
 
     static constexpr std::size_t tableCells = 32;
@@ -298,6 +327,12 @@ osg::ref_ptr<const DeformationFrame> PerspectiveBend::frame(const ViewGeometry& 
     const BendFrame::Look look = {_transitionDetail,  _contextDetail,           _contextSaturation,
                                   _contextBrightness, _mapUnit < 0 ? 0.0 : 1.0, foldPossible};
     return new BendFrame(bend, look);
+}
+
+std::string PerspectiveBend::fragmentFile() const
+{
+    const bool plain = _contextSaturation == 1.0 && _contextBrightness == 1.0 && _mapUnit < 0;
+    return plain ? std::string() : "stages/bendstyle.glsl";
 }
 
 std::string PerspectiveBend::constants() const

@@ -84,7 +84,8 @@ public:
 
     osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
     std::string vertexFile() const override { return "stages/bendview.glsl"; }
-    std::string fragmentFile() const override { return "stages/bendstyle.glsl"; }
+    /// None where the context looks like the focus.
+    std::string fragmentFile() const override;
     std::string constants() const override;
     int mapUnit() const override { return _mapUnit; }
 

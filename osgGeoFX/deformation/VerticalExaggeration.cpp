@@ -39,6 +39,13 @@ public:
             std::abs(_view.factor - 1.0) * (std::abs(height(ball.centre) - _view.base) + ball.radius);
         return std::max(1.0, _view.factor) * (1.0 + 1.1 * lift * _view.curvature);
     }
+    Ball bound(const Ball& ball) const override
+    {
+        // As above, where the way of the middle tells its height.
+        const osg::Vec3d centre = deform(ball.centre);
+        const double lift = (centre - ball.centre).length() + std::abs(_view.factor - 1.0) * ball.radius;
+        return {centre, ball.radius * std::max(1.0, _view.factor) * (1.0 + 1.1 * lift * _view.curvature)};
+    }
     Sag sag(const Ball& ball, const osg::Vec3d& edge) const override
     {
         // lift·up: the height's second derivative is at most the curvature k, its first 1, up's first k and its second

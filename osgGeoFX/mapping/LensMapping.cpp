@@ -66,8 +66,11 @@ void LensMapping::refresh()
 {
     if (!_content) return;
     const ColorTransfer& wanted = *_content->getTransfer();
+    std::map<std::string, double> all;
     for (const Property& property : wanted.properties())
-        property.put(*_transfer, property.get(wanted));
+        all[property.name] = property.get(wanted);
+    std::string error;
+    _transfer->setProperties(all, error);
     const DataLayer* layer = _content->getLayer();
     _pixels.reset();
     if (layer && layer->getImage())
@@ -77,7 +80,6 @@ void LensMapping::refresh()
         options.sRGB = layer->getSRgb();
         if (layer->getHasNoData()) options.noData = layer->getNoData();
         options.maxSide = 8192;
-        std::string error;
         _pixels = LayerPixels::make(*layer->getImage(), options, error);
         if (!_pixels) OSG_WARN << "osgGeoFX: LensMapping cannot show its layer: " << error << std::endl;
         _cut->setKind(layer->getKind());

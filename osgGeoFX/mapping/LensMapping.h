@@ -29,8 +29,8 @@ class OSGGEOFX_EXPORT LensMapping : public osg::Referenced
 public:
     explicit LensMapping(ProjectiveMappings& mappings, int order = 100);
 
-    /// The layer's mapping: of the projector PLANE, with any transform. Its alpha counts but for FROM_MASK. Null: only
-    /// the rim is drawn.
+    /// The layer's mapping: of the projector PLANE, with any transform. Of colours their alpha counts; values and
+    /// classes are opaque. Null: only the rim is drawn.
     void setContent(ProjectiveMapping* content);
     ProjectiveMapping* getContent() { return _content.get(); }
     /// To be called after the content or its layer's picture changed.

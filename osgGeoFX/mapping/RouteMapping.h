@@ -50,8 +50,8 @@ public:
         bool context = true;
         double surroundings = 250.0; ///< so far from the route everything is as it was, metres,
         double softness = 250.0;     ///< and over so many more it goes over to
-        double brightness = 0.45;    ///< these, 0…4; see ColorTransfer
-        double saturation = 0.25;
+        double brightness = 0.6;     ///< these, 0…4; see ColorTransfer
+        double saturation = 0.15;
         double contextReach = 3e5; ///< metres around the route
     };
     bool setStyle(const Style& style);

@@ -34,12 +34,13 @@ std::vector<Band> bandsOf(const SymbolMapping::Look& look)
     return bands;
 }
 
+bool within(double value, double low, double high)
+{
+    return value >= low && value <= high;
+}
+
 const char* faultOf(const SymbolMapping::Look& look)
 {
-    const auto within = [](double value, double low, double high)
-    {
-        return value >= low && value <= high;
-    };
     if (look.levels.empty()) return "no images";
     for (const SymbolMapping::Level& level : look.levels)
     {
@@ -79,15 +80,21 @@ std::optional<int> SymbolMapping::addLook(const Look& look)
 
 bool SymbolMapping::put(const Symbol& symbol, const osg::Vec3d& place, double heading) const
 {
+    if (!within(place.x(), -5e7, 5e7) || !within(place.y(), -5e7, 5e7) || !within(place.z(), -12000.0, 1e7) ||
+        !std::isfinite(heading))
+    {
+        OSG_WARN << "osgGeoFX: SymbolMapping got the place " << place.x() << ", " << place.y() << ", "
+                 << place.z() << " with the heading " << heading << "; nothing changes." << std::endl;
+        return false;
+    }
     const Look& look = _looks[static_cast<std::size_t>(symbol.look)];
-    bool good = true;
     for (const osg::ref_ptr<ProjectiveMapping>& mapping : symbol.mappings)
     {
-        good = mapping->setRectangle({place.x(), place.y()}, look.width / 2.0,
-                                     look.width * look.stretch / 2.0, heading) &&
-               mapping->setHeight(place.z()) && good;
+        mapping->setRectangle({place.x(), place.y()}, look.width / 2.0, look.width * look.stretch / 2.0,
+                              heading);
+        mapping->setHeight(place.z());
     }
-    return good;
+    return true;
 }
 
 std::optional<int> SymbolMapping::add(int number, const osg::Vec3d& place, double heading)

@@ -37,6 +37,7 @@ public:
         osg::ref_ptr<DataLayer> layer;
         double farthest = 5e7;
     };
+    /// The middle of the image lies at the symbol's place; a pin has its tip there.
     struct Look
     {
         std::vector<Level> levels; ///< the nearest first

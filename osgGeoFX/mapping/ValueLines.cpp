@@ -35,7 +35,8 @@ private:
     {
         const int x = std::clamp(column, 0, _pixels.width - 1);
         const int y = std::clamp(row, 0, _pixels.height - 1);
-        return static_cast<double>(LayerPixels::value(_pixels.levels[0][static_cast<std::size_t>(y) * _pixels.side + x]));
+        return static_cast<double>(
+            LayerPixels::value(_pixels.levels[0][static_cast<std::size_t>(y) * _pixels.side + x]));
     }
 
     const LayerPixels& _pixels;
@@ -43,8 +44,8 @@ private:
 
 } // namespace
 
-osg::ref_ptr<osg::Image> distancesToLines(const LayerPixels& pixels, const osg::Vec2d& size, double step, double low,
-                                          double high, double reach)
+osg::ref_ptr<osg::Image> distancesToLines(const LayerPixels& pixels, const osg::Vec2d& size, double step,
+                                          double low, double high, double reach)
 {
     const int finer = std::clamp(1024 / std::max(pixels.width, pixels.height), 1, 8);
     osg::ref_ptr<osg::Image> image = new osg::Image;

@@ -113,8 +113,8 @@ void ValueMap::makeLines()
         return;
     }
     _lineScale = sizeOf(*_mapping);
-    osg::ref_ptr<DataLayer> layer = new DataLayer(
-        distancesToLines(*pixels, _lineScale, _step, _low, _high, 4.0 * _lineWidth + _lineScale.length() / 500.0));
+    osg::ref_ptr<DataLayer> layer = new DataLayer(distancesToLines(
+        *pixels, _lineScale, _step, _low, _high, 4.0 * _lineWidth + _lineScale.length() / 500.0));
     layer->setKind(DataLayer::VALUE);
     _lines = new ProjectiveMapping;
     _lines->setLayer(layer);
@@ -129,9 +129,12 @@ void ValueMap::makeLines()
 
 void ValueMap::placeLines()
 {
+    std::map<std::string, double> all;
     for (const Property& property : _mapping->properties())
-        property.put(*_lines, property.get(*_mapping));
-    _lines->setOpacity(_mapping->getOpacity() * static_cast<double>(_lineColor.w()));
+        all[property.name] = property.get(*_mapping);
+    all["opacity"] *= static_cast<double>(_lineColor.w());
+    std::string error;
+    _lines->setProperties(all, error);
 }
 
 void ValueMap::propertyChanged(PropertyHolder&)

@@ -3,6 +3,7 @@
 #include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <osg/CoordinateSystemNode>
+#include <osg/LOD>
 #include <osg/MatrixTransform>
 #include <osg/NodeVisitor>
 #include <osg/ValueObject>
@@ -30,6 +31,11 @@ public:
     {
         if (!found && node.getName() == "osgGeoFX terrain") found = &node;
         apply(static_cast<osg::Node&>(node));
+    }
+
+    void apply(osg::LOD&) override
+    {
+        // No terrain's root is below one, and a whole terrain may be.
     }
 
     const osg::Node* found = nullptr;

@@ -29,9 +29,15 @@ constexpr int deepestTerrainRoot = 8;
 
 const osg::CoordinateSystemNode* findCoordinateSystem(const osg::Node* node, int depth)
 {
-    if (const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node)) return found;
     const osg::Group* group = node->asGroup();
-    if (!group || depth == 0 || dynamic_cast<const osg::LOD*>(node)) return nullptr;
+    if (!group) return nullptr;
+    // Asked in every frame, and casts take their time: transforms are neither of the two.
+    if (!node->asTransform())
+    {
+        if (const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node)) return found;
+        if (dynamic_cast<const osg::LOD*>(node)) return nullptr;
+    }
+    if (depth == 0) return nullptr;
     for (unsigned int i = 0; i < group->getNumChildren(); ++i)
     {
         if (const auto* found = findCoordinateSystem(group->getChild(i), depth - 1)) return found;
@@ -255,8 +261,7 @@ Ground EffectScene::ground(const osg::NodePath& above) const
     if (system && _terrainFrame != PROJECTED) ground.ellipsoid = system->getEllipsoidModel();
     if (!ground.ellipsoid && _terrainFrame == GEOCENTRIC) ground.ellipsoid = new osg::EllipsoidModel;
     std::string error;
-    if (const std::optional<TerrainInfo> info =
-            TerrainInfo::read(system ? static_cast<const osg::Node*>(system) : this, error))
+    if (const std::optional<TerrainInfo> info = TerrainInfo::read(system, error))
     {
         ground.heightsKnown = true;
         ground.minHeight = info->minHeight;

@@ -26,149 +26,6 @@ constexpr GLenum colorSumMode = 0x8458;         // GL_COLOR_SUM
 constexpr GLenum programTwoSideMode = 0x8643;   // GL_VERTEX_PROGRAM_TWO_SIDE
 constexpr GLenum programPointSizeMode = 0x8642; // GL_VERTEX_PROGRAM_POINT_SIZE
 
-/// A value that is handed down the path, as osg::State does it.
-template<typename Value>
-class Inherited
-{
-public:
-    explicit Inherited(Value value) : _value(value) {}
-    void meet(Value value, unsigned int flags)
-    {
-        if (_overridden && !(flags & osg::StateAttribute::PROTECTED)) return;
-        _value = value;
-        _overridden = (flags & osg::StateAttribute::OVERRIDE) != 0;
-    }
-    Value value() const { return _value; }
-
-private:
-    Value _value;
-    bool _overridden = false;
-};
-
-using Mode = Inherited<bool>;
-using Attribute = Inherited<const osg::StateAttribute*>;
-
-/// One pass over the path for all that the look depends on.
-struct Gathered
-{
-    Mode lighting{false}, normalize{false}, rescale{false}, fog{false}, colorSum{false};
-    std::array<Mode, 8> lights{Mode(false), Mode(false), Mode(false), Mode(false),
-                               Mode(false), Mode(false), Mode(false), Mode(false)};
-    Attribute program{nullptr}, material{nullptr}, model{nullptr}, fogSettings{nullptr}, point{nullptr};
-    struct Unit
-    {
-        Mode texture{false}, other{false};
-        std::array<Mode, 4> generates{Mode(false), Mode(false), Mode(false), Mode(false)}; ///< s, t, r, q
-        Attribute image{nullptr}, environment{nullptr}, gen{nullptr};
-    };
-    std::array<Unit, FixedFunctionLook::units> units;
-    bool beyond = false; ///< a texture on a unit that the shaders do not have
-
-    /// The state sets from the root down to a node of the state graph.
-    void meetAll(const osgUtil::StateGraph& state)
-    {
-        if (state._parent) meetAll(*state._parent);
-        if (state.getStateSet()) meet(*state.getStateSet());
-    }
-    void meetMode(GLenum mode, unsigned int flags)
-    {
-        const bool on = (flags & osg::StateAttribute::ON) != 0;
-        switch (mode)
-        {
-        case GL_LIGHTING:
-            lighting.meet(on, flags);
-            break;
-        case GL_NORMALIZE:
-            normalize.meet(on, flags);
-            break;
-        case GL_RESCALE_NORMAL:
-            rescale.meet(on, flags);
-            break;
-        case GL_FOG:
-            fog.meet(on, flags);
-            break;
-        case colorSumMode:
-            colorSum.meet(on, flags);
-            break;
-        default:
-            if (mode >= GL_LIGHT0 && mode < GL_LIGHT0 + 8) lights[mode - GL_LIGHT0].meet(on, flags);
-        }
-    }
-    void meetTextureMode(Unit& unit, GLenum mode, unsigned int flags)
-    {
-        const bool on = (flags & osg::StateAttribute::ON) != 0;
-        switch (mode)
-        {
-        case GL_TEXTURE_2D:
-            unit.texture.meet(on, flags);
-            break;
-        case GL_TEXTURE_1D:
-        case GL_TEXTURE_3D:
-        case GL_TEXTURE_CUBE_MAP:
-        case GL_TEXTURE_RECTANGLE:
-            unit.other.meet(on, flags);
-            break;
-        default:
-            if (mode >= GL_TEXTURE_GEN_S && mode <= GL_TEXTURE_GEN_Q)
-                unit.generates[mode - GL_TEXTURE_GEN_S].meet(on, flags);
-        }
-    }
-    void meet(const osg::StateSet& set)
-    {
-        for (const auto& [mode, flags] : set.getModeList())
-            meetMode(mode, flags);
-        for (const auto& [type, entry] : set.getAttributeList())
-        {
-            switch (type.first)
-            {
-            case osg::StateAttribute::PROGRAM:
-                program.meet(entry.first.get(), entry.second);
-                break;
-            case osg::StateAttribute::MATERIAL:
-                material.meet(entry.first.get(), entry.second);
-                break;
-            case osg::StateAttribute::LIGHTMODEL:
-                model.meet(entry.first.get(), entry.second);
-                break;
-            case osg::StateAttribute::FOG:
-                fogSettings.meet(entry.first.get(), entry.second);
-                break;
-            case osg::StateAttribute::POINT:
-                point.meet(entry.first.get(), entry.second);
-                break;
-            default:
-                break;
-            }
-        }
-        const auto& modes = set.getTextureModeList();
-        for (std::size_t i = 0; i < std::min(modes.size(), units.size()); ++i)
-        {
-            for (const auto& [mode, flags] : modes[i])
-                meetTextureMode(units[i], mode, flags);
-        }
-        for (std::size_t i = units.size(); i < modes.size(); ++i)
-        {
-            const auto found = modes[i].find(GL_TEXTURE_2D);
-            if (found != modes[i].end() && (found->second & osg::StateAttribute::ON)) beyond = true;
-        }
-        const auto& attributes = set.getTextureAttributeList();
-        for (std::size_t i = 0; i < std::min(attributes.size(), units.size()); ++i)
-        {
-            for (const auto& [type, entry] : attributes[i])
-            {
-                if (type.first == osg::StateAttribute::TEXTURE)
-                    units[i].image.meet(entry.first.get(), entry.second);
-                if (type.first == osg::StateAttribute::TEXENV)
-                {
-                    units[i].environment.meet(entry.first.get(), entry.second);
-                }
-                if (type.first == osg::StateAttribute::TEXGEN)
-                    units[i].gen.meet(entry.first.get(), entry.second);
-            }
-        }
-    }
-};
-
 /// What OpenGL calls the base format, as far as texture environments tell them apart.
 enum class BaseFormat
 {
@@ -300,39 +157,6 @@ int modeOf(const osg::StateAttribute* attribute, bool& unsupported)
     }
 }
 
-int environmentOf(const Gathered::Unit& unit, bool& unsupported)
-{
-    const osg::Texture* texture = texture2D(unit.image.value());
-    if (!texture) return 0;
-    if (texture->getShadowComparison()) unsupported = true;
-    return modeOf(unit.environment.value(), unsupported) + 8 * static_cast<int>(baseFormat(*texture));
-}
-
-int texGenOf(const Gathered::Unit& unit)
-{
-    int coordinates = 0;
-    for (std::size_t i = 0; i < unit.generates.size(); ++i)
-    {
-        if (unit.generates[i].value()) coordinates |= 8 << i;
-    }
-    if (coordinates == 0) return 0;
-    const auto* gen = static_cast<const osg::TexGen*>(unit.gen.value());
-    switch (gen ? gen->getMode() : osg::TexGen::EYE_LINEAR)
-    {
-    case osg::TexGen::OBJECT_LINEAR:
-        return coordinates + 1;
-    case osg::TexGen::SPHERE_MAP:
-        return coordinates + 3;
-    case osg::TexGen::NORMAL_MAP:
-        return coordinates + 4;
-    case osg::TexGen::REFLECTION_MAP:
-        return coordinates + 5;
-    default:
-        // As OpenGL has it by itself, which is what an osg::TexGenNode leaves too.
-        return coordinates + 2;
-    }
-}
-
 int fogOf(const osg::StateAttribute* attribute)
 {
     const auto* fog = static_cast<const osg::Fog*>(attribute);
@@ -379,58 +203,232 @@ bool shines(const osg::StateAttribute* attribute)
 
 } // namespace
 
-FixedFunctionLook FixedFunctionLook::find(const osgUtil::StateGraph& state, const osg::StateSet* drawable,
-                                          int mapUnit)
+enum FixedFunctionState::ModeBit : unsigned int
 {
-    Gathered gathered;
-    gathered.meetAll(state);
-    if (drawable) gathered.meet(*drawable);
+    Lighting,
+    Normalize,
+    Rescale,
+    FogMode,
+    ColorSum,
+    Light0, ///< eight of them
+    // From here on each texture unit has eight.
+    Texture2D = 16,
+    OtherTexture,
+    Generates ///< s, t, r, q
+};
 
+enum FixedFunctionState::Attribute : unsigned int
+{
+    Program,
+    Material,
+    Model,
+    Fog,
+    Point,
+    // From here on each texture unit has three.
+    Image,
+    Environment,
+    Gen
+};
+
+void FixedFunctionState::setMode(unsigned int bit, unsigned int flags)
+{
+    const std::uint64_t mask = std::uint64_t(1) << bit;
+    if ((_onOverridden & mask) && !(flags & osg::StateAttribute::PROTECTED)) return;
+    _on = (flags & osg::StateAttribute::ON) ? _on | mask : _on & ~mask;
+    _onOverridden = (flags & osg::StateAttribute::OVERRIDE) ? _onOverridden | mask : _onOverridden & ~mask;
+}
+
+void FixedFunctionState::setAttribute(unsigned int index, const osg::StateAttribute* attribute,
+                                      unsigned int flags)
+{
+    const std::uint32_t mask = 1u << index;
+    if ((_attributesOverridden & mask) && !(flags & osg::StateAttribute::PROTECTED)) return;
+    _attributes[index] = attribute;
+    if (flags & osg::StateAttribute::OVERRIDE)
+        _attributesOverridden |= mask;
+    else
+        _attributesOverridden &= ~mask;
+}
+
+void FixedFunctionState::meetAll(const osgUtil::StateGraph& state)
+{
+    if (state._parent) meetAll(*state._parent);
+    if (state.getStateSet()) meet(*state.getStateSet());
+}
+
+void FixedFunctionState::meetMode(GLenum mode, unsigned int flags)
+{
+    switch (mode)
+    {
+    case GL_LIGHTING:
+        setMode(Lighting, flags);
+        break;
+    case GL_NORMALIZE:
+        setMode(Normalize, flags);
+        break;
+    case GL_RESCALE_NORMAL:
+        setMode(Rescale, flags);
+        break;
+    case GL_FOG:
+        setMode(FogMode, flags);
+        break;
+    case colorSumMode:
+        setMode(ColorSum, flags);
+        break;
+    default:
+        if (mode >= GL_LIGHT0 && mode < GL_LIGHT0 + 8) setMode(Light0 + (mode - GL_LIGHT0), flags);
+    }
+}
+
+void FixedFunctionState::meetTextureMode(unsigned int unit, GLenum mode, unsigned int flags)
+{
+    switch (mode)
+    {
+    case GL_TEXTURE_2D:
+        setMode(Texture2D + 8 * unit, flags);
+        break;
+    case GL_TEXTURE_1D:
+    case GL_TEXTURE_3D:
+    case GL_TEXTURE_CUBE_MAP:
+    case GL_TEXTURE_RECTANGLE:
+        setMode(OtherTexture + 8 * unit, flags);
+        break;
+    default:
+        if (mode >= GL_TEXTURE_GEN_S && mode <= GL_TEXTURE_GEN_Q)
+            setMode(Generates + 8 * unit + (mode - GL_TEXTURE_GEN_S), flags);
+    }
+}
+
+void FixedFunctionState::meet(const osg::StateSet& set)
+{
+    for (const auto& [mode, flags] : set.getModeList())
+        meetMode(mode, flags);
+    for (const auto& [type, entry] : set.getAttributeList())
+    {
+        switch (type.first)
+        {
+        case osg::StateAttribute::PROGRAM:
+            setAttribute(Program, entry.first.get(), entry.second);
+            break;
+        case osg::StateAttribute::MATERIAL:
+            setAttribute(Material, entry.first.get(), entry.second);
+            break;
+        case osg::StateAttribute::LIGHTMODEL:
+            setAttribute(Model, entry.first.get(), entry.second);
+            break;
+        case osg::StateAttribute::FOG:
+            setAttribute(Fog, entry.first.get(), entry.second);
+            break;
+        case osg::StateAttribute::POINT:
+            setAttribute(Point, entry.first.get(), entry.second);
+            break;
+        default:
+            break;
+        }
+    }
+    const auto& modes = set.getTextureModeList();
+    for (unsigned int i = 0; i < modes.size(); ++i)
+    {
+        if (i < FixedFunctionLook::units)
+        {
+            for (const auto& [mode, flags] : modes[i])
+                meetTextureMode(i, mode, flags);
+            continue;
+        }
+        const auto found = modes[i].find(GL_TEXTURE_2D);
+        if (found != modes[i].end() && (found->second & osg::StateAttribute::ON)) _beyond = true;
+    }
+    const auto& textures = set.getTextureAttributeList();
+    for (unsigned int i = 0; i < textures.size() && i < FixedFunctionLook::units; ++i)
+    {
+        for (const auto& [type, entry] : textures[i])
+        {
+            if (type.first == osg::StateAttribute::TEXTURE)
+                setAttribute(Image + 3 * i, entry.first.get(), entry.second);
+            if (type.first == osg::StateAttribute::TEXENV)
+                setAttribute(Environment + 3 * i, entry.first.get(), entry.second);
+            if (type.first == osg::StateAttribute::TEXGEN)
+                setAttribute(Gen + 3 * i, entry.first.get(), entry.second);
+        }
+    }
+}
+
+int FixedFunctionState::environment(unsigned int unit, bool& unsupported) const
+{
+    const osg::Texture* texture = texture2D(_attributes[Image + 3 * unit]);
+    if (!texture) return 0;
+    if (texture->getShadowComparison()) unsupported = true;
+    return modeOf(_attributes[Environment + 3 * unit], unsupported) +
+           8 * static_cast<int>(baseFormat(*texture));
+}
+
+int FixedFunctionState::texGen(unsigned int unit) const
+{
+    int coordinates = 0;
+    for (unsigned int i = 0; i < 4; ++i)
+    {
+        if (on(Generates + 8 * unit + i)) coordinates |= 8 << i;
+    }
+    if (coordinates == 0) return 0;
+    const auto* gen = static_cast<const osg::TexGen*>(_attributes[Gen + 3 * unit]);
+    switch (gen ? gen->getMode() : osg::TexGen::EYE_LINEAR)
+    {
+    case osg::TexGen::OBJECT_LINEAR:
+        return coordinates + 1;
+    case osg::TexGen::SPHERE_MAP:
+        return coordinates + 3;
+    case osg::TexGen::NORMAL_MAP:
+        return coordinates + 4;
+    case osg::TexGen::REFLECTION_MAP:
+        return coordinates + 5;
+    default:
+        // As OpenGL has it by itself, which is what an osg::TexGenNode leaves too.
+        return coordinates + 2;
+    }
+}
+
+FixedFunctionLook FixedFunctionState::look(int mapUnit) const
+{
     FixedFunctionLook look;
-    const auto* program = static_cast<const osg::Program*>(gathered.program.value());
+    const auto* program = static_cast<const osg::Program*>(_attributes[Program]);
     if (program && !program->isFixedFunction())
     {
         look.ownProgram = true;
         return look;
     }
-    if (gathered.lighting.value())
+    if (on(Lighting))
     {
-        look.lights = 0;
-        for (int i = 0; i < 8; ++i)
-        {
-            if (gathered.lights[static_cast<std::size_t>(i)].value()) look.lights |= 1 << i;
-        }
-        if (const auto* model = static_cast<const osg::LightModel*>(gathered.model.value()))
+        look.lights = static_cast<int>(_on >> Light0 & 0xFFu);
+        if (const auto* model = static_cast<const osg::LightModel*>(_attributes[Model]))
         {
             look.twoSided = model->getTwoSided();
             look.localViewer = model->getLocalViewer();
             look.colorSum = model->getColorControl() == osg::LightModel::SEPARATE_SPECULAR_COLOR;
         }
-        look.colorMaterial = colorMaterialOf(gathered.material.value());
-        look.specular = shines(gathered.material.value());
+        look.colorMaterial = colorMaterialOf(_attributes[Material]);
+        look.specular = shines(_attributes[Material]);
     }
     else
     {
-        look.colorSum = gathered.colorSum.value();
+        look.colorSum = on(ColorSum);
     }
-    look.normalize = gathered.normalize.value();
-    look.rescale = gathered.rescale.value() && !look.normalize;
-    if (const auto* point = static_cast<const osg::Point*>(gathered.point.value()))
+    look.normalize = on(Normalize);
+    look.rescale = on(Rescale) && !look.normalize;
+    if (const auto* point = static_cast<const osg::Point*>(_attributes[Point]))
     {
         look.pointSize = point->getDistanceAttenuation() != osg::Vec3(1.0f, 0.0f, 0.0f);
     }
-    look.unsupported = gathered.beyond;
-    if (gathered.fog.value()) look.fog = fogOf(gathered.fogSettings.value());
-    for (std::size_t i = 0; i < gathered.units.size(); ++i)
+    look.unsupported = _beyond;
+    if (on(FogMode)) look.fog = fogOf(_attributes[Fog]);
+    for (unsigned int i = 0; i < FixedFunctionLook::units; ++i)
     {
-        const Gathered::Unit& unit = gathered.units[i];
-        if (unit.other.value()) look.unsupported = true;
-        if (!unit.texture.value()) continue;
-        look.texture[i] = environmentOf(unit, look.unsupported);
-        if (look.texture[i] > 0) look.texGen[i] = texGenOf(unit);
+        if (on(OtherTexture + 8 * i)) look.unsupported = true;
+        if (!on(Texture2D + 8 * i)) continue;
+        look.texture[i] = environment(i, look.unsupported);
+        if (look.texture[i] > 0) look.texGen[i] = texGen(i);
     }
-    look.map = mapUnit >= 0 && mapUnit < units &&
-               texture2D(gathered.units[static_cast<std::size_t>(mapUnit)].image.value());
+    look.map = mapUnit >= 0 && mapUnit < FixedFunctionLook::units &&
+               texture2D(_attributes[Image + 3 * static_cast<unsigned int>(mapUnit)]);
     return look;
 }
 
@@ -449,10 +447,11 @@ osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* prog
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
     // Whatever says that there is no program, an OVERRIDE too, means the fixed functions, which this is.
-    constexpr auto always =
+    constexpr unsigned int always =
         osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
     set->setAttributeAndModes(program, always);
-    if (twoSided) set->setMode(programTwoSideMode, always);
+    // Off, too: the shader has no colours for the back then.
+    set->setMode(programTwoSideMode, twoSided ? always : always & ~osg::StateAttribute::ON);
     if (pointSize) set->setMode(programPointSizeMode, always);
     const auto define = [&](const std::string& name, bool there, int value)
     {

@@ -7,6 +7,7 @@
 #include <osgUtil/StateGraph>
 
 #include <array>
+#include <cstdint>
 
 namespace osgGeoFX
 {
@@ -34,14 +35,39 @@ struct FixedFunctionLook
     bool map = false;         ///< there is a texture on the map's unit
     bool unsupported = false; ///< something is in force that the shaders do not know
 
-    /// `state` is the innermost state set's node, `drawable` a state set below it or null.
-    static FixedFunctionLook find(const osgUtil::StateGraph& state, const osg::StateSet* drawable,
-                                  int mapUnit);
-
     using Key = std::array<int, 4 + 2 * units>;
     Key key() const;
     /// The defines of stages/fixed.vert and .frag, with the program.
     osg::ref_ptr<osg::StateSet> createStateSet(osg::Program* program) const;
+};
+
+/// What state sets set on the way down to a drawable, as far as the look depends on it; by OSG's rules of inheritance.
+class FixedFunctionState
+{
+public:
+    void meet(const osg::StateSet& set);
+    /// The state sets from the root down to a node of the state graph.
+    void meetAll(const osgUtil::StateGraph& state);
+    FixedFunctionLook look(int mapUnit) const;
+
+private:
+    enum ModeBit : unsigned int;
+    enum Attribute : unsigned int;
+    static constexpr unsigned int attributes = 17;
+
+    void meetMode(GLenum mode, unsigned int flags);
+    void meetTextureMode(unsigned int unit, GLenum mode, unsigned int flags);
+    void setMode(unsigned int bit, unsigned int flags);
+    void setAttribute(unsigned int index, const osg::StateAttribute* attribute, unsigned int flags);
+    bool on(unsigned int bit) const { return (_on >> bit & 1u) != 0; }
+    int environment(unsigned int unit, bool& unsupported) const;
+    int texGen(unsigned int unit) const;
+
+    // Copied for every drawable, and so small.
+    std::uint64_t _on = 0, _onOverridden = 0; ///< a bit for each mode
+    std::array<const osg::StateAttribute*, attributes> _attributes{};
+    std::uint32_t _attributesOverridden = 0;
+    bool _beyond = false; ///< a texture on a unit that the shaders do not have
 };
 
 } // namespace osgGeoFX

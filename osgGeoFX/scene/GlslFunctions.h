@@ -38,6 +38,7 @@ using glm::sqrt;
 namespace glsl
 {
 using namespace glslBuiltIns;
+constexpr int GEOFX_NEWTON_STEPS = 3;
 using Number = double;
 using Length = double;
 using Angle = double;
@@ -60,6 +61,7 @@ using Rgba = glm::dvec4;
 namespace glslf
 {
 using namespace glslBuiltIns;
+constexpr int GEOFX_NEWTON_STEPS = 1;
 using Number = float;
 using Length = float;
 using Angle = float;

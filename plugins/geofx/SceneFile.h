@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/scene/Effect.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
 
 #include <osg/ref_ptr>
 
@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -71,6 +72,59 @@ struct SceneSun
     SceneColour colour{}, ambient{};
 };
 
+/// A mapping, and what of it is known when the terrain and the files are there.
+struct SceneMapping
+{
+    /// Degrees on a globe, else metres of the terrain's coordinate system.
+    struct Box
+    {
+        double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
+    };
+    /// Degrees.
+    struct Point
+    {
+        double longitude = 0.0, latitude = 0.0;
+    };
+    /// A file with a georeference.
+    struct Raster
+    {
+        ScenePath file;
+        std::optional<DataLayer::Kind> kind; ///< nothing: the file decides
+        int maxSide = 0;
+    };
+
+    ScenePlace place;
+    osg::ref_ptr<ProjectiveMapping> mapping;
+    bool hasTransfer = false; ///< one of its own; without, the files decide
+    // At most one of these; without, the mapping has its place already.
+    std::optional<Box> box;
+    std::optional<Point> point;
+    std::optional<Raster> raster;
+};
+
+/// An effect with mappings. The mappings are in the effect, with all that needs no file and no terrain.
+struct SceneMappings
+{
+    struct Layer
+    {
+        osg::ref_ptr<DataLayer> layer; ///< without its picture
+        ScenePath file;
+    };
+    /// A table of a text file.
+    struct Table
+    {
+        osg::ref_ptr<ColorTable> table; ///< with its mode
+        ScenePath file;
+        std::optional<std::pair<double, double>> range; ///< what percentages in it are of
+    };
+
+    osg::ref_ptr<ProjectiveMappings> effect;
+    bool hasOrigin = false;
+    std::vector<Layer> layers;
+    std::vector<Table> tables;
+    std::vector<SceneMapping> mappings; ///< as many as the effect has, in the same order
+};
+
 /** What a .geofx file says; data/geofx.xsd has the meaning, range and default of everything.
 
     All functions may be called from any thread. The effects belong to whoever has the value. */
@@ -84,6 +138,7 @@ struct SceneFile
     std::optional<SceneSun> sun;
     std::optional<SceneColour> background;
     std::vector<osg::ref_ptr<Effect>> effects; ///< in their order
+    std::vector<SceneMappings> mappings;       ///< of the effects among them that have mappings
 };
 
 /// A scene, or else at least one sentence of the form `FILE:LINE: <element>: what was expected`.

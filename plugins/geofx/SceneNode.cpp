@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "SceneNode.h"
 
+#include "MappingsLoader.h"
+
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -116,19 +118,21 @@ void addSun(osg::Group& group, const SceneSun& sun, const osg::Vec3d& direction)
 osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terrain, std::string& error)
 {
     osg::ref_ptr<osg::Group> group;
+    osg::ref_ptr<EffectScene> effects;
     if (scene.effects.empty())
     {
         group = new osg::Group;
     }
     else
     {
-        osg::ref_ptr<EffectScene> effects = new EffectScene;
+        effects = new EffectScene;
         for (const osg::ref_ptr<Effect>& effect : scene.effects)
             effects->addEffect(effect);
         group = effects;
     }
     group->setName("osgGeoFX scene");
     group->addChild(terrain);
+    if (effects && !loadMappings(scene, *effects, *terrain, error)) return nullptr;
     if (scene.homeView)
     {
         const SceneView& view = *scene.homeView;

@@ -17,7 +17,9 @@ namespace osgGeoFX
    and metres), double "geofx.homeFov" (vertical, degrees; only where the scene says it), string
    "geofx.background" = "R,G,B" (0…1), bool "geofx.hasLight" = true where there is a sun.
 
-    Null, with a sentence in `error`, where the sun's direction cannot be told. */
+    Mappings get their pictures, tables and places here.
+
+    Null, with a sentence in `error`, where the sun's direction cannot be told, or where a mapping lacks something. */
 osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terrain, std::string& error);
 
 } // namespace osgGeoFX

@@ -308,8 +308,21 @@ private:
     std::vector<std::string>& _errors;
 };
 
+/// What isGiven() asks for.
+void markGiven(xmlNode* parent)
+{
+    for (xmlNode* node = parent; node; node = node->next)
+    {
+        if (node->type != XML_ELEMENT_NODE) continue;
+        for (xmlAttr* attribute = node->properties; attribute; attribute = attribute->next)
+            attribute->_private = attribute;
+        markGiven(node->children);
+    }
+}
+
 void validate(xmlDoc* document, Findings& findings)
 {
+    markGiven(xmlDocGetRootElement(document));
     xmlSchemaValidCtxt* validator = xmlSchemaNewValidCtxt(findings.schema.compiled());
     xmlSchemaSetValidStructuredErrors(validator, &Findings::invalid, &findings);
     xmlSchemaSetValidOptions(validator, XML_SCHEMA_VAL_VC_I_CREATE); // fills in the defaults
@@ -326,6 +339,12 @@ std::string attributeOf(xmlNode* element, const char* name)
     xmlFree(value);
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
+}
+
+bool isGiven(xmlNode* element, const char* name)
+{
+    const xmlAttr* attribute = xmlHasNsProp(element, xmlChars(name), nullptr);
+    return attribute && attribute->_private;
 }
 
 XmlDocument readSceneXml(const std::string& text, const std::string& file, std::vector<std::string>& errors)

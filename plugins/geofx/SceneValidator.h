@@ -24,6 +24,9 @@ using XmlDocument = std::unique_ptr<xmlDoc, XmlDocumentFree>;
 /// The value of an attribute without spaces around it; empty where there is none.
 std::string attributeOf(xmlNode* element, const char* name);
 
+/// Whether the person has written an attribute; the schema's defaults are not.
+bool isGiven(xmlNode* element, const char* name);
+
 /** A scene's XML, checked against the schema and with the schema's defaults filled in. Null, with sentences
    in `errors` that name `file`, where it is no scene of this version. Nothing but `text` is read: no DTD, no
    entity and no schema that the text names. */

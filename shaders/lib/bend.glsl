@@ -92,18 +92,20 @@ GEOFX_INLINE PerMetre geofx_bendCurvature(geofx_Bend bend)
     return 2 * bend.slope / (bend.bisector.x * size);
 }
 
-// The parabola's u after the share 0..1 of its length. Newton's method on geofx_bendArc, which is convex for
-// u > 0 and odd. The first step ends beyond the root, the others come back to it monotonically. An error e
-// becomes less than 0.36 * e^2, and the first is below 0.1 for |beta| <= pi/2; so four steps leave less than
-// 1e-20.
+// The parabola's u after the share 0..1 of its length. It starts from the odd polynomial of fifth degree that has
+// the right slopes at the vertex and, with the right value, at the ends: off by 3e-6 for |beta| = 30 degrees, by
+// 3e-3 for 90. Then Newton's method on geofx_bendArc, in which an error e becomes less than 0.36 * e^2: one step
+// leaves 1e-7 for 75 degrees and 3e-6 for 90, which is for floats; three leave less than 1e-20, for doubles.
 GEOFX_INLINE Number geofx_bendArcInverse(geofx_Bend bend, Number share)
 {
-    Number sought = (share - Number(0.5)) * bend.arc;
-    Number u = 2 * share - 1;
-    for (int i = 0; i < 4; ++i)
+    Number v = 2 * share - 1;
+    Number atVertex = bend.arc / 2;
+    Number fifth = (atVertex * bend.bisector.x + 2 * atVertex - 3) / 2;
+    Number u = v * (atVertex + v * v * (1 - atVertex - fifth + v * v * fifth));
+    for (int i = 0; i < GEOFX_NEWTON_STEPS; ++i)
     {
         Number x = bend.slope * u;
-        u -= (geofx_bendArc(bend.slope, u) - sought) / sqrt(1 + x * x);
+        u -= (geofx_bendArc(bend.slope, u) - v * atVertex) / sqrt(1 + x * x);
     }
     return u;
 }

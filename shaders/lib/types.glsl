@@ -5,6 +5,8 @@
 // float, in osgGeoFX/scene/GlslFunctions.h; that header tells how a file of shaders/lib must be written.
 #define GEOFX_INLINE
 
+#define GEOFX_NEWTON_STEPS 1 // enough for floats in geofx_bendArcInverse
+
 #define Number float   // without a unit
 #define Length float   // metres
 #define Angle float    // radians

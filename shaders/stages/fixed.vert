@@ -152,21 +152,20 @@ void main()
     normal *= size;
 #endif
 
-    gl_FrontColor = gl_Color;
-    gl_BackColor = gl_Color;
-#ifdef GEOFX_COLOR_SUM
-    gl_FrontSecondaryColor = gl_SecondaryColor;
-    gl_BackSecondaryColor = gl_SecondaryColor;
-#endif
+    // Only what is read is written: each of these goes through clipping and set-up with every triangle.
+    vec4 primary = gl_Color;
+    vec4 secondary = gl_SecondaryColor;
 #ifdef GEOFX_LIGHTS
-    vec4 primary;
-    vec4 secondary;
     illuminate(eye.xyz, normal, coloured(gl_FrontMaterial), primary, secondary);
+#endif
     gl_FrontColor = primary;
+#ifdef GEOFX_COLOR_SUM
     gl_FrontSecondaryColor = secondary;
+#endif
 #ifdef GEOFX_TWO_SIDED
     illuminate(eye.xyz, -normal, coloured(gl_BackMaterial), primary, secondary);
     gl_BackColor = primary;
+#ifdef GEOFX_COLOR_SUM
     gl_BackSecondaryColor = secondary;
 #endif
 #endif

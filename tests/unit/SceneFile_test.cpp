@@ -277,7 +277,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:3: <effects>: ", "expected: at most one each of <terrain>"},
         Mistake{"UnknownEffect", sceneWith("<effects>\n<fishEye/></effects>"),
                 "x.geofx:3: <fishEye>: this element is not known in <effects>",
-                "expected: <birdsEyeView> or <pedestrianView> or <blendedView> or <verticalExaggeration>."},
+                "expected: <birdsEyeView> or <pedestrianView> or <blendedView> or <verticalExaggeration> or "
+                "<projectiveMappings>."},
         Mistake{"UnknownProperty", sceneWith("<effects>\n<verticalExaggeration power='2'/></effects>"),
                 "x.geofx:3: <verticalExaggeration>: the attribute \"power\" is not known here",
                 "expected: enabled, factor, base, relight."},

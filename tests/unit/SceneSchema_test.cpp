@@ -7,6 +7,7 @@
 
 #include <osgDB/XmlParser>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <set>
@@ -126,8 +127,15 @@ protected:
     {
         std::string error;
         double value = 0.0;
-        EXPECT_TRUE(property.parse(attributeOf(attribute, "default"), value, error)) << error;
-        EXPECT_EQ(value, property.defaultValue) << "the default";
+        // No data has no default, and may be a number with an exponent.
+        const bool isNoData = property.name == "noData";
+        if (isNoData)
+            EXPECT_EQ(attribute.properties.count("default"), 0u);
+        else
+        {
+            EXPECT_TRUE(property.parse(attributeOf(attribute, "default"), value, error)) << error;
+            EXPECT_EQ(value, property.defaultValue) << "the default";
+        }
         const XmlNode* restriction = restrictionOf(attribute);
         ASSERT_TRUE(restriction);
         const std::string words = documentation(&attribute);
@@ -141,8 +149,9 @@ protected:
                 EXPECT_NE(words.find(choice), std::string::npos) << choice << " is not explained: " << words;
             return;
         }
-        EXPECT_EQ(attributeOf(*restriction, "base"),
-                  property.kind == Kind::Integer ? "xs:int" : "xs:decimal");
+        EXPECT_EQ(attributeOf(*restriction, "base"), property.kind == Kind::Integer ? "xs:int"
+                                                     : isNoData                     ? "xs:double"
+                                                                                    : "xs:decimal");
         const std::pair<const char*, double> limits[] = {{"xs:minInclusive", property.minimum},
                                                          {"xs:maxInclusive", property.maximum}};
         for (const auto& [tag, limit] : limits)
@@ -201,23 +210,105 @@ TEST_F(SceneSchema, HasThePropertiesOfEachEffect)
     }
 }
 
-/// A scene with one effect.
-SceneResult sceneOf(const std::string& kind, const std::string& attribute = {}, const std::string& value = {})
+/// An element of <projectiveMappings>: its type in the schema, the class behind it, and the properties that it says in
+/// another way.
+struct MappingElement
 {
-    const std::string setting = attribute.empty() ? "" : " " + attribute + "='" + value + "'";
-    return parseScene("<geofx version='1'><terrain><database file='a'/></terrain><effects>\n<" + kind +
-                          setting + "/></effects></geofx>",
+    const char* type;
+    const char* kind;
+    std::set<std::string> missing;
+};
+
+const std::vector<MappingElement>& mappingElements()
+{
+    static const std::vector<MappingElement> all = {
+        {"MappingLayer", "dataLayer", {"hasNoData"}},
+        {"ColorTransfer", "colorTransfer", {}},
+        {"Mapping", "projectiveMapping", {}},
+        {"MappingRaster",
+         "projectiveMapping",
+         {"centreX", "centreY",   "uX",     "uY",      "vX",    "vY",   "m00",         "m01",
+          "m02",     "m10",       "m11",    "m12",     "m20",   "m21",  "m22",         "sizeInPixels",
+          "turned",  "projector", "height", "heading", "pitch", "roll", "fieldOfView", "aspectRatio",
+          "k1",      "k2",        "k3",     "p1",      "p2",    "range"}},
+    };
+    return all;
+}
+
+TEST_F(SceneSchema, HasThePropertiesOfWhatMappingsAreMadeOf)
+{
+    for (const MappingElement& element : mappingElements())
+    {
+        const XmlNode* type = named("xs:complexType", element.type);
+        ASSERT_TRUE(type) << element.type;
+        EXPECT_NE(documentation(type), "") << element.type;
+        const osg::ref_ptr<osgGeoFX::PropertyHolder> holder = geofx::test::createHolder(element.kind);
+        std::vector<std::string> expected;
+        std::set<std::string> missing = element.missing;
+        for (const Property& property : holder->properties())
+            if (missing.erase(property.name) == 0) expected.push_back(property.textName());
+        EXPECT_TRUE(missing.empty()) << element.type;
+        std::vector<std::string> found;
+        for (const XmlNode* attribute : attributesOf(*type))
+        {
+            const std::string name = attributeOf(*attribute, "name");
+            const auto& all = holder->properties();
+            const auto property = std::find_if(all.begin(), all.end(),
+                                               [&](const Property& each) { return each.textName() == name; });
+            SCOPED_TRACE(std::string(element.type) + "." + name);
+            if (property == all.end())
+            {
+                const bool saysWhatItIs =
+                    attributeOf(*attribute, "type") == "File" || !documentation(attribute).empty();
+                EXPECT_TRUE(saysWhatItIs);
+                continue;
+            }
+            found.push_back(name);
+            expectAttribute(*attribute, *property);
+        }
+        EXPECT_EQ(found, expected) << element.type;
+    }
+}
+
+/// A scene with one element of a class, on line 2: an effect, or what mappings are made of.
+SceneResult sceneOf(const std::string& kind, const std::string& settings = {})
+{
+    std::string effects = "\n<" + kind + settings + "/>";
+    if (kind == "projectiveMapping")
+        effects = "<projectiveMappings>\n<mapping" + settings + "/></projectiveMappings>";
+    if (kind == "dataLayer")
+        effects = "<projectiveMappings>\n<layer name='a' file='a'" + settings + "/></projectiveMappings>";
+    if (kind == "colorTransfer")
+        effects = "<projectiveMappings>\n<transfer name='a'" + settings +
+                  "/><mapping transfer='a'/></projectiveMappings>";
+    return parseScene("<geofx version='1'><terrain><database file='a'/></terrain><effects>" + effects +
+                          "</effects></geofx>",
                       "x.geofx", "/");
+}
+
+std::string setting(const Property& property, const std::string& value)
+{
+    return " " + property.textName() + "='" + value + "'";
+}
+
+/// The object that such a scene has.
+osgGeoFX::PropertyHolder& objectOf(const osgGeoFX::SceneFile& scene, const std::string& kind)
+{
+    if (createEffect(kind)) return *scene.effects.at(0);
+    const osgGeoFX::SceneMappings& mappings = scene.mappings.at(0);
+    if (kind == "dataLayer") return *mappings.layers.at(0).layer;
+    if (kind == "colorTransfer") return *mappings.mappings.at(0).mapping->getTransfer();
+    return *mappings.mappings.at(0).mapping;
 }
 
 TEST(SceneEffects, HaveTheDefaultsOfTheirClasses)
 {
-    for (const std::string& kind : effectKinds())
+    for (const std::string& kind : geofx::test::holderKinds())
     {
         const SceneResult result = sceneOf(kind);
         ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
         ASSERT_EQ(result.scene->effects.size(), 1u);
-        expectSame(*result.scene->effects[0], *createEffect(kind));
+        expectSame(objectOf(*result.scene, kind), *geofx::test::createHolder(kind));
     }
 }
 
@@ -225,9 +316,16 @@ TEST(SceneEffects, TakeWhatTheTableTakesAndNameTheRest)
 {
     for (const geofx::test::PropertyRow& row : geofx::test::allProperties())
     {
-        if (!createEffect(row.kind)) continue;
+        if (row.name == "hasNoData") continue;
         SCOPED_TRACE(row.kind + "." + row.name);
         const Property& property = row.property();
+        std::string before;
+        const auto companion = geofx::test::companions().find(row.name);
+        if (companion != geofx::test::companions().end())
+        {
+            const Property& other = *row.create()->property(companion->second.first);
+            before = setting(other, std::to_string(static_cast<int>(companion->second.second)));
+        }
         for (const double value : geofx::test::otherValues(row))
         {
             // XML's decimals have no exponent.
@@ -235,19 +333,35 @@ TEST(SceneEffects, TakeWhatTheTableTakesAndNameTheRest)
             if (text.find('e') != std::string::npos && property.choices.empty() &&
                 property.kind != Kind::Flag)
                 continue;
-            const SceneResult result = sceneOf(row.kind, property.textName(), text);
+            const SceneResult result = sceneOf(row.kind, before + setting(property, text));
             ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
-            EXPECT_DOUBLE_EQ(result.scene->effects[0]->getProperty(row.name), value);
+            EXPECT_DOUBLE_EQ(objectOf(*result.scene, row.kind).getProperty(row.name), value);
         }
-        for (const char* text : {"", "x", "NaN", "INF", "-99999999", "99999999", "1 2"})
+        for (const char* text : {"", "x", "NaN", "INF", "-1e39", "1 2"})
         {
-            const SceneResult result = sceneOf(row.kind, property.textName(), text);
+            const SceneResult result = sceneOf(row.kind, before + setting(property, text));
             EXPECT_FALSE(result.scene) << text;
             ASSERT_EQ(result.errors.size(), 1u) << text;
-            EXPECT_EQ(result.errors[0].rfind("x.geofx:2: <" + row.kind + ">: " + property.textName(), 0), 0u)
-                << result.errors[0];
-            EXPECT_EQ(result.errors[0].back(), '.') << result.errors[0];
+            const std::string& error = result.errors[0];
+            EXPECT_EQ(error.rfind("x.geofx:2: <", 0), 0u) << error;
+            EXPECT_NE(error.find(">: " + property.textName()), std::string::npos) << error;
+            EXPECT_EQ(error.back(), '.') << error;
         }
+        if (property.maximum >= 9e7) continue;
+        for (const char* text : {"-99999999", "99999999"})
+            EXPECT_EQ(sceneOf(row.kind, before + setting(property, text)).errors.size(), 1u) << text;
+    }
+}
+
+TEST(SceneEffects, ALayersNoDataIsOne)
+{
+    for (const char* text : {"-3.4028234663852886e+38", "0", "+255", "-9999.5"})
+    {
+        const SceneResult result = sceneOf("dataLayer", std::string(" noData='") + text + "'");
+        ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
+        const osgGeoFX::DataLayer& layer = *result.scene->mappings.at(0).layers.at(0).layer;
+        EXPECT_TRUE(layer.getHasNoData());
+        EXPECT_EQ(layer.getNoData(), std::stod(text));
     }
 }
 

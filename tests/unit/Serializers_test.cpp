@@ -9,6 +9,7 @@
 
 #include <osgDB/ClassInterface>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <optional>
@@ -72,7 +73,9 @@ TEST_F(Serializers, KeepEveryPropertyOfEveryClass)
 {
     for (const PropertyRow& row : allProperties())
     {
-        for (const double value : otherValues(row))
+        std::vector<double> values = otherValues(row);
+        if (!geofx::test::fullTest()) values.resize(std::min<std::size_t>(values.size(), 2));
+        for (const double value : values)
         {
             const osg::ref_ptr<PropertyHolder> holder = row.create();
             std::string error;
