@@ -31,7 +31,7 @@ bool isColour(const osgGeoFX::SceneColour& c)
     return within(c[0], 0.0, 1.0) && within(c[1], 0.0, 1.0) && within(c[2], 0.0, 1.0);
 }
 
-void check(osgGeoFX::Effect& effect)
+void check(osgGeoFX::PropertyHolder& effect)
 {
     for (const osgGeoFX::Property& property : effect.properties())
     {
@@ -39,8 +39,8 @@ void check(osgGeoFX::Effect& effect)
         require(effect.setProperty(property.name, property.get(effect), error),
                 "properties that fit each other");
     }
-    for (const osgGeoFX::Effect::Part& part : effect.parts())
-        check(*part.effect);
+    for (const osgGeoFX::PropertyHolder::Part& part : effect.parts())
+        check(*part.object);
 }
 
 void check(const osgGeoFX::SceneFile& scene)
