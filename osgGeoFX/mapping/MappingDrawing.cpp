@@ -73,6 +73,12 @@ MappingIndex::Root MappingDrawing::root() const
     return _index ? _index->root() : MappingIndex::Root();
 }
 
+std::uint32_t MappingDrawing::features() const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return _features;
+}
+
 void MappingDrawing::reset(Settings settings)
 {
     if (_store)
@@ -350,10 +356,11 @@ bool MappingDrawing::writeRecord(Item& item, const PositionOf& positionOf)
     };
     const auto table = _tables.find(item.table);
     const osg::Vec2d centre = mapping.getCentre();
+    TexelArena::Texel* record = _arena.edit(item.record, texels);
     MappingRecord::write(mapping, placed(item.layer), placed(item.mask),
                          table != _tables.end() ? table->second.row : 0,
-                         positionOf(osg::Vec3d(centre.x(), centre.y(), mapping.getHeight())),
-                         _arena.edit(item.record, texels));
+                         positionOf(osg::Vec3d(centre.x(), centre.y(), mapping.getHeight())), record);
+    _features |= MappingRecord::featuresOf(record);
     return true;
 }
 

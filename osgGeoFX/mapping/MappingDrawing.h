@@ -66,6 +66,8 @@ public:
     std::uint64_t setList(CameraList& list, const Wanted& wanted);
 
     MappingIndex::Root root() const;
+    /// What the shader's code must have; only grows, so that it is not compiled again and again.
+    std::uint32_t features() const;
     GpuStore* store() { return _store.get(); }
     ProjectiveMappings::Capacity capacity() const;
     void releaseGLObjects(osg::State* state);
@@ -145,6 +147,7 @@ private:
     int _rows = 0;
     GpuStore::Commit _commit;
     std::map<std::uint64_t, std::uint32_t> _sorted; ///< records on the GPU by rank
+    std::uint32_t _features = 0;
     bool _roomMade = false;
     int _mappingsLeftOut = 0;
     int _layersLeftOut = 0;

@@ -170,6 +170,41 @@ std::uint32_t MappingRecord::sizeOf(const ProjectiveMapping& mapping)
     return mapping.getProjector() == ProjectiveMapping::PINHOLE ? pinholeTexels : texels;
 }
 
+std::uint32_t MappingRecord::featuresOf(const Texel* record)
+{
+    const std::uint32_t flags = record[1][3];
+    const std::uint32_t codes = record[3][3];
+    const std::uint32_t source = codes >> 12u & 3u;
+    const std::uint32_t alpha = codes >> 14u & 3u;
+    constexpr std::uint32_t sourceOverDestination =
+        ColorTransfer::SOURCE_ALPHA | ColorTransfer::ONE_MINUS_SOURCE_ALPHA << 4u;
+    std::uint32_t result = 0;
+    unsigned int bit = 0;
+    const auto next = [&](bool needed)
+    {
+        if (needed) result |= 1u << bit;
+        ++bit;
+    };
+    const bool masked = alpha == ColorTransfer::FROM_MASK;
+    const auto ofKind = [&](std::uint32_t kind)
+    {
+        return (flags & 3u) == kind || (masked && (flags >> 17u & 3u) == kind);
+    };
+    next(ofKind(1));
+    next(ofKind(2));
+    next(ofKind(3));
+    next(source == ColorTransfer::TABLE);
+    next((flags & MATRIX) != 0);
+    next(masked);
+    next((flags & PROJECTIVE) != 0);
+    next((flags & PINHOLE) != 0);
+    next((flags & (PIXEL_SIZE | TURNED | DISTANCE_FADE | SIZE_FADE)) != 0);
+    next((flags & (DISTANCE_FADE | SIZE_FADE | SLOPE_FADE)) != 0);
+    next((flags & HEIGHTS) != 0);
+    next((codes & 0xfffu) != sourceOverDestination);
+    return result;
+}
+
 void MappingRecord::write(const ProjectiveMapping& mapping, const std::optional<PlacedLayer>& layer,
                           const std::optional<PlacedLayer>& mask, int tableRow, const osg::Vec3d& position,
                           Texel* record)

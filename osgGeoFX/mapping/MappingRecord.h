@@ -32,6 +32,12 @@ public:
     static constexpr std::uint32_t texels = 14;
     static constexpr std::uint32_t pinholeTexels = 22;
 
+    /// What the shader's code must have for a mapping; a bit for each name, in its order.
+    static constexpr const char* features[] = {"COLOURS",  "VALUES", "CLASSES",    "TABLES",
+                                               "MATRICES", "MASKS",  "PROJECTIVE", "PINHOLES",
+                                               "SYMBOLS",  "FADES",  "HEIGHTS",    "BLENDS"};
+    static std::uint32_t featuresOf(const TexelArena::Texel* record);
+
     /// How many texels a mapping needs.
     static std::uint32_t sizeOf(const ProjectiveMapping& mapping);
     /// `position` is the centre in the frame; `tableRow` −1 where there is no table.

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace osgGeoFX
 {
@@ -104,6 +105,7 @@ const Properties& ProjectiveMappings::properties() const
         Property::number("originY", 0.0, -5e7, 5e7, "m").of<&Self::_originY>(),
         Property::angle("longitude", 0.0, -osg::PI, osg::PI).of<&Self::_longitude>(),
         Property::angle("latitude", 0.0, -osg::PI_2, osg::PI_2).of<&Self::_latitude>(),
+        Property::number("opacity", 1.0, 0.0, 1.0).of<&Self::_opacity>().turnedBy(0.05),
         Property::flag("wholeList", false).of<&Self::_wholeList>(),
         Property::integer("anisotropy", 8, 1, 16).of<&Self::_anisotropy>(),
         Property::flag("linear", false).of<&Self::_linear>(),
@@ -250,7 +252,7 @@ void ProjectiveMappings::update(const osg::EllipsoidModel* ellipsoid)
 
 bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view)
 {
-    if (_mappings.empty()) return false;
+    if (_mappings.empty() || _opacity <= 0.0) return false;
     const osg::EllipsoidModel* ellipsoid = view.geometry.ground.ellipsoid.get();
     std::uint64_t number = commit(ellipsoid);
 
@@ -311,11 +313,18 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
         state.setTextureAttribute(static_cast<unsigned int>(units[i]), texture);
         setUniform(state, prefix + names[i], osg::Uniform::INT, units[i]);
     }
+    const std::uint32_t features = _drawing->features();
+    for (std::size_t i = 0; i < std::size(MappingRecord::features); ++i)
+    {
+        const bool needed = (features & 1u << i) != 0;
+        state.setDefine(prefix + MappingRecord::features[i],
+                        needed ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
+    }
     setUniform(state, prefix + "toFrame", osg::Uniform::FLOAT_MAT4, osg::Matrixf(eyeToFrame));
     setUniform(state, prefix + "root", osg::Uniform::FLOAT_VEC4,
                osg::Vec4(osg::Vec4d(root.origin.x(), root.origin.y(), 1.0 / root.size, 0.0)));
     setUniform(state, prefix + "pixel", osg::Uniform::FLOAT_VEC4,
-               osg::Vec4(osg::Vec4d(parallel ? 0.0 : span, parallel ? span : 0.0, 0.0, 0.0)));
+               osg::Vec4(osg::Vec4d(parallel ? 0.0 : span, parallel ? span : 0.0, _opacity, 0.0)));
     state.getOrCreateUniform(prefix + "start", osg::Uniform::INT_VEC2)
         ->set(static_cast<int>(root.block), start);
     setUniform(state, prefix + "quality", osg::Uniform::FLOAT_VEC4,

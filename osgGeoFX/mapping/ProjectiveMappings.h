@@ -80,6 +80,9 @@ public:
     /// All enabled mappings with this place in their outlines, the topmost first; fades are left out of account.
     std::vector<ProjectiveMapping*> mappingsAt(const osg::Vec2d& place) const;
 
+    /// Of all mappings together, 0…1; what keys turn. 1 by default.
+    bool setOpacity(double opacity) { return assign("opacity", opacity); }
+    double getOpacity() const { return _opacity; }
     /// Whether fragments go through all mappings in sight instead of the grid. For comparison; false by default.
     bool setWholeList(bool on) { return assign("wholeList", on ? 1.0 : 0.0); }
     bool getWholeList() const { return _wholeList; }
@@ -139,6 +142,7 @@ private:
     std::uint64_t commit(const osg::EllipsoidModel* ellipsoid);
 
     double _originX = 0.0, _originY = 0.0, _longitude = 0.0, _latitude = 0.0;
+    double _opacity = 1.0;
     bool _wholeList = false;
     int _anisotropy = 8;
     bool _linear = false;

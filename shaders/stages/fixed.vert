@@ -163,7 +163,9 @@ void main()
     gl_FrontSecondaryColor = secondary;
 #endif
 #ifdef GEOFX_TWO_SIDED
+#ifdef GEOFX_LIGHTS
     illuminate(eye.xyz, -normal, coloured(gl_BackMaterial), primary, secondary);
+#endif
     gl_BackColor = primary;
 #ifdef GEOFX_COLOR_SUM
     gl_BackSecondaryColor = secondary;

@@ -6,13 +6,19 @@
 #include "lib/mapping.glsl"
 
 #pragma import_defines(GEOFX_MAPPING_CHANNELS)
+// What some of the mappings need; MappingRecord.h lists them. Code that none needs is left out: compilers of CPUs run
+// through all branches.
+#pragma import_defines(SLOT_COLOURS, SLOT_VALUES, SLOT_CLASSES)
+#pragma import_defines(SLOT_TABLES, SLOT_MATRICES, SLOT_MASKS)
+#pragma import_defines(SLOT_PROJECTIVE, SLOT_PINHOLES, SLOT_SYMBOLS)
+#pragma import_defines(SLOT_FADES, SLOT_HEIGHTS, SLOT_BLENDS)
 
 uniform usamplerBuffer SLOT_data;
 uniform sampler2DArray SLOT_layers;
 uniform sampler2D SLOT_tables;
 uniform mat4 SLOT_toFrame; // from eye space
 uniform vec4 SLOT_root;    // the grid's origin and one over its size
-uniform vec4 SLOT_pixel;   // what a pixel spans, metres: at a metre from the eye, and at any distance beside that
+uniform vec4 SLOT_pixel;   // what a pixel spans, metres: at a metre from the eye, and at any distance beside that; opacity
 uniform ivec2 SLOT_start;  // the grid's first block and, where all mappings are gone through instead, their list
 uniform vec4 SLOT_quality; // probes at most; whether colours are wanted linear; one over the pages' and tables' sides
 
@@ -90,6 +96,7 @@ vec4 SLOT_colourOf(SLOT_Slot slot, vec2 uv, float level)
     return textureLod(SLOT_layers, vec3((slot.corner + SLOT_inside(slot, uv, level)) * SLOT_quality.z, slot.page), level);
 }
 
+#if defined(SLOT_VALUES) || defined(SLOT_CLASSES)
 // The value of a texel: the four bytes are those of a float.
 float SLOT_texel(SLOT_Slot slot, ivec2 texel, int level)
 {
@@ -123,6 +130,7 @@ vec2 SLOT_valueOf(SLOT_Slot slot, vec2 uv, float level, bool smoothly)
            SLOT_weighted(SLOT_texel(slot, low + ivec2(0, 1), whole), (1.0 - t.x) * t.y) +
            SLOT_weighted(SLOT_texel(slot, low + ivec2(1, 1), whole), t.x * t.y);
 }
+#endif
 
 // A colour with the share of the place that has data. Colours are averaged by their alphas.
 struct SLOT_Sample
@@ -138,36 +146,36 @@ SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how)
     bool smoothly = (flags & 4u) != 0u;
     float level = smoothly ? how.level : floor(how.level + 0.5);
     vec2 first = uv - how.step * (0.5 * (how.probes - 1.0));
-    SLOT_Sample result = SLOT_Sample(vec4(0.0), 0.0, 0.0);
-    vec2 values = vec2(0.0);
-    for (float i = 0.0; i < how.probes; ++i)
-    {
-        vec2 at = clamp(first + i * how.step, vec2(0.0), vec2(1.0));
-        if (kind == 1u)
-        {
-            if (!smoothly) at = (floor(at * slot.size * exp2(-level)) + 0.5) * exp2(level) / slot.size;
-            vec4 texel = SLOT_colourOf(slot, at, level);
-            result.colour += vec4(texel.rgb * texel.a, texel.a);
-        }
-        else
-        {
-            values += SLOT_valueOf(slot, at, level, smoothly);
-        }
-    }
+    SLOT_Sample result = SLOT_Sample(vec4(1.0), 0.0, 0.0);
+#ifdef SLOT_COLOURS
     if (kind == 1u)
     {
-        result.colour = vec4(result.colour.rgb / max(result.colour.a, 1e-6), result.colour.a / how.probes);
+        vec4 sum = vec4(0.0);
+        for (float i = 0.0; i < how.probes; ++i)
+        {
+            vec2 at = clamp(first + i * how.step, vec2(0.0), vec2(1.0));
+            if (!smoothly) at = (floor(at * slot.size * exp2(-level)) + 0.5) * exp2(level) / slot.size;
+            vec4 texel = SLOT_colourOf(slot, at, level);
+            sum += vec4(texel.rgb * texel.a, texel.a);
+        }
+        result.colour = vec4(sum.rgb / max(sum.a, 1e-6), sum.a / how.probes);
         result.cover = 1.0;
     }
-    else
+#endif
+#if defined(SLOT_VALUES) || defined(SLOT_CLASSES)
+    if (kind > 1u)
     {
-        result.colour = vec4(1.0);
+        vec2 values = vec2(0.0);
+        for (float i = 0.0; i < how.probes; ++i)
+            values += SLOT_valueOf(slot, clamp(first + i * how.step, vec2(0.0), vec2(1.0)), level, smoothly);
         result.cover = values.y / how.probes;
         result.value = values.y > 0.0 ? values.x / values.y : 0.0;
     }
+#endif
     return result;
 }
 
+#ifdef SLOT_TABLES
 // A color table's entry for a value; w negative where the table has none. `row` in rows.
 vec4 SLOT_entry(float value, vec4 range, float row, uint flags)
 {
@@ -178,6 +186,7 @@ vec4 SLOT_entry(float value, vec4 range, float row, uint flags)
     return textureLod(SLOT_tables, vec2(t, row / float(textureSize(SLOT_tables, 0).y)), 0.0);
 }
 
+#ifdef SLOT_CLASSES
 // Classes have colours to average, but no values in between.
 SLOT_Sample SLOT_classes(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how, vec4 range, float row)
 {
@@ -195,6 +204,8 @@ SLOT_Sample SLOT_classes(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how, 
     }
     return SLOT_Sample(vec4(sum.rgb / max(sum.a, 1e-6), sum.a / max(count, 1.0)), 0.0, count / how.probes);
 }
+#endif
+#endif
 
 // Where the raster is looked up at a place, and the same for the pixels beside it.
 void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 uv, out vec2 across, out vec2 up,
@@ -204,7 +215,8 @@ void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 u
     vec2 centre = uintBitsToFloat(texelFetch(SLOT_data, record + 1).xy);
     geofx_Projector projector = geofx_Projector(centre, rows.xy, rows.zw, vec2(0.0));
     pixels = 0.0;
-    if ((flags & 0x20u) != 0u) // pinhole
+#ifdef SLOT_PINHOLES
+    if ((flags & 0x20u) != 0u)
     {
         vec4 eye = uintBitsToFloat(texelFetch(SLOT_data, record + 16));
         vec4 right = uintBitsToFloat(texelFetch(SLOT_data, record + 17));
@@ -219,6 +231,8 @@ void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 u
         up = geofx_projectPinhole(camera, SLOT_position + fragment.positionUp) - uv;
         return;
     }
+#endif
+#ifdef SLOT_SYMBOLS
     if ((flags & 0x6c0u) != 0u) // fades by distance and size, size in pixels, turned to the camera
     {
         vec4 symbol = uintBitsToFloat(texelFetch(SLOT_data, record + 10)); // centre, its height, half size
@@ -243,6 +257,8 @@ void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 u
             projector.rowV = vec2(v.x * north.y + v.y * north.x, v.y * north.y - v.x * north.x);
         }
     }
+#endif
+#ifdef SLOT_PROJECTIVE
     if ((flags & 0x10u) != 0u)
     {
         projector.rowW = uintBitsToFloat(texelFetch(SLOT_data, record + 9).xy);
@@ -251,12 +267,14 @@ void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 u
         up = geofx_projectPlane(projector, fragment.place.xy + fragment.up.xy) - uv;
         return;
     }
+#endif
     vec2 d = fragment.place.xy - centre;
     uv = 0.5 + vec2(dot(projector.rowU, d), dot(projector.rowV, d));
     across = vec2(dot(projector.rowU, fragment.across.xy), dot(projector.rowV, fragment.across.xy));
     up = vec2(dot(projector.rowU, fragment.up.xy), dot(projector.rowV, fragment.up.xy));
 }
 
+#ifdef SLOT_FADES
 float SLOT_fade(int record, uint flags, SLOT_Fragment fragment, float pixels)
 {
     float strength = 1.0;
@@ -277,6 +295,7 @@ float SLOT_fade(int record, uint flags, SLOT_Fragment fragment, float pixels)
     }
     return strength;
 }
+#endif
 
 vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
 {
@@ -293,25 +312,29 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
     if (!all(greaterThanEqual(uv, vec2(0.0))) || !all(lessThanEqual(uv, vec2(1.0)))) return colour;
 
     uvec4 codes = texelFetch(SLOT_data, record + 3);
-    float strength = uintBitsToFloat(head.z);
+    float strength = uintBitsToFloat(head.z) * SLOT_pixel.z;
+#ifdef SLOT_HEIGHTS
     if ((flags & 0x2000u) != 0u)
     {
         vec2 heights = uintBitsToFloat(codes.xy);
         if (!(fragment.place.z >= heights.x && fragment.place.z <= heights.y)) return colour;
     }
+#endif
     if ((flags & 0x1000u) != 0u)
     {
         strength *= geofx_edge(uv.x, max(abs(across.x), abs(up.x))) * geofx_edge(uv.y, max(abs(across.y), abs(up.y)));
     }
+#ifdef SLOT_FADES
     if ((flags & 0x1c0u) != 0u) strength *= SLOT_fade(record, flags, fragment, pixels);
+#endif
     if (strength <= 0.0) return colour;
 
     uint sourceOf = (codes.w >> 12u) & 3u;
     uint alphaOf = (codes.w >> 14u) & 3u;
+    // What only few mappings need is fetched for these only.
     vec4 constant = vec4(0.0);
     vec4 range = vec4(0.0, 1.0, 0.0, 1.0);
-    // What only few mappings need is fetched for these only.
-    if ((flags & 0x8008u) != 0u)
+    if ((flags & 0x8000u) != 0u)
     {
         range = uintBitsToFloat(texelFetch(SLOT_data, record + 4));
         constant = uintBitsToFloat(texelFetch(SLOT_data, record + 8));
@@ -320,19 +343,24 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
     uint kind = flags & 3u;
     bool colouredClasses = kind == 3u && sourceOf == 1u;
     SLOT_Sample found = SLOT_Sample(vec4(1.0), 0.0, 1.0);
+#if defined(SLOT_COLOURS) || defined(SLOT_VALUES) || defined(SLOT_CLASSES)
     if (kind != 0u)
     {
         SLOT_Slot slot = SLOT_slotOf(texelFetch(SLOT_data, record + 2));
         float probes = kind == 1u ? SLOT_quality.x : kind == 2u || colouredClasses ? min(SLOT_quality.x, 4.0) : 1.0;
         geofx_Filter how = geofx_filter(across, up, slot.size, probes, slot.last);
+#if defined(SLOT_CLASSES) && defined(SLOT_TABLES)
         if (colouredClasses)
             found = SLOT_classes(slot, flags, uv, how, range, row);
         else
+#endif
             found = SLOT_sample(slot, flags, uv, how);
         if (found.cover <= 0.0) return colour;
     }
+#endif
     vec4 source = found.colour;
     float grey = kind == 1u ? dot(found.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) : found.value;
+#ifdef SLOT_TABLES
     if (sourceOf == 1u && !colouredClasses)
     {
         vec4 entry = SLOT_entry(grey, range, row, flags);
@@ -340,13 +368,12 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
         // The table speaks of what is drawn, the layer of where.
         source = vec4(entry.rgb, entry.a * (kind == 1u ? source.a : 1.0));
     }
-    else if (kind > 1u && sourceOf == 0u)
-    {
-        source = vec4(vec3(clamp((grey - range.x) * range.y, 0.0, 1.0)), 1.0);
-    }
+#endif
+    if (kind > 1u && sourceOf == 0u) source = vec4(vec3(clamp((grey - range.x) * range.y, 0.0, 1.0)), 1.0);
     if (sourceOf == 2u) source = vec4(colour.rgb, 1.0);
     if (sourceOf == 3u) source.rgb = constant.rgb;
     if (SLOT_quality.y > 0.0 && sourceOf != 2u) source.rgb = SLOT_linear(source.rgb);
+#ifdef SLOT_MATRICES
     if ((flags & 8u) != 0u)
     {
         vec4 red = uintBitsToFloat(texelFetch(SLOT_data, record + 5));
@@ -355,7 +382,9 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
         vec4 rgb = vec4(source.rgb, 1.0);
         source.rgb = clamp(vec3(dot(red, rgb), dot(green, rgb), dot(blue, rgb)), 0.0, 1.0);
     }
+#endif
     if (alphaOf == 0u) source.a = 1.0;
+#ifdef SLOT_MASKS
     if (alphaOf == 2u)
     {
         uvec4 words = texelFetch(SLOT_data, record + 13);
@@ -367,21 +396,25 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
         if ((maskKind & 3u) == 1u) share = dot(mask.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) * mask.colour.a;
         source.a = mask.cover * geofx_ramp(share, range.z, range.w);
     }
+#endif
     if (alphaOf == 3u) source.a = geofx_ramp(grey, range.z, range.w);
     strength *= found.cover;
 
+#ifdef SLOT_BLENDS
     int equation = int((codes.w >> 8u) & 15u);
     if (equation == 8)
     {
         if (strength * source.a >= 0.5) discard;
         return colour;
     }
-    if ((codes.w & 0xfffu) == 0x076u) // the usual: source over destination
+    if ((codes.w & 0xfffu) != 0x076u)
     {
-        return vec4(mix(colour.rgb, source.rgb, strength * source.a), colour.a);
+        vec3 blended = geofx_blend(equation, int(codes.w & 15u), int((codes.w >> 4u) & 15u), source, colour, constant);
+        return vec4(mix(colour.rgb, blended, strength), colour.a);
     }
-    vec3 blended = geofx_blend(equation, int(codes.w & 15u), int((codes.w >> 4u) & 15u), source, colour, constant);
-    return vec4(mix(colour.rgb, blended, strength), colour.a);
+#endif
+    // The usual: source over destination.
+    return vec4(mix(colour.rgb, source.rgb, strength * source.a), colour.a);
 }
 
 vec4 SLOT_colour(vec4 colour)

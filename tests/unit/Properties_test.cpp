@@ -305,6 +305,7 @@ TypedSetters mappingsSetters()
                         &Self::setOrigin, &Self::getOrigin, [](auto& v) -> auto& { return v.y(); })},
         {"longitude", Geodetic::first()},
         {"latitude", Geodetic::second()},
+        {"opacity", typed(&Self::setOpacity, &Self::getOpacity)},
         {"wholeList", typed(&Self::setWholeList, &Self::getWholeList)},
         {"anisotropy", typed(&Self::setAnisotropy, &Self::getAnisotropy)},
         {"linear", typed(&Self::setLinear, &Self::getLinear)},
