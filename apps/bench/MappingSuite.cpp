@@ -404,7 +404,7 @@ private:
         for (int i = 0; i < (_smoke ? 3 : 200); ++i)
         {
             ProjectiveMapping* mapping = mappings.getMapping(which(engine));
-            const bool drawn = i % 10 == 0;
+            const bool drawn = i % 50 == 0;
             if (drawn) _view->frame();
             const std::uint64_t before = mappings.capacity().uploadedBytes;
             const auto start = Clock::now();
