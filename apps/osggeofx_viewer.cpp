@@ -3,6 +3,7 @@
 //
 // osggeofx_viewer: osgviewer, made for terrain.
 #include <osgGeoFX/deformation/ClickAndFly.h>
+#include <osgGeoFX/mapping/MappingPanel.h>
 #include <osgGeoFX/paging/Scene.h>
 #include <osgGeoFX/paging/ViewerHandlers.h>
 #include <osgGeoFX/scene/EffectKeys.h>
@@ -45,7 +46,8 @@ void describe(osg::ApplicationUsage& usage)
     usage.setApplicationName("osggeofx_viewer");
     usage.setDescription(
         "osggeofx_viewer shows terrain databases, .geofx scenes and whatever else OpenSceneGraph reads. "
-        "It takes osgviewer's options and keys; press h in the window for the keys.");
+        "It takes osgviewer's options and keys; press h in the window for the keys. F9 lists the scene's "
+        "mappings.");
     usage.setCommandLineUsage("osggeofx_viewer [options] FILE ...");
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
@@ -141,6 +143,8 @@ void addHandlers(osgViewer::Viewer& viewer, osg::ArgumentParser& arguments, cons
     viewer.addEventHandler(new osgGeoFX::LodScaleFollower(scene));
     viewer.addEventHandler(new osgGeoFX::EffectKeys(*scene.effects));
     viewer.addEventHandler(new osgGeoFX::ClickAndFly(*scene.effects));
+    const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
+    if (panel->hasEffect()) viewer.addEventHandler(panel);
 }
 
 } // namespace

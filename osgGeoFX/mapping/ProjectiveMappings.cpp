@@ -301,8 +301,14 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     const std::array<int, 3> units = {_dataUnit, _layerUnit, _tableUnit};
     if (units != camera.units)
     {
-        for (const int unit : camera.units)
-            state.removeTextureAttribute(static_cast<unsigned int>(unit), osg::StateAttribute::TEXTURE);
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            // Another effect's may be there by now.
+            const auto unit = static_cast<unsigned int>(camera.units[i]);
+            const osg::StateAttribute* there = state.getTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+            if (there == camera.textures[0][i] || there == camera.textures[1][i])
+                state.removeTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+        }
         camera.units = units;
     }
     const char* const names[3] = {"data", "layers", "tables"};

@@ -40,8 +40,6 @@ public:
         nothing to draw. Several cameras' threads may call it at once; the state is the caller's own. */
     virtual bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) = 0;
 
-    virtual void releaseGLObjects(osg::State*) const {}
-
 protected:
     SurfaceEffect() = default;
     SurfaceEffect(const SurfaceEffect& other, const osg::CopyOp& copy) : Effect(other, copy) {}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+
+#include <osg/Camera>
+#include <osgText/Font>
+#include <osgViewer/View>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// What a MappingPanel shows at a time; texts are UTF-8.
+struct PanelPage
+{
+    struct Row
+    {
+        bool on;
+        bool inForce; ///< drawn bright
+        std::string name, order, opacity, blending;
+
+        bool operator==(const Row& other) const
+        {
+            return on == other.on && inForce == other.inForce && name == other.name && order == other.order &&
+                   opacity == other.opacity && blending == other.blending;
+        }
+    };
+    std::vector<Row> rows;
+    std::size_t first = 0; ///< the uppermost row's place in the list
+    std::size_t selected = 0;
+    std::size_t total = 0;
+
+    /// "3 of 120".
+    std::string count() const;
+    bool operator==(const PanelPage& other) const
+    {
+        return rows == other.rows && first == other.first && selected == other.selected &&
+               total == other.total;
+    }
+};
+
+/** The picture of a MappingPanel: a dark box in the upper right corner of a view, by a slave camera of that view. It grows
+    with the window, and is made anew only when what it shows has changed, from new objects, so that a frame that is still
+    being drawn keeps its own. For the event traversal. */
+class OSGGEOFX_EXPORT MappingPanelPicture
+{
+public:
+    static constexpr std::size_t rows = 12; ///< at a time
+
+    explicit MappingPanelPicture(osgText::Font* font);
+
+    void show(osgViewer::View& view, const PanelPage& page);
+    void hide();
+
+    /// Where a pixel of the window lies on the picture.
+    struct Spot
+    {
+        std::optional<std::size_t> row; ///< of the list
+        bool onBox = false;             ///< the row's box that switches it
+    };
+    /// Nothing beside the picture, and while there is none.
+    std::optional<Spot> spotAt(double x, double y) const;
+
+private:
+    /// Pixels of the viewport.
+    struct Layout
+    {
+        double text, line, margin;
+        double left, bottom, width, height;
+        double rowsTop;
+
+        double rowBottom(std::size_t row) const { return rowsTop - line * static_cast<double>(row + 1); }
+    };
+    class Painter;
+    Layout layout() const;
+    void draw();
+
+    osg::ref_ptr<osgText::Font> _font;
+    osg::ref_ptr<osg::Camera> _overlay;
+    PanelPage _page;
+    bool _visible = false;
+    bool _drawn = false;
+};
+
+} // namespace osgGeoFX
