@@ -55,6 +55,23 @@ void MappingDrawing::remove(ProjectiveMapping& mapping)
     _items.erase(found);
 }
 
+void MappingDrawing::clear()
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    // At once: out of a long list one after the other takes its length squared.
+    if (_index) _index->clear();
+    for (auto& [mapping, item] : _items)
+    {
+        if (item.record != 0) _arena.release(item.record, item.texels);
+        leave(item);
+    }
+    _items.clear();
+    _changed.clear();
+    _sorted.clear();
+    _mappingsLeftOut = 0;
+    _roomMade = true;
+}
+
 void MappingDrawing::change(ProjectiveMapping& mapping)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
@@ -270,17 +287,34 @@ bool MappingDrawing::updateLayer(DataLayer& data, Layer& layer)
 
 void MappingDrawing::updateLayers()
 {
-    for (auto& [data, layer] : _layers)
+    const auto countOf = [](const DataLayer& data)
     {
-        const unsigned int count = data->getImage() ? data->getImage()->getModifiedCount() : 0;
-        const bool again = layer.leftOut && _roomMade;
+        return data.getImage() ? data.getImage()->getModifiedCount() : 0;
+    };
+    const auto stale = [&](const auto& entry)
+    {
+        const auto& [data, layer] = entry;
+        return !layer.seen || layer.revision != data->revision() || layer.imageCount != countOf(*data) ||
+               (layer.leftOut && _roomMade);
+    };
+    if (std::none_of(_layers.begin(), _layers.end(), stale)) return;
+    // The most important first: what has to go for them gets what room is left.
+    std::vector<std::pair<DataLayer* const, Layer>*> entries;
+    for (auto& entry : _layers)
+        entries.push_back(&entry);
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const auto* a, const auto* b)
+                     { return a->first->getImportance() > b->first->getImportance(); });
+    for (auto* entry : entries)
+    {
+        if (!stale(*entry)) continue;
+        auto& [data, layer] = *entry;
         const bool differs = layer.revision != data->revision();
-        if (layer.seen && !differs && layer.imageCount == count && !again) continue;
         const bool moved = updateLayer(*data, layer);
         if (moved || differs || !layer.seen) _changed.insert(layer.users.begin(), layer.users.end());
         layer.seen = true;
         layer.revision = data->revision();
-        layer.imageCount = count;
+        layer.imageCount = countOf(*data);
     }
 }
 

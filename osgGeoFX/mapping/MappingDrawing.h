@@ -50,6 +50,7 @@ public:
 
     void add(ProjectiveMapping& mapping);
     void remove(ProjectiveMapping& mapping);
+    void clear();
     void change(ProjectiveMapping& mapping);
     bool has(ProjectiveMapping& mapping) const;
 

@@ -193,10 +193,8 @@ bool ProjectiveMappings::removeMapping(ProjectiveMapping* mapping)
 void ProjectiveMappings::removeMappings()
 {
     for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
-    {
         mapping->removeListener(*this);
-        _drawing->remove(*mapping);
-    }
+    _drawing->clear();
     _mappings.clear();
     touch();
 }

@@ -173,9 +173,15 @@ bool PropertyHolder::assign(const char* name, double value)
 
 bool PropertyHolder::assign(const std::map<std::string, double>& values)
 {
+    std::map<std::string, double> former;
+    for (const auto& [name, value] : values)
+        former[name] = getProperty(name);
     std::string error;
     if (setProperties(values, error)) return true;
-    OSG_WARN << "osgGeoFX: " << error << " The former value stays." << std::endl;
+    // All or nothing: those that were taken go back.
+    std::string none;
+    setProperties(former, none);
+    OSG_WARN << "osgGeoFX: " << error << " The former values stay." << std::endl;
     return false;
 }
 

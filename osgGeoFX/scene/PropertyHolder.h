@@ -73,7 +73,7 @@ protected:
 
     /// For typed setters: setProperty() with a warning in the place of `error`.
     bool assign(const char* name, double value);
-    /// The same for several, which need to fit each other in the end only.
+    /// The same for several, all of them or none; they need to fit each other in the end only.
     bool assign(const std::map<std::string, double>& values);
     /// A sentence where the properties do not fit each other; then the last change is taken back.
     virtual std::string inconsistency() const { return {}; }

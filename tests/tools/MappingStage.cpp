@@ -49,7 +49,7 @@ osg::ref_ptr<osg::Geometry> MappingStage::makeGround(double half, int cells)
     colour->push_back(osg::Vec4(osg::Vec3(groundColour()), 1.0f));
     osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
     ground->setUseDisplayList(false);
-    ground->setUseVertexBufferObjects(true);
+    ground->setUseVertexBufferObjects(false);
     ground->setVertexArray(vertices);
     ground->setColorArray(colour, osg::Array::BIND_OVERALL);
     ground->addPrimitiveSet(triangles);
