@@ -27,15 +27,15 @@ public:
 
     enum Source
     {
-        LAYER, ///< the layer's colour; of values a grey from lowValue to highValue
-        TABLE, ///< the color table at the layer's value, or at its grey from 0 to 1
-        SCENE, ///< the scene's own colour, for the color matrix to change
-        CONSTANT
+        LAYER,   ///< the layer's colour; of values a grey from lowValue to highValue
+        TABLE,   ///< the color table at the layer's value, or at its grey from 0 to 1
+        SCENE,   ///< the scene's own colour, for the color matrix to change
+        CONSTANT ///< its alpha is for blend functions; FROM_SOURCE it is the layer's, or 1
     };
     enum Alpha
     {
         OPAQUE,      ///< 1: the mapping's opacity alone
-        FROM_SOURCE, ///< of the layer or of the color table
+        FROM_SOURCE, ///< of the layer or of the color table; 1 for SCENE and for values
         FROM_MASK,   ///< the grey of the mask layer, between rampLow and rampHigh
         FROM_RAMP    ///< the layer's value or grey, between rampLow and rampHigh
     };

@@ -130,12 +130,6 @@ std::uint64_t GpuStore::commit(TexelArena& arena, Commit changes)
     return _number;
 }
 
-std::uint64_t GpuStore::number() const
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return _number;
-}
-
 GpuStore::Limits GpuStore::limits() const
 {
     const std::lock_guard<std::mutex> lock(_mutex);
@@ -164,8 +158,8 @@ void GpuStore::uploadTexels(Context& context, osg::State& state, const Texels& t
 {
     const auto* gl = state.get<osg::GLExtensions>();
     // At least one texel, so that there is always something to fetch from.
-    context.capacity = std::max<std::size_t>(texels.size(), 1);
-    const auto bytes = static_cast<GLsizeiptr>(context.capacity * sizeof(TexelArena::Texel));
+    const std::size_t count = std::max<std::size_t>(texels.size(), 1);
+    const auto bytes = static_cast<GLsizeiptr>(count * sizeof(TexelArena::Texel));
     const TexelArena::Texel nothing = {};
     gl->glBindBuffer(textureBuffer, context.buffer);
     gl->glBufferData(textureBuffer, bytes, texels.empty() ? nothing.data() : texels.data()->data(),

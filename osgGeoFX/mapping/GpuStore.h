@@ -55,7 +55,6 @@ public:
     };
     /// Takes over the arena's changes and these; its number is that of the frame to cull.
     std::uint64_t commit(TexelArena& arena, Commit changes);
-    std::uint64_t number() const;
 
     /// What the GPU can take; 0 before it has drawn anything.
     struct Limits
@@ -101,7 +100,6 @@ private:
     {
         std::uint64_t number = 0;
         unsigned int buffer = 0, data = 0, layers = 0, tables = 0;
-        std::size_t capacity = 0; ///< texels of the buffer
         int pages = 0;
         int rows = 0;
     };

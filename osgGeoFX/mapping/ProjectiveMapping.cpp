@@ -37,6 +37,12 @@ glm::dmat3 squareToQuad(const osg::Vec2d (&c)[4])
             glm::dvec3(c[0].x(), c[0].y(), 1.0)};
 }
 
+std::map<std::string, double> transformValues(const glm::dmat3& m)
+{
+    return {{"m00", m[0][0]}, {"m01", m[1][0]}, {"m02", m[2][0]}, {"m10", m[0][1]}, {"m11", m[1][1]},
+            {"m12", m[2][1]}, {"m20", m[0][2]}, {"m21", m[1][2]}, {"m22", m[2][2]}};
+}
+
 } // namespace
 
 ProjectiveMapping::ProjectiveMapping()
@@ -167,15 +173,7 @@ bool ProjectiveMapping::setRectangle(const osg::Vec2d& centre, double halfWidth,
 
 bool ProjectiveMapping::setTransform(const glm::dmat3& m)
 {
-    return assign({{"m00", m[0][0]},
-                   {"m01", m[1][0]},
-                   {"m02", m[2][0]},
-                   {"m10", m[0][1]},
-                   {"m11", m[1][1]},
-                   {"m12", m[2][1]},
-                   {"m20", m[0][2]},
-                   {"m21", m[1][2]},
-                   {"m22", m[2][2]}});
+    return assign(transformValues(m));
 }
 
 glm::dmat3 ProjectiveMapping::getTransform() const
@@ -199,21 +197,14 @@ bool ProjectiveMapping::setQuad(const osg::Vec2d (&corners)[4])
     }
     glm::dmat3 m = glm::inverse(squareToQuad(within));
     m /= m[2][2];
-    return assign({{"centreX", centre.x()},
+    std::map<std::string, double> values = transformValues(m);
+    values.insert({{"centreX", centre.x()},
                    {"centreY", centre.y()},
                    {"uX", u.x()},
                    {"uY", u.y()},
                    {"vX", v.x()},
-                   {"vY", v.y()},
-                   {"m00", m[0][0]},
-                   {"m01", m[1][0]},
-                   {"m02", m[2][0]},
-                   {"m10", m[0][1]},
-                   {"m11", m[1][1]},
-                   {"m12", m[2][1]},
-                   {"m20", m[0][2]},
-                   {"m21", m[1][2]},
-                   {"m22", m[2][2]}});
+                   {"vY", v.y()}});
+    return assign(values);
 }
 
 bool ProjectiveMapping::setCamera(const Camera& camera)

@@ -32,7 +32,7 @@ namespace osgGeoFX
     to that projection lie exactly, hundreds of kilometres around; the other side of the globe is out of reach.
 
     **What it costs.** A fragment walks a grid to the few mappings over its place (MappingIndex); thousands elsewhere cost
-    it nothing. With `wholeList` each fragment goes through all mappings in sight instead, as in the paper; the picture
+    it nothing. With `wholeList` each fragment goes through all that are not too small instead, as in the paper; the picture
     is the same. Between frames only what changed is uploaded. Three textures in all, on units of one's choice.
 
     **Limits.** There is no limit of its own. What the GPU cannot hold is left out, the least important first
@@ -83,7 +83,7 @@ public:
     /// Of all mappings together, 0…1; what keys turn. 1 by default.
     bool setOpacity(double opacity) { return assign("opacity", opacity); }
     double getOpacity() const { return _opacity; }
-    /// Whether fragments go through all mappings in sight instead of the grid. For comparison; false by default.
+    /// Whether fragments go through all mappings but those too small to see, instead of the grid. For comparison; false by default.
     bool setWholeList(bool on) { return assign("wholeList", on ? 1.0 : 0.0); }
     bool getWholeList() const { return _wholeList; }
     /// Probes along the longer side of a pixel's footprint at most, 1…16; 8 by default.
