@@ -70,8 +70,8 @@ Texel slot(const PlacedLayer& layer)
     {
         return static_cast<std::uint32_t>(low) | static_cast<std::uint32_t>(high) << 16u;
     };
-    return {static_cast<std::uint32_t>(layer.slot.page), pack(layer.slot.x, layer.slot.y),
-            pack(layer.width, layer.height), static_cast<std::uint32_t>(last)};
+    return {pack(layer.slot.page, last), pack(layer.slot.x, layer.slot.y), pack(layer.width, layer.height),
+            0u};
 }
 
 bool usesConstant(const ColorTransfer& transfer)
@@ -181,7 +181,7 @@ std::uint32_t MappingRecord::sizeOf(const ProjectiveMapping& mapping)
 std::uint32_t MappingRecord::featuresOf(const Texel* record)
 {
     const std::uint32_t flags = record[1][3];
-    const std::uint32_t codes = record[3][3];
+    const std::uint32_t codes = record[2][3];
     const std::uint32_t source = codes >> 12u & 3u;
     const std::uint32_t alpha = codes >> 14u & 3u;
     constexpr std::uint32_t sourceOverDestination =
@@ -210,6 +210,12 @@ std::uint32_t MappingRecord::featuresOf(const Texel* record)
     next((flags & (DISTANCE_FADE | SIZE_FADE | SLOPE_FADE)) != 0);
     next((flags & HEIGHTS) != 0);
     next((codes & 0xfffu) != sourceOverDestination);
+    next((flags & RANGE) != 0);
+    const auto coarse = [](std::uint32_t kind)
+    {
+        return (kind & 7u) == 1u;
+    };
+    next(coarse(flags) || (masked && coarse(flags >> 17u)));
     return result;
 }
 
@@ -226,7 +232,8 @@ void MappingRecord::write(const ProjectiveMapping& mapping, const std::optional<
                        static_cast<std::uint32_t>(transfer.getEquation()) << 8u |
                        static_cast<std::uint32_t>(transfer.getSource()) << 12u |
                        static_cast<std::uint32_t>(transfer.getAlpha()) << 14u;
-    record[3] = {bits(mapping.getLowest()), bits(mapping.getHighest()), bits(tableRow + 0.5), codes};
+    record[2][3] = codes;
+    record[3] = numbers(mapping.getLowest(), mapping.getHighest(), tableRow + 0.5);
     record[4] = numbers(transfer.getLowValue(), 1.0 / (transfer.getHighValue() - transfer.getLowValue()),
                         transfer.getRampLow(), transfer.getRampHigh());
     const ColorTransfer::Matrix matrix = transfer.effectiveMatrix();

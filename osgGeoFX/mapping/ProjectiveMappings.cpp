@@ -331,8 +331,9 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
                osg::Vec4(osg::Vec4d(parallel ? 0.0 : span, parallel ? span : 0.0, _opacity, 0.0)));
     state.getOrCreateUniform(prefix + "start", osg::Uniform::INT_VEC2)
         ->set(static_cast<int>(root.block), start);
-    setUniform(state, prefix + "quality", osg::Uniform::FLOAT_VEC4,
-               osg::Vec4(static_cast<float>(_anisotropy), _linear ? 1.0f : 0.0f,
+    state.setDefine(prefix + "LINEAR", _linear ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
+    setUniform(state, prefix + "quality", osg::Uniform::FLOAT_VEC3,
+               osg::Vec3(static_cast<float>(_anisotropy),
                          1.0f / static_cast<float>(_drawing->store()->pageSide()),
                          1.0f / GpuStore::tableWidth));
     osg::Vec4d globe, curve;

@@ -146,7 +146,7 @@ GEOFX_INLINE Rgb geofx_blend(int equation, int sourceFactor, int destinationFact
     return clamp(result, Number(0), Number(1));
 }
 
-// How a raster is filtered: level of the pyramid, and how many probes along which axis (raster coordinates).
+// How a raster is filtered: level of the pyramid, and how many probes along which axis (texels).
 struct geofx_Filter
 {
     Number level;
@@ -154,27 +154,23 @@ struct geofx_Filter
     Vector2 step; // from probe to probe
 };
 
-// `across` and `up` are what raster coordinates change by from pixel to pixel; `size` is the raster's, in texels.
-GEOFX_INLINE geofx_Filter geofx_filter(Vector2 across, Vector2 up, Vector2 size, Number mostProbes, Number lastLevel)
+// `across` and `up` are what the raster's texel coordinates change by from pixel to pixel.
+GEOFX_INLINE geofx_Filter geofx_filter(Vector2 across, Vector2 up, Number mostProbes, Number lastLevel)
 {
     // The pixel's footprint is an ellipse: the eigenvalues of its matrix are the squares of the half axes.
-    Vector2 a = across * size;
-    Vector2 b = up * size;
-    Number p = a.x * a.x + b.x * b.x;
-    Number q = a.x * a.y + b.x * b.y;
-    Number r = a.y * a.y + b.y * b.y;
+    Number p = across.x * across.x + up.x * up.x;
+    Number q = across.x * across.y + up.x * up.y;
+    Number r = across.y * across.y + up.y * up.y;
+    Number mean = (p + r) / 2;
     Number root = sqrt((p - r) * (p - r) / 4 + q * q);
-    Number longest2 = (p + r) / 2 + root;
-    Number shortest2 = max((p + r) / 2 - root, Number(0));
-    Number longest = sqrt(longest2);
+    Number longest2 = mean + root;
     // Where the texels are larger than pixels, one probe is all there is to see.
-    Number ratio = longest / max(sqrt(shortest2), Number(1));
-    Number probes = clamp(floor(ratio + Number(0.5)), Number(1), mostProbes);
-    Vector2 axis = p > r ? Vector2(longest2 - r, q) : Vector2(q, longest2 - p);
-    axis *= longest / max(length(axis), Number(1e-9));
+    Number shortest2 = max(mean - root, Number(1));
     geofx_Filter result;
-    result.level = clamp(log2(max(longest / probes, Number(1e-6))), Number(0), lastLevel);
-    result.probes = probes;
-    result.step = axis / probes / size;
+    result.probes = clamp(floor(sqrt(longest2 / shortest2) + Number(0.5)), Number(1), mostProbes);
+    Number share = 1 / result.probes;
+    Vector2 axis = p > r ? Vector2(longest2 - r, q) : Vector2(q, longest2 - p);
+    result.level = clamp(log2(max(longest2 * share * share, Number(1e-12))) / 2, Number(0), lastLevel);
+    result.step = axis * (share * sqrt(longest2 / max(dot(axis, axis), Number(1e-18))));
     return result;
 }

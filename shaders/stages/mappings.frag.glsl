@@ -12,6 +12,9 @@
 #pragma import_defines(SLOT_TABLES, SLOT_MATRICES, SLOT_MASKS)
 #pragma import_defines(SLOT_PROJECTIVE, SLOT_PINHOLES, SLOT_SYMBOLS)
 #pragma import_defines(SLOT_FADES, SLOT_HEIGHTS, SLOT_BLENDS)
+#pragma import_defines(SLOT_RANGES, SLOT_NEAREST, SLOT_LINEAR)
+// Loops have their condition at the end where a first turn is certain, for the same reason: with the condition at the
+// start, those compilers go through the whole of a last turn in which nothing is left to do.
 
 uniform usamplerBuffer SLOT_data;
 uniform sampler2DArray SLOT_layers;
@@ -20,7 +23,7 @@ uniform mat4 SLOT_toFrame; // from eye space
 uniform vec4 SLOT_root;    // the grid's origin and one over its size
 uniform vec4 SLOT_pixel;   // what a pixel spans, metres: at a metre from the eye, and at any distance beside that; opacity
 uniform ivec2 SLOT_start;  // the grid's first block and, where all mappings are gone through instead, their list
-uniform vec4 SLOT_quality; // probes at most; whether colours are wanted linear; one over the pages' and tables' sides
+uniform vec3 SLOT_quality; // probes at most; one over the pages' and tables' sides
 
 in vec3 SLOT_position;
 in vec3 SLOT_place;
@@ -41,7 +44,7 @@ uint SLOT_find(vec2 place)
         return 0u;
     }
     uint word = SLOT_block | uint(SLOT_start.x);
-    while ((word & SLOT_block) != 0u)
+    do
     {
         p *= 8.0;
         vec2 cell = min(floor(p), vec2(7.0));
@@ -49,7 +52,7 @@ uint SLOT_find(vec2 place)
         uint index = uint(cell.y) * 8u + uint(cell.x);
         uvec4 words = texelFetch(SLOT_data, int((word & ~SLOT_block) + (index >> 2u)));
         word = SLOT_word(words, index & 3u);
-    }
+    } while ((word & SLOT_block) != 0u);
     return word;
 }
 
@@ -64,36 +67,31 @@ struct SLOT_Fragment
     vec3 eye; // in the mappings' frame
 };
 
+#ifdef SLOT_LINEAR
 vec3 SLOT_linear(vec3 colour)
 {
     return mix(colour / 12.92, pow((colour + 0.055) / 1.055, vec3(2.4)), greaterThan(colour, vec3(0.04045)));
 }
+#endif
 
 struct SLOT_Slot
 {
     float page;
+    float last;  // level
     vec2 corner; // texels
     vec2 size;
-    float last; // level
 };
 
 SLOT_Slot SLOT_slotOf(uvec4 words)
 {
-    return SLOT_Slot(float(words.x), vec2(words.y & 0xffffu, words.y >> 16u), vec2(words.z & 0xffffu, words.z >> 16u),
-                     float(words.w));
+    return SLOT_Slot(float(words.x & 0xffffu), float(words.x >> 16u), vec2(words.y & 0xffffu, words.y >> 16u),
+                     vec2(words.z & 0xffffu, words.z >> 16u));
 }
 
-// Texel coordinates in a slot's picture, kept away from the borders of a level by half of its texel, so that nothing of
-// the slots beside it comes in. Where a level's texel is larger than the picture, that is the texel's middle.
-vec2 SLOT_inside(SLOT_Slot slot, vec2 uv, float level)
+// 2 to the power of a whole number.
+float SLOT_power(float exponent)
 {
-    vec2 inset = vec2(0.5 * exp2(ceil(level)));
-    return clamp(uv * slot.size, inset, max(slot.size - inset, inset));
-}
-
-vec4 SLOT_colourOf(SLOT_Slot slot, vec2 uv, float level)
-{
-    return textureLod(SLOT_layers, vec3((slot.corner + SLOT_inside(slot, uv, level)) * SLOT_quality.z, slot.page), level);
+    return intBitsToFloat((int(exponent) + 127) << 23);
 }
 
 #if defined(SLOT_VALUES) || defined(SLOT_CLASSES)
@@ -114,10 +112,10 @@ vec2 SLOT_weighted(float value, float weight)
     return (floatBitsToUint(value) & 0x7f800000u) == 0x7f800000u ? vec2(0.0) : vec2(value * weight, weight);
 }
 
-vec2 SLOT_valueOf(SLOT_Slot slot, vec2 uv, float level, bool smoothly)
+vec2 SLOT_valueOf(SLOT_Slot slot, vec2 at, float level, bool smoothly)
 {
     int whole = int(level + 0.5);
-    vec2 at = uv * slot.size * exp2(-float(whole));
+    at = clamp(at, vec2(0.0), slot.size) * SLOT_power(float(-whole));
     if (!smoothly)
     {
         return SLOT_weighted(SLOT_texel(slot, ivec2(floor(at)), whole), 1.0);
@@ -140,24 +138,35 @@ struct SLOT_Sample
     float cover;
 };
 
-SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how)
+// `at` in texels.
+SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 at, geofx_Filter how)
 {
     uint kind = flags & 3u;
     bool smoothly = (flags & 4u) != 0u;
     float level = smoothly ? how.level : floor(how.level + 0.5);
-    vec2 first = uv - how.step * (0.5 * (how.probes - 1.0));
+    at -= how.step * (0.5 * (how.probes - 1.0));
+    float left = how.probes;
     SLOT_Sample result = SLOT_Sample(vec4(1.0), 0.0, 0.0);
 #ifdef SLOT_COLOURS
     if (kind == 1u)
     {
+        // Kept away from the borders of a level by half of its texel, so that nothing of the slots beside it comes in.
+        // Where a level's texel is larger than the picture, that is the texel's middle.
+        float inset = 0.5 * SLOT_power(ceil(level));
+        vec2 low = slot.corner + inset;
+        vec2 high = max(slot.corner + slot.size - inset, low);
         vec4 sum = vec4(0.0);
-        for (float i = 0.0; i < how.probes; ++i)
+        do
         {
-            vec2 at = clamp(first + i * how.step, vec2(0.0), vec2(1.0));
-            if (!smoothly) at = (floor(at * slot.size * exp2(-level)) + 0.5) * exp2(level) / slot.size;
-            vec4 texel = SLOT_colourOf(slot, at, level);
-            sum += vec4(texel.rgb * texel.a, texel.a);
-        }
+            vec2 there = slot.corner + at;
+#ifdef SLOT_NEAREST
+            float texel = SLOT_power(level);
+            if (!smoothly) there = slot.corner + (floor(clamp(at, vec2(0.0), slot.size) / texel) + 0.5) * texel;
+#endif
+            vec4 found = textureLod(SLOT_layers, vec3(clamp(there, low, high) * SLOT_quality.y, slot.page), level);
+            sum += vec4(found.rgb * found.a, found.a);
+            at += how.step;
+        } while (--left > 0.0);
         result.colour = vec4(sum.rgb / max(sum.a, 1e-6), sum.a / how.probes);
         result.cover = 1.0;
     }
@@ -166,8 +175,11 @@ SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how)
     if (kind > 1u)
     {
         vec2 values = vec2(0.0);
-        for (float i = 0.0; i < how.probes; ++i)
-            values += SLOT_valueOf(slot, clamp(first + i * how.step, vec2(0.0), vec2(1.0)), level, smoothly);
+        do
+        {
+            values += SLOT_valueOf(slot, at, level, smoothly);
+            at += how.step;
+        } while (--left > 0.0);
         result.cover = values.y / how.probes;
         result.value = values.y > 0.0 ? values.x / values.y : 0.0;
     }
@@ -181,42 +193,60 @@ vec4 SLOT_entry(float value, vec4 range, float row, uint flags)
 {
     float share = (value - range.x) * range.y;
     if ((flags & 0x100000u) != 0u && clamp(share, 0.0, 1.0) != share) return vec4(-1.0);
-    float t = clamp(share, 0.0, 1.0) * (1.0 - SLOT_quality.w) + 0.5 * SLOT_quality.w;
-    if ((flags & 0x10000u) != 0u) t = (floor(t / SLOT_quality.w) + 0.5) * SLOT_quality.w;
+    float t = clamp(share, 0.0, 1.0) * (1.0 - SLOT_quality.z) + 0.5 * SLOT_quality.z;
+    if ((flags & 0x10000u) != 0u) t = (floor(t / SLOT_quality.z) + 0.5) * SLOT_quality.z;
     return textureLod(SLOT_tables, vec2(t, row / float(textureSize(SLOT_tables, 0).y)), 0.0);
 }
 
 #ifdef SLOT_CLASSES
 // Classes have colours to average, but no values in between.
-SLOT_Sample SLOT_classes(SLOT_Slot slot, uint flags, vec2 uv, geofx_Filter how, vec4 range, float row)
+SLOT_Sample SLOT_classes(SLOT_Slot slot, uint flags, vec2 at, geofx_Filter how, vec4 range, float row)
 {
     float level = floor(how.level + 0.5);
-    vec2 first = uv - how.step * (0.5 * (how.probes - 1.0));
+    at -= how.step * (0.5 * (how.probes - 1.0));
+    float left = how.probes;
     vec4 sum = vec4(0.0);
     float count = 0.0;
-    for (float i = 0.0; i < how.probes; ++i)
+    do
     {
-        vec2 value = SLOT_valueOf(slot, clamp(first + i * how.step, vec2(0.0), vec2(1.0)), level, false);
+        vec2 value = SLOT_valueOf(slot, at, level, false);
         vec4 entry = value.y > 0.0 ? SLOT_entry(value.x, range, row, flags) : vec4(-1.0);
-        if (entry.a < 0.0) continue;
-        sum += vec4(entry.rgb * entry.a, entry.a);
-        ++count;
-    }
+        if (entry.a >= 0.0)
+        {
+            sum += vec4(entry.rgb * entry.a, entry.a);
+            ++count;
+        }
+        at += how.step;
+    } while (--left > 0.0);
     return SLOT_Sample(vec4(sum.rgb / max(sum.a, 1e-6), sum.a / max(count, 1.0)), 0.0, count / how.probes);
 }
 #endif
 #endif
 
-// Where the raster is looked up at a place, and the same for the pixels beside it.
-void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 uv, out vec2 across, out vec2 up,
-                      out float pixels)
+// A mapping at the fragment.
+struct SLOT_Mapping
 {
+    int record;
+    uint flags;
+    float opacity;
+    vec2 uv; // where its raster is looked up: 0 to 1 within it
+    vec2 across; // by how much that changes to the next pixel
+    vec2 up;
+    float pixels; // the width of a symbol
+};
+
+SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
+{
+    uvec4 head = texelFetch(SLOT_data, record + 1);
     vec4 rows = uintBitsToFloat(texelFetch(SLOT_data, record));
-    vec2 centre = uintBitsToFloat(texelFetch(SLOT_data, record + 1).xy);
-    geofx_Projector projector = geofx_Projector(centre, rows.xy, rows.zw, vec2(0.0));
-    pixels = 0.0;
+    geofx_Projector projector = geofx_Projector(uintBitsToFloat(head.xy), rows.xy, rows.zw, vec2(0.0));
+    SLOT_Mapping result;
+    result.record = record;
+    result.flags = head.w;
+    result.opacity = uintBitsToFloat(head.z);
+    result.pixels = 0.0;
 #ifdef SLOT_PINHOLES
-    if ((flags & 0x20u) != 0u)
+    if ((result.flags & 0x20u) != 0u)
     {
         vec4 eye = uintBitsToFloat(texelFetch(SLOT_data, record + 16));
         vec4 right = uintBitsToFloat(texelFetch(SLOT_data, record + 17));
@@ -226,29 +256,30 @@ void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 u
         vec4 more = uintBitsToFloat(texelFetch(SLOT_data, record + 21));
         geofx_Pinhole camera = geofx_Pinhole(eye.xyz, right.xyz, upwards.xyz, forward.xyz, radial.xyz, more.xy,
                                              more.zw, radial.w);
-        uv = distance(camera.eye, SLOT_position) <= eye.w ? geofx_projectPinhole(camera, SLOT_position) : vec2(-1.0);
-        across = geofx_projectPinhole(camera, SLOT_position + fragment.positionAcross) - uv;
-        up = geofx_projectPinhole(camera, SLOT_position + fragment.positionUp) - uv;
-        return;
+        result.uv =
+            distance(camera.eye, SLOT_position) <= eye.w ? geofx_projectPinhole(camera, SLOT_position) : vec2(-1.0);
+        result.across = geofx_projectPinhole(camera, SLOT_position + fragment.positionAcross) - result.uv;
+        result.up = geofx_projectPinhole(camera, SLOT_position + fragment.positionUp) - result.uv;
+        return result;
     }
 #endif
 #ifdef SLOT_SYMBOLS
-    if ((flags & 0x6c0u) != 0u) // fades by distance and size, size in pixels, turned to the camera
+    if ((result.flags & 0x6c0u) != 0u) // fades by distance and size, size in pixels, turned to the camera
     {
         vec4 symbol = uintBitsToFloat(texelFetch(SLOT_data, record + 10)); // centre, its height, half size
         vec3 way = fragment.eye - symbol.xyz;
         float metres = max(length(way) * SLOT_pixel.x + SLOT_pixel.y, 1e-9); // that a pixel spans there
-        pixels = 2.0 * symbol.w / metres;
+        result.pixels = 2.0 * symbol.w / metres;
         float wanted = uintBitsToFloat(texelFetch(SLOT_data, record + 12).z);
-        if ((flags & 0x200u) != 0u)
+        if ((result.flags & 0x200u) != 0u)
         {
             // Not larger than the footprint, which the grid knows.
-            float scale = max(pixels / wanted, 1.0);
+            float scale = max(result.pixels / wanted, 1.0);
             projector.rowU *= scale;
             projector.rowV *= scale;
-            pixels = min(pixels, wanted);
+            result.pixels = min(result.pixels, wanted);
         }
-        if ((flags & 0x400u) != 0u)
+        if ((result.flags & 0x400u) != 0u)
         {
             vec2 north = normalize(-way.xy + vec2(0.0, 1e-6));
             vec2 u = projector.rowU;
@@ -259,120 +290,128 @@ void SLOT_coordinates(int record, uint flags, SLOT_Fragment fragment, out vec2 u
     }
 #endif
 #ifdef SLOT_PROJECTIVE
-    if ((flags & 0x10u) != 0u)
+    if ((result.flags & 0x10u) != 0u)
     {
         projector.rowW = uintBitsToFloat(texelFetch(SLOT_data, record + 9).xy);
-        uv = geofx_projectPlane(projector, fragment.place.xy);
-        across = geofx_projectPlane(projector, fragment.place.xy + fragment.across.xy) - uv;
-        up = geofx_projectPlane(projector, fragment.place.xy + fragment.up.xy) - uv;
-        return;
+        result.uv = geofx_projectPlane(projector, fragment.place.xy);
+        result.across = geofx_projectPlane(projector, fragment.place.xy + fragment.across.xy) - result.uv;
+        result.up = geofx_projectPlane(projector, fragment.place.xy + fragment.up.xy) - result.uv;
+        return result;
     }
 #endif
-    vec2 d = fragment.place.xy - centre;
-    uv = 0.5 + vec2(dot(projector.rowU, d), dot(projector.rowV, d));
-    across = vec2(dot(projector.rowU, fragment.across.xy), dot(projector.rowV, fragment.across.xy));
-    up = vec2(dot(projector.rowU, fragment.up.xy), dot(projector.rowV, fragment.up.xy));
+    vec2 d = fragment.place.xy - projector.centre;
+    result.uv = 0.5 + vec2(dot(projector.rowU, d), dot(projector.rowV, d));
+    result.across = vec2(dot(projector.rowU, fragment.across.xy), dot(projector.rowV, fragment.across.xy));
+    result.up = vec2(dot(projector.rowU, fragment.up.xy), dot(projector.rowV, fragment.up.xy));
+    return result;
+}
+
+// Whether the fragment is within the mapping, and takes it.
+bool SLOT_meets(SLOT_Mapping mapping)
+{
+#ifdef GEOFX_MAPPING_CHANNELS
+    if (((mapping.flags >> 24u) & uint(GEOFX_MAPPING_CHANNELS)) == 0u) return false;
+#endif
+    return all(greaterThanEqual(mapping.uv, vec2(0.0))) && all(lessThanEqual(mapping.uv, vec2(1.0)));
 }
 
 #ifdef SLOT_FADES
-float SLOT_fade(int record, uint flags, SLOT_Fragment fragment, float pixels)
+float SLOT_fade(SLOT_Mapping mapping, SLOT_Fragment fragment)
 {
     float strength = 1.0;
-    vec4 fade = uintBitsToFloat(texelFetch(SLOT_data, record + 11));
-    if ((flags & 0x40u) != 0u)
+    vec4 fade = uintBitsToFloat(texelFetch(SLOT_data, mapping.record + 11));
+    if ((mapping.flags & 0x40u) != 0u)
     {
         float away = distance(fragment.eye, SLOT_position);
-        float soft = uintBitsToFloat(texelFetch(SLOT_data, record + 12).w);
+        float soft = uintBitsToFloat(texelFetch(SLOT_data, mapping.record + 12).w);
         strength *= geofx_ramp(away, fade.x * (1.0 - soft), fade.x) * geofx_ramp(-away, -fade.y * (1.0 + soft), -fade.y);
     }
-    if ((flags & 0x80u) != 0u) strength *= geofx_ramp(pixels, fade.z, fade.w);
-    if ((flags & 0x100u) != 0u)
+    if ((mapping.flags & 0x80u) != 0u) strength *= geofx_ramp(mapping.pixels, fade.z, fade.w);
+    if ((mapping.flags & 0x100u) != 0u)
     {
         vec3 normal = cross(fragment.across, fragment.up);
         float cosine = abs(normal.z) / max(length(normal), 1e-12);
-        vec2 slope = uintBitsToFloat(texelFetch(SLOT_data, record + 12).xy);
+        vec2 slope = uintBitsToFloat(texelFetch(SLOT_data, mapping.record + 12).xy);
         strength *= geofx_ramp(cosine, slope.x, slope.y);
     }
     return strength;
 }
 #endif
 
-vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
+vec4 SLOT_apply(SLOT_Mapping mapping, vec4 colour, SLOT_Fragment fragment)
 {
-    uvec4 head = texelFetch(SLOT_data, record + 1);
-    uint flags = head.w;
-#ifdef GEOFX_MAPPING_CHANNELS
-    if (((flags >> 24u) & uint(GEOFX_MAPPING_CHANNELS)) == 0u) return colour;
+    int record = mapping.record;
+    uint flags = mapping.flags;
+    vec2 uv = mapping.uv;
+    float strength = mapping.opacity * SLOT_pixel.z;
+    uvec4 slotWords = texelFetch(SLOT_data, record + 2);
+    uint codes = slotWords.w;
+#if defined(SLOT_HEIGHTS) || defined(SLOT_TABLES)
+    vec3 more = uintBitsToFloat(texelFetch(SLOT_data, record + 3).xyz);
 #endif
-    vec2 uv;
-    vec2 across;
-    vec2 up;
-    float pixels;
-    SLOT_coordinates(record, flags, fragment, uv, across, up, pixels);
-    if (!all(greaterThanEqual(uv, vec2(0.0))) || !all(lessThanEqual(uv, vec2(1.0)))) return colour;
-
-    uvec4 codes = texelFetch(SLOT_data, record + 3);
-    float strength = uintBitsToFloat(head.z) * SLOT_pixel.z;
 #ifdef SLOT_HEIGHTS
-    if ((flags & 0x2000u) != 0u)
-    {
-        vec2 heights = uintBitsToFloat(codes.xy);
-        if (!(fragment.place.z >= heights.x && fragment.place.z <= heights.y)) return colour;
-    }
+    if ((flags & 0x2000u) != 0u && !(fragment.place.z >= more.x && fragment.place.z <= more.y)) return colour;
 #endif
     if ((flags & 0x1000u) != 0u)
     {
-        strength *= geofx_edge(uv.x, max(abs(across.x), abs(up.x))) * geofx_edge(uv.y, max(abs(across.y), abs(up.y)));
+        vec2 width = max(abs(mapping.across), abs(mapping.up));
+        strength *= geofx_edge(uv.x, width.x) * geofx_edge(uv.y, width.y);
     }
 #ifdef SLOT_FADES
-    if ((flags & 0x1c0u) != 0u) strength *= SLOT_fade(record, flags, fragment, pixels);
+    if ((flags & 0x1c0u) != 0u) strength *= SLOT_fade(mapping, fragment);
 #endif
     if (strength <= 0.0) return colour;
 
-    uint sourceOf = (codes.w >> 12u) & 3u;
-    uint alphaOf = (codes.w >> 14u) & 3u;
-    // What only few mappings need is fetched for these only.
+    uint sourceOf = (codes >> 12u) & 3u;
+    uint alphaOf = (codes >> 14u) & 3u;
     vec4 constant = vec4(0.0);
     vec4 range = vec4(0.0, 1.0, 0.0, 1.0);
+#ifdef SLOT_RANGES
     if ((flags & 0x8000u) != 0u)
     {
         range = uintBitsToFloat(texelFetch(SLOT_data, record + 4));
         constant = uintBitsToFloat(texelFetch(SLOT_data, record + 8));
     }
-    float row = uintBitsToFloat(codes.z);
+#endif
     uint kind = flags & 3u;
     bool colouredClasses = kind == 3u && sourceOf == 1u;
     SLOT_Sample found = SLOT_Sample(vec4(1.0), 0.0, 1.0);
 #if defined(SLOT_COLOURS) || defined(SLOT_VALUES) || defined(SLOT_CLASSES)
     if (kind != 0u)
     {
-        SLOT_Slot slot = SLOT_slotOf(texelFetch(SLOT_data, record + 2));
+        SLOT_Slot slot = SLOT_slotOf(slotWords);
         float probes = kind == 1u ? SLOT_quality.x : kind == 2u || colouredClasses ? min(SLOT_quality.x, 4.0) : 1.0;
-        geofx_Filter how = geofx_filter(across, up, slot.size, probes, slot.last);
+        geofx_Filter how = geofx_filter(mapping.across * slot.size, mapping.up * slot.size, probes, slot.last);
 #if defined(SLOT_CLASSES) && defined(SLOT_TABLES)
         if (colouredClasses)
-            found = SLOT_classes(slot, flags, uv, how, range, row);
+            found = SLOT_classes(slot, flags, uv * slot.size, how, range, more.z);
         else
 #endif
-            found = SLOT_sample(slot, flags, uv, how);
+            found = SLOT_sample(slot, flags, uv * slot.size, how);
         if (found.cover <= 0.0) return colour;
     }
 #endif
     vec4 source = found.colour;
+#if defined(SLOT_RANGES) || defined(SLOT_TABLES)
     float grey = kind == 1u ? dot(found.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) : found.value;
+#endif
 #ifdef SLOT_TABLES
     if (sourceOf == 1u && !colouredClasses)
     {
-        vec4 entry = SLOT_entry(grey, range, row, flags);
+        vec4 entry = SLOT_entry(grey, range, more.z, flags);
         if (entry.a < 0.0) return colour;
         // The table speaks of what is drawn, the layer of where.
         source = vec4(entry.rgb, entry.a * (kind == 1u ? source.a : 1.0));
     }
 #endif
+#ifdef SLOT_RANGES
     if (kind > 1u && sourceOf == 0u) source = vec4(vec3(clamp((grey - range.x) * range.y, 0.0, 1.0)), 1.0);
-    if (sourceOf == 2u) source = vec4(colour.rgb, 1.0);
     if (sourceOf == 3u) source.rgb = constant.rgb;
-    if (SLOT_quality.y > 0.0 && sourceOf != 2u) source.rgb = SLOT_linear(source.rgb);
+#endif
+    if (sourceOf == 2u) source = vec4(colour.rgb, 1.0);
+#ifdef SLOT_LINEAR
+    if (sourceOf != 2u) source.rgb = SLOT_linear(source.rgb);
+#endif
 #ifdef SLOT_MATRICES
     if ((flags & 8u) != 0u)
     {
@@ -387,29 +426,31 @@ vec4 SLOT_apply(int record, vec4 colour, SLOT_Fragment fragment)
 #ifdef SLOT_MASKS
     if (alphaOf == 2u)
     {
-        uvec4 words = texelFetch(SLOT_data, record + 13);
-        SLOT_Slot slot = SLOT_slotOf(words);
+        SLOT_Slot slot = SLOT_slotOf(texelFetch(SLOT_data, record + 13));
         uint maskKind = (flags >> 17u) & 7u; // as the layer's own
         float probes = (maskKind & 3u) == 3u ? 1.0 : min(SLOT_quality.x, 4.0);
-        SLOT_Sample mask = SLOT_sample(slot, maskKind, uv, geofx_filter(across, up, slot.size, probes, slot.last));
+        geofx_Filter how = geofx_filter(mapping.across * slot.size, mapping.up * slot.size, probes, slot.last);
+        SLOT_Sample mask = SLOT_sample(slot, maskKind, uv * slot.size, how);
         float share = mask.value;
         if ((maskKind & 3u) == 1u) share = dot(mask.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) * mask.colour.a;
         source.a = mask.cover * geofx_ramp(share, range.z, range.w);
     }
 #endif
+#ifdef SLOT_RANGES
     if (alphaOf == 3u) source.a = geofx_ramp(grey, range.z, range.w);
+#endif
     strength *= found.cover;
 
 #ifdef SLOT_BLENDS
-    int equation = int((codes.w >> 8u) & 15u);
+    int equation = int((codes >> 8u) & 15u);
     if (equation == 8)
     {
         if (strength * source.a >= 0.5) discard;
         return colour;
     }
-    if ((codes.w & 0xfffu) != 0x076u)
+    if ((codes & 0xfffu) != 0x076u)
     {
-        vec3 blended = geofx_blend(equation, int(codes.w & 15u), int((codes.w >> 4u) & 15u), source, colour, constant);
+        vec3 blended = geofx_blend(equation, int(codes & 15u), int((codes >> 4u) & 15u), source, colour, constant);
         return vec4(mix(colour.rgb, blended, strength), colour.a);
     }
 #endif
@@ -423,12 +464,21 @@ vec4 SLOT_colour(vec4 colour)
                                            dFdy(SLOT_position), SLOT_toFrame[3].xyz);
     uint list = SLOT_start.y != 0 ? uint(SLOT_start.y) : SLOT_find(SLOT_place.xy);
     if (list == 0u) return colour;
-    uvec4 words = texelFetch(SLOT_data, int(list));
-    uint count = words.x;
-    for (uint i = 1u; i <= count; ++i)
+    uint count = texelFetch(SLOT_data, int(list)).x;
+    uint i = 0u;
+    do
     {
-        if ((i & 3u) == 0u) words = texelFetch(SLOT_data, int(list + (i >> 2u)));
-        colour = SLOT_apply(int(SLOT_word(words, i & 3u)), colour, fragment);
-    }
+        // On to the next one here before doing the work, so that it is done as often as fragments have mappings.
+        SLOT_Mapping mapping;
+        bool met;
+        do
+        {
+            ++i;
+            uvec4 words = texelFetch(SLOT_data, int(list + (i >> 2u)));
+            mapping = SLOT_mappingAt(int(SLOT_word(words, i & 3u)), fragment);
+            met = SLOT_meets(mapping);
+        } while (!met && i < count);
+        if (met) colour = SLOT_apply(mapping, colour, fragment);
+    } while (i < count);
     return colour;
 }

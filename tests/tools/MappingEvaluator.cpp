@@ -97,22 +97,22 @@ MappingEvaluator::Sample MappingEvaluator::sample(const Layer& layer, const glm:
 {
     const LayerPixels& pixels = layer.pixels;
     const glm::dvec2 size(pixels.width, pixels.height);
-    const glsl::geofx_Filter how =
-        glsl::geofx_filter(across, up, size, mostProbes, static_cast<double>(pixels.levels.size() - 1));
+    const glsl::geofx_Filter how = glsl::geofx_filter(across * size, up * size, mostProbes,
+                                                      static_cast<double>(pixels.levels.size() - 1));
     const bool colour = layer.data->getKind() == DataLayer::COLOR;
     const bool smooth = layer.data->getSmooth() && layer.data->getKind() != DataLayer::CLASS;
     const double level = smooth ? how.level : std::floor(how.level + 0.5);
-    const glm::dvec2 first = uv - how.step * (0.5 * (how.probes - 1.0));
+    const glm::dvec2 first = uv * size - how.step * (0.5 * (how.probes - 1.0));
     glm::dvec4 colours(0.0);
     glm::dvec2 values(0.0);
     for (double i = 0.0; i < how.probes; ++i)
     {
-        glm::dvec2 at = glm::clamp(first + i * how.step, glm::dvec2(0.0), glm::dvec2(1.0));
+        glm::dvec2 at = glm::clamp(first + i * how.step, glm::dvec2(0.0), size);
         if (colour)
         {
-            if (!smooth) at = (glm::floor(at * size * std::exp2(-level)) + 0.5) * std::exp2(level) / size;
+            if (!smooth) at = (glm::floor(at * std::exp2(-level)) + 0.5) * std::exp2(level);
             const glm::dvec2 inset(0.5 * std::exp2(std::ceil(level)));
-            const glm::dvec2 there = glm::clamp(at * size, inset, glm::max(size - inset, inset));
+            const glm::dvec2 there = glm::clamp(at, inset, glm::max(size - inset, inset));
             const int low = static_cast<int>(std::floor(level));
             const int high = std::min(low + 1, static_cast<int>(pixels.levels.size()) - 1);
             const glm::dvec4 texel =
@@ -121,7 +121,7 @@ MappingEvaluator::Sample MappingEvaluator::sample(const Layer& layer, const glm:
             continue;
         }
         const int whole = static_cast<int>(std::floor(level + 0.5));
-        const glm::dvec2 there = at * size / std::exp2(whole);
+        const glm::dvec2 there = at / std::exp2(whole);
         const glm::dvec2 low = smooth ? glm::floor(there - 0.5) : glm::floor(there);
         const glm::dvec2 t = there - 0.5 - low;
         for (int corner = 0; corner < (smooth ? 4 : 1); ++corner)
@@ -153,15 +153,15 @@ MappingEvaluator::Sample MappingEvaluator::sampleClasses(const Layer& layer, con
 {
     const LayerPixels& pixels = layer.pixels;
     const glm::dvec2 size(pixels.width, pixels.height);
-    const glsl::geofx_Filter how = glsl::geofx_filter(across, up, size, std::min(_anisotropy, 4.0),
+    const glsl::geofx_Filter how = glsl::geofx_filter(across * size, up * size, std::min(_anisotropy, 4.0),
                                                       static_cast<double>(pixels.levels.size() - 1));
     const int level = static_cast<int>(std::floor(how.level + 0.5));
     glm::dvec4 sum(0.0);
     double count = 0.0;
     for (double i = 0.0; i < how.probes; ++i)
     {
-        const glm::dvec2 at = uv + how.step * (i - 0.5 * (how.probes - 1.0));
-        const glm::dvec2 there = glm::floor(glm::clamp(at, 0.0, 1.0) * size / std::exp2(level));
+        const glm::dvec2 at = uv * size + how.step * (i - 0.5 * (how.probes - 1.0));
+        const glm::dvec2 there = glm::floor(glm::clamp(at, glm::dvec2(0.0), size) / std::exp2(level));
         const double value = static_cast<double>(
             LayerPixels::value(texelAt(pixels, level, static_cast<int>(there.x), static_cast<int>(there.y))));
         if (std::isnan(value)) continue;
