@@ -13,7 +13,7 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr double cellsPerMapping = 4; // cells across the smallest mapping whose boundary runs through them
+constexpr double cellsPerMapping = 8; // cells across the smallest mapping whose boundary runs through them
 constexpr double shorterList = 0.75;  // what a split must at least make of the list, on the average
 constexpr std::int64_t blockWords = 64;
 
@@ -36,7 +36,7 @@ public:
         {
             PlannedBlock block;
             distribute(square, all, std::numeric_limits<std::size_t>::max(), block);
-            _words -= extraWords(block, all.count);
+            _words -= extraWords(block, 0);
             add(std::move(block), square);
         }
         else if (worthATry(boundaries, square))

@@ -43,7 +43,7 @@ struct PlannedBlock
         child{}; ///< index of the block that a cell is split into; 0 where it is not
 };
 
-constexpr unsigned int partialsWorthSplitting = 5;
+constexpr unsigned int partialsWorthSplitting = 4;
 
 /// Texels of a list: one word for the count and one for each mapping.
 constexpr std::uint32_t listTexels(std::size_t count)
@@ -54,8 +54,8 @@ constexpr std::uint32_t listTexels(std::size_t count)
 /** The blocks for a square with mappings over it, in drawing order. The first is the square's own; none where
     splitting the square does not pay, unless it `must`.
 
-    A cell is split where five or more boundaries run through it, if the lists get shorter by a quarter on the
-    average, the cells do not get smaller than a quarter of the smallest of those mappings, and there are words left.
+    A cell is split where four or more boundaries run through it, if the lists get shorter by a quarter on the
+    average, the cells do not get smaller than an eighth of the smallest of those mappings, and there are words left.
     Those with the most boundaries times area come first, so that the words go where they save the most. */
 std::vector<PlannedBlock> planGrid(const PlaneSquare& square, const std::vector<const GridItem*>& items,
                                    const GridLimits& limits, bool must);

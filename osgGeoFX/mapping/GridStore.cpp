@@ -50,6 +50,7 @@ bool GridStore::replace(std::uint32_t& list, const std::vector<std::uint32_t>& i
     else if (before > after)
         giveBack(list + after, before - after);
     if (after == 0) list = 0;
+    _longestList = std::max(_longestList, ids.size());
     return true;
 }
 

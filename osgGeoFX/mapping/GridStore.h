@@ -39,6 +39,8 @@ public:
 
     /// Texels of blocks and lists.
     std::uint32_t texels() const { return _texels; }
+    /// Of all lists that there have been.
+    std::size_t longestList() const { return _longestList; }
     const TexelArena& arena() const { return _arena; }
 
 private:
@@ -54,6 +56,7 @@ private:
 
     TexelArena& _arena;
     std::uint32_t _texels = 0;
+    std::size_t _longestList = 0;
 };
 
 } // namespace osgGeoFX

@@ -90,6 +90,12 @@ MappingIndex::Root MappingDrawing::root() const
     return _index ? _index->root() : MappingIndex::Root();
 }
 
+std::size_t MappingDrawing::longestList() const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return _index ? _index->longestList() : 0;
+}
+
 std::uint32_t MappingDrawing::features() const
 {
     const std::lock_guard<std::mutex> lock(_mutex);

@@ -67,6 +67,7 @@ public:
     std::uint64_t setList(CameraList& list, const Wanted& wanted);
 
     MappingIndex::Root root() const;
+    std::size_t longestList() const;
     /// What the shader's code must have; only grows, so that it is not compiled again and again.
     std::uint32_t features() const;
     GpuStore* store() { return _store.get(); }

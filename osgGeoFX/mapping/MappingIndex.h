@@ -97,6 +97,9 @@ public:
     /// What a shader finds for a place: in drawing order, all mappings over it and perhaps some nearby.
     std::vector<std::uint32_t> at(const osg::Vec2d& place) const;
 
+    /// Mappings in the longest list that there has been.
+    std::size_t longestList() const { return _store.longestList(); }
+
     GridStatistics statistics() const { return statisticsOf(_store, _root.block); }
 
 private:

@@ -71,6 +71,8 @@ void setUniform(osg::StateSet& state, const std::string& name, osg::Uniform::Typ
 }
 
 constexpr double texelsInMegabyte = 65536.0;
+/// Fewer may take several turns of loops each: llvmpipe leaves a fragment's loops after 65,536 turns together.
+constexpr std::size_t longList = 4096;
 
 bool isPowerOfTwo(int value)
 {
@@ -317,13 +319,13 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
         state.setTextureAttribute(static_cast<unsigned int>(units[i]), texture);
         setUniform(state, prefix + names[i], osg::Uniform::INT, units[i]);
     }
+    const auto define = [&](const char* name, bool on)
+    {
+        state.setDefine(prefix + name, on ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
+    };
     const std::uint32_t features = _drawing->features();
     for (std::size_t i = 0; i < std::size(MappingRecord::features); ++i)
-    {
-        const bool needed = (features & 1u << i) != 0;
-        state.setDefine(prefix + MappingRecord::features[i],
-                        needed ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
-    }
+        define(MappingRecord::features[i], (features & 1u << i) != 0);
     setUniform(state, prefix + "toFrame", osg::Uniform::FLOAT_MAT4, osg::Matrixf(eyeToFrame));
     setUniform(state, prefix + "root", osg::Uniform::FLOAT_VEC4,
                osg::Vec4(osg::Vec4d(root.origin.x(), root.origin.y(), 1.0 / root.size, 0.0)));
@@ -331,7 +333,9 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
                osg::Vec4(osg::Vec4d(parallel ? 0.0 : span, parallel ? span : 0.0, _opacity, 0.0)));
     state.getOrCreateUniform(prefix + "start", osg::Uniform::INT_VEC2)
         ->set(static_cast<int>(root.block), start);
-    state.setDefine(prefix + "LINEAR", _linear ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
+    const std::size_t longest = _wholeList ? _mappings.size() : _drawing->longestList();
+    define("LONG_LISTS", longest > longList);
+    define("LINEAR", _linear);
     setUniform(state, prefix + "quality", osg::Uniform::FLOAT_VEC3,
                osg::Vec3(static_cast<float>(_anisotropy),
                          1.0f / static_cast<float>(_drawing->store()->pageSide()),
