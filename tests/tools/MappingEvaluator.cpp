@@ -39,15 +39,24 @@ LayerPixels::Texel texelAt(const LayerPixels& pixels, int level, int x, int y)
 
 glm::dvec4 bytes(LayerPixels::Texel texel)
 {
-    return glm::dvec4(texel & 0xffu, texel >> 8u & 0xffu, texel >> 16u & 0xffu, texel >> 24u) / 255.0;
+    return glm::dvec4(texel & 0xffu, texel >> 8u & 0xffu, texel >> 16u & 0xffu, texel >> 24u);
 }
 
-/// A colour between four texels of one level, at texel coordinates of level 0.
-glm::dvec4 bilinear(const LayerPixels& pixels, int level, const glm::dvec2& at)
+constexpr double weights = 256.0; // of filters in bytes
+
+/// Between two colours; those of filters in bytes are bytes again.
+glm::dvec4 between(const glm::dvec4& a, const glm::dvec4& b, double weight, bool inBytes)
+{
+    const glm::dvec4 result = glm::mix(a, b, weight);
+    return inBytes ? glm::floor(result + 0.5) : result;
+}
+
+/// A colour between four texels of one level, at texel coordinates of level 0; 0 to 255.
+glm::dvec4 bilinear(const LayerPixels& pixels, int level, const glm::dvec2& at, bool inBytes)
 {
     const glm::dvec2 there = at / std::exp2(level) - 0.5;
     const glm::dvec2 low = glm::floor(there);
-    const glm::dvec2 t = there - low;
+    const glm::dvec2 t = inBytes ? glm::floor((there - low) * weights + 0.5) / weights : there - low;
     const int side = pixels.side >> level;
     const auto texel = [&](int x, int y)
     {
@@ -55,13 +64,15 @@ glm::dvec4 bilinear(const LayerPixels& pixels, int level, const glm::dvec2& at)
         y = std::clamp(static_cast<int>(low.y) + y, 0, side - 1);
         return bytes(pixels.levels[static_cast<std::size_t>(level)][static_cast<std::size_t>(y * side + x)]);
     };
-    return glm::mix(glm::mix(texel(0, 0), texel(1, 0), t.x), glm::mix(texel(0, 1), texel(1, 1), t.x), t.y);
+    return between(between(texel(0, 0), texel(1, 0), t.x, inBytes),
+                   between(texel(0, 1), texel(1, 1), t.x, inBytes), t.y, inBytes);
 }
 
 } // namespace
 
-MappingEvaluator::MappingEvaluator(const osgGeoFX::ProjectiveMappings& mappings, double pixel)
-    : _pixel(pixel), _anisotropy(mappings.getAnisotropy())
+MappingEvaluator::MappingEvaluator(const osgGeoFX::ProjectiveMappings& mappings, double pixel,
+                                   bool filtersInBytes)
+    : _pixel(pixel), _anisotropy(mappings.getAnisotropy()), _filtersInBytes(filtersInBytes)
 {
     for (unsigned int i = 0; i < mappings.getNumMappings(); ++i)
     {
@@ -115,9 +126,12 @@ MappingEvaluator::Sample MappingEvaluator::sample(const Layer& layer, const glm:
             const glm::dvec2 there = glm::clamp(at, inset, glm::max(size - inset, inset));
             const int low = static_cast<int>(std::floor(level));
             const int high = std::min(low + 1, static_cast<int>(pixels.levels.size()) - 1);
+            const double weight =
+                _filtersInBytes ? std::floor((level - low) * weights) / weights : level - low;
             const glm::dvec4 texel =
-                glm::mix(bilinear(pixels, low, there), bilinear(pixels, high, there), level - low);
-            colours += glm::dvec4(glm::dvec3(texel) * texel.a, texel.a);
+                between(bilinear(pixels, low, there, _filtersInBytes),
+                        bilinear(pixels, high, there, _filtersInBytes), weight, _filtersInBytes);
+            colours += glm::dvec4(glm::dvec3(texel) * texel.a / 255.0, texel.a) / 255.0;
             continue;
         }
         const int whole = static_cast<int>(std::floor(level + 0.5));

@@ -24,8 +24,10 @@ public:
         glm::dvec3 eye;
     };
 
-    /// `pixel` is what a pixel spans at a metre from the eye.
-    MappingEvaluator(const osgGeoFX::ProjectiveMappings& mappings, double pixel);
+    /** `pixel` is what a pixel spans at a metre from the eye. With `filtersInBytes`, pictures are filtered as Mesa's
+        llvmpipe does it: between two texels, two rows and two levels with weights of 1/256, each time rounded to bytes. In
+        double, a stack of pictures that each amplify what is below them is off by more than its rounding. */
+    MappingEvaluator(const osgGeoFX::ProjectiveMappings& mappings, double pixel, bool filtersInBytes);
 
     /// The scene's colour under all mappings. Negative red where the fragment is discarded.
     glm::dvec4 colour(const Fragment& fragment, const glm::dvec4& scene) const;
@@ -55,6 +57,7 @@ private:
 
     double _pixel;
     double _anisotropy;
+    bool _filtersInBytes;
     std::vector<const osgGeoFX::ProjectiveMapping*> _mappings; ///< the lowest first
     std::map<const osgGeoFX::DataLayer*, Layer> _layers;
 };
