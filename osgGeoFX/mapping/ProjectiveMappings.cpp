@@ -333,8 +333,8 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
                osg::Vec4(osg::Vec4d(parallel ? 0.0 : span, parallel ? span : 0.0, _opacity, 0.0)));
     state.getOrCreateUniform(prefix + "start", osg::Uniform::INT_VEC2)
         ->set(static_cast<int>(root.block), start);
-    const std::size_t longest = _wholeList ? _mappings.size() : _drawing->longestList();
-    define("LONG_LISTS", longest > longList);
+    // The paper's loop works out each mapping in its turn, too.
+    define("IN_TURN", _wholeList || _drawing->longestList() > longList);
     define("LINEAR", _linear);
     setUniform(state, prefix + "quality", osg::Uniform::FLOAT_VEC3,
                osg::Vec3(static_cast<float>(_anisotropy),

@@ -12,7 +12,7 @@
 #pragma import_defines(SLOT_TABLES, SLOT_MATRICES, SLOT_MASKS)
 #pragma import_defines(SLOT_PROJECTIVE, SLOT_PINHOLES, SLOT_SYMBOLS)
 #pragma import_defines(SLOT_FADES, SLOT_HEIGHTS, SLOT_BLENDS)
-#pragma import_defines(SLOT_RANGES, SLOT_NEAREST, SLOT_LINEAR, SLOT_LONG_LISTS)
+#pragma import_defines(SLOT_RANGES, SLOT_NEAREST, SLOT_LINEAR, SLOT_IN_TURN)
 // Loops have their condition at the end where a first turn is certain, for the same reason: with the condition at the
 // start, those compilers go through the whole of a last turn in which nothing is left to do.
 
@@ -469,10 +469,10 @@ vec4 SLOT_colour(vec4 colour)
     do
     {
         // On to the next one here before doing the work, so that it is done as often as fragments have mappings; but
-        // in very long lists without the turns of a loop of its own, which some compilers count.
+        // each in its turn, without a loop in the loop, in very long lists: some compilers count all turns.
         SLOT_Mapping mapping;
         bool met;
-#ifndef SLOT_LONG_LISTS
+#ifndef SLOT_IN_TURN
         do
 #endif
         {
@@ -481,7 +481,7 @@ vec4 SLOT_colour(vec4 colour)
             mapping = SLOT_mappingAt(int(SLOT_word(words, i & 3u)), fragment);
             met = SLOT_meets(mapping);
         }
-#ifndef SLOT_LONG_LISTS
+#ifndef SLOT_IN_TURN
         while (!met && i < count);
 #endif
         if (met) colour = SLOT_apply(mapping, colour, fragment);
