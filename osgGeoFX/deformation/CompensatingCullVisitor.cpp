@@ -205,10 +205,10 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
 void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task)
 {
     begin(outer, task);
-    pushStateSet(task.state);
+    if (task.state) pushStateSet(task.state);
     for (unsigned int i = 0; i < scene.getNumChildren(); ++i)
         scene.getChild(i)->accept(*this);
-    popStateSet();
+    if (task.state) popStateSet();
     if (task.debugBounds) drawBounds();
     end(outer);
 }

@@ -41,7 +41,7 @@ public:
     struct Task
     {
         osg::ref_ptr<const DeformationChain> chain;
-        osg::StateSet* state = nullptr;     ///< uniforms and defines of the effects
+        osg::StateSet* state = nullptr; ///< uniforms and defines of the effects; null where they draw nothing
         osg::Program* program = nullptr;    ///< for what has none
         osg::StateSet* untouched = nullptr; ///< takes the deformation away
         int mapUnit = -1;

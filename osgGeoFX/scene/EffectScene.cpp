@@ -320,6 +320,13 @@ osg::ref_ptr<DeformationChain> chainOf(const Frames& frames)
     return chain;
 }
 
+/// Whether there are enabled effects that move geometry, be it for this camera or for others.
+bool deforms(const EffectProgram::Effects& effects)
+{
+    return std::any_of(effects.begin(), effects.end(),
+                       [](const auto& each) { return each->getEnabled() && each->asDeformation(); });
+}
+
 int mapUnitOf(const EffectProgram::Effects& effects)
 {
     for (const auto& effect : effects)
@@ -365,14 +372,19 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     state.getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(task.mapUnit, 0));
     fill(state, frames);
     const bool surfaces = fillSurfaces(_effects, state, view, outer);
-    if (task.chain->empty() && !surfaces && !_debugBounds) return false;
+    // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
+    // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
+    const bool draws = surfaces || _debugBounds || !task.chain->empty();
+    task.compensate = _compensation && (_debugBounds || deforms(_effects));
+    if (!draws && !task.compensate) return false;
 
     ++own.used;
-    task.program = _drawing->programFor(_effects);
-    task.state = &state;
     task.untouched = _drawing->untouched;
-    // Where nothing moves, OSG's own tests are right, and faster.
-    task.compensate = _compensation && (_debugBounds || !task.chain->empty());
+    if (draws)
+    {
+        task.program = _drawing->programFor(_effects);
+        task.state = &state;
+    }
     task.debugBounds = _debugBounds;
     task.tileError = view.ground.tileError;
     own.visitor->run(outer, *this, task);

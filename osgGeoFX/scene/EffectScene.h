@@ -39,8 +39,8 @@ namespace osgGeoFX
     **Culling.** The terrain's nodes are not touched, whoever loads them, and may be shared with other scenes. Below the
     group a cull visitor of our own takes the place of the camera's: it culls by what the deformation makes of bounds,
     and chooses levels of detail by the deformed distance, for osg::LOD, osg::PagedLOD and whatever asks the visitor for
-    distances; near and far planes come out right. Without an enabled effect that does something for the camera,
-    the group is a plain osg::Group. See osgGeoFX/README.md.
+    distances; near and far planes come out right. Where no enabled effect does anything for the camera, the group draws
+    what a plain osg::Group does; without an enabled deformation it is culled like one, too. See osgGeoFX/README.md.
 
     **Frames.** World coordinates are those of the group's children: geocentric below an osg::CoordinateSystemNode with an
     ellipsoid, which may stand above or below, else projected with z up. Transforms above must not scale.
