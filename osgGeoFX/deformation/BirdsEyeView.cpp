@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 
-#include <osgGeoFX/scene/GlslFunctions.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -51,9 +49,13 @@ double servedShare(double focusDepression, double horizonDepression, bool perspe
            fade(osg::PI, osg::DegreesToRadians(165.0), focusDepression);
 }
 
-double curvature(int curve, double size, double angle)
+/// The angle β of a bend whose tangents meet `reach` metres from its ends and whose curvature is `most`: for the arc
+/// tan(β/2)/reach, for the parabola sin(β/2)/(cos²(β/2)·reach).
+double angleForCurvature(bool arc, double reach, double most)
 {
-    return std::abs(glsl::geofx_bendCurvature(glsl::geofx_makeBend(curve, size, angle)));
+    const double product = most * reach;
+    if (arc) return 2.0 * std::atan(product);
+    return 2.0 * std::asin(2.0 * product / (1.0 + std::sqrt(1.0 + 4.0 * product * product)));
 }
 
 } // namespace
@@ -110,22 +112,11 @@ std::optional<BendPlacement> BirdsEyeView::placementOf(Curve curve, const ViewGe
     {
         return arc ? reach * bend / std::tan(bend / 2.0) : 2.0 * reach;
     };
-    place.size = sizeFor(angle);
-    place.angle = -angle;
-    const double most = mostCurvature(view, -1.0, std::abs(place.start) + place.size);
-    if (curvature(curve, place.size, angle) > most)
-    {
-        // Less of a bend, as much as what lies below T allows. The curvature grows with the angle.
-        double low = 0.0;
-        double high = angle;
-        for (int i = 0; i < 50; ++i)
-        {
-            const double middle = (low + high) / 2.0;
-            (curvature(curve, sizeFor(std::max(middle, 1e-12)), middle) > most ? high : low) = middle;
-        }
-        place.angle = -low;
-        if (low > 1e-12) place.size = sizeFor(low);
-    }
+    // Less of a bend where what lies below T would fold.
+    place.angle = -std::min(
+        angle,
+        angleForCurvature(arc, reach, mostCurvature(view, -1.0, std::abs(place.start) + sizeFor(angle))));
+    place.size = sizeFor(-place.angle);
     place.angle *= servedShare(focus->depression, horizon->depression, perspective);
     return place;
 }

@@ -230,6 +230,7 @@ bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
     const osg::BoundingSphere& sphere = node.getBound();
     if (!sphere.valid()) return false;
     const Ball ball = _mode.chain->bound(eyeBall(sphere));
+    _middle = ball.centre;
     if (_frustum.side(ball, _mode.planes) == EyeFrustum::Side::Outside) return true;
     if (!_cullSmall) return false;
     const double pixelsOfOne = planeDistance(_pixelSize, ball.centre);
@@ -367,7 +368,8 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
         return;
     }
     computeBounds(node);
-    if (tileOutOfSight(node)) return;
+    // The mesh and its box lie elsewhere in memory; where the middle shows they have nothing to tell.
+    if (_mode.planes && !_frustum.holds(_middle, _mode.planes) && tileOutOfSight(node)) return;
     _mode.lodRadius = static_cast<double>(node.getBound().radius()) * _scale;
     if (node.getRangeMode() != osg::LOD::PIXEL_SIZE_ON_SCREEN)
     {
@@ -491,8 +493,7 @@ bool CompensatingCullVisitor::witnessInSight(const osg::Drawable& drawable, EyeF
 bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
 {
     // Its sphere is wide for a flat tile; the mesh that stands for it has a box.
-    if (_task.tileError <= 0.0 || _mode.planes == 0 || node.getNumChildren() == 0 || node.getNumRanges() < 2)
-        return false;
+    if (_task.tileError <= 0.0 || node.getNumChildren() == 0 || node.getNumRanges() < 2) return false;
     const osg::Transform* tile = node.getChild(0)->asTransform();
     if (!tile || !TileInfo::isTile(*tile) || tile->getNumChildren() != 1) return false;
     const osg::Drawable* mesh = tile->getChild(0)->asDrawable();
@@ -588,9 +589,9 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     }
     const Mode former = _mode;
     meet(drawable.getStateSet());
-    osg::StateSet* look = lookFor(drawable);
     if (!_task.compensate)
     {
+        osg::StateSet* look = lookFor(drawable);
         if (look) pushStateSet(look);
         CullVisitor::apply(drawable);
         if (look) popStateSet();
@@ -610,6 +611,7 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     double depth = 0.0;
     if (drawableInSight(drawable, depth) && std::isfinite(depth))
     {
+        osg::StateSet* look = lookFor(drawable);
         if (look) pushStateSet(look);
         osg::StateSet* state = drawable.getStateSet();
         if (state) pushStateSet(state);

@@ -133,6 +133,7 @@ private:
     double _smallPixels = 0.0;
     osg::Vec4d _pixelSize; ///< for eye space
     double _scale = 1.0;   ///< of the current modelview matrix
+    osg::Vec3d _middle;    ///< where that of the node goes which outOfSight() tested last
     Hull _hull;
     MeshBoxes _meshBoxes;
     std::vector<osg::ref_ptr<osg::StateSet>> _placed; ///< one for each such object of a frame

@@ -175,6 +175,12 @@ void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationC
     // The middle is for sure within; most of the others then lie between what is certain.
     include(depth, depth);
     if (depth - deformed.radius >= _nearest && depth + deformed.radius <= _farthest) return;
+    if (chain.leavesAlone(box.ball()))
+    {
+        const double half = std::abs(box.half[0].z()) + std::abs(box.half[1].z()) + std::abs(box.half[2].z());
+        include(depth - half, depth + half);
+        return;
+    }
     _candidates.push_back({box, &chain, depth - deformed.radius, depth + deformed.radius});
 }
 

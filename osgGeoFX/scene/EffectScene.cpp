@@ -45,23 +45,23 @@ const osg::CoordinateSystemNode* findCoordinateSystem(const osg::Node* node, int
     return nullptr;
 }
 
-/// One vector, for one traversal of one camera.
-void setUniform(osg::StateSet& state, const std::string& name, const osg::Vec4d& value)
-{
-    state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
-}
-
 void setDefine(osg::StateSet& state, const std::string& name, bool on)
 {
     state.setDefine(name, on ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
 }
 
-/// The deformations of a camera, by their effects.
-using Frames = std::vector<osg::ref_ptr<const DeformationFrame>>;
-
-bool finite(const DeformationFrame& frame)
+/// What a deformation does for a camera; no frame where it does nothing.
+struct Placed
 {
-    const DeformationFrame::Uniforms uniforms = frame.uniforms();
+    osg::ref_ptr<const DeformationFrame> frame;
+    DeformationFrame::Uniforms uniforms;
+};
+
+/// The deformations of a camera, by their effects.
+using Frames = std::vector<Placed>;
+
+bool finite(const DeformationFrame::Uniforms& uniforms)
+{
     return std::all_of(uniforms.begin(), uniforms.end(),
                        [](const auto& uniform)
                        {
@@ -73,30 +73,57 @@ bool finite(const DeformationFrame& frame)
                        });
 }
 
-/// Of the deformations, the defines of all effects.
-void fill(osg::StateSet& state, const Frames& frames)
+/// The state of one traversal of one camera.
+struct CameraState
 {
-    setDefine(state, "GEOFX_DEFORMATION", true);
+    osg::ref_ptr<osg::StateSet> set;
+    /// Those of each effect, in the order of its list: to look for them by name takes longer than to set them.
+    std::vector<std::vector<osg::ref_ptr<osg::Uniform>>> uniforms;
+};
+
+/// The uniform in a place of an effect's list.
+osg::Uniform& uniformAt(CameraState& state, std::size_t effect, std::size_t place, const std::string& name)
+{
+    std::vector<osg::ref_ptr<osg::Uniform>>& known = state.uniforms[effect];
+    if (known.size() <= place) known.resize(place + 1);
+    osg::ref_ptr<osg::Uniform>& uniform = known[place];
+    // Another effect may have taken the former one's place; what comes before the name is the place's.
+    const bool same =
+        uniform && uniform->getName().size() > name.size() &&
+        uniform->getName().compare(uniform->getName().size() - name.size(), name.size(), name) == 0;
+    if (!same)
+        uniform =
+            state.set->getOrCreateUniform(EffectProgram::prefix(effect) + name, osg::Uniform::FLOAT_VEC4);
+    return *uniform;
+}
+
+/// Of the deformations, the defines of all effects.
+void fill(CameraState& state, const Frames& frames)
+{
+    setDefine(*state.set, "GEOFX_DEFORMATION", true);
+    state.uniforms.resize(frames.size());
     for (std::size_t i = 0; i < frames.size(); ++i)
     {
-        setDefine(state, EffectProgram::define(i), frames[i].valid());
-        if (!frames[i]) continue;
-        for (const auto& [name, value] : frames[i]->uniforms())
+        setDefine(*state.set, EffectProgram::define(i), frames[i].frame.valid());
+        for (std::size_t place = 0; place < frames[i].uniforms.size(); ++place)
         {
-            setUniform(state, EffectProgram::prefix(i) + name, value);
+            const auto& [name, value] = frames[i].uniforms[place];
+            uniformAt(state, i, place, name).set(osg::Vec4f(value));
         }
     }
 }
 
-osg::ref_ptr<osg::StateSet> createState(int mapUnit)
+CameraState createState(int mapUnit)
 {
-    osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    CameraState created;
+    created.set = new osg::StateSet;
+    osg::StateSet* const state = created.set.get();
     for (int unit = 0; unit < FixedFunctionLook::units; ++unit)
     {
         state->addUniform(new osg::Uniform(("geofx_texture" + std::to_string(unit)).c_str(), unit));
     }
     state->addUniform(new osg::Uniform("geofx_map", std::max(mapUnit, 0)));
-    return state;
+    return created;
 }
 
 } // namespace
@@ -109,7 +136,7 @@ struct EffectScene::Drawing
     {
         osg::observer_ptr<osgUtil::CullVisitor> outer;
         osg::ref_ptr<CompensatingCullVisitor> visitor = new CompensatingCullVisitor;
-        std::vector<osg::ref_ptr<osg::StateSet>> states; ///< one for each traversal of a frame
+        std::vector<CameraState> states; ///< one for each traversal of a frame
         std::size_t used = 0;
     };
 
@@ -139,6 +166,7 @@ struct EffectScene::Drawing
     osg::ref_ptr<osg::Program> programFor(const EffectProgram::Effects& effects)
     {
         const std::lock_guard<std::mutex> lock(mutex);
+        if (programMade && !effectsChanged(effects)) return program;
         const std::string key = EffectProgram::key(effects);
         if (!programMade || key != programKey)
         {
@@ -148,6 +176,37 @@ struct EffectScene::Drawing
             updateFunctions(effects);
         }
         return program;
+    }
+
+    /// Whether an effect has changed, or the list of them, since the last call.
+    bool effectsChanged(const EffectProgram::Effects& effects)
+    {
+        bool changed = effects.size() != revisions.size();
+        revisions.resize(effects.size());
+        for (std::size_t i = 0; i < effects.size(); ++i)
+        {
+            const unsigned int revision = effects[i]->revision();
+            changed = changed || revision != revisions[i];
+            revisions[i] = revision;
+        }
+        return changed;
+    }
+
+    /// What a terrain says of itself. Read again only where the root has other user values than the last time.
+    std::optional<TerrainInfo> terrainOf(const osg::CoordinateSystemNode* system)
+    {
+        const osg::UserDataContainer* values = system ? system->getUserDataContainer() : nullptr;
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (values && values == terrainValues) return terrain;
+        std::string error;
+        const std::optional<TerrainInfo> info = TerrainInfo::read(system, error);
+        // Those of a root further below can come and go.
+        if (info && values && values->getUserObjectIndex("geofx.format") < values->getNumUserObjects())
+        {
+            terrainValues = values;
+            terrain = info;
+        }
+        return info;
     }
 
     void updateFunctions(const EffectProgram::Effects& effects)
@@ -173,6 +232,9 @@ struct EffectScene::Drawing
 
     std::mutex mutex;
     std::map<osgUtil::CullVisitor*, std::unique_ptr<Camera>> cameras;
+    osg::ref_ptr<const osg::UserDataContainer> terrainValues;
+    std::optional<TerrainInfo> terrain;
+    std::vector<unsigned int> revisions; ///< of the effects, as the program has them
     std::string programKey;
     bool programMade = false;
     osg::ref_ptr<osg::Program> program;
@@ -212,6 +274,7 @@ bool EffectScene::addEffect(Effect* effect)
         return false;
     }
     _effects.emplace_back(effect);
+    _drawing->revisions.clear();
     return true;
 }
 
@@ -220,6 +283,7 @@ bool EffectScene::removeEffect(Effect* effect)
     const auto found = std::find(_effects.begin(), _effects.end(), effect);
     if (found == _effects.end()) return false;
     _effects.erase(found);
+    _drawing->revisions.clear();
     return true;
 }
 
@@ -260,8 +324,7 @@ Ground EffectScene::ground(const osg::NodePath& above) const
     Ground ground;
     if (system && _terrainFrame != PROJECTED) ground.ellipsoid = system->getEllipsoidModel();
     if (!ground.ellipsoid && _terrainFrame == GEOCENTRIC) ground.ellipsoid = new osg::EllipsoidModel;
-    std::string error;
-    if (const std::optional<TerrainInfo> info = TerrainInfo::read(system, error))
+    if (const std::optional<TerrainInfo> info = _drawing->terrainOf(system))
     {
         ground.heightsKnown = true;
         ground.minHeight = info->minHeight;
@@ -283,9 +346,11 @@ Frames framesFor(const EffectProgram::Effects& effects, const ViewGeometry& firs
     {
         const Deformation* deformation = effects[i]->asDeformation();
         if (!deformation || !effects[i]->getEnabled()) continue;
-        osg::ref_ptr<const DeformationFrame> frame = deformation->frame(view);
-        if (!frame || !finite(*frame)) continue;
-        frames[i] = frame;
+        const osg::ref_ptr<const DeformationFrame> frame = deformation->frame(view);
+        if (!frame) continue;
+        DeformationFrame::Uniforms uniforms = frame->uniforms();
+        if (!finite(uniforms)) continue;
+        frames[i] = {frame, std::move(uniforms)};
         deformation->changeGround(view.ground);
     }
     return frames;
@@ -313,9 +378,9 @@ bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, c
 osg::ref_ptr<DeformationChain> chainOf(const Frames& frames)
 {
     osg::ref_ptr<DeformationChain> chain = new DeformationChain;
-    for (const auto& frame : frames)
+    for (const Placed& placed : frames)
     {
-        if (frame) chain->add(frame);
+        if (placed.frame) chain->add(placed.frame);
     }
     return chain;
 }
@@ -368,9 +433,9 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     Drawing::Camera& own = _drawing->camera(outer);
     if (own.visitor->startsFrame(outer)) own.used = 0;
     if (own.used == own.states.size()) own.states.push_back(createState(task.mapUnit));
-    osg::StateSet& state = *own.states[own.used];
+    osg::StateSet& state = *own.states[own.used].set;
     state.getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(task.mapUnit, 0));
-    fill(state, frames);
+    fill(own.states[own.used], frames);
     const bool surfaces = fillSurfaces(_effects, state, view, outer);
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.

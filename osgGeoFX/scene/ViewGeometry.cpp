@@ -2,10 +2,40 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/ViewGeometry.h>
 
+#include <osg/Vec2d>
+
+#include <algorithm>
 #include <cmath>
 
 namespace osgGeoFX
 {
+
+namespace
+{
+
+/// The normal of the ellipsoid below a place, and the height above it. Bowring's formula without the angles: every camera
+/// asks in every frame.
+osg::Vec3d normalBelow(const osg::EllipsoidModel& ellipsoid, const osg::Vec3d& place, double& height)
+{
+    const double a = ellipsoid.getRadiusEquator();
+    const double b = ellipsoid.getRadiusPolar();
+    const double share = 1.0 - b * b / (a * a); // e²
+    const double across = std::sqrt(place.x() * place.x() + place.y() * place.y());
+    // The parametric latitude, then the geodetic one.
+    osg::Vec2d parametric(across * b, place.z() * a);
+    if (parametric.normalize() == 0.0) parametric.set(0.0, 1.0);
+    const double cosine = parametric.x();
+    const double sine = parametric.y();
+    osg::Vec2d geodetic(std::max(0.0, across - share * a * cosine * cosine * cosine),
+                        place.z() + (a * a / b - b) * sine * sine * sine);
+    if (geodetic.normalize() == 0.0) geodetic.set(0.0, 1.0);
+    height = across * geodetic.x() + place.z() * geodetic.y() -
+             a * std::sqrt(1.0 - share * geodetic.y() * geodetic.y());
+    const double outward = across > 0.0 ? geodetic.x() / across : 0.0;
+    return {place.x() * outward, place.y() * outward, geodetic.y()};
+}
+
+} // namespace
 
 ViewGeometry::ViewGeometry(const osg::Matrixd& modelView, const osg::Matrixd& projectionMatrix,
                            const Ground& theGround)
@@ -17,15 +47,7 @@ ViewGeometry::ViewGeometry(const osg::Matrixd& modelView, const osg::Matrixd& pr
     const osg::Vec3d eye = toWorld.getTrans();
     osg::Vec3d normal(0.0, 0.0, 1.0);
     eyeHeight = eye.z();
-    if (ground.ellipsoid)
-    {
-        double latitude = 0.0;
-        double longitude = 0.0;
-        ground.ellipsoid->convertXYZToLatLongHeight(eye.x(), eye.y(), eye.z(), latitude, longitude,
-                                                    eyeHeight);
-        normal.set(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
-                   std::sin(latitude));
-    }
+    if (ground.ellipsoid) normal = normalBelow(*ground.ellipsoid, eye, eyeHeight);
     up = osg::Matrixd::transform3x3(normal, modelView);
     up.normalize();
     polarAxis = up;
