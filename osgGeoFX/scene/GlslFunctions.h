@@ -39,6 +39,7 @@ namespace glsl
 {
 using namespace glslBuiltIns;
 constexpr int GEOFX_NEWTON_STEPS = 3;
+constexpr int GEOFX_SERIES_TERMS = 12;
 using Number = double;
 using Length = double;
 using Angle = double;
@@ -62,6 +63,7 @@ namespace glslf
 {
 using namespace glslBuiltIns;
 constexpr int GEOFX_NEWTON_STEPS = 1;
+constexpr int GEOFX_SERIES_TERMS = 5;
 using Number = float;
 using Length = float;
 using Angle = float;

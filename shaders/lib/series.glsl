@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Functions that stay exact where the textbook formula becomes 0/0, to double precision on the C++ side.
+// Functions that stay exact where the textbook formula becomes 0/0: to double precision with 12 terms, as C++ has
+// them, and to that of floats with 5 (GEOFX_SERIES_TERMS), which is what a vertex can afford.
 // OpenGL promises nothing about the precision of sin, atan and asinh (Mesa's atan is off by 2e-5 near zero),
 // hence series, whose arguments are first brought near zero where they are not.
 #ifndef __cplusplus
@@ -13,7 +14,7 @@ GEOFX_INLINE Number geofx_sinc(Angle x)
 {
     Number y = x * x;
     Number sum = Number(1);
-    for (int n = 10; n >= 1; --n)
+    for (int n = GEOFX_SERIES_TERMS; n >= 1; --n)
     {
         sum = 1 - sum * y / Number(2 * n * (2 * n + 1));
     }
@@ -24,7 +25,7 @@ GEOFX_INLINE Number geofx_sinc(Angle x)
 GEOFX_INLINE Number geofx_atanhSeries(Number y)
 {
     Number sum = Number(0);
-    for (int n = 11; n >= 0; --n)
+    for (int n = GEOFX_SERIES_TERMS - 1; n >= 0; --n)
     {
         sum = sum * y + 1 / Number(2 * n + 1);
     }

@@ -6,6 +6,7 @@
 #define GEOFX_INLINE
 
 #define GEOFX_NEWTON_STEPS 1 // enough for floats in geofx_bendArcInverse
+#define GEOFX_SERIES_TERMS 5 // and in lib/series.glsl
 
 #define Number float   // without a unit
 #define Length float   // metres
