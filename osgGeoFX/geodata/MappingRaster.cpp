@@ -2,21 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/MappingRaster.h>
 
-#include "GdalSupport.h"
+#include "FrameRaster.h"
 
 #include <osgGeoFX/geodata/BuildError.h>
 
-#include <cpl_string.h>
-#include <gdal_alg.h>
-#include <gdal_utils.h>
 #include <osg/Math>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <memory>
-#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -25,299 +18,21 @@ namespace osgGeoFX
 namespace
 {
 
-using Arguments = std::vector<std::string>;
-using Transform = std::array<double, 6>;
-
-CPLStringList listOf(const Arguments& arguments)
+void readValues(const FrameRaster& raster, GDALDataset& warped, osg::Image& image, MappingRaster& result)
 {
-    CPLStringList list;
-    for (const std::string& argument : arguments)
-        list.AddString(argument.c_str());
-    return list;
-}
-
-std::string exact(double value)
-{
-    return CPLSPrintf("%.17g", value);
-}
-
-std::string wktOf(const OGRSpatialReference& srs)
-{
-    char* text = nullptr;
-    srs.exportToWkt(&text);
-    std::string wkt = text ? text : "";
-    CPLFree(text);
-    return wkt;
-}
-
-/// The frame as a coordinate system, and its unit.
-struct FrameCrs
-{
-    std::string definition;
-    osg::Vec2d origin; ///< metres
-    double metresPerUnit = 1.0;
-};
-
-FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
-{
-    FrameCrs crs;
-    if (frame.globe)
-    {
-        crs.definition =
-            CPLSPrintf("+proj=ortho +lat_0=%.17g +lon_0=%.17g +datum=WGS84 +units=m +no_defs",
-                       osg::RadiansToDegrees(frame.latitude), osg::RadiansToDegrees(frame.longitude));
-        return crs;
-    }
-    OGRSpatialReference srs;
-    GdalErrorScope errors;
-    if (srs.SetFromUserInput(frame.wkt.c_str()) != OGRERR_NONE || !srs.IsProjected())
-        throw BuildError(file +
-                         ": the terrain has no coordinate system into which it could be brought; build "
-                         "the terrain with osggeofx_build.");
-    srs.StripVertical();
-    crs.definition = wktOf(srs);
-    crs.origin = frame.origin;
-    crs.metresPerUnit = srs.GetLinearUnits();
-    return crs;
-}
-
-/// A raster file with the virtual datasets on top of it.
-class Raster
-{
-public:
-    Raster(std::string file, std::optional<DataLayer::Kind> wanted) : _file(std::move(file))
-    {
-        GdalErrorScope errors;
-        _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-        if (!_chain.back())
-            fail("it is not a raster that GDAL can read (" + errors.message() +
-                 "); check it with gdalinfo, or convert it to GeoTIFF");
-        GDALDataset& dataset = top();
-        if (dataset.GetRasterCount() == 0)
-            fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
-        Transform transform{};
-        const bool placed = dataset.GetGeoTransform(transform.data()) == CE_None;
-        if (!placed && dataset.GetGCPCount() == 0)
-            fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
-        const OGRSpatialReference* srs = placed ? dataset.GetSpatialRef() : dataset.GetGCPSpatialRef();
-        if (!srs || srs->IsEmpty() || srs->IsLocal())
-            fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
-        if (GDALDataTypeIsComplex(band().GetRasterDataType()))
-            fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
-        const bool colors = band().GetColorTable() || dataset.GetRasterCount() >= 3;
-        kind = wanted.value_or(colors ? DataLayer::COLOR : DataLayer::VALUE);
-        if (kind == DataLayer::COLOR)
-            makeColors();
-        else
-            makeValues();
-    }
-    ~Raster()
-    {
-        // A virtual dataset reads from the one before it, so the last goes first.
-        while (!_chain.empty())
-            _chain.pop_back();
-    }
-    Raster(const Raster&) = delete;
-    Raster& operator=(const Raster&) = delete;
-
-    DataLayer::Kind kind = DataLayer::COLOR;
-    double scale = 1.0; ///< of values
-    double offset = 0.0;
-
-    [[noreturn]] void fail(const std::string& what) const { throw BuildError(_file + ": " + what + "."); }
-
-    /// What the raster covers, from edge to edge of its outermost pixels, and the size of a texel that keeps its
-    /// resolution; in the CRS's unit.
-    struct Extent
-    {
-        osg::Vec2d low, high;
-        double texel = 0.0;
-    };
-
-    Extent extent(const FrameCrs& crs) const
-    {
-        GdalErrorScope errors;
-        const Transformer transformer = transformerTo(crs, errors);
-        Transform transform{};
-        std::array<double, 4> suggested{};
-        int width = 0;
-        int height = 0;
-        if (GDALSuggestedWarpOutput2(GDALDataset::ToHandle(&top()), GDALGenImgProjTransform,
-                                     transformer.get(), transform.data(), &width, &height, suggested.data(),
-                                     0) != CE_None)
-            failToPlace(errors);
-        // GDAL rounds to whole texels, which may cut off half of one; so its rectangle is for rasters only that are
-        // in part beyond what can be told, such as the other side of the globe.
-        Extent result{{suggested[0], suggested[1]}, {suggested[2], suggested[3]}, std::abs(transform[1])};
-        constexpr int side = 65;
-        osg::Vec2d low(std::numeric_limits<double>::max(), std::numeric_limits<double>::max());
-        osg::Vec2d high = -low;
-        for (int i = 0; i < side * side; ++i)
-        {
-            const int row = i / side;
-            double x = top().GetRasterXSize() * (i % side) / (side - 1.0);
-            double y = top().GetRasterYSize() * row / (side - 1.0);
-            double z = 0.0;
-            int success = FALSE;
-            GDALGenImgProjTransform(transformer.get(), FALSE, 1, &x, &y, &z, &success);
-            if (!success || !std::isfinite(x) || !std::isfinite(y)) return result;
-            low.set(std::min(low.x(), x), std::min(low.y(), y));
-            high.set(std::max(high.x(), x), std::max(high.y(), y));
-        }
-        result.low = low;
-        result.high = high;
-        return result;
-    }
-
-    osg::Vec2d middle(const FrameCrs& crs) const
-    {
-        GdalErrorScope errors;
-        const Transformer transformer = transformerTo(crs, errors);
-        double x = top().GetRasterXSize() / 2.0;
-        double y = top().GetRasterYSize() / 2.0;
-        double z = 0.0;
-        int success = FALSE;
-        GDALGenImgProjTransform(transformer.get(), FALSE, 1, &x, &y, &z, &success);
-        if (!success || !std::isfinite(x) || !std::isfinite(y)) failToPlace(errors);
-        return {x, y};
-    }
-
-    DatasetPtr warped(const FrameCrs& crs, Arguments arguments) const
-    {
-        // An error far below half a texel, of interpolated transformations.
-        arguments.insert(arguments.end(), {"-t_srs", crs.definition, "-et", "0.01", "-r", resampling()});
-        if (kind == DataLayer::COLOR)
-            arguments.emplace_back("-dstalpha");
-        else
-            arguments.insert(arguments.end(), {"-ot", "Float64", "-dstnodata", "nan"});
-        if (_hasMask) arguments.emplace_back("-srcalpha");
-        GdalErrorScope errors;
-        GDALWarpAppOptions* options = GDALWarpAppOptionsNew(listOf(arguments).List(), nullptr);
-        GDALDatasetH source = GDALDataset::ToHandle(_chain.back().get());
-        DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
-        GDALWarpAppOptionsFree(options);
-        if (!result || errors.failed())
-            fail("its pixels cannot be read (" + errors.message() +
-                 "); the file may be cut short: copy or export it again");
-        return result;
-    }
-
-private:
-    struct TransformerDestroyer
-    {
-        void operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
-    };
-    using Transformer = std::unique_ptr<void, TransformerDestroyer>;
-
-    Transformer transformerTo(const FrameCrs& crs, const GdalErrorScope& errors) const
-    {
-        CPLStringList options;
-        options.SetNameValue("DST_SRS", crs.definition.c_str());
-        Transformer result(
-            GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&top()), nullptr, options.List()));
-        if (!result) failToPlace(errors);
-        return result;
-    }
-
-    [[noreturn]] void failToPlace(const GdalErrorScope& errors) const
-    {
-        fail("it cannot be brought to the place of the mappings (" + errors.message() +
-             "); give the effect an origin near it, or warp it with gdalwarp first");
-    }
-
-    GDALDataset& top() const { return *_chain.back(); }
-    GDALRasterBand& band() const { return *top().GetRasterBand(1); }
-
-    /// Neighbours of a palette's and of classes' numbers have nothing to do with each other.
-    std::string resampling() const { return kind == DataLayer::CLASS || _palette ? "near" : "bilinear"; }
-
-    void translate(Arguments arguments)
-    {
-        arguments.insert(arguments.end(), {"-of", "VRT"});
-        GdalErrorScope errors;
-        GDALTranslateOptions* options = GDALTranslateOptionsNew(listOf(arguments).List(), nullptr);
-        GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(_chain.back().get()), options, nullptr);
-        GDALTranslateOptionsFree(options);
-        if (!result)
-            fail("its bands cannot be used (" + errors.message() +
-                 "); convert it to GeoTIFF with gdal_translate");
-        _chain.emplace_back(GDALDataset::FromHandle(result));
-    }
-
-    /// Red, green, blue and alpha, bytes.
-    void makeColors()
-    {
-        const GDALDataType type = band().GetRasterDataType();
-        if (band().GetColorTable())
-        {
-            _palette = true;
-            return translate({"-expand", "rgba"});
-        }
-        if (type != GDT_Byte && type != GDT_UInt16)
-            fail("its pixels are not colours (" + std::string(GDALGetDataTypeName(type)) +
-                 "); show them as values, or colour them with gdaldem color-relief");
-        const bool grey = top().GetRasterCount() < 3;
-        Arguments arguments{"-b", "1",      "-b",  grey ? "1" : "2", "-b",        grey ? "1" : "3",
-                            "-b", "mask,1", "-ot", "Byte",           "-a_nodata", "none"};
-        arguments.insert(arguments.end(), {"-colorinterp", "red,green,blue,alpha"});
-        if (type == GDT_UInt16)
-            for (const char* band : {"-scale_1", "-scale_2", "-scale_3"})
-                arguments.insert(arguments.end(), {band, "0", "65535", "0", "255"});
-        translate(arguments);
-    }
-
-    void makeValues()
-    {
-        scale = band().GetScale();
-        offset = band().GetOffset();
-        if (top().GetRasterCount() == 1) return;
-        // A mask goes along as alpha; a no-data value tells the same.
-        int hasNoData = FALSE;
-        band().GetNoDataValue(&hasNoData);
-        _hasMask = !hasNoData;
-        translate(_hasMask ? Arguments{"-b", "1", "-b", "mask,1", "-colorinterp", "gray,alpha"}
-                           : Arguments{"-b", "1"});
-    }
-
-    std::string _file;
-    std::vector<DatasetPtr> _chain;
-    bool _palette = false;
-    bool _hasMask = false; ///< as a second band beside values
-};
-
-void readColors(const Raster& raster, GDALDataset& warped, osg::Image& image)
-{
-    const int width = warped.GetRasterXSize();
     const int height = warped.GetRasterYSize();
-    image.allocateImage(width, height, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    // From below, as OSG has its rows.
-    const GSpacing row = 4 * static_cast<GSpacing>(width);
-    if (warped.RasterIO(GF_Read, 0, 0, width, height, image.data() + row * (height - 1), width, height,
-                        GDT_Byte, 4, nullptr, 4, -row, 1, nullptr) != CE_None)
-        raster.fail("its pixels cannot be read; copy or export it again");
-}
-
-void readValues(const Raster& raster, GDALDataset& warped, osg::Image& image, MappingRaster& result)
-{
-    const int width = warped.GetRasterXSize();
-    const int height = warped.GetRasterYSize();
-    image.allocateImage(width, height, 1, GL_RED, GL_FLOAT);
+    image.allocateImage(warped.GetRasterXSize(), height, 1, GL_RED, GL_FLOAT);
     image.setInternalTextureFormat(GL_R32F);
-    std::vector<double> line(static_cast<std::size_t>(width));
-    constexpr double most = std::numeric_limits<float>::max();
+    std::vector<double> line;
     bool any = false;
     for (int row = 0; row < height; ++row)
     {
-        const bool read = warped.GetRasterBand(1)->RasterIO(GF_Read, 0, row, width, 1, line.data(), width, 1,
-                                                            GDT_Float64, 0, 0, nullptr) == CE_None;
-        if (!read) raster.fail("its pixels cannot be read; copy or export it again");
+        raster.readValues(warped, row, line);
         auto* out = reinterpret_cast<float*>(image.data(0, static_cast<unsigned int>(height - 1 - row)));
-        for (std::size_t i = 0; i < line.size(); ++i)
+        for (const double value : line)
         {
-            const double value = line[i] * raster.scale + raster.offset;
-            const bool valid = std::abs(value) <= most;
-            out[i] = valid ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
-            if (!valid) continue;
+            *out++ = static_cast<float>(value);
+            if (std::isnan(value)) continue;
             result.lowest = any ? std::min(result.lowest, value) : value;
             result.highest = any ? std::max(result.highest, value) : value;
             any = true;
@@ -329,26 +44,27 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
                          const MappingRaster::Options& options)
 {
     const FrameCrs crs = crsOf(frame, file);
-    const Raster raster(file, options.kind);
-    const Raster::Extent extent = raster.extent(crs);
+    const FrameRaster raster(file, options.kind);
+    const FrameRaster::Extent extent = raster.extent(crs);
     const osg::Vec2d size = extent.high - extent.low;
     // With fewer texels than it has, GDAL reads from overviews.
     const double texel = std::max(extent.texel, std::max(size.x(), size.y()) / options.maxSide);
     const auto texels = [&](double length)
     {
-        return std::to_string(
-            std::max(1, std::min(options.maxSide, static_cast<int>(std::lround(length / texel)))));
+        return std::max(1, std::min(options.maxSide, static_cast<int>(std::lround(length / texel))));
     };
-    const DatasetPtr warped = raster.warped(
-        crs, {"-of", "MEM", "-te", exact(extent.low.x()), exact(extent.low.y()), exact(extent.high.x()),
-              exact(extent.high.y()), "-ts", texels(size.x()), texels(size.y())});
+    const DatasetPtr warped = raster.warped(crs, extent.low, extent.high, texels(size.x()), texels(size.y()));
 
     MappingRaster result;
     result.low = extent.low * crs.metresPerUnit - crs.origin;
     result.high = extent.high * crs.metresPerUnit - crs.origin;
     const osg::ref_ptr<osg::Image> image = new osg::Image;
     if (raster.kind == DataLayer::COLOR)
-        readColors(raster, *warped, *image);
+    {
+        image->allocateImage(warped->GetRasterXSize(), warped->GetRasterYSize(), 1, GL_RGBA,
+                             GL_UNSIGNED_BYTE);
+        raster.readColors(*warped, image->data());
+    }
     else
         readValues(raster, *warped, *image, result);
     image->setFileName(file);
@@ -359,7 +75,7 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
 
 void move(const std::string& file, MappingFrame& frame)
 {
-    const Raster raster(file, std::nullopt);
+    const FrameRaster raster(file, std::nullopt);
     FrameCrs crs;
     if (frame.globe)
         crs.definition = "EPSG:4326";

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+// Private to osgGeoFXData: consumers of the library do not need GDAL's headers.
+
+#include "GdalSupport.h"
+
+#include <osgGeoFX/geodata/MappingRaster.h>
+
+#include <osg/Vec2d>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// The frame as a coordinate system, and its unit.
+struct FrameCrs
+{
+    std::string definition;
+    osg::Vec2d origin; ///< metres
+    double metresPerUnit = 1.0;
+
+    /// From metres in the frame.
+    osg::Vec2d fromFrame(const osg::Vec2d& place) const { return (place + origin) / metresPerUnit; }
+};
+
+/// Throws BuildError, naming `file`, where a projected terrain's coordinate system is none.
+FrameCrs crsOf(const MappingFrame& frame, const std::string& file);
+
+/** A raster file to be warped into a frame, with the virtual datasets on top of it that make colours or values of its
+    bands. All of it throws BuildError, naming file and mend. */
+class FrameRaster
+{
+public:
+    FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted);
+    ~FrameRaster();
+    FrameRaster(const FrameRaster&) = delete;
+    FrameRaster& operator=(const FrameRaster&) = delete;
+
+    DataLayer::Kind kind = DataLayer::COLOR;
+    double scale = 1.0; ///< of values
+    double offset = 0.0;
+
+    [[noreturn]] void fail(const std::string& what) const;
+
+    /// What the raster covers, from edge to edge of its outermost pixels, and the size of a texel that keeps its
+    /// resolution; in the CRS's unit.
+    struct Extent
+    {
+        osg::Vec2d low, high;
+        double texel = 0.0;
+    };
+    Extent extent(const FrameCrs& crs) const;
+    osg::Vec2d middle(const FrameCrs& crs) const;
+
+    /// A rectangle in the CRS's unit, in so many texels: red, green, blue and alpha in bytes, or values in doubles with NaN
+    /// where there is none, not yet scaled.
+    DatasetPtr warped(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
+                      int height) const;
+    /// A row of values that were warped, from the north, scaled; NaN where there is none that a float can hold.
+    void readValues(GDALDataset& warped, int row, std::vector<double>& values) const;
+    /// Colours that were warped, four bytes each, in rows from the south.
+    void readColors(GDALDataset& warped, unsigned char* colors) const;
+
+private:
+    using Arguments = std::vector<std::string>;
+    struct TransformerDestroyer
+    {
+        void operator()(void* transformer) const;
+    };
+    using Transformer = std::unique_ptr<void, TransformerDestroyer>;
+
+    Transformer transformerTo(const FrameCrs& crs, const GdalErrorScope& errors) const;
+    [[noreturn]] void failToPlace(const GdalErrorScope& errors) const;
+    GDALDataset& top() const { return *_chain.back(); }
+    GDALRasterBand& band() const { return *top().GetRasterBand(1); }
+    void translate(Arguments arguments);
+    void makeColors();
+    void makeValues();
+
+    std::string _file;
+    std::vector<DatasetPtr> _chain;
+    bool _palette = false;
+    bool _hasMask = false; ///< as a second band beside values
+};
+
+} // namespace osgGeoFX
