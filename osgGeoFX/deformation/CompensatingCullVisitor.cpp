@@ -133,30 +133,39 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _rootRenderStage = outer.getRenderStage();
     _currentRenderBin = outer.getCurrentRenderBin();
     _renderBinStack = Access::bins(outer);
+    if (task.stage)
+    {
+        _rootRenderStage = task.stage;
+        _currentRenderBin = task.stage;
+        _renderBinStack.clear();
+    }
     _traversalOrderNumber = Access::order(outer);
     _numberOfEncloseOverrideRenderBinDetails = Access::overrides(outer);
     _entry = _currentStateGraph;
     _stateGraph = nullptr;
 
     _outerCullingMode = outer.getCullingMode();
-    _outerNearFar = outer.getComputeNearFarMode();
+    _outerNearFar = task.filter ? DO_NOT_COMPUTE_NEAR_FAR : outer.getComputeNearFarMode();
     if (task.compensate)
     {
         setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
     }
     pushViewport(outer.getViewport());
     pushProjectionMatrix(outer.getProjectionMatrix());
-    _frustum.set((_outerCullingMode & VIEW_FRUSTUM_CULLING) ? &getProjectionCullingStack().back().getFrustum()
-                                                            : nullptr,
+    const bool frustumCulls = (_outerCullingMode & VIEW_FRUSTUM_CULLING) && !task.filter;
+    _frustum.set(frustumCulls ? &getProjectionCullingStack().back().getFrustum() : nullptr,
                  *getProjectionMatrix(), (_outerCullingMode & VIEW_FRUSTUM_SIDES_CULLING) != 0);
     // OSG's own tests, which the base class makes, pass everything.
     if (task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
     pushReferenceViewPoint(outer.getReferenceViewPoint());
-    pushModelViewMatrix(outer.getModelViewMatrix(), osg::Transform::RELATIVE_RF);
+    // OSG knows a matrix by its address, and each stage loads another one behind its back: stages must not share any.
+    osg::RefMatrix* modelView =
+        task.stage ? createOrReuseMatrix(*outer.getModelViewMatrix()) : outer.getModelViewMatrix();
+    pushModelViewMatrix(modelView, osg::Transform::RELATIVE_RF);
     if (task.compensate) getCurrentCullingSet().setCullingMask(NO_CULLING);
 
     const double height = getViewport() ? getViewport()->height() : 0.0;
-    _cullSmall = (_outerCullingMode & SMALL_FEATURE_CULLING) && height > 0.0;
+    _cullSmall = (_outerCullingMode & SMALL_FEATURE_CULLING) && height > 0.0 && !task.filter;
     _smallPixels = static_cast<double>(getSmallFeatureCullingPixelSize());
     if (height > 0.0)
     {
@@ -206,10 +215,29 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene
 {
     begin(outer, task);
     if (task.state) pushStateSet(task.state);
+    if (task.passState) pushStateSet(task.passState);
     for (unsigned int i = 0; i < scene.getNumChildren(); ++i)
         scene.getChild(i)->accept(*this);
+    if (task.passState) popStateSet();
     if (task.state) popStateSet();
     if (task.debugBounds) drawBounds();
+    end(outer);
+}
+
+void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const std::vector<Piece>& pieces,
+                                  const Task& task)
+{
+    begin(outer, task);
+    pushStateSet(task.state);
+    if (task.passState) pushStateSet(task.passState);
+    for (const Piece& piece : pieces)
+    {
+        pushStateSet(piece.state);
+        addDrawableAndDepth(piece.drawable, createOrReuseMatrix(piece.modelView), 0.0f);
+        popStateSet();
+    }
+    if (task.passState) popStateSet();
+    popStateSet();
     end(outer);
 }
 
@@ -221,6 +249,11 @@ Ball CompensatingCullVisitor::eyeBall(const osg::BoundingSphere& sphere) const
 
 bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
 {
+    if (_task.filter)
+    {
+        const osg::BoundingSphere& all = node.getBound();
+        return node.isCullingActive() && all.valid() && _task.filter->outside(eyeBall(all));
+    }
     if (!node.isCullingActive())
     {
         _mode.planes = _frustum.all();
@@ -447,11 +480,13 @@ void CompensatingCullVisitor::passUntouched(NodeType& node)
 
 void CompensatingCullVisitor::apply(osg::Camera& node)
 {
+    if (_task.filter) return;
     passUntouched(node);
 }
 
 void CompensatingCullVisitor::apply(osg::Projection& node)
 {
+    if (_task.filter) return;
     passUntouched(node);
 }
 
@@ -609,7 +644,9 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         if (!cull) callback->run(&drawable, this);
     }
     double depth = 0.0;
-    if (drawableInSight(drawable, depth) && std::isfinite(depth))
+    if (_task.filter)
+        applyInPass(drawable);
+    else if (drawableInSight(drawable, depth) && std::isfinite(depth))
     {
         osg::StateSet* look = lookFor(drawable);
         if (look) pushStateSet(look);
@@ -620,6 +657,28 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         if (look) popStateSet();
     }
     _mode = former;
+}
+
+void CompensatingCullVisitor::applyInPass(osg::Drawable& drawable)
+{
+    const osg::BoundingBox& bounds = drawable.getBoundingBox();
+    if (!bounds.valid()) return;
+    const osg::Matrixd& modelView = *_modelviewStack.back();
+    const EyeBox box = EyeBox::of(bounds, modelView);
+    if (_task.filter->outside(box.ball())) return;
+    osg::StateSet* look = lookFor(drawable);
+    for (osg::StateSet* pass : _task.filter->states(drawable, box, modelView, look == nullptr))
+    {
+        pushStateSet(pass);
+        if (look) pushStateSet(look);
+        osg::StateSet* state = drawable.getStateSet();
+        if (state) pushStateSet(state);
+        addDrawableAndDepth(&_task.filter->drawn(drawable), getModelViewMatrix(),
+                            static_cast<float>(-box.centre.z()));
+        if (state) popStateSet();
+        if (look) popStateSet();
+        popStateSet();
+    }
 }
 
 float CompensatingCullVisitor::getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const

@@ -20,6 +20,24 @@ namespace osgGeoFX
 
 class RigidReference;
 
+/// Which parts of a scene are drawn again, and with what: asked while such a pass culls.
+class PassFilter
+{
+public:
+    /// Whether nothing in a ball is wanted; undeformed, in eye space.
+    virtual bool outside(const Ball& ball) const = 0;
+    /// The states with which a drawable in this box is drawn, once with each; none where it is not wanted.
+    virtual const std::vector<osg::StateSet*>& states(const osg::Drawable& drawable, const EyeBox& box,
+                                                      const osg::Matrixd& modelView, bool ownProgram) = 0;
+    /// Told of each node with levels of detail that is not outside.
+    virtual void meet(const osg::LOD&) {}
+    /// What is drawn in the place of a drawable that is wanted.
+    virtual osg::Drawable& drawn(osg::Drawable& drawable) = 0;
+
+protected:
+    ~PassFilter() = default;
+};
+
 /** Culls what the GPU is going to deform.
 
     One stands in for a cull visitor of OSG below an EffectScene: it shares the other one's state graph, render stage
@@ -48,12 +66,27 @@ public:
         bool compensate = true;
         bool debugBounds = false;
         double tileError = 0.0; ///< Ground::tileError
+        /// Of a pass that draws parts of the scene again, else null: what says which; then the planes of the picture cull
+        /// nothing, near and far stay as they are, and cameras below are left out.
+        PassFilter* filter = nullptr;
+        osgUtil::RenderStage* stage = nullptr; ///< the pass' own; null for a look without drawing
+        osg::StateSet* passState = nullptr;    ///< below `state`
     };
 
     /// Whether `outer` begins a new frame; if so, forgets what was drawn in the last one. To be asked before run().
     bool startsFrame(osgUtil::CullVisitor& outer);
     /// Traverses a group's children in the place of `outer`.
     void run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task);
+
+    /// A drawable of a pass' own.
+    struct Piece
+    {
+        osg::Drawable* drawable = nullptr;
+        osg::Matrixd modelView;
+        osg::StateSet* state = nullptr;
+    };
+    /// Draws pieces in a pass, in the place of the scene.
+    void run(osgUtil::CullVisitor& outer, const std::vector<Piece>& pieces, const Task& task);
 
     /// What is to be said once, from the last run; empty as a rule.
     const std::string& complaint() const { return _complaint; }
@@ -119,6 +152,7 @@ private:
     osg::StateSet* lookFor(const osg::Drawable& drawable);
     template<typename NodeType>
     void passUntouched(NodeType& node);
+    void applyInPass(osg::Drawable& drawable);
     void showBounds(const EyeBox& box);
     void drawBounds();
 

@@ -10,6 +10,7 @@ namespace osgGeoFX
 {
 
 class Deformation;
+class PassEffect;
 class SurfaceEffect;
 
 /** What an EffectScene hosts: something that changes how everything below the scene is drawn.
@@ -29,6 +30,9 @@ public:
     /// The effect as one that colours surfaces, null where it is none.
     virtual SurfaceEffect* asSurfaceEffect() { return nullptr; }
     const SurfaceEffect* asSurfaceEffect() const { return const_cast<Effect*>(this)->asSurfaceEffect(); }
+    /// The effect as one that draws the scene again, null where it is none.
+    virtual PassEffect* asPassEffect() { return nullptr; }
+    const PassEffect* asPassEffect() const { return const_cast<Effect*>(this)->asPassEffect(); }
 
 protected:
     Effect() = default;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/EffectKinds.h>
 
+#include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
@@ -36,6 +37,7 @@ constexpr Kind kinds[] = {
     {"blendedView", make<BlendedView>},
     {"verticalExaggeration", make<VerticalExaggeration>},
     {"projectiveMappings", make<ProjectiveMappings>},
+    {"closeUps", make<CloseUps>},
 };
 
 std::string joined(const std::vector<std::string>& words)

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/Export.h>
 #include <osgGeoFX/scene/Effect.h>
+#include <osgGeoFX/scene/PassEffect.h>
 
 #include <osg/Program>
 
@@ -32,6 +33,13 @@ public:
     /// A program for geometry that has none. A new one each time, since one that is in use must not change. Null, after a
     /// warning, where a shader file is missing.
     static osg::ref_ptr<osg::Program> create(const Effects& effects);
+
+    /// The same with what the effect of that prefix draws a pass with; the text of a `stage` that the pass has
+    /// not is empty.
+    static std::string passFunctions(const Effects& effects, const PassShaders& pass,
+                                     const std::string& prefix, osg::Shader::Type stage);
+    static osg::ref_ptr<osg::Program> create(const Effects& effects, const PassShaders& pass,
+                                             const std::string& prefix);
 };
 
 } // namespace osgGeoFX

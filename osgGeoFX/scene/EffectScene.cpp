@@ -5,6 +5,7 @@
 #include <osgGeoFX/deformation/CompensatingCullVisitor.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/PassEffect.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
 #include <osgGeoFX/scene/SurfaceEffect.h>
 
@@ -178,10 +179,32 @@ struct EffectScene::Drawing
         return program;
     }
 
+    /// Of an effect that draws the scene again.
+    osg::ref_ptr<osg::Program> passProgram(const EffectProgram::Effects& effects, const PassShaders& shaders,
+                                           const std::string& prefix)
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        std::string key = prefix + shaders.vertexMain + ';' + shaders.fragmentMain + ';';
+        for (const auto* files :
+             {&shaders.vertex, &shaders.tessellationControl, &shaders.geometry, &shaders.fragment})
+        {
+            for (const std::string& file : *files)
+                key += file + ';';
+        }
+        for (const auto& [name, binding] : shaders.blocks)
+            key += name + std::to_string(binding) + ';';
+        PassProgram& found = passPrograms[key];
+        const std::string effectsKey = EffectProgram::key(effects);
+        if (!found.made || found.effects != effectsKey)
+            found = {true, effectsKey, EffectProgram::create(effects, shaders, prefix)};
+        return found.program;
+    }
+
     /// Whether an effect has changed, or the list of them, since the last call.
     bool effectsChanged(const EffectProgram::Effects& effects)
     {
-        bool changed = effects.size() != revisions.size();
+        bool changed = effects != lastEffects;
+        lastEffects = effects;
         revisions.resize(effects.size());
         for (std::size_t i = 0; i < effects.size(); ++i)
         {
@@ -234,10 +257,18 @@ struct EffectScene::Drawing
     std::map<osgUtil::CullVisitor*, std::unique_ptr<Camera>> cameras;
     osg::ref_ptr<const osg::UserDataContainer> terrainValues;
     std::optional<TerrainInfo> terrain;
-    std::vector<unsigned int> revisions; ///< of the effects, as the program has them
+    EffectProgram::Effects lastEffects; ///< those that the program was made for, and
+    std::vector<unsigned int> revisions;
     std::string programKey;
     bool programMade = false;
     osg::ref_ptr<osg::Program> program;
+    struct PassProgram
+    {
+        bool made = false;
+        std::string effects; ///< the key of those that it was made for
+        osg::ref_ptr<osg::Program> program;
+    };
+    std::map<std::string, PassProgram> passPrograms;
     osg::ref_ptr<osg::Shader> vertexFunctions;
     osg::ref_ptr<osg::Shader> fragmentFunctions;
     osg::ref_ptr<osg::StateSet> untouched = new osg::StateSet;
@@ -385,6 +416,12 @@ osg::ref_ptr<DeformationChain> chainOf(const Frames& frames)
     return chain;
 }
 
+bool drawsPasses(const EffectProgram::Effects& effects)
+{
+    return std::any_of(effects.begin(), effects.end(),
+                       [](const auto& each) { return each->getEnabled() && each->asPassEffect(); });
+}
+
 /// Whether there are enabled effects that move geometry, be it for this camera or for others.
 bool deforms(const EffectProgram::Effects& effects)
 {
@@ -440,21 +477,61 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
     const bool draws = surfaces || _debugBounds || !task.chain->empty();
+    const bool passes = drawsPasses(_effects);
     task.compensate = _compensation && (_debugBounds || deforms(_effects));
-    if (!draws && !task.compensate) return false;
+    if (!draws && !task.compensate && !passes) return false;
 
     ++own.used;
-    task.untouched = _drawing->untouched;
-    if (draws)
+    if (draws || task.compensate)
     {
-        task.program = _drawing->programFor(_effects);
-        task.state = &state;
+        task.untouched = _drawing->untouched;
+        if (draws)
+        {
+            task.program = _drawing->programFor(_effects);
+            task.state = &state;
+        }
+        task.debugBounds = _debugBounds;
+        task.tileError = view.ground.tileError;
+        own.visitor->run(outer, *this, task);
+        _drawing->sayOnce(own.visitor->complaint());
     }
-    task.debugBounds = _debugBounds;
-    task.tileError = view.ground.tileError;
-    own.visitor->run(outer, *this, task);
-    _drawing->sayOnce(own.visitor->complaint());
+    else
+    {
+        osg::Group::traverse(outer);
+    }
+    if (passes) drawPasses(outer, view, *task.chain, state, task.mapUnit);
     return true;
+}
+
+void EffectScene::drawPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view,
+                             const DeformationChain& chain, osg::StateSet& state, int mapUnit)
+{
+    class Pass : public ScenePass
+    {
+    public:
+        Pass(EffectScene& group, osgUtil::CullVisitor& visitor, const ViewGeometry& geometry,
+             const DeformationChain& deformations, osg::StateSet& stateSet, const std::string& names,
+             int unit)
+            : ScenePass(visitor, group, geometry, deformations, stateSet, *group._drawing->untouched, names,
+                        geometry.ground.tileError, unit, group._compensation),
+              _group(group)
+        {
+        }
+        osg::ref_ptr<osg::Program> program(const PassShaders& shaders) const override
+        {
+            return _group._drawing->passProgram(_group._effects, shaders, prefix);
+        }
+
+    private:
+        EffectScene& _group;
+    };
+    for (std::size_t i = 0; i < _effects.size(); ++i)
+    {
+        PassEffect* effect = _effects[i]->asPassEffect();
+        if (!effect || !effect->getEnabled()) continue;
+        const std::string prefix = EffectProgram::prefix(i);
+        effect->cull(Pass(*this, outer, view, chain, state, prefix, mapUnit));
+    }
 }
 
 void EffectScene::traverse(osg::NodeVisitor& visitor)
@@ -469,6 +546,10 @@ void EffectScene::resizeGLObjectBuffers(unsigned int size)
     {
         const std::lock_guard<std::mutex> lock(_drawing->mutex);
         if (_drawing->program) _drawing->program->resizeGLObjectBuffers(size);
+        for (const auto& [key, pass] : _drawing->passPrograms)
+        {
+            if (pass.program) pass.program->resizeGLObjectBuffers(size);
+        }
     }
     osg::Group::resizeGLObjectBuffers(size);
 }
@@ -478,10 +559,14 @@ void EffectScene::releaseGLObjects(osg::State* state) const
     {
         const std::lock_guard<std::mutex> lock(_drawing->mutex);
         if (_drawing->program) _drawing->program->releaseGLObjects(state);
+        for (const auto& [key, pass] : _drawing->passPrograms)
+        {
+            if (pass.program) pass.program->releaseGLObjects(state);
+        }
     }
     for (const osg::ref_ptr<Effect>& effect : _effects)
     {
-        if (const SurfaceEffect* surface = effect->asSurfaceEffect()) surface->releaseGLObjects(state);
+        effect->releaseGLObjects(state);
     }
     osg::Group::releaseGLObjects(state);
 }

@@ -102,6 +102,8 @@ protected:
 private:
     struct Drawing;
     bool cull(osgUtil::CullVisitor& outer);
+    void drawPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view, const DeformationChain& chain,
+                    osg::StateSet& state, int mapUnit);
 
     std::vector<osg::ref_ptr<Effect>> _effects;
     bool _compensation = true;

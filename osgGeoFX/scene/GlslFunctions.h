@@ -46,6 +46,7 @@ using Angle = double;
 using PerMetre = double;
 using Vector2 = glm::dvec2;
 using Vector3 = glm::dvec3;
+using Row = glm::dvec4;
 using Profile = glm::dvec2;
 using Position = glm::dvec3;
 using Rgb = glm::dvec3;
@@ -55,6 +56,7 @@ using Rgba = glm::dvec4;
 #include <shaders/lib/bend.glsl>
 
 #include <shaders/lib/bendview.glsl>
+#include <shaders/lib/closeup.glsl>
 #include <shaders/lib/exaggeration.glsl>
 #include <shaders/lib/mapping.glsl>
 } // namespace glsl
@@ -70,6 +72,7 @@ using Angle = float;
 using PerMetre = float;
 using Vector2 = glm::vec2;
 using Vector3 = glm::vec3;
+using Row = glm::vec4;
 using Profile = glm::vec2;
 using Position = glm::vec3;
 using Rgb = glm::vec3;
@@ -79,6 +82,7 @@ using Rgba = glm::vec4;
 #include <shaders/lib/bend.glsl>
 
 #include <shaders/lib/bendview.glsl>
+#include <shaders/lib/closeup.glsl>
 #include <shaders/lib/exaggeration.glsl>
 #include <shaders/lib/mapping.glsl>
 } // namespace glslf

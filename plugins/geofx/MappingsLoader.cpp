@@ -2,62 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsLoader.h"
 
-#include <osgGeoFX/mapping/ColorRampFile.h>
-#include <osgGeoFX/paging/Georeference.h>
-
-#include <osg/ImageStream>
 #include <osg/Math>
-#include <osgDB/Registry>
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
+#include <tuple>
 
 namespace osgGeoFX
 {
 
 namespace
 {
-
-/// Thrown with the whole sentence; it does not leave this file.
-struct Failure
-{
-    std::string sentence;
-};
-
-[[noreturn]] void fail(const ScenePlace& place, const std::string& text)
-{
-    throw Failure{place.message(text)};
-}
-
-osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file)
-{
-    std::string reason;
-    try
-    {
-        osgDB::ReaderWriter::ReadResult result = osgDB::Registry::instance()->readImage(file.path, nullptr);
-        osg::ref_ptr<osg::Image> image = result.getImage();
-        // A film has no pixels before it plays.
-        if (image && (image->valid() || dynamic_cast<osg::ImageStream*>(image.get()))) return image;
-        reason = image ? "it holds no pixels" : result.statusMessage();
-    }
-    catch (const std::exception& exception)
-    {
-        reason = exception.what();
-    }
-    fail(file.place, "the picture \"" + file.path + "\" cannot be read (" + reason +
-                         "); convert it to PNG, or put the folder of OSG's plugin for it on "
-                         "OSG_LIBRARY_PATH.");
-}
-
-void readTable(const SceneMappings::Table& table)
-{
-    std::string reason;
-    const osg::ref_ptr<ColorTable> read = ColorRampFile::read(table.file.path, table.range, reason);
-    if (!read) fail(table.file.place, reason);
-    table.table->setStops(read->getStops());
-    if (table.table->getNoDataColor() == osg::Vec4()) table.table->setNoDataColor(read->getNoDataColor());
-}
 
 /// Without a transfer of its own, a mapping shows its table, or its values from the lowest to the highest.
 void setTransfer(ProjectiveMapping& mapping, double lowest, double highest)
@@ -79,9 +34,9 @@ void setTransfer(ProjectiveMapping& mapping, double lowest, double highest)
 class Loader
 {
 public:
-    Loader(const SceneMappings& mappings, const EffectScene& node, const osg::Node& terrain)
-        : _mappings(mappings), _effect(*mappings.effect), _terrain(terrain),
-          _ellipsoid(node.ground().ellipsoid), _hasOrigin(mappings.hasOrigin)
+    Loader(const SceneMappings& mappings, SceneTerrain& terrain)
+        : _mappings(mappings), _effect(*mappings.effect), _terrain(terrain), _ellipsoid(terrain.ellipsoid()),
+          _hasOrigin(mappings.hasOrigin)
     {
     }
 
@@ -89,7 +44,7 @@ public:
     {
         for (const SceneMappings::Layer& layer : _mappings.layers)
             layer.layer->setImage(pictureOf(layer.file));
-        for (const SceneMappings::Table& table : _mappings.tables)
+        for (const SceneTable& table : _mappings.tables)
             readTable(table);
         for (const SceneMapping& mapping : _mappings.mappings)
         {
@@ -107,25 +62,6 @@ public:
     }
 
 private:
-    osg::Vec3d worldOf(const ScenePlace& place, double longitude, double latitude)
-    {
-        osg::Vec3d world;
-        const double x = osg::DegreesToRadians(longitude);
-        const double y = osg::DegreesToRadians(latitude);
-        if (_ellipsoid)
-        {
-            _ellipsoid->convertLatLongHeightToXYZ(y, x, 0.0, world.x(), world.y(), world.z());
-            return world;
-        }
-        std::string reason;
-        if (!_reference) _reference = Georeference::create(&_terrain, reason);
-        if (!_reference) fail(place, reason);
-        if (!_reference->toWorld(x, y, 0.0, world))
-            fail(place,
-                 "the place lies outside the terrain's projection; correct its longitude and latitude.");
-        return world;
-    }
-
     osg::Vec2d placeOf(const ScenePlace& place, const osg::Vec3d& world) const
     {
         if (_ellipsoid)
@@ -152,31 +88,15 @@ private:
             _effect.setOrigin(middle);
     }
 
-    void place(const SceneMapping& mapping, SceneMapping::Box box)
+    void place(const SceneMapping& mapping, SceneBox box)
     {
-        if (_ellipsoid)
-        {
-            const double furthest = std::max(std::abs(box.west), std::abs(box.east));
-            if (furthest > 360.0 || box.south < -90.0 || box.north > 90.0)
-                fail(mapping.place,
-                     "the terrain is a globe, and west, south, east and north are degrees; write "
-                     "longitudes from -180 to 180 and latitudes from -90 to 90.");
-            if (box.east < box.west) box.east += 360.0;
-        }
-        else if (box.east < box.west)
-        {
-            fail(mapping.place, "west must be less than east.");
-        }
+        _terrain.straighten(mapping.place, box);
         setOrigin({(box.west + box.east) / 2.0, (box.south + box.north) / 2.0});
         const osg::Vec2d edges[4] = {
             {box.west, box.south}, {box.east, box.south}, {box.east, box.north}, {box.west, box.north}};
         osg::Vec2d corners[4];
         for (int i = 0; i < 4; ++i)
-        {
-            const osg::Vec3d world =
-                _ellipsoid ? worldOf(mapping.place, edges[i].x(), edges[i].y()) : osg::Vec3d(edges[i], 0.0);
-            corners[i] = placeOf(mapping.place, world);
-        }
+            corners[i] = placeOf(mapping.place, _terrain.worldOfMap(mapping.place, edges[i]));
         if (!mapping.mapping->setQuad(corners))
             fail(mapping.place,
                  "its corners span no quadrilateral on the ground; keep its edges apart, and off "
@@ -185,7 +105,7 @@ private:
 
     void place(const SceneMapping& mapping, const SceneMapping::Point& point)
     {
-        const osg::Vec3d world = worldOf(mapping.place, point.longitude, point.latitude);
+        const osg::Vec3d world = _terrain.worldOf(mapping.place, point.longitude, point.latitude);
         setOrigin(_ellipsoid ? osg::Vec2d(point.longitude, point.latitude)
                              : osg::Vec2d(world.x(), world.y()));
         mapping.mapping->setCentre(placeOf(mapping.place, world));
@@ -198,12 +118,13 @@ private:
         request.options.kind = raster.kind;
         request.options.maxSide = raster.maxSide;
         request.hasOrigin = _hasOrigin;
-        request.frame.globe = _ellipsoid.valid();
+        request.frame = _terrain.frame();
         request.frame.longitude = _effect.getLongitude();
         request.frame.latitude = _effect.getLatitude();
         request.frame.origin = _effect.getOrigin();
-        if (!_ellipsoid) request.frame.wkt = wktOfTerrain();
-        ask(mapping.place, request);
+        const std::string fault =
+            SceneTerrain::ask(mapping.place, "mappingRaster", &request, "use a <layer> with a <mapping>");
+        if (!request.raster.layer) fail(mapping.place, fault);
         if (_ellipsoid)
             _effect.setGeodeticOrigin(request.frame.longitude, request.frame.latitude);
         else
@@ -216,60 +137,19 @@ private:
             setTransfer(*mapping.mapping, request.raster.lowest, request.raster.highest);
     }
 
-    std::string wktOfTerrain() const
-    {
-        class Finder : public osg::NodeVisitor
-        {
-        public:
-            Finder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
-            void apply(osg::CoordinateSystemNode& node) override { wkt = node.getCoordinateSystem(); }
-            std::string wkt;
-        };
-        Finder finder;
-        const_cast<osg::Node&>(_terrain).accept(finder);
-        return finder.wkt;
-    }
-
-    static void ask(const ScenePlace& place, MappingRasterRequest& request)
-    {
-        osgDB::ReaderWriter* data = osgDB::Registry::instance()->getReaderWriterForExtension("geofxdata");
-        if (!data)
-            fail(place,
-                 "rasters are brought to their places by the OSG plugin osgdb_geofxdata, which was not found "
-                 "or "
-                 "lacks its libraries (GDAL); put its folder on OSG_LIBRARY_PATH, or use a <layer> with a "
-                 "<mapping>.");
-        const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
-        options->setPluginStringData("version", GEOFX_VERSION);
-        options->setPluginData("request", &request);
-        const osgDB::ReaderWriter::ReadResult result = data->readObject("mappingRaster", options);
-        if (!request.raster.layer) fail(place, result.message());
-    }
-
     const SceneMappings& _mappings;
     ProjectiveMappings& _effect;
-    const osg::Node& _terrain;
-    osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
-    osg::ref_ptr<Georeference> _reference;
+    SceneTerrain& _terrain;
+    const osg::EllipsoidModel* _ellipsoid;
     bool _hasOrigin;
 };
 
 } // namespace
 
-bool loadMappings(const SceneFile& scene, const EffectScene& node, const osg::Node& terrain,
-                  std::string& error)
+void loadMappings(const SceneFile& scene, SceneTerrain& terrain)
 {
-    try
-    {
-        for (const SceneMappings& mappings : scene.mappings)
-            Loader(mappings, node, terrain).load();
-        return true;
-    }
-    catch (const Failure& failure)
-    {
-        error = failure.sentence;
-        return false;
-    }
+    for (const SceneMappings& mappings : scene.mappings)
+        Loader(mappings, terrain).load();
 }
 
 } // namespace osgGeoFX

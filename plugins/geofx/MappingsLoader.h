@@ -2,10 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include "SceneFile.h"
-
-#include <osgGeoFX/geodata/MappingRaster.h>
-#include <osgGeoFX/scene/EffectScene.h>
+#include "SceneLoading.h"
 
 namespace osgGeoFX
 {
@@ -20,9 +17,7 @@ struct MappingRasterRequest
     MappingRaster raster;
 };
 
-/** Gives the mappings of a scene what only files and the terrain know: pictures, tables, places. The terrain is a child
-    of the scene's node already. False, with a sentence in `error`. */
-bool loadMappings(const SceneFile& scene, const EffectScene& node, const osg::Node& terrain,
-                  std::string& error);
+/// Gives the mappings of a scene what only files and the terrain know: pictures, tables, places. Throws SceneFailure.
+void loadMappings(const SceneFile& scene, SceneTerrain& terrain);
 
 } // namespace osgGeoFX

@@ -2,29 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsReader.h"
 
+#include "SceneNames.h"
+
 #include <algorithm>
-#include <map>
 
 namespace osgGeoFX
 {
 
 namespace
 {
-
-/// What has a name in an effect.
-template<typename Class>
-using Named = std::map<std::string, osg::ref_ptr<Class>>;
-
-bool isGivenAny(xmlNode* node, const std::vector<const char*>& names)
-{
-    return std::any_of(names.begin(), names.end(), [&](const char* name) { return isGiven(node, name); });
-}
-
-osg::Vec4 colourOf(xmlNode* node, const char* name)
-{
-    const std::array<double, 4> rgba = SceneXml::colour(node, name);
-    return osg::Vec4(osg::Vec4d(rgba[0], rgba[1], rgba[2], rgba[3]));
-}
 
 class Reader
 {
@@ -40,7 +26,7 @@ public:
             if (kind == "layer")
                 readLayer(node);
             else if (kind == "colorTable")
-                readTable(node);
+                readTable(_xml, node, _tables, _result.tables);
             else if (kind == "transfer")
                 readTransfer(node);
             else
@@ -49,80 +35,20 @@ public:
     }
 
 private:
-    template<typename Class>
-    void add(xmlNode* node, Named<Class>& all, Class* object)
-    {
-        const std::string name = attributeOf(node, "name");
-        object->setName(name);
-        if (!all.emplace(name, object).second)
-            _xml.fail(node, "the name \"" + name + "\" stands twice; give one of them another name.");
-    }
-
-    /// What an attribute names; null, with an error, where there is no such thing, and null where it names nothing.
-    template<typename Class>
-    Class* named(xmlNode* node, const char* attribute, const Named<Class>& all, const char* element) const
-    {
-        const std::string name = attributeOf(node, attribute);
-        if (name.empty()) return nullptr;
-        const auto found = all.find(name);
-        if (found != all.end()) return found->second.get();
-        std::string names;
-        for (const auto& [each, object] : all)
-            names += (names.empty() ? "" : ", ") + each;
-        _xml.fail(node, std::string(attribute) + "=\"" + name + "\" names no <" + element +
-                            "> of this effect; expected: " +
-                            (names.empty() ? "nothing, there is none" : names) + ".");
-        return nullptr;
-    }
-
     void readLayer(xmlNode* node)
     {
         const osg::ref_ptr<DataLayer> layer = new DataLayer;
         _xml.set(*layer, node, {"name", "file", "noData"});
         if (isGiven(node, "noData")) layer->setNoData(SceneXml::real(node, "noData"));
-        add(node, _layers, layer.get());
+        addNamed(_xml, node, _layers, *layer);
         _result.layers.push_back({layer, _xml.path(node, "file")});
-    }
-
-    void readTable(xmlNode* node)
-    {
-        osg::ref_ptr<ColorTable> table = new ColorTable;
-        std::optional<std::pair<double, double>> range;
-        if (isGivenAny(node, {"low", "high"})) range.emplace(0.0, 1.0);
-        if (isGiven(node, "low")) range->first = SceneXml::real(node, "low");
-        if (isGiven(node, "high")) range->second = SceneXml::real(node, "high");
-        xmlNode* stop = SceneXml::child(node, "stop");
-        const int sources = isGiven(node, "ready") + isGiven(node, "file") + (stop != nullptr);
-        if (sources != 1)
-            _xml.fail(node, std::string(sources == 0 ? "nothing says what the colours are"
-                                                     : "too much says what the colours are") +
-                                "; expected: one of ready, file and <stop> elements.");
-        else if (range && stop)
-            _xml.fail(node, "low and high are of no use with <stop> elements; remove them.");
-        else if (range && !(range->first < range->second))
-            _xml.fail(node, "low must be less than high.");
-        else if (isGiven(node, "ready"))
-        {
-            const auto [low, high] = range.value_or(std::pair(0.0, 1.0));
-            table = ColorTable::named(attributeOf(node, "ready"), low, high);
-        }
-        ColorTable::Stops stops;
-        for (; stop; stop = SceneXml::next(stop->next, "stop"))
-            stops.push_back({SceneXml::real(stop, "value"), colourOf(stop, "colour")});
-        if (!stops.empty()) table->setStops(stops);
-        const std::vector<std::string> modes = {"linear", "nearest", "exact", "steps"};
-        const auto mode = std::find(modes.begin(), modes.end(), attributeOf(node, "mode"));
-        table->setMode(static_cast<ColorTable::Mode>(mode - modes.begin()));
-        table->setNoDataColor(colourOf(node, "noDataColour"));
-        add(node, _tables, table.get());
-        if (isGiven(node, "file")) _result.tables.push_back({table, _xml.path(node, "file"), range});
     }
 
     void readTransfer(xmlNode* node)
     {
         const osg::ref_ptr<ColorTransfer> transfer = new ColorTransfer;
         _xml.set(*transfer, node, {"name"});
-        add(node, _transfers, transfer.get());
+        addNamed(_xml, node, _transfers, *transfer);
     }
 
     void readMapping(xmlNode* node, bool isRaster)
@@ -134,10 +60,10 @@ private:
         _xml.set(mapping, node,
                  {"layer", "mask", "table", "transfer", "file", "kind", "maxSide", "west", "south", "east",
                   "north", "longitudeDegrees", "latitudeDegrees"});
-        mapping.setLayer(named(node, "layer", _layers, "layer"));
-        mapping.setMask(named(node, "mask", _layers, "layer"));
-        mapping.setTable(named(node, "table", _tables, "colorTable"));
-        if (ColorTransfer* transfer = named(node, "transfer", _transfers, "transfer"))
+        mapping.setLayer(findNamed(_xml, node, "layer", _layers, "layer"));
+        mapping.setMask(findNamed(_xml, node, "mask", _layers, "layer"));
+        mapping.setTable(findNamed(_xml, node, "table", _tables, "colorTable"));
+        if (ColorTransfer* transfer = findNamed(_xml, node, "transfer", _transfers, "transfer"))
             mapping.setTransfer(transfer);
         result.hasTransfer = isGiven(node, "transfer");
         if (isRaster)
@@ -181,11 +107,7 @@ private:
                 return _xml.fail(node,
                                  "west, south, east and north belong together and say all of the place; "
                                  "remove centreX, uX and the like, or the edges.");
-            const SceneMapping::Box box{SceneXml::real(node, "west"), SceneXml::real(node, "south"),
-                                        SceneXml::real(node, "east"), SceneXml::real(node, "north")};
-            if (!(box.south < box.north)) return _xml.fail(node, "south must be less than north.");
-            if (box.west == box.east) return _xml.fail(node, "west and east must differ.");
-            result.box = box;
+            result.box = _xml.box(node);
         }
         else if (has(angles))
         {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "SceneFile.h"
 
+#include "CloseUpsReader.h"
 #include "MappingsReader.h"
 #include "SceneXml.h"
 
@@ -94,6 +95,8 @@ private:
             scene.effects.push_back(effect);
             if (auto* mappings = dynamic_cast<ProjectiveMappings*>(effect.get()))
                 scene.mappings.push_back(readMappings(_xml, node, *mappings));
+            if (auto* closeUps = dynamic_cast<CloseUps*>(effect.get()))
+                scene.closeUps.push_back(readCloseUps(_xml, node, *closeUps));
         }
     }
 
@@ -146,11 +149,25 @@ std::vector<std::string> missingFiles(const SceneFile& scene)
     {
         for (const auto& [layer, file] : mappings.layers)
             paths.push_back(file);
-        for (const SceneMappings::Table& table : mappings.tables)
+        for (const SceneTable& table : mappings.tables)
             paths.push_back(table.file);
         for (const SceneMapping& mapping : mappings.mappings)
         {
             if (mapping.raster) paths.push_back(mapping.raster->file);
+        }
+    }
+    for (const SceneCloseUps& closeUps : scene.closeUps)
+    {
+        for (const SceneTable& table : closeUps.tables)
+            paths.push_back(table.file);
+        for (const SceneSurface& surface :
+             closeUps.surfaceData ? closeUps.surfaceData->surfaces : std::vector<SceneSurface>())
+        {
+            if (surface.source != SceneSurface::DERIVED) paths.push_back(surface.file);
+        }
+        for (const SceneCloseUp& closeUp : closeUps.closeUps)
+        {
+            if (closeUp.image) paths.push_back(*closeUp.image);
         }
     }
     std::vector<std::string> errors;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 
 #include <osg/ref_ptr>
@@ -72,14 +73,23 @@ struct SceneSun
     SceneColour colour{}, ambient{};
 };
 
+/// Degrees on a globe, else metres of the terrain's coordinate system.
+struct SceneBox
+{
+    double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
+};
+
+/// A colour table of a text file.
+struct SceneTable
+{
+    osg::ref_ptr<ColorTable> table; ///< with its mode
+    ScenePath file;
+    std::optional<std::pair<double, double>> range; ///< what percentages in it are of
+};
+
 /// A mapping, and what of it is known when the terrain and the files are there.
 struct SceneMapping
 {
-    /// Degrees on a globe, else metres of the terrain's coordinate system.
-    struct Box
-    {
-        double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
-    };
     /// Degrees.
     struct Point
     {
@@ -97,7 +107,7 @@ struct SceneMapping
     osg::ref_ptr<ProjectiveMapping> mapping;
     bool hasTransfer = false; ///< one of its own; without, the files decide
     // At most one of these; without, the mapping has its place already.
-    std::optional<Box> box;
+    std::optional<SceneBox> box;
     std::optional<Point> point;
     std::optional<Raster> raster;
 };
@@ -110,19 +120,64 @@ struct SceneMappings
         osg::ref_ptr<DataLayer> layer; ///< without its picture
         ScenePath file;
     };
-    /// A table of a text file.
-    struct Table
-    {
-        osg::ref_ptr<ColorTable> table; ///< with its mode
-        ScenePath file;
-        std::optional<std::pair<double, double>> range; ///< what percentages in it are of
-    };
-
     osg::ref_ptr<ProjectiveMappings> effect;
     bool hasOrigin = false;
     std::vector<Layer> layers;
-    std::vector<Table> tables;
+    std::vector<SceneTable> tables;
     std::vector<SceneMapping> mappings; ///< as many as the effect has, in the same order
+};
+
+/// A picture of surface data, or with DEM several.
+struct SceneSurface
+{
+    enum Source
+    {
+        DEM,
+        RASTER,
+        VECTORS,
+        DERIVED
+    };
+    Source source = DEM;
+    ScenePlace place;
+    std::string name;                            ///< not of DEM
+    SurfaceData::Kind kind = SurfaceData::COLOR; ///< of RASTER and DERIVED
+    ScenePath file;                              ///< not of DERIVED
+    double width = 0.0;                          ///< of VECTORS, metres
+    osg::Vec4 colour;                            ///< of VECTORS
+};
+
+struct SceneSurfaceData
+{
+    ScenePlace place;
+    std::optional<SceneBox> box; ///< without, all of the first surface, a DEM
+    int maxSide = 0;             ///< texels
+    double radius = 0.0;         ///< of what hides the sky, metres
+    std::vector<SceneSurface> surfaces;
+};
+
+/// A close-up, and what of it is known when the terrain and the files are there.
+struct SceneCloseUp
+{
+    ScenePlace place; ///< of its region
+    osg::ref_ptr<CloseUp> closeUp;
+    /// What the region's centre is said in.
+    enum Centre
+    {
+        NOTHING,
+        METRES,
+        DEGREES
+    };
+    Centre centre = NOTHING;
+    std::optional<ScenePath> image; ///< of its mask
+};
+
+/// An effect with close-ups. The close-ups are in the effect, with all that needs no file and no terrain.
+struct SceneCloseUps
+{
+    osg::ref_ptr<CloseUps> effect;
+    std::vector<SceneTable> tables;
+    std::optional<SceneSurfaceData> surfaceData;
+    std::vector<SceneCloseUp> closeUps; ///< as many as the effect has, in the same order
 };
 
 /** What a .geofx file says; data/geofx.xsd has the meaning, range and default of everything.
@@ -139,6 +194,7 @@ struct SceneFile
     std::optional<SceneColour> background;
     std::vector<osg::ref_ptr<Effect>> effects; ///< in their order
     std::vector<SceneMappings> mappings;       ///< of the effects among them that have mappings
+    std::vector<SceneCloseUps> closeUps;       ///< of the effects among them that have close-ups
 };
 
 /// A scene, or else at least one sentence of the form `FILE:LINE: <element>: what was expected`.

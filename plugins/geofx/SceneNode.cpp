@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "SceneNode.h"
 
+#include "CloseUpsLoader.h"
 #include "MappingsLoader.h"
 
 #include <osgGeoFX/paging/Georeference.h>
@@ -113,6 +114,24 @@ void addSun(osg::Group& group, const SceneSun& sun, const osg::Vec3d& direction)
     state->setAttributeAndModes(model);
 }
 
+/// Gives the effects what only files and the terrain know. False, with a sentence in `error`.
+bool loadEffects(const SceneFile& scene, const EffectScene& node, const osg::Node& terrain,
+                 std::string& error)
+{
+    try
+    {
+        SceneTerrain ground(node, terrain);
+        loadMappings(scene, ground);
+        loadCloseUps(scene, ground);
+        return true;
+    }
+    catch (const SceneFailure& failure)
+    {
+        error = failure.sentence;
+        return false;
+    }
+}
+
 } // namespace
 
 osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terrain, std::string& error)
@@ -132,7 +151,7 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
     }
     group->setName("osgGeoFX scene");
     group->addChild(terrain);
-    if (effects && !loadMappings(scene, *effects, *terrain, error)) return nullptr;
+    if (effects && !loadEffects(scene, *effects, *terrain, error)) return nullptr;
     if (scene.homeView)
     {
         const SceneView& view = *scene.homeView;

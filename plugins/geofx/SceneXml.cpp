@@ -93,6 +93,14 @@ std::vector<ScenePath> SceneXml::paths(xmlNode* parent, const char* name) const
     return result;
 }
 
+std::optional<SceneBox> SceneXml::box(xmlNode* node) const
+{
+    const SceneBox result{real(node, "west"), real(node, "south"), real(node, "east"), real(node, "north")};
+    if (result.south < result.north && result.west != result.east) return result;
+    fail(node, result.south < result.north ? "west and east must differ." : "south must be less than north.");
+    return std::nullopt;
+}
+
 void SceneXml::set(PropertyHolder& object, xmlNode* node, const std::vector<std::string>& but) const
 {
     PropertyHolder::Texts texts;
@@ -107,7 +115,7 @@ void SceneXml::set(PropertyHolder& object, xmlNode* node, const std::vector<std:
     if (!object.setPropertyTexts(texts, error)) fail(node, error);
     for (const PropertyHolder::Part& part : object.parts())
     {
-        if (xmlNode* below = child(node, part.name)) set(*part.object, below);
+        if (xmlNode* below = child(node, part.name)) set(*part.object, below, but);
     }
 }
 

@@ -37,7 +37,10 @@ public:
     ScenePath path(xmlNode* node, const char* attribute) const;
     std::vector<ScenePath> paths(xmlNode* parent, const char* name) const;
 
-    /// Sets the properties of an object and its parts from an element, but for the attributes named.
+    /// Of west, south, east and north, which are all there; nothing, with an error, where they span nothing.
+    std::optional<SceneBox> box(xmlNode* node) const;
+
+    /// Sets the properties of an object and its parts from an element and those in it, but for the attributes named.
     /// What the schema cannot say is found here: properties that do not fit each other.
     void set(PropertyHolder& object, xmlNode* node, const std::vector<std::string>& but = {}) const;
 

@@ -6,8 +6,10 @@
 #include "ProjectedGeoreference.h"
 #include "TerrainCache.h"
 
+#include <geofx/CloseUpsLoader.h>
 #include <geofx/MappingsLoader.h>
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/SurfaceRaster.h>
 
 #include <osg/ValueObject>
 #include <osgDB/Registry>
@@ -24,7 +26,8 @@ public:
         supportsOption("wkt", "for the object \"georeference\": the projected coordinate system, as WKT");
         supportsOption("rasters", "for the object \"terrain\": the rasters of a .geofx scene (plugin data)");
         supportsOption("request",
-                       "for the object \"mappingRaster\": a raster of a .geofx scene (plugin data)");
+                       "for the objects \"mappingRaster\" and \"surfaceData\": a raster of a .geofx scene "
+                       "(plugin data)");
         supportsOption("version", "for the objects of scenes: the version of the plugin that asks");
     }
 
@@ -35,6 +38,7 @@ public:
         if (name == "georeference") return georeference(options ? options->getPluginStringData("wkt") : "");
         if (name == "terrain" && options) return terrain(*options);
         if (name == "mappingRaster" && options) return mappingRaster(*options);
+        if (name == "surfaceData" && options) return surfaceData(*options);
         return ReadResult::FILE_NOT_HANDLED;
     }
 
@@ -86,6 +90,41 @@ private:
         if (!raster) return error;
         request->raster = *raster;
         return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult surfaceData(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<SurfaceRequest*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        request->done = addSurface(*request, *request->surface, error);
+        if (!request->done) return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    static bool addSurface(SurfaceRequest& request, const SceneSurface& surface, std::string& error)
+    {
+        const std::string& file = surface.file.path;
+        switch (surface.source)
+        {
+        case SceneSurface::RASTER:
+            return SurfaceRaster::addLayer(*request.data, surface.name, surface.kind, file, request.frame,
+                                           error, request.maxSide);
+        case SceneSurface::VECTORS:
+            return SurfaceRaster::addVectors(*request.data, surface.name, file, surface.width, surface.colour,
+                                             request.frame, error, request.maxSide);
+        case SceneSurface::DEM:
+        case SceneSurface::DERIVED:
+            break;
+        }
+        if (request.low == request.high && !MappingRaster::moveToMiddle(file, request.frame, error))
+            return false;
+        const SurfaceRaster::Options options{request.low, request.high, request.maxSide, request.radius};
+        const osg::ref_ptr<SurfaceData> data = SurfaceRaster::fromDem(file, request.frame, options, error);
+        if (data) request.data = data;
+        return data.valid();
     }
 };
 

@@ -131,6 +131,17 @@ bool parseExact(const std::string& text, double& value)
     return result.ec == std::errc() && result.ptr == end;
 }
 
+double readNumber(osgDB::InputStream& stream, const char* className)
+{
+    std::string text;
+    stream >> text;
+    double value = 0.0;
+    if (!stream.getException() && !parseExact(text, value))
+        OSG_WARN << "osgGeoFX: A file is wrong: " << className << " needs a number, not \"" << text
+                 << "\". It is taken as 0." << std::endl;
+    return value;
+}
+
 bool PropertiesSerializer::read(osgDB::InputStream& stream, osg::Object& object)
 {
     auto& holder = static_cast<PropertyHolder&>(object);

@@ -21,6 +21,8 @@ constexpr const char* serializerDomain = "osgGeoFX";
 std::string exactText(double value);
 /// The reverse; false where it is no number.
 bool parseExact(const std::string& text, double& value);
+/// The next number of a file; 0, with a warning that names the class, where it is none.
+double readNumber(osgDB::InputStream& stream, const char* className);
 
 /** Writes and reads all properties of an object.
 

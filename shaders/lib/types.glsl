@@ -15,6 +15,7 @@
 #define Vector2 vec2   // each component without a unit, a direction
 #define Profile vec2   // a point (s, h) of a profile, metres
 #define Vector3 vec3   // each component without a unit, a direction
+#define Row vec4       // of a 4 x 4 matrix
 #define Position vec3  // a point in eye space, metres
 #define Rgb vec3       // 0 to 1
 #define Rgba vec4      // 0 to 1

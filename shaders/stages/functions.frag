@@ -15,5 +15,6 @@ vec4 geofx_fragment(vec4 colour, vec4 map)
 {
     vec4 result = colour;
 GEOFX_COLOUR_CALLS
+GEOFX_FINISH_CALLS
     return result;
 }

@@ -24,9 +24,12 @@ vec4 geofx_vertex(vec4 eyePosition)
     located = (geofx_unplaced * vec4(located, 1.0)).xyz;
 #endif
 GEOFX_LOCATE_CALLS
-#ifdef GEOFX_DEFORMATION
     vec3 position = eyePosition.xyz / eyePosition.w;
+#ifdef GEOFX_DEFORMATION
 GEOFX_DEFORM_CALLS
+#endif
+GEOFX_MOVE_CALLS
+#ifdef GEOFX_DEFORMATION
     return vec4(position, 1.0);
 #else
     return eyePosition;

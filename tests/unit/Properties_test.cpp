@@ -2,22 +2,19 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Every property of every class, from the classes' own tables: a new class or property is in these tests by itself,
-// but for typed setters, whose test says which one it misses. What files do with properties: Serializers_test.cpp.
+// but for typed setters (TypedSetters.h), whose test says which one it misses. What files do with properties:
+// Serializers_test.cpp.
 #include <osgGeoFX/deformation/BlendedView.h>
-#include <osgGeoFX/deformation/VerticalExaggeration.h>
-#include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <tools/NotifyWatch.h>
 #include <tools/RandomSamples.h>
 #include <unit/PropertySamples.h>
+#include <unit/TypedSetters.h>
 
 #include <osg/CopyOp>
 
-#include <array>
 #include <cctype>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <map>
 #include <set>
 
 namespace
@@ -34,20 +31,17 @@ using geofx::test::otherValues;
 using geofx::test::PropertyRow;
 using geofx::test::Random;
 using geofx::test::sampleCount;
+using geofx::test::Typed;
+using geofx::test::TypedSetters;
+using geofx::test::typedSetters;
 using osgGeoFX::BirdsEyeView;
 using osgGeoFX::BlendedView;
-using osgGeoFX::ColorTransfer;
 using osgGeoFX::createEffect;
-using osgGeoFX::DataLayer;
 using osgGeoFX::Effect;
 using osgGeoFX::effectKinds;
-using osgGeoFX::PedestrianView;
 using osgGeoFX::PerspectiveBend;
-using osgGeoFX::ProjectiveMapping;
-using osgGeoFX::ProjectiveMappings;
 using osgGeoFX::Property;
 using osgGeoFX::PropertyHolder;
-using osgGeoFX::VerticalExaggeration;
 
 using Kind = Property::Kind;
 
@@ -178,305 +172,11 @@ TEST_P(EveryProperty, IsCloned)
     }
 }
 
-/// A typed setter and getter.
-struct Typed
-{
-    std::function<bool(PropertyHolder&, double)> set;
-    std::function<double(const PropertyHolder&)> get;
-};
-
-template<typename Class, typename Value>
-Typed typed(bool (Class::*setter)(Value), Value (Class::*getter)() const)
-{
-    return {[setter](PropertyHolder& holder, double value)
-            { return (static_cast<Class&>(holder).*setter)(static_cast<Value>(value)); },
-            [getter](const PropertyHolder& holder)
-            {
-                return static_cast<double>((static_cast<const Class&>(holder).*getter)());
-            }};
-}
-
-/// Of a setter for several values.
-template<typename Class>
-Typed typed(bool (*set)(Class&, double), double (*get)(const Class&))
-{
-    return {[set](PropertyHolder& holder, double value) { return set(static_cast<Class&>(holder), value); },
-            [get](const PropertyHolder& holder)
-            {
-                return get(static_cast<const Class&>(holder));
-            }};
-}
-
-/// Of a component of a value that is set as a whole.
-template<typename Class, typename Whole, typename Access>
-Typed component(bool (Class::*setter)(const Whole&), Whole (Class::*getter)() const, Access access)
-{
-    return {[=](PropertyHolder& holder, double value)
-            {
-                auto& object = static_cast<Class&>(holder);
-                Whole whole = (object.*getter)();
-                access(whole) = value;
-                return (object.*setter)(whole);
-            },
-            [=](const PropertyHolder& holder)
-            {
-                Whole whole = (static_cast<const Class&>(holder).*getter)();
-                return static_cast<double>(access(whole));
-            }};
-}
-
-/// Sets one of two values that have a setter in common.
-template<typename Class, bool (Class::*Set)(double, double), double (Class::*First)() const,
-         double (Class::*Second)() const>
-struct Two
-{
-    static bool setFirst(Class& object, double value) { return (object.*Set)(value, (object.*Second)()); }
-    static bool setSecond(Class& object, double value) { return (object.*Set)((object.*First)(), value); }
-    static Typed first()
-    {
-        return typed<Class>(&setFirst, [](const Class& c) { return (c.*First)(); });
-    }
-    static Typed second()
-    {
-        return typed<Class>(&setSecond, [](const Class& c) { return (c.*Second)(); });
-    }
-};
-
-using TypedSetters = std::map<std::string, Typed>;
-
-/// Of effects that deform; their names mean one thing in all classes.
-TypedSetters deformationSetters()
-{
-    using Bend = PerspectiveBend;
-    using Exaggeration = VerticalExaggeration;
-    return {
-        {"enabled", typed(&Effect::setEnabled, &Effect::getEnabled)},
-        {"curve", typed(&Bend::setCurve, &Bend::getCurve)},
-        {"planeElevation", typed(&Bend::setPlaneElevation, &Bend::getPlaneElevation)},
-        {"planeReference", typed(&Bend::setPlaneReference, &Bend::getPlaneReference)},
-        {"tallest", typed(&Bend::setTallest, &Bend::getTallest)},
-        {"transitionDetail", typed(&Bend::setTransitionDetail, &Bend::getTransitionDetail)},
-        {"contextDetail", typed(&Bend::setContextDetail, &Bend::getContextDetail)},
-        {"contextSaturation", typed(&Bend::setContextSaturation, &Bend::getContextSaturation)},
-        {"contextBrightness", typed(&Bend::setContextBrightness, &Bend::getContextBrightness)},
-        {"mapUnit", typed(&Bend::setMapUnit, &Bend::getMapUnit)},
-        {"focusLine", typed(&BirdsEyeView::setFocusLine, &BirdsEyeView::getFocusLine)},
-        {"horizonLine", typed(&BirdsEyeView::setHorizonLine, &BirdsEyeView::getHorizonLine)},
-        {"contextTilt", typed(&BirdsEyeView::setContextTilt, &BirdsEyeView::getContextTilt)},
-        {"bendAngle", typed(&PedestrianView::setBendAngle, &PedestrianView::getBendAngle)},
-        {"focusDistance", typed(&PedestrianView::setFocusDistance, &PedestrianView::getFocusDistance)},
-        {"zoneWidth", typed(&PedestrianView::setZoneWidth, &PedestrianView::getZoneWidth)},
-        {"lowHeight", typed(&BlendedView::setLowHeight, &BlendedView::getLowHeight)},
-        {"highHeight", typed(&BlendedView::setHighHeight, &BlendedView::getHighHeight)},
-        {"factor", typed(&Exaggeration::setFactor, &Exaggeration::getFactor)},
-        {"base", typed(&Exaggeration::setBase, &Exaggeration::getBase)},
-        {"relight", typed(&Exaggeration::setRelight, &Exaggeration::getRelight)},
-    };
-}
-
-TypedSetters mappingsSetters()
-{
-    using Self = ProjectiveMappings;
-    using Geodetic = Two<Self, &Self::setGeodeticOrigin, &Self::getLongitude, &Self::getLatitude>;
-    const auto unit = [](int which)
-    {
-        const auto units = [](const PropertyHolder& holder)
-        {
-            const auto& mappings = static_cast<const Self&>(holder);
-            return std::array<int, 3>{mappings.getDataUnit(), mappings.getLayerUnit(),
-                                      mappings.getTableUnit()};
-        };
-        return Typed{[=](PropertyHolder& holder, double value)
-                     {
-                         std::array<int, 3> all = units(holder);
-                         all[static_cast<std::size_t>(which)] = static_cast<int>(value);
-                         return static_cast<Self&>(holder).setUnits(all[0], all[1], all[2]);
-                     },
-                     [=](const PropertyHolder& holder)
-                     {
-                         return static_cast<double>(units(holder)[static_cast<std::size_t>(which)]);
-                     }};
-    };
-    return {
-        {"enabled", typed(&Effect::setEnabled, &Effect::getEnabled)},
-        {"originX", component(
-                        &Self::setOrigin, &Self::getOrigin, [](auto& v) -> auto& { return v.x(); })},
-        {"originY", component(
-                        &Self::setOrigin, &Self::getOrigin, [](auto& v) -> auto& { return v.y(); })},
-        {"longitude", Geodetic::first()},
-        {"latitude", Geodetic::second()},
-        {"opacity", typed(&Self::setOpacity, &Self::getOpacity)},
-        {"wholeList", typed(&Self::setWholeList, &Self::getWholeList)},
-        {"anisotropy", typed(&Self::setAnisotropy, &Self::getAnisotropy)},
-        {"linear", typed(&Self::setLinear, &Self::getLinear)},
-        {"dataUnit", unit(0)},
-        {"layerUnit", unit(1)},
-        {"tableUnit", unit(2)},
-        {"pageSide", typed(&Self::setPageSide, &Self::getPageSide)},
-        {"maxPages", typed(&Self::setMaxPages, &Self::getMaxPages)},
-        {"maxDataSize", typed(&Self::setMaxDataSize, &Self::getMaxDataSize)},
-    };
-}
-
-TypedSetters mappingSetters()
-{
-    using Self = ProjectiveMapping;
-    using Camera = Self::Camera;
-    const auto axis = [](bool second, int index)
-    {
-        return Typed{[=](PropertyHolder& holder, double value)
-                     {
-                         auto& mapping = static_cast<Self&>(holder);
-                         osg::Vec2d u = mapping.getU();
-                         osg::Vec2d v = mapping.getV();
-                         (second ? v : u)[index] = value;
-                         return mapping.setAxes(u, v);
-                     },
-                     [=](const PropertyHolder& holder)
-                     {
-                         const auto& mapping = static_cast<const Self&>(holder);
-                         return (second ? mapping.getV() : mapping.getU())[index];
-                     }};
-    };
-    const auto ofCamera = [](double Camera::*member)
-    {
-        return component(&Self::setCamera, &Self::getCamera,
-                         [=](Camera& camera) -> double& { return camera.*member; });
-    };
-    using Heights = Two<Self, &Self::setHeights, &Self::getLowest, &Self::getHighest>;
-    using Pixels = Two<Self, &Self::setPixels, &Self::getPixelsNone, &Self::getPixelsFull>;
-    using Slopes = Two<Self, &Self::setSlopes, &Self::getSlopeFull, &Self::getSlopeNone>;
-    TypedSetters all = {
-        {"enabled", typed(&Self::setEnabled, &Self::getEnabled)},
-        {"order", typed(&Self::setOrder, &Self::getOrder)},
-        {"opacity", typed(&Self::setOpacity, &Self::getOpacity)},
-        {"importance", typed(&Self::setImportance, &Self::getImportance)},
-        {"channels", typed(&Self::setChannels, &Self::getChannels)},
-        {"centreX", component(
-                        &Self::setCentre, &Self::getCentre, [](auto& v) -> auto& { return v.x(); })},
-        {"centreY", component(
-                        &Self::setCentre, &Self::getCentre, [](auto& v) -> auto& { return v.y(); })},
-        {"uX", axis(false, 0)},
-        {"uY", axis(false, 1)},
-        {"vX", axis(true, 0)},
-        {"vY", axis(true, 1)},
-        {"lowest", Heights::first()},
-        {"highest", Heights::second()},
-        {"nearest",
-         typed<Self>([](Self& m, double v) { return m.setDistances(v, m.getFarthest(), m.getSoftness()); },
-                     [](const Self& m) { return m.getNearest(); })},
-        {"farthest",
-         typed<Self>([](Self& m, double v) { return m.setDistances(m.getNearest(), v, m.getSoftness()); },
-                     [](const Self& m) { return m.getFarthest(); })},
-        {"softness",
-         typed<Self>([](Self& m, double v) { return m.setDistances(m.getNearest(), m.getFarthest(), v); },
-                     [](const Self& m) { return m.getSoftness(); })},
-        {"pixelsNone", Pixels::first()},
-        {"pixelsFull", Pixels::second()},
-        {"slopeFull", Slopes::first()},
-        {"slopeNone", Slopes::second()},
-        {"softEdges", typed(&Self::setSoftEdges, &Self::getSoftEdges)},
-        {"sizeInPixels", typed(&Self::setSizeInPixels, &Self::getSizeInPixels)},
-        {"turned", typed(&Self::setTurned, &Self::getTurned)},
-        {"projector", typed(&Self::setProjector, &Self::getProjector)},
-        {"height", typed(&Self::setHeight, &Self::getHeight)},
-        {"heading", ofCamera(&Camera::heading)},
-        {"pitch", ofCamera(&Camera::pitch)},
-        {"roll", ofCamera(&Camera::roll)},
-        {"fieldOfView", ofCamera(&Camera::fieldOfView)},
-        {"aspectRatio", ofCamera(&Camera::aspectRatio)},
-        {"k1", ofCamera(&Camera::k1)},
-        {"k2", ofCamera(&Camera::k2)},
-        {"k3", ofCamera(&Camera::k3)},
-        {"p1", ofCamera(&Camera::p1)},
-        {"p2", ofCamera(&Camera::p2)},
-        {"range", ofCamera(&Camera::range)},
-    };
-    for (int row = 0; row < 3; ++row)
-    {
-        for (int column = 0; column < 3; ++column)
-            all["m" + std::to_string(row) + std::to_string(column)] =
-                component(&Self::setTransform, &Self::getTransform,
-                          [=](glm::dmat3& m) -> double& { return m[column][row]; });
-    }
-    return all;
-}
-
-TypedSetters layerSetters()
-{
-    using Self = DataLayer;
-    return {
-        {"kind", typed(&Self::setKind, &Self::getKind)},
-        {"smooth", typed(&Self::setSmooth, &Self::getSmooth)},
-        {"sRgb", typed(&Self::setSRgb, &Self::getSRgb)},
-        {"hasNoData",
-         typed<Self>([](Self& layer, double value)
-                     { return value != 0.0 ? layer.setNoData(layer.getNoData()) : layer.clearNoData(); },
-                     [](const Self& layer) { return layer.getHasNoData() ? 1.0 : 0.0; })},
-        {"noData", typed(&Self::setNoData, &Self::getNoData)},
-        {"importance", typed(&Self::setImportance, &Self::getImportance)},
-    };
-}
-
-TypedSetters transferSetters()
-{
-    using Self = ColorTransfer;
-    using Range = Two<Self, &Self::setValueRange, &Self::getLowValue, &Self::getHighValue>;
-    using Ramp = Two<Self, &Self::setRamp, &Self::getRampLow, &Self::getRampHigh>;
-    TypedSetters all = {
-        {"source", typed(&Self::setSource, &Self::getSource)},
-        {"alpha", typed(&Self::setAlpha, &Self::getAlpha)},
-        {"sourceFactor",
-         typed<Self>([](Self& t, double v)
-                     { return t.setBlendFunction(static_cast<Self::Factor>(v), t.getDestinationFactor()); },
-                     [](const Self& t) { return static_cast<double>(t.getSourceFactor()); })},
-        {"destinationFactor",
-         typed<Self>([](Self& t, double v)
-                     { return t.setBlendFunction(t.getSourceFactor(), static_cast<Self::Factor>(v)); },
-                     [](const Self& t) { return static_cast<double>(t.getDestinationFactor()); })},
-        {"equation", typed(&Self::setEquation, &Self::getEquation)},
-        {"lowValue", Range::first()},
-        {"highValue", Range::second()},
-        {"rampLow", Ramp::first()},
-        {"rampHigh", Ramp::second()},
-        {"brightness", typed(&Self::setBrightness, &Self::getBrightness)},
-        {"contrast", typed(&Self::setContrast, &Self::getContrast)},
-        {"saturation", typed(&Self::setSaturation, &Self::getSaturation)},
-        {"hue", typed(&Self::setHue, &Self::getHue)},
-    };
-    const char* const parts[] = {"red", "green", "blue", "constantAlpha"};
-    for (int i = 0; i < 4; ++i)
-        all[parts[i]] =
-            component(&Self::setConstant, &Self::getConstant, [=](osg::Vec4d& v) -> double& { return v[i]; });
-    const char* const columns[] = {"FromRed", "FromGreen", "FromBlue", "Added"};
-    for (int row = 0; row < 3; ++row)
-    {
-        for (int column = 0; column < 4; ++column)
-            all[std::string(parts[row]) + columns[column]] = component(
-                &Self::setColorMatrix, &Self::getColorMatrix,
-                [=](Self::Matrix& m) -> double& { return m[static_cast<std::size_t>(row)][column]; });
-    }
-    return all;
-}
-
-const TypedSetters& typedSetters(const std::string& kind)
-{
-    static const TypedSetters deformations = deformationSetters();
-    static const std::map<std::string, TypedSetters> others = {
-        {"projectiveMappings", mappingsSetters()},
-        {"projectiveMapping", mappingSetters()},
-        {"dataLayer", layerSetters()},
-        {"colorTransfer", transferSetters()},
-    };
-    const auto found = others.find(kind);
-    return found == others.end() ? deformations : found->second;
-}
-
 TEST_P(EveryProperty, HasATypedSetterThatAgrees)
 {
     NotifyWatch watch;
     const TypedSetters& setters = typedSetters(GetParam().kind);
-    ASSERT_TRUE(setters.count(_property.name)) << "add its setter to this file's table";
+    ASSERT_TRUE(setters.count(_property.name)) << "add its setter to the tables in TypedSetters.h";
     const Typed& setter = setters.at(_property.name);
     EXPECT_EQ(setter.get(*_holder), _property.defaultValue);
     for (const double wanted : otherValues(GetParam()))

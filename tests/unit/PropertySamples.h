@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/EffectKinds.h>
 
@@ -20,7 +21,8 @@ namespace geofx::test
 inline std::vector<std::string> holderKinds()
 {
     std::vector<std::string> kinds = osgGeoFX::effectKinds();
-    kinds.insert(kinds.end(), {"projectiveMapping", "dataLayer", "colorTransfer"});
+    kinds.insert(kinds.end(), {"projectiveMapping", "dataLayer", "colorTransfer", "closeUp",
+                               "regionOfInterest", "anchor", "surfaceData"});
     return kinds;
 }
 
@@ -30,6 +32,10 @@ inline osg::ref_ptr<osgGeoFX::PropertyHolder> createHolder(const std::string& ki
     if (kind == "projectiveMapping") return new osgGeoFX::ProjectiveMapping;
     if (kind == "dataLayer") return new osgGeoFX::DataLayer;
     if (kind == "colorTransfer") return new osgGeoFX::ColorTransfer;
+    if (kind == "closeUp") return new osgGeoFX::CloseUp;
+    if (kind == "regionOfInterest") return new osgGeoFX::RegionOfInterest;
+    if (kind == "anchor") return new osgGeoFX::Anchor;
+    if (kind == "surfaceData") return new osgGeoFX::SurfaceData;
     return osgGeoFX::createEffect(kind);
 }
 

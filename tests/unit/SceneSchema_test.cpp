@@ -210,20 +210,23 @@ TEST_F(SceneSchema, HasThePropertiesOfEachEffect)
     }
 }
 
-/// An element of <projectiveMappings>: its type in the schema, the class behind it, and the properties that it says in
-/// another way.
-struct MappingElement
+/// An element of <projectiveMappings> or <closeUps>: its type in the schema, the class behind it, and the properties that it
+/// says in another way.
+struct PartElement
 {
     const char* type;
     const char* kind;
     std::set<std::string> missing;
 };
 
-const std::vector<MappingElement>& mappingElements()
+const std::vector<PartElement>& partElements()
 {
-    static const std::vector<MappingElement> all = {
+    static const std::vector<PartElement> all = {
         {"MappingLayer", "dataLayer", {"hasNoData"}},
         {"ColorTransfer", "colorTransfer", {}},
+        {"CloseUp", "closeUp", {}},
+        {"Region", "regionOfInterest", {}},
+        {"Anchor", "anchor", {}},
         {"Mapping", "projectiveMapping", {}},
         {"MappingRaster",
          "projectiveMapping",
@@ -235,9 +238,9 @@ const std::vector<MappingElement>& mappingElements()
     return all;
 }
 
-TEST_F(SceneSchema, HasThePropertiesOfWhatMappingsAreMadeOf)
+TEST_F(SceneSchema, HasThePropertiesOfWhatEffectsAreMadeOf)
 {
-    for (const MappingElement& element : mappingElements())
+    for (const PartElement& element : partElements())
     {
         const XmlNode* type = named("xs:complexType", element.type);
         ASSERT_TRUE(type) << element.type;
@@ -267,10 +270,26 @@ TEST_F(SceneSchema, HasThePropertiesOfWhatMappingsAreMadeOf)
             expectAttribute(*attribute, *property);
         }
         EXPECT_EQ(found, expected) << element.type;
+        // Parts are elements in the element.
+        std::set<std::string> parts;
+        for (const osgGeoFX::PropertyHolder::Part& part : holder->parts())
+            if (std::string(part.name) != "transfer") parts.insert(part.name);
+        std::set<std::string> elements;
+        for (const auto& [name, typeName] : elementsOf(element.type, "xs:all"))
+            elements.insert(name);
+        EXPECT_EQ(elements, parts) << element.type;
     }
 }
 
-/// A scene with one element of a class, on line 2: an effect, or what mappings are made of.
+/// The classes that elements are of. Surface data is not: an element says its place by its edges or its files.
+std::vector<std::string> elementKinds()
+{
+    std::vector<std::string> kinds = geofx::test::holderKinds();
+    kinds.erase(std::remove(kinds.begin(), kinds.end(), "surfaceData"), kinds.end());
+    return kinds;
+}
+
+/// A scene with one element of a class, on line 2: an effect, or what mappings and close-ups are made of.
 SceneResult sceneOf(const std::string& kind, const std::string& settings = {})
 {
     std::string effects = "\n<" + kind + settings + "/>";
@@ -281,6 +300,10 @@ SceneResult sceneOf(const std::string& kind, const std::string& settings = {})
     if (kind == "colorTransfer")
         effects = "<projectiveMappings>\n<transfer name='a'" + settings +
                   "/><mapping transfer='a'/></projectiveMappings>";
+    if (kind == "closeUp") effects = "<closeUps>\n<closeUp" + settings + "/></closeUps>";
+    if (kind == "regionOfInterest")
+        effects = "<closeUps><closeUp>\n<region" + settings + "/></closeUp></closeUps>";
+    if (kind == "anchor") effects = "<closeUps><closeUp>\n<anchor" + settings + "/></closeUp></closeUps>";
     return parseScene("<geofx version='1'><terrain><database file='a'/></terrain><effects>" + effects +
                           "</effects></geofx>",
                       "x.geofx", "/");
@@ -295,6 +318,13 @@ std::string setting(const Property& property, const std::string& value)
 osgGeoFX::PropertyHolder& objectOf(const osgGeoFX::SceneFile& scene, const std::string& kind)
 {
     if (createEffect(kind)) return *scene.effects.at(0);
+    if (!scene.closeUps.empty())
+    {
+        osgGeoFX::CloseUp& closeUp = *scene.closeUps[0].closeUps.at(0).closeUp;
+        if (kind == "regionOfInterest") return *closeUp.getRegion();
+        if (kind == "anchor") return *closeUp.getAnchor();
+        return closeUp;
+    }
     const osgGeoFX::SceneMappings& mappings = scene.mappings.at(0);
     if (kind == "dataLayer") return *mappings.layers.at(0).layer;
     if (kind == "colorTransfer") return *mappings.mappings.at(0).mapping->getTransfer();
@@ -303,7 +333,7 @@ osgGeoFX::PropertyHolder& objectOf(const osgGeoFX::SceneFile& scene, const std::
 
 TEST(SceneEffects, HaveTheDefaultsOfTheirClasses)
 {
-    for (const std::string& kind : geofx::test::holderKinds())
+    for (const std::string& kind : elementKinds())
     {
         const SceneResult result = sceneOf(kind);
         ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
@@ -316,10 +346,13 @@ TEST(SceneEffects, TakeWhatTheTableTakesAndNameTheRest)
 {
     for (const geofx::test::PropertyRow& row : geofx::test::allProperties())
     {
-        if (row.name == "hasNoData") continue;
+        if (row.name == "hasNoData" || row.kind == "surfaceData") continue;
         SCOPED_TRACE(row.kind + "." + row.name);
         const Property& property = row.property();
         std::string before;
+        // Longitude and latitude belong together.
+        if (row.kind == "regionOfInterest" && row.name == "longitude") before = " latitudeDegrees='1'";
+        if (row.kind == "regionOfInterest" && row.name == "latitude") before = " longitudeDegrees='1'";
         const auto companion = geofx::test::companions().find(row.name);
         if (companion != geofx::test::companions().end())
         {

@@ -5,20 +5,23 @@
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <tools/RandomSamples.h>
 #include <unit/SerializerFixture.h>
+#include <unit/SerializerSamples.h>
 
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <set>
 
 namespace
 {
 
 using geofx::test::alter;
+using geofx::test::byteImage;
 using geofx::test::contentOf;
 using geofx::test::expectSame;
+using geofx::test::expectSameImage;
+using geofx::test::expectSameTable;
+using geofx::test::floatImage;
 using geofx::test::formats;
-using geofx::test::Random;
+using geofx::test::sampleTable;
 using osgGeoFX::ColorTable;
 using osgGeoFX::ColorTransfer;
 using osgGeoFX::DataLayer;
@@ -26,80 +29,12 @@ using osgGeoFX::ProjectiveMapping;
 using osgGeoFX::ProjectiveMappings;
 using SerializersMappings = geofx::test::Serializers;
 
-osg::ref_ptr<osg::Image> byteImage()
-{
-    osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(5, 3, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    for (unsigned int i = 0; i < image->getTotalSizeInBytes(); ++i)
-        image->data()[i] = static_cast<unsigned char>(i * 37);
-    return image;
-}
-
-osg::ref_ptr<osg::Image> floatImage()
-{
-    osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(4, 2, 1, GL_RED, GL_FLOAT);
-    auto* values = reinterpret_cast<float*>(image->data());
-    for (int i = 0; i < 8; ++i)
-        values[i] = static_cast<float>(i) / 3.0f - 1e6f;
-    values[3] = std::numeric_limits<float>::quiet_NaN();
-    values[4] = -0.0f;
-    return image;
-}
-
-osg::ref_ptr<ColorTable> sampleTable(int seed)
-{
-    Random random(static_cast<std::uint64_t>(seed));
-    osg::ref_ptr<ColorTable> table = new ColorTable;
-    table->setMode(static_cast<ColorTable::Mode>(seed % 4));
-    const auto color = [&]
-    {
-        osg::Vec4 result;
-        for (int i = 0; i < 4; ++i)
-            result[i] = static_cast<float>(random.uniform(0.0, 1.0));
-        return result;
-    };
-    for (int i = seed % 7; i > 0; --i)
-    {
-        const double value = random.uniform(-1e4, 1e4) * random.logarithmic(1e-9, 1e3);
-        table->addStop(value, color());
-        // A jump.
-        if (i % 2 == 0) table->addStop(value, color());
-    }
-    if (seed % 3 != 0) table->setNoDataColor(color());
-    return table;
-}
-
-void expectSameTable(const ColorTable* actual, const ColorTable* expected)
-{
-    ASSERT_EQ(!actual, !expected);
-    if (!expected) return;
-    EXPECT_EQ(actual->getName(), expected->getName());
-    EXPECT_EQ(actual->getMode(), expected->getMode());
-    EXPECT_EQ(actual->getNoDataColor(), expected->getNoDataColor());
-    ASSERT_EQ(actual->getStops().size(), expected->getStops().size());
-    for (std::size_t i = 0; i < expected->getStops().size(); ++i)
-    {
-        EXPECT_EQ(actual->getStops()[i].value, expected->getStops()[i].value);
-        EXPECT_EQ(actual->getStops()[i].color, expected->getStops()[i].color);
-    }
-}
-
 void expectSameLayer(DataLayer* actual, DataLayer* expected)
 {
     ASSERT_EQ(!actual, !expected);
     if (!expected) return;
     expectSame(*actual, *expected);
-    const osg::Image* image = actual->getImage();
-    const osg::Image* other = expected->getImage();
-    ASSERT_EQ(!image, !other);
-    if (!other) return;
-    EXPECT_EQ(image->s(), other->s());
-    EXPECT_EQ(image->t(), other->t());
-    EXPECT_EQ(image->getPixelFormat(), other->getPixelFormat());
-    EXPECT_EQ(image->getDataType(), other->getDataType());
-    ASSERT_EQ(image->getTotalSizeInBytes(), other->getTotalSizeInBytes());
-    EXPECT_EQ(std::memcmp(image->data(), other->data(), other->getTotalSizeInBytes()), 0);
+    expectSameImage(actual->getImage(), expected->getImage());
 }
 
 void expectSameMapping(ProjectiveMapping& actual, ProjectiveMapping& expected)

@@ -17,6 +17,7 @@
 #include <iterator>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 
 using geofx::test::Random;
@@ -43,8 +44,10 @@ std::string errorOf(const std::function<void()>& action)
 
 void expectAccepted(const geofx::test::ProgramResult& result)
 {
-    EXPECT_EQ(result.exitCode, 0) << result.standardOutput << result.standardError;
-    EXPECT_EQ(result.standardOutput.find("WARNING"), std::string::npos) << result.standardOutput;
+    // The validator says the same thing of each line that follows from a wrong one.
+    const std::string said = (result.standardOutput + result.standardError).substr(0, 2000);
+    EXPECT_EQ(result.exitCode, 0) << said;
+    EXPECT_EQ(result.standardOutput.find("WARNING"), std::string::npos) << said;
 }
 
 /// The names of the defines that a shader takes from OSG.
@@ -76,11 +79,37 @@ std::string withDefines(const std::string& text, const std::map<std::string, std
     return text.substr(0, end) + lines + text.substr(end);
 }
 
+const char* endingOf(osg::Shader::Type stage)
+{
+    switch (stage)
+    {
+    case osg::Shader::GEOMETRY:
+        return ".geom";
+    case osg::Shader::TESSCONTROL:
+        return ".tesc";
+    case osg::Shader::TESSEVALUATION:
+        return ".tese";
+    case osg::Shader::VERTEX:
+        return ".vert";
+    default:
+        return ".frag";
+    }
+}
+
+/// The text of a stage in a version in which the validator knows the compatibility profile's variables in it.
+std::string validatorsText(const osg::Shader& shader)
+{
+    const std::string version = "#version 330 compatibility";
+    std::string text = shader.getShaderSource();
+    if (shader.getType() == osg::Shader::GEOMETRY && text.rfind(version, 0) == 0)
+        text.replace(0, version.size(), "#version 400 compatibility");
+    return text;
+}
+
 /// Compiles all shaders of a program, each as a unit, with a share of their defines set. The validator cannot link
 /// several units that use the compatibility profile's own variables; drivers do that in the tests with OpenGL.
-void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random, double share)
+void expectProgramAccepted(const osg::Program* program, Random& random, double share)
 {
-    const osg::ref_ptr<osg::Program> program = EffectProgram::create(effects);
     ASSERT_TRUE(program);
     // The stages share their defines.
     std::map<std::string, std::string> defines;
@@ -97,9 +126,8 @@ void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random
     for (unsigned int i = 0; i < program->getNumShaders(); ++i)
     {
         const osg::Shader& shader = *program->getShader(i);
-        const std::string name =
-            "unit" + std::to_string(i) + (shader.getType() == osg::Shader::VERTEX ? ".vert" : ".frag");
-        folder.write(name, withDefines(shader.getShaderSource(), defines));
+        const std::string name = "unit" + std::to_string(i) + endingOf(shader.getType());
+        folder.write(name, withDefines(validatorsText(shader), defines));
         arguments.push_back((std::filesystem::path(folder.path()) / name).string());
     }
     std::string set;
@@ -107,6 +135,29 @@ void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random
         set.append(name).append("=").append(value).append(" ");
     SCOPED_TRACE(set);
     expectAccepted(geofx::test::runProgram(arguments));
+}
+
+void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random, double share)
+{
+    expectProgramAccepted(EffectProgram::create(effects), random, share);
+}
+
+/// What CloseUps draws with: triangles as they are, copied into layers, divided and copied, and anchors' walls and lines.
+std::vector<osgGeoFX::PassShaders> closeUpPasses()
+{
+    osgGeoFX::PassShaders plain;
+    plain.vertex = {"stages/closeup.items.glsl", "stages/closeup.vert.glsl"};
+    plain.fragment = {"stages/closeup.items.glsl", "stages/closeup.frag.glsl"};
+    plain.blocks = {{"Items", 7}};
+    osgGeoFX::PassShaders amplifying = plain;
+    amplifying.geometry = {"stages/closeup.items.glsl", "stages/closeup.geom.glsl"};
+    osgGeoFX::PassShaders tessellating = amplifying;
+    tessellating.tessellationControl = {"stages/closeup.items.glsl", "stages/closeup.tesc.glsl"};
+    tessellating.tessellationEvaluation = {"stages/closeup.tese.glsl"};
+    osgGeoFX::PassShaders fence = plain;
+    fence.vertexMain = "stages/closeup.fence.vert";
+    fence.fragmentMain = "stages/closeup.fence.frag";
+    return {plain, amplifying, tessellating, fence};
 }
 
 std::string readFile(const std::filesystem::path& path)
@@ -291,6 +342,68 @@ TEST(ShaderLibrary, ThePutTogetherStagesAreAcceptedByGlslangValidator)
             expectProgramAccepted(effects, random, 0.5);
         }
     }
+}
+
+TEST(ShaderLibrary, EveryStageOfCloseUpsIsInAPass)
+{
+    std::set<std::string> used = {"stages/closeup.layer.vert", "stages/closeup.layer.frag"};
+    for (const osgGeoFX::PassShaders& pass : closeUpPasses())
+    {
+        for (const auto& files : {pass.vertex, pass.geometry, pass.fragment, pass.tessellationControl,
+                                  pass.tessellationEvaluation})
+            used.insert(files.begin(), files.end());
+        used.insert({pass.vertexMain, pass.fragmentMain});
+    }
+    for (const std::string& name : ShaderLibrary::files())
+    {
+        const bool isOne = name.rfind("stages/closeup.", 0) == 0;
+        EXPECT_TRUE(!isOne || used.count(name) == 1) << name;
+    }
+}
+
+TEST(ShaderLibrary, ThePassesOfCloseUpsAreAcceptedWithAnyDefines)
+{
+    // Alone, behind and before others, and with another one of its kind.
+    const std::vector<std::vector<std::string>> lists = {
+        {"closeUps"},
+        {"birdsEyeView", "closeUps", "projectiveMappings"},
+        {"projectiveMappings", "verticalExaggeration", "pedestrianView", "closeUps", "closeUps"},
+    };
+    const int samples = geofx::test::fullTest() ? 50 : 3;
+    for (const std::vector<std::string>& kinds : lists)
+    {
+        EffectProgram::Effects effects;
+        std::string prefix;
+        for (const std::string& kind : kinds)
+        {
+            if (kind == "closeUps") prefix = EffectProgram::prefix(effects.size());
+            effects.push_back(osgGeoFX::createEffect(kind));
+        }
+        for (std::size_t pass = 0; pass < closeUpPasses().size(); ++pass)
+        {
+            SCOPED_TRACE(kinds.front() + " " + std::to_string(pass));
+            Random random(pass);
+            for (int sample = 0; sample < samples; ++sample)
+            {
+                // None, all, and by chance.
+                const double share = sample < 2 ? sample : random.uniform(0.0, 1.0);
+                expectProgramAccepted(EffectProgram::create(effects, closeUpPasses()[pass], prefix), random,
+                                      share);
+                if (HasFailure()) return;
+            }
+        }
+    }
+}
+
+TEST(ShaderLibrary, TheStagesThatShowLayersAreAccepted)
+{
+    const ShaderLibrary library{std::filesystem::path()};
+    const osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->addShader(library.createShader(osg::Shader::VERTEX, "stages/closeup.layer.vert"));
+    program->addShader(library.createShader(osg::Shader::FRAGMENT, "stages/closeup.layer.frag"));
+    Random random(0);
+    expectProgramAccepted(program, random, 1.0);
+    expectProgramAccepted(program, random, 0.0);
 }
 
 TEST(ShaderLibrary, TheFixedStagesAreAcceptedWithAnyDefines)

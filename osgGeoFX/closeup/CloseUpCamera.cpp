@@ -1,0 +1,591 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/closeup/CloseUpCamera.h>
+
+#include <osgGeoFX/closeup/LiftFrame.h>
+#include <osgGeoFX/scene/GlobeFrame.h>
+#include <osgGeoFX/scene/ShaderLibrary.h>
+
+#include <osg/BlendFunc>
+#include <osg/GLExtensions>
+#include <osg/LineWidth>
+#include <osg/Notify>
+#include <osg/PatchParameter>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// As many layers as any GPU with OpenGL 3 has.
+constexpr int layersOfAll = 256;
+/// Items that the geometry stage takes at once: more would be more vertices than some GPUs hand out.
+constexpr std::size_t groupSize = 3;
+
+/// Texels of a mask, and pixels, that a part of an edge spans where tessellation has its way.
+constexpr float texelsOfPart = 1.0f, pixelsOfPart = 6.0f;
+
+PassShaders plainShaders(unsigned int binding)
+{
+    PassShaders shaders;
+    shaders.vertex = {"stages/closeup.items.glsl", "stages/closeup.vert.glsl"};
+    shaders.fragment = {"stages/closeup.items.glsl", "stages/closeup.frag.glsl"};
+    shaders.blocks = {{"Items", binding}};
+    return shaders;
+}
+
+PassShaders amplifyingShaders(unsigned int binding, bool tessellated)
+{
+    PassShaders shaders = plainShaders(binding);
+    shaders.geometry = {"stages/closeup.items.glsl", "stages/closeup.geom.glsl"};
+    if (tessellated)
+    {
+        shaders.tessellationControl = {"stages/closeup.items.glsl", "stages/closeup.tesc.glsl"};
+        shaders.tessellationEvaluation = {"stages/closeup.tese.glsl"};
+    }
+    return shaders;
+}
+
+PassShaders fenceShaders(unsigned int binding)
+{
+    PassShaders shaders = plainShaders(binding);
+    shaders.vertexMain = "stages/closeup.fence.vert";
+    shaders.fragmentMain = "stages/closeup.fence.frag";
+    return shaders;
+}
+
+/// What the context can do; null where it has not drawn yet.
+const osg::GLExtensions* extensionsOf(osgUtil::CullVisitor& outer)
+{
+    const osg::State* state = outer.getRenderInfo().getState();
+    return state ? osg::GLExtensions::Get(state->getContextID(), false) : nullptr;
+}
+
+/// Where OSG's own culling is off, all that there is is drawn for all regions.
+bool culls(const ScenePass& pass)
+{
+    return pass.compensate && (pass.outer.getCullingMode() & osg::CullSettings::VIEW_FRUSTUM_CULLING) != 0;
+}
+
+unsigned int stampNumber(osgUtil::CullVisitor& outer)
+{
+    return outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
+}
+
+bool tessellates(osgUtil::CullVisitor& outer)
+{
+    const osg::GLExtensions* extensions = extensionsOf(outer);
+    return extensions && extensions->glVersion >= 4.0f;
+}
+
+/// Layers that one texture array may have here.
+int gpuLayers(osgUtil::CullVisitor& outer)
+{
+    const osg::GLExtensions* extensions = extensionsOf(outer);
+    return extensions && extensions->maxLayerCount > 0 ? extensions->maxLayerCount : layersOfAll;
+}
+
+osg::ref_ptr<osg::Program> createLayerProgram()
+{
+    try
+    {
+        const ShaderLibrary library;
+        osg::ref_ptr<osg::Program> program = new osg::Program;
+        program->setName("osgGeoFX layer");
+        program->addShader(library.createShader(osg::Shader::VERTEX, "stages/closeup.layer.vert"));
+        program->addShader(library.createShader(osg::Shader::FRAGMENT, "stages/closeup.layer.frag"));
+        return program;
+    }
+    catch (const ShaderError& error)
+    {
+        OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
+        return nullptr;
+    }
+}
+
+/// The sun's direction in the frame of the surface data; x east, y north, z up, as good as the region's there.
+osg::Vec3d sunOf(const CloseUp& closeUp)
+{
+    const double azimuth = closeUp.getSunAzimuth() + closeUp.getRegion()->getHeading();
+    const double level = std::cos(closeUp.getSunElevation());
+    return {level * std::sin(azimuth), level * std::cos(azimuth), std::sin(closeUp.getSunElevation())};
+}
+
+} // namespace
+
+bool CloseUpCamera::singleIsCheaper() const
+{
+    // The geometry stage costs more than another pass over a few drawables, unless several passes would draw the same ones.
+    constexpr double worthIt = 1.8;
+    const bool magnified =
+        std::any_of(_items.begin(), _items.end(),
+                    [](const CloseUpItem& item)
+                    { return std::max(item.closeUp().getScaleX(), item.closeUp().getScaleY()) > 1.0; });
+    return _sharing >= worthIt && !(_levels && magnified);
+}
+
+void CloseUpCamera::setUp(const ScenePass& pass, const Task& task, std::size_t items)
+{
+    Traversal& now = *_now;
+    now.values.resize(items);
+    now.fences.resize(items);
+    osg::StateSet& base = *now.base;
+    const auto forced =
+        osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
+    // A layer has the nearest fragment; how it mixes with the picture is decided when the layer is shown.
+    base.setMode(GL_BLEND, forced);
+    const std::string& prefix = pass.prefix;
+    const char* const names[3] = {"masks", "tables", "surfaces"};
+    osg::Texture* const textures[3] = {task.textures.masks, task.textures.tables, task.textures.surfaces};
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        base.setTextureAttribute(static_cast<unsigned int>(task.units[i]), textures[i]);
+        base.getOrCreateUniform(prefix + names[i], osg::Uniform::INT)->set(task.units[i]);
+    }
+    base.getOrCreateUniform(prefix + "quality", osg::Uniform::FLOAT_VEC4)
+        ->set(osg::Vec4(static_cast<float>(task.samples), static_cast<float>(task.textures.normalLayer),
+                        static_cast<float>(CloseUpTextures::tableWidth), 0.0f));
+    base.getOrCreateUniform(prefix + "only", osg::Uniform::INT)->set(-1);
+    if (_tessellated)
+    {
+        const double pixels = pass.outer.getViewport()->height() * pass.view.projection(1, 1) / 2.0;
+        const double roundness = std::accumulate(_items.begin(), _items.end(), 0.0,
+                                                 [](double most, const CloseUpItem& item)
+                                                 { return std::max(most, item.closeUp().getRoundness()); });
+        base.setAttribute(new osg::PatchParameter(3));
+        base.getOrCreateUniform(prefix + "fineness", osg::Uniform::FLOAT_VEC4)
+            ->set(osg::Vec4(static_cast<float>(task.tessellation), texelsOfPart, pixelsOfPart,
+                            static_cast<float>(pixels)));
+        base.getOrCreateUniform(prefix + "roundness", osg::Uniform::FLOAT)
+            ->set(static_cast<float>(roundness));
+    }
+    // Code that nothing needs is not compiled: some GPUs run through all branches.
+    const auto define = [&](const char* name, bool needed)
+    {
+        base.setDefine(prefix + name, needed ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
+    };
+    define("DATA", task.data != nullptr);
+    define("ROUND", task.data && pass.view.ground.ellipsoid);
+    osg::Vec4d globe, curve, area;
+    osg::Matrixd toSurface;
+    if (const SurfaceData* data = task.data)
+    {
+        const osg::EllipsoidModel* ellipsoid = pass.view.ground.ellipsoid;
+        toSurface = osg::Matrixd::inverse(data->frameToWorld(ellipsoid) * *pass.outer.getModelViewMatrix());
+        const osg::Vec2d size = data->getHigh() - data->getLow();
+        area.set(data->getLow().x(), data->getLow().y(), 1.0 / size.x(), 1.0 / size.y());
+        if (ellipsoid)
+        {
+            glsl::geofx_Exaggeration frame{};
+            setGlobe(frame, *ellipsoid, std::sin(data->getLatitude()));
+            globe.set(0.0, std::cos(data->getLatitude()), std::sin(data->getLatitude()), frame.flattening);
+            curve.set(frame.curvature, frame.scale, 0.0, 0.0);
+        }
+    }
+    base.getOrCreateUniform(prefix + "toSurface", osg::Uniform::FLOAT_MAT4)->set(osg::Matrixf(toSurface));
+    base.getOrCreateUniform(prefix + "globe", osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(globe));
+    base.getOrCreateUniform(prefix + "curve", osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(curve));
+    base.getOrCreateUniform(prefix + "surfaceArea", osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(area));
+}
+
+CompensatingCullVisitor::Task CloseUpCamera::passTask(const ScenePass& pass, const Task&) const
+{
+    CompensatingCullVisitor::Task result;
+    result.chain = &pass.chain;
+    result.state = &pass.state;
+    result.untouched = &pass.untouched;
+    result.mapUnit = pass.mapUnit;
+    result.compensate = true;
+    result.tileError = pass.tileError;
+    result.passState = _now->base;
+    return result;
+}
+
+osg::StateSet* CloseUpCamera::groupState(const ScenePass& pass, const Task& task,
+                                         const std::vector<std::size_t>& group)
+{
+    osg::ref_ptr<osg::StateSet>& state = _now->groups[group];
+    if (!state)
+    {
+        state = new osg::StateSet;
+        int targets[4] = {0, 0, 0, static_cast<int>(group.size())};
+        for (std::size_t i = 0; i < group.size(); ++i)
+            targets[i] = CloseUpItems::placeInBlock(group[i]);
+        state->getOrCreateUniform(pass.prefix + "targets", osg::Uniform::INT_VEC4)
+            ->set(targets[0], targets[1], targets[2], targets[3]);
+        state->setAttribute(_now->values.binding(CloseUpItems::blockOf(group.front()), task.binding));
+    }
+    return state;
+}
+
+void CloseUpCamera::collectGroups(const ScenePass& pass, const Task& task,
+                                  const std::vector<std::size_t>& touched,
+                                  std::vector<osg::StateSet*>& states)
+{
+    std::vector<std::size_t> group;
+    for (const std::size_t item : touched)
+    {
+        const bool full =
+            group.size() == groupSize ||
+            (!group.empty() && CloseUpItems::blockOf(group.front()) != CloseUpItems::blockOf(item));
+        if (full)
+        {
+            states.push_back(groupState(pass, task, group));
+            group.clear();
+        }
+        group.push_back(item);
+    }
+    if (!group.empty()) states.push_back(groupState(pass, task, group));
+}
+
+void CloseUpCamera::setLayerStates(const ScenePass& pass, const Task& task, std::size_t items)
+{
+    auto& states = _now->layerStates;
+    while (states.size() < 2 * items)
+    {
+        const std::size_t item = states.size() / 2;
+        osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+        state->getOrCreateUniform(pass.prefix + "layer", osg::Uniform::INT)
+            ->set(2 * CloseUpItems::placeInBlock(item) + static_cast<int>(states.size() % 2));
+        state->getOrCreateUniform(pass.prefix + "only", osg::Uniform::INT)
+            ->set(static_cast<int>(states.size() % 2));
+        state->getOrCreateUniform(pass.prefix + "targets", osg::Uniform::INT_VEC4)
+            ->set(CloseUpItems::placeInBlock(item), 0, 0, 1);
+        state->setAttribute(_now->values.binding(CloseUpItems::blockOf(item), task.binding));
+        states.push_back(state);
+    }
+    while (_now->fenceStates.size() < 2 * items)
+        _now->fenceStates.push_back(new osg::StateSet);
+}
+
+std::optional<PixelRectangle> CloseUpCamera::partOf(const ScenePass& pass, const CloseUpItem& item,
+                                                    double lowest, double highest) const
+{
+    const osg::Viewport& viewport = *pass.outer.getViewport();
+    const auto width = static_cast<int>(viewport.width());
+    const auto height = static_cast<int>(viewport.height());
+    const PixelRectangle whole = {0, 0, width, height};
+    if (!pass.compensate) return whole;
+    double low[2] = {1e30, 1e30};
+    double high[2] = {-1e30, -1e30};
+    bool behind = false;
+    const auto include = [&](const osg::Vec3d& point)
+    {
+        const osg::Vec4d clip = osg::Vec4d(point, 1.0) * pass.view.projection;
+        // Near planes are found later; what lies beside the eye may be anywhere.
+        if (!(clip.w() > 1e-3)) behind = true;
+        const double place[2] = {clip.x() / clip.w(), clip.y() / clip.w()};
+        for (int axis = 0; axis < 2; ++axis)
+        {
+            low[axis] = std::min(low[axis], place[axis]);
+            high[axis] = std::max(high[axis], place[axis]);
+        }
+    };
+    for (const osg::Vec3d& corner : item.liftedCorners(lowest, highest))
+        include(corner);
+    const double line = item.closeUp().getAnchor()->getLineWidth();
+    if (item.stretched() || item.fenced() || line > 0.0)
+    {
+        Hull hull;
+        pass.chain.bound(item.groundBox(lowest, highest), hull);
+        for (const osg::Vec3d& point : hull.points)
+        {
+            for (const double x : {-hull.margin, hull.margin})
+            {
+                for (const double y : {-hull.margin, hull.margin})
+                {
+                    for (const double z : {-hull.margin, hull.margin})
+                        include(point + osg::Vec3d(x, y, z));
+                }
+            }
+        }
+    }
+    if (behind) return whole;
+    const double border = 2.0 + line;
+    const double size[2] = {viewport.width(), viewport.height()};
+    int first[2], last[2];
+    for (int axis = 0; axis < 2; ++axis)
+    {
+        const double from = (low[axis] + 1.0) / 2.0 * size[axis] - border;
+        const double to = (high[axis] + 1.0) / 2.0 * size[axis] + border;
+        if (!(from < size[axis] && to > 0.0)) return std::nullopt;
+        first[axis] = static_cast<int>(std::max(std::floor(from), 0.0));
+        last[axis] = static_cast<int>(std::min(std::ceil(to), size[axis]));
+    }
+    return PixelRectangle{first[0], first[1], last[0] - first[0], last[1] - first[1]};
+}
+
+void CloseUpCamera::widenDepths(const ScenePass& pass, const CloseUpItem& item,
+                                const RegionContents& found) const
+{
+    if (pass.outer.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR) return;
+    double nearest = 1e30;
+    double farthest = 0.0;
+    for (const osg::Vec3d& corner : item.liftedCorners(found.lowest, found.highest))
+    {
+        nearest = std::min(nearest, -corner.z());
+        farthest = std::max(farthest, -corner.z());
+    }
+    // Anchors end on the ground, which may be out of the picture.
+    Hull hull;
+    pass.chain.bound(item.groundBox(found.lowest, found.highest), hull);
+    for (const osg::Vec3d& point : hull.points)
+        farthest = std::max(farthest, hull.margin - point.z());
+    if (farthest <= 0.0) return;
+    constexpr double share = 0.001; // of the far plane, where the eye is within a close-up
+    nearest = std::max(nearest, share * farthest);
+    pass.outer.setCalculatedNearPlane(std::min(pass.outer.getCalculatedNearPlane(), nearest));
+    pass.outer.setCalculatedFarPlane(std::max(pass.outer.getCalculatedFarPlane(), farthest));
+}
+
+void CloseUpCamera::drawFence(const ScenePass& pass, const Task& task, const Seen& seen,
+                              const RegionContents& found, osgUtil::RenderStage& stage)
+{
+    const CloseUpItem& item = _items[seen.item];
+    const double width = item.closeUp().getAnchor()->getLineWidth();
+    if (!item.fenced() && width <= 0.0) return;
+    ContourFence& fence = _now->fences[seen.item];
+    if (!fence.update(*item.closeUp().getRegion(), found.ground)) return;
+    if (!_fenceProgram) return;
+    std::vector<CompensatingCullVisitor::Piece> pieces;
+    const auto add = [&](osg::Geometry* geometry, std::size_t which)
+    {
+        osg::StateSet& state = *_now->fenceStates[2 * seen.item + which];
+        const auto on =
+            osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
+        state.merge(*_now->layerStates[2 * seen.item + 1]);
+        state.setAttributeAndModes(_fenceProgram, on);
+        state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE |
+                                        osg::StateAttribute::PROTECTED);
+        state.setMode(GL_DEPTH_TEST, on);
+        if (which == 1)
+            state.setAttributeAndModes(new osg::LineWidth(static_cast<float>(width * task.samples)), on);
+        pieces.push_back({geometry, item.regionToEye(), &state});
+    };
+    if (item.fenced()) add(fence.wall(), 0);
+    if (width > 0.0) add(fence.line(), 1);
+    CompensatingCullVisitor::Task run = passTask(pass, task);
+    run.stage = &stage;
+    _pieces->run(pass.outer, pieces, run);
+    _statistics.drawables += static_cast<int>(pieces.size());
+}
+
+void CloseUpCamera::drawItem(const ScenePass& pass, const Task& task, Seen& seen, RegionContents& found)
+{
+    const CloseUpItem& item = _items[seen.item];
+    const auto draw = [&](int layer, const DeformationChain& chain)
+    {
+        osg::StateSet* state = _now->layerStates[2 * seen.item + static_cast<std::size_t>(layer)];
+        RegionFilter filter(_items, {seen.item}, culls(pass), _tessellated ? &_now->patches : nullptr,
+                            [&](const std::vector<std::size_t>&, std::vector<osg::StateSet*>& states)
+                            { states.push_back(state); });
+        CompensatingCullVisitor::Task run = passTask(pass, task);
+        run.chain = &chain;
+        run.program = _program;
+        run.filter = &filter;
+        run.stage = seen.stages[layer];
+        _single->run(pass.outer, pass.scene, run);
+        found.lowest = std::min(found.lowest, filter.contents[seen.item].lowest);
+        found.highest = std::max(found.highest, filter.contents[seen.item].highest);
+        _statistics.drawables += static_cast<int>(filter.count);
+    };
+    if (item.showsCloseUp())
+    {
+        seen.stages[0] = _now->layers.newStage(pass.outer);
+        osg::ref_ptr<DeformationChain> lift = new DeformationChain;
+        lift->add(new LiftFrame(item));
+        draw(0, *lift);
+    }
+    seen.stages[1] = _now->layers.newStage(pass.outer);
+    if (item.stretched()) draw(1, pass.chain);
+    drawFence(pass, task, seen, found, *seen.stages[1]);
+}
+
+void CloseUpCamera::show(const ScenePass& pass, const Task& task, const std::vector<Seen>& all)
+{
+    if (!_layerProgram) _layerProgram = createLayerProgram();
+    if (!_layerProgram) return;
+    const auto put = [&](const Seen& seen, int which)
+    {
+        if (which == 0 && !_items[seen.item].showsCloseUp()) return;
+        // Close-ups hide what lies behind them; anchors let it through.
+        _now->layers.show(
+            pass.outer, _layerProgram,
+            {seen.layer + which, seen.part, task.samples, task.opacity, task.depthTest, which == 0});
+    };
+    if (task.depthTest)
+    {
+        for (const Seen& seen : all)
+            put(seen, 0);
+        for (const Seen& seen : all)
+            put(seen, 1);
+        return;
+    }
+    for (const Seen& seen : all)
+    {
+        put(seen, 1);
+        put(seen, 0);
+    }
+}
+
+std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
+{
+    const bool starts = _overview->startsFrame(pass.outer);
+    _single->startsFrame(pass.outer);
+    _pieces->startsFrame(pass.outer);
+    if (starts) _used = 0;
+    if (_used == _traversals.size()) _traversals.push_back(std::make_unique<Traversal>());
+    _now = _traversals[_used++].get();
+    _now->layers.startFrame();
+    if (starts && stampNumber(pass.outer) % 256 == 0) _now->patches.purge();
+
+    _items.clear();
+    const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
+    const double time = stamp ? stamp->getSimulationTime() : 0.0;
+    for (const osg::ref_ptr<CloseUp>& closeUp : task.closeUps)
+        _items.emplace_back(*closeUp, pass.view, *pass.outer.getModelViewMatrix(), pass.chain, time);
+    _tessellated = task.tessellation > 1 && tessellates(pass.outer) &&
+                   std::any_of(_items.begin(), _items.end(),
+                               [](const CloseUpItem& item) { return item.wantsVertices(); });
+    setUp(pass, task, _items.size());
+    setLayerStates(pass, task, _items.size());
+
+    std::string sentence;
+    const int perArray = std::max(2, std::min(task.maxLayers, gpuLayers(pass.outer)) / 2 * 2);
+    bool single =
+        task.pipeline == CloseUps::SINGLE_PASS || (task.pipeline == CloseUps::AUTOMATIC && singleIsCheaper());
+    if (single && 2 * _items.size() > static_cast<std::size_t>(perArray))
+    {
+        single = false;
+        sentence = "CloseUps has more layers than a texture array of this GPU (" + std::to_string(perArray) +
+                   "), so the multi-pass pipeline draws.";
+    }
+
+    // What lies over the regions as the overview has it; with a single pass, this draws it.
+    _statistics = {};
+    std::vector<std::size_t> wanted(_items.size());
+    std::iota(wanted.begin(), wanted.end(), std::size_t{0});
+    RegionFilter filter(_items, wanted, culls(pass), _tessellated ? &_now->patches : nullptr,
+                        [&](const std::vector<std::size_t>& touched, std::vector<osg::StateSet*>& states)
+                        {
+                            if (single) collectGroups(pass, task, touched, states);
+                        });
+    CompensatingCullVisitor::Task run = passTask(pass, task);
+    run.filter = &filter;
+    osgUtil::RenderStage* layered = nullptr;
+    if (single)
+    {
+        layered = _now->layers.newStage(pass.outer);
+        run.stage = layered;
+    }
+    // Without a stage, too: it says what has shaders of its own.
+    _program = pass.program(single || _tessellated ? amplifyingShaders(task.binding, _tessellated)
+                                                   : plainShaders(task.binding));
+    _fenceProgram = pass.program(fenceShaders(task.binding));
+    run.program = _program;
+    _overview->run(pass.outer, pass.scene, run);
+    _levels = filter.levels;
+    const bool shares = filter.drawables > 0 && !filter.foreign;
+    _sharing = shares ? 1.0 * filter.touches / filter.drawables : 1.0;
+    if (filter.foreign && (single || _tessellated))
+    {
+        _tessellated = false;
+        _program = pass.program(plainShaders(task.binding));
+    }
+    if (single && filter.foreign)
+    {
+        single = false;
+        if (task.pipeline == CloseUps::SINGLE_PASS)
+            sentence = "Something in a close-up's region is not made of triangles or has a shader of its "
+                       "own, so the multi-pass pipeline draws.";
+    }
+
+    std::vector<Seen> all;
+    for (const std::size_t i : wanted)
+    {
+        RegionContents& found = filter.contents[i];
+        if (found.empty()) continue;
+        // Finer tiles may stand out a little.
+        const double slack = 20.0 + 0.1 * (found.highest - found.lowest);
+        if (!partOf(pass, _items[i], found.lowest - slack, found.highest + slack)) continue;
+        Seen seen = {i, {}, 0, {nullptr, nullptr}};
+        if (!single) drawItem(pass, task, seen, found);
+        const std::optional<PixelRectangle> part = partOf(pass, _items[i], found.lowest, found.highest);
+        if (!part) continue;
+        seen.part = *part;
+        seen.layer = static_cast<int>(2 * all.size());
+        all.push_back(seen);
+        widenDepths(pass, _items[i], found);
+    }
+    if (all.empty()) return sentence;
+
+    int width = 1, height = 1;
+    for (const Seen& seen : all)
+    {
+        width = std::max(width, seen.part.width);
+        height = std::max(height, seen.part.height);
+    }
+    const auto layers = static_cast<int>(2 * all.size());
+    _now->layers.resize(layers, width * task.samples, height * task.samples, perArray);
+    for (std::size_t i = 0; i < _items.size(); ++i)
+        _now->values.set(i, {}); // what is not in sight draws nothing
+    const osg::Viewport& viewport = *pass.outer.getViewport();
+    for (const Seen& seen : all)
+    {
+        const osg::Vec2d shift(-2.0 * seen.part.x / viewport.width(), -2.0 * seen.part.y / viewport.height());
+        CloseUpItem::Places places = task.textures.places[seen.item];
+        places.sun = sunOf(_items[seen.item].closeUp());
+        _now->values.set(seen.item,
+                         _items[seen.item].values(places, shift, seen.layer, seen.layer + 1, task.samples));
+    }
+
+    const auto picture = CloseUpLayers::viewport(pass.outer, -1, osg::Vec2i(), task.samples);
+    _now->base->setAttribute(picture);
+    if (single) _now->layers.draw(pass.outer, *layered, -1, picture);
+    for (Seen& seen : all)
+    {
+        const osg::Vec2i corner(seen.part.x, seen.part.y);
+        const auto moved = CloseUpLayers::viewport(pass.outer, seen.layer, corner, task.samples);
+        if (single)
+        {
+            // The layered stage has cleared all layers, and the anchor's own geometry comes into what it drew.
+            seen.stages[1] = _now->layers.newStage(pass.outer);
+            seen.stages[1]->setClearMask(0);
+            drawFence(pass, task, seen, filter.contents[seen.item], *seen.stages[1]);
+        }
+        for (std::size_t which = 0; which < 2; ++which)
+        {
+            _now->layerStates[2 * seen.item + which]->setAttribute(moved);
+            _now->fenceStates[2 * seen.item + which]->setAttribute(moved);
+            if (!seen.stages[which]) continue;
+            _now->layers.draw(pass.outer, *seen.stages[which], seen.layer + static_cast<int>(which), moved);
+        }
+    }
+    show(pass, task, all);
+
+    if (single) _statistics.drawables += static_cast<int>(filter.count);
+    _statistics.pipeline = single ? CloseUps::SINGLE_PASS : CloseUps::MULTI_PASS;
+    _statistics.closeUps = static_cast<int>(all.size());
+    _statistics.layers = layers;
+    _statistics.tessellated = _tessellated;
+    _statistics.width = _now->layers.width();
+    _statistics.height = _now->layers.height();
+    return sentence;
+}
+
+void CloseUpCamera::releaseGLObjects(osg::State* state) const
+{
+    for (const std::unique_ptr<Traversal>& each : _traversals)
+    {
+        each->values.releaseGLObjects(state);
+        each->layers.releaseGLObjects(state);
+    }
+    if (_layerProgram) _layerProgram->releaseGLObjects(state);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/closeup/CloseUpFilter.h>
+
+#include <algorithm>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+bool isTriangles(const osg::Drawable& drawable)
+{
+    const osg::Geometry* geometry = drawable.asGeometry();
+    if (!geometry) return false;
+    const auto& primitives = geometry->getPrimitiveSetList();
+    return std::all_of(primitives.begin(), primitives.end(),
+                       [](const osg::ref_ptr<osg::PrimitiveSet>& each)
+                       { return each->getMode() >= GL_TRIANGLES && each->getMode() <= GL_POLYGON; });
+}
+
+} // namespace
+
+RegionFilter::RegionFilter(const std::vector<CloseUpItem>& items, std::vector<std::size_t> wanted, bool culls,
+                           PatchCopies* patches, StatesOf statesOf)
+    : contents(items.size()), _items(items), _wanted(std::move(wanted)), _culls(culls), _patches(patches),
+      _statesOf(std::move(statesOf))
+{
+}
+
+bool RegionFilter::outside(const Ball& ball) const
+{
+    return _culls && std::all_of(_wanted.begin(), _wanted.end(),
+                                 [&](std::size_t item) { return _items[item].outside(ball); });
+}
+
+const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& drawable, const EyeBox& box,
+                                                        const osg::Matrixd& modelView, bool ownProgram)
+{
+    _touched.clear();
+    _states.clear();
+    for (const std::size_t item : _wanted)
+    {
+        if (_items[item].outside(box))
+        {
+            if (!_culls) _touched.push_back(item);
+            continue;
+        }
+        _touched.push_back(item);
+        RegionContents& found = contents[item];
+        _items[item].includeHeights(box, found.lowest, found.highest);
+        found.ground.push_back({&drawable, modelView * osg::Matrixd::inverse(_items[item].regionToEye())});
+    }
+    if (_touched.empty()) return _states;
+    touches += static_cast<unsigned int>(_touched.size());
+    ++drawables;
+    if (ownProgram || !isTriangles(drawable)) foreign = true;
+    _statesOf(_touched, _states);
+    count += static_cast<unsigned int>(_states.size());
+    return _states;
+}
+
+osg::Drawable& RegionFilter::drawn(osg::Drawable& drawable)
+{
+    const osg::Geometry* geometry = _patches ? drawable.asGeometry() : nullptr;
+    return geometry && isTriangles(drawable) ? _patches->of(*geometry) : drawable;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/closeup/CloseUps.h>
+
+#include <osgGeoFX/closeup/CloseUpCamera.h>
+
+#include <osg/Notify>
+#include <osg/observer_ptr>
+
+#include <algorithm>
+#include <mutex>
+#include <set>
+
+namespace osgGeoFX
+{
+
+/// What drawing needs and no one else sees.
+class CloseUps::Drawing
+{
+public:
+    struct Camera
+    {
+        osg::observer_ptr<osgUtil::CullVisitor> outer;
+        CloseUpCamera own;
+    };
+
+    /// The camera's own data; other threads may ask for theirs at the same time. One effect may be in several scenes.
+    CloseUpCamera& camera(osgUtil::CullVisitor& outer, const osg::Group& scene)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        std::unique_ptr<Camera>& found = _cameras[{&outer, &scene}];
+        if (!found || !found->outer.valid())
+        {
+            for (auto entry = _cameras.begin(); entry != _cameras.end();)
+            {
+                const bool gone = entry->second && !entry->second->outer.valid() && &entry->second != &found;
+                entry = gone ? _cameras.erase(entry) : std::next(entry);
+            }
+            found = std::make_unique<Camera>();
+            found->outer = &outer;
+        }
+        return found->own;
+    }
+
+    void saw(const Statistics& statistics, const std::string& sentence)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        _statistics = statistics;
+        if (!sentence.empty() && _said.insert(sentence).second)
+            OSG_WARN << "osgGeoFX: " << sentence << std::endl;
+    }
+
+    Statistics statistics() const
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        return _statistics;
+    }
+
+    void releaseGLObjects(osg::State* state) const
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto& [key, camera] : _cameras)
+            camera->own.releaseGLObjects(state);
+        textures.releaseGLObjects(state);
+    }
+
+    CloseUpTextures textures;
+
+private:
+    mutable std::mutex _mutex;
+    std::map<std::pair<osgUtil::CullVisitor*, const osg::Group*>, std::unique_ptr<Camera>> _cameras;
+    Statistics _statistics;
+    std::set<std::string> _said;
+};
+
+CloseUps::CloseUps() : _drawing(std::make_unique<Drawing>()) {}
+
+CloseUps::CloseUps(const CloseUps& other, const osg::CopyOp& copy)
+    : PassEffect(other, copy), _closeUps(other._closeUps), _surfaceData(other._surfaceData),
+      _drawing(std::make_unique<Drawing>())
+{
+    for (const Property& property : CloseUps::properties())
+        property.put(*this, property.get(other));
+    if (!(copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)) return;
+    for (osg::ref_ptr<CloseUp>& closeUp : _closeUps)
+        closeUp = osg::clone(closeUp.get(), copy);
+    if (_surfaceData) _surfaceData = osg::clone(_surfaceData.get(), copy);
+}
+
+CloseUps::~CloseUps() = default;
+
+bool CloseUps::addCloseUp(CloseUp* closeUp)
+{
+    if (!closeUp || std::find(_closeUps.begin(), _closeUps.end(), closeUp) != _closeUps.end())
+    {
+        OSG_WARN << "osgGeoFX: CloseUps::addCloseUp got "
+                 << (closeUp ? "a close-up that it has already" : "no close-up") << "; nothing changes."
+                 << std::endl;
+        return false;
+    }
+    _closeUps.emplace_back(closeUp);
+    touch();
+    return true;
+}
+
+bool CloseUps::removeCloseUp(CloseUp* closeUp)
+{
+    const auto found = std::find(_closeUps.begin(), _closeUps.end(), closeUp);
+    if (found == _closeUps.end()) return false;
+    _closeUps.erase(found);
+    touch();
+    return true;
+}
+
+void CloseUps::removeCloseUps()
+{
+    _closeUps.clear();
+    touch();
+}
+
+bool CloseUps::setSurfaceData(SurfaceData* data)
+{
+    _surfaceData = data;
+    touch();
+    return true;
+}
+
+CloseUps::Statistics CloseUps::statistics() const
+{
+    return _drawing->statistics();
+}
+
+const Properties& CloseUps::properties() const
+{
+    using Self = CloseUps;
+    static const Properties all = {
+        enabledProperty(),
+        Property::choice("pipeline", AUTOMATIC, {"automatic", "singlePass", "multiPass"})
+            .of<&Self::_pipeline>(),
+        Property::integer("tessellation", 16, 1, 64).of<&Self::_tessellation>(),
+        Property::number("opacity", 1.0, 0.0, 1.0).of<&Self::_opacity>().turnedBy(0.05),
+        Property::integer("supersampling", 1, 1, 4).of<&Self::_supersampling>(),
+        Property::flag("depthTest", true).of<&Self::_depthTest>(),
+        Property::integer("maxLayers", 2048, 2, 2048).of<&Self::_maxLayers>(),
+        Property::integer("maskUnit", 11, 4, 31).of<&Self::_maskUnit>(),
+        Property::integer("tableUnit", 12, 4, 31).of<&Self::_tableUnit>(),
+        Property::integer("surfaceUnit", 13, 4, 31).of<&Self::_surfaceUnit>(),
+        Property::integer("blockBinding", 7, 0, 35).of<&Self::_blockBinding>(),
+    };
+    return all;
+}
+
+std::string CloseUps::inconsistency() const
+{
+    if (_maskUnit == _tableUnit || _maskUnit == _surfaceUnit || _tableUnit == _surfaceUnit)
+        return "maskUnit, tableUnit and surfaceUnit must differ.";
+    return {};
+}
+
+void CloseUps::cull(const ScenePass& pass)
+{
+    if (_opacity <= 0.0 || !pass.outer.getViewport()) return;
+    std::vector<osg::ref_ptr<CloseUp>> drawn;
+    std::copy_if(_closeUps.begin(), _closeUps.end(), std::back_inserter(drawn),
+                 [](const osg::ref_ptr<CloseUp>& each)
+                 { return each->getEnabled() && !each->getRegion()->isEmpty(); });
+    if (drawn.empty()) return;
+    const CloseUpCamera::Task task = {drawn,
+                                      _surfaceData,
+                                      _drawing->textures.update(drawn, _surfaceData),
+                                      getPipeline(),
+                                      _tessellation,
+                                      _opacity,
+                                      _supersampling,
+                                      _depthTest,
+                                      _maxLayers,
+                                      {_maskUnit, _tableUnit, _surfaceUnit},
+                                      static_cast<unsigned int>(_blockBinding)};
+    CloseUpCamera& camera = _drawing->camera(pass.outer, pass.scene);
+    const std::string sentence = camera.cull(pass, task);
+    _drawing->saw(camera.statistics(), sentence);
+}
+
+void CloseUps::releaseGLObjects(osg::State* state) const
+{
+    _drawing->releaseGLObjects(state);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/closeup/ContourFence.h>
+
+#include <osg/TriangleIndexFunctor>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr double partLength = 0.02; ///< of the border, in halves of the smaller side
+constexpr double unknown = -std::numeric_limits<double>::infinity();
+
+/// The border's points and the heights below them, found by the cells of a grid over the region.
+class Heights
+{
+public:
+    Heights(const std::vector<std::vector<osg::Vec2d>>& contours, const osg::Vec2d& half) : _half(half)
+    {
+        for (const auto& contour : contours)
+        {
+            for (const osg::Vec2d& place : contour)
+            {
+                _places.emplace_back(place.x() * half.x(), place.y() * half.y());
+                _cells[cellOf(place.x()) + cellOf(place.y()) * side].push_back(_places.size() - 1);
+            }
+        }
+        _heights.assign(_places.size(), unknown);
+    }
+
+    /// All triangles of a geometry; the highest one counts. Upright ones, such as skirts, have no area.
+    void add(const osg::Geometry& geometry, const osg::Matrixd& toRegion)
+    {
+        const auto* vertices = dynamic_cast<const osg::Vec3Array*>(geometry.getVertexArray());
+        if (!vertices) return;
+        _vertices.resize(vertices->size());
+        std::transform(vertices->begin(), vertices->end(), _vertices.begin(),
+                       [&](const osg::Vec3& vertex) { return osg::Vec3d(vertex) * toRegion; });
+        struct Collect
+        {
+            Heights* heights = nullptr;
+            void operator()(unsigned int a, unsigned int b, unsigned int c)
+            {
+                const auto count = static_cast<unsigned int>(heights->_vertices.size());
+                if (a < count && b < count && c < count) heights->addTriangle(a, b, c);
+            }
+        };
+        osg::TriangleIndexFunctor<Collect> collect;
+        collect.heights = this;
+        geometry.accept(collect);
+    }
+
+    bool anyKnown() const
+    {
+        return std::any_of(_heights.begin(), _heights.end(), [](double height) { return height > unknown; });
+    }
+    double height(std::size_t point) const { return _heights[point]; }
+
+private:
+    static constexpr std::size_t side = 48;
+
+    static std::size_t cellOf(double place)
+    {
+        const double cell = (place + 1.0) / 2.0 * static_cast<double>(side);
+        return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(side - 1)));
+    }
+
+    void addTriangle(unsigned int i, unsigned int j, unsigned int k)
+    {
+        const osg::Vec3d& a = _vertices[i];
+        const osg::Vec3d& b = _vertices[j];
+        const osg::Vec3d& c = _vertices[k];
+        const double area = (b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y());
+        const double lowX = std::min({a.x(), b.x(), c.x()}) / _half.x();
+        const double highX = std::max({a.x(), b.x(), c.x()}) / _half.x();
+        const double lowY = std::min({a.y(), b.y(), c.y()}) / _half.y();
+        const double highY = std::max({a.y(), b.y(), c.y()}) / _half.y();
+        if (area == 0.0 || !(lowX <= 1.0 && highX >= -1.0 && lowY <= 1.0 && highY >= -1.0)) return;
+        // Skirts are upright but for rounding.
+        if (std::abs(area) < 1e-3 * (c - a).length() * (b - a).length()) return;
+        for (std::size_t y = cellOf(lowY); y <= cellOf(highY); ++y)
+        {
+            for (std::size_t x = cellOf(lowX); x <= cellOf(highX); ++x)
+            {
+                for (const std::size_t point : _cells[x + y * side])
+                    meet(point, a, b, c, area);
+            }
+        }
+    }
+
+    void meet(std::size_t point, const osg::Vec3d& a, const osg::Vec3d& b, const osg::Vec3d& c, double area)
+    {
+        const osg::Vec2d& p = _places[point];
+        const double u = ((p.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (p.y() - a.y())) / area;
+        const double v = ((b.x() - a.x()) * (p.y() - a.y()) - (p.x() - a.x()) * (b.y() - a.y())) / area;
+        constexpr double slack = -1e-6;
+        if (u < slack || v < slack || u + v > 1.0 - slack) return;
+        _heights[point] = std::max(_heights[point], a.z() + u * (b.z() - a.z()) + v * (c.z() - a.z()));
+    }
+
+    osg::Vec2d _half;
+    std::vector<osg::Vec2d> _places;
+    std::vector<double> _heights;
+    std::vector<std::size_t> _cells[side * side];
+    std::vector<osg::Vec3d> _vertices;
+};
+
+/// The same place, but for what the camera's matrices round.
+bool same(const osg::Matrixd& one, const osg::Matrixd& other)
+{
+    for (int i = 0; i < 16; ++i)
+    {
+        const double a = one.ptr()[i];
+        if (std::abs(a - other.ptr()[i]) > (i < 12 ? 1e-7 : 1e-2)) return false;
+    }
+    return true;
+}
+
+osg::ref_ptr<osg::Geometry> geometryOf(osg::Vec3Array* vertices, osg::Vec2Array* shares,
+                                       osg::PrimitiveSet* primitives)
+{
+    osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
+    geometry->setUseDisplayList(false);
+    geometry->setUseVertexBufferObjects(true);
+    geometry->setCullingActive(false);
+    geometry->setVertexArray(vertices);
+    geometry->setTexCoordArray(0, shares, osg::Array::BIND_PER_VERTEX);
+    geometry->addPrimitiveSet(primitives);
+    return geometry;
+}
+
+} // namespace
+
+bool ContourFence::isKnown(const RegionOfInterest& region, const std::vector<Ground>& ground) const
+{
+    return _wall && _region == &region && _revision == region.revision() && ground.size() == _known.size() &&
+           std::equal(ground.begin(), ground.end(), _known.begin(),
+                      [](const Ground& now, const Known& known)
+                      { return known.drawable == now.drawable.get() && same(now.toRegion, known.toRegion); });
+}
+
+bool ContourFence::update(const RegionOfInterest& region, const std::vector<Ground>& ground)
+{
+    if (!isKnown(region, ground))
+    {
+        _region = &region;
+        _revision = region.revision();
+        _known.clear();
+        for (const Ground& each : ground)
+            _known.push_back({osg::observer_ptr<const osg::Drawable>(each.drawable), each.toRegion});
+        build(region, ground);
+    }
+    return _grounded;
+}
+
+void ContourFence::build(const RegionOfInterest& region, const std::vector<Ground>& ground)
+{
+    const osg::Vec2d half(region.getWidth() / 2.0, region.getDepth() / 2.0);
+    const std::vector<std::vector<osg::Vec2d>> contours = region.contours(partLength);
+    Heights heights(contours, half);
+    for (const Ground& each : ground)
+    {
+        if (const osg::Geometry* geometry = each.drawable->asGeometry())
+            heights.add(*geometry, each.toRegion);
+    }
+    _grounded = heights.anyKnown();
+
+    osg::ref_ptr<osg::Vec3Array> wall = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec2Array> wallShares = new osg::Vec2Array;
+    osg::ref_ptr<osg::DrawElementsUInt> wallIndices = new osg::DrawElementsUInt(GL_TRIANGLES);
+    osg::ref_ptr<osg::Vec3Array> line = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec2Array> lineShares = new osg::Vec2Array;
+    osg::ref_ptr<osg::DrawElementsUInt> lineIndices = new osg::DrawElementsUInt(GL_LINES);
+    std::size_t first = 0;
+    for (const std::vector<osg::Vec2d>& contour : contours)
+    {
+        const std::size_t count = contour.size();
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            const double height = heights.height(first + i);
+            const bool known = height > unknown;
+            const osg::Vec3 vertex(
+                osg::Vec3d(contour[i].x() * half.x(), contour[i].y() * half.y(), known ? height : 0.0));
+            const auto at = static_cast<unsigned int>(wall->size());
+            wall->push_back(vertex);
+            wall->push_back(vertex);
+            wallShares->push_back(osg::Vec2(0.0f, 0.0f));
+            wallShares->push_back(osg::Vec2(1.0f, 0.0f));
+            line->push_back(vertex);
+            lineShares->push_back(osg::Vec2(0.0f, 1.0f));
+            // No wall where there is no ground, such as beyond the terrain's border.
+            const std::size_t following = (i + 1) % count;
+            if (!known || !(heights.height(first + following) > unknown)) continue;
+            const auto next = static_cast<unsigned int>(2 * (first + following));
+            for (const unsigned int index : {at, next, at + 1, at + 1, next, next + 1})
+                wallIndices->push_back(index);
+            lineIndices->push_back(at / 2);
+            lineIndices->push_back(next / 2);
+        }
+        first += count;
+    }
+    _wall = geometryOf(wall, wallShares, wallIndices);
+    _line = geometryOf(line, lineShares, lineIndices);
+}
+
+} // namespace osgGeoFX

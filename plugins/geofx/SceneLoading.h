@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include "SceneFile.h"
+
+#include <osgGeoFX/geodata/MappingRaster.h>
+#include <osgGeoFX/paging/Georeference.h>
+#include <osgGeoFX/scene/EffectScene.h>
+
+#include <osg/Image>
+
+namespace osgGeoFX
+{
+
+/// Thrown by what loads the parts of a scene, with the whole sentence; it does not leave this plugin.
+struct SceneFailure
+{
+    std::string sentence;
+};
+
+[[noreturn]] void fail(const ScenePlace& place, const std::string& text);
+
+/// A picture of a file, or a film.
+osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file);
+/// The colours of a file.
+void readTable(const SceneTable& table);
+
+/// The terrain of a scene, and where places of its file lie on it.
+class SceneTerrain
+{
+public:
+    /// The terrain is a child of the scene's node already. Both must outlive this.
+    SceneTerrain(const EffectScene& node, const osg::Node& terrain)
+        : _terrain(terrain), _ellipsoid(node.ground().ellipsoid)
+    {
+    }
+
+    /// Null on a projected terrain.
+    const osg::EllipsoidModel* ellipsoid() const { return _ellipsoid; }
+    /// Of degrees; on a projected terrain by its georeference.
+    osg::Vec3d worldOf(const ScenePlace& place, double longitude, double latitude);
+    /// Checks the unit of edges; on a globe, the eastern one is beyond the western one afterwards.
+    void straighten(const ScenePlace& place, SceneBox& box) const;
+    /// Of a point of the map: degrees on a globe, else metres.
+    osg::Vec3d worldOfMap(const ScenePlace& place, const osg::Vec2d& point);
+    /// A frame without its origin.
+    MappingFrame frame() const;
+    /// Asks osgdb_geofxdata to answer a request; without it, `instead` is what a person may do. Its sentence, empty as a
+    /// rule.
+    static std::string ask(const ScenePlace& place, const std::string& service, void* request,
+                           const std::string& instead);
+
+private:
+    const osg::Node& _terrain;
+    osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
+    osg::ref_ptr<Georeference> _reference;
+};
+
+} // namespace osgGeoFX

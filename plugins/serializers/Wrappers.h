@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include "PropertySerializers.h"
+
+#include <osg/Image>
+#include <osgDB/InputStream>
+#include <osgDB/OutputStream>
+
+#include <string>
+
+namespace osgGeoFX
+{
+
+/// Adds what a class has beside its properties.
+using AddMore = void (*)(osgDB::ObjectWrapper&);
+
+inline void addNothing(osgDB::ObjectWrapper&) {}
+
+/// Of a class with properties.
+template<typename Class, AddMore More = addNothing>
+class Wrapper : public osgDB::RegisterCustomWrapperProxy
+{
+public:
+    Wrapper(const std::string& name, const std::string& associates)
+        : osgDB::RegisterCustomWrapperProxy([]() -> osg::Object* { return new Class; }, serializerDomain,
+                                            name, associates, &add)
+    {
+    }
+
+private:
+    static void add(const char*, osgDB::ObjectWrapper* wrapper)
+    {
+        const osg::ref_ptr<Class> sample = new Class;
+        addProperties(*wrapper, *sample);
+        More(*wrapper);
+    }
+};
+
+/// Something that only functions of our own can write and read.
+template<typename Owner>
+void addOwn(osgDB::ObjectWrapper& wrapper, const char* name, bool (*has)(const Owner&),
+            bool (*read)(osgDB::InputStream&, Owner&), bool (*write)(osgDB::OutputStream&, const Owner&))
+{
+    wrapper.addSerializer(new osgDB::UserSerializer<Owner>(name, has, read, write),
+                          osgDB::BaseSerializer::RW_USER);
+}
+
+/// An object that another one has or has not. It may be shared with others.
+template<typename Owner, typename Part, Part* (Owner::*Get)(), bool (Owner::*Set)(Part*)>
+void addPart(osgDB::ObjectWrapper& wrapper, const char* name)
+{
+    addOwn<Owner>(
+        wrapper, name, [](const Owner& owner) { return (const_cast<Owner&>(owner).*Get)() != nullptr; },
+        [](osgDB::InputStream& stream, Owner& owner)
+        {
+            stream >> stream.BEGIN_BRACKET;
+            const osg::ref_ptr<Part> part = stream.readObjectOfType<Part>();
+            stream >> stream.END_BRACKET;
+            return !part || (owner.*Set)(part);
+        },
+        [](osgDB::OutputStream& stream, const Owner& owner)
+        {
+            stream << stream.BEGIN_BRACKET << std::endl;
+            stream.writeObject((const_cast<Owner&>(owner).*Get)());
+            stream << stream.END_BRACKET << std::endl;
+            return true;
+        });
+}
+
+/// The objects of a list, in their order. They may be shared with others.
+template<typename Owner, typename Part, unsigned int (Owner::*Count)() const,
+         const Part* (Owner::*At)(unsigned int) const, bool (Owner::*Add)(Part*)>
+void addParts(osgDB::ObjectWrapper& wrapper, const char* name)
+{
+    addOwn<Owner>(
+        wrapper, name, [](const Owner& owner) { return (owner.*Count)() > 0; },
+        [](osgDB::InputStream& stream, Owner& owner)
+        {
+            unsigned int count = 0;
+            stream >> count >> stream.BEGIN_BRACKET;
+            for (unsigned int i = 0; i < count && !stream.getException(); ++i)
+            {
+                // Null where this version of the kit does not know the class; OSG has said so.
+                const osg::ref_ptr<Part> part = stream.readObjectOfType<Part>();
+                if (part) (owner.*Add)(part);
+            }
+            stream >> stream.END_BRACKET;
+            return true;
+        },
+        [](osgDB::OutputStream& stream, const Owner& owner)
+        {
+            stream << (owner.*Count)() << stream.BEGIN_BRACKET << std::endl;
+            for (unsigned int i = 0; i < (owner.*Count)(); ++i)
+                stream.writeObject((owner.*At)(i));
+            stream << stream.END_BRACKET << std::endl;
+            return true;
+        });
+}
+
+/// An object's image, if it has one.
+template<typename Owner>
+void addImage(osgDB::ObjectWrapper& wrapper)
+{
+    addOwn<Owner>(
+        wrapper, "Image", [](const Owner& owner) { return owner.getImage() != nullptr; },
+        [](osgDB::InputStream& stream, Owner& owner)
+        {
+            stream >> stream.BEGIN_BRACKET;
+            const osg::ref_ptr<osg::Image> image = stream.readImage();
+            stream >> stream.END_BRACKET;
+            owner.setImage(image);
+            return true;
+        },
+        [](osgDB::OutputStream& stream, const Owner& owner)
+        {
+            stream << stream.BEGIN_BRACKET << std::endl;
+            stream.writeImage(owner.getImage());
+            stream << stream.END_BRACKET << std::endl;
+            return true;
+        });
+}
+
+} // namespace osgGeoFX

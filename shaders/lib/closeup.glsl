@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Close-ups, after Section II of "Interactive close-ups for digital terrain models": where a vertex of the ground goes,
+// how a mask is read, and how colours are restyled.
+#ifndef __cplusplus
+#include "lib/types.glsl"
+#endif
+
+// The rows of a matrix from eye space to eye space; the last one is (0, 0, 0, 1) unless the close-up is drawn without
+// perspective.
+struct geofx_Lift
+{
+    Row x;
+    Row y;
+    Row z;
+    Row w;
+};
+
+// Where a point of the ground is in the close-up.
+GEOFX_INLINE Position geofx_lift(geofx_Lift lift, Position position)
+{
+    Row p = Row(position.x, position.y, position.z, 1);
+    return Position(dot(lift.x, p), dot(lift.y, p), dot(lift.z, p)) / dot(lift.w, p);
+}
+
+// The paper's C = m M + (1 - m) I, with what other deformations make of the point in the place of I.
+GEOFX_INLINE Position geofx_raise(Position ground, Position lifted, Number mask)
+{
+    return ground + (lifted - ground) * mask;
+}
+
+// A place of the region, -1 to 1, in texels of a picture, where whole numbers are the centres of texels.
+GEOFX_INLINE Vector2 geofx_maskTexel(Vector2 place, Number side)
+{
+    return (place + Vector2(1, 1)) * (side / 2) - Vector2(Number(0.5), Number(0.5));
+}
+
+// Between four texels; `part` is how far the place is from the first one.
+GEOFX_INLINE Vector2 geofx_between(Vector2 lowLeft, Vector2 lowRight, Vector2 highLeft, Vector2 highRight, Vector2 part)
+{
+    Vector2 low = lowLeft + (lowRight - lowLeft) * part.x;
+    Vector2 high = highLeft + (highRight - highLeft) * part.x;
+    return low + (high - low) * part.y;
+}
+
+// How much of a pixel is inside, where the border is `distance` away and a pixel `pixel` wide.
+GEOFX_INLINE Number geofx_coverage(Number distance, Number pixel)
+{
+    return clamp(distance / max(pixel, Number(1e-9)) + Number(0.5), Number(0), Number(1));
+}
+
+// Saturation about the grey of equal luma (ITU-R BT.709), contrast about middle grey, then brightness.
+GEOFX_INLINE Rgb geofx_restyle(Rgb colour, Number saturation, Number contrast, Number brightness)
+{
+    Number luma = dot(colour, Rgb(Number(0.2126), Number(0.7152), Number(0.0722)));
+    Rgb grey = Rgb(luma, luma, luma);
+    Rgb middle = Rgb(Number(0.5), Number(0.5), Number(0.5));
+    Rgb result = (grey + (colour - grey) * saturation - middle) * contrast + middle;
+    return clamp(result + Rgb(brightness, brightness, brightness), Rgb(0, 0, 0), Rgb(1, 1, 1));
+}
+
+// Light of a sun in a direction on a surface: a share of it comes from everywhere.
+GEOFX_INLINE Number geofx_sunlight(Vector3 normal, Vector3 sun)
+{
+    Number everywhere = Number(0.35);
+    return everywhere + (1 - everywhere) * max(dot(normal, sun), Number(0)) / max(sun.z, Number(0.3));
+}

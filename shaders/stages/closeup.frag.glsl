@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// CloseUps in the fragment stage: what is cut away, and the close-up's own data, light and style.
+#pragma import_defines(SLOT_DATA)
+
+uniform sampler2D SLOT_tables;       // a row for each colour table and each anchor
+uniform sampler2DArray SLOT_surfaces; // values times their weight, which is the alpha
+uniform vec4 SLOT_quality;           // samples along a pixel's side; the layer of normals or -1; tables' width and one over it
+
+in vec2 SLOT_surface;
+in vec3 SLOT_place;
+flat in int SLOT_target;
+
+int SLOT_channels()
+{
+    return int(SLOT_item(SLOT_target / 2, 11).w);
+}
+
+// Between the texels of a row, or the nearest one.
+vec4 SLOT_rowAt(float row, float share, bool smoothly)
+{
+    float s = clamp(share, 0.0, 1.0) * (SLOT_quality.z - 1.0);
+    int line = int(row);
+    if (!smoothly) return texelFetch(SLOT_tables, ivec2(int(s + 0.5), line), 0);
+    int low = int(s);
+    return mix(texelFetch(SLOT_tables, ivec2(low, line), 0),
+               texelFetch(SLOT_tables, ivec2(min(low + 1, int(SLOT_quality.z) - 1), line), 0), s - float(low));
+}
+
+// The close-up's layer of surface data as a colour with straight alpha. Kinds: 0 colours; values in a table, 1 a smooth one and
+// 2 another one; 3 normals; 4 aspects; 5 classes.
+vec4 SLOT_surfaceColour(int item)
+{
+    vec4 data = SLOT_item(item, 10);
+    vec4 range = SLOT_item(item, 11);
+    int kind = int(data.y);
+    vec3 place = vec3(SLOT_surface, data.x);
+    vec4 texel = texture(SLOT_surfaces, place);
+    if (kind == 5)
+    {
+        vec2 size = vec2(textureSize(SLOT_surfaces, 0).xy);
+        texel = texelFetch(SLOT_surfaces, ivec3(clamp(SLOT_surface * size, vec2(0.0), size - 1.0), int(data.x)), 0);
+    }
+    vec2 within = abs(SLOT_surface - 0.5);
+    if (texel.a < 0.004 || max(within.x, within.y) > 0.5) return vec4(0.0);
+    vec4 value = vec4(texel.rgb / texel.a, texel.a);
+    if (kind == 0) return value;
+    if (kind == 3) return vec4(0.5 * value.rgb + 0.5, value.a);
+    float number = kind == 4 ? mod(atan(value.g, value.b), 6.28318531) : value.r;
+    vec4 colour = SLOT_rowAt(data.z, (number - range.x) * range.y, kind == 1 || kind == 4);
+    return vec4(colour.rgb, colour.a * value.a);
+}
+
+vec4 SLOT_finish(vec4 colour)
+{
+    int item = SLOT_target / 2;
+    vec4 kinds = SLOT_item(item, 9);
+    vec4 tint = SLOT_item(item, 8);
+    vec4 anchor = SLOT_item(item, 13);
+    vec2 mask = SLOT_maskAt(item, SLOT_place.xy);
+    // Where the ground is seen from its edge, a pixel would be as wide as the region.
+    float pixel = min(fwidth(mask.y), 0.04);
+    if (SLOT_target != 2 * item)
+    {
+        if (SLOT_place.z < 0.0001 || SLOT_place.z > 0.9999) discard;
+        float veil = SLOT_rowAt(anchor.z, SLOT_place.z, true).r;
+        if (veil < 0.002) discard;
+        return vec4(tint.rgb, veil * anchor.w);
+    }
+
+    float cover = 1.0;
+    if (kinds.y < 0.5)
+        cover = kinds.z > 0.5 ? mask.x : geofx_coverage(mask.y, pixel);
+    else if (SLOT_place.z < 0.9999)
+        cover = 0.0;
+    if (cover <= 0.0) discard;
+
+    vec4 style = SLOT_item(item, 12);
+    vec3 result = colour.rgb;
+    float opacity = colour.a;
+#ifdef SLOT_DATA
+    vec4 data = SLOT_item(item, 10);
+    if (data.x >= 0.0)
+    {
+        vec4 surface = SLOT_surfaceColour(item);
+        result = mix(result, surface.rgb, surface.a * data.w);
+        opacity = mix(opacity, 1.0, surface.a * data.w);
+    }
+    if (kinds.w > 0.5 && SLOT_quality.y >= 0.0)
+    {
+        vec4 texel = texture(SLOT_surfaces, vec3(SLOT_surface, SLOT_quality.y));
+        vec3 sun = vec3(SLOT_item(item, 7).xyz);
+        if (texel.a > 0.004) result *= geofx_sunlight(normalize(texel.rgb / texel.a), sun);
+    }
+#endif
+    result = geofx_restyle(clamp(result, vec3(0.0), vec3(1.0)), style.x, style.y, style.z);
+    // The line around it, in the colour of its region.
+    if (anchor.x > 0.0 && kinds.y < 0.5 && kinds.z < 0.5)
+    {
+        float line = 1.0 - geofx_coverage(mask.y - anchor.x * pixel, pixel);
+        result = mix(result, tint.rgb, line);
+    }
+    return vec4(result, opacity * cover * style.w);
+}
+
+// Of an anchor with a geometry of its own.
+vec4 SLOT_fenceColour(vec2 fence)
+{
+    int item = SLOT_target / 2;
+    vec3 tint = SLOT_item(item, 8).rgb;
+    if (fence.y > 0.5) return vec4(tint, SLOT_item(item, 8).a);
+    vec4 anchor = SLOT_item(item, 13);
+    float veil = SLOT_rowAt(anchor.z, fence.x, true).r * anchor.w;
+    if (veil < 0.002) discard;
+    return vec4(tint, veil);
+}

@@ -1,0 +1,28 @@
+#version 330 compatibility
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+uniform sampler2DArray geofx_layerColours;
+uniform sampler2DArray geofx_layerDepths;
+uniform ivec4 geofx_layerOrigin; // the layer's first pixel, the layer, and samples along a pixel's side
+uniform float geofx_layerOpacity;
+
+void main()
+{
+    int samples = geofx_layerOrigin.w;
+    ivec2 first = (ivec2(floor(gl_FragCoord.xy)) - geofx_layerOrigin.xy) * samples;
+    vec4 sum = vec4(0.0);
+    float depth = 1.0;
+    for (int y = 0; y < samples; ++y)
+    {
+        for (int x = 0; x < samples; ++x)
+        {
+            ivec3 texel = ivec3(first + ivec2(x, y), geofx_layerOrigin.z);
+            vec4 colour = texelFetch(geofx_layerColours, texel, 0);
+            sum += vec4(colour.rgb * colour.a, colour.a);
+            if (colour.a > 0.0) depth = min(depth, texelFetch(geofx_layerDepths, texel, 0).r);
+        }
+    }
+    if (sum.a <= 0.0) discard;
+    gl_FragColor = sum * (geofx_layerOpacity / float(samples * samples));
+    gl_FragDepth = depth;
+}
