@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_viewer: osgviewer, made for terrain.
+#include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/deformation/ClickAndFly.h>
 #include <osgGeoFX/mapping/MappingPanel.h>
 #include <osgGeoFX/paging/Scene.h>
@@ -47,7 +48,8 @@ void describe(osg::ApplicationUsage& usage)
     usage.setDescription(
         "osggeofx_viewer shows terrain databases, .geofx scenes and whatever else OpenSceneGraph reads. "
         "It takes osgviewer's options and keys; press h in the window for the keys. F9 lists the scene's "
-        "mappings.");
+        "mappings. A click makes a close-up active (the key u says when), Shift and the left button drag "
+        "it.");
     usage.setCommandLineUsage("osggeofx_viewer [options] FILE ...");
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
@@ -145,6 +147,11 @@ void addHandlers(osgViewer::Viewer& viewer, osg::ArgumentParser& arguments, cons
     viewer.addEventHandler(new osgGeoFX::ClickAndFly(*scene.effects));
     const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
     if (panel->hasEffect()) viewer.addEventHandler(panel);
+    for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
+    {
+        auto* closeUps = dynamic_cast<osgGeoFX::CloseUps*>(scene.effects->getEffect(i));
+        if (closeUps) viewer.addEventHandler(new osgGeoFX::CloseUpHandler(*scene.effects, *closeUps));
+    }
 }
 
 } // namespace

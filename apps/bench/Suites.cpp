@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "CloseUpSuite.h"
 #include "DeformationSuite.h"
 #include "MappingSuite.h"
 #include "Suite.h"
@@ -13,7 +14,8 @@ namespace geofx::bench
 
 const std::vector<Suite>& suites()
 {
-    static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite()};
+    static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite(),
+                                           closeUpSuite()};
     return all;
 }
 
