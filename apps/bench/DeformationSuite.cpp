@@ -4,6 +4,7 @@
 
 #include "BenchError.h"
 #include "ChildProcess.h"
+#include "OahuTerrain.h"
 #include "OffscreenView.h"
 #include "TerrainSuite.h"
 #include "WorkFolder.h"
@@ -404,18 +405,7 @@ private:
 std::vector<Figure> run(const Settings& settings)
 {
     const WorkFolder folder(settings.work);
-    std::filesystem::path terrain = settings.terrain;
-    if (terrain.empty())
-    {
-        const std::filesystem::path oahu = settings.data / "oahu";
-        std::vector<std::string> command =
-            builderCommand(settings, oahu / "elevation.tif", folder.path() / "oahu", 2);
-        command.insert(command.end(), {"--landcover", (oahu / "landcover.tif").string(), "--landcover-table",
-                                       (oahu / "landcover.csv").string()});
-        announce("building the terrain to draw");
-        runChild(command);
-        terrain = folder.path() / "oahu" / "terrain.osgb";
-    }
+    const std::filesystem::path terrain = terrainToDraw(settings, folder);
     Bench bench(terrain, settings);
     std::vector<Figure> figures;
     for (const Case& each : cases())

@@ -212,6 +212,7 @@ TEST_F(CloseUpStates, RegionsAndAnchorsMayBeShared)
     const osg::ref_ptr<CloseUp> second = makeCloseUp({0.0, 0.0}, 300.0, 500.0);
     _closeUps->addCloseUp(first);
     _closeUps->addCloseUp(second);
+    _closeUps->setPipeline(CloseUps::MULTI_PASS); // AUTOMATIC may choose anew
     const osg::ref_ptr<osg::Image> apart = draw();
     second->setRegion(first->getRegion());
     second->setAnchor(first->getAnchor());

@@ -62,10 +62,6 @@ void CloseUpStage::SetUp()
     hills->getOrCreateStateSet()->setTextureAttributeAndModes(0, makeTexture());
     _scene->addChild(hills);
     look({300.0, -1800.0, 1200.0}, {0.0, 0.0, 100.0});
-    // The viewer lights its first frame in another way, whatever the scene is.
-    _closeUps->setEnabled(false);
-    draw();
-    _closeUps->setEnabled(true);
 }
 
 double CloseUpStage::groundHeight(double x, double y)
@@ -106,6 +102,10 @@ osg::ref_ptr<osg::Geometry> CloseUpStage::makeHills(double half, int cells)
     hills->setVertexArray(vertices);
     hills->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
     hills->setTexCoordArray(0, coordinates);
+    // OSG's default material takes the colour, and without one that of whatever was drawn last.
+    osg::ref_ptr<osg::Vec4Array> white = new osg::Vec4Array(1);
+    white->front().set(1.0f, 1.0f, 1.0f, 1.0f);
+    hills->setColorArray(white, osg::Array::BIND_OVERALL);
     hills->addPrimitiveSet(triangles);
     return hills;
 }
