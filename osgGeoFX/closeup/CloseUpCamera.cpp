@@ -264,7 +264,7 @@ void CloseUpCamera::setLayerStates(const ScenePass& pass, const Task& task, std:
 }
 
 std::optional<PixelRectangle> CloseUpCamera::partOf(const ScenePass& pass, const CloseUpItem& item,
-                                                    double lowest, double highest) const
+                                                    double lowest, double highest, bool withAnchor) const
 {
     const osg::Viewport& viewport = *pass.outer.getViewport();
     const auto width = static_cast<int>(viewport.width());
@@ -289,7 +289,7 @@ std::optional<PixelRectangle> CloseUpCamera::partOf(const ScenePass& pass, const
     for (const osg::Vec3d& corner : item.liftedCorners(lowest, highest))
         include(corner);
     const double line = item.closeUp().getAnchor()->getLineWidth();
-    if (item.stretched() || item.fenced() || line > 0.0)
+    if (withAnchor && (item.stretched() || item.fenced() || line > 0.0))
     {
         Hull hull;
         pass.chain.bound(item.groundBox(lowest, highest), hull);
@@ -381,7 +381,7 @@ void CloseUpCamera::drawItem(const ScenePass& pass, const Task& task, Seen& seen
     const auto draw = [&](int layer, const DeformationChain& chain)
     {
         osg::StateSet* state = _now->layerStates[2 * seen.item + static_cast<std::size_t>(layer)];
-        RegionFilter filter(_items, {seen.item}, culls(pass), _tessellated ? &_now->patches : nullptr,
+        RegionFilter filter(_items, {seen.item}, culls(pass), _now->copies, _tessellated,
                             [&](const std::vector<std::size_t>&, std::vector<osg::StateSet*>& states)
                             { states.push_back(state); });
         CompensatingCullVisitor::Task run = passTask(pass, task);
@@ -412,11 +412,12 @@ void CloseUpCamera::show(const ScenePass& pass, const Task& task, const std::vec
     if (!_layerProgram) return;
     const auto put = [&](const Seen& seen, int which)
     {
-        if (which == 0 && !_items[seen.item].showsCloseUp()) return;
+        if (which == 0 && !(_items[seen.item].showsCloseUp() && seen.lifted)) return;
         // Close-ups hide what lies behind them; anchors let it through.
-        _now->layers.show(
-            pass.outer, _layerProgram,
-            {seen.layer + which, seen.part, task.samples, task.opacity, task.depthTest, which == 0});
+        _now->layers.show(pass.outer, _layerProgram,
+                          {seen.layer + which, which == 0 ? *seen.lifted : seen.part,
+                           osg::Vec2i(seen.part.x, seen.part.y), task.samples, task.opacity, task.depthTest,
+                           which == 0});
     };
     if (task.depthTest)
     {
@@ -442,7 +443,7 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
     if (_used == _traversals.size()) _traversals.push_back(std::make_unique<Traversal>());
     _now = _traversals[_used++].get();
     _now->layers.startFrame();
-    if (starts && stampNumber(pass.outer) % 256 == 0) _now->patches.purge();
+    if (starts && stampNumber(pass.outer) % 256 == 0) _now->copies.purge();
 
     _items.clear();
     const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
@@ -470,7 +471,7 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
     _statistics = {};
     std::vector<std::size_t> wanted(_items.size());
     std::iota(wanted.begin(), wanted.end(), std::size_t{0});
-    RegionFilter filter(_items, wanted, culls(pass), _tessellated ? &_now->patches : nullptr,
+    RegionFilter filter(_items, wanted, culls(pass), _now->copies, _tessellated,
                         [&](const std::vector<std::size_t>& touched, std::vector<osg::StateSet*>& states)
                         {
                             if (single) collectGroups(pass, task, touched, states);
@@ -512,12 +513,13 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
         if (found.empty()) continue;
         // Finer tiles may stand out a little.
         const double slack = 20.0 + 0.1 * (found.highest - found.lowest);
-        if (!partOf(pass, _items[i], found.lowest - slack, found.highest + slack)) continue;
-        Seen seen = {i, {}, 0, {nullptr, nullptr}};
+        if (!partOf(pass, _items[i], found.lowest - slack, found.highest + slack, true)) continue;
+        Seen seen = {i, {}, std::nullopt, 0, {nullptr, nullptr}};
         if (!single) drawItem(pass, task, seen, found);
-        const std::optional<PixelRectangle> part = partOf(pass, _items[i], found.lowest, found.highest);
+        const std::optional<PixelRectangle> part = partOf(pass, _items[i], found.lowest, found.highest, true);
         if (!part) continue;
         seen.part = *part;
+        seen.lifted = partOf(pass, _items[i], found.lowest, found.highest, false);
         seen.layer = static_cast<int>(2 * all.size());
         all.push_back(seen);
         widenDepths(pass, _items[i], found);

@@ -53,7 +53,7 @@ private:
         CloseUpLayers layers;
         osg::ref_ptr<osg::StateSet> base = new osg::StateSet;
         std::map<std::vector<std::size_t>, osg::ref_ptr<osg::StateSet>> groups; ///< of a single pass
-        PatchCopies patches;
+        TriangleCopies copies;
         std::vector<osg::ref_ptr<osg::StateSet>>
             layerStates; ///< of a layer each: item 0, its anchor, item 1…
         std::vector<osg::ref_ptr<osg::StateSet>> fenceStates; ///< wall and line of each item
@@ -63,8 +63,9 @@ private:
     struct Seen
     {
         std::size_t item;
-        PixelRectangle part;
-        int layer; ///< the anchor's is the next one
+        PixelRectangle part;                  ///< of the picture that its layers cover
+        std::optional<PixelRectangle> lifted; ///< and of that, the close-up without its anchor
+        int layer;                            ///< the anchor's is the next one
         osgUtil::RenderStage* stages[2];
     };
 
@@ -79,7 +80,7 @@ private:
     void drawFence(const ScenePass& pass, const Task& task, const Seen& seen, const RegionContents& found,
                    osgUtil::RenderStage& stage);
     std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& item, double lowest,
-                                         double highest) const;
+                                         double highest, bool withAnchor) const;
     void widenDepths(const ScenePass& pass, const CloseUpItem& item, const RegionContents& found) const;
     void show(const ScenePass& pass, const Task& task, const std::vector<Seen>& all);
 

@@ -23,9 +23,9 @@ bool isTriangles(const osg::Drawable& drawable)
 } // namespace
 
 RegionFilter::RegionFilter(const std::vector<CloseUpItem>& items, std::vector<std::size_t> wanted, bool culls,
-                           PatchCopies* patches, StatesOf statesOf)
-    : contents(items.size()), _items(items), _wanted(std::move(wanted)), _culls(culls), _patches(patches),
-      _statesOf(std::move(statesOf))
+                           TriangleCopies& copies, bool patches, StatesOf statesOf)
+    : contents(items.size()), _items(items), _wanted(std::move(wanted)), _culls(culls), _copies(copies),
+      _patches(patches), _statesOf(std::move(statesOf))
 {
 }
 
@@ -39,6 +39,7 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
                                                         const osg::Matrixd& modelView, bool ownProgram)
 {
     _touched.clear();
+    _places.clear();
     _states.clear();
     for (const std::size_t item : _wanted)
     {
@@ -48,6 +49,7 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
             continue;
         }
         _touched.push_back(item);
+        if (_culls) _places.push_back({item, modelView * _items[item].toRegion()});
         RegionContents& found = contents[item];
         _items[item].includeHeights(box, found.lowest, found.highest);
         found.ground.push_back({&drawable, modelView * osg::Matrixd::inverse(_items[item].regionToEye())});
@@ -61,10 +63,11 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
     return _states;
 }
 
-osg::Drawable& RegionFilter::drawn(osg::Drawable& drawable)
+osg::Drawable* RegionFilter::drawn(osg::Drawable& drawable)
 {
-    const osg::Geometry* geometry = _patches ? drawable.asGeometry() : nullptr;
-    return geometry && isTriangles(drawable) ? _patches->of(*geometry) : drawable;
+    osg::Geometry* geometry = drawable.asGeometry();
+    const bool copied = geometry && (_patches || _culls) && isTriangles(drawable);
+    return copied ? _copies.of(*geometry, _places, _patches) : &drawable;
 }
 
 } // namespace osgGeoFX

@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/closeup/CloseUpItem.h>
 #include <osgGeoFX/closeup/ContourFence.h>
-#include <osgGeoFX/closeup/PatchCopies.h>
+#include <osgGeoFX/closeup/TriangleCopies.h>
 #include <osgGeoFX/deformation/CompensatingCullVisitor.h>
 
 #include <functional>
@@ -32,15 +32,15 @@ public:
     /// `culls`, all drawables touch all regions.
     using StatesOf =
         std::function<void(const std::vector<std::size_t>& items, std::vector<osg::StateSet*>& states)>;
-    /// With `patches`, triangles are drawn as such.
+    /// `copies` are drawn in the place of drawables, as patches where `patches` are wanted.
     RegionFilter(const std::vector<CloseUpItem>& items, std::vector<std::size_t> wanted, bool culls,
-                 PatchCopies* patches, StatesOf statesOf);
+                 TriangleCopies& copies, bool patches, StatesOf statesOf);
 
     bool outside(const Ball& ball) const override;
     const std::vector<osg::StateSet*>& states(const osg::Drawable& drawable, const EyeBox& box,
                                               const osg::Matrixd& modelView, bool ownProgram) override;
     void meet(const osg::LOD&) override { levels = true; }
-    osg::Drawable& drawn(osg::Drawable& drawable) override;
+    osg::Drawable* drawn(osg::Drawable& drawable) override;
 
     /// Of all items; those that are not wanted have found nothing.
     std::vector<RegionContents> contents;
@@ -54,9 +54,11 @@ private:
     const std::vector<CloseUpItem>& _items;
     std::vector<std::size_t> _wanted;
     bool _culls;
-    PatchCopies* _patches;
+    TriangleCopies& _copies;
+    bool _patches;
     StatesOf _statesOf;
     std::vector<std::size_t> _touched;
+    std::vector<TriangleCopies::Region> _places;
     std::vector<osg::StateSet*> _states;
 };
 

@@ -167,8 +167,8 @@ void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, con
     state.getOrCreateUniform("geofx_layerDepths", osg::Uniform::INT)->set(static_cast<int>(depthUnit));
     const osg::Viewport& viewport = *outer.getViewport();
     state.getOrCreateUniform("geofx_layerOrigin", osg::Uniform::INT_VEC4)
-        ->set(static_cast<int>(viewport.x()) + what.part.x, static_cast<int>(viewport.y()) + what.part.y,
-              what.layer % _perArray, what.samples);
+        ->set(static_cast<int>(viewport.x()) + what.corner.x(),
+              static_cast<int>(viewport.y()) + what.corner.y(), what.layer % _perArray, what.samples);
     state.getOrCreateUniform("geofx_layerOpacity", osg::Uniform::FLOAT)
         ->set(static_cast<float>(what.opacity));
     const auto share = [](int pixel, double size)

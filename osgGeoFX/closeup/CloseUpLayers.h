@@ -49,7 +49,8 @@ public:
     struct Show
     {
         int layer = 0;
-        PixelRectangle part;
+        PixelRectangle part; ///< what of the picture is to be covered
+        osg::Vec2i corner;   ///< the pixel that is the layer's first
         int samples = 1;
         double opacity = 1.0;
         bool depthTest = true, depthWrite = true;

@@ -130,7 +130,7 @@ void CloseUpTextures::updateMasks(const CloseUpList& closeUps)
     _maskImages = images;
     _state.masks = new osg::Texture2DArray;
     _state.masks->setSubloadCallback(new ArrayStorage(GL_RG, GL_FLOAT));
-    setUp(*_state.masks, maskFormat, osg::Texture::NEAREST, osg::Texture::NEAREST);
+    setUp(*_state.masks, maskFormat, osg::Texture::LINEAR, osg::Texture::LINEAR);
     const unsigned int layers = std::max(1u, static_cast<unsigned int>(images.size()));
     _state.masks->setTextureSize(side, side, static_cast<int>(layers));
     if (images.empty()) _state.masks->setImage(0, emptyImage(side, GL_RG, 2));

@@ -667,14 +667,17 @@ void CompensatingCullVisitor::applyInPass(osg::Drawable& drawable)
     const EyeBox box = EyeBox::of(bounds, modelView);
     if (_task.filter->outside(box.ball())) return;
     osg::StateSet* look = lookFor(drawable);
-    for (osg::StateSet* pass : _task.filter->states(drawable, box, modelView, look == nullptr))
+    const std::vector<osg::StateSet*>& passes =
+        _task.filter->states(drawable, box, modelView, look == nullptr);
+    osg::Drawable* drawn = passes.empty() ? nullptr : _task.filter->drawn(drawable);
+    if (!drawn) return;
+    for (osg::StateSet* pass : passes)
     {
         pushStateSet(pass);
         if (look) pushStateSet(look);
         osg::StateSet* state = drawable.getStateSet();
         if (state) pushStateSet(state);
-        addDrawableAndDepth(&_task.filter->drawn(drawable), getModelViewMatrix(),
-                            static_cast<float>(-box.centre.z()));
+        addDrawableAndDepth(drawn, getModelViewMatrix(), static_cast<float>(-box.centre.z()));
         if (state) popStateSet();
         if (look) popStateSet();
         popStateSet();

@@ -31,8 +31,8 @@ public:
                                                       const osg::Matrixd& modelView, bool ownProgram) = 0;
     /// Told of each node with levels of detail that is not outside.
     virtual void meet(const osg::LOD&) {}
-    /// What is drawn in the place of a drawable that is wanted.
-    virtual osg::Drawable& drawn(osg::Drawable& drawable) = 0;
+    /// What is drawn in the place of the drawable that states() was asked of last; null where nothing of it is wanted.
+    virtual osg::Drawable* drawn(osg::Drawable& drawable) = 0;
 
 protected:
     ~PassFilter() = default;

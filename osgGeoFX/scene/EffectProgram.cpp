@@ -170,6 +170,7 @@ void addFinish(Parts& parts, const ShaderLibrary& library, const PassShaders& pa
                                  "#define GEOFX_MAPPING_CHANNELS (geofx_subgraphChannels & " +
                                  prefix + "channels())\n";
     parts.imports += "#pragma import_defines(GEOFX_MAPPING_CHANNELS)\n";
+    if (!pass.geometry.empty()) parts.imports += "#define GEOFX_AMPLIFY\n";
     parts.functions = joined(library, pass.fragment, prefix) + channels + parts.functions;
     parts.finish = "    result = " + prefix + "finish(result);\n";
 }

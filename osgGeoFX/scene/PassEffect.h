@@ -27,8 +27,8 @@ class DeformationChain;
 
     The vertex files have `vec3 SLOT_move(vec3 located, vec3 bent)`: where a point goes, from its undeformed place and the one that the
     scene's deformations give it. The fragment files have `vec4 SLOT_finish(vec4 colour)`, which has the last word, and
-    `int SLOT_channels()`, the mappings to be shown. Where there is a geometry file, it has main(); the vertex files then
-    see GEOFX_AMPLIFY, and in the geometry file GEOFX_VARYINGS stands for the declarations of all that the other effects hand to
+    `int SLOT_channels()`, the mappings to be shown. Where there is a geometry file, it has main(); the vertex and the
+    fragment files then see GEOFX_AMPLIFY, and in the geometry file GEOFX_VARYINGS stands for the declarations of all that the other effects hand to
     the fragment stage and GEOFX_COPY(i) for handing on the i-th vertex' values. Where there are files for tessellation, which
     need a geometry file, too, the vertex files also see GEOFX_TESSELLATE, and GEOFX_COPY(w) in the evaluation's stands for
     values weighted by w. */

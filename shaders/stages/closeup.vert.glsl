@@ -28,7 +28,6 @@ out vec3 SLOT_located;
 out vec3 SLOT_bent;
 #else
 out vec3 SLOT_place;
-flat out int SLOT_target;
 #endif
 
 vec2 SLOT_surfacePlace(vec3 located)
@@ -65,7 +64,6 @@ vec3 SLOT_move(vec3 located, vec3 bent)
 #endif
     return bent;
 #else
-    SLOT_target = SLOT_layer;
     int item = SLOT_layer / 2;
     if (SLOT_share >= 0.0)
     {

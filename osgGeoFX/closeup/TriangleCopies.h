@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osg/Geometry>
+#include <osg/Matrixd>
+#include <osg/observer_ptr>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** Those triangles of a geometry that lie over some regions, as triangles or as the patches that tessellation asks for:
+    geometries that share the arrays of what they copy. Made when first asked for, and kept while the drawable lives and
+    lies where it is. For one thread at a time. */
+class TriangleCopies
+{
+public:
+    /// One region: which it is, and the way from the drawable's frame to places in it, −1…1.
+    struct Region
+    {
+        std::size_t item;
+        osg::Matrixd toPlaces;
+    };
+
+    /// Of a geometry that is made of triangles. Null where there is nothing over the regions; the geometry itself where most
+    /// of it is. Without regions, all of it.
+    osg::Geometry* of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches);
+    /// Forgets what has been deleted; to be called now and then, when nothing of it is on its way to the screen.
+    void purge();
+
+private:
+    struct Entry
+    {
+        osg::observer_ptr<osg::Geometry> geometry;
+        unsigned int modified = 0;
+        std::vector<Region> regions;
+        osg::ref_ptr<osg::Geometry> copy; ///< null where the geometry itself is as good
+        bool empty = false;
+    };
+    static void build(Entry& entry, bool patches);
+
+    using Key = std::pair<osg::Geometry*, std::vector<std::size_t>>;
+    std::map<Key, Entry> _triangles, _patches;
+};
+
+} // namespace osgGeoFX
