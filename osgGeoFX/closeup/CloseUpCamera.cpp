@@ -169,6 +169,9 @@ void CloseUpCamera::setUp(const ScenePass& pass, const Task& task, std::size_t i
     {
         base.setDefine(prefix + name, needed ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
     };
+    define("MASKED",
+           std::any_of(_items.begin(), _items.end(),
+                       [](const CloseUpItem& item) { return item.cutByVertices() || item.stretched(); }));
     define("DATA", task.data != nullptr);
     define("ROUND", task.data && pass.view.ground.ellipsoid);
     osg::Vec4d globe, curve, area;
@@ -258,6 +261,12 @@ void CloseUpCamera::setLayerStates(const ScenePass& pass, const Task& task, std:
             ->set(CloseUpItems::placeInBlock(item), 0, 0, 1);
         state->setAttribute(_now->values.binding(CloseUpItems::blockOf(item), task.binding));
         states.push_back(state);
+    }
+    for (std::size_t i = 0; i < 2 * items; ++i)
+    {
+        const bool masked = i % 2 == 0 ? _items[i / 2].cutByVertices() : _items[i / 2].stretched();
+        states[i]->setDefine(pass.prefix + "MASKED",
+                             masked ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
     }
     while (_now->fenceStates.size() < 2 * items)
         _now->fenceStates.push_back(new osg::StateSet);

@@ -54,6 +54,8 @@ public:
         return _closeUp->getActivity() == CloseUp::ACTIVE || _closeUp->getActivity() == CloseUp::DESATURATED;
     }
     bool stretched() const { return showsAnchor() && _closeUp->getAnchor()->getKind() == Anchor::STRETCHED; }
+    /// Whether its triangles are cut whole, by the masks of their vertices.
+    bool cutByVertices() const { return _closeUp->getEdge() == CloseUp::PRIMITIVES; }
     /// Whether it lacks vertices: where a mask changes, or where what is magnified is to be round.
     bool wantsVertices() const
     {

@@ -3,6 +3,7 @@
 //
 // What all stages of CloseUps share: the close-ups' parameters and masks. SLOT_ stands for the effect's prefix.
 #include "lib/closeup.glsl"
+#pragma import_defines(SLOT_MASKED)
 
 // 16 vectors for each close-up; CloseUpItem.h tells which is which.
 layout(std140) uniform SLOT_Items
@@ -53,8 +54,13 @@ vec2 SLOT_maskAt(int item, vec2 place)
 vec3 SLOT_moved(int item, int layer, vec3 located, vec3 bent, out vec3 place)
 {
     place.xy = SLOT_placeOf(item, located).xy;
+#ifdef SLOT_MASKED
     place.z = SLOT_maskAt(item, place.xy).x;
     // What is cut by fragments is lifted as a whole.
     bool whole = layer == 0 && SLOT_item(item, 9).y < 0.5;
     return geofx_raise(bent, geofx_lift(SLOT_liftOf(item), located), whole ? 1.0 : place.z);
+#else
+    place.z = 1.0;
+    return geofx_lift(SLOT_liftOf(item), located);
+#endif
 }
