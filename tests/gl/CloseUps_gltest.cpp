@@ -223,6 +223,8 @@ protected:
         state->setAttribute(makeBlock(samples));
         state->setTextureAttribute(11, makeMasks(samples));
         state->addUniform(new osg::Uniform((EffectProgram::prefix(2) + "masks").c_str(), 11));
+        // As CloseUps sets it where vertices are moved by their masks.
+        state->setDefine(EffectProgram::prefix(2) + "MASKED");
         for (int row = 0; row < height; ++row)
             camera->addChild(drawingOf(samples[static_cast<std::size_t>(row / 2)], row, height));
         render(camera);
