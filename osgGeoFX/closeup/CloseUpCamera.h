@@ -79,9 +79,6 @@ private:
     void drawItem(const ScenePass& pass, const Task& task, Seen& seen, RegionContents& found);
     void drawFence(const ScenePass& pass, const Task& task, const Seen& seen, const RegionContents& found,
                    osgUtil::RenderStage& stage);
-    std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& item, double lowest,
-                                         double highest, bool withAnchor) const;
-    void widenDepths(const ScenePass& pass, const CloseUpItem& item, const RegionContents& found) const;
     void show(const ScenePass& pass, const Task& task, const std::vector<Seen>& all);
 
     osg::ref_ptr<CompensatingCullVisitor> _overview = new CompensatingCullVisitor;

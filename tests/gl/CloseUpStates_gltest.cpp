@@ -5,26 +5,18 @@
 // planes.
 #include <tools/CloseUpStage.h>
 #include <tools/ImageComparison.h>
-
-#include <osgGeoFX/offscreen/ImageCapture.h>
-#include <osgViewer/CompositeViewer>
+#include <tools/ThreadedViews.h>
 
 #include <cmath>
 #include <limits>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
-using Threading = osgViewer::ViewerBase::ThreadingModel;
 
 namespace
 {
 
 constexpr CloseUps::Pipeline pipelines[] = {CloseUps::SINGLE_PASS, CloseUps::MULTI_PASS};
-
-constexpr Threading models[] = {osgViewer::ViewerBase::SingleThreaded,
-                                osgViewer::ViewerBase::CullDrawThreadPerContext,
-                                osgViewer::ViewerBase::DrawThreadPerContext,
-                                osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
 
 class CloseUpStates : public CloseUpStage
 {
@@ -40,69 +32,6 @@ protected:
     /// How many pixels a close-up alone changes.
     double shows() { return differing(*overview(), *draw()); }
     void drawInAllThreadingModels();
-};
-
-/// Views of one scene or several, each in a context of its own.
-class Views
-{
-public:
-    explicit Views(Threading model) : _viewer(new osgViewer::CompositeViewer)
-    {
-        _viewer->setThreadingModel(model);
-        _viewer->setKeyEventSetsDone(0);
-    }
-    ~Views()
-    {
-        _viewer->stopThreading();
-        _viewer = nullptr;
-        for (const auto& context : _contexts)
-            context->close();
-    }
-    Views(const Views&) = delete;
-    Views& operator=(const Views&) = delete;
-
-    void add(osg::Node* scene, const osg::Camera& like)
-    {
-        osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
-        traits->width = static_cast<int>(like.getViewport()->width());
-        traits->height = static_cast<int>(like.getViewport()->height());
-        traits->alpha = 8;
-        _contexts.push_back(new EglGraphicsContext(traits));
-        osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
-        view->setLightingMode(osg::View::NO_LIGHT);
-        osg::Camera& camera = *view->getCamera();
-        camera.setGraphicsContext(_contexts.back());
-        camera.setViewport(0, 0, traits->width, traits->height);
-        camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-        camera.setClearColor(like.getClearColor());
-        camera.setProjectionMatrix(like.getProjectionMatrix());
-        camera.setViewMatrix(like.getViewMatrix());
-        _captures.push_back(ImageCapture::attach(&camera, ImageCapture::Format::Rgba));
-        view->setSceneData(scene);
-        _viewer->addView(view);
-    }
-    void realize() { _viewer->realize(); }
-    void frame() { _viewer->frame(++_time / 1000.0); }
-    /// Of the next frame; the frames on their way may be of an older state.
-    std::vector<osg::ref_ptr<osg::Image>> pictures()
-    {
-        frame();
-        frame();
-        for (const auto& capture : _captures)
-            capture->request();
-        frame();
-        frame();
-        std::vector<osg::ref_ptr<osg::Image>> images;
-        for (const auto& capture : _captures)
-            images.push_back(capture->take());
-        return images;
-    }
-
-private:
-    osg::ref_ptr<osgViewer::CompositeViewer> _viewer;
-    std::vector<osg::ref_ptr<EglGraphicsContext>> _contexts;
-    std::vector<osg::ref_ptr<ImageCapture>> _captures;
-    int _time = 0;
 };
 
 } // namespace
@@ -351,7 +280,7 @@ TEST_F(CloseUpStates, ReleasedAndDrawnAgain)
         withContext([&](osg::State& state) { _root->releaseGLObjects(&state); });
         EXPECT_TRUE(same(*before, *draw()));
         // And in a second context at the same time.
-        Views views(osgViewer::ViewerBase::SingleThreaded);
+        ThreadedViews views(osgViewer::ViewerBase::SingleThreaded);
         views.add(_root, *viewer().getCamera());
         views.realize();
         EXPECT_TRUE(same(*before, *views.pictures().front()));
@@ -392,7 +321,7 @@ void CloseUpStates::drawInAllThreadingModels()
         others->setPipeline(pipeline);
         std::vector<osg::ref_ptr<osg::Image>> expected;
         {
-            Views views(osgViewer::ViewerBase::SingleThreaded);
+            ThreadedViews views(osgViewer::ViewerBase::SingleThreaded);
             views.add(_root, *viewer().getCamera());
             views.add(second, *viewer().getCamera());
             views.realize();
@@ -400,10 +329,10 @@ void CloseUpStates::drawInAllThreadingModels()
         }
         ASSERT_TRUE(expected[0] && expected[1]);
         EXPECT_GT(differing(*expected[0], *expected[1]), 0.05);
-        for (const Threading model : models)
+        for (const auto model : ThreadedViews::models)
         {
             SCOPED_TRACE("threading model " + std::to_string(model));
-            Views views(model);
+            ThreadedViews views(model);
             views.add(_root, *viewer().getCamera());
             views.add(second, *viewer().getCamera());
             views.add(_root, *viewer().getCamera());

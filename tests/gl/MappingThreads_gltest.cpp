@@ -5,88 +5,28 @@
 // draws. Run with ThreadSanitizer, too: ./tests/run --preset tsan.
 #include <tools/MappingStage.h>
 #include <tools/RandomSamples.h>
-
-#include <osgGeoFX/offscreen/ImageCapture.h>
-#include <osgViewer/CompositeViewer>
+#include <tools/ThreadedViews.h>
 
 #include <cmath>
 
 using namespace geofx::test;
 using namespace osgGeoFX;
-using Threading = osgViewer::ViewerBase::ThreadingModel;
 
 namespace
 {
 
 constexpr int WIDTH = 120, HEIGHT = 90;
 
-constexpr Threading models[] = {osgViewer::ViewerBase::SingleThreaded,
-                                osgViewer::ViewerBase::CullDrawThreadPerContext,
-                                osgViewer::ViewerBase::DrawThreadPerContext,
-                                osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
-
-/// Views of scenes, each with a context of its own.
-class Views
+/// From an eye to the middle.
+osg::ref_ptr<osg::Camera> cameraAt(const osg::Vec3d& eye)
 {
-public:
-    explicit Views(Threading model) : _viewer(new osgViewer::CompositeViewer)
-    {
-        _viewer->setThreadingModel(model);
-        _viewer->setKeyEventSetsDone(0);
-    }
-    ~Views()
-    {
-        _viewer->stopThreading();
-        _viewer = nullptr;
-        for (const auto& context : _contexts)
-            context->close();
-    }
-    Views(const Views&) = delete;
-    Views& operator=(const Views&) = delete;
-
-    void add(osg::Node* scene, const osg::Vec3d& eye)
-    {
-        osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
-        traits->width = WIDTH;
-        traits->height = HEIGHT;
-        traits->alpha = 8;
-        _contexts.push_back(new EglGraphicsContext(traits));
-        osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
-        view->setLightingMode(osg::View::NO_LIGHT);
-        osg::Camera& camera = *view->getCamera();
-        camera.setGraphicsContext(_contexts.back());
-        camera.setViewport(0, 0, WIDTH, HEIGHT);
-        camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-        camera.setClearColor({0, 0, 0, 1});
-        camera.setProjectionMatrixAsPerspective(45.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 5000.0);
-        camera.setViewMatrixAsLookAt(eye, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
-        _captures.push_back(ImageCapture::attach(&camera));
-        view->setSceneData(scene);
-        _viewer->addView(view);
-    }
-    void realize() { _viewer->realize(); }
-    void frame() { _viewer->frame(++_time / 1000.0); }
-    /// The pictures of the next frame; the frames on their way may be of an older state.
-    std::vector<osg::ref_ptr<osg::Image>> pictures()
-    {
-        frame();
-        frame();
-        for (const auto& capture : _captures)
-            capture->request();
-        frame();
-        frame();
-        std::vector<osg::ref_ptr<osg::Image>> images;
-        for (const auto& capture : _captures)
-            images.push_back(capture->take());
-        return images;
-    }
-
-private:
-    osg::ref_ptr<osgViewer::CompositeViewer> _viewer;
-    std::vector<osg::ref_ptr<EglGraphicsContext>> _contexts;
-    std::vector<osg::ref_ptr<ImageCapture>> _captures;
-    int _time = 0;
-};
+    osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+    camera->setViewport(0, 0, WIDTH, HEIGHT);
+    camera->setClearColor({0, 0, 0, 1});
+    camera->setProjectionMatrixAsPerspective(45.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 5000.0);
+    camera->setViewMatrixAsLookAt(eye, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+    return camera;
+}
 
 } // namespace
 
@@ -138,17 +78,17 @@ protected:
     }
 
     /// Pictures on the way and at the end: two views of one scene, and one of another scene with the same mappings.
-    static Pictures play(Threading model, int frames)
+    static Pictures play(ThreadedViews::Threading model, int frames)
     {
         const osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
         mappings->setPageSide(64);
         mappings->setMaxPages(512);
         const osg::ref_ptr<EffectScene> scene = sceneOf(mappings);
         const osg::ref_ptr<EffectScene> other = sceneOf(mappings);
-        Views views(model);
-        views.add(scene, {0.0, -150.0, 250.0});
-        views.add(scene, {100.0, 50.0, 200.0});
-        views.add(other, {0.0, 10.0, 300.0});
+        ThreadedViews views(model);
+        views.add(scene, *cameraAt({0.0, -150.0, 250.0}));
+        views.add(scene, *cameraAt({100.0, 50.0, 200.0}));
+        views.add(other, *cameraAt({0.0, 10.0, 300.0}));
         views.realize();
         Pictures all;
         Random random(11);
@@ -167,13 +107,13 @@ protected:
 TEST_F(MappingThreads, AllModelsDrawTheSame)
 {
     const int frames = fullTest() ? 600 : 80;
-    const Pictures expected = play(models[0], frames);
+    const Pictures expected = play(ThreadedViews::models[0], frames);
     ASSERT_FALSE(expected.empty());
     for (std::size_t i = 0; i < expected.size(); ++i)
         ASSERT_TRUE(expected[i]);
     EXPECT_GT(differing(*expected[0], *expected[3]), WIDTH * HEIGHT / 4);
     EXPECT_GT(differing(*expected[0], *expected[1]), WIDTH * HEIGHT / 4);
-    for (const Threading model : models)
+    for (const auto model : ThreadedViews::models)
     {
         SCOPED_TRACE("threading model " + std::to_string(model));
         const Pictures found = play(model, frames);
@@ -198,17 +138,17 @@ TEST_F(MappingThreads, EachViewDrawsWhatOneAloneDraws)
     Pictures alone;
     for (const osg::Vec3d& eye : eyes)
     {
-        Views views(models[0]);
-        views.add(scene, eye);
+        ThreadedViews views(osgViewer::ViewerBase::SingleThreaded);
+        views.add(scene, *cameraAt(eye));
         views.realize();
         alone.push_back(views.pictures().front());
         ASSERT_TRUE(alone.back());
     }
-    for (const Threading model : models)
+    for (const auto model : ThreadedViews::models)
     {
-        Views views(model);
+        ThreadedViews views(model);
         for (const osg::Vec3d& eye : eyes)
-            views.add(scene, eye);
+            views.add(scene, *cameraAt(eye));
         views.realize();
         const Pictures both = views.pictures();
         for (std::size_t i = 0; i < 2; ++i)
