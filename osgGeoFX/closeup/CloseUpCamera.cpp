@@ -154,7 +154,9 @@ void CloseUpCamera::setUp(const ScenePass& pass, const Task& task, std::size_t i
     base.getOrCreateUniform(prefix + "only", osg::Uniform::INT)->set(-1);
     if (_tessellated)
     {
-        const double pixels = pass.outer.getViewport()->height() * pass.view.projection(1, 1) / 2.0;
+        const bool perspective = pass.view.projection(3, 3) == 0.0;
+        const double pixels = (perspective ? 1.0 : -1.0) * pass.outer.getViewport()->height() *
+                              std::abs(pass.view.projection(1, 1)) / 2.0;
         const double roundness = std::accumulate(_items.begin(), _items.end(), 0.0,
                                                  [](double most, const CloseUpItem& item)
                                                  { return std::max(most, item.closeUp().getRoundness()); });

@@ -16,7 +16,7 @@ out vec3 SLOT_normal_control[];
 GEOFX_VARYINGS
 
 uniform ivec4 SLOT_targets; // up to three items, and how many they are
-uniform vec4 SLOT_fineness; // parts of an edge at most; texels of a mask in one; pixels in one; pixels at a metre's distance
+uniform vec4 SLOT_fineness; // parts of an edge at most; texels of a mask in one; pixels in one; pixels of a metre: at a metre's distance, or, less than 0, at any
 
 float SLOT_parts(vec3 a, vec3 b)
 {
@@ -38,7 +38,8 @@ float SLOT_parts(vec3 a, vec3 b)
         {
             vec3 first = geofx_lift(SLOT_liftOf(item), a);
             vec3 last = geofx_lift(SLOT_liftOf(item), b);
-            float pixels = length(last - first) * SLOT_fineness.w / max(-0.5 * (first.z + last.z), 1e-3);
+            float distance = SLOT_fineness.w < 0.0 ? 1.0 : max(-0.5 * (first.z + last.z), 1e-3);
+            float pixels = length(last - first) * abs(SLOT_fineness.w) / distance;
             parts = max(parts, pixels / SLOT_fineness.z);
         }
     }
