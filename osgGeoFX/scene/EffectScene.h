@@ -47,7 +47,8 @@ namespace osgGeoFX
 
     **Threads.** May be drawn by any number of cameras, views and contexts, in every threading model. Effects are added,
     removed and changed between frames. Several scenes may share a terrain, each with its own effects; one inside
-    another is drawn without the inner one's effects. */
+    another is drawn without the inner one's effects. Views that show a paged terrain below different roots must share a
+    pager (`view.setDatabasePager(other.getDatabasePager())`), for OSG keeps one request for each paged child. */
 class OSGGEOFX_EXPORT EffectScene : public osg::Group
 {
 public:

@@ -132,6 +132,9 @@ public:
         // Some dozen tiles are enough to have the pager and the culling meet.
         view->getCamera()->setLODScale(fullTest() ? 1.0f : 8.0f);
         view->setSceneData(node);
+        // OSG makes a pager for each root, and keeps one request for each child of a paged node: two pagers that ask for the
+        // same child both work on it. So views over one terrain share one.
+        if (_viewer->getNumViews() > 0) view->setDatabasePager(_viewer->getView(0)->getDatabasePager());
         _viewer->addView(view);
         _windows.push_back(window);
         return true;
