@@ -24,7 +24,9 @@ namespace glslBuiltIns
 using glm::abs;
 using glm::ceil;
 using glm::clamp;
+using glm::cos;
 using glm::dot;
+using glm::exp;
 using glm::floor;
 using glm::length;
 using glm::log2;
@@ -32,6 +34,7 @@ using glm::max;
 using glm::min;
 using glm::mix;
 using glm::normalize;
+using glm::sin;
 using glm::sqrt;
 } // namespace glslBuiltIns
 
@@ -59,6 +62,11 @@ using Rgba = glm::dvec4;
 #include <shaders/lib/closeup.glsl>
 #include <shaders/lib/exaggeration.glsl>
 #include <shaders/lib/mapping.glsl>
+
+#include <shaders/lib/cover.glsl>
+
+#include <shaders/lib/painting.glsl>
+#include <shaders/lib/panorama.glsl>
 } // namespace glsl
 
 namespace glslf
@@ -85,6 +93,11 @@ using Rgba = glm::vec4;
 #include <shaders/lib/closeup.glsl>
 #include <shaders/lib/exaggeration.glsl>
 #include <shaders/lib/mapping.glsl>
+
+#include <shaders/lib/cover.glsl>
+
+#include <shaders/lib/painting.glsl>
+#include <shaders/lib/panorama.glsl>
 } // namespace glslf
 
 } // namespace osgGeoFX
