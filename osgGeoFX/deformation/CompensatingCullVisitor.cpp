@@ -262,7 +262,9 @@ bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
     if (_mode.planes == 0 && !_cullSmall) return false;
     const osg::BoundingSphere& sphere = node.getBound();
     if (!sphere.valid()) return false;
-    const Ball ball = _mode.chain->bound(eyeBall(sphere));
+    const Ball undeformed = eyeBall(sphere);
+    if (_mode.chain->hides(undeformed)) return true;
+    const Ball ball = _mode.chain->bound(undeformed);
     _middle = ball.centre;
     if (_frustum.side(ball, _mode.planes) == EyeFrustum::Side::Outside) return true;
     if (!_cullSmall) return false;
@@ -562,6 +564,7 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
     const Ball deformed = _mode.chain->bound(ball);
     depth = -deformed.centre.z();
     const bool test = drawable.isCullingActive();
+    if (test && _mode.chain->hides(ball)) return false;
     if (test && _cullSmall && planeDistance(_pixelSize, deformed.centre) * _smallPixels > deformed.radius)
         return false;
     EyeFrustum::Mask planes = test ? _mode.planes : 0;

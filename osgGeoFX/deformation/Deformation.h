@@ -11,6 +11,7 @@
 #include <osg/Vec3d>
 #include <osg/Vec4d>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,6 +82,11 @@ public:
 
     /// How much more detail a ball deserves, beside what follows from lipschitz(): 1 as much as ever, 2 twice.
     virtual double detail(const Ball&) const { return 1.0; }
+    /// Where the picture is not as large as distances in eye space tell: the distance, metres, from which a plain view would
+    /// show what is in a ball as large; levels of detail go by it. Nothing where they tell it.
+    virtual std::optional<double> viewDistance(const Ball&) const { return std::nullopt; }
+    /// Whether nothing in a ball is to be drawn, though it may lie in the picture.
+    virtual bool hides(const Ball&) const { return false; }
     /// A sentence where something in this box cannot be drawn well; said once by the scene.
     virtual std::string complaint(const EyeBox&) const { return {}; }
 

@@ -179,6 +179,17 @@ bool DeformationChain::leavesAlone(const Ball& ball) const
                        [&](const auto& frame) { return frame->reach(ball) == Reach::Identity; });
 }
 
+bool DeformationChain::hides(const Ball& ball) const
+{
+    Ball current = ball;
+    for (std::size_t i = 0; i < _frames.size(); ++i)
+    {
+        if (i > 0) current = _frames[i - 1]->bound(current);
+        if (_frames[i]->hides(current)) return true;
+    }
+    return false;
+}
+
 Ball DeformationChain::bound(const Ball& ball) const
 {
     Ball result = ball;
@@ -223,6 +234,8 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
     for (const auto& frame : _frames)
     {
         if (frame->reach(current) == Reach::Identity) continue;
+        if (const std::optional<double> distance = frame->viewDistance(current))
+            return ball.radius + *distance / (detail * frame->detail(current));
         detail *= frame->detail(current) * frame->lipschitz(current);
         current = frame->bound(current);
     }

@@ -39,6 +39,8 @@ public:
 
     /// Whether nothing happens to any point of a ball.
     bool leavesAlone(const Ball& ball) const;
+    /// Whether nothing of a ball is to be drawn.
+    bool hides(const Ball& ball) const;
     /// A ball around what becomes of a ball.
     Ball bound(const Ball& ball) const;
     /// A hull around what becomes of a box. `hull` is reused for speed. Its margin is to be no larger than `fineness`,

@@ -8,6 +8,7 @@
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 
 #include <cctype>
 #include <sstream>
@@ -38,6 +39,7 @@ constexpr Kind kinds[] = {
     {"verticalExaggeration", make<VerticalExaggeration>},
     {"projectiveMappings", make<ProjectiveMappings>},
     {"closeUps", make<CloseUps>},
+    {"panoramaMap", make<PanoramaMap>},
 };
 
 std::string joined(const std::vector<std::string>& words)

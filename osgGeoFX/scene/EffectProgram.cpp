@@ -28,13 +28,14 @@ std::string replaced(std::string text, const std::string& word, const std::strin
 /// What stands in the place of the words in capitals in stages/functions.*.
 struct Parts
 {
-    std::string imports, functions, locate, deform, normal, colour, move, finish;
+    std::string imports, functions, locate, face, deform, normal, colour, move, finish;
 
     std::string fill(std::string text) const
     {
         text = replaced(std::move(text), "GEOFX_IMPORTED_EFFECTS", imports);
         text = replaced(std::move(text), "GEOFX_EFFECT_FUNCTIONS", functions);
         text = replaced(std::move(text), "GEOFX_LOCATE_CALLS", locate);
+        text = replaced(std::move(text), "GEOFX_FACE_CALLS", face);
         text = replaced(std::move(text), "GEOFX_DEFORM_CALLS", deform);
         text = replaced(std::move(text), "GEOFX_NORMAL_CALLS", normal);
         text = replaced(std::move(text), "GEOFX_COLOUR_CALLS", colour);
@@ -70,8 +71,11 @@ void addDeformation(Parts& parts, const Deformation& deformation, const std::str
                                 "    result = " + prefix + "restyle(result, map, geofx_styleBlend);\n");
 }
 
-void addSurface(Parts& parts, const std::string& prefix, const std::string& define)
+void addSurface(Parts& parts, const SurfaceEffect& surface, const std::string& prefix,
+                const std::string& define)
 {
+    if (surface.looksAtNormals())
+        parts.face += conditional("defined(" + define + ")", "    " + prefix + "face(eyeNormal);\n");
     parts.locate += conditional("defined(" + define + ")", "    " + prefix + "locate(located);\n");
     parts.colour += conditional("defined(" + define + ")", "    result = " + prefix + "colour(result);\n");
 }
@@ -86,20 +90,22 @@ Parts partsOf(const std::vector<osg::ref_ptr<Effect>>& effects, const ShaderLibr
         const SurfaceEffect* surface = effects[i]->asSurfaceEffect();
         if (!deformation && !surface) continue;
         const std::string prefix = EffectProgram::prefix(i);
-        const std::string define = EffectProgram::define(i);
-        // Short lines: some drivers broke on long ones.
-        parts.imports += "#pragma import_defines(" + define + ")\n";
         std::string text;
+        // Short lines: some drivers broke on long ones.
         if (deformation)
         {
+            const std::string define = EffectProgram::define(i);
+            parts.imports += "#pragma import_defines(" + define + ")\n";
             const std::string file = vertex ? deformation->vertexFile() : deformation->fragmentFile();
             if (!file.empty()) text = deformation->constants() + library.read(file);
             addDeformation(parts, *deformation, prefix, define);
         }
-        else
+        if (surface)
         {
-            text = library.read(vertex ? surface->vertexFile() : surface->fragmentFile());
-            addSurface(parts, prefix, define);
+            const std::string define = EffectProgram::surfaceDefine(i);
+            parts.imports += "#pragma import_defines(" + define + ")\n";
+            text += library.read(vertex ? surface->vertexFile() : surface->fragmentFile());
+            addSurface(parts, *surface, prefix, define);
         }
         parts.functions += replaced(text, "SLOT_", prefix);
     }
@@ -260,6 +266,11 @@ std::string EffectProgram::prefix(std::size_t effect)
 std::string EffectProgram::define(std::size_t effect)
 {
     return "GEOFX_EFFECT_" + std::to_string(effect);
+}
+
+std::string EffectProgram::surfaceDefine(std::size_t effect)
+{
+    return "GEOFX_SURFACE_" + std::to_string(effect);
 }
 
 std::string EffectProgram::key(const Effects& effects)

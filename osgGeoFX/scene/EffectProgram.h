@@ -16,8 +16,8 @@ namespace osgGeoFX
 
 /** The shaders of a scene's effects, put together.
 
-    Effect i of the scene has the prefix geofx_<i>_ and the define GEOFX_EFFECT_<i>, which is set where the effect is in
-    force, so that switching effects changes defines and nothing else. */
+    Effect i of the scene has the prefix geofx_<i>_ and the defines GEOFX_EFFECT_<i>, which is set where it deforms, and
+    GEOFX_SURFACE_<i>, where it colours, so that switching effects changes defines and nothing else. */
 class OSGGEOFX_EXPORT EffectProgram
 {
 public:
@@ -25,6 +25,7 @@ public:
 
     static std::string prefix(std::size_t effect);
     static std::string define(std::size_t effect);
+    static std::string surfaceDefine(std::size_t effect);
 
     /// Changes where the shaders' text does.
     static std::string key(const Effects& effects);

@@ -398,9 +398,10 @@ bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, c
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
         SurfaceEffect* surface = effects[i]->asSurfaceEffect();
-        if (!surface || !effects[i]->getEnabled()) continue;
-        const bool draws = surface->fill(state, EffectProgram::prefix(i), view);
-        setDefine(state, EffectProgram::define(i), draws);
+        if (!surface) continue;
+        const bool draws =
+            effects[i]->getEnabled() && surface->fill(state, EffectProgram::prefix(i), view);
+        setDefine(state, EffectProgram::surfaceDefine(i), draws);
         any = any || draws;
     }
     return any;

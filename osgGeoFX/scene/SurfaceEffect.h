@@ -35,6 +35,8 @@ public:
     /// The shader files in which `SLOT_` stands for the prefix of names.
     virtual std::string vertexFile() const = 0;
     virtual std::string fragmentFile() const = 0;
+    /// Whether the vertex file has `void SLOT_face(vec3 eyeNormal)`, which gets the undeformed normal of length 1.
+    virtual bool looksAtNormals() const { return false; }
 
     /** Puts what the shaders need into a camera's state: uniforms with the prefix, and textures. False where there is
         nothing to draw. Several cameras' threads may call it at once; the state is the caller's own. */

@@ -6,3 +6,142 @@
 #include "lib/types.glsl"
 #include "lib/exaggeration.glsl"
 #endif
+
+// A place of the map: x to the right of the middle and s away from the picture's base, along the ground, and the height
+// above the sea, metres. On a globe x and s are the azimuthal equidistant projection about the point below the eye.
+//
+// The picture: x -1 to 1 and y -1 to 1, and n, the distance from the eye along its axis, which grows with s: of two
+// places at the same point of the picture the one with the smaller s hides the other.
+struct geofx_Panorama
+{
+    geofx_Exaggeration globe; // factor 0 and base 0: takes a position to its foot
+    Vector3 right;            // in the plane of the ground below the eye, unit vectors
+    Vector3 forward;
+    PerMetre across;  // of the picture's x for each metre of x; 1 / (half the width of the ground shown)
+    PerMetre along;   // of the picture's y for each metre of s at the base
+    PerMetre lift;    // of the picture's y for each metre of height
+    Length base;      // the height that lies on the curve
+    Length curve;     // D1, where the ground begins to curve
+    Length horizon;   // D2, where it has reached the horizon; beyond, only what rises above it is seen
+    Length end;       // where that has gone, too
+    Number arch;      // 2 C: the horizon's bend, in the picture's y (Eq. 1)
+    Length nearest;   // n of the base, > 0
+    Vector3 origin;   // a point of the picture is a line of eye space: origin + x originX + y originY
+    Vector3 originX;
+    Vector3 originY;
+    Vector3 direction; // + n (direction + x directionX + y directionY); the direction's z is -1
+    Vector3 directionX;
+    Vector3 directionY;
+};
+
+// The angle over its sine, from its cosine: what stretches the orthographic projection to the equidistant one. Within 1e-4 up
+// to 60 degrees; beyond it still grows.
+GEOFX_INLINE Number geofx_arcStretch(Number cosine)
+{
+    Number u = 1 - cosine;
+    return 1 + u * (Number(1.0 / 3.0) +
+                    u * (Number(2.0 / 15.0) +
+                         u * (Number(2.0 / 35.0) +
+                              u * (Number(8.0 / 315.0) + u * (Number(8.0 / 693.0) + u * Number(16.0 / 3003.0))))));
+}
+
+// (x, s, height) of a position.
+GEOFX_INLINE Position geofx_panoramaPlace(geofx_Panorama view, Position position)
+{
+    Length height = geofx_exaggerationHeight(view.globe, position);
+    Position foot = geofx_exaggerate(view.globe, position);
+    Number steepness = dot(normalize(geofx_exaggerationGradient(view.globe, foot)), view.globe.up);
+    Number stretch = geofx_arcStretch(steepness);
+    // The other side of the Earth lies farther than anything on this one.
+    Length behind = view.globe.curvature > 0 ? max(-steepness, Number(0)) * 20 / view.globe.curvature : Length(0);
+    return Position(stretch * dot(foot, view.right), stretch * dot(foot, view.forward) + behind, height);
+}
+
+// The inverse of geofx_panoramaPlace, up to 60 degrees from the eye's foot.
+GEOFX_INLINE Position geofx_panoramaPosition(geofx_Panorama view, Position place)
+{
+    Vector3 ground = place.x * view.right + place.y * view.forward;
+    Position position = ground + (place.z - view.globe.height) * view.globe.up;
+    // Each turn is off by a share of the angle's square of what the last one was off by.
+    for (int i = 0; i < 24; ++i)
+    {
+        Position error = place - geofx_panoramaPlace(view, position);
+        Vector3 up = normalize(geofx_exaggerationGradient(view.globe, position));
+        position += error.x * view.right + error.y * view.forward;
+        position += (error.z - dot(error.x * view.right + error.y * view.forward, up)) * up;
+    }
+    return position;
+}
+
+// How far up the curve a distance s is: metres at the scale of the base (paper, Figure 5).
+GEOFX_INLINE Length geofx_panoramaRise(geofx_Panorama view, Length s)
+{
+    Length bent = clamp(s - view.curve, Length(0), view.horizon - view.curve);
+    return min(s, view.curve) + bent - bent * bent / (2 * max(view.horizon - view.curve, Length(1e-3)));
+}
+
+// The share of the base's scale that ground at a distance s has along the view.
+GEOFX_INLINE Number geofx_panoramaSlope(geofx_Panorama view, Length s)
+{
+    return clamp((view.horizon - s) / max(view.horizon - view.curve, Length(1e-3)), Number(0), Number(1));
+}
+
+// The share of its height that something at a distance s shows: all of it up to the horizon.
+GEOFX_INLINE Number geofx_panoramaFade(geofx_Panorama view, Length s)
+{
+    Number t = clamp((view.end - s) / max(view.end - view.horizon, Length(1e-3)), Number(0), Number(1));
+    return t * t * (3 - 2 * t);
+}
+
+// How far Eq. 1 lowers a point of the picture.
+GEOFX_INLINE Number geofx_panoramaArch(geofx_Panorama view, Number x)
+{
+    return view.arch * (1 - cos(x * Number(1.5707963267948966)));
+}
+
+// The point (x, y) of the picture and n, of a place.
+GEOFX_INLINE Position geofx_panoramaPicture(geofx_Panorama view, Position place)
+{
+    Number x = place.x * view.across;
+    Number y = view.along * geofx_panoramaRise(view, place.y) - 1 +
+               view.lift * (place.z - view.base) * geofx_panoramaFade(view, place.y) - geofx_panoramaArch(view, x);
+    Length n = place.y > 0 ? view.nearest + place.y
+                           : view.nearest * view.nearest / (view.nearest - place.y);
+    return Position(x, y, n);
+}
+
+// The inverse of geofx_panoramaPicture where a height shows at all.
+GEOFX_INLINE Position geofx_panoramaPlaceAt(geofx_Panorama view, Position picture)
+{
+    Length s = picture.z > view.nearest ? picture.z - view.nearest
+                                        : view.nearest - view.nearest * view.nearest / picture.z;
+    Number y = picture.y + 1 + geofx_panoramaArch(view, picture.x) - view.along * geofx_panoramaRise(view, s);
+    Number lift = view.lift * max(geofx_panoramaFade(view, s), Number(1e-6));
+    return Position(picture.x / view.across, s, view.base + y / lift);
+}
+
+GEOFX_INLINE Position geofx_panoramaEye(geofx_Panorama view, Position picture)
+{
+    return view.origin + picture.x * view.originX + picture.y * view.originY +
+           picture.z * (view.direction + picture.x * view.directionX + picture.y * view.directionY);
+}
+
+// The inverse of geofx_panoramaEye, where the projection takes x and y apart, as frusta and boxes do.
+GEOFX_INLINE Position geofx_panoramaPictureAt(geofx_Panorama view, Position eye)
+{
+    Length n = view.origin.z - eye.z;
+    Vector3 middle = view.origin + n * view.direction;
+    Vector3 right = view.originX + n * view.directionX;
+    Vector3 up = view.originY + n * view.directionY;
+    return Position((eye.x - middle.x) / right.x, (eye.y - middle.y) / up.y, n);
+}
+
+GEOFX_INLINE Position geofx_panoramaDeform(geofx_Panorama view, Position position)
+{
+    return geofx_panoramaEye(view, geofx_panoramaPicture(view, geofx_panoramaPlace(view, position)));
+}
+
+GEOFX_INLINE Position geofx_panoramaUndeform(geofx_Panorama view, Position position)
+{
+    return geofx_panoramaPosition(view, geofx_panoramaPlaceAt(view, geofx_panoramaPictureAt(view, position)));
+}

@@ -38,6 +38,7 @@ GEOFX_MOVE_CALLS
 
 vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal)
 {
+GEOFX_FACE_CALLS
 #ifdef GEOFX_DEFORMATION
     vec3 position = eyePosition.xyz / eyePosition.w;
     vec3 normal = eyeNormal;

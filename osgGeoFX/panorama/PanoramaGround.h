@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/scene/SurfaceEffect.h>
+
+#include <osg/Texture2D>
+
+namespace osgGeoFX
+{
+
+/// A panorama map as the effect that paints the ground; its parameters are the map's, and it is enabled as that is.
+class PanoramaMap::Ground : public SurfaceEffect
+{
+public:
+    explicit Ground(const PanoramaMap& map);
+
+    osg::Object* cloneType() const override { return nullptr; }
+    osg::Object* clone(const osg::CopyOp&) const override { return nullptr; }
+    const char* libraryName() const override { return "osgGeoFX"; }
+    const char* className() const override { return "PanoramaMap::Ground"; }
+    const Properties& properties() const override;
+
+    std::string vertexFile() const override { return "stages/panorama.ground.vert.glsl"; }
+    std::string fragmentFile() const override { return "stages/panorama.ground.frag.glsl"; }
+    bool looksAtNormals() const override { return true; }
+    bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) override;
+
+protected:
+    ~Ground() override;
+
+private:
+    const PanoramaMap& _map;
+    osg::ref_ptr<osg::Texture2D> _noCover;
+};
+
+} // namespace osgGeoFX

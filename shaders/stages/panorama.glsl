@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// PanoramaMap's projection in the vertex stage. SLOT_ stands for the effect's prefix.
+#include "lib/panorama.glsl"
+
+uniform vec4 SLOT_up;
+uniform vec4 SLOT_axis;
+uniform vec4 SLOT_right;
+uniform vec4 SLOT_forward;
+uniform vec4 SLOT_scale;
+uniform vec4 SLOT_curve;
+uniform vec4 SLOT_origin;
+uniform vec4 SLOT_originX;
+uniform vec4 SLOT_originY;
+uniform vec4 SLOT_direction;
+uniform vec4 SLOT_directionX;
+uniform vec4 SLOT_directionY;
+
+geofx_Panorama SLOT_view()
+{
+    geofx_Exaggeration globe = geofx_Exaggeration(SLOT_up.xyz, SLOT_axis.xyz, SLOT_up.w, SLOT_right.w, SLOT_axis.w,
+                                                  SLOT_forward.w, 0.0, 0.0);
+    return geofx_Panorama(globe, SLOT_right.xyz, SLOT_forward.xyz, SLOT_scale.x, SLOT_scale.y, SLOT_scale.z,
+                          SLOT_scale.w, SLOT_curve.x, SLOT_curve.y, SLOT_curve.z, SLOT_curve.w, SLOT_origin.w,
+                          SLOT_origin.xyz, SLOT_originX.xyz, SLOT_originY.xyz, SLOT_direction.xyz,
+                          SLOT_directionX.xyz, SLOT_directionY.xyz);
+}
+
+vec3 SLOT_deform(vec3 position)
+{
+    return geofx_panoramaDeform(SLOT_view(), position);
+}
+
+// The ground is lit as it lies.
+vec3 SLOT_normal(vec3 position, vec3 normal)
+{
+    return normal;
+}
+
+float SLOT_style(vec3 position)
+{
+    return 0.0;
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// What the painting of a panorama map's ground needs of each vertex. SLOT_ stands for the effect's prefix.
+uniform vec4 SLOT_light; // towards the light, in eye space; by how much slopes are lit as steeper than they are
+
+out vec3 SLOT_place;  // of the map: x of the picture, s and height in metres
+out vec4 SLOT_facing; // the normal to light with, and the rise over run of the ground
+out vec2 SLOT_coverPlace;
+
+vec3 SLOT_vertical;
+
+void SLOT_locate(vec3 position)
+{
+    geofx_Panorama view = SLOT_view();
+    vec3 place = geofx_panoramaPlace(view, position);
+    SLOT_place = vec3(place.x * view.across, place.yz);
+    SLOT_coverPlace = gl_MultiTexCoord0.xy;
+    SLOT_vertical = normalize(geofx_exaggerationGradient(view.globe, position));
+    SLOT_facing = vec4(SLOT_vertical, 0.0);
+}
+
+void SLOT_face(vec3 normal)
+{
+    float upward = dot(normal, SLOT_vertical);
+    float level = length(normal - upward * SLOT_vertical);
+    SLOT_facing = vec4(normalize(normal + (1.0 / SLOT_light.w - 1.0) * upward * SLOT_vertical),
+                       level / max(abs(upward), 0.02));
+}
