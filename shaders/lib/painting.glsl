@@ -172,9 +172,9 @@ GEOFX_INLINE Number geofx_waterDepth(Length shore, Length deepShore)
 {
     Number t = geofx_share(shore / max(deepShore, Number(1e-3)));
     // The logistic function between t = 0 and 1, stretched to meet 0 and 1 there.
-    Number low = 1 / (1 + exp(Number(3)));
-    Number high = 1 / (1 + exp(Number(-6)));
-    return (1 / (1 + exp(3 - 9 * t)) - low) / (high - low);
+    Number low = 1 / (1 + exp(Number(2)));
+    Number high = 1 / (1 + exp(Number(-7)));
+    return (1 / (1 + exp(2 - 9 * t)) - low) / (high - low);
 }
 
 // Water of relative depth t, 0 to 1: from white over ever more saturated and darker colours to `deep`.

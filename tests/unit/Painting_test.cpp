@@ -132,6 +132,15 @@ TEST(Painting, HsvAndBack)
     EXPECT_NEAR(glsl::geofx_toHsv(Rgb(1, 0, 0.5)).x, 11.0 / 12, 1e-12);
 }
 
+TEST(Painting, EasingHasNoCorners)
+{
+    EXPECT_EQ(glsl::geofx_ease(2.0, 2.0, 4.0), 0.0);
+    EXPECT_EQ(glsl::geofx_ease(3.0, 2.0, 4.0), 0.5);
+    EXPECT_EQ(glsl::geofx_ease(4.0, 2.0, 4.0), 1.0);
+    EXPECT_LT(glsl::geofx_ease(2.002, 2.0, 4.0), 1e-5);
+    EXPECT_GT(glsl::geofx_ease(3.998, 2.0, 4.0), 1.0 - 1e-5);
+}
+
 TEST(Painting, ClassesShareTheGround)
 {
     for (int sample = 0; sample < sampleCount(); ++sample)
@@ -301,8 +310,9 @@ TEST(Painting, WaterIsPaleAtTheShoreAndDeepFarOff)
     EXPECT_NEAR(glsl::geofx_waterDepth(-500.0, 1000.0), 0.0, 1e-12);
     EXPECT_NEAR(glsl::geofx_waterDepth(1000.0, 1000.0), 1.0, 1e-12);
     // A sigmoid: more of the water is nearly white or nearly deep than linearly.
-    EXPECT_LT(glsl::geofx_waterDepth(100.0, 1000.0), 0.1);
-    EXPECT_GT(glsl::geofx_waterDepth(700.0, 1000.0), 0.9);
+    EXPECT_LT(glsl::geofx_waterDepth(50.0, 1000.0), 0.07);
+    EXPECT_GT(glsl::geofx_waterDepth(220.0, 1000.0), 0.4);
+    EXPECT_GT(glsl::geofx_waterDepth(600.0, 1000.0), 0.95);
 }
 
 TEST(Painting, ReflectionsLendTheirHue)

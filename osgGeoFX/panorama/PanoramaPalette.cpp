@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/panorama/PanoramaPalette.h>
+
+#include <osgGeoFX/scene/GlslFunctions.h>
+
+#include <osgDB/ReadFile>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+using glsl::Rgb;
+
+constexpr int columns = glsl::GEOFX_PALETTE_COLUMNS;
+constexpr int rows = glsl::GEOFX_PALETTE_ROWS;
+using Row = std::array<Rgb, columns>;
+using Palette = std::array<Row, rows>;
+
+/// Red, green and blue in one number, at these lights; straight between them.
+constexpr std::array<double, 7> stopLights = {-1.0, -0.55, -0.2, 0.1, 0.4, 0.7, 1.0};
+constexpr unsigned stopColors[rows][stopLights.size()] = {
+    {0x2c4478, 0x386189, 0x4d8290, 0x74a176, 0xa5b862, 0xd0cd68, 0xf3e692}, // field
+    {0x3d3879, 0x574f97, 0x80659a, 0xa8766c, 0xc98f56, 0xe3b062, 0xf8d893}, // hill
+    {0x263062, 0x3c4a8c, 0x615d98, 0x8a5f74, 0xac6a55, 0xcf9069, 0xf0c8a2}, // cliff
+    {0x6a80c4, 0x8fa2dc, 0xb2bee8, 0xd0d2ee, 0xe8e2ee, 0xf8f1e8, 0xfffdf4}, // snow
+    {0x28285a, 0x323b70, 0x34526e, 0x356052, 0x45703f, 0x62853c, 0x8ba04c}, // forest floor
+    {0x393c88, 0x41559c, 0x3f7290, 0x47895f, 0x6ea348, 0xa3bd4b, 0xdcd968}, // trees
+    {0x4c477f, 0x6b639a, 0x9582a2, 0xba9292, 0xd8ae94, 0xeecba8, 0xfcebcb}, // town
+    {0x3e4d80, 0x5f73a4, 0x8791ac, 0xaea59f, 0xcbb88f, 0xe4d2a4, 0xf9edc8}, // bare
+};
+
+/// What another season than summer puts in the place of the last four stops, of rows that grow.
+enum Season
+{
+    WINTER,
+    SPRING,
+    SUMMER,
+    AUTUMN,
+    SEASONS
+};
+constexpr std::size_t litStops = 4;
+constexpr int growing = 4;
+constexpr int growingRows[growing] = {glsl::GEOFX_PALETTE_FIELD, glsl::GEOFX_PALETTE_HILL,
+                                      glsl::GEOFX_PALETTE_FOREST, glsl::GEOFX_PALETTE_TREES};
+constexpr unsigned seasonColors[SEASONS][growing][litStops] = {
+    {{0x94a39a, 0xbdb993, 0xd8cda3, 0xefe5c4},
+     {0xa38083, 0xbf9a80, 0xd6b693, 0xefdcbc},
+     {0x3d5a62, 0x566660, 0x76796a, 0x9b957f},
+     {0x55747a, 0x77836c, 0x9f9a7e, 0xcbbf9e}},
+    {{0x6fa77a, 0x93c266, 0xbddb6c, 0xe6ef97},
+     {0x9a8470, 0xb2a25a, 0xd0be64, 0xeeda94},
+     {0x36685a, 0x48803f, 0x68993e, 0x93b650},
+     {0x4c9468, 0x74b54c, 0xabd052, 0xe2ea7a}},
+    {},
+    {{0x8a9a78, 0xb8ab62, 0xdcbf6a, 0xf3dc96},
+     {0xa66a68, 0xc77f50, 0xdf9f58, 0xf4c98a},
+     {0x50505a, 0x6b5540, 0x8a6a40, 0xb08c52},
+     {0x7d6660, 0xb0693c, 0xd9953f, 0xf3c96a}},
+};
+
+Rgb rgb(unsigned code)
+{
+    return Rgb(code >> 16 & 255u, code >> 8 & 255u, code & 255u) / 255.0;
+}
+
+double lightOf(int column)
+{
+    return 2.0 * column / (columns - 1) - 1.0;
+}
+
+Rgb seasonColor(int season, int row, std::size_t stop)
+{
+    const std::size_t unlit = stopLights.size() - litStops;
+    const int* const grows = std::find(std::begin(growingRows), std::end(growingRows), row);
+    if (season == SUMMER || stop < unlit || grows == std::end(growingRows)) return rgb(stopColors[row][stop]);
+    return rgb(seasonColors[season][grows - growingRows][stop - unlit]);
+}
+
+/// Between the two seasons that a time of the year lies between.
+Rgb stopColor(double time, int row, std::size_t stop)
+{
+    const double quarters = 4.0 * (time - std::floor(time));
+    const int before = static_cast<int>(quarters) % SEASONS;
+    return glm::mix(seasonColor(before, row, stop), seasonColor((before + 1) % SEASONS, row, stop),
+                    glsl::geofx_ease(quarters - std::floor(quarters), 0.0, 1.0));
+}
+
+Palette palette(double time)
+{
+    Palette colors;
+    for (int row = 0; row < rows; ++row)
+    {
+        for (int column = 0; column < columns; ++column)
+        {
+            const double light = lightOf(column);
+            std::size_t next = 1;
+            while (next + 1 < stopLights.size() && light > stopLights[next])
+                ++next;
+            const double before = stopLights[next - 1];
+            colors[row][column] = glm::mix(stopColor(time, row, next - 1), stopColor(time, row, next),
+                                           (light - before) / (stopLights[next] - before));
+        }
+    }
+    return colors;
+}
+
+osg::ref_ptr<osg::Image> toImage(const Palette& colors)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(columns, rows, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    for (int row = 0; row < rows; ++row)
+    {
+        for (int column = 0; column < columns; ++column)
+        {
+            unsigned char* texel = image->data(column, row);
+            for (int i = 0; i < 3; ++i)
+                texel[i] = static_cast<unsigned char>(
+                    std::lround(255.0 * glm::clamp(colors[row][column][i], 0.0, 1.0)));
+            texel[3] = 255;
+        }
+    }
+    return image;
+}
+
+bool hasPixels(const osg::Image& image)
+{
+    return image.valid() && image.r() == 1 && !image.isCompressed();
+}
+
+Rgb pixel(const osg::Image& image, int column, int row)
+{
+    const osg::Vec4 color = image.getColor(static_cast<unsigned>(column), static_cast<unsigned>(row));
+    return {static_cast<double>(color.r()), static_cast<double>(color.g()), static_cast<double>(color.b())};
+}
+
+/// The pixel of one image where another one has column and row.
+Rgb pixelAt(const osg::Image& image, const osg::Image& other, int column, int row)
+{
+    const auto scaled = [](int index, int size, int others)
+    {
+        return static_cast<int>((2LL * index + 1) * size / (2LL * others));
+    };
+    return pixel(image, scaled(column, image.s(), other.s()), scaled(row, image.t(), other.t()));
+}
+
+/// Columns of an image at `column` of a palette: the mean of those that it covers, or between two where they are wider.
+Rgb resampled(const osg::Image& image, int column, int row)
+{
+    const double width = static_cast<double>(image.s()) / columns;
+    if (width <= 1.0)
+    {
+        const double place = std::clamp((column + 0.5) * width - 0.5, 0.0, image.s() - 1.0);
+        const int left = static_cast<int>(place);
+        return glm::mix(pixel(image, left, row), pixel(image, std::min(left + 1, image.s() - 1), row),
+                        place - left);
+    }
+    const int first = static_cast<int>(column * width);
+    const int last = std::max(first + 1, static_cast<int>((column + 1) * width));
+    Rgb sum(0.0);
+    for (int i = first; i < last; ++i)
+        sum += pixel(image, i, row);
+    return sum / static_cast<double>(last - first);
+}
+
+/// The colours of one class in a painting, by light.
+class Samples
+{
+public:
+    void add(double light, const Rgb& color)
+    {
+        Bin& bin = _bins[static_cast<std::size_t>(std::clamp(light, 0.0, 0.999) * binCount)];
+        bin.light += light;
+        bin.color += color;
+        ++bin.count;
+        ++_count;
+    }
+
+    bool enough() const { return _count >= 16; }
+
+    Row row() const
+    {
+        Row row;
+        for (int column = 0; column < columns; ++column)
+            row[column] = at(static_cast<double>(column) / (columns - 1));
+        return row;
+    }
+
+private:
+    static constexpr int binCount = 32;
+    struct Bin
+    {
+        double light = 0.0;
+        Rgb color = Rgb(0.0);
+        int count = 0;
+        double meanLight() const { return light / count; }
+        Rgb meanColor() const { return color / static_cast<double>(count); }
+    };
+
+    Rgb at(double light) const
+    {
+        const Bin* below = nullptr;
+        const Bin* above = nullptr;
+        for (const Bin& bin : _bins)
+        {
+            if (bin.count == 0) continue;
+            if (bin.meanLight() <= light)
+                below = &bin;
+            else if (!above)
+                above = &bin;
+        }
+        if (!below) return above->meanColor();
+        if (!above) return below->meanColor();
+        return glm::mix(below->meanColor(), above->meanColor(),
+                        (light - below->meanLight()) / (above->meanLight() - below->meanLight()));
+    }
+
+    std::array<Bin, binCount> _bins;
+    int _count = 0;
+};
+
+} // namespace
+
+osg::ref_ptr<osg::Image> makePalette(double season)
+{
+    return toImage(palette(std::isfinite(season) ? season : 0.5));
+}
+
+osg::ref_ptr<osg::Image> paletteFromImage(const osg::Image& image, std::string& error)
+{
+    if (!hasPixels(image))
+    {
+        error =
+            "The palette has no pixels that can be read; save it as an uncompressed picture, such as a PNG.";
+        return nullptr;
+    }
+    if (image.t() < rows)
+    {
+        error = "The palette is " + std::to_string(image.t()) +
+                " pixels high; give it at least 8 rows: from the bottom field, hill, cliff, snow, forest "
+                "floor, trees, town, bare ground.";
+        return nullptr;
+    }
+    Palette colors;
+    for (int row = 0; row < rows; ++row)
+    {
+        // The rows of pixels whose middles lie in the middle half of the band.
+        const double band = static_cast<double>(image.t()) / rows;
+        const int first = static_cast<int>(std::ceil((row + 0.25) * band - 0.5));
+        const int last = static_cast<int>(std::floor((row + 0.75) * band - 0.5));
+        const int middle = static_cast<int>((row + 0.5) * band);
+        const int from = first <= last ? first : middle;
+        const int to = first <= last ? last : middle;
+        for (int column = 0; column < columns; ++column)
+        {
+            Rgb sum(0.0);
+            for (int i = from; i <= to; ++i)
+                sum += resampled(image, column, i);
+            colors[row][column] = sum / static_cast<double>(to - from + 1);
+        }
+    }
+    return toImage(colors);
+}
+
+osg::ref_ptr<osg::Image> readPalette(const std::string& path, std::string& error)
+{
+    // Not from the cache: a palette is edited while the program runs.
+    const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(path);
+    if (!image)
+    {
+        std::error_code failure;
+        error = "The palette " + path +
+                (std::filesystem::exists(path, failure)
+                     ? " is not a picture that OpenSceneGraph reads; save it as PNG."
+                     : " does not exist; give the path of a picture such as data/panorama/palette.png.");
+        return nullptr;
+    }
+    osg::ref_ptr<osg::Image> result = paletteFromImage(*image, error);
+    if (!result) error = path + ": " + error;
+    return result;
+}
+
+osg::ref_ptr<osg::Image> paletteFromPainting(const osg::Image& painting, const osg::Image& lightMap,
+                                             const osg::Image& classMap, std::string& error)
+{
+    for (const osg::Image* image : {&painting, &lightMap, &classMap})
+    {
+        if (!hasPixels(*image))
+        {
+            error = std::string("The ") +
+                    (image == &painting   ? "painting"
+                     : image == &lightMap ? "light map"
+                                          : "map of classes") +
+                    " has no pixels that can be read; give an uncompressed picture.";
+            return nullptr;
+        }
+    }
+    std::array<Samples, rows> samples;
+    for (int row = 0; row < painting.t(); ++row)
+    {
+        for (int column = 0; column < painting.s(); ++column)
+        {
+            const long code = std::lround(255.0 * pixelAt(classMap, painting, column, row).x);
+            if (code < 0 || code >= rows) continue;
+            samples[static_cast<std::size_t>(code)].add(pixelAt(lightMap, painting, column, row).x,
+                                                        pixel(painting, column, row));
+        }
+    }
+    Palette colors = palette(0.5);
+    bool any = false;
+    for (int row = 0; row < rows; ++row)
+    {
+        if (!samples[row].enough()) continue;
+        colors[row] = samples[row].row();
+        any = true;
+    }
+    if (!any)
+    {
+        error = "The map of classes has fewer than 16 pixels of each class; its red must be 0 to 7 of 255, "
+                "the rows "
+                "of a palette.";
+        return nullptr;
+    }
+    return toImage(colors);
+}
+
+} // namespace osgGeoFX
