@@ -26,11 +26,17 @@ int main(int argc, char** argv)
         ->type_name("FILE…");
     app.add_option("--imagery", options.imagery, "Colour rasters for the surface; the later one wins")
         ->type_name("FILE…");
-    app.add_option("--landcover", options.landCover, "Raster of land-cover classes, one byte for each pixel")
+    app.add_option("--landcover,--land-cover", options.landCover,
+                   "Raster of land-cover classes, one byte for each pixel")
         ->type_name("FILE");
-    app.add_option("--landcover-table", options.landCoverTable,
-                   "Its classes: value,class,name,red,green,blue; without imagery they colour the surface")
-        ->type_name("CSV");
+    app.add_option("--landcover-table,--land-cover-table", options.landCoverTable,
+                   "Its classes: value,class,name,red,green,blue and, where wanted, trees,town,bare,water; "
+                   "or a ready "
+                   "legend: worldcover, corine, nlcd, flightgear. Without imagery they colour the surface")
+        ->type_name("CSV|NAME");
+    app.add_option("--tree-cover", options.treeCover,
+                   "Raster of the ground's share under trees, percent; in place of the land cover's")
+        ->type_name("FILE");
     auto* globe =
         app.add_flag("--geocentric", geocentric, "Curved, in geocentric WGS 84 coordinates (the default)");
     app.add_option("--srs", srs, "Flat, in a projected CRS: EPSG:N")->excludes(globe)->type_name("EPSG:N");
@@ -43,6 +49,13 @@ int main(int argc, char** argv)
            "What the heights are measured from: the ellipsoid, the EGM96 geoid (they are then moved to the "
            "ellipsoid), or none: used as they are (the default)")
         ->transform(CLI::CheckedTransformer(datums).description("ellipsoid|egm96|none"));
+    app.add_option(
+        "--tree-line", options.treeLine,
+        "Height up to which trees are likely where no raster tells, metres; without it by latitude: 3800 up "
+        "to 25°, down to 0 at 70°");
+    app.add_option_function<double>(
+        "--lake-area", [&](double area) { options.lakeArea = 1e6 * area; },
+        "Least area of level ground that is taken for a lake where no land cover tells, km² (0.2)");
     app.add_option("--tile-size", options.tileSize, "Grid intervals along a tile's edge, at most")
         ->capture_default_str();
     app.add_option("--texture-size", options.textureSize,

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "LandCoverTable.h"
 
+#include "BakedLegends.h"
 #include "GdalSupport.h"
 
 #include <osgGeoFX/geodata/BuildError.h>
@@ -10,13 +11,50 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
+#include <cstring>
+#include <iterator>
+#include <mutex>
+#include <sstream>
 
 namespace osgGeoFX
 {
 
 namespace
 {
+
+/// A ready legend as a file of GDAL's in memory, any other path as it is.
+std::string tableFile(const std::string& file)
+{
+    const BakedLegend* legend = findLegend(file);
+    if (!legend) return file;
+    const std::string path = "/vsimem/osgGeoFX/legends/" + file + ".csv";
+    static std::mutex mutex;
+    const std::lock_guard<std::mutex> lock(mutex);
+    VSIStatBufL status;
+    if (VSIStatL(path.c_str(), &status) != 0)
+    {
+        auto* bytes = reinterpret_cast<GByte*>(const_cast<char*>(legend->text));
+        VSIFCloseL(VSIFileFromMemBuffer(path.c_str(), bytes, std::strlen(legend->text), FALSE));
+    }
+    return path;
+}
+
+double shareField(const std::string& text, const std::string& where, const char* column)
+{
+    char* end = nullptr;
+    const double value = CPLStrtod(text.c_str(), &end);
+    if (*end != '\0' || !(value >= 0.0 && value <= 1.0))
+        throw BuildError(where + "the column \"" + column + "\" holds \"" + text +
+                         "\"; write a number from 0 to 1.");
+    return value;
+}
+
+bool waterField(const std::string& text, const std::string& where)
+{
+    if (text != "0" && text != "1")
+        throw BuildError(where + "the column \"water\" holds \"" + text + "\"; write 0 or 1.");
+    return text == "1";
+}
 
 int byteField(const OGRFeature& feature, int field, const std::string& where, const char* column)
 {
@@ -34,7 +72,7 @@ int byteField(const OGRFeature& feature, int field, const std::string& where, co
 std::vector<int> recordLines(const std::string& file)
 {
     std::vector<int> lines;
-    std::ifstream stream(file, std::ios::binary);
+    std::istringstream stream(landCoverTableText(file));
     bool quoted = false, blank = true;
     int line = 1, start = 1;
     for (char c = '\n'; stream.get(c);)
@@ -62,11 +100,19 @@ std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
     GdalErrorScope errors;
     const char* drivers[] = {"CSV", nullptr};
     const DatasetPtr dataset(
-        GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, drivers));
+        GDALDataset::Open(tableFile(file).c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR, drivers));
     if (!dataset || dataset->GetLayerCount() == 0)
-        throw BuildError(file + ": the land-cover table cannot be read as CSV" +
-                         (errors.failed() ? " (" + errors.message() + ")" : "") +
-                         "; it needs the extension .csv and a first line value,class,name,red,green,blue.");
+    {
+        std::string names;
+        for (const std::string& name : readyLegends())
+            names += (names.empty() ? "" : ", ") + name;
+        throw BuildError(
+            file + ": the land-cover table cannot be read as CSV" +
+            (errors.failed() ? " (" + errors.message() + ")" : "") +
+            "; it needs the extension .csv and a first line value,class,name,red,green,blue, or is "
+            "one of the ready legends " +
+            names + ".");
+    }
     OGRLayer* layer = dataset->GetLayer(0);
     const char* columns[] = {"value", "class", "name", "red", "green", "blue"};
     std::array<int, 6> index{};
@@ -77,6 +123,11 @@ std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
             throw BuildError(file + ": the column \"" + columns[i] +
                              "\" is missing; the first line must be value,class,name,red,green,blue.");
     }
+
+    const char* optionalColumns[] = {"trees", "town", "bare", "water"};
+    std::array<int, 4> optionalIndex{};
+    for (std::size_t i = 0; i < optionalIndex.size(); ++i)
+        optionalIndex[i] = layer->GetLayerDefn()->GetFieldIndex(optionalColumns[i]);
 
     std::vector<LandCoverClass> classes;
     const std::vector<int> lines = recordLines(file);
@@ -93,6 +144,16 @@ std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
         for (std::size_t channel = 0; channel < 3; ++channel)
             entry.color[channel] = static_cast<unsigned char>(
                 byteField(*feature, index[3 + channel], where, columns[3 + channel]));
+        std::array<std::string, 4> cover;
+        for (std::size_t i = 0; i < cover.size(); ++i)
+            if (optionalIndex[i] >= 0) cover[i] = feature->GetFieldAsString(optionalIndex[i]);
+        // Legends have all of it, and are what the other tables' classes are looked up in.
+        if (std::any_of(cover.begin(), cover.end(), [](const auto& text) { return text.empty(); }))
+            coverOfClass(entry);
+        double* const shares[] = {&entry.trees, &entry.town, &entry.bare};
+        for (std::size_t i = 0; i < std::size(shares); ++i)
+            if (!cover[i].empty()) *shares[i] = shareField(cover[i], where, optionalColumns[i]);
+        if (!cover[3].empty()) entry.water = waterField(cover[3], where);
         if (entry.value == 0)
             throw BuildError(where + "the value 0 is kept for \"no data\"; give the class another value.");
         if (std::any_of(classes.begin(), classes.end(),

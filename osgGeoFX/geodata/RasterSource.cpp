@@ -166,6 +166,13 @@ void RasterSource::openAs(RasterKind kind)
             translate(arguments);
         }
     }
+    else if (kind == RasterKind::TreeCover)
+    {
+        if (band->GetColorTable())
+            fail("its values are colours of a palette, not percent; give a raster of percent");
+        if (band->GetScale() != 1.0 || band->GetOffset() != 0.0)
+            translate({"-b", "1", "-ot", "Float32", "-unscale"});
+    }
     else if (type != GDT_Byte)
         fail("land-cover classes must be one byte for each pixel (it has " +
              std::string(GDALGetDataTypeName(type)) + "); convert it with gdal_translate -ot Byte");
@@ -183,7 +190,7 @@ void RasterSource::warpByControlPoints(RasterKind kind)
     _chain.back()->GetRasterBand(1)->GetNoDataValue(&hasNoData);
     if (kind == RasterKind::Imagery)
         arguments.push_back("-dstalpha");
-    else if (!hasNoData && kind == RasterKind::Elevation)
+    else if (!hasNoData && kind != RasterKind::LandCover)
         arguments.insert(arguments.end(), {"-ot", "Float32", "-dstnodata", "-32768"});
     else if (!hasNoData)
         arguments.insert(arguments.end(), {"-dstnodata", "0"});
@@ -416,6 +423,13 @@ void RasterSource::sampleHeights(const GridCrs& crs, const Lattice& lattice, flo
     WarpRequest request;
     request.planes = out;
     request.plainKernel = true;
+    warp(crs, lattice, request);
+}
+
+void RasterSource::sampleMeans(const GridCrs& crs, const Lattice& lattice, float* out)
+{
+    WarpRequest request;
+    request.planes = out;
     warp(crs, lattice, request);
 }
 

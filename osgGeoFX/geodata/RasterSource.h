@@ -44,7 +44,8 @@ enum class RasterKind
 {
     Elevation, ///< one band of metres
     Imagery,   ///< red, green, blue and alpha, bytes
-    LandCover  ///< one band of class values, bytes
+    LandCover, ///< one band of class values, bytes
+    TreeCover  ///< one band of percent
 };
 
 /** One raster file, sampled on lattices.
@@ -66,6 +67,9 @@ public:
     /// Colours, four planes (red, green, blue, alpha) of columns × rows bytes, averaged where the lattice is
     /// coarser than the raster. Points without data keep their alpha and colour.
     void sampleColors(const GridCrs& crs, const Lattice& lattice, unsigned char* planes);
+
+    /// Values, averaged where the lattice is coarser than the raster. Points without data are left as they are.
+    void sampleMeans(const GridCrs& crs, const Lattice& lattice, float* out);
 
     /// Nearest class values. Points without data keep their value.
     void sampleClasses(const GridCrs& crs, const Lattice& lattice, unsigned char* out);

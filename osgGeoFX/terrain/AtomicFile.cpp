@@ -14,18 +14,13 @@
 namespace osgGeoFX
 {
 
-namespace
-{
-
-[[noreturn]] void failToWrite(const std::string& path, int error)
+void failToWrite(const std::string& path, int error)
 {
     std::string mend = "make the folder writable, or choose another with -o.";
     if (error == ENOSPC || error == EDQUOT || error == EFBIG)
         mend = "free some space and continue with --resume, or choose another folder with -o.";
     throw BuildError(path + ": cannot be written (" + std::strerror(error) + "); " + mend);
 }
-
-} // namespace
 
 void writeFileAtomically(const std::string& path, const char* data, std::size_t size)
 {

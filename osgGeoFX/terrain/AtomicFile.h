@@ -9,6 +9,9 @@
 namespace osgGeoFX
 {
 
+/// Throws BuildError for a file that cannot be written, with the mend that suits the error number.
+[[noreturn]] void failToWrite(const std::string& path, int error);
+
 /// Writes a file under a temporary name and renames it, so that whoever reads finds all of it or nothing.
 /// Makes the folder. Throws BuildError, and leaves nothing behind, where the disk is full or the folder read-only.
 void writeFileAtomically(const std::string& path, const char* data, std::size_t size);

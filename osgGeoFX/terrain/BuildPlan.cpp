@@ -70,6 +70,12 @@ bool overlaps(const Footprint& print, const TilingScheme& scheme)
     return false;
 }
 
+std::string outside(const std::string& file)
+{
+    return file + ": it lies wholly outside the elevation; give an elevation that covers the same region, or "
+                  "leave the file out.";
+}
+
 } // namespace
 
 BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
@@ -90,6 +96,7 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
             "At least 128 MiB of memory are needed (--memory is " + std::to_string(options.memoryMiB) + ").");
     require(options.landCover.empty() || !options.landCoverTable.empty(),
             options.landCover + ": a land-cover raster needs its table; name it with --landcover-table CSV.");
+    require(options.lakeArea >= 0.0, "The least area of a lake must be 0 or greater.");
     require(options.landCoverTable.empty() || !options.landCover.empty(),
             options.landCoverTable + ": a land-cover table needs its raster; name it with --landcover FILE.");
 
@@ -101,6 +108,7 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
         {
             auto& color = classColors[static_cast<std::size_t>(entry.value)];
             color = {entry.color[0], entry.color[1], entry.color[2], 255};
+            _classByValue[static_cast<std::size_t>(entry.value)] = &entry;
         }
     }
     chooseGrid();
@@ -126,6 +134,8 @@ void BuildPlan::chooseGrid()
         stepY = std::min(stepY, print.stepY);
         wholeCircle = wholeCircle || print.wholeCircle;
     }
+    groundStepX = stepX;
+    groundStepY = stepY;
     if (scheme.crs.geographic && (wholeCircle || scheme.east - scheme.west > 360.0))
         scheme.east = scheme.west + 360.0;
     require(scheme.east > scheme.west && scheme.north > scheme.south,
@@ -142,17 +152,23 @@ void BuildPlan::chooseGrid()
         const bool imagery = &file != &colorFiles.back() || options.landCover.empty();
         const Footprint print =
             RasterSource(file, imagery ? RasterKind::Imagery : RasterKind::LandCover).footprint(scheme.crs);
-        require(
-            overlaps(print, scheme),
-            file +
-                ": it lies wholly outside the elevation; give an elevation that covers the same region, or "
-                "leave the file out.");
+        require(overlaps(print, scheme), outside(file));
+        if (!imagery)
+        {
+            groundStepX = print.stepX;
+            groundStepY = print.stepY;
+        }
         if (imagery == fromImagery)
         {
             colorStepX = std::min(colorStepX, print.stepX);
             colorStepY = std::min(colorStepY, print.stepY);
         }
     }
+
+    if (!options.treeCover.empty())
+        require(
+            overlaps(RasterSource(options.treeCover, RasterKind::TreeCover).footprint(scheme.crs), scheme),
+            outside(options.treeCover));
 
     const auto count = [](double extent, double step)
     {
@@ -213,6 +229,7 @@ void BuildPlan::chooseUnits()
         if (rootLevel == 0) break;
         latticeLevel = rootLevel;
     }
+    unitsTotal += static_cast<std::uint64_t>(GroundRaster::steps(*this));
 
     for (int level = 0; level <= scheme.finestLevel; ++level)
     {
@@ -222,7 +239,7 @@ void BuildPlan::chooseUnits()
 
     const double texels = std::pow(static_cast<double>(scheme.texels << tiers[0][0].depth), 2.0);
     const double posts = std::pow(static_cast<double>(options.tileSize << tiers[0][0].depth) + 3.0, 2.0);
-    const double unitMiB = (texels * 24.0 + posts * 28.0) / (1024.0 * 1024.0) + 64.0;
+    const double unitMiB = (texels * 32.0 + posts * 28.0) / (1024.0 * 1024.0) + 64.0;
     const int wanted =
         options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
     const int affordable = static_cast<int>(0.75 * options.memoryMiB / unitMiB);
@@ -233,7 +250,8 @@ void BuildPlan::chooseFingerprint()
 {
     std::ostringstream text;
     text.precision(17);
-    text << "osgGeoFX terrain database, format " << FORMAT_VERSION << "\n";
+    text << "osgGeoFX terrain database, format " << FORMAT_VERSION << ", content " << DATABASE_CONTENT
+         << "\n";
     const auto source = [&](const char* kind, const std::string& file)
     {
         std::error_code code;
@@ -251,8 +269,15 @@ void BuildPlan::chooseFingerprint()
     if (!options.landCover.empty())
     {
         source("land cover", options.landCover);
-        source("land-cover table", options.landCoverTable);
+        const auto legends = readyLegends();
+        if (std::find(legends.begin(), legends.end(), options.landCoverTable) != legends.end())
+            text << "legend " << options.landCoverTable << "\n";
+        else
+            source("land-cover table", options.landCoverTable);
     }
+    if (!options.treeCover.empty()) source("tree cover", options.treeCover);
+    if (options.treeLine) text << "tree line " << *options.treeLine << "\n";
+    text << "lake area " << options.lakeArea << "\n";
     text << "CRS "
          << (options.epsg ? "EPSG:" + std::to_string(options.epsg) : std::string("geocentric WGS 84"))
          << "\nvertical datum " << static_cast<int>(options.vertical) << "\ntile size " << options.tileSize

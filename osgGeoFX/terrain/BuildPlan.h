@@ -3,6 +3,7 @@
 #pragma once
 
 #include "DatabaseBuilder.h"
+#include "GroundRaster.h"
 #include "HeightGrid.h"
 #include "TilingScheme.h"
 
@@ -54,7 +55,12 @@ public:
     std::vector<std::vector<Unit>> tiers;
     std::vector<LandCoverClass> classes;
     std::array<std::array<unsigned char, 4>, 256> classColors{};
-    std::string fingerprint; ///< what the database's bytes depend on, in words
+    /// The land cover's class of a value; null where the table has none.
+    const LandCoverClass* classOf(unsigned char value) const { return _classByValue[value]; }
+    /// The widest spacing of the raster of shores that loses none of its sources, in the grid's CRS.
+    double groundStepX = 0.0, groundStepY = 0.0;
+    std::shared_ptr<const GroundRaster> ground; ///< from the ground pass on
+    std::string fingerprint;                    ///< what the database's bytes depend on, in words
     int threads = 1;
 
     /// By level, row by row from the south.
@@ -84,6 +90,7 @@ private:
     void chooseGrid();
     void chooseUnits();
     void chooseFingerprint();
+    std::array<const LandCoverClass*, 256> _classByValue{};
     std::mutex _progressMutex;
 };
 
@@ -96,17 +103,24 @@ public:
     /// Heights on a lattice, metres; NaN where there are none.
     std::vector<float> heights(const Lattice& lattice);
 
+    /// The same as the files have them, not moved to the ellipsoid: level water is level, the sea at 0.
+    std::vector<float> heightsAboveSea(const Lattice& lattice);
+
     /// Classes on a lattice; 0 where there are none. Empty without land cover.
     std::vector<unsigned char> classes(const Lattice& lattice);
 
     /// Base colours on a lattice, red, green, blue for each texel.
     std::vector<unsigned char> colors(const Lattice& lattice);
 
+    /// What lies on the ground, four bytes for each texel as shaders/lib/cover.glsl codes them. `ground` is the plan's
+    /// at the same texels: the shores, and what holds where no other raster says more.
+    std::vector<unsigned char> cover(const Lattice& lattice, const std::vector<GroundCell>& ground);
+
 private:
     void moveToEllipsoid(const Lattice& lattice, std::vector<float>& heights);
 
     const BuildPlan& _plan;
-    std::vector<RasterSource> _dems, _imagery, _landCover, _landCoverColors;
+    std::vector<RasterSource> _dems, _imagery, _landCover, _landCoverColors, _landCoverShares, _treeCover;
     TransformationPtr _geoid;
 };
 

@@ -123,7 +123,7 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
     root->setUserValue("geofx.tiles", static_cast<double>(result.tiles));
     root->setUserValue("geofx.vertical", std::string(vertical[static_cast<int>(plan.options.vertical)]));
     if (!plan.options.landCoverTable.empty())
-        root->setUserValue("geofx.landCoverTable", readText(plan.options.landCoverTable));
+        root->setUserValue("geofx.landCoverTable", landCoverTableText(plan.options.landCoverTable));
 
     osg::ref_ptr<osg::Material> material = new osg::Material;
     material->setAmbient(osg::Material::FRONT_AND_BACK, osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f));
@@ -159,6 +159,7 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
     else
     {
         runHeightPass(plan);
+        runGroundPass(plan);
         const TilePassResult result = runTilePass(plan);
         writeNodeAtomically(*createRoot(plan, result), summary.file);
         summary.tiles = result.tiles;

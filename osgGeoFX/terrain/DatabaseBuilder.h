@@ -7,11 +7,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace osgGeoFX
 {
+
+/// Counts what builders put into databases of one format: older ones are still read, but have less in them.
+constexpr int DATABASE_CONTENT = 2;
 
 /// How the heights of a DEM are to be understood.
 enum class VerticalDatum
@@ -29,9 +33,15 @@ struct BuildOptions
     std::vector<std::string> dems;    ///< elevation rasters, metres; where several overlap the later one wins
     std::vector<std::string> imagery; ///< colour rasters (RGB, RGBA, grey or palette); the later one wins
     std::string landCover;            ///< class raster, one byte band; empty for none
-    std::string landCoverTable;       ///< CSV with the columns value, class, name, red, green, blue
+    std::string landCoverTable;       ///< what its values mean, for readLandCoverTable()
+    std::string treeCover;            ///< raster of the ground's share under trees, percent; empty for none
     int epsg = 0;                     ///< projected database in this CRS; 0 for a geocentric one (WGS 84)
     VerticalDatum vertical = VerticalDatum::None;
+    /// Metres above the sea up to which trees are likely where no raster tells; nothing for a line by latitude, from
+    /// 3,800 m up to 25° down to 0 at 70°.
+    std::optional<double> treeLine;
+    /// Least area of level ground that counts as a lake where no land cover tells, square metres, 0 or more.
+    double lakeArea = 2e5;
     int tileSize = 128; ///< largest number of grid intervals along a tile's edge, 8…240
     /// Largest number of texture intervals along a tile's edge, 16…4096; 0 for 4 × tileSize.
     int textureSize = 0;

@@ -17,6 +17,9 @@ namespace
 // Heights that no point of the Earth has: a no-data value that the file does not declare.
 constexpr float LOWEST = -12000.0f, HIGHEST = 9500.0f;
 
+// More is a no-data value that the file does not declare; a resampling kernel may overshoot a little.
+constexpr float MOST_PERCENT = 100.5f;
+
 struct RampStop
 {
     float fraction; ///< 0 at the database's lowest land, 1 at its highest
@@ -42,6 +45,11 @@ void rampColor(const RampStop (&ramp)[N], float fraction, unsigned char* rgb)
     rgb[2] = static_cast<unsigned char>(std::lround(a.blue + t * (b.blue - a.blue)));
 }
 
+unsigned char byteOf(double share)
+{
+    return static_cast<unsigned char>(std::lround(share * 255.0));
+}
+
 } // namespace
 
 RasterStack::RasterStack(const BuildPlan& plan) : _plan(plan)
@@ -55,7 +63,15 @@ RasterStack::RasterStack(const BuildPlan& plan) : _plan(plan)
         _landCover.emplace_back(plan.options.landCover, RasterKind::LandCover);
         _landCoverColors.emplace_back(plan.options.landCover, RasterKind::LandCover);
         _landCoverColors.back().colorize(plan.classColors);
+        std::array<std::array<unsigned char, 4>, 256> shares{};
+        for (const auto& entry : plan.classes)
+            shares[static_cast<std::size_t>(entry.value)] = {byteOf(entry.trees), byteOf(entry.town),
+                                                             byteOf(entry.bare), 255};
+        _landCoverShares.emplace_back(plan.options.landCover, RasterKind::LandCover);
+        _landCoverShares.back().colorize(shares);
     }
+    if (!plan.options.treeCover.empty())
+        _treeCover.emplace_back(plan.options.treeCover, RasterKind::TreeCover);
     if (plan.options.vertical == VerticalDatum::Egm96)
     {
         OGRSpatialReference geoid, ellipsoid;
@@ -67,6 +83,13 @@ RasterStack::RasterStack(const BuildPlan& plan) : _plan(plan)
 
 std::vector<float> RasterStack::heights(const Lattice& lattice)
 {
+    std::vector<float> result = heightsAboveSea(lattice);
+    if (_geoid) moveToEllipsoid(lattice, result);
+    return result;
+}
+
+std::vector<float> RasterStack::heightsAboveSea(const Lattice& lattice)
+{
     std::vector<float> result(static_cast<std::size_t>(lattice.columns) *
                                   static_cast<std::size_t>(lattice.rows),
                               std::numeric_limits<float>::quiet_NaN());
@@ -74,7 +97,6 @@ std::vector<float> RasterStack::heights(const Lattice& lattice)
         dem.sampleHeights(_plan.scheme.crs, lattice, result.data());
     for (float& height : result)
         if (!(height >= LOWEST && height <= HIGHEST)) height = std::numeric_limits<float>::quiet_NaN();
-    if (_geoid) moveToEllipsoid(lattice, result);
     return result;
 }
 
@@ -161,6 +183,37 @@ std::vector<unsigned char> RasterStack::colors(const Lattice& lattice)
     for (std::size_t i = 0; i < count; ++i)
         for (std::size_t channel = 0; channel < 3; ++channel)
             result[3 * i + channel] = planes[channel * count + i];
+    return result;
+}
+
+std::vector<unsigned char> RasterStack::cover(const Lattice& lattice, const std::vector<GroundCell>& ground)
+{
+    const std::size_t count = ground.size();
+    std::vector<unsigned char> planes(4 * count, 0);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        planes[i] = ground[i].trees;
+        planes[2 * count + i] = ground[i].bare;
+        planes[3 * count + i] = 255;
+    }
+    for (auto& shares : _landCoverShares)
+        shares.sampleColors(_plan.scheme.crs, lattice, planes.data());
+    std::vector<float> percent;
+    if (!_treeCover.empty())
+    {
+        percent.assign(count, std::numeric_limits<float>::quiet_NaN());
+        _treeCover.front().sampleMeans(_plan.scheme.crs, lattice, percent.data());
+    }
+    std::vector<unsigned char> result(4 * count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        unsigned char* texel = &result[4 * i];
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            texel[channel] = planes[channel * count + i];
+        if (!percent.empty() && percent[i] >= 0.0f && percent[i] <= MOST_PERCENT)
+            texel[0] = byteOf(std::min(static_cast<double>(percent[i]) / 100.0, 1.0));
+        texel[3] = static_cast<unsigned char>((ground[i].shore + 128) / 256);
+    }
     return result;
 }
 

@@ -25,7 +25,7 @@ namespace
 constexpr double SKIRT_LEAN = 0.1;
 // Metres along an edge from which on a tile's part of the globe must be taken exactly.
 constexpr double LARGE_TILE = 25000.0;
-constexpr int COLOR_UNIT = 0, LAND_COVER_UNIT = 1;
+constexpr int COLOR_UNIT = 0, LAND_COVER_UNIT = 1, COVER_UNIT = 7;
 
 /// The side of a tile (0 south, 1 east, 2 north, 3 west) along which two neighbours on its border lie.
 int sideOf(const TileMesh::Post& a, const TileMesh::Post& b)
@@ -38,8 +38,9 @@ osg::ref_ptr<osg::Image> cutImage(const std::vector<unsigned char>& texels, int 
                                   int size, int channels)
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(size, size, 1, channels == 3 ? GL_RGB : GL_RED, GL_UNSIGNED_BYTE, 1);
-    image->setInternalTextureFormat(channels == 3 ? GL_RGB8 : GL_R8);
+    const GLenum format = channels == 4 ? GL_RGBA : channels == 3 ? GL_RGB : GL_RED;
+    image->allocateImage(size, size, 1, format, GL_UNSIGNED_BYTE, 1);
+    image->setInternalTextureFormat(channels == 4 ? GL_RGBA8 : channels == 3 ? GL_RGB8 : GL_R8);
     for (int row = 0; row < size; ++row)
         std::memcpy(image->data(0, row),
                     texels.data() + (static_cast<std::size_t>(y0 + row) * static_cast<std::size_t>(columns) +
@@ -291,6 +292,16 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const LevelArrays& arra
         classes->setResizeNonPowerOfTwoHint(false);
         state->setTextureAttribute(LAND_COVER_UNIT, classes);
     }
+    osg::ref_ptr<osg::Texture2D> cover =
+        new osg::Texture2D(cutImage(arrays.cover, arrays.texelColumns, x * m, y * m, m + 1, 4));
+    cover->setName("geofx cover");
+    cover->setInternalFormat(GL_RGBA8);
+    cover->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
+    cover->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
+    cover->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+    cover->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    cover->setResizeNonPowerOfTwoHint(false);
+    state->setTextureAttribute(COVER_UNIT, cover);
     return state;
 }
 

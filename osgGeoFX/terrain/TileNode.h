@@ -25,6 +25,7 @@ struct LevelArrays
     int texelColumns = 0;
     std::vector<unsigned char> colors;  ///< red, green, blue
     std::vector<unsigned char> classes; ///< empty without land cover
+    std::vector<unsigned char> cover;   ///< four bytes each, as shaders/lib/cover.glsl codes them
     std::vector<float>
         textureError; ///< by tile: size in metres of a texel that hides something, 0 if none does
 };

@@ -220,6 +220,13 @@ LevelArrays UnitBuilder::sampled(const Unit& unit)
     arrays.texelColumns = texels;
     arrays.colors = widened(_rasters->colors(lattice), 3);
     if (!_plan.options.landCover.empty()) arrays.classes = widened(_rasters->classes(lattice), 1);
+    const auto firstTexel = [&](int post)
+    {
+        return static_cast<std::int64_t>(post / scheme.intervals) * scheme.texels;
+    };
+    arrays.cover = widened(_rasters->cover(lattice, _plan.ground->sample(firstTexel(column), firstTexel(row),
+                                                                         validColumns, validRows)),
+                           4);
     arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
     return arrays;
 }
@@ -239,6 +246,7 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
     const std::size_t count = static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels);
     arrays.colors.assign(3 * count, 128);
     if (!_plan.options.landCover.empty()) arrays.classes.assign(count, 0);
+    arrays.cover.assign(4 * count, 0);
     arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
     for (int y = 0; y < span; ++y)
         for (int x = 0; x < span; ++x)
@@ -252,6 +260,7 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
             const auto slopeY = reader.getVector<float>();
             const auto colors = reader.getVector<unsigned char>();
             const auto classes = reader.getVector<unsigned char>();
+            const auto cover = reader.getVector<unsigned char>();
             arrays.textureError[static_cast<std::size_t>(y * span + x)] = reader.get<float>();
             if (!reader.good())
                 throw BuildError(_plan.workFile("tiles", below) +
@@ -260,6 +269,7 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
             paste(slopeY, n + 1, 1, arrays.slopeY, posts, x * n, y * n);
             paste(colors, m + 1, 3, arrays.colors, texels, x * m, y * m);
             paste(classes, m + 1, 1, arrays.classes, texels, x * m, y * m);
+            paste(cover, m + 1, 4, arrays.cover, texels, x * m, y * m);
         }
     return arrays;
 }
@@ -288,10 +298,12 @@ LevelArrays UnitBuilder::coarser(LevelArrays& fine) const
         coarse.texelColumns = fine.texelColumns;
         coarse.colors = std::move(fine.colors);
         coarse.classes = std::move(fine.classes);
+        coarse.cover = std::move(fine.cover);
         return coarse;
     }
     coarse.texelColumns = (fine.texelColumns - 1) / 2 + 1;
     coarse.colors = halved<unsigned char, int, 3>(fine.colors, fine.texelColumns, fine.texelColumns);
+    coarse.cover = halved<unsigned char, int, 4>(fine.cover, fine.texelColumns, fine.texelColumns);
     if (!fine.classes.empty())
         for (int j = 0; j < fine.texelColumns; j += 2)
             for (int i = 0; i < fine.texelColumns; i += 2)
@@ -350,6 +362,7 @@ std::uint64_t UnitBuilder::build(const Unit& unit)
     writer.put(arrays.slopeY);
     writer.put(arrays.colors);
     writer.put(arrays.classes);
+    writer.put(arrays.cover);
     writer.put(arrays.textureError.front());
     writeFileAtomically(_plan.workFile("tiles", unit), writer.bytes().data(), writer.bytes().size());
     return tiles;
