@@ -12,7 +12,7 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr std::int64_t LAKE_CELLS = 50;
+constexpr std::int64_t LAKE_CELLS = 32;
 constexpr float LOW_RIM = 1.0f; // metres
 constexpr int NO_LABEL = -1;
 

@@ -19,6 +19,12 @@ namespace
 
 namespace fs = std::filesystem;
 
+/// A table of land cover that is named, not filed: GDAL would not read a file without an extension.
+bool isLegend(const std::string& table)
+{
+    return table.find_first_of("./") == std::string::npos;
+}
+
 class Reader
 {
 public:
@@ -57,8 +63,13 @@ private:
         result.dems = _xml.paths(node, "dem");
         result.imagery = _xml.paths(node, "imagery");
         if (xmlNode* landCover = child(node, "landCover"))
+        {
             result.landCover =
                 SceneRasters::LandCover{_xml.path(landCover, "file"), _xml.path(landCover, "table")};
+            const std::string table = attributeOf(landCover, "table");
+            if (isLegend(table)) result.landCover->table.path = table;
+        }
+        if (xmlNode* treeCover = child(node, "treeCover")) result.treeCover = _xml.path(treeCover, "file");
         const std::string cache = attributeOf(node, "cache"), srs = attributeOf(node, "srs");
         if (!cache.empty()) result.cache = _xml.joined(cache);
         if (srs != "geocentric") result.epsg = std::stoi(srs.substr(std::strlen("EPSG:")));
@@ -142,8 +153,10 @@ std::vector<std::string> missingFiles(const SceneFile& scene)
     {
         paths = scene.rasters->dems;
         paths.insert(paths.end(), scene.rasters->imagery.begin(), scene.rasters->imagery.end());
-        if (scene.rasters->landCover)
-            paths.insert(paths.end(), {scene.rasters->landCover->file, scene.rasters->landCover->table});
+        if (scene.rasters->landCover) paths.push_back(scene.rasters->landCover->file);
+        if (scene.rasters->landCover && !isLegend(scene.rasters->landCover->table.path))
+            paths.push_back(scene.rasters->landCover->table);
+        if (scene.rasters->treeCover) paths.push_back(*scene.rasters->treeCover);
     }
     for (const SceneMappings& mappings : scene.mappings)
     {

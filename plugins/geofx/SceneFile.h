@@ -43,13 +43,15 @@ struct SceneRasters
 {
     struct LandCover
     {
-        ScenePath file, table;
+        ScenePath file;
+        ScenePath table; ///< its path may be the name of a ready legend, which has neither point nor slash
     };
 
     ScenePlace place;
     std::vector<ScenePath> dems; ///< at least one
     std::vector<ScenePath> imagery;
     std::optional<LandCover> landCover;
+    std::optional<ScenePath> treeCover;
     std::string cache; ///< empty: the person's cache folder
     int epsg = 0;      ///< 0: geocentric
     std::string vertical;

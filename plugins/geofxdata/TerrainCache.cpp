@@ -57,6 +57,7 @@ BuildOptions buildOptions(const SceneRasters& rasters)
         options.landCover = rasters.landCover->file.path;
         options.landCoverTable = rasters.landCover->table.path;
     }
+    if (rasters.treeCover) options.treeCover = rasters.treeCover->path;
     options.epsg = rasters.epsg;
     options.vertical = datums.at(rasters.vertical);
     options.tileSize = rasters.tileSize;
@@ -110,7 +111,8 @@ std::string nameOf(const BuildOptions& options)
     std::ostringstream key;
     key.imbue(std::locale::classic());
     key.precision(17);
-    key << GEOFX_VERSION << "\n" << TerrainInfo::newestFormat << "\n" << options.epsg << "\n";
+    key << GEOFX_VERSION << "\n" << TerrainInfo::newestFormat << "\n" << DATABASE_CONTENT << "\n";
+    key << options.epsg << "\n";
     key << static_cast<int>(options.vertical) << "\n"
         << options.tileSize << "\n"
         << options.textureSize << "\n";
@@ -125,6 +127,11 @@ std::string nameOf(const BuildOptions& options)
     {
         describe(key, options.landCover, true);
         describe(key, options.landCoverTable, false);
+    }
+    if (!options.treeCover.empty())
+    {
+        key << "tree cover\n";
+        describe(key, options.treeCover, true);
     }
     return fs::path(options.dems.front()).stem().string() + "-" + hashOf(key.str());
 }
