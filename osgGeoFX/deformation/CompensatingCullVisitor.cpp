@@ -145,7 +145,8 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _stateGraph = nullptr;
 
     _outerCullingMode = outer.getCullingMode();
-    _outerNearFar = task.filter ? DO_NOT_COMPUTE_NEAR_FAR : outer.getComputeNearFarMode();
+    // Near and far are the camera's own picture's.
+    _outerNearFar = task.stage || task.filter ? DO_NOT_COMPUTE_NEAR_FAR : outer.getComputeNearFarMode();
     if (task.compensate)
     {
         setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);

@@ -121,8 +121,9 @@ struct PanoramaFrame::Extent
     double height;     ///< above or below the base at most
     double slope;      ///< of the curve, at most; 0…1
     double slopeRate;  ///< its derivative, 1/metre
-    double fadeRate;   ///< of heights beyond the horizon, 1/metre
+    double fadeRate;   ///< of heights and of x beyond the horizon, 1/metre
     double fadeSecond; ///< 1/metre²
+    double x;          ///< of the picture, at most
     double n;          ///< at most
     double nSecond;    ///< of n by s, 1/metre
 };
@@ -145,9 +146,10 @@ PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
     extent.slope = std::clamp((_view.horizon - nearS) / width, 0.0, 1.0);
     extent.slopeRate = nearS < _view.horizon && farS > _view.curve ? 1.0 / width : 0.0;
     const double fading = _view.end - _view.horizon;
-    const bool fades = nearS < _view.end && farS > _view.horizon;
+    const bool fades = nearS < _view.end + fading && farS > _view.horizon;
     extent.fadeRate = fades ? 1.5 / fading : 0.0;
     extent.fadeSecond = fades ? 6.0 / (fading * fading) : 0.0;
+    extent.x = _view.across * (std::abs(extent.place.x) + extent.reach);
     extent.n = _view.nearest + std::max(farS, 0.0);
     extent.nSecond = nearS < 0.0 ? 2.0 / _view.nearest : 0.0;
     return extent;
@@ -156,17 +158,17 @@ PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
 double PanoramaFrame::lipschitz(const Ball& ball) const
 {
     const Extent extent = extentOf(ball);
-    const double x = _view.across * extent.stretch;
+    const double x = (_view.across + extent.x * extent.fadeRate) * extent.stretch;
     const double arch = _view.arch * 1.5708 * x;
-    const double bySide = _view.along * extent.slope * extent.stretch +
-                          _view.lift * extent.fadeRate * extent.height * extent.stretch;
-    const double y = std::hypot(bySide, _view.lift) + arch;
-    const double reachX = _view.across * (std::abs(extent.place.x) + extent.reach);
+    const double lift = std::abs(_view.lift);
+    const double bySide =
+        _view.along * extent.slope * extent.stretch + lift * extent.fadeRate * extent.height * extent.stretch;
+    const double y = std::hypot(bySide, lift) + arch;
     const double reachY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + y * ball.radius;
     const double acrossEye = x * (glm::length(_view.originX) + extent.n * glm::length(_view.directionX));
     const double upEye = y * (glm::length(_view.originY) + extent.n * glm::length(_view.directionY));
     const double awayEye =
-        extent.stretch * (glm::length(_view.direction) + reachX * glm::length(_view.directionX) +
+        extent.stretch * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
                           reachY * glm::length(_view.directionY));
     return std::max(1.0, std::hypot(acrossEye, upEye) + awayEye);
 }
@@ -179,46 +181,52 @@ DeformationFrame::Sag PanoramaFrame::sag(const Ball& ball, const osg::Vec3d& edg
     // A flat edge hardly changes its height: by what it rises below the eye, and by the ground's curve.
     const double turned = _view.globe.curvature * (std::hypot(extent.place.x, extent.place.y) + extent.reach);
     const double rise = std::min(length, std::abs(up) + 1.1 * turned * length);
-    const double side = std::min(1.0, std::abs(edge * toOsg(_view.right)) / std::max(length, 1e-30) +
-                                          1.1 * turned) *
-                        length * extent.stretch;
-    const double ahead = std::min(1.0, std::abs(edge * toOsg(_view.forward)) / std::max(length, 1e-30) +
-                                           1.1 * turned) *
-                         length * extent.stretch;
+    const double side =
+        std::min(1.0, std::abs(edge * toOsg(_view.right)) / std::max(length, 1e-30) + 1.1 * turned) * length *
+        extent.stretch;
+    const double ahead =
+        std::min(1.0, std::abs(edge * toOsg(_view.forward)) / std::max(length, 1e-30) + 1.1 * turned) *
+        length * extent.stretch;
     const double second = extent.curvature * length * length;
+    const double lift = std::abs(_view.lift);
 
-    const double x1 = _view.across * side;
-    const double x2 = _view.across * second;
+    const double x1 = _view.across * side + extent.x * extent.fadeRate * ahead;
+    const double x2 = _view.across * (second + 2.0 * side * extent.fadeRate * ahead) +
+                      extent.x * (extent.fadeSecond * ahead * ahead + extent.fadeRate * second);
     const double y1 = _view.along * extent.slope * ahead +
-                      _view.lift * (extent.fadeRate * extent.height * ahead + rise) +
-                      _view.arch * 1.5708 * x1;
-    const double y2 =
-        _view.along * (extent.slopeRate * ahead * ahead + extent.slope * second) +
-        _view.lift * (extent.fadeSecond * ahead * ahead * extent.height +
-                      extent.fadeRate * (second * extent.height + 2.0 * ahead * rise) + second) +
-        _view.arch * (2.4675 * x1 * x1 + 1.5708 * x2);
+                      lift * (extent.fadeRate * extent.height * ahead + rise) + _view.arch * 1.5708 * x1;
+    const double y2 = _view.along * (extent.slopeRate * ahead * ahead + extent.slope * second) +
+                      lift * (extent.fadeSecond * ahead * ahead * extent.height +
+                              extent.fadeRate * (second * extent.height + 2.0 * ahead * rise) + second) +
+                      _view.arch * (2.4675 * x1 * x1 + 1.5708 * x2);
     const double n1 = ahead;
     const double n2 = extent.nSecond * ahead * ahead + second;
 
-    const double reachX = _view.across * (std::abs(extent.place.x) + extent.reach);
     const double reachY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + y1;
     const double sideX = glm::length(_view.originX) + extent.n * glm::length(_view.directionX);
     const double sideY = glm::length(_view.originY) + extent.n * glm::length(_view.directionY);
-    const double away = glm::length(_view.direction) + reachX * glm::length(_view.directionX) +
+    const double away = glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
                         reachY * glm::length(_view.directionY);
-    const double curve =
-        x2 * sideX + y2 * sideY + n2 * away +
-        2.0 * n1 * (x1 * glm::length(_view.directionX) + y1 * glm::length(_view.directionY));
+    const double curve = x2 * sideX + y2 * sideY + n2 * away +
+                         2.0 * n1 * (x1 * glm::length(_view.directionX) + y1 * glm::length(_view.directionY));
     // Where the ground falls away behind the Earth the projection has a kink.
     const double k = _view.globe.curvature;
     const double kink = k * (glm::length(toGlm(ball.centre)) + ball.radius) > 1.3 ? 40.0 * length : 0.0;
     return {curve, kink};
 }
 
+osg::ref_ptr<const PanoramaFrame> PanoramaFrame::mirrored(double level, double detail) const
+{
+    glsl::geofx_Panorama view = _view;
+    view.lift = -view.lift;
+    view.base = 2.0 * level - view.base;
+    return new PanoramaFrame(view, _viewDistance / detail);
+}
+
 bool PanoramaFrame::hides(const Ball& ball) const
 {
     const Extent extent = extentOf(ball);
-    return extent.place.y - extent.reach > _view.end;
+    return extent.place.y - extent.reach > 2.0 * _view.end - _view.horizon;
 }
 
 std::optional<double> PanoramaFrame::viewDistance(const Ball&) const

@@ -36,6 +36,9 @@ public:
     Uniforms uniforms() const override;
 
     const glsl::geofx_Panorama& view() const { return _view; }
+    /// The picture in a still water's surface at a height, metres: what stands `h` above it stands `h` below. `detail`: levels of
+    /// detail are that much finer.
+    osg::ref_ptr<const PanoramaFrame> mirrored(double level, double detail) const;
 
 protected:
     ~PanoramaFrame() override;

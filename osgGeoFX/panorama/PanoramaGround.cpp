@@ -2,8 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaGround.h>
 
+#include <osgGeoFX/deformation/EyeVector.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
+#include <osgGeoFX/panorama/PanoramaTextures.h>
 
+#include <osg/Math>
+
+#include <algorithm>
 #include <cmath>
 
 namespace osgGeoFX
@@ -12,31 +17,60 @@ namespace osgGeoFX
 namespace
 {
 
+/// How many times the brush's picture lies across the half of the picture's width.
+constexpr double brushRepeats = 1.6;
+/// Latitude of a projected terrain.
+const double usualLatitude = osg::DegreesToRadians(45.0);
+
 void set(osg::StateSet& state, const std::string& name, const osg::Vec4d& value)
 {
     state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
 }
 
-osg::Vec3d toOsg(const glm::dvec3& vector)
+void setTexture(osg::StateSet& state, const std::string& name, int unit, osg::Texture2D* texture)
 {
-    return {vector.x, vector.y, vector.z};
+    const auto place = static_cast<unsigned int>(unit);
+    if (state.getTextureAttribute(place, osg::StateAttribute::TEXTURE) != texture)
+        state.setTextureAttribute(place, texture);
+    state.getOrCreateUniform(name, osg::Uniform::SAMPLER_2D)->set(unit);
 }
 
-/// One texel that says that nothing is known (shaders/lib/cover.glsl).
-osg::ref_ptr<osg::Texture2D> noCover()
+/// The tree line of a latitude, metres.
+double treeLineAt(double latitude)
 {
-    osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    image->setColor(osg::Vec4(0.0f, 0.0f, 0.0f, 1.0f), 0, 0);
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
-    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
-    return texture;
+    return 0.8 * glsl::geofx_snowLine(latitude);
 }
+
+/** Axes that the brush's picture lies along, in eye space, and where the eye is on them. They stand still on the ground: the frame
+    of a place some degrees apart, so that it changes only where no one will compare. */
+struct BrushAxes
+{
+    osg::Vec3d x, y;
+    osg::Vec2d eye; ///< metres
+
+    explicit BrushAxes(const SurfaceView& view)
+    {
+        osg::Vec3d east(1.0, 0.0, 0.0), north(0.0, 1.0, 0.0);
+        osg::Matrixd toWorld;
+        toWorld.invert(view.modelView);
+        const osg::Vec3d place = toWorld.getTrans();
+        if (view.geometry.ground.ellipsoid && place.length2() > 0.0)
+        {
+            const double step = osg::PI / 18.0;
+            const double longitude = std::round(std::atan2(place.y(), place.x()) / step) * step;
+            const double latitude =
+                std::round(std::asin(std::clamp(place.z() / place.length(), -1.0, 1.0)) / step) * step;
+            east.set(-std::sin(longitude), std::cos(longitude), 0.0);
+            north.set(-std::sin(latitude) * std::cos(longitude), -std::sin(latitude) * std::sin(longitude),
+                      std::cos(latitude));
+        }
+        eye.set(place * east, place * north);
+        x = osg::Matrixd::transform3x3(east, view.modelView);
+        y = osg::Matrixd::transform3x3(north, view.modelView);
+    }
+};
 
 } // namespace
-
-PanoramaMap::Ground::Ground(const PanoramaMap& map) : _map(map), _noCover(noCover()) {}
 
 PanoramaMap::Ground::~Ground() = default;
 
@@ -49,25 +83,57 @@ const Properties& PanoramaMap::Ground::properties() const
 bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view)
 {
     const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(_map, view.geometry);
-    if (!panorama) return false;
+    if (!panorama || !_map.getPaint()) return false;
+    const auto put = [&](const char* name, const osg::Vec4d& value)
+    {
+        set(state, prefix + name, value);
+    };
     if (!_map.getProjection())
     {
+        // The projection itself is not in force, and what it would do is still asked for.
         const osg::ref_ptr<const PanoramaFrame> frame = new PanoramaFrame(*panorama, 1.0);
         for (const auto& [name, value] : frame->uniforms())
             set(state, prefix + name, value);
     }
-    // Light from the upper left of the picture, whatever the heading.
-    const double azimuth = -0.9, elevation = 0.6;
     const osg::Vec3d right = toOsg(panorama->right), forward = toOsg(panorama->forward);
-    const osg::Vec3d up = view.geometry.up;
+    const double azimuth = _map.getLightAzimuth(), elevation = _map.getLightElevation();
     const osg::Vec3d light = (right * std::sin(azimuth) + forward * std::cos(azimuth)) * std::cos(elevation) +
-                             up * std::sin(elevation);
-    set(state, prefix + "light", {light, 2.0});
-    if (state.getTextureAttribute(7, osg::StateAttribute::TEXTURE) != _noCover)
+                             view.geometry.up * std::sin(elevation);
+    put("light", {light, _map.getRelief()});
+
+    const double latitude = view.geometry.ground.ellipsoid
+                                ? std::asin(std::clamp(view.geometry.up * view.geometry.polarAxis, -1.0, 1.0))
+                                : usualLatitude;
+    const double snowLine = _map.getSnowLine() >= 0.0 ? _map.getSnowLine() : glsl::geofx_snowLine(latitude);
+    const double treeLine = _map.getTreeLine() >= 0.0 ? _map.getTreeLine() : treeLineAt(latitude);
+    put("snow", {snowLine, glsl::geofx_winterDrop(latitude), _map.getSnowWidth(), _map.getSeason()});
+    put("slopes", {_map.getCliffSlope(), _map.getHillSlope(), treeLine, _map.getBottomShade()});
+
+    // The brush is as large on the screen at any zoom: two sizes of it, one twice the other, blend into each other.
+    const double radius = 1.0 / panorama->across;
+    const double octave = std::log2(radius / brushRepeats);
+    const double period = std::exp2(std::floor(octave));
+    const BrushAxes axes(view);
+    const auto row = [&](const osg::Vec3d& axis, double eye)
     {
-        state.setTextureAttribute(7, _noCover);
-        state.getOrCreateUniform(prefix + "cover", osg::Uniform::SAMPLER_2D)->set(7);
-    }
+        return osg::Vec4d(axis / period, std::fmod(eye, 2.0 * period) / period);
+    };
+    put("brushX", row(axes.x, axes.eye.x()));
+    put("brushY", row(axes.y, axes.eye.y()));
+    put("hand", {_map.getBrush(), octave - std::floor(octave), _map.getAtmosphere(),
+                 _map.getSceneLight() ? 1.0 : 0.0});
+    put("water", {_map.getDeepShore(), _map.getReflection(), _map.getRipples(), _map.getWater() ? 1.0 : 0.0});
+    put("window", {view.viewportX, view.viewportY, 1.0 / std::max(view.viewportWidth, 1.0),
+                   1.0 / std::max(view.viewportHeight, 1.0)});
+    put("clock", {std::fmod(view.time, 3600.0), 0.0, 0.0, 0.0});
+
+    const int first = _map.getFirstUnit();
+    setTexture(state, prefix + "palette", first, _textures.palette(_map));
+    setTexture(state, prefix + "brush", first + 1, _textures.brush());
+    setTexture(state, prefix + "cover", _map.getCoverUnit(), _textures.noCover());
+    // The scenery puts the reflection there, where there is one.
+    state.getOrCreateUniform(prefix + "mirror", osg::Uniform::SAMPLER_2D)->set(first + 2);
+    state.setDefine("GEOFX_PAINTED", osg::StateAttribute::ON);
     return true;
 }
 

@@ -5,8 +5,6 @@
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/SurfaceEffect.h>
 
-#include <osg/Texture2D>
-
 namespace osgGeoFX
 {
 
@@ -14,7 +12,7 @@ namespace osgGeoFX
 class PanoramaMap::Ground : public SurfaceEffect
 {
 public:
-    explicit Ground(const PanoramaMap& map);
+    Ground(const PanoramaMap& map, PanoramaTextures& textures) : _map(map), _textures(textures) {}
 
     osg::Object* cloneType() const override { return nullptr; }
     osg::Object* clone(const osg::CopyOp&) const override { return nullptr; }
@@ -32,7 +30,7 @@ protected:
 
 private:
     const PanoramaMap& _map;
-    osg::ref_ptr<osg::Texture2D> _noCover;
+    PanoramaTextures& _textures;
 };
 
 } // namespace osgGeoFX

@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaGround.h>
+#include <osgGeoFX/panorama/PanoramaScenery.h>
+#include <osgGeoFX/panorama/PanoramaTextures.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +21,16 @@ constexpr double orthographicScale = 2.1;
 
 } // namespace
 
-PanoramaMap::PanoramaMap() : _ground(new Ground(*this)) {}
+PanoramaMap::PanoramaMap()
+    : _textures(std::make_unique<PanoramaTextures>()), _ground(new Ground(*this, *_textures)),
+      _scenery(new Scenery(*this, *_textures))
+{
+}
 
 PanoramaMap::PanoramaMap(const PanoramaMap& other, const osg::CopyOp& copy)
-    : Deformation(other, copy), _ground(new Ground(*this))
+    : Deformation(other, copy), _palette(copy(other._palette.get())), _skyImage(copy(other._skyImage.get())),
+      _textures(std::make_unique<PanoramaTextures>()), _ground(new Ground(*this, *_textures)),
+      _scenery(new Scenery(*this, *_textures))
 {
     for (const Property& property : PanoramaMap::properties())
         property.put(*this, property.get(other));
@@ -45,6 +53,33 @@ const Properties& PanoramaMap::properties() const
         Property::number("baseHeight", 0.0, -12000.0, 12000.0, "m").of<&Self::_baseHeight>(),
         Property::flag("baseFromTerrain", true).of<&Self::_baseFromTerrain>(),
         Property::number("detail", 1.0, 0.05, 16.0).of<&Self::_detail>(),
+        Property::flag("paint", true).of<&Self::_paint>(),
+        Property::number("season", 0.5, 0.0, 1.0).of<&Self::_season>(),
+        Property::number("snowLine", -1.0, -1.0, 12000.0, "m").of<&Self::_snowLine>(),
+        Property::number("snowWidth", 500.0, 1.0, 5000.0, "m").of<&Self::_snowWidth>(),
+        Property::number("treeLine", -1.0, -1.0, 12000.0, "m").of<&Self::_treeLine>(),
+        Property::number("cliffSlope", 0.8, 0.05, 10.0).of<&Self::_cliffSlope>(),
+        Property::number("hillSlope", 0.12, 0.005, 10.0).of<&Self::_hillSlope>(),
+        Property::number("relief", 2.5, 0.1, 20.0).of<&Self::_relief>(),
+        Property::number("brush", 0.35, 0.0, 2.0).of<&Self::_brush>(),
+        Property::number("bottomShade", 0.3, 0.0, 2.0).of<&Self::_bottomShade>(),
+        Property::angle("lightAzimuth", -osg::PI / 3.0, -osg::PI, osg::PI).of<&Self::_lightAzimuth>(),
+        Property::angle("lightElevation", 32.0 * osg::PI / 180.0, 0.0, osg::PI_2)
+            .of<&Self::_lightElevation>(),
+        Property::flag("sceneLight", false).of<&Self::_sceneLight>(),
+        Property::number("atmosphere", 0.75, 0.0, 1.0).of<&Self::_atmosphere>(),
+        Property::flag("water", true).of<&Self::_water>(),
+        Property::number("deepShore", 5000.0, 1.0, 1e6, "m").of<&Self::_deepShore>(),
+        Property::number("reflection", 0.6, 0.0, 1.0).of<&Self::_reflection>(),
+        Property::number("ripples", 1.0, 0.0, 10.0).of<&Self::_ripples>(),
+        Property::flag("sky", true).of<&Self::_sky>(),
+        Property::integer("clouds", 1, 0, 9999).of<&Self::_clouds>(),
+        Property::flag("strokes", true).of<&Self::_strokes>(),
+        Property::number("strokeSize", 9.0, 1.0, 200.0).of<&Self::_strokeSize>(),
+        Property::number("strokeSpacing", 6.5, 1.0, 200.0).of<&Self::_strokeSpacing>(),
+        Property::number("strokeStep", 25.0, 1.0, 10000.0, "m").of<&Self::_strokeStep>(),
+        Property::integer("coverUnit", 7, 4, 31).of<&Self::_coverUnit>(),
+        Property::integer("firstUnit", 4, 4, 29).of<&Self::_firstUnit>(),
     };
     return all;
 }
@@ -52,6 +87,8 @@ const Properties& PanoramaMap::properties() const
 std::string PanoramaMap::inconsistency() const
 {
     if (_curveDistance >= _horizonDistance) return "curveDistance must be less than horizonDistance.";
+    if (_coverUnit >= _firstUnit && _coverUnit < _firstUnit + 3)
+        return "coverUnit must not be one of the three units from firstUnit on.";
     return {};
 }
 
@@ -62,13 +99,35 @@ osg::ref_ptr<const DeformationFrame> PanoramaMap::frame(const ViewGeometry& view
     if (!panorama) return nullptr;
     const bool perspective = view.projection(3, 3) == 0.0;
     const double scale = perspective ? std::abs(view.projection(0, 0)) : orthographicScale;
-    return new PanoramaFrame(*panorama,
-                             scale / panorama->across / (std::max(1.0, _exaggeration) * _detail));
+    return new PanoramaFrame(*panorama, scale / panorama->across / (std::max(1.0, _exaggeration) * _detail));
 }
 
 SurfaceEffect* PanoramaMap::asSurfaceEffect()
 {
     return _ground;
+}
+
+PassEffect* PanoramaMap::asPassEffect()
+{
+    return _scenery;
+}
+
+void PanoramaMap::setPalette(osg::Image* image)
+{
+    _palette = image;
+    touch();
+}
+
+void PanoramaMap::setSkyImage(osg::Image* image)
+{
+    _skyImage = image;
+    touch();
+}
+
+void PanoramaMap::releaseGLObjects(osg::State* state) const
+{
+    _textures->releaseGLObjects(state);
+    _scenery->releaseGLObjects(state);
 }
 
 } // namespace osgGeoFX

@@ -5,11 +5,14 @@
 #include <osgGeoFX/deformation/Deformation.h>
 
 #include <osg/Image>
+#include <osg/Math>
 
 #include <memory>
 
 namespace osgGeoFX
 {
+
+class PanoramaTextures;
 
 /** A panorama map: the terrain below the scene in the manner of Heinrich Berann's paintings, live.
 
@@ -77,6 +80,115 @@ public:
     double getDetail() const { return _detail; }
     /// @}
 
+    /// @name The painting
+    /// @{
+
+    /// Whether the ground is painted; true by default.
+    bool setPaint(bool on) { return assign("paint", on ? 1.0 : 0.0); }
+    bool getPaint() const { return _paint; }
+    /// 0 midwinter, 1/4 spring, 1/2 midsummer (the default), 3/4 autumn, 1 midwinter: palettes and the snow line.
+    bool setSeason(double season) { return assign("season", season); }
+    double getSeason() const { return _season; }
+    /// Where half of the even ground is white in midsummer, metres; −1, the default, takes it from the latitude.
+    bool setSnowLine(double metres) { return assign("snowLine", metres); }
+    double getSnowLine() const { return _snowLine; }
+    /// Over how many metres of height snow comes in; 1…5000, 500 by default.
+    bool setSnowWidth(double metres) { return assign("snowWidth", metres); }
+    double getSnowWidth() const { return _snowWidth; }
+    /// Where woods end if the tiles do not tell what grows, metres; −1, the default, takes it from the latitude.
+    bool setTreeLine(double metres) { return assign("treeLine", metres); }
+    double getTreeLine() const { return _treeLine; }
+    /// Steeper ground is rock, rise over run; 0.05…10, 0.8 by default.
+    bool setCliffSlope(double slope) { return assign("cliffSlope", slope); }
+    double getCliffSlope() const { return _cliffSlope; }
+    /// Ground less steep is field, rise over run; 0.005…10, 0.12 by default.
+    bool setHillSlope(double slope) { return assign("hillSlope", slope); }
+    double getHillSlope() const { return _hillSlope; }
+    /// By how much slopes are lit as steeper than they are; 0.1…20, 2.5 by default.
+    bool setRelief(double factor) { return assign("relief", factor); }
+    double getRelief() const { return _relief; }
+    /// How much brush strokes turn the ground's normals; 0…2, 0.35 by default.
+    bool setBrush(double strength) { return assign("brush", strength); }
+    double getBrush() const { return _brush; }
+    /// How much light the picture's base lacks; 0…2, 0.3 by default.
+    bool setBottomShade(double light) { return assign("bottomShade", light); }
+    double getBottomShade() const { return _bottomShade; }
+    /// Where the light comes from, clockwise from the way up in the picture, so the same for all headings; radians, −π…π, −60° by
+    /// default, from the left.
+    bool setLightAzimuth(double radians) { return assign("lightAzimuth", radians); }
+    double getLightAzimuth() const { return _lightAzimuth; }
+    /// How high it stands, radians; 0…π/2, 32° by default.
+    bool setLightElevation(double radians) { return assign("lightElevation", radians); }
+    double getLightElevation() const { return _lightElevation; }
+    /// Whether the scene's light 0 shines instead; false by default.
+    bool setSceneLight(bool on) { return assign("sceneLight", on ? 1.0 : 0.0); }
+    bool getSceneLight() const { return _sceneLight; }
+    /// How much of the air's blue the horizon has; 0…1, 0.75 by default.
+    bool setAtmosphere(double strength) { return assign("atmosphere", strength); }
+    double getAtmosphere() const { return _atmosphere; }
+    /// The colours of classes from light to shade, as makePalette() describes; null, the default, for the kit's own.
+    void setPalette(osg::Image* image);
+    osg::Image* getPalette() { return _palette; }
+    const osg::Image* getPalette() const { return _palette; }
+    /// @}
+
+    /// @name Water and sky
+    /// @{
+
+    /// Whether water is painted as such; true by default.
+    bool setWater(bool on) { return assign("water", on ? 1.0 : 0.0); }
+    bool getWater() const { return _water; }
+    /// From where on water is deep, metres from the shore (metres of depth over 0.02 where depths are known); 1…1e6, 5000 by
+    /// default.
+    bool setDeepShore(double metres) { return assign("deepShore", metres); }
+    double getDeepShore() const { return _deepShore; }
+    /// How much of the terrain and the sky the water shows; 0…1, 0.6 by default.
+    bool setReflection(double strength) { return assign("reflection", strength); }
+    double getReflection() const { return _reflection; }
+    /// How far ripples move reflections; 0…10, 1 by default.
+    bool setRipples(double strength) { return assign("ripples", strength); }
+    double getRipples() const { return _ripples; }
+    /// Whether there is a painted sky behind the terrain, and sea where no terrain is; true by default.
+    bool setSky(bool on) { return assign("sky", on ? 1.0 : 0.0); }
+    bool getSky() const { return _sky; }
+    /// Which clouds there are: each number has others; 0…9999.
+    bool setClouds(int seed) { return assign("clouds", seed); }
+    int getClouds() const { return _clouds; }
+    /// An image of one's own for the sky: a turn of 360° that repeats across, from the horizon upwards; null, the default, for the
+    /// kit's own.
+    void setSkyImage(osg::Image* image);
+    osg::Image* getSkyImage() { return _skyImage; }
+    const osg::Image* getSkyImage() const { return _skyImage; }
+    /// @}
+
+    /// @name Strokes
+    /// @{
+
+    /// Whether trees, cliffs and houses are painted as strokes; true by default.
+    bool setStrokes(bool on) { return assign("strokes", on ? 1.0 : 0.0); }
+    bool getStrokes() const { return _strokes; }
+    /// How high a tree is painted, pixels; 1…200, 9 by default.
+    bool setStrokeSize(double pixels) { return assign("strokeSize", pixels); }
+    double getStrokeSize() const { return _strokeSize; }
+    /// How far trees stand apart on the screen, pixels; 1…200, 6.5 by default.
+    bool setStrokeSpacing(double pixels) { return assign("strokeSpacing", pixels); }
+    double getStrokeSpacing() const { return _strokeSpacing; }
+    /// How far they stand apart on the ground at least, metres; 1…10 000, 25 by default. Each tile's are made anew when it changes.
+    bool setStrokeStep(double metres) { return assign("strokeStep", metres); }
+    double getStrokeStep() const { return _strokeStep; }
+    /// @}
+
+    /// @name Texture units
+    /// @{
+
+    /// Where tiles have what they say of the ground; 4…31, 7 by default, as osggeofx_build makes them.
+    bool setCoverUnit(int unit) { return assign("coverUnit", unit); }
+    int getCoverUnit() const { return _coverUnit; }
+    /// The first of three for the palette, the brush and the reflection; 4…29, 4 by default.
+    bool setFirstUnit(int unit) { return assign("firstUnit", unit); }
+    int getFirstUnit() const { return _firstUnit; }
+    /// @}
+
     const Properties& properties() const override;
     osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
     std::string vertexFile() const override { return "stages/panorama.glsl"; }
@@ -84,6 +196,8 @@ public:
     using Deformation::asPassEffect;
     using Deformation::asSurfaceEffect;
     SurfaceEffect* asSurfaceEffect() override;
+    PassEffect* asPassEffect() override;
+    void releaseGLObjects(osg::State* state = nullptr) const override;
 
 protected:
     ~PanoramaMap() override;
@@ -92,6 +206,7 @@ protected:
 
 private:
     class Ground;
+    class Scenery;
 
     bool _projection = true;
     double _viewRadius = 0.0;
@@ -103,7 +218,37 @@ private:
     double _baseHeight = 0.0;
     bool _baseFromTerrain = true;
     double _detail = 1.0;
+    bool _paint = true;
+    double _season = 0.5;
+    double _snowLine = -1.0;
+    double _snowWidth = 500.0;
+    double _treeLine = -1.0;
+    double _cliffSlope = 0.8;
+    double _hillSlope = 0.12;
+    double _relief = 2.5;
+    double _brush = 0.35;
+    double _bottomShade = 0.3;
+    double _lightAzimuth = -osg::PI / 3.0;
+    double _lightElevation = 32.0 * osg::PI / 180.0;
+    bool _sceneLight = false;
+    double _atmosphere = 0.75;
+    bool _water = true;
+    double _deepShore = 5000.0;
+    double _reflection = 0.6;
+    double _ripples = 1.0;
+    bool _sky = true;
+    int _clouds = 1;
+    bool _strokes = true;
+    double _strokeSize = 9.0;
+    double _strokeSpacing = 6.5;
+    double _strokeStep = 25.0;
+    int _coverUnit = 7;
+    int _firstUnit = 4;
+    osg::ref_ptr<osg::Image> _palette;
+    osg::ref_ptr<osg::Image> _skyImage;
+    std::unique_ptr<PanoramaTextures> _textures;
     osg::ref_ptr<Ground> _ground;
+    osg::ref_ptr<Scenery> _scenery;
 };
 
 } // namespace osgGeoFX

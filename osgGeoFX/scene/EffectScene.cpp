@@ -393,14 +393,19 @@ bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, c
 {
     bool any = false;
     const osg::Viewport* viewport = outer.getViewport();
-    const SurfaceView view = {geometry, *outer.getModelViewMatrix(), viewport ? viewport->width() : 0.0,
-                              viewport ? viewport->height() : 0.0};
+    const osg::FrameStamp* stamp = outer.getFrameStamp();
+    const SurfaceView view = {geometry,
+                              *outer.getModelViewMatrix(),
+                              viewport ? viewport->x() : 0.0,
+                              viewport ? viewport->y() : 0.0,
+                              viewport ? viewport->width() : 0.0,
+                              viewport ? viewport->height() : 0.0,
+                              stamp ? stamp->getSimulationTime() : 0.0};
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
         SurfaceEffect* surface = effects[i]->asSurfaceEffect();
         if (!surface) continue;
-        const bool draws =
-            effects[i]->getEnabled() && surface->fill(state, EffectProgram::prefix(i), view);
+        const bool draws = effects[i]->getEnabled() && surface->fill(state, EffectProgram::prefix(i), view);
         setDefine(state, EffectProgram::surfaceDefine(i), draws);
         any = any || draws;
     }
@@ -521,6 +526,10 @@ void EffectScene::drawPasses(osgUtil::CullVisitor& outer, const ViewGeometry& vi
         osg::ref_ptr<osg::Program> program(const PassShaders& shaders) const override
         {
             return _group._drawing->passProgram(_group._effects, shaders, prefix);
+        }
+        osg::ref_ptr<osg::Program> sceneProgram() const override
+        {
+            return _group._drawing->programFor(_group._effects);
         }
 
     private:

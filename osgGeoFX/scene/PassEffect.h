@@ -60,6 +60,8 @@ public:
     /// A program of all effects with the pass' own shaders; the same one until effects or shaders change. Null, after a
     /// warning, where a shader file is missing.
     virtual osg::ref_ptr<osg::Program> program(const PassShaders& shaders) const = 0;
+    /// The one that the scene itself is drawn with.
+    virtual osg::ref_ptr<osg::Program> sceneProgram() const = 0;
 
 protected:
     ScenePass(osgUtil::CullVisitor& visitor, osg::Group& group, const ViewGeometry& geometry,

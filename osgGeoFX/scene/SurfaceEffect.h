@@ -17,8 +17,11 @@ struct SurfaceView
 {
     const ViewGeometry& geometry;
     const osg::Matrixd& modelView; ///< from the frame of the EffectScene's children to eye space
-    double viewportWidth;          ///< pixels
+    double viewportX;              ///< pixels
+    double viewportY;
+    double viewportWidth;
     double viewportHeight;
+    double time; ///< of the simulation, seconds
 };
 
 /** An effect that colours what is drawn, fragment by fragment, in the geometry's undeformed place.

@@ -23,7 +23,7 @@ struct geofx_Panorama
     Length base;      // the height that lies on the curve
     Length curve;     // D1, where the ground begins to curve
     Length horizon;   // D2, where it has reached the horizon; beyond, only what rises above it is seen
-    Length end;       // where that has gone, too
+    Length end;       // where that has gone, too; as far again behind it, all ground is gathered in one point
     Number arch;      // 2 C: the horizon's bend, in the picture's y (Eq. 1)
     Length nearest;   // n of the base, > 0
     Vector3 origin;   // a point of the picture is a line of eye space: origin + x originX + y originY
@@ -86,11 +86,17 @@ GEOFX_INLINE Number geofx_panoramaSlope(geofx_Panorama view, Length s)
     return clamp((view.horizon - s) / max(view.horizon - view.curve, Length(1e-3)), Number(0), Number(1));
 }
 
+// 1 up to `from`, 0 as far behind that as the end is behind the horizon.
+GEOFX_INLINE Number geofx_panoramaFadeFrom(geofx_Panorama view, Length from, Length s)
+{
+    Number t = clamp(1 - (s - from) / max(view.end - view.horizon, Length(1e-3)), Number(0), Number(1));
+    return t * t * (3 - 2 * t);
+}
+
 // The share of its height that something at a distance s shows: all of it up to the horizon.
 GEOFX_INLINE Number geofx_panoramaFade(geofx_Panorama view, Length s)
 {
-    Number t = clamp((view.end - s) / max(view.end - view.horizon, Length(1e-3)), Number(0), Number(1));
-    return t * t * (3 - 2 * t);
+    return geofx_panoramaFadeFrom(view, view.horizon, s);
 }
 
 // How far Eq. 1 lowers a point of the picture.
@@ -102,7 +108,7 @@ GEOFX_INLINE Number geofx_panoramaArch(geofx_Panorama view, Number x)
 // The point (x, y) of the picture and n, of a place.
 GEOFX_INLINE Position geofx_panoramaPicture(geofx_Panorama view, Position place)
 {
-    Number x = place.x * view.across;
+    Number x = place.x * view.across * geofx_panoramaFadeFrom(view, view.end, place.y);
     Number y = view.along * geofx_panoramaRise(view, place.y) - 1 +
                view.lift * (place.z - view.base) * geofx_panoramaFade(view, place.y) - geofx_panoramaArch(view, x);
     Length n = place.y > 0 ? view.nearest + place.y

@@ -1,20 +1,122 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The painting of a panorama map's ground. SLOT_ stands for the effect's prefix.
+// The painting of a panorama map's ground, after Sections 3.2, 3.4 and 3.5 of Brown and Samavati (2017). SLOT_ stands for the
+// effect's prefix.
+#pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR)
 #include "lib/painting.glsl"
 
 uniform sampler2D SLOT_cover;
+uniform sampler2D SLOT_palette;
+uniform sampler2D SLOT_brush;
+uniform sampler2D SLOT_mirror; // the picture in still water; alpha: how far off it is, s over the end, 1 for the sky
 uniform vec4 SLOT_light;
+uniform vec4 SLOT_snow;   // its line in midsummer, how much lower in midwinter, its width, the season
+uniform vec4 SLOT_slopes; // of cliffs and hills; the tree line, the bottom's shade
+uniform vec4 SLOT_brushX;
+uniform vec4 SLOT_brushY;
+uniform vec4 SLOT_hand;   // the brush's strength, the share of its larger size, the air's strength, the scene's light
+uniform vec4 SLOT_water;  // where it is deep, the reflection's strength, the ripples', whether there is water
+uniform vec4 SLOT_window; // the viewport's corner, one over its size
+uniform vec4 SLOT_clock;  // seconds
+uniform vec4 SLOT_scale;
+uniform vec4 SLOT_curve;
 
 in vec3 SLOT_place;
 in vec4 SLOT_facing;
-in vec2 SLOT_coverPlace;
+in vec4 SLOT_texels;
+
+const vec3 SLOT_deep = vec3(0.055, 0.29, 0.56);
+const vec3 SLOT_air = vec3(0.47, 0.62, 0.86);
+
+vec3 SLOT_shade(float light, int row)
+{
+    return texture(SLOT_palette, geofx_palettePlace(light, row)).rgb;
+}
+
+vec3 SLOT_ground(geofx_Classes classes, float light)
+{
+    vec3 colour = vec3(0.0);
+    if (classes.field > 0.004) colour += classes.field * SLOT_shade(light, GEOFX_PALETTE_FIELD);
+    if (classes.hill > 0.004) colour += classes.hill * SLOT_shade(light, GEOFX_PALETTE_HILL);
+    if (classes.cliff > 0.004) colour += classes.cliff * SLOT_shade(light, GEOFX_PALETTE_CLIFF);
+    if (classes.snow > 0.004) colour += classes.snow * SLOT_shade(light, GEOFX_PALETTE_SNOW);
+    if (classes.forest > 0.004) colour += classes.forest * SLOT_shade(light, GEOFX_PALETTE_FOREST);
+    if (classes.town > 0.004) colour += classes.town * SLOT_shade(light, GEOFX_PALETTE_TOWN);
+    if (classes.bare > 0.004) colour += classes.bare * SLOT_shade(light, GEOFX_PALETTE_BARE);
+    return colour;
+}
+
+// The water's colour at a distance from the shore, with what it reflects.
+vec3 SLOT_wet(float shore, vec2 picture, float far)
+{
+    vec3 own = geofx_waterColour(SLOT_deep, geofx_waterDepth(max(shore, 0.0) + 0.06 * SLOT_water.x, SLOT_water.x));
+#ifdef GEOFX_MIRROR
+    return own;
+#else
+    // Ripples: the brush's slopes, moved by themselves, so that nothing repeats; calmer towards the horizon.
+    vec2 place = SLOT_texels.zw * vec2(1.7, 1.7);
+    vec2 first = texture(SLOT_brush, place + SLOT_clock.x * vec2(0.006, 0.011)).rg - 0.5;
+    vec2 ripple = texture(SLOT_brush, place.yx + 0.06 * first - SLOT_clock.x * vec2(0.009, 0.004)).rg - 0.5;
+    float calm = SLOT_water.z * mix(1.0, 0.25, far);
+    // The mirror stands at height 0; a lake's is as much higher as twice the lake is.
+    vec2 at = picture + vec2(0.006, 0.02) * calm * ripple - vec2(0.0, SLOT_scale.z * SLOT_place.z);
+    vec3 seen = vec3(0.0);
+    float weights = 0.0;
+    for (int i = 0; i < 4; ++i)
+    {
+        // A wide blur, wider along the mirror's depth, and what stands before the water is not in it.
+        vec2 offset = vec2(0.0035 * (float(i & 1) - 0.5), 0.012 * (float(i) / 3.0 - 0.5)) * (0.4 + 0.6 * (1.0 - far));
+        vec4 texel = texture(SLOT_mirror, clamp(at + offset, vec2(0.002), vec2(0.998)));
+        float weight = texel.a + 0.01 >= SLOT_place.y / SLOT_curve.z ? 1.0 : 0.02;
+        seen += weight * texel.rgb;
+        weights += weight;
+    }
+    float strength = SLOT_water.y * (0.75 + ripple.y);
+    return geofx_waterMix(own, seen / weights, clamp(strength, 0.0, 1.0));
+#endif
+}
 
 vec4 SLOT_colour(vec4 colour)
 {
-    float light = dot(normalize(SLOT_facing.xyz), SLOT_light.xyz);
-    vec3 lit = mix(vec3(0.35, 0.4, 0.6), vec3(0.85, 0.75, 0.45), light * 0.5 + 0.5);
-    if (SLOT_place.z <= 0.0) lit = vec3(0.3, 0.5, 0.8);
-    return vec4(lit, 1.0);
+#ifndef GEOFX_PAINTED
+    return colour;
+#else
+    vec4 texel = texture(SLOT_cover, SLOT_texels.xy);
+    geofx_Cover cover;
+    if (geofx_coverKnown(texel))
+        cover = geofx_coverOf(texel);
+    else
+        cover = geofx_likelyCover(SLOT_place.z, SLOT_facing.w, SLOT_slopes.z);
+    float edge = max(fwidth(texel.a), 1e-4);
+    float wet = geofx_coverKnown(texel) ? clamp((texel.a - 128.0 / 255.0) / edge + 0.5, 0.0, 1.0)
+                                        : step(0.0, cover.shore);
+    wet *= SLOT_water.w;
+
+    vec4 fine = texture(SLOT_brush, SLOT_texels.zw);
+    vec4 coarse = texture(SLOT_brush, 0.5 * SLOT_texels.zw);
+    vec4 brush = 2.0 * mix(fine, coarse, SLOT_hand.y) - 1.0;
+    vec3 normal = normalize(SLOT_facing.xyz);
+    vec3 towards = SLOT_hand.w > 0.5 ? normalize(gl_LightSource[0].position.xyz) : SLOT_light.xyz;
+    vec3 turned = normalize(normal + SLOT_hand.x * (brush.x * normalize(SLOT_brushX.xyz) +
+                                                    brush.y * normalize(SLOT_brushY.xyz)));
+    vec2 picture = (gl_FragCoord.xy - SLOT_window.xy) * SLOT_window.zw;
+    float light = geofx_paintLight(dot(turned, towards), picture.y, SLOT_slopes.w);
+
+    geofx_PaintStyle style = geofx_PaintStyle(SLOT_snow.x, SLOT_snow.y, SLOT_snow.z, SLOT_slopes.x, SLOT_slopes.y,
+                                              SLOT_snow.w);
+    float far = clamp(SLOT_place.y / SLOT_curve.y, 0.0, 1.0);
+    vec3 painted = vec3(0.0);
+    if (wet < 1.0)
+        painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, SLOT_facing.w, brush.z, style), light);
+    if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far), wet);
+    painted = geofx_atmosphere(painted, SLOT_air, geofx_airAmount(far, SLOT_hand.z));
+#ifdef GEOFX_MIRROR
+    // What is below the water is not reflected, nor is water.
+    if (SLOT_place.z <= 0.0 || wet > 0.5) discard;
+    return vec4(painted, clamp(SLOT_place.y / SLOT_curve.z, 0.0, 0.98));
+#else
+    return vec4(painted, 1.0);
+#endif
+#endif
 }

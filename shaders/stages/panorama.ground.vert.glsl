@@ -2,11 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // What the painting of a panorama map's ground needs of each vertex. SLOT_ stands for the effect's prefix.
-uniform vec4 SLOT_light; // towards the light, in eye space; by how much slopes are lit as steeper than they are
+uniform vec4 SLOT_light;  // towards the light, in eye space; by how much slopes are lit as steeper than they are
+uniform vec4 SLOT_brushX; // from eye space to the brush's picture
+uniform vec4 SLOT_brushY;
 
 out vec3 SLOT_place;  // of the map: x of the picture, s and height in metres
 out vec4 SLOT_facing; // the normal to light with, and the rise over run of the ground
-out vec2 SLOT_coverPlace;
+out vec4 SLOT_texels; // in the cover's texture and in the brush's
 
 vec3 SLOT_vertical;
 
@@ -15,7 +17,8 @@ void SLOT_locate(vec3 position)
     geofx_Panorama view = SLOT_view();
     vec3 place = geofx_panoramaPlace(view, position);
     SLOT_place = vec3(place.x * view.across, place.yz);
-    SLOT_coverPlace = gl_MultiTexCoord0.xy;
+    SLOT_texels = vec4(gl_MultiTexCoord0.xy, dot(position, SLOT_brushX.xyz) + SLOT_brushX.w,
+                       dot(position, SLOT_brushY.xyz) + SLOT_brushY.w);
     SLOT_vertical = normalize(geofx_exaggerationGradient(view.globe, position));
     SLOT_facing = vec4(SLOT_vertical, 0.0);
 }

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/panorama/PanoramaScenery.h>
+
+#include <osgGeoFX/deformation/CompensatingCullVisitor.h>
+#include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/panorama/PanoramaFrame.h>
+#include <osgGeoFX/panorama/PanoramaTextures.h>
+#include <osgGeoFX/scene/ShaderLibrary.h>
+
+#include <osg/ColorMask>
+#include <osg/Depth>
+#include <osg/FrameBufferObject>
+#include <osg/Notify>
+#include <osg/observer_ptr>
+#include <osgUtil/CullVisitor>
+#include <osgUtil/RenderStage>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// The picture in the water is as many times smaller than the camera's: what is blurred needs no more.
+constexpr int mirrorShrink = 3;
+/// Its levels of detail are as many times coarser.
+constexpr double mirrorDetail = 0.5;
+/// Drawn before the camera's picture, after the application's own textures.
+constexpr int mirrorOrder = -5;
+/// Over what is opaque, so that it is drawn where nothing else is.
+constexpr int skyBin = 8;
+/// How much of the sky's turn lies across the picture.
+constexpr double skyAcross = 0.5;
+
+osg::ref_ptr<osg::Program> createSkyProgram()
+{
+    try
+    {
+        const ShaderLibrary library;
+        osg::ref_ptr<osg::Program> program = new osg::Program;
+        program->setName("osgGeoFX sky");
+        program->addShader(library.createShader(osg::Shader::VERTEX, "stages/panorama.sky.vert"));
+        program->addShader(library.createShader(osg::Shader::FRAGMENT, "stages/panorama.sky.frag"));
+        return program;
+    }
+    catch (const ShaderError& error)
+    {
+        OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
+        return nullptr;
+    }
+}
+
+osg::ref_ptr<osg::Geometry> createSquare()
+{
+    osg::ref_ptr<osg::Geometry> square = new osg::Geometry;
+    osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
+    for (const osg::Vec3& corner :
+         {osg::Vec3(-1, -1, 0), osg::Vec3(1, -1, 0), osg::Vec3(-1, 1, 0), osg::Vec3(1, 1, 0)})
+        corners->push_back(corner);
+    square->setVertexArray(corners);
+    square->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_STRIP, 0, 4));
+    square->setCullingActive(false);
+    square->setUseDisplayList(false);
+    square->setUseVertexBufferObjects(true);
+    return square;
+}
+
+osg::ref_ptr<osg::Texture2D> createTarget(int width, int height, bool depth)
+{
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+    texture->setTextureSize(width, height);
+    texture->setInternalFormat(depth ? GL_DEPTH_COMPONENT24 : GL_RGBA8);
+    if (depth) texture->setSourceFormat(GL_DEPTH_COMPONENT);
+    const auto filter = depth ? osg::Texture::NEAREST : osg::Texture::LINEAR;
+    texture->setFilter(osg::Texture::MIN_FILTER, filter);
+    texture->setFilter(osg::Texture::MAG_FILTER, filter);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    texture->setResizeNonPowerOfTwoHint(false);
+    return texture;
+}
+
+/// What one camera draws into the water in one of the frames that are on their way.
+class Mirror
+{
+public:
+    /// The stage of this frame, cleared, with a picture of the camera's proportions.
+    osgUtil::RenderStage& begin(osgUtil::CullVisitor& outer)
+    {
+        const osg::Viewport& viewport = *outer.getViewport();
+        const int width = std::max(1, static_cast<int>(viewport.width()) / mirrorShrink);
+        const int height = std::max(1, static_cast<int>(viewport.height()) / mirrorShrink);
+        if (!_colours || _colours->getTextureWidth() != width || _colours->getTextureHeight() != height)
+        {
+            _colours = createTarget(width, height, false);
+            _depths = createTarget(width, height, true);
+            _target = new osg::FrameBufferObject;
+            _target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(_colours));
+            _target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(_depths));
+            _viewport = new osg::Viewport(0, 0, width, height);
+        }
+        if (!_stage) _stage = new osgUtil::RenderStage;
+        _stage->reset();
+        osgUtil::RenderStage& camera = *outer.getCurrentRenderBin()->getStage();
+        _stage->setInheritedPositionalStateContainerMatrix(osg::Matrixd());
+        _stage->setInheritedPositionalStateContainer(camera.getPositionalStateContainer());
+        _stage->setInitialViewMatrix(camera.getInitialViewMatrix());
+        _stage->setDrawBuffer(GL_NONE, false);
+        _stage->setReadBuffer(GL_NONE, false);
+        _stage->setColorMask(new osg::ColorMask);
+        _stage->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        _stage->setClearColor(osg::Vec4(0.6f, 0.7f, 0.85f, 1.0f));
+        _stage->setClearDepth(1.0);
+        _stage->setViewport(_viewport);
+        _stage->setFrameBufferObject(_target);
+        camera.addPreRenderStage(_stage, mirrorOrder);
+        return *_stage;
+    }
+
+    osg::Texture2D* colours() const { return _colours; }
+    osg::Viewport* viewport() const { return _viewport; }
+    CompensatingCullVisitor& visitor() { return *_visitor; }
+    osg::StateSet& state() { return *_state; }
+    osg::StateSet& skyState(bool mirrored) { return *(mirrored ? _mirroredSky : _sky); }
+
+    void releaseGLObjects(osg::State* state) const
+    {
+        if (_colours) _colours->releaseGLObjects(state);
+        if (_depths) _depths->releaseGLObjects(state);
+        if (_target) _target->releaseGLObjects(state);
+    }
+
+private:
+    osg::ref_ptr<osg::Texture2D> _colours, _depths;
+    osg::ref_ptr<osg::FrameBufferObject> _target;
+    osg::ref_ptr<osg::Viewport> _viewport;
+    osg::ref_ptr<osgUtil::RenderStage> _stage;
+    osg::ref_ptr<CompensatingCullVisitor> _visitor = new CompensatingCullVisitor;
+    osg::ref_ptr<osg::StateSet> _state = new osg::StateSet;
+    osg::ref_ptr<osg::StateSet> _sky = new osg::StateSet;
+    osg::ref_ptr<osg::StateSet> _mirroredSky = new osg::StateSet;
+};
+
+constexpr auto forced = osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
+
+/// Uniforms whose names begin with the prefix, by what is in a frame of the projection.
+void setFrame(osg::StateSet& state, const std::string& prefix, const PanoramaFrame& frame)
+{
+    for (const auto& [name, value] : frame.uniforms())
+        state.getOrCreateUniform(prefix + name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
+}
+
+/// The heading as a share of a turn, clockwise from the north or from the y axis.
+double headingOf(const ScenePass& pass, const glsl::geofx_Panorama& panorama)
+{
+    const osg::Vec3d forward = toOsg(panorama.forward), right = toOsg(panorama.right);
+    osg::Vec3d north = pass.view.polarAxis;
+    if (!pass.view.ground.ellipsoid)
+        north = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 1.0, 0.0), *pass.outer.getModelViewMatrix());
+    return std::atan2(-(north * right), north * forward) / (2.0 * osg::PI);
+}
+
+} // namespace
+
+class PanoramaMap::Scenery::Cameras
+{
+public:
+    /// The camera's own data; other threads may ask for theirs at the same time.
+    Mirror& mirror(osgUtil::CullVisitor& outer, const osg::Group& scene)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        std::unique_ptr<Camera>& found = _all[{&outer, &scene}];
+        if (!found || !found->outer.valid())
+        {
+            for (auto entry = _all.begin(); entry != _all.end();)
+            {
+                const bool gone = entry->second && !entry->second->outer.valid() && &entry->second != &found;
+                entry = gone ? _all.erase(entry) : std::next(entry);
+            }
+            found = std::make_unique<Camera>();
+            found->outer = &outer;
+        }
+        return found->mirror;
+    }
+
+    osg::Program* skyProgram()
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        if (!_skyProgram) _skyProgram = createSkyProgram();
+        return _skyProgram;
+    }
+
+    osg::Geometry* square() const { return _square; }
+
+    void releaseGLObjects(osg::State* state) const
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto& [key, camera] : _all)
+            camera->mirror.releaseGLObjects(state);
+        if (_skyProgram) _skyProgram->releaseGLObjects(state);
+        _square->releaseGLObjects(state);
+    }
+
+private:
+    struct Camera
+    {
+        osg::observer_ptr<osgUtil::CullVisitor> outer;
+        Mirror mirror;
+    };
+    mutable std::mutex _mutex;
+    std::map<std::pair<osgUtil::CullVisitor*, const osg::Group*>, std::unique_ptr<Camera>> _all;
+    osg::ref_ptr<osg::Program> _skyProgram;
+    osg::ref_ptr<osg::Geometry> _square = createSquare();
+};
+
+PanoramaMap::Scenery::Scenery(const PanoramaMap& map, PanoramaTextures& textures)
+    : _map(map), _textures(textures), _cameras(std::make_unique<Cameras>())
+{
+}
+
+PanoramaMap::Scenery::~Scenery() = default;
+
+const Properties& PanoramaMap::Scenery::properties() const
+{
+    static const Properties none;
+    return none;
+}
+
+void PanoramaMap::Scenery::cull(const ScenePass& pass)
+{
+    if (!pass.outer.getViewport()) return;
+    const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(_map, pass.view);
+    if (!panorama) return;
+    Mirror& mirror = _cameras->mirror(pass.outer, pass.scene);
+    osg::Program* skyProgram = _map.getSky() ? _cameras->skyProgram() : nullptr;
+    const auto fillSky = [&](bool mirrored) -> osg::StateSet&
+    {
+        osg::StateSet& state = mirror.skyState(mirrored);
+        state.setRenderBinDetails(skyBin, "RenderBin");
+        state.setAttributeAndModes(skyProgram, osg::StateAttribute::ON | forced);
+        state.setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
+                                   osg::StateAttribute::ON | forced);
+        state.setMode(GL_DEPTH_TEST, osg::StateAttribute::ON | forced);
+        state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
+        state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
+        state.setTextureAttribute(0, _textures.sky(_map), forced);
+        state.getOrCreateUniform("geofx_sky", osg::Uniform::SAMPLER_2D)->set(0);
+        // The horizon, its arch, whether it is the sky in the water; the heading, the share of a turn across.
+        state.getOrCreateUniform("geofx_skyPlace", osg::Uniform::FLOAT_VEC4)
+            ->set(osg::Vec4(static_cast<float>(_map.getHorizonLine()),
+                            static_cast<float>(_map.getHorizonBend()), mirrored ? 1.0f : 0.0f, 0.0f));
+        state.getOrCreateUniform("geofx_skyTurn", osg::Uniform::FLOAT_VEC4)
+            ->set(osg::Vec4(static_cast<float>(headingOf(pass, *panorama)), static_cast<float>(skyAcross),
+                            0.0f, 0.0f));
+        return state;
+    };
+    const auto drawSky = [&](osgUtil::CullVisitor& visitor, bool mirrored)
+    {
+        visitor.pushStateSet(&fillSky(mirrored));
+        visitor.addDrawableAndDepth(_cameras->square(), visitor.getModelViewMatrix(), 0.0f);
+        visitor.popStateSet();
+    };
+    if (skyProgram) drawSky(pass.outer, false);
+
+    const bool reflects = _map.getWater() && _map.getReflection() > 0.0 && _map.getPaint();
+    if (!reflects) return;
+    osgUtil::RenderStage& stage = mirror.begin(pass.outer);
+    osg::ref_ptr<DeformationChain> chain = new DeformationChain;
+    osg::StateSet& state = mirror.state();
+    for (const auto& frame : pass.chain.frames())
+    {
+        const auto* own = dynamic_cast<const PanoramaFrame*>(frame.get());
+        osg::ref_ptr<const DeformationFrame> seen = frame;
+        if (own)
+        {
+            const osg::ref_ptr<const PanoramaFrame> turned = own->mirrored(0.0, mirrorDetail);
+            setFrame(state, pass.prefix, *turned);
+            seen = turned;
+        }
+        chain->add(seen);
+    }
+    state.setDefine("GEOFX_MIRROR", osg::StateAttribute::ON);
+    state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
+    state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
+    state.setAttribute(mirror.viewport(), forced);
+    const auto unit = static_cast<unsigned int>(_map.getFirstUnit() + 2);
+    state.setTextureAttribute(unit, _textures.noCover(), forced);
+    const osg::Viewport& size = *mirror.viewport();
+    state.getOrCreateUniform(pass.prefix + "window", osg::Uniform::FLOAT_VEC4)
+        ->set(osg::Vec4(0.0f, 0.0f, static_cast<float>(1.0 / size.width()),
+                        static_cast<float>(1.0 / size.height())));
+
+    CompensatingCullVisitor& visitor = mirror.visitor();
+    visitor.startsFrame(pass.outer);
+    CompensatingCullVisitor::Task task;
+    task.chain = chain;
+    task.state = &pass.state;
+    const osg::ref_ptr<osg::Program> program = pass.sceneProgram();
+    task.program = program;
+    task.untouched = &pass.untouched;
+    task.mapUnit = pass.mapUnit;
+    task.compensate = pass.compensate;
+    task.tileError = pass.tileError;
+    task.stage = &stage;
+    task.passState = &state;
+    visitor.run(pass.outer, pass.scene, task);
+    if (skyProgram)
+    {
+        const CompensatingCullVisitor::Piece sky = {_cameras->square(), *pass.outer.getModelViewMatrix(),
+                                                    &fillSky(true)};
+        visitor.run(pass.outer, {sky}, task);
+    }
+    pass.state.setTextureAttribute(unit, mirror.colours());
+}
+
+void PanoramaMap::Scenery::releaseGLObjects(osg::State* state) const
+{
+    _cameras->releaseGLObjects(state);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osg/Texture2D>
+
+#include <mutex>
+
+namespace osgGeoFX
+{
+
+class PanoramaMap;
+
+/// The textures that all cameras of a panorama map share. Made when first asked for and when what they are made of
+/// has changed; any thread may ask.
+class PanoramaTextures
+{
+public:
+    PanoramaTextures();
+
+    osg::ref_ptr<osg::Texture2D> palette(const PanoramaMap& map);
+    osg::ref_ptr<osg::Texture2D> sky(const PanoramaMap& map);
+    osg::ref_ptr<osg::Texture2D> brush();
+    /// One texel that says that nothing is known of the ground (shaders/lib/cover.glsl).
+    osg::ref_ptr<osg::Texture2D> noCover() { return _noCover; }
+
+    void releaseGLObjects(osg::State* state) const;
+
+private:
+    mutable std::mutex _mutex;
+    osg::ref_ptr<osg::Texture2D> _noCover, _palette, _sky, _brush;
+    double _paletteSeason = -1.0;
+    osg::ref_ptr<const osg::Image> _paletteImage;
+    double _skySeason = -1.0;
+    int _skySeed = -1;
+    osg::ref_ptr<const osg::Image> _skyImage;
+};
+
+} // namespace osgGeoFX
