@@ -96,6 +96,8 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
             "At least 128 MiB of memory are needed (--memory is " + std::to_string(options.memoryMiB) + ").");
     require(options.landCover.empty() || !options.landCoverTable.empty(),
             options.landCover + ": a land-cover raster needs its table; name it with --landcover-table CSV.");
+    require(!options.treeLine || (*options.treeLine >= 0.0 && std::isfinite(*options.treeLine)),
+            "The tree line must be a height in metres, 0 or greater.");
     require(options.lakeArea >= 0.0, "The least area of a lake must be 0 or greater.");
     require(options.landCoverTable.empty() || !options.landCover.empty(),
             options.landCoverTable + ": a land-cover table needs its raster; name it with --landcover FILE.");

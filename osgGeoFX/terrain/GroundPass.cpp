@@ -114,6 +114,9 @@ void GroundPass::sampleStrip(RasterStack& rasters, int firstRow, int rowCount)
     };
     HeightGrid heights(_size.columns + 2, rowCount + 2);
     heights.values = rasters.heightsAboveSea(lattice(1));
+    // A sample of the sea beside land is off by what its place was rounded.
+    for (float& height : heights.values)
+        if (std::abs(height) < 1e-3f) height = 0.0f;
     const std::vector<unsigned char> classes = rasters.classes(lattice(0));
 
     std::vector<GroundCell> cells(_columns);

@@ -169,7 +169,7 @@ Ground WaterFinder::groundOf(const Area& area) const
     const bool large = area.squareMetres >= _lakeArea && area.cells >= LAKE_CELLS;
     if (area.height <= 0.0f)
         return area.open || (large && 2 * area.zeros >= area.cells) ? Ground::SEA : Ground::LAND;
-    return large && 5 * area.lowerRim <= area.rim ? Ground::LAKE : Ground::LAND;
+    return large && area.rim > 0 && 5 * area.lowerRim <= area.rim ? Ground::LAKE : Ground::LAND;
 }
 
 std::vector<Ground> WaterFinder::mark(const std::vector<float>& heights)

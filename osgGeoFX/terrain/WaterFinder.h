@@ -24,7 +24,7 @@ enum class Ground : unsigned char
       of them lies at 0 and they are as large as a lake: other depressions are land;
     - those without data are sea where at least a third of the cells around them are no higher than 1 m;
     - those of one height are lakes where they have at least 32 cells and `lakeArea`, and at most a fifth of the
-      cells around them lie lower: terraces and summits are level, too.
+      cells around them, of which there must be some, lie lower: terraces and summits are level, too.
 
     Two sweeps over the rows, first add() from the first row to the last, then mark() back. Memory grows with the areas
     that one row crosses, and with the shores' bays, not with the raster. Not thread-safe. */

@@ -177,12 +177,28 @@ TEST_F(BuilderInput, RastersThatDoNotMeet)
                                     .crs("EPSG:4326")
                                     .write(_folder / "classes.tif");
     expectRefusal({"--dem", dem, "--landcover", classes, "--landcover-table", table}, {classes, "outside"});
+    expectRefusal({"--dem", dem, "--tree-cover", far}, {far, "outside the elevation", "leave the file out"});
     // A full turn away is the same place.
     const std::string turned = TestRaster(20, 20, 3, GDT_Byte)
                                    .placed(370.0, 50.0, 0.05, 0.05)
                                    .crs("EPSG:4326")
                                    .write(_folder / "turned.tif");
     EXPECT_EQ(run({"--dem", dem, "--imagery", turned, "-o", output()}).exitCode, 0);
+}
+
+TEST_F(BuilderInput, TreeCover)
+{
+    const std::string dem = goodDem();
+    expectRefusal({"--dem", dem, "--tree-cover", _folder / "none.tif"},
+                  {"none.tif", "there is no such file"});
+    TestRaster picture(20, 20, 1, GDT_Byte);
+    picture.placed(10.0, 50.0, 0.05, 0.05).crs("EPSG:4326");
+    GDALColorTable colors;
+    const GDALColorEntry green{0, 120, 0, 255};
+    colors.SetColorEntry(1, &green);
+    picture.dataset().GetRasterBand(1)->SetColorTable(&colors);
+    const std::string file = picture.write(_folder / "palette.tif");
+    expectRefusal({"--dem", dem, "--tree-cover", file}, {file, "palette", "percent"});
 }
 
 TEST_F(BuilderInput, LandCoverTables)
@@ -200,6 +216,11 @@ TEST_F(BuilderInput, LandCoverTables)
     expectRefusal({"--dem", dem, "--landcover-table", bad}, {bad, "--landcover FILE"});
     expectRefusal({"--dem", dem, "--landcover", classes, "--landcover-table", _folder / "none.csv"},
                   {"none.csv", "land-cover table"});
+    expectRefusal({"--dem", dem, "--landcover", classes, "--landcover-table", "worldcovr"},
+                  {"worldcovr: ", "worldcover, corine, nlcd, flightgear"});
+    EXPECT_EQ(run({"--dem", dem, "--land-cover", classes, "--land-cover-table", "worldcover", "-o", output()})
+                  .exitCode,
+              0);
 }
 
 TEST_F(BuilderInput, OptionsOutOfRange)
@@ -214,6 +235,8 @@ TEST_F(BuilderInput, OptionsOutOfRange)
     expectRefusal({"--dem", dem, "--pixel-error", "0"}, {"pixel error"});
     expectRefusal({"--dem", dem, "--pixel-error", "nan"}, {"pixel error"});
     expectRefusal({"--dem", dem, "--texel-error", "-1"}, {"texel error"});
+    expectRefusal({"--dem", dem, "--tree-line", "-1"}, {"tree line"});
+    expectRefusal({"--dem", dem, "--lake-area", "-1"}, {"area of a lake"});
     // What the command line's own grammar refuses has the same exit code.
     EXPECT_EQ(run({"--dem", dem}).exitCode, 2);
     EXPECT_EQ(run({"-o", output()}).exitCode, 2);

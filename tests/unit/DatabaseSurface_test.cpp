@@ -3,7 +3,7 @@
 //
 // The textures of a built database: colours and classes at known places, and no seams between tiles.
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
-#include <tools/DatabaseReader.h>
+#include <tools/DatabaseTexels.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
 
@@ -32,34 +32,6 @@ int distance(const Color& a, const Color& b)
     return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
-/// Calls for each texel of a level: its place in the grid's CRS, its tile, column and row.
-template<typename Visit>
-void forEachTexel(const std::string& folder, int level, unsigned int unit, const Visit& visit)
-{
-    const FinestLevel finest(folder);
-    const int last = DatabaseRoot(folder).finestLevel();
-    int texels = 0;
-    readDatabase(folder,
-                 [&](const DatabaseTile& tile)
-                 {
-                     if (tile.level != level || !tile.geometry) return;
-                     const osg::Image* image = tile.image(unit);
-                     ASSERT_NE(image, nullptr) << tile.transform->getName();
-                     const int span = finest.tileIntervals << (last - level);
-                     for (int row = 0; row < image->t(); ++row)
-                         for (int column = 0; column < image->s(); ++column)
-                         {
-                             // Counted in finest posts; beyond the ground's end is its end.
-                             const double c = (tile.x + column / (image->s() - 1.0)) * span;
-                             const double r = (tile.y + row / (image->t() - 1.0)) * span;
-                             if (c > finest.columns - 1 || r > finest.rows - 1) continue;
-                             visit(finest.x0 + c * finest.dx, finest.y0 + r * finest.dy, *image, column, row);
-                             ++texels;
-                         }
-                 });
-    EXPECT_GT(texels, 0);
-}
-
 BuildOptions options(const std::string& dem, const std::filesystem::path& output)
 {
     BuildOptions result;
@@ -67,45 +39,6 @@ BuildOptions options(const std::string& dem, const std::filesystem::path& output
     result.tileSize = 16;
     result.output = output.string();
     return result;
-}
-
-/// On each level the texels along the edges that tiles share are equal, and so are texture coordinates there.
-void expectNoSeams(const std::string& folder, unsigned int unit)
-{
-    std::map<std::array<int, 3>, Color> shared; // level and place, counted in texels
-    int compared = 0;
-    readDatabase(
-        folder,
-        [&](const DatabaseTile& tile)
-        {
-            const osg::Image* image = tile.image(unit);
-            ASSERT_NE(image, nullptr);
-            const int m = image->s() - 1;
-            ASSERT_EQ(image->t() - 1, m);
-            for (int k = 0; k <= m; ++k)
-                for (const auto& [column, row] :
-                     {std::pair(k, 0), std::pair(k, m), std::pair(0, k), std::pair(m, k)})
-                {
-                    Color color = colorAt(*image, column, row);
-                    if (unit == 1) color = {color[0], 0, 0};
-                    const auto [place, fresh] = shared.emplace(
-                        std::array<int, 3>{tile.level, tile.x * m + column, tile.y * m + row}, color);
-                    if (fresh) continue;
-                    ++compared;
-                    ASSERT_EQ(place->second, color)
-                        << tile.transform->getName() << ", texel " << column << " " << row;
-                }
-            // Texel centres lie on the tile's edges.
-            float low = 1.0f, high = 0.0f;
-            for (const auto& t : dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0)))
-            {
-                low = std::min({low, t.x(), t.y()});
-                high = std::max({high, t.x(), t.y()});
-            }
-            EXPECT_NEAR(low * static_cast<float>(m + 1), 0.5f, 1e-4f);
-            EXPECT_LE(high * static_cast<float>(m + 1), static_cast<float>(m) * 1.00001f + 0.5f);
-        });
-    EXPECT_GT(compared, 1000);
 }
 
 TEST(DatabaseSurface, ImageryAtItsPlaces)

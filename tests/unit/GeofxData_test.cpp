@@ -225,6 +225,13 @@ TEST_F(GeofxData, RastersAreBuiltOnceAndAgainWhenTheyChange)
     fs::last_write_time(folder / "dem.tif", past);
     ASSERT_TRUE(osgDB::readRefNodeFile(scene));
     EXPECT_EQ(databasesIn(folder / "cache").size(), 3u);
+
+    // So are other sources of what lies on the ground.
+    fs::copy(folder / "dem.tif", folder / "trees.tif");
+    const std::string trees = "<geofx version='1'>\n<terrain>\n<rasters cache='cache'>\n<dem file='dem.tif'/>"
+                              "<treeCover file='trees.tif'/></rasters></terrain></geofx>";
+    ASSERT_TRUE(osgDB::readRefNodeFile(folder.write("c.geofx", trees).string()));
+    EXPECT_EQ(databasesIn(folder / "cache").size(), 4u);
 }
 
 TEST_F(GeofxData, SunOfRastersStandsOverTheirMiddle)

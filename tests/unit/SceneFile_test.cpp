@@ -57,6 +57,7 @@ TEST(SceneFile, ReadsAllThatASceneSays)
       <dem file="/data/b.tif"/>
       <imagery file="c d.jp2"/>
       <landCover file="../e.tif" table="e.csv"/>
+      <treeCover file="t.tif"/>
     </rasters>
   </terrain>
 </geofx>)");
@@ -70,6 +71,8 @@ TEST(SceneFile, ReadsAllThatASceneSays)
     EXPECT_EQ(scene.rasters->imagery[0].path, "/scenes/c d.jp2");
     EXPECT_EQ(scene.rasters->landCover->file.path, "/e.tif");
     EXPECT_EQ(scene.rasters->landCover->table.path, "/scenes/e.csv");
+    ASSERT_TRUE(scene.rasters->treeCover);
+    EXPECT_EQ(scene.rasters->treeCover->path, "/scenes/t.tif");
     EXPECT_EQ(scene.rasters->cache, "/scenes/cache");
     EXPECT_EQ(scene.rasters->epsg, 32604);
     EXPECT_EQ(scene.rasters->vertical, "egm96");
@@ -235,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "expected: <terrain>, <homeView>, <sun>, <background>, <effects>."},
         Mistake{"UnknownElementBelow", rastersWith("", "<dem file='a'/><bathymetry/>"),
                 "x.geofx:3: <bathymetry>: this element is not known in <rasters>",
-                "expected: <dem> or <imagery> or <landCover>."},
+                "expected: <dem> or <imagery> or <landCover> or <treeCover>."},
         Mistake{"UnknownAttribute", sceneWith("<background color='#000000' colour='#000000'/>"),
                 "x.geofx:2: <background>: the attribute \"color\" is not known here", "expected: colour."},
         Mistake{"Order", rastersWith("", "<imagery file='a'/><dem file='b'/>"),
@@ -387,6 +390,12 @@ TEST(SceneFile, NamesFilesThatAreNotThere)
     EXPECT_NE(errors[1].find("is a folder"), std::string::npos);
     EXPECT_NE(errors[2].find("x.geofx:5: <landCover>: "), std::string::npos);
     EXPECT_NE(errors[2].find("attribute \"table\""), std::string::npos);
+
+    // A ready legend is no file; tree cover is one.
+    EXPECT_TRUE(errorsOf("<dem file='a.tif'/><landCover file='a.tif' table='worldcover'/>").empty());
+    const auto trees = errorsOf("<dem file='a.tif'/>\n<treeCover file='t.tif'/>");
+    ASSERT_EQ(trees.size(), 1u);
+    EXPECT_NE(trees[0].find("x.geofx:4: <treeCover>: "), std::string::npos);
 }
 
 TEST(SceneFile, JudgesTheFuzzersCorpusAsItsNamesSay)
