@@ -30,7 +30,8 @@ struct LevelArrays
         textureError; ///< by tile: size in metres of a texel that hides something, 0 if none does
 };
 
-/** Makes the scene graph of a tile: mesh with skirts, normals, base colour, land cover and level-of-detail ranges.
+/** Makes the scene graph of a tile: mesh with skirts, normals, base colour, land cover, what lies on the ground, and
+    level-of-detail ranges.
 
     A finest tile's vertices are all its posts, row by row from the south-west, then the skirt; a coarser one's are the
     posts that its relief needs, then the skirt. Not thread-safe. */
