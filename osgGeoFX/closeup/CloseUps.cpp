@@ -3,9 +3,9 @@
 #include <osgGeoFX/closeup/CloseUps.h>
 
 #include <osgGeoFX/closeup/CloseUpCamera.h>
+#include <osgGeoFX/scene/PerCamera.h>
 
 #include <osg/Notify>
-#include <osg/observer_ptr>
 
 #include <algorithm>
 #include <mutex>
@@ -18,29 +18,7 @@ namespace osgGeoFX
 class CloseUps::Drawing
 {
 public:
-    struct Camera
-    {
-        osg::observer_ptr<osgUtil::CullVisitor> outer;
-        CloseUpCamera own;
-    };
-
-    /// The camera's own data; other threads may ask for theirs at the same time. One effect may be in several scenes.
-    CloseUpCamera& camera(osgUtil::CullVisitor& outer, const osg::Group& scene)
-    {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        std::unique_ptr<Camera>& found = _cameras[{&outer, &scene}];
-        if (!found || !found->outer.valid())
-        {
-            for (auto entry = _cameras.begin(); entry != _cameras.end();)
-            {
-                const bool gone = entry->second && !entry->second->outer.valid() && &entry->second != &found;
-                entry = gone ? _cameras.erase(entry) : std::next(entry);
-            }
-            found = std::make_unique<Camera>();
-            found->outer = &outer;
-        }
-        return found->own;
-    }
+    PerCamera<CloseUpCamera> cameras;
 
     void saw(const Statistics& statistics, const std::string& sentence)
     {
@@ -58,9 +36,7 @@ public:
 
     void releaseGLObjects(osg::State* state) const
     {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        for (const auto& [key, camera] : _cameras)
-            camera->own.releaseGLObjects(state);
+        cameras.releaseGLObjects(state);
         textures.releaseGLObjects(state);
     }
 
@@ -68,7 +44,6 @@ public:
 
 private:
     mutable std::mutex _mutex;
-    std::map<std::pair<osgUtil::CullVisitor*, const osg::Group*>, std::unique_ptr<Camera>> _cameras;
     Statistics _statistics;
     std::set<std::string> _said;
 };
@@ -176,7 +151,7 @@ void CloseUps::cull(const ScenePass& pass)
                                       _maxLayers,
                                       {_maskUnit, _tableUnit, _surfaceUnit},
                                       static_cast<unsigned int>(_blockBinding)};
-    CloseUpCamera& camera = _drawing->camera(pass.outer, pass.scene);
+    CloseUpCamera& camera = _drawing->cameras.of(pass.outer, pass.scene);
     const std::string sentence = camera.cull(pass, task);
     _drawing->saw(camera.statistics(), sentence);
 }

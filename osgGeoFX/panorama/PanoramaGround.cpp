@@ -133,7 +133,6 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
     setTexture(state, prefix + "cover", _map.getCoverUnit(), _textures.noCover());
     // The scenery puts the reflection there, where there is one.
     state.getOrCreateUniform(prefix + "mirror", osg::Uniform::SAMPLER_2D)->set(first + 2);
-    state.setDefine("GEOFX_PAINTED", osg::StateAttribute::ON);
     return true;
 }
 

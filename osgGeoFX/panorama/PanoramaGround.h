@@ -23,6 +23,7 @@ public:
     std::string vertexFile() const override { return "stages/panorama.ground.vert.glsl"; }
     std::string fragmentFile() const override { return "stages/panorama.ground.frag.glsl"; }
     bool looksAtNormals() const override { return true; }
+    bool repaints() const override { return true; }
     bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) override;
 
 protected:

@@ -69,7 +69,7 @@ const Properties& PanoramaMap::properties() const
         Property::flag("sceneLight", false).of<&Self::_sceneLight>(),
         Property::number("atmosphere", 0.75, 0.0, 1.0).of<&Self::_atmosphere>(),
         Property::flag("water", true).of<&Self::_water>(),
-        Property::number("deepShore", 5000.0, 1.0, 1e6, "m").of<&Self::_deepShore>(),
+        Property::number("deepShore", 3000.0, 1.0, 1e6, "m").of<&Self::_deepShore>(),
         Property::number("reflection", 0.6, 0.0, 1.0).of<&Self::_reflection>(),
         Property::number("ripples", 1.0, 0.0, 10.0).of<&Self::_ripples>(),
         Property::flag("sky", true).of<&Self::_sky>(),

@@ -138,7 +138,7 @@ public:
     /// Whether water is painted as such; true by default.
     bool setWater(bool on) { return assign("water", on ? 1.0 : 0.0); }
     bool getWater() const { return _water; }
-    /// From where on water is deep, metres from the shore (metres of depth over 0.02 where depths are known); 1…1e6, 5000 by
+    /// From where on water is deep, metres from the shore (metres of depth over 0.02 where depths are known); 1…1e6, 3000 by
     /// default.
     bool setDeepShore(double metres) { return assign("deepShore", metres); }
     double getDeepShore() const { return _deepShore; }
@@ -233,7 +233,7 @@ private:
     bool _sceneLight = false;
     double _atmosphere = 0.75;
     bool _water = true;
-    double _deepShore = 5000.0;
+    double _deepShore = 3000.0;
     double _reflection = 0.6;
     double _ripples = 1.0;
     bool _sky = true;

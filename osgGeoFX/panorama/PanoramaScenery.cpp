@@ -6,19 +6,18 @@
 #include <osgGeoFX/deformation/EyeVector.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaTextures.h>
+#include <osgGeoFX/scene/PerCamera.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
 
 #include <osg/ColorMask>
 #include <osg/Depth>
 #include <osg/FrameBufferObject>
 #include <osg/Notify>
-#include <osg/observer_ptr>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderStage>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <mutex>
 
 namespace osgGeoFX
@@ -171,23 +170,7 @@ double headingOf(const ScenePass& pass, const glsl::geofx_Panorama& panorama)
 class PanoramaMap::Scenery::Cameras
 {
 public:
-    /// The camera's own data; other threads may ask for theirs at the same time.
-    Mirror& mirror(osgUtil::CullVisitor& outer, const osg::Group& scene)
-    {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        std::unique_ptr<Camera>& found = _all[{&outer, &scene}];
-        if (!found || !found->outer.valid())
-        {
-            for (auto entry = _all.begin(); entry != _all.end();)
-            {
-                const bool gone = entry->second && !entry->second->outer.valid() && &entry->second != &found;
-                entry = gone ? _all.erase(entry) : std::next(entry);
-            }
-            found = std::make_unique<Camera>();
-            found->outer = &outer;
-        }
-        return found->mirror;
-    }
+    PerCamera<Mirror> mirrors;
 
     osg::Program* skyProgram()
     {
@@ -200,21 +183,14 @@ public:
 
     void releaseGLObjects(osg::State* state) const
     {
+        mirrors.releaseGLObjects(state);
         const std::lock_guard<std::mutex> lock(_mutex);
-        for (const auto& [key, camera] : _all)
-            camera->mirror.releaseGLObjects(state);
         if (_skyProgram) _skyProgram->releaseGLObjects(state);
         _square->releaseGLObjects(state);
     }
 
 private:
-    struct Camera
-    {
-        osg::observer_ptr<osgUtil::CullVisitor> outer;
-        Mirror mirror;
-    };
     mutable std::mutex _mutex;
-    std::map<std::pair<osgUtil::CullVisitor*, const osg::Group*>, std::unique_ptr<Camera>> _all;
     osg::ref_ptr<osg::Program> _skyProgram;
     osg::ref_ptr<osg::Geometry> _square = createSquare();
 };
@@ -237,7 +213,8 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     if (!pass.outer.getViewport()) return;
     const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(_map, pass.view);
     if (!panorama) return;
-    Mirror& mirror = _cameras->mirror(pass.outer, pass.scene);
+    Mirror& mirror = _cameras->mirrors.of(pass.outer, pass.scene);
+    const bool reflects = _map.getWater() && _map.getReflection() > 0.0 && _map.getPaint();
     osg::Program* skyProgram = _map.getSky() ? _cameras->skyProgram() : nullptr;
     const auto fillSky = [&](bool mirrored) -> osg::StateSet&
     {
@@ -250,14 +227,35 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
         state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
         state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
         state.setTextureAttribute(0, _textures.sky(_map), forced);
+        state.setTextureAttribute(1, reflects && !mirrored ? mirror.colours() : _textures.noCover().get(),
+                                  forced);
+        state.setTextureAttribute(2, _textures.brush(), forced);
         state.getOrCreateUniform("geofx_sky", osg::Uniform::SAMPLER_2D)->set(0);
-        // The horizon, its arch, whether it is the sky in the water; the heading, the share of a turn across.
-        state.getOrCreateUniform("geofx_skyPlace", osg::Uniform::FLOAT_VEC4)
-            ->set(osg::Vec4(static_cast<float>(_map.getHorizonLine()),
-                            static_cast<float>(_map.getHorizonBend()), mirrored ? 1.0f : 0.0f, 0.0f));
-        state.getOrCreateUniform("geofx_skyTurn", osg::Uniform::FLOAT_VEC4)
-            ->set(osg::Vec4(static_cast<float>(headingOf(pass, *panorama)), static_cast<float>(skyAcross),
-                            0.0f, 0.0f));
+        state.getOrCreateUniform("geofx_skyMirror", osg::Uniform::SAMPLER_2D)->set(1);
+        state.getOrCreateUniform("geofx_skyBrush", osg::Uniform::SAMPLER_2D)->set(2);
+        const auto put = [&](const char* name, double x, double y, double z, double w)
+        {
+            state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4(osg::Vec4d(x, y, z, w)));
+        };
+        put("geofx_skyPlace", _map.getHorizonLine(), _map.getHorizonBend(), headingOf(pass, *panorama),
+            skyAcross);
+        put("geofx_skyCurve", panorama->along, panorama->curve, panorama->horizon, panorama->end);
+        // Where the water's ripples lie on the ground, also where there is none.
+        const auto axis = [&](const char* name, const std::string& ground)
+        {
+            const osg::Uniform* uniform = pass.state.getUniform(pass.prefix + ground);
+            osg::Vec4f row;
+            if (uniform) uniform->get(row);
+            const osg::Vec3d along(row.x(), row.y(), row.z());
+            put(name, toOsg(panorama->right) * along / panorama->across, toOsg(panorama->forward) * along,
+                static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along), 0.0);
+        };
+        axis("geofx_skyAxisX", "brushX");
+        axis("geofx_skyAxisY", "brushY");
+        put("geofx_skyWater", _map.getDeepShore(), _map.getReflection(), _map.getRipples(), 0.0);
+        const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
+        put("geofx_skyClock", stamp ? std::fmod(stamp->getSimulationTime(), 3600.0) : 0.0,
+            _map.getAtmosphere(), reflects ? 1.0 : 0.0, 0.0);
         return state;
     };
     const auto drawSky = [&](osgUtil::CullVisitor& visitor, bool mirrored)
@@ -266,11 +264,13 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
         visitor.addDrawableAndDepth(_cameras->square(), visitor.getModelViewMatrix(), 0.0f);
         visitor.popStateSet();
     };
-    if (skyProgram) drawSky(pass.outer, false);
-
-    const bool reflects = _map.getWater() && _map.getReflection() > 0.0 && _map.getPaint();
-    if (!reflects) return;
+    if (!reflects)
+    {
+        if (skyProgram) drawSky(pass.outer, false);
+        return;
+    }
     osgUtil::RenderStage& stage = mirror.begin(pass.outer);
+    if (skyProgram) drawSky(pass.outer, false);
     osg::ref_ptr<DeformationChain> chain = new DeformationChain;
     osg::StateSet& state = mirror.state();
     for (const auto& frame : pass.chain.frames())

@@ -392,6 +392,7 @@ bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, c
                   osgUtil::CullVisitor& outer)
 {
     bool any = false;
+    bool repainted = false;
     const osg::Viewport* viewport = outer.getViewport();
     const osg::FrameStamp* stamp = outer.getFrameStamp();
     const SurfaceView view = {geometry,
@@ -408,7 +409,9 @@ bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, c
         const bool draws = effects[i]->getEnabled() && surface->fill(state, EffectProgram::prefix(i), view);
         setDefine(state, EffectProgram::surfaceDefine(i), draws);
         any = any || draws;
+        repainted = repainted || (draws && surface->repaints());
     }
+    setDefine(state, "GEOFX_PAINTED", repainted);
     return any;
 }
 

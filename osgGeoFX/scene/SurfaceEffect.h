@@ -40,6 +40,9 @@ public:
     virtual std::string fragmentFile() const = 0;
     /// Whether the vertex file has `void SLOT_face(vec3 eyeNormal)`, which gets the undeformed normal of length 1.
     virtual bool looksAtNormals() const { return false; }
+    /// Whether the colour that comes in does not matter, so that neither lights nor textures need to be worked out. Below a
+    /// state set with `setDefine("GEOFX_PAINTED", OFF)` it does, and SLOT_colour() should hand it on.
+    virtual bool repaints() const { return false; }
 
     /** Puts what the shaders need into a camera's state: uniforms with the prefix, and textures. False where there is
         nothing to draw. Several cameras' threads may call it at once; the state is the caller's own. */

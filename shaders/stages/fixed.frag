@@ -5,7 +5,18 @@
 // OpenGL's fixed fragment stage: texture environments, the separate specular colour and fog, OpenGL 2.1, Sections
 // 3.8 to 3.10, with the effects before the fog.
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
-#pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP)
+#pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP, GEOFX_PAINTED)
+
+// What is painted anew needs no light and no textures.
+#ifdef GEOFX_PAINTED
+#undef GEOFX_COLOR_SUM
+#undef GEOFX_TEXTURE_0
+#undef GEOFX_TEXTURE_1
+#undef GEOFX_TEXTURE_2
+#undef GEOFX_TEXTURE_3
+#undef GEOFX_MAP
+#undef GEOFX_FOG
+#endif
 
 vec4 geofx_fragment(vec4 colour, vec4 map);
 

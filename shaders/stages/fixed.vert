@@ -10,7 +10,19 @@
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE, GEOFX_FOG, GEOFX_POINT_SIZE)
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_TEXGEN_0, GEOFX_TEXGEN_1, GEOFX_TEXGEN_2, GEOFX_TEXGEN_3)
-#pragma import_defines(GEOFX_MAP)
+#pragma import_defines(GEOFX_MAP, GEOFX_PAINTED)
+
+// What is painted anew needs no light and no textures.
+#ifdef GEOFX_PAINTED
+#undef GEOFX_LIGHTS
+#undef GEOFX_COLOR_SUM
+#undef GEOFX_TEXTURE_0
+#undef GEOFX_TEXTURE_1
+#undef GEOFX_TEXTURE_2
+#undef GEOFX_TEXTURE_3
+#undef GEOFX_MAP
+#undef GEOFX_FOG
+#endif
 
 #if defined(GEOFX_TEXGEN_0) || defined(GEOFX_TEXGEN_1) || defined(GEOFX_TEXGEN_2) || defined(GEOFX_TEXGEN_3)
 #define GEOFX_GENERATES

@@ -4,7 +4,7 @@
 // The painting of a panorama map's ground, after Sections 3.2, 3.4 and 3.5 of Brown and Samavati (2017). SLOT_ stands for the
 // effect's prefix.
 #pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR)
-#include "lib/painting.glsl"
+#include "stages/panorama.water.glsl"
 
 uniform sampler2D SLOT_cover;
 uniform sampler2D SLOT_palette;
@@ -26,9 +26,6 @@ in vec3 SLOT_place;
 in vec4 SLOT_facing;
 in vec4 SLOT_texels;
 
-const vec3 SLOT_deep = vec3(0.055, 0.29, 0.56);
-const vec3 SLOT_air = vec3(0.47, 0.62, 0.86);
-
 vec3 SLOT_shade(float light, int row)
 {
     return texture(SLOT_palette, geofx_palettePlace(light, row)).rgb;
@@ -47,33 +44,15 @@ vec3 SLOT_ground(geofx_Classes classes, float light)
     return colour;
 }
 
-// The water's colour at a distance from the shore, with what it reflects.
 vec3 SLOT_wet(float shore, vec2 picture, float far)
 {
-    vec3 own = geofx_waterColour(SLOT_deep, geofx_waterDepth(max(shore, 0.0) + 0.06 * SLOT_water.x, SLOT_water.x));
 #ifdef GEOFX_MIRROR
-    return own;
+    return geofx_waterBody(max(shore, 0.0), SLOT_water.x);
 #else
-    // Ripples: the brush's slopes, moved by themselves, so that nothing repeats; calmer towards the horizon.
-    vec2 place = SLOT_texels.zw * vec2(1.7, 1.7);
-    vec2 first = texture(SLOT_brush, place + SLOT_clock.x * vec2(0.006, 0.011)).rg - 0.5;
-    vec2 ripple = texture(SLOT_brush, place.yx + 0.06 * first - SLOT_clock.x * vec2(0.009, 0.004)).rg - 0.5;
-    float calm = SLOT_water.z * mix(1.0, 0.25, far);
     // The mirror stands at height 0; a lake's is as much higher as twice the lake is.
-    vec2 at = picture + vec2(0.006, 0.02) * calm * ripple - vec2(0.0, SLOT_scale.z * SLOT_place.z);
-    vec3 seen = vec3(0.0);
-    float weights = 0.0;
-    for (int i = 0; i < 4; ++i)
-    {
-        // A wide blur, wider along the mirror's depth, and what stands before the water is not in it.
-        vec2 offset = vec2(0.0035 * (float(i & 1) - 0.5), 0.012 * (float(i) / 3.0 - 0.5)) * (0.4 + 0.6 * (1.0 - far));
-        vec4 texel = texture(SLOT_mirror, clamp(at + offset, vec2(0.002), vec2(0.998)));
-        float weight = texel.a + 0.01 >= SLOT_place.y / SLOT_curve.z ? 1.0 : 0.02;
-        seen += weight * texel.rgb;
-        weights += weight;
-    }
-    float strength = SLOT_water.y * (0.75 + ripple.y);
-    return geofx_waterMix(own, seen / weights, clamp(strength, 0.0, 1.0));
+    geofx_WaterPlace place = geofx_WaterPlace(max(shore, 0.0), picture, SLOT_texels.zw, SLOT_scale.z * SLOT_place.z,
+                                              SLOT_place.y / SLOT_curve.z, far);
+    return geofx_water(place, SLOT_water, SLOT_clock.x, SLOT_brush, SLOT_mirror);
 #endif
 }
 
@@ -110,7 +89,7 @@ vec4 SLOT_colour(vec4 colour)
     if (wet < 1.0)
         painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, SLOT_facing.w, brush.z, style), light);
     if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far), wet);
-    painted = geofx_atmosphere(painted, SLOT_air, geofx_airAmount(far, SLOT_hand.z));
+    painted = geofx_atmosphere(painted, geofx_air, geofx_airAmount(far, SLOT_hand.z));
 #ifdef GEOFX_MIRROR
     // What is below the water is not reflected, nor is water.
     if (SLOT_place.z <= 0.0 || wet > 0.5) discard;

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The water of panorama maps, after Section 3.4 of Brown and Samavati (2017): on the ground, and where there is none.
+#include "lib/painting.glsl"
+
+const vec3 geofx_deepWater = vec3(0.045, 0.25, 0.52);
+const vec3 geofx_shallowWater = vec3(0.12, 0.62, 0.70);
+const vec3 geofx_air = vec3(0.47, 0.62, 0.86);
+
+// A place of the water.
+struct geofx_WaterPlace
+{
+    float shore;  // metres to the shore
+    vec2 picture; // 0 to 1
+    vec2 brush;   // in the brush's picture
+    float lift;   // how much higher its reflection lies than that of water at height 0, in the picture
+    float s;      // from the base, over the end of what shows
+    float far;    // 0 at the base, 1 at the horizon
+};
+
+// The water's own colour by its depth.
+vec3 geofx_waterBody(float shore, float deepShore)
+{
+    float t = geofx_waterDepth(shore + 0.1 * deepShore, deepShore);
+    return geofx_waterColour(mix(geofx_shallowWater, geofx_deepWater, t), t);
+}
+
+// The same with what it reflects. `water`: where it is deep, the reflection's strength, the ripples'. The mirror's alpha is s of
+// what it shows, 1 for the sky.
+vec3 geofx_water(geofx_WaterPlace place, vec4 water, float seconds, sampler2D brush, sampler2D mirror)
+{
+    // Ripples: the brush's slopes, moved by themselves, so that nothing repeats; calmer towards the horizon.
+    vec2 first = texture(brush, 1.3 * place.brush + seconds * vec2(0.006, 0.011)).rg - 0.5;
+    vec2 ripple = texture(brush, 0.9 * place.brush + 0.08 * first - seconds * vec2(0.009, 0.004)).rg - 0.5;
+    float calm = water.z * mix(1.0, 0.3, place.far);
+    vec2 at = place.picture + calm * vec2(0.006, 0.016) * ripple - vec2(0.0, place.lift);
+    vec3 seen = vec3(0.0);
+    float weights = 0.0;
+    for (int i = 0; i < 5; ++i)
+    {
+        // A soft brush, drawn downwards; what stands before the water is not in it.
+        float step = float(i) - 2.0;
+        vec2 offset = vec2(0.0025 * (step * step - 2.0), 0.007 * step) * (1.0 - 0.4 * place.far);
+        vec4 texel = texture(mirror, clamp(at + offset, vec2(0.002), vec2(0.998)));
+        float weight = (3.0 - abs(step)) * (texel.a + 0.01 >= place.s ? 1.0 : 0.02);
+        seen += weight * texel.rgb;
+        weights += weight;
+    }
+    // The flatter the view, the more of the sky.
+    float grazing = place.far * place.far;
+    float strength = clamp(water.y * (1.0 + 0.7 * calm * ripple.y + 0.8 * grazing * grazing), 0.0, 1.0);
+    // White clouds have a hue of nearly nothing; in water they are blue.
+    vec3 cool = min(seen / weights * vec3(0.80, 0.95, 1.15), vec3(1.0));
+    return geofx_waterMix(geofx_waterBody(place.shore, water.x), cool, strength);
+}
