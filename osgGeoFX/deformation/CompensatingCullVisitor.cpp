@@ -634,6 +634,7 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         if (look) pushStateSet(look);
         CullVisitor::apply(drawable);
         if (look) popStateSet();
+        drawCompanions(drawable, 0.0);
         _mode = former;
         return;
     }
@@ -659,8 +660,21 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         addDrawableAndDepth(&drawable, getModelViewMatrix(), static_cast<float>(depth));
         if (state) popStateSet();
         if (look) popStateSet();
+        drawCompanions(drawable, depth);
     }
     _mode = former;
+}
+
+void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, double depth)
+{
+    for (DrawableCompanion* each : _task.companions)
+    {
+        osg::Drawable* companion = each->companion(drawable, *getModelViewMatrix());
+        if (!companion) continue;
+        pushStateSet(each->state());
+        addDrawableAndDepth(companion, getModelViewMatrix(), static_cast<float>(depth));
+        popStateSet();
+    }
 }
 
 void CompensatingCullVisitor::applyInPass(osg::Drawable& drawable)

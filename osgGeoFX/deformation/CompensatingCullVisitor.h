@@ -38,6 +38,19 @@ protected:
     ~PassFilter() = default;
 };
 
+/// What an effect draws together with a drawable of the scene, wherever that is in sight.
+class DrawableCompanion
+{
+public:
+    /// Null where there is nothing to be drawn with it.
+    virtual osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) = 0;
+    /// With which it is drawn, below the effects' uniforms; the drawable's own state does not count.
+    virtual osg::StateSet* state() = 0;
+
+protected:
+    ~DrawableCompanion() = default;
+};
+
 /** Culls what the GPU is going to deform.
 
     One stands in for a cull visitor of OSG below an EffectScene: it shares the other one's state graph, render stage
@@ -66,6 +79,7 @@ public:
         bool compensate = true;
         bool debugBounds = false;
         double tileError = 0.0; ///< Ground::tileError
+        std::vector<DrawableCompanion*> companions;
         /// Of a pass that draws parts of the scene again, else null: what says which; then the planes of the picture cull
         /// nothing, near and far stay as they are, and cameras below are left out.
         PassFilter* filter = nullptr;
@@ -153,6 +167,7 @@ private:
     template<typename NodeType>
     void passUntouched(NodeType& node);
     void applyInPass(osg::Drawable& drawable);
+    void drawCompanions(osg::Drawable& drawable, double depth);
     void showBounds(const EyeBox& box);
     void drawBounds();
 

@@ -498,6 +498,12 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         {
             task.program = _drawing->programFor(_effects);
             task.state = &state;
+            forPasses(outer, view, *task.chain, state, task.mapUnit,
+                      [&](PassEffect& effect, const ScenePass& pass)
+                      {
+                          DrawableCompanion* companion = effect.companion(pass);
+                          if (companion) task.companions.push_back(companion);
+                      });
         }
         task.debugBounds = _debugBounds;
         task.tileError = view.ground.tileError;
@@ -508,12 +514,17 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     {
         osg::Group::traverse(outer);
     }
-    if (passes) drawPasses(outer, view, *task.chain, state, task.mapUnit);
+    if (passes)
+    {
+        forPasses(outer, view, *task.chain, state, task.mapUnit,
+                  [](PassEffect& effect, const ScenePass& pass) { effect.cull(pass); });
+    }
     return true;
 }
 
-void EffectScene::drawPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view,
-                             const DeformationChain& chain, osg::StateSet& state, int mapUnit)
+void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view,
+                            const DeformationChain& chain, osg::StateSet& state, int mapUnit,
+                            const std::function<void(PassEffect&, const ScenePass&)>& action)
 {
     class Pass : public ScenePass
     {
@@ -541,9 +552,9 @@ void EffectScene::drawPasses(osgUtil::CullVisitor& outer, const ViewGeometry& vi
     for (std::size_t i = 0; i < _effects.size(); ++i)
     {
         PassEffect* effect = _effects[i]->asPassEffect();
-        if (!effect || !effect->getEnabled()) continue;
+        if (!effect || !_effects[i]->getEnabled()) continue;
         const std::string prefix = EffectProgram::prefix(i);
-        effect->cull(Pass(*this, outer, view, chain, state, prefix, mapUnit));
+        action(*effect, Pass(*this, outer, view, chain, state, prefix, mapUnit));
     }
 }
 

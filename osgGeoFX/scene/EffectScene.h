@@ -12,11 +12,15 @@
 #include <osg/Shader>
 #include <osgUtil/CullVisitor>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace osgGeoFX
 {
+
+class PassEffect;
+class ScenePass;
 
 /** The group that a program puts above its terrain to have the kit's effects.
 
@@ -103,8 +107,9 @@ protected:
 private:
     struct Drawing;
     bool cull(osgUtil::CullVisitor& outer);
-    void drawPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view, const DeformationChain& chain,
-                    osg::StateSet& state, int mapUnit);
+    void forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view, const DeformationChain& chain,
+                   osg::StateSet& state, int mapUnit,
+                   const std::function<void(PassEffect&, const ScenePass&)>& action);
 
     std::vector<osg::ref_ptr<Effect>> _effects;
     bool _compensation = true;

@@ -22,6 +22,7 @@ namespace osgGeoFX
 {
 
 class DeformationChain;
+class DrawableCompanion;
 
 /** The shader files of an effect that draws the scene again. In all of them `SLOT_` stands for the effect's prefix.
 
@@ -83,6 +84,9 @@ public:
     /** Adds its stages to the camera's. Called after the scene has been culled. Several cameras' threads may call it at
         once. */
     virtual void cull(const ScenePass& pass) = 0;
+    /// What is drawn with the scene's drawables as they are culled; null, the default, for nothing. Called before the scene is culled,
+    /// by that camera's thread, and to be kept until the same cull visitor asks again.
+    virtual DrawableCompanion* companion(const ScenePass&) { return nullptr; }
 
 protected:
     PassEffect() = default;

@@ -197,6 +197,12 @@ GEOFX_INLINE Rgb geofx_waterMix(Rgb own, Rgb reflection, Number strength)
 
 // --- Air (Section 3.5) ---
 
+// The air's colour.
+GEOFX_INLINE Rgb geofx_airColour()
+{
+    return Rgb(Number(0.47), Number(0.62), Number(0.86));
+}
+
 // How much of the air's colour is mixed in: `s` runs from 0 at the painting's base to 1 at the horizon, `strength` (0 to 1) is
 // the amount there. Half-way it is an eighth of that.
 GEOFX_INLINE Number geofx_airAmount(Number s, Number strength)

@@ -89,7 +89,7 @@ vec4 SLOT_colour(vec4 colour)
     if (wet < 1.0)
         painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, SLOT_facing.w, brush.z, style), light);
     if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far), wet);
-    painted = geofx_atmosphere(painted, geofx_air, geofx_airAmount(far, SLOT_hand.z));
+    painted = geofx_atmosphere(painted, geofx_airColour(), geofx_airAmount(far, SLOT_hand.z));
 #ifdef GEOFX_MIRROR
     // What is below the water is not reflected, nor is water.
     if (SLOT_place.z <= 0.0 || wet > 0.5) discard;

@@ -55,7 +55,7 @@ vec3 sea(float horizonDrop)
                                                  s / geofx_skyCurve.w, far);
         colour = geofx_water(here, geofx_skyWater, geofx_skyClock.x, geofx_skyBrush, geofx_skyMirror);
     }
-    return geofx_atmosphere(colour, geofx_air, geofx_airAmount(far, geofx_skyClock.y));
+    return geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(far, geofx_skyClock.y));
 }
 
 void main()

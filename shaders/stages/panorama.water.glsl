@@ -6,7 +6,6 @@
 
 const vec3 geofx_deepWater = vec3(0.045, 0.25, 0.52);
 const vec3 geofx_shallowWater = vec3(0.12, 0.62, 0.70);
-const vec3 geofx_air = vec3(0.47, 0.62, 0.86);
 
 // A place of the water.
 struct geofx_WaterPlace
