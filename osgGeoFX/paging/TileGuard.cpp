@@ -12,6 +12,7 @@
 #include <osgDB/Registry>
 #include <osgDB/fstream>
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
@@ -168,6 +169,8 @@ private:
     TileGuard* _guard;
 };
 
+TileListener::~TileListener() = default;
+
 TileGuard::TileGuard() : osg::Referenced(true) {}
 
 TileGuard::~TileGuard() = default;
@@ -187,6 +190,40 @@ std::string TileGuard::faultOf(const std::string& path)
     if (path.empty()) return "it is missing";
     if (osgDB::getLowerCaseFileExtension(path) != "osgb") return {};
     return BinaryHeader(path).fault();
+}
+
+void TileGuard::addListener(TileListener* listener)
+{
+    if (!listener) return;
+    removeListener(listener);
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _listeners.emplace_back(listener);
+}
+
+void TileGuard::removeListener(TileListener* listener)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto gone = [&](const osg::observer_ptr<TileListener>& each)
+    {
+        return !each.valid() || each == listener;
+    };
+    _listeners.erase(std::remove_if(_listeners.begin(), _listeners.end(), gone), _listeners.end());
+}
+
+void TileGuard::tell(osg::Node& tile)
+{
+    // Not under the lock: listeners take their time.
+    std::vector<osg::ref_ptr<TileListener>> listeners;
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto& each : _listeners)
+        {
+            osg::ref_ptr<TileListener> listener;
+            if (each.lock(listener)) listeners.push_back(listener);
+        }
+    }
+    for (const auto& listener : listeners)
+        listener->tileRead(tile);
 }
 
 TileGuard::Counts TileGuard::counts() const
@@ -250,6 +287,7 @@ ReadResult TileGuard::read(const std::string& file, const osgDB::Options* option
     {
         Installer installer(this);
         result.getNode()->accept(installer);
+        tell(*result.getNode());
     }
     std::error_code ignored;
     const std::uintmax_t size = local ? std::filesystem::file_size(path, ignored) : 0;

@@ -15,9 +15,23 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace osgGeoFX
 {
+
+/// Is told of the tiles that a pager brings; TileGuard::addListener().
+class OSGGEOFX_EXPORT TileListener : public osg::Referenced
+{
+public:
+    /// A tile was read. Called on the thread that reads, before any other sees the tile; several pagers' threads may call
+    /// it at once.
+    virtual void tileRead(osg::Node& tile) = 0;
+
+protected:
+    TileListener() : osg::Referenced(true) {}
+    ~TileListener() override;
+};
 
 /** Makes a missing or damaged tile of a paged scene harmless: its parent stays on screen, one warning names the
     file and the reason, and the pager does not ask for it again and again.
@@ -50,6 +64,11 @@ public:
 
     TileGuard();
 
+    /// Tells a listener of each tile that is read from now on. It is held weakly: who adds it keeps it. Null and one that is there
+    /// already are ignored. Tiles that OSG takes from its cache of objects, and those that failed, are not told of.
+    void addListener(TileListener* listener);
+    void removeListener(TileListener* listener);
+
     /// Totals since the guard was made.
     Counts counts() const;
     std::set<std::string> failedFiles() const;
@@ -61,6 +80,7 @@ private:
     class Callback;
     class Installer;
 
+    void tell(osg::Node& tile);
     osg::ref_ptr<osgDB::Options> guardedOptions(osgDB::Options* original);
     osgDB::ReaderWriter::ReadResult read(const std::string& file, const osgDB::Options* options,
                                          osgDB::ReadFileCallback* previous);
@@ -70,6 +90,7 @@ private:
     mutable std::mutex _mutex;
     std::set<std::string> _failed;
     Counts _counts;
+    std::vector<osg::observer_ptr<TileListener>> _listeners;
     /// From original options to guarded ones, which hold the guard, so it must not hold them.
     std::map<osg::ref_ptr<osgDB::Options>, osg::observer_ptr<osgDB::Options>> _options;
 };
