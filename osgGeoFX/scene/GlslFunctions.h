@@ -28,6 +28,7 @@ using glm::cos;
 using glm::dot;
 using glm::exp;
 using glm::floor;
+using glm::fract;
 using glm::length;
 using glm::log2;
 using glm::max;
@@ -64,6 +65,7 @@ using Rgba = glm::dvec4;
 #include <shaders/lib/mapping.glsl>
 
 #include <shaders/lib/cover.glsl>
+#include <shaders/lib/strokes.glsl>
 
 #include <shaders/lib/painting.glsl>
 #include <shaders/lib/panorama.glsl>
@@ -95,6 +97,7 @@ using Rgba = glm::vec4;
 #include <shaders/lib/mapping.glsl>
 
 #include <shaders/lib/cover.glsl>
+#include <shaders/lib/strokes.glsl>
 
 #include <shaders/lib/painting.glsl>
 #include <shaders/lib/panorama.glsl>

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Brush strokes of panorama maps, after Section 3.3 of Brown and Samavati (2017): trees, cliffs and houses.
+//
+// Strokes stand on a lattice that covers the ground. Those of level 0, 1/2, 1, 3/2 ... and all higher ones stand at a spacing
+// of 2^level steps, and each half level has twice as many strokes as are above it. `wanted` is the level, with
+// fractions, whose spacing looks right on the screen.
+#ifndef __cplusplus
+#include "lib/types.glsl"
+#endif
+
+const int GEOFX_STROKE_TREE = 0;
+const int GEOFX_STROKE_CLIFF = 1;
+const int GEOFX_STROKE_HOUSE = 2;
+
+// Half of the levels that a stroke takes to go.
+const Number GEOFX_STROKE_WINDOW = Number(0.06);
+
+// The level whose spacing is `pixels` on the screen, where a metre of the ground has `pixelsPerMetre`.
+GEOFX_INLINE Number geofx_strokeWanted(Number pixels, Length step, Number pixelsPerMetre)
+{
+    return log2(max(pixels, Number(1e-6)) / max(step * pixelsPerMetre, Number(1e-12)));
+}
+
+// The wanted level at which a stroke goes, from its own level and its threshold, 0 to 1: the strokes of a half level
+// go one by one, so that the density falls as the square of the wanted spacing grows, and all are gone when the next ones
+// begin to.
+GEOFX_INLINE Number geofx_strokeEnd(Number level, Number threshold)
+{
+    return level + Number(0.5) - Number(0.5) * log2(1 + threshold);
+}
+
+// How large a stroke is, 0 to 1; it scales out and does not pop.
+GEOFX_INLINE Number geofx_strokeScale(Number level, Number threshold, Number wanted)
+{
+    Number left = (geofx_strokeEnd(level, threshold) - wanted) / (2 * GEOFX_STROKE_WINDOW) + Number(0.5);
+    Number t = clamp(left, Number(0), Number(1));
+    return t * t * (3 - 2 * t);
+}
+
+// How much larger strokes are where even the finest ones stand too far apart: the forest keeps its look a while.
+GEOFX_INLINE Number geofx_strokeGrowth(Number wanted)
+{
+    return clamp(exp(Number(-0.6931471805599453) * wanted), Number(1), Number(3));
+}
+
+// One of several random numbers, 0 to 1, from the seed of a stroke, which has 15 bits.
+GEOFX_INLINE Number geofx_strokeRandom(Number seed, Number which)
+{
+    return fract(seed * (Number(61) + Number(38.6) * which) + Number(0.618034) * which);
+}
+
+// The variation of one stroke.
+struct geofx_StrokeShape
+{
+    Vector2 size; // half its width and its height, for strokes that are 1 wide on average
+    Angle lean;   // clockwise from upright or from the fall line
+    Number tone;  // what is added to the light, which runs from -1 to 1
+};
+
+GEOFX_INLINE geofx_StrokeShape geofx_strokeShape(int kind, Number seed)
+{
+    Number size = Number(0.72) + Number(0.56) * geofx_strokeRandom(seed, Number(1));
+    Number slim = geofx_strokeRandom(seed, Number(2));
+    Number turn = geofx_strokeRandom(seed, Number(3)) - Number(0.5);
+    geofx_StrokeShape shape;
+    shape.tone = Number(0.44) * (geofx_strokeRandom(seed, Number(4)) - Number(0.5));
+    if (kind == GEOFX_STROKE_CLIFF)
+    {
+        shape.size = Vector2(Number(0.24) + Number(0.12) * slim, size * (Number(0.8) + Number(0.6) * slim));
+        shape.lean = Number(0.3) * turn;
+        shape.tone = Number(1.4) * shape.tone;
+    }
+    else if (kind == GEOFX_STROKE_HOUSE)
+    {
+        shape.size = Vector2(size * (Number(0.4) + Number(0.12) * slim), size * Number(0.42));
+        shape.lean = Number(0.05) * turn;
+    }
+    else
+    {
+        shape.size = Vector2(size * (Number(0.46) - Number(0.08) * slim), size * (Number(0.54) + Number(0.14) * slim));
+        shape.lean = Number(0.22) * turn + Number(0.06);
+    }
+    return shape;
+}
+
+// The bristles of the brush, 0 to 1, across the stroke.
+GEOFX_INLINE Number geofx_strokeBristle(Number across, Number seed)
+{
+    Number phase = Number(40) * seed;
+    return Number(0.5) + Number(0.3) * sin(Number(9) * across + phase) + Number(0.2) * sin(Number(23) * across - 3 * phase);
+}
+
+// Where a point of a stroke lies, x and y -1 to 1 over its size: positive within it and 0 on its edge.
+GEOFX_INLINE Number geofx_strokeInside(int kind, Vector2 point, Number seed)
+{
+    Number x = point.x;
+    Number y = point.y;
+    if (kind == GEOFX_STROKE_HOUSE)
+    {
+        Number roof = Number(0.95) - Number(0.6) * max(y, Number(0));
+        Number sides = (y > 0 ? roof : Number(0.74)) - abs(x);
+        return min(sides, min(Number(0.85) - y, y + Number(0.85)));
+    }
+    Number bristle = geofx_strokeBristle(x, seed);
+    if (kind == GEOFX_STROKE_CLIFF)
+    {
+        // Set down hard at the top, and running dry downwards.
+        Number width = (1 - y * y) * (Number(0.75) + Number(0.25) * y);
+        return width - abs(x + Number(0.2) * sin(Number(3) * y + Number(40) * seed)) -
+               bristle * Number(0.5) * clamp(-y, Number(0), Number(1));
+    }
+    // A drop, its foot broader than its top, with a ragged edge.
+    x = x * (Number(1.04) + Number(0.24) * y);
+    Number radius = sqrt(x * x + y * y);
+    Number scale = 1 / max(radius, Number(1e-3));
+    Number wobble = Number(0.07) * sin(Number(4.7) * x * scale + Number(31) * seed) +
+                    Number(0.05) * sin(Number(7.3) * y * scale - Number(53) * seed);
+    Number dry = bristle * Number(0.3) * clamp(-y - Number(0.25), Number(0), Number(1));
+    return Number(0.9) + wobble - dry - radius;
+}
+
+// How much of the light side a point of a stroke shows, 0 to 1. `light` is the direction to the light on the screen.
+GEOFX_INLINE Number geofx_strokeLit(Vector2 point, Vector2 light, Number seed)
+{
+    Number bristle = geofx_strokeBristle(point.x - Number(0.3) * point.y, seed) - Number(0.5);
+    // The foot is dark, so that strokes stand out from those behind them.
+    Number t = clamp(Number(0.5) + Number(0.6) * dot(point, light) + Number(0.35) * point.y + Number(0.35) * bristle,
+                     Number(0), Number(1));
+    return t * t * (3 - 2 * t);
+}
