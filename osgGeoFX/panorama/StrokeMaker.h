@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/paging/TileGuard.h>
+#include <osgGeoFX/panorama/StrokeParameters.h>
+#include <osgGeoFX/panorama/TileStrokes.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/Geometry>
+#include <osg/Matrixd>
+
+#include <mutex>
+
+namespace osgGeoFX
+{
+
+/** Gives the tiles of a terrain their brush strokes; Section 3.3 of Brown and Samavati (2017).
+
+    As a listener of a TileGuard it makes them on the pager's thread. Tiles that came otherwise, or before the parameters
+    changed, get theirs when strokes() is asked for them. They are kept with the tile's geometry (TileStrokes) and go with
+    it; a geometry that stands in several places has the strokes of the first one.
+
+    A place has the same strokes in every tile and after every reload, as far as the tiles agree on what covers it; coarser tiles
+    have those of coarser levels only. Thread-safe. */
+class OSGGEOFX_EXPORT StrokeMaker : public TileListener
+{
+public:
+    /// `ellipsoid` is null for projected terrain.
+    explicit StrokeMaker(const osg::EllipsoidModel* ellipsoid);
+
+    void setParameters(const StrokeParameters& parameters);
+    StrokeParameters getParameters() const;
+    const osg::EllipsoidModel* getEllipsoid() const { return _ellipsoid.get(); }
+
+    /// Makes the strokes of all geometries at and below a node that have none yet or outdated ones. `toWorld` is the way from the node's parent.
+    /// No other thread may use the nodes.
+    void furnish(osg::Node& tile, const osg::Matrixd& toWorld = osg::Matrixd());
+    void tileRead(osg::Node& tile) override { furnish(tile); }
+
+    /// The strokes of one geometry, made where it has none yet or outdated ones. Null where nothing is to be drawn. `toWorld` is the
+    /// way from the geometry's frame. Threads that cull may ask for the same geometry at once.
+    osg::ref_ptr<osg::Geometry> strokes(osg::Geometry& terrain, const osg::Matrixd& toWorld) const;
+
+protected:
+    ~StrokeMaker() override;
+
+private:
+    class Furnisher;
+
+    const osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
+    mutable std::mutex _mutex; ///< of the parameters
+    StrokeParameters _parameters;
+};
+
+} // namespace osgGeoFX

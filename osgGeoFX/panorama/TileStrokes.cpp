@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/panorama/TileStrokes.h>
+
+#include <osgGeoFX/panorama/CoverSampler.h>
+#include <osgGeoFX/panorama/StrokeLattice.h>
+#include <osgGeoFX/panorama/StrokeScan.h>
+#include <osgGeoFX/scene/GlslFunctions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr double whole = 32767.0; ///< 1 as a short
+
+GLshort toShort(double share)
+{
+    return static_cast<GLshort>(std::lround(std::clamp(share, -1.0, 1.0) * whole));
+}
+
+osg::Vec3s toShorts(const osg::Vec3d& direction)
+{
+    return {toShort(direction.x()), toShort(direction.y()), toShort(direction.z())};
+}
+
+/// A vertex' value from an array of one of the types in use; nothing from others.
+std::optional<osg::Vec3d> vectorAt(const osg::Array* array, unsigned int index)
+{
+    if (!array || index >= array->getNumElements()) return {};
+    switch (array->getType())
+    {
+    case osg::Array::Vec3ArrayType:
+        return osg::Vec3d((*static_cast<const osg::Vec3Array*>(array))[index]);
+    case osg::Array::Vec3sArrayType:
+    {
+        const osg::Vec3s& each = (*static_cast<const osg::Vec3sArray*>(array))[index];
+        return osg::Vec3d(each.x(), each.y(), each.z()) / whole;
+    }
+    case osg::Array::Vec3bArrayType:
+    {
+        const osg::Vec3b& each = (*static_cast<const osg::Vec3bArray*>(array))[index];
+        return osg::Vec3d(each.x(), each.y(), each.z()) / 127.0;
+    }
+    case osg::Array::Vec2ArrayType:
+    {
+        const osg::Vec2& each = (*static_cast<const osg::Vec2Array*>(array))[index];
+        return osg::Vec3d(each.x(), each.y(), 0.0);
+    }
+    default:
+        return {};
+    }
+}
+
+/// Makes strokes of the spots on a mesh.
+class Painter
+{
+public:
+    Painter(const osg::Geometry& mesh, const StrokeScan& scan, const StrokeLattice& lattice,
+            const StrokeParameters& parameters)
+        : _mesh(mesh), _scan(scan), _lattice(lattice), _parameters(parameters), _cover(mesh)
+    {
+    }
+
+    void paint(const StrokeSpot& spot);
+    osg::ref_ptr<osg::Geometry> points() const;
+
+private:
+    std::optional<osg::Vec3d> between(const osg::Array* array, const StrokeSpot& spot) const;
+    osg::Vec3d normalAt(const StrokeSpot& spot) const;
+    glsl::geofx_Cover coverAt(const StrokeSpot& spot, double steepness) const;
+    std::optional<TileStrokes::Kind> kindAt(const StrokeSpot& spot, double steepness) const;
+
+    const osg::Geometry& _mesh;
+    const StrokeScan& _scan;
+    const StrokeLattice& _lattice;
+    const StrokeParameters& _parameters;
+    const CoverSampler _cover;
+    osg::ref_ptr<osg::Vec3Array> _vertices = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec3sArray> _normals = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec4sArray> _traits = new osg::Vec4sArray(osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec3sArray> _downhill = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
+    bool _cliffs = false;
+};
+
+std::optional<osg::Vec3d> Painter::between(const osg::Array* array, const StrokeSpot& spot) const
+{
+    osg::Vec3d sum;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const std::optional<osg::Vec3d> value = vectorAt(array, spot.corners[i]);
+        if (!value) return {};
+        sum += *value * spot.weights[i];
+    }
+    return sum;
+}
+
+osg::Vec3d Painter::normalAt(const StrokeSpot& spot) const
+{
+    std::optional<osg::Vec3d> normal = between(_mesh.getNormalArray(), spot);
+    if (!normal || !(normal->length2() > 0.0))
+    {
+        const osg::Array* vertices = _mesh.getVertexArray();
+        const osg::Vec3d a = *vectorAt(vertices, spot.corners[0]);
+        normal = (*vectorAt(vertices, spot.corners[1]) - a) ^ (*vectorAt(vertices, spot.corners[2]) - a);
+    }
+    normal->normalize();
+    return *normal;
+}
+
+glsl::geofx_Cover Painter::coverAt(const StrokeSpot& spot, double steepness) const
+{
+    if (_cover.valid())
+    {
+        if (const std::optional<osg::Vec3d> at = between(_mesh.getTexCoordArray(0), spot))
+        {
+            const glsl::Rgba texel = _cover.at(at->x(), at->y());
+            if (glsl::geofx_coverKnown(texel)) return glsl::geofx_coverOf(texel);
+        }
+    }
+    double height = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+        height += spot.weights[i] * _scan.height(spot.corners[i]);
+    return glsl::geofx_likelyCover(height, steepness, _parameters.treeLine);
+}
+
+std::optional<TileStrokes::Kind> Painter::kindAt(const StrokeSpot& spot, double steepness) const
+{
+    const glsl::geofx_Cover cover = coverAt(spot, steepness);
+    if (cover.shore > 0.0) return {};
+    const auto chance = [&](StrokeChance which)
+    {
+        return _lattice.chance(spot.column, spot.row, which);
+    };
+    // The steeper, the more of the ground is rock.
+    const double cliff = std::max(_parameters.cliffSlope, 1e-3);
+    if (chance(StrokeChance::Cliff) < std::clamp(2.0 * (steepness - cliff) / cliff, 0.0, 1.0))
+        return TileStrokes::Cliff;
+    const double drawn = chance(StrokeChance::Cover);
+    if (drawn < cover.trees) return TileStrokes::Tree;
+    if (drawn < cover.trees + cover.town) return TileStrokes::House;
+    return {};
+}
+
+void Painter::paint(const StrokeSpot& spot)
+{
+    const osg::Vec3d up = _scan.up(spot.corners[0]);
+    const osg::Vec3d normal = normalAt(spot);
+    const double cosine = std::clamp(normal * up, 0.01, 1.0);
+    const std::optional<TileStrokes::Kind> kind = kindAt(spot, std::sqrt(1.0 - cosine * cosine) / cosine);
+    if (!kind) return;
+    osg::Vec3d downhill;
+    if (*kind == TileStrokes::Cliff)
+    {
+        downhill = normal * (normal * up) - up;
+        downhill.normalize();
+        _cliffs = true;
+    }
+    _vertices->push_back(osg::Vec3(*between(_mesh.getVertexArray(), spot)));
+    _normals->push_back(toShorts(normal));
+    _downhill->push_back(toShorts(downhill));
+    _traits->push_back(osg::Vec4s(toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Seed)),
+                                  static_cast<GLshort>(spot.halfLevel), static_cast<GLshort>(*kind),
+                                  toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Threshold))));
+}
+
+osg::ref_ptr<osg::Geometry> Painter::points() const
+{
+    if (_vertices->empty()) return nullptr;
+    _vertices->trim();
+    _normals->trim();
+    _traits->trim();
+    _downhill->trim();
+    _normals->setNormalize(true);
+    osg::ref_ptr<osg::Geometry> points = new osg::Geometry;
+    points->setName("strokes");
+    points->setUseDisplayList(false);
+    points->setUseVertexBufferObjects(true);
+    points->setVertexArray(_vertices);
+    points->setNormalArray(_normals);
+    points->setTexCoordArray(0, _traits);
+    // In a buffer of its own: Mesa frowns on more than three arrays that are written into one.
+    _downhill->setVertexBufferObject(new osg::VertexBufferObject);
+    if (_cliffs) points->setTexCoordArray(1, _downhill);
+    points->addPrimitiveSet(new osg::DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(_vertices->size())));
+    points->getBound(); // here, and not on two threads that draw
+    return points;
+}
+
+} // namespace
+
+TileStrokes::TileStrokes(const StrokeParameters& parameters, const osg::EllipsoidModel* ellipsoid)
+    : _parameters(parameters)
+{
+    setName("geofx.strokes");
+    if (!ellipsoid) return;
+    _equator = ellipsoid->getRadiusEquator();
+    _polar = ellipsoid->getRadiusPolar();
+}
+
+TileStrokes::~TileStrokes() = default;
+
+osg::ref_ptr<TileStrokes> TileStrokes::make(const osg::Geometry& terrain, const osg::Matrixd& toWorld,
+                                            const StrokeParameters& parameters,
+                                            const osg::EllipsoidModel* ellipsoid)
+{
+    osg::ref_ptr<TileStrokes> strokes = new TileStrokes(parameters, ellipsoid);
+    const StrokeLattice lattice(parameters, ellipsoid);
+    const StrokeScan scan(lattice, terrain, toWorld, parameters.strokesAlongTile);
+    Painter painter(terrain, scan, lattice, parameters);
+    for (const StrokeSpot& spot : scan.spots())
+        painter.paint(spot);
+    strokes->_finest = scan.finest();
+    strokes->_points = painter.points();
+    return strokes;
+}
+
+bool TileStrokes::madeWith(const StrokeParameters& parameters, const osg::EllipsoidModel* ellipsoid) const
+{
+    const double equator = ellipsoid ? ellipsoid->getRadiusEquator() : 0.0;
+    const double polar = ellipsoid ? ellipsoid->getRadiusPolar() : 0.0;
+    return parameters == _parameters && equator == _equator && polar == _polar;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/panorama/StrokeParameters.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/Geometry>
+#include <osg/ValueObject>
+
+namespace osgGeoFX
+{
+
+/** The brush strokes of a tile's geometry, among the user objects of that geometry: points that
+    shaders/stages/panorama.strokes.* draw. Immutable once made.
+
+    The points' arrays, in the frame of the tile's geometry:
+    - vertices (vec3): where strokes stand;
+    - normals (3 shorts, normalised): of the ground;
+    - texture coordinates 0 (4 shorts): seed, 0…32767; level, in halves; kind, 0 tree, 1 cliff, 2 house; threshold, 0…32767;
+    - texture coordinates 1 (3 shorts), where there are cliffs: the direction downhill along the ground, of any length.
+
+    For copies and files it is an empty string: they get strokes of their own when they are drawn. */
+class OSGGEOFX_EXPORT TileStrokes : public osg::StringValueObject
+{
+public:
+    enum Kind
+    {
+        Tree,
+        Cliff,
+        House
+    };
+
+    /// Those of a geometry, from `maker`'s parameters: made of the mesh and its cover texture. `toWorld` is the
+    /// way from the geometry's frame; `ellipsoid` null for projected terrain. For any thread, while the geometry does not change.
+    static osg::ref_ptr<TileStrokes> make(const osg::Geometry& terrain, const osg::Matrixd& toWorld,
+                                          const StrokeParameters& parameters,
+                                          const osg::EllipsoidModel* ellipsoid);
+
+    /// Null where there are none.
+    osg::Geometry* points() const { return _points.get(); }
+    /// The finest level of strokes that the tile has, in halves.
+    int finest() const { return _finest; }
+    const StrokeParameters& parameters() const { return _parameters; }
+    /// Whether these are what make() would make with them.
+    bool madeWith(const StrokeParameters& parameters, const osg::EllipsoidModel* ellipsoid) const;
+
+private:
+    TileStrokes(const StrokeParameters& parameters, const osg::EllipsoidModel* ellipsoid);
+    ~TileStrokes() override;
+
+    const StrokeParameters _parameters;
+    double _equator = 0.0, _polar = 0.0; ///< radii; 0 on projected terrain
+    int _finest = 0;
+    osg::ref_ptr<osg::Geometry> _points;
+};
+
+} // namespace osgGeoFX

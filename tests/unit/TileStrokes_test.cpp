@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Brush strokes of tiles: kinds by what covers the ground, the same ones after every reload, and who keeps them.
+#include <osgGeoFX/panorama/CoverSampler.h>
+#include <osgGeoFX/panorama/StrokeLattice.h>
+#include <osgGeoFX/panorama/StrokeMaker.h>
+#include <tools/NotifyWatch.h>
+#include <tools/StrokeTiles.h>
+#include <tools/TempDir.h>
+
+#include <gtest/gtest.h>
+#include <osg/UserDataContainer>
+#include <osgDB/ReadFile>
+#include <osgDB/WriteFile>
+
+#include <cmath>
+#include <map>
+#include <thread>
+#include <vector>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+/// What lies everywhere on a tile.
+std::function<glsl::geofx_Cover(double, double)> everywhere(double trees, double town, double shore = -1000.0)
+{
+    return [=](double, double)
+    {
+        glsl::geofx_Cover cover = {};
+        cover.trees = trees;
+        cover.town = town;
+        cover.shore = shore;
+        return cover;
+    };
+}
+
+struct Made
+{
+    osg::ref_ptr<osg::MatrixTransform> tile;
+    osg::ref_ptr<TileStrokes> strokes;
+
+    std::size_t count() const
+    {
+        return strokes->points() ? strokes->points()->getVertexArray()->getNumElements() : 0;
+    }
+    osg::Vec3d vertex(std::size_t i) const
+    {
+        return osg::Vec3d((*static_cast<const osg::Vec3Array*>(strokes->points()->getVertexArray()))[i]);
+    }
+    osg::Vec4s traits(std::size_t i) const
+    {
+        return (*static_cast<const osg::Vec4sArray*>(strokes->points()->getTexCoordArray(0)))[i];
+    }
+    osg::Vec3d shorts(const osg::Array* array, std::size_t i) const
+    {
+        const osg::Vec3s& each = (*static_cast<const osg::Vec3sArray*>(array))[i];
+        return osg::Vec3d(each.x(), each.y(), each.z()) / 32767.0;
+    }
+    std::size_t countOf(TileStrokes::Kind kind) const
+    {
+        std::size_t sum = 0;
+        for (std::size_t i = 0; i < count(); ++i)
+            sum += traits(i).z() == kind ? 1 : 0;
+        return sum;
+    }
+};
+
+/// A tile of 2.5 km, which has 100 × 100 lattice points.
+Made make(const StrokeTiles& tiles, const StrokeParameters& parameters = {}, double west = 0.0)
+{
+    Made made;
+    made.tile = tiles.tile(west, 0.0, west + 2500.0, 2500.0);
+    made.strokes =
+        TileStrokes::make(StrokeTiles::geometryOf(*made.tile), made.tile->getMatrix(), parameters, nullptr);
+    return made;
+}
+
+/// What tells a stroke from all others.
+using Identity = std::tuple<short, short, short, short>;
+
+std::map<Identity, osg::Vec3d> strokesOf(const Made& made)
+{
+    std::map<Identity, osg::Vec3d> strokes;
+    for (std::size_t i = 0; i < made.count(); ++i)
+    {
+        const osg::Vec4s traits = made.traits(i);
+        strokes[{traits.x(), traits.y(), traits.z(), traits.w()}] = made.vertex(i) * made.tile->getMatrix();
+    }
+    return strokes;
+}
+
+TEST(TileStrokes, TreesAreAsDenseAsTheCoverSays)
+{
+    for (const double share : {0.0, 0.25, 0.6, 1.0})
+    {
+        StrokeTiles tiles;
+        tiles.cover = everywhere(share, 0.0);
+        const Made made = make(tiles);
+        EXPECT_NEAR(static_cast<double>(made.count()), 10000.0 * share,
+                    4.0 * std::sqrt(10000.0 * share * (1.0 - share)) + 250.0)
+            << share;
+        EXPECT_EQ(made.countOf(TileStrokes::Tree), made.count());
+    }
+}
+
+TEST(TileStrokes, MoreTreesAddTreesAndMoveNone)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(0.3, 0.0);
+    const auto few = strokesOf(make(tiles));
+    tiles.cover = everywhere(0.7, 0.0);
+    const auto many = strokesOf(make(tiles));
+    EXPECT_GT(many.size(), 2 * few.size());
+    for (const auto& [identity, place] : few)
+    {
+        const auto found = many.find(identity);
+        ASSERT_NE(found, many.end());
+        ASSERT_LT((found->second - place).length(), 1e-6);
+    }
+}
+
+TEST(TileStrokes, TownsHaveHousesAndNoPlaceHasTwoStrokes)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(0.2, 0.5);
+    const Made made = make(tiles);
+    EXPECT_NEAR(static_cast<double>(made.countOf(TileStrokes::House)), 5000.0, 300.0);
+    EXPECT_NEAR(static_cast<double>(made.countOf(TileStrokes::Tree)), 2000.0, 300.0);
+    tiles.cover = everywhere(0.9, 0.9);
+    EXPECT_LT(make(tiles).count(), 10300u);
+}
+
+TEST(TileStrokes, WaterHasNone)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0, 20.0);
+    EXPECT_EQ(make(tiles).strokes->points(), nullptr);
+    // A lake in the middle.
+    const auto lake = [](double x, double y)
+    {
+        return 600.0 - std::hypot(x - 1250.0, y - 1250.0);
+    };
+    tiles.cover = [&](double x, double y)
+    {
+        return everywhere(1.0, 0.0, lake(x, y))(x, y);
+    };
+    const Made made = make(tiles);
+    EXPECT_NEAR(static_cast<double>(made.count()), 10000.0 - osg::PI * 576.0, 200.0);
+    for (std::size_t i = 0; i < made.count(); ++i)
+    {
+        const osg::Vec3d place = made.vertex(i) * made.tile->getMatrix();
+        // A texel of the shore is 4 m, and what is between texels is not quite straight.
+        ASSERT_LT(lake(place.x(), place.y()), 6.0);
+    }
+}
+
+TEST(TileStrokes, SteepGroundIsCliffWithItsFallLine)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    tiles.height = [](double x, double)
+    {
+        return 2.0 * x;
+    };
+    const Made made = make(tiles);
+    EXPECT_GT(made.count(), 9000u);
+    EXPECT_EQ(made.countOf(TileStrokes::Cliff), made.count());
+    const osg::Vec3d downhill = osg::Vec3d(-1.0, 0.0, -2.0) / std::sqrt(5.0);
+    const osg::Vec3d normal = osg::Vec3d(-2.0, 0.0, 1.0) / std::sqrt(5.0);
+    for (std::size_t i = 0; i < made.count(); i += 50)
+    {
+        EXPECT_LT((made.shorts(made.strokes->points()->getTexCoordArray(1), i) - downhill).length(), 1e-3);
+        EXPECT_LT((made.shorts(made.strokes->points()->getNormalArray(), i) - normal).length(), 1e-3);
+    }
+    StrokeParameters parameters;
+    parameters.cliffSlope = 3.0;
+    const Made gentle = make(tiles, parameters);
+    EXPECT_EQ(gentle.countOf(TileStrokes::Cliff), 0u);
+    EXPECT_EQ(gentle.strokes->points()->getTexCoordArray(1), nullptr);
+}
+
+TEST(TileStrokes, WithoutACoverItIsGuessed)
+{
+    StrokeTiles tiles;
+    tiles.height = [](double x, double)
+    {
+        return 0.4 * x - 400.0;
+    };
+    const Made made = make(tiles);
+    EXPECT_GT(made.count(), 4000u);
+    for (std::size_t i = 0; i < made.count(); ++i)
+        ASSERT_GT((made.vertex(i) * made.tile->getMatrix()).z(), 0.0);
+    // A texture that says nothing is the same as none.
+    tiles.cover = [](double, double)
+    {
+        glsl::geofx_Cover cover = {};
+        cover.shore = 1e9;
+        return cover;
+    };
+    StrokeTiles unknown = tiles;
+    const osg::ref_ptr<osg::MatrixTransform> tile = unknown.tile(0.0, 0.0, 2500.0, 2500.0);
+    osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
+    auto* texture = static_cast<osg::Texture2D*>(
+        mesh.getStateSet()->getTextureAttribute(CoverSampler::unit, osg::StateAttribute::TEXTURE));
+    for (unsigned int i = 0; i < texture->getImage()->getTotalSizeInBytes(); ++i)
+        texture->getImage()->data()[i] = i % 4 == 3 ? 255 : 0;
+    const osg::ref_ptr<TileStrokes> strokes = TileStrokes::make(mesh, tile->getMatrix(), {}, nullptr);
+    ASSERT_NE(strokes->points(), nullptr);
+    EXPECT_EQ(strokes->points()->getVertexArray()->getNumElements(), made.count());
+    // Above the tree line there are no trees.
+    StrokeParameters low;
+    low.treeLine = 10.0;
+    EXPECT_LT(make(tiles, low).countOf(TileStrokes::Tree), 200u);
+}
+
+TEST(TileStrokes, TheCoverIsTakenFromStatesAbove)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(0.0, 0.0, 2500.0, 2500.0);
+    osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
+    const osg::ref_ptr<osg::StateSet> state = mesh.getStateSet();
+    mesh.setStateSet(new osg::StateSet);
+    tile->setStateSet(state);
+    const CoverSampler sampler(mesh);
+    ASSERT_TRUE(sampler.valid());
+    EXPECT_NEAR(sampler.at(0.5, 0.5).x, 1.0, 1e-9);
+    tile->setStateSet(nullptr);
+    EXPECT_FALSE(CoverSampler(mesh).valid());
+    EXPECT_EQ(CoverSampler(mesh).at(0.5, 0.5), glsl::Rgba(0.0, 0.0, 0.0, 1.0));
+}
+
+TEST(TileStrokes, TheCoverIsFilteredAsAGpuDoes)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(2, 2, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    image->setColor(osg::Vec4(0.0f, 0.0f, 0.0f, 0.0f), 0, 0);
+    image->setColor(osg::Vec4(1.0f, 0.0f, 0.0f, 0.0f), 1, 0);
+    image->setColor(osg::Vec4(0.0f, 1.0f, 0.0f, 0.0f), 0, 1);
+    image->setColor(osg::Vec4(1.0f, 1.0f, 0.0f, 0.0f), 1, 1);
+    osg::ref_ptr<osg::Geometry> mesh = new osg::Geometry;
+    mesh->getOrCreateStateSet()->setTextureAttribute(CoverSampler::unit, new osg::Texture2D(image));
+    const CoverSampler sampler(*mesh);
+    EXPECT_NEAR(sampler.at(0.25, 0.25).x, 0.0, 1e-12);
+    EXPECT_NEAR(sampler.at(0.4, 0.25).x, 0.3, 1e-12);
+    EXPECT_NEAR(sampler.at(0.4, 0.65).y, 0.8, 1e-12);
+    EXPECT_NEAR(sampler.at(-3.0, 7.0).x, 0.0, 1e-12);
+    EXPECT_NEAR(sampler.at(-3.0, 7.0).y, 1.0, 1e-12);
+    EXPECT_EQ(sampler.at(std::nan(""), 0.5), glsl::Rgba(0.0, 0.0, 0.0, 1.0));
+}
+
+TEST(TileStrokes, AreTheSameAfterAReload)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(0.5, 0.2);
+    tiles.height = [](double x, double y)
+    {
+        return 40.0 * std::sin(x / 100.0) * std::cos(y / 80.0);
+    };
+    const Made first = make(tiles), second = make(tiles);
+    ASSERT_EQ(first.count(), second.count());
+    for (std::size_t i = 0; i < first.count(); ++i)
+    {
+        ASSERT_EQ(first.vertex(i), second.vertex(i));
+        ASSERT_EQ(first.traits(i), second.traits(i));
+    }
+}
+
+TEST(TileStrokes, ACoarserTileHasTheSameStrokesButFewer)
+{
+    for (const bool globe : {false, true})
+    {
+        StrokeTiles tiles;
+        tiles.cover = everywhere(0.5, 0.2);
+        if (globe) tiles.ellipsoid = new osg::EllipsoidModel;
+        const double unit = globe ? 1.0 / 6378137.0 : 1.0;
+        const auto strokes = [&](double size)
+        {
+            Made made;
+            made.tile = tiles.tile(0.1, 0.2, 0.1 + size * unit, 0.2 + size * unit);
+            made.strokes = TileStrokes::make(StrokeTiles::geometryOf(*made.tile), made.tile->getMatrix(), {},
+                                             tiles.ellipsoid);
+            return std::make_pair(strokesOf(made), made.strokes->finest());
+        };
+        const auto [fine, finest] = strokes(3000.0);
+        const auto [coarse, coarsest] = strokes(12000.0);
+        EXPECT_EQ(finest, 0);
+        EXPECT_EQ(coarsest, 4);
+        std::size_t shared = 0, due = 0;
+        for (const auto& [identity, place] : fine)
+        {
+            const auto found = coarse.find(identity);
+            if (std::get<1>(identity) < coarsest)
+            {
+                ASSERT_EQ(found, coarse.end());
+                continue;
+            }
+            ++due;
+            if (found == coarse.end()) continue;
+            ++shared;
+            // The coarser mesh lies below the globe's, by as much as it is coarser.
+            ASSERT_LT((found->second - place).length(), globe ? 0.2 : 0.02);
+        }
+        EXPECT_GT(due, 400u);
+        EXPECT_EQ(shared, due);
+    }
+}
+
+TEST(TileStrokes, HaveABoxAndLittleWeight)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const Made made = make(tiles);
+    const osg::Geometry& points = *made.strokes->points();
+    const osg::BoundingBox box = points.getBoundingBox();
+    EXPECT_NEAR(box.xMax() - box.xMin(), 2500.0, 60.0);
+    EXPECT_TRUE(points.getUseVertexBufferObjects());
+    EXPECT_EQ(points.getPrimitiveSet(0)->getMode(), static_cast<GLenum>(GL_POINTS));
+    EXPECT_EQ(points.getVertexArray()->getElementSize() + points.getNormalArray()->getElementSize() +
+                  points.getTexCoordArray(0)->getElementSize(),
+              26u);
+}
+
+TEST(StrokeMaker, FurnishesWhatIsBelowANode)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const osg::ref_ptr<osg::Group> group = new osg::Group;
+    const osg::ref_ptr<osg::MatrixTransform> a = tiles.tile(0.0, 0.0, 2500.0, 2500.0);
+    const osg::ref_ptr<osg::MatrixTransform> b = tiles.tile(2500.0, 0.0, 5000.0, 2500.0);
+    group->addChild(a);
+    group->addChild(b);
+    const osg::ref_ptr<StrokeMaker> maker = new StrokeMaker(nullptr);
+    maker->furnish(*group);
+    for (const auto& tile : {a, b})
+    {
+        osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
+        ASSERT_EQ(mesh.getUserDataContainer()->getNumUserObjects(), 1u);
+        const auto* kept = dynamic_cast<const TileStrokes*>(mesh.getUserDataContainer()->getUserObject(0));
+        ASSERT_NE(kept, nullptr);
+        EXPECT_EQ(maker->strokes(mesh, tile->getMatrix()), kept->points());
+        const osg::ref_ptr<TileStrokes> alone = TileStrokes::make(mesh, tile->getMatrix(), {}, nullptr);
+        EXPECT_EQ(alone->points()->getVertexArray()->getNumElements(),
+                  kept->points()->getVertexArray()->getNumElements());
+    }
+    // Where the tile's parent moves it, it has the strokes of that place.
+    const osg::ref_ptr<osg::MatrixTransform> c = tiles.tile(0.0, 0.0, 2500.0, 2500.0);
+    maker->furnish(*c, osg::Matrixd::translate(2500.0, 0.0, 0.0));
+    EXPECT_EQ(maker->strokes(StrokeTiles::geometryOf(*c), {})->getVertexArray()->getNumElements(),
+              maker->strokes(StrokeTiles::geometryOf(*b), {})->getVertexArray()->getNumElements());
+}
+
+TEST(StrokeMaker, NewParametersGiveNewStrokes)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(0.0, 0.0, 2500.0, 2500.0);
+    osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
+    const osg::ref_ptr<StrokeMaker> maker = new StrokeMaker(nullptr);
+    const osg::ref_ptr<osg::Geometry> first = maker->strokes(mesh, tile->getMatrix());
+    EXPECT_EQ(maker->strokes(mesh, tile->getMatrix()), first);
+    StrokeParameters parameters;
+    for (int i = 1; i < 5; ++i)
+    {
+        parameters.spacing = 25.0 * (i + 1);
+        maker->setParameters(parameters);
+        EXPECT_EQ(maker->getParameters(), parameters);
+        const osg::ref_ptr<osg::Geometry> next = maker->strokes(mesh, tile->getMatrix());
+        EXPECT_LT(next->getVertexArray()->getNumElements(), first->getVertexArray()->getNumElements());
+        EXPECT_LE(mesh.getUserDataContainer()->getNumUserObjects(), 2u);
+    }
+    // Two scenes with different wishes share a terrain without taking each other's.
+    const osg::ref_ptr<StrokeMaker> other = new StrokeMaker(nullptr);
+    const osg::ref_ptr<osg::Geometry> theirs = other->strokes(mesh, tile->getMatrix());
+    const osg::ref_ptr<osg::Geometry> ours = maker->strokes(mesh, tile->getMatrix());
+    EXPECT_NE(theirs, ours);
+    EXPECT_EQ(other->strokes(mesh, tile->getMatrix()), theirs);
+    EXPECT_EQ(maker->strokes(mesh, tile->getMatrix()), ours);
+}
+
+TEST(StrokeMaker, ParametersDifferWhereAnyOfThemDoes)
+{
+    const StrokeParameters same;
+    std::vector<StrokeParameters> others(7);
+    others[0].spacing += 1.0;
+    others[1].referenceLatitude += 0.1;
+    others[2].jitter += 0.1;
+    others[3].cliffSlope += 0.1;
+    others[4].treeLine += 1.0;
+    others[5].seed += 1;
+    others[6].strokesAlongTile += 1.0;
+    for (const StrokeParameters& other : others)
+        EXPECT_NE(other, same);
+    EXPECT_EQ(StrokeParameters(), same);
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const Made made = make(tiles);
+    const osg::ref_ptr<osg::EllipsoidModel> globe = new osg::EllipsoidModel;
+    EXPECT_TRUE(made.strokes->madeWith({}, nullptr));
+    EXPECT_FALSE(made.strokes->madeWith({}, globe));
+    EXPECT_FALSE(made.strokes->madeWith(others[0], nullptr));
+}
+
+TEST(StrokeMaker, ThreadsThatAskAtOnceGetTheSame)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const osg::ref_ptr<StrokeMaker> maker = new StrokeMaker(nullptr);
+    for (int turn = 0; turn < 10; ++turn)
+    {
+        const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(0.0, 0.0, 1000.0, 1000.0);
+        osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
+        std::vector<osg::ref_ptr<osg::Geometry>> got(4);
+        std::vector<std::thread> threads;
+        for (osg::ref_ptr<osg::Geometry>& each : got)
+            threads.emplace_back([&] { each = maker->strokes(mesh, tile->getMatrix()); });
+        for (std::thread& thread : threads)
+            thread.join();
+        for (const auto& each : got)
+            EXPECT_EQ(each, got.front());
+        EXPECT_EQ(mesh.getUserDataContainer()->getNumUserObjects(), 1u);
+    }
+}
+
+TEST(StrokeMaker, FilesAndCopiesAreAsIfThereWereNone)
+{
+    const NotifyWatch watch;
+    const TempDir folder;
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(0.0, 0.0, 1000.0, 1000.0);
+    const osg::ref_ptr<StrokeMaker> maker = new StrokeMaker(nullptr);
+    maker->furnish(*tile);
+    const auto hasStrokes = [](osg::MatrixTransform& node)
+    {
+        const osg::UserDataContainer* data = StrokeTiles::geometryOf(node).getUserDataContainer();
+        for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
+            if (dynamic_cast<const TileStrokes*>(data->getUserObject(i))) return true;
+        return false;
+    };
+    EXPECT_TRUE(hasStrokes(*tile));
+    const osg::ref_ptr<osg::Object> copy = tile->clone(osg::CopyOp::DEEP_COPY_ALL);
+    EXPECT_FALSE(hasStrokes(static_cast<osg::MatrixTransform&>(*copy)));
+    for (const char* name : {"tile.osgb", "tile.osgt"})
+    {
+        const std::string file = (folder / name).string();
+        ASSERT_TRUE(osgDB::writeNodeFile(*tile, file));
+        const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(file);
+        ASSERT_TRUE(read.valid());
+        auto& node = static_cast<osg::MatrixTransform&>(*read);
+        EXPECT_FALSE(hasStrokes(node));
+        EXPECT_TRUE(maker->strokes(StrokeTiles::geometryOf(node), node.getMatrix()).valid());
+    }
+}
+
+TEST(StrokeMaker, StrokesGoWithTheirTile)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(0.0, 0.0, 1000.0, 1000.0);
+    const osg::ref_ptr<StrokeMaker> maker = new StrokeMaker(nullptr);
+    const osg::observer_ptr<osg::Geometry> strokes =
+        maker->strokes(StrokeTiles::geometryOf(*tile), tile->getMatrix()).get();
+    EXPECT_TRUE(strokes.valid());
+    tile = nullptr;
+    EXPECT_FALSE(strokes.valid());
+}
+
+} // namespace
