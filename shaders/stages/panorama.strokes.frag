@@ -1,0 +1,40 @@
+#version 330 compatibility
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Brush strokes of PanoramaMap: the mask of the brush and its two tones. Colours are premultiplied; depth is written, so strokes
+// need no order. What is less than half covered is left out there: a nearer stroke's soft edge would keep a farther one
+// from being drawn below it. With multisampling, GL_SAMPLE_ALPHA_TO_COVERAGE may take the place of blending.
+#include "lib/strokes.glsl"
+
+uniform vec4 SLOT_light; // xyz: unit vector to the light in eye space
+
+flat in vec3 SLOT_lightTone;
+flat in vec3 SLOT_darkTone;
+flat in vec4 SLOT_brush;
+flat in vec2 SLOT_traits;
+in vec2 SLOT_point;
+
+void main()
+{
+    int kind = int(SLOT_traits.x + 0.5);
+    float seed = SLOT_traits.y;
+    float inside = geofx_strokeInside(kind, SLOT_point, seed);
+    float cover = clamp(0.5 + inside / max(fwidth(inside), 1e-4), 0.0, 1.0);
+    if (cover < 0.4) discard;
+
+    vec3 colour;
+    if (kind == GEOFX_STROKE_HOUSE)
+    {
+        float gable = SLOT_point.x * (SLOT_light.x < 0.0 ? -1.0 : 1.0) < -0.1 ? 0.8 : 1.0;
+        colour = gable * (SLOT_point.y > 0.0 ? SLOT_darkTone : SLOT_lightTone);
+    }
+    else
+    {
+        // The light's direction as the stroke sees it.
+        vec2 light = SLOT_light.xy / max(length(SLOT_light.xy), 0.25);
+        light = vec2(dot(light, vec2(SLOT_brush.w, -SLOT_brush.z)), dot(light, SLOT_brush.zw));
+        colour = mix(SLOT_darkTone, SLOT_lightTone, geofx_strokeLit(SLOT_point, light, seed));
+    }
+    gl_FragColor = vec4(colour * cover, cover);
+}

@@ -1,0 +1,92 @@
+#version 330 compatibility
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Brush strokes of PanoramaMap, one point each (osgGeoFX/panorama/TileStrokes.h tells the arrays): where a stroke goes and what
+// it looks like, all of it flat. SLOT_ stands for the effect's prefix.
+#include "lib/strokes.glsl"
+
+vec4 geofx_vertex(vec4 eyePosition);
+// Of undeformed places in eye space: pixels for each metre of the ground, the mean of across and along; the light on the ground, -1
+// to 1, `y` the place's in the picture, 0 at the bottom to 1; what the air makes of a colour.
+float SLOT_groundScale(vec3 eyePosition);
+float SLOT_strokeLight(vec3 eyePosition, vec3 eyeNormal, float y);
+vec3 SLOT_strokeAir(vec3 colour, vec3 eyePosition);
+
+uniform vec4 SLOT_viewport;    // width and height in pixels, and one over each
+uniform vec4 SLOT_stroke;      // size and wanted spacing in pixels, step of the lattice in metres
+uniform sampler2D SLOT_palette; // 8 rows, columns from light -1 to light 1
+
+out vec3 SLOT_lightTone_in;
+out vec3 SLOT_darkTone_in;
+out vec4 SLOT_brush_in;  // half its width and its height in pixels, and the direction of its height
+out vec2 SLOT_traits_in; // kind and seed
+
+vec3 SLOT_tone(int row, float light)
+{
+    vec2 size = vec2(textureSize(SLOT_palette, 0));
+    float column = mix(0.5, size.x - 0.5, clamp(0.5 + 0.5 * light, 0.0, 1.0)) / size.x;
+    return textureLod(SLOT_palette, vec2(column, (float(row) + 0.5) / 8.0), 0.0).rgb;
+}
+
+// Where a place in eye space goes on the screen, in pixels.
+vec2 SLOT_pixel(vec4 clip)
+{
+    return 0.5 * SLOT_viewport.xy * clip.xy / max(clip.w, 1e-6);
+}
+
+void main()
+{
+    vec4 eye = gl_ModelViewMatrix * gl_Vertex;
+    float seed = gl_MultiTexCoord0.x / 32767.0;
+    float level = 0.5 * gl_MultiTexCoord0.y;
+    int kind = int(gl_MultiTexCoord0.z + 0.5);
+    float threshold = gl_MultiTexCoord0.w / 32767.0;
+
+    float groundScale = SLOT_groundScale(eye.xyz);
+    float wanted = geofx_strokeWanted(SLOT_stroke.y, SLOT_stroke.z, groundScale);
+    float size = SLOT_stroke.x * geofx_strokeScale(level, threshold, wanted) * geofx_strokeGrowth(wanted);
+
+    geofx_StrokeShape shape = geofx_strokeShape(kind, seed);
+    vec2 axis = vec2(0.0, 1.0);
+    if (kind == GEOFX_STROKE_CLIFF && size > 0.0)
+    {
+        // The fall line on the screen, upwards: the way of a place a little down the slope.
+        vec3 downhill = normalize(gl_NormalMatrix * gl_MultiTexCoord1.xyz);
+        vec4 below = vec4(eye.xyz + downhill * (0.5 * SLOT_stroke.y / max(groundScale, 1e-9)), 1.0);
+        vec2 way = SLOT_pixel(gl_ProjectionMatrix * geofx_vertex(eye)) - SLOT_pixel(gl_ProjectionMatrix * geofx_vertex(below));
+        axis = length(way) > 0.05 ? normalize(way) : axis;
+        // What falls away from the viewer is seen from its end.
+        shape.size.y *= clamp(length(way) / (0.35 * SLOT_stroke.y), 0.35, 1.0);
+    }
+    float c = cos(shape.lean);
+    float s = sin(shape.lean);
+    SLOT_brush_in = vec4(size * shape.size, axis.x * c + axis.y * s, axis.y * c - axis.x * s);
+    SLOT_traits_in = vec2(float(kind), seed);
+
+    // Ground that rises behind a stroke must not cut it off: it gets the depth of a place nearer by about its height.
+    vec4 moved = geofx_vertex(eye);
+    vec4 nearer = moved;
+    nearer.z += min(1.4 * SLOT_brush_in.y / max(groundScale, 1e-9), 0.5 * abs(moved.z));
+    nearer = gl_ProjectionMatrix * nearer;
+    gl_Position = gl_ProjectionMatrix * moved;
+    if (nearer.w > 0.0) gl_Position.z = nearer.z / nearer.w * gl_Position.w;
+    float y = 0.5 + 0.5 * gl_Position.y / max(gl_Position.w, 1e-6);
+    float light = SLOT_strokeLight(eye.xyz, normalize(gl_NormalMatrix * gl_Normal), y) + shape.tone;
+    if (kind == GEOFX_STROKE_HOUSE)
+    {
+        // Walls in the town's colour, roofs of tiles or slate.
+        SLOT_lightTone_in = mix(SLOT_tone(6, light), vec3(1.0), 0.25);
+        vec3 roof = geofx_strokeRandom(seed, 5.0) < 0.7 ? vec3(0.72, 0.26, 0.18) : vec3(0.45, 0.45, 0.52);
+        SLOT_darkTone_in = roof * (0.75 + 0.3 * light);
+    }
+    else
+    {
+        int row = kind == GEOFX_STROKE_CLIFF ? 2 : 5;
+        float contrast = kind == GEOFX_STROKE_CLIFF ? 0.4 : 0.36;
+        SLOT_lightTone_in = SLOT_tone(row, light + contrast);
+        SLOT_darkTone_in = SLOT_tone(row, light - contrast);
+    }
+    SLOT_lightTone_in = SLOT_strokeAir(SLOT_lightTone_in, eye.xyz);
+    SLOT_darkTone_in = SLOT_strokeAir(SLOT_darkTone_in, eye.xyz);
+}
