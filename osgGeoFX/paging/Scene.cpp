@@ -166,6 +166,7 @@ std::optional<Scene> Scene::adopt(osg::Node* node, std::string& error)
         scene.effects->addChild(node);
         scene.node = scene.effects;
     }
+    scene.effects->listenTo(*scene.guard);
     return scene;
 }
 

@@ -16,6 +16,12 @@ class PanoramaMap;
 OSGGEOFX_EXPORT std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map,
                                                                const ViewGeometry& view);
 
+/// The tree line of a latitude (radians), metres.
+inline double treeLineAt(double latitude)
+{
+    return 0.8 * glsl::geofx_snowLine(latitude);
+}
+
 /** The projection of a panorama map for one camera and frame (shaders/lib/panorama.glsl). Immutable. */
 class PanoramaFrame : public DeformationFrame
 {

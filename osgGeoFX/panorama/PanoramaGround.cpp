@@ -19,8 +19,6 @@ namespace
 
 /// How many times the brush's picture lies across the half of the picture's width.
 constexpr double brushRepeats = 1.6;
-/// Latitude of a projected terrain.
-const double usualLatitude = osg::DegreesToRadians(45.0);
 
 void set(osg::StateSet& state, const std::string& name, const osg::Vec4d& value)
 {
@@ -33,12 +31,6 @@ void setTexture(osg::StateSet& state, const std::string& name, int unit, osg::Te
     if (state.getTextureAttribute(place, osg::StateAttribute::TEXTURE) != texture)
         state.setTextureAttribute(place, texture);
     state.getOrCreateUniform(name, osg::Uniform::SAMPLER_2D)->set(unit);
-}
-
-/// The tree line of a latitude, metres.
-double treeLineAt(double latitude)
-{
-    return 0.8 * glsl::geofx_snowLine(latitude);
 }
 
 /** Axes that the brush's picture lies along, in eye space, and where the eye is on them. They stand still on the ground: the frame
@@ -103,7 +95,7 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
 
     const double latitude = view.geometry.ground.ellipsoid
                                 ? std::asin(std::clamp(view.geometry.up * view.geometry.polarAxis, -1.0, 1.0))
-                                : usualLatitude;
+                                : view.geometry.ground.latitude;
     const double snowLine = _map.getSnowLine() >= 0.0 ? _map.getSnowLine() : glsl::geofx_snowLine(latitude);
     const double treeLine = _map.getTreeLine() >= 0.0 ? _map.getTreeLine() : treeLineAt(latitude);
     put("snow", {snowLine, glsl::geofx_winterDrop(latitude), _map.getSnowWidth(), _map.getSeason()});

@@ -6,6 +6,7 @@
 #include <osgGeoFX/deformation/EyeVector.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaTextures.h>
+#include <osgGeoFX/panorama/StrokeCompanion.h>
 #include <osgGeoFX/scene/PerCamera.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
 
@@ -171,6 +172,21 @@ class PanoramaMap::Scenery::Cameras
 {
 public:
     PerCamera<Mirror> mirrors;
+    PerCamera<StrokeCompanion> strokes;
+
+    /// Who makes the strokes of a terrain, with the map's parameters.
+    osg::ref_ptr<StrokeMaker> maker(const PanoramaMap& map, const osgGeoFX::Ground& ground)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        if (!_maker || _maker->getEllipsoid() != ground.ellipsoid) _maker = new StrokeMaker(ground.ellipsoid);
+        StrokeParameters parameters;
+        parameters.spacing = map.getStrokeStep();
+        parameters.referenceLatitude = std::clamp(ground.latitude, -1.4, 1.4);
+        parameters.cliffSlope = 1.2 * map.getCliffSlope();
+        parameters.treeLine = map.getTreeLine() >= 0.0 ? map.getTreeLine() : treeLineAt(ground.latitude);
+        if (_maker->getParameters() != parameters) _maker->setParameters(parameters);
+        return _maker;
+    }
 
     osg::Program* skyProgram()
     {
@@ -191,6 +207,7 @@ public:
 
 private:
     mutable std::mutex _mutex;
+    osg::ref_ptr<StrokeMaker> _maker;
     osg::ref_ptr<osg::Program> _skyProgram;
     osg::ref_ptr<osg::Geometry> _square = createSquare();
 };
@@ -317,6 +334,18 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
         visitor.run(pass.outer, {sky}, task);
     }
     pass.state.setTextureAttribute(unit, mirror.colours());
+}
+
+DrawableCompanion* PanoramaMap::Scenery::companion(const ScenePass& pass)
+{
+    if (!_map.getStrokes() || !_map.getPaint()) return nullptr;
+    StrokeCompanion& strokes = _cameras->strokes.of(pass.outer, pass.scene);
+    return strokes.begin(pass, _map, *_cameras->maker(_map, pass.view.ground)) ? &strokes : nullptr;
+}
+
+osg::ref_ptr<TileListener> PanoramaMap::Scenery::tileListener(const osgGeoFX::Ground& ground)
+{
+    return _cameras->maker(_map, ground);
 }
 
 void PanoramaMap::Scenery::releaseGLObjects(osg::State* state) const

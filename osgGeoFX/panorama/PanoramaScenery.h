@@ -21,6 +21,8 @@ public:
     const Properties& properties() const override;
 
     void cull(const ScenePass& pass) override;
+    DrawableCompanion* companion(const ScenePass& pass) override;
+    osg::ref_ptr<TileListener> tileListener(const osgGeoFX::Ground& ground) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
 protected:

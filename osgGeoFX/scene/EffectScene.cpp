@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/deformation/CompensatingCullVisitor.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/scene/EffectProgram.h>
 #include <osgGeoFX/scene/PassEffect.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
@@ -360,6 +361,7 @@ Ground EffectScene::ground(const osg::NodePath& above) const
         ground.heightsKnown = true;
         ground.minHeight = info->minHeight;
         ground.maxHeight = info->maxHeight;
+        if (info->geocentric) ground.latitude = osg::DegreesToRadians(0.5 * (info->south + info->north));
         // A range is the radius and error / pixelError · pixelsPerRadian; both meshes may be off by their error.
         if (info->pixelsPerRadian > 0.0) ground.tileError = 2.0 * info->pixelError / info->pixelsPerRadian;
     }
@@ -555,6 +557,16 @@ void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& vie
         if (!effect || !_effects[i]->getEnabled()) continue;
         const std::string prefix = EffectProgram::prefix(i);
         action(*effect, Pass(*this, outer, view, chain, state, prefix, mapUnit));
+    }
+}
+
+void EffectScene::listenTo(TileGuard& guard)
+{
+    for (const osg::ref_ptr<Effect>& effect : _effects)
+    {
+        PassEffect* pass = effect->asPassEffect();
+        const osg::ref_ptr<TileListener> listener = pass ? pass->tileListener(ground()) : nullptr;
+        if (listener) guard.addListener(listener);
     }
 }
 

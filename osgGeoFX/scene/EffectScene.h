@@ -21,6 +21,7 @@ namespace osgGeoFX
 
 class PassEffect;
 class ScenePass;
+class TileGuard;
 
 /** The group that a program puts above its terrain to have the kit's effects.
 
@@ -94,6 +95,9 @@ public:
     osg::ref_ptr<const DeformationChain> deformation(const osg::Matrixd& modelView,
                                                      const osg::Matrixd& projection,
                                                      const osg::NodePath& above = {}) const;
+    /// Lets effects work on tiles on the thread of the pager that reads them, in the place of the first frame that shows
+    /// them. For the effects that the scene has now; may be called again.
+    void listenTo(TileGuard& guard);
     /// What is known of the ground.
     Ground ground(const osg::NodePath& above = {}) const;
 

@@ -23,6 +23,7 @@ namespace osgGeoFX
 
 class DeformationChain;
 class DrawableCompanion;
+class TileListener;
 
 /** The shader files of an effect that draws the scene again. In all of them `SLOT_` stands for the effect's prefix.
 
@@ -87,6 +88,8 @@ public:
     /// What is drawn with the scene's drawables as they are culled; null, the default, for nothing. Called before the scene is culled,
     /// by that camera's thread, and to be kept until the same cull visitor asks again.
     virtual DrawableCompanion* companion(const ScenePass&) { return nullptr; }
+    /// Who is to be told of tiles that a pager reads; null, the default, for no one.
+    virtual osg::ref_ptr<TileListener> tileListener(const Ground&);
 
 protected:
     PassEffect() = default;

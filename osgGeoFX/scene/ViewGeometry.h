@@ -5,6 +5,7 @@
 #include <osgGeoFX/Export.h>
 
 #include <osg/CoordinateSystemNode>
+#include <osg/Math>
 #include <osg/Matrixd>
 #include <osg/Vec3d>
 
@@ -21,6 +22,8 @@ struct OSGGEOFX_EXPORT Ground
     /// coarser one's LOD range is longer than its radius; 0 for other databases.
     double tileError = 0.0;
     bool heightsKnown = false; ///< whether the database tells its heights
+    /// Radians; of the database's middle where it is known, else 45° north. For what depends on the climate.
+    double latitude = 0.25 * osg::PI;
 };
 
 /** One camera over a terrain, in double and in eye space (x right, y up, −z forward, metres).

@@ -11,7 +11,7 @@ uniform vec4 SLOT_light; // xyz: unit vector to the light in eye space
 
 flat in vec3 SLOT_lightTone;
 flat in vec3 SLOT_darkTone;
-flat in vec4 SLOT_brush;
+flat in vec4 SLOT_stamp;
 flat in vec2 SLOT_traits;
 in vec2 SLOT_point;
 
@@ -33,7 +33,7 @@ void main()
     {
         // The light's direction as the stroke sees it.
         vec2 light = SLOT_light.xy / max(length(SLOT_light.xy), 0.25);
-        light = vec2(dot(light, vec2(SLOT_brush.w, -SLOT_brush.z)), dot(light, SLOT_brush.zw));
+        light = vec2(dot(light, vec2(SLOT_stamp.w, -SLOT_stamp.z)), dot(light, SLOT_stamp.zw));
         colour = mix(SLOT_darkTone, SLOT_lightTone, geofx_strokeLit(SLOT_point, light, seed));
     }
     gl_FragColor = vec4(colour * cover, cover);

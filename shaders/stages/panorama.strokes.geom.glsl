@@ -8,11 +8,11 @@ layout(triangle_strip, max_vertices = 4) out;
 
 in vec3 SLOT_lightTone_in[];
 in vec3 SLOT_darkTone_in[];
-in vec4 SLOT_brush_in[];
+in vec4 SLOT_stamp_in[];
 in vec2 SLOT_traits_in[];
 flat out vec3 SLOT_lightTone;
 flat out vec3 SLOT_darkTone;
-flat out vec4 SLOT_brush;
+flat out vec4 SLOT_stamp;
 flat out vec2 SLOT_traits;
 out vec2 SLOT_point; // -1 to 1 over the stroke
 GEOFX_VARYINGS
@@ -22,7 +22,7 @@ uniform vec4 SLOT_viewport; // width and height in pixels, and one over each
 void main()
 {
     const int i = 0; // the one point, as GEOFX_COPY calls it
-    vec4 brush = SLOT_brush_in[i];
+    vec4 brush = SLOT_stamp_in[i];
     vec4 foot = gl_in[i].gl_Position;
     // What is smaller than that would not be seen; what is behind the eye must not be.
     if (brush.y < 0.2 || foot.w <= 0.0) return;
@@ -39,7 +39,7 @@ void main()
         SLOT_point = point;
         SLOT_lightTone = SLOT_lightTone_in[i];
         SLOT_darkTone = SLOT_darkTone_in[i];
-        SLOT_brush = brush;
+        SLOT_stamp = brush;
         SLOT_traits = SLOT_traits_in[i];
         GEOFX_COPY(i)
         EmitVertex();

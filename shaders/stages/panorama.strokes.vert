@@ -19,7 +19,7 @@ uniform sampler2D SLOT_palette; // 8 rows, columns from light -1 to light 1
 
 out vec3 SLOT_lightTone_in;
 out vec3 SLOT_darkTone_in;
-out vec4 SLOT_brush_in;  // half its width and its height in pixels, and the direction of its height
+out vec4 SLOT_stamp_in;  // half its width and its height in pixels, and the direction of its height
 out vec2 SLOT_traits_in; // kind and seed
 
 vec3 SLOT_tone(int row, float light)
@@ -61,13 +61,13 @@ void main()
     }
     float c = cos(shape.lean);
     float s = sin(shape.lean);
-    SLOT_brush_in = vec4(size * shape.size, axis.x * c + axis.y * s, axis.y * c - axis.x * s);
+    SLOT_stamp_in = vec4(size * shape.size, axis.x * c + axis.y * s, axis.y * c - axis.x * s);
     SLOT_traits_in = vec2(float(kind), seed);
 
     // Ground that rises behind a stroke must not cut it off: it gets the depth of a place nearer by about its height.
     vec4 moved = geofx_vertex(eye);
     vec4 nearer = moved;
-    nearer.z += min(1.4 * SLOT_brush_in.y / max(groundScale, 1e-9), 0.5 * abs(moved.z));
+    nearer.z += min(1.4 * SLOT_stamp_in.y / max(groundScale, 1e-9), 0.5 * abs(moved.z));
     nearer = gl_ProjectionMatrix * nearer;
     gl_Position = gl_ProjectionMatrix * moved;
     if (nearer.w > 0.0) gl_Position.z = nearer.z / nearer.w * gl_Position.w;

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/panorama/StrokeCompanion.h>
+
+#include <osg/BlendFunc>
+#include <osg/Viewport>
+
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+PassShaders strokeShaders()
+{
+    PassShaders shaders;
+    shaders.vertex = {"stages/panorama.strokes.ground.glsl"};
+    shaders.geometry = {"stages/panorama.strokes.geom.glsl"};
+    shaders.fragment = {"stages/panorama.strokes.finish.glsl"};
+    shaders.vertexMain = "stages/panorama.strokes.vert";
+    shaders.fragmentMain = "stages/panorama.strokes.frag";
+    return shaders;
+}
+
+} // namespace
+
+bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, StrokeMaker& maker)
+{
+    const osg::Viewport* viewport = pass.outer.getViewport();
+    if (!viewport || viewport->width() < 1.0 || viewport->height() < 1.0) return false;
+    const osg::ref_ptr<osg::Program> program = pass.program(strokeShaders());
+    if (!program) return false;
+    _maker = &maker;
+    _toWorld.invert(*pass.outer.getModelViewMatrix());
+    _coverUnit = static_cast<unsigned int>(map.getCoverUnit());
+
+    const auto forced = osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
+    if (_state->getAttribute(osg::StateAttribute::PROGRAM) != program)
+    {
+        _state->setAttributeAndModes(program, osg::StateAttribute::ON | forced);
+        // Colours are premultiplied, and depth is written.
+        _state->setAttributeAndModes(new osg::BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA),
+                                     osg::StateAttribute::ON | forced);
+        _state->setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
+        // Over all of the ground: soft edges mix with it.
+        _state->setRenderBinDetails(2, "RenderBin", osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
+    }
+    const auto put = [&](const char* name, double x, double y, double z, double w)
+    {
+        _state->getOrCreateUniform(pass.prefix + name, osg::Uniform::FLOAT_VEC4)
+            ->set(osg::Vec4(osg::Vec4d(x, y, z, w)));
+    };
+    put("viewport", viewport->width(), viewport->height(), 1.0 / viewport->width(), 1.0 / viewport->height());
+    put("stroke", map.getStrokeSize(), map.getStrokeSpacing(), map.getStrokeStep(), 0.0);
+    put("strokeView",
+        map.getProjection() ? 0.0 : 0.5 * viewport->height() * std::abs(pass.view.projection(1, 1)), 0.0, 0.0,
+        0.0);
+    return true;
+}
+
+osg::Drawable* StrokeCompanion::companion(osg::Drawable& drawable, const osg::Matrixd& modelView)
+{
+    osg::Geometry* terrain = drawable.asGeometry();
+    if (!terrain || !terrain->getStateSet() ||
+        !terrain->getStateSet()->getTextureAttribute(_coverUnit, osg::StateAttribute::TEXTURE))
+        return nullptr;
+    // The geometry keeps them.
+    return _maker->strokes(*terrain, modelView * _toWorld).get();
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/deformation/CompensatingCullVisitor.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/StrokeMaker.h>
+#include <osgGeoFX/scene/PassEffect.h>
+
+#include <osg/Texture2D>
+
+namespace osgGeoFX
+{
+
+/** Draws the strokes of each terrain tile that one camera has in sight. Tiles are geometries that say what lies on them (a
+    texture at PanoramaMap's coverUnit); what else is in the scene has no strokes. */
+class StrokeCompanion final : public DrawableCompanion
+{
+public:
+    /// For one frame. False where there is nothing to be drawn.
+    bool begin(const ScenePass& pass, const PanoramaMap& map, StrokeMaker& maker);
+
+    osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) override;
+    osg::StateSet* state() override { return _state; }
+    /// Points are the tiles' own, the program the scene's.
+    void releaseGLObjects(osg::State*) const {}
+
+private:
+    osg::ref_ptr<osg::StateSet> _state = new osg::StateSet;
+    osg::ref_ptr<StrokeMaker> _maker;
+    osg::Matrixd _toWorld; ///< from eye space
+    unsigned int _coverUnit = 0;
+};
+
+} // namespace osgGeoFX
