@@ -8,8 +8,8 @@
 namespace osgGeoFX
 {
 
-/** Noise and brush strokes that painted images are made of, the same on every machine: what is random comes from a hash of
-    integers. Within the library only. */
+/** Noise and brush strokes that painted images are made of. What is random comes from a hash of integers. Within the
+    library only. */
 namespace paint
 {
 

@@ -4,12 +4,12 @@
 
 #include <osgGeoFX/scene/GlslFunctions.h>
 
+#include <osgDB/FileUtils>
 #include <osgDB/ReadFile>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 namespace osgGeoFX
 {
@@ -33,8 +33,8 @@ constexpr unsigned stopColors[rows][stopLights.size()] = {
     {0x6a80c4, 0x8fa2dc, 0xb2bee8, 0xd0d2ee, 0xe8e2ee, 0xf8f1e8, 0xfffdf4}, // snow
     {0x28285a, 0x323b70, 0x34526e, 0x356052, 0x45703f, 0x62853c, 0x8ba04c}, // forest floor
     {0x393c88, 0x41559c, 0x3f7290, 0x47895f, 0x6ea348, 0xa3bd4b, 0xdcd968}, // trees
-    {0x4c477f, 0x6b639a, 0x9582a2, 0xba9292, 0xd8ae94, 0xeecba8, 0xfcebcb}, // town
-    {0x3e4d80, 0x5f73a4, 0x8791ac, 0xaea59f, 0xcbb88f, 0xe4d2a4, 0xf9edc8}, // bare
+    {0x4c477f, 0x6b639a, 0x9183a2, 0xb6959a, 0xd6b199, 0xedcdae, 0xfceccf}, // town
+    {0x3e4d80, 0x5f73a4, 0x8791ac, 0xa8a394, 0xc2b586, 0xdbcb98, 0xf4e9c2}, // bare
 };
 
 /// What another season than summer puts in the place of the last four stops, of rows that grow.
@@ -52,18 +52,18 @@ constexpr int growingRows[growing] = {glsl::GEOFX_PALETTE_FIELD, glsl::GEOFX_PAL
                                       glsl::GEOFX_PALETTE_FOREST, glsl::GEOFX_PALETTE_TREES};
 constexpr unsigned seasonColors[SEASONS][growing][litStops] = {
     {{0x94a39a, 0xbdb993, 0xd8cda3, 0xefe5c4},
-     {0xa38083, 0xbf9a80, 0xd6b693, 0xefdcbc},
-     {0x3d5a62, 0x566660, 0x76796a, 0x9b957f},
-     {0x55747a, 0x77836c, 0x9f9a7e, 0xcbbf9e}},
-    {{0x6fa77a, 0x93c266, 0xbddb6c, 0xe6ef97},
+     {0x9c7f8c, 0xba9a8a, 0xd3b698, 0xeedcc0},
+     {0x34526a, 0x456a68, 0x648272, 0x92a58e},
+     {0x3f6f78, 0x5b8472, 0x86a07c, 0xbfc9a2}},
+    {{0x70a57c, 0x98bd6c, 0xc2d474, 0xe9ea9c},
      {0x9a8470, 0xb2a25a, 0xd0be64, 0xeeda94},
      {0x36685a, 0x48803f, 0x68993e, 0x93b650},
-     {0x4c9468, 0x74b54c, 0xabd052, 0xe2ea7a}},
+     {0x499066, 0x70ae4c, 0xa5c852, 0xe0e57a}},
     {},
-    {{0x8a9a78, 0xb8ab62, 0xdcbf6a, 0xf3dc96},
+    {{0x80a07a, 0xaeb263, 0xd5c467, 0xf3e192},
      {0xa66a68, 0xc77f50, 0xdf9f58, 0xf4c98a},
-     {0x50505a, 0x6b5540, 0x8a6a40, 0xb08c52},
-     {0x7d6660, 0xb0693c, 0xd9953f, 0xf3c96a}},
+     {0x41605c, 0x5c6344, 0x7f703f, 0xa8904e},
+     {0x587f66, 0x8f8142, 0xcb8840, 0xf0cb68}},
 };
 
 Rgb rgb(unsigned code)
@@ -271,15 +271,17 @@ osg::ref_ptr<osg::Image> paletteFromImage(const osg::Image& image, std::string& 
 
 osg::ref_ptr<osg::Image> readPalette(const std::string& path, std::string& error)
 {
-    // Not from the cache: a palette is edited while the program runs.
-    const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(path);
+    const std::string found = osgDB::findDataFile(path);
+    if (found.empty())
+    {
+        error = "The palette " + path +
+                " does not exist; give the path of a picture such as data/panorama/palette.png.";
+        return nullptr;
+    }
+    const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(found);
     if (!image)
     {
-        std::error_code failure;
-        error = "The palette " + path +
-                (std::filesystem::exists(path, failure)
-                     ? " is not a picture that OpenSceneGraph reads; save it as PNG."
-                     : " does not exist; give the path of a picture such as data/panorama/palette.png.");
+        error = "The palette " + path + " is not a picture that OpenSceneGraph reads; save it as PNG.";
         return nullptr;
     }
     osg::ref_ptr<osg::Image> result = paletteFromImage(*image, error);

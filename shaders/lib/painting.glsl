@@ -204,11 +204,11 @@ GEOFX_INLINE Rgb geofx_airColour()
 }
 
 // How much of the air's colour is mixed in: `s` runs from 0 at the painting's base to 1 at the horizon, `strength` (0 to 1) is
-// the amount there. Half-way it is an eighth of that.
+// the amount there. Half-way it is a quarter of that.
 GEOFX_INLINE Number geofx_airAmount(Number s, Number strength)
 {
     Number t = geofx_share(s);
-    return strength * t * t * t;
+    return strength * t * t;
 }
 
 // Far ground takes the air's hue and keeps its own value (V of HSV), and with it everything that light and shade draw.

@@ -374,7 +374,7 @@ TEST(Painting, AirKeepsTheValue)
     EXPECT_EQ(glsl::geofx_airAmount(0.0, 0.7), 0.0);
     EXPECT_EQ(glsl::geofx_airAmount(1.0, 0.7), 0.7);
     EXPECT_EQ(glsl::geofx_airAmount(9.0, 0.7), 0.7);
-    EXPECT_NEAR(glsl::geofx_airAmount(0.5, 0.8), 0.1, 1e-12);
+    EXPECT_NEAR(glsl::geofx_airAmount(0.5, 0.8), 0.2, 1e-12);
 }
 
 TEST(Painting, NothingSpreadsThatIsNotANumber)
