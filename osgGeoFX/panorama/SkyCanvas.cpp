@@ -28,32 +28,34 @@ Color cloudColor(float light)
 /// A range of distance: how large its clouds are, in heights of the strip, and how much haze lies before them.
 struct Range
 {
-    double spacing;
+    double spacing; // of banks
+    int clouds;     // of a bank, at most
     double baseLow, baseHigh;
     double heightLow, heightHigh;
     float stretch; // width over height
     float haze;
 };
 constexpr Range ranges[] = {
-    {0.42, 0.035, 0.08, 0.03, 0.07, 10.0f, 0.62f},
-    {0.80, 0.09, 0.16, 0.08, 0.15, 6.0f, 0.40f},
-    {1.60, 0.19, 0.28, 0.16, 0.29, 4.4f, 0.18f},
-    {3.60, 0.30, 0.40, 0.36, 0.50, 3.2f, 0.04f},
+    {0.42, 1, 0.035, 0.08, 0.03, 0.07, 10.0f, 0.62f},
+    {1.30, 3, 0.09, 0.16, 0.09, 0.16, 5.0f, 0.40f},
+    {2.60, 3, 0.18, 0.27, 0.17, 0.30, 3.6f, 0.18f},
+    {5.00, 4, 0.28, 0.36, 0.38, 0.56, 2.7f, 0.04f},
 };
 
-/// What one range of clouds is modelled in before it is painted.
+/// What one range of clouds is modelled in before it is painted; all in pixels.
 struct Model
 {
     Model(int width, int height)
-        : bulge(width, height), base(width, height), top(width, height), warpX(width, height),
-          warpY(width, height)
+        : bulge(width, height), base(width, height), top(width, height), fray(width, height)
     {
     }
-    SkyStrip<float> bulge; // how far it stands out towards the viewer, pixels; 0 where there is none
-    SkyStrip<float> base;  // of the cloud that is seen here, pixels
+    SkyStrip<float> bulge; // how far a cloud stands out towards the viewer; 0 where there is none
+    SkyStrip<float> base;  // of the cloud that is seen here
     SkyStrip<float> top;
-    SkyStrip<float> warpX; // what frays the outlines, pixels
-    SkyStrip<float> warpY;
+    SkyStrip<float> fray; // what frays the outlines, along x
+
+    /// The same noise serves along y, from elsewhere.
+    float frayY(int x, int y) const { return fray.at(x + fray.width() / 3, fray.height() - 1 - y); }
 };
 
 /// A ball of vapour, in pixels.
@@ -71,8 +73,8 @@ void addPuff(Model& model, const Puff& puff, double base, double top)
         for (int x = static_cast<int>(std::floor(puff.x - reach)); x <= puff.x + reach; ++x)
         {
             const double scale = 0.35 + 5.0 * puff.radius / model.bulge.height();
-            const double dx = x - puff.x + scale * static_cast<double>(model.warpX.at(x, y));
-            const double dy = y - puff.y + scale * static_cast<double>(model.warpY.at(x, y));
+            const double dx = x - puff.x + scale * static_cast<double>(model.fray.at(x, y));
+            const double dy = y - puff.y + scale * static_cast<double>(model.frayY(x, y));
             const double inside = puff.radius * puff.radius - dx * dx - dy * dy;
             if (inside <= 0.0) continue;
             const auto bulge = static_cast<float>(puff.depth + std::sqrt(inside));
@@ -163,11 +165,20 @@ void paintRange(SkyCanvas& canvas, Model& model, const Range& range, paint::Sequ
     const double step = static_cast<double>(canvas.width()) / count;
     for (int i = 0; i < count; ++i)
     {
-        const double place = (i + random.uniform(0.1, 0.9)) * step;
-        const double height = unit * random.uniform(range.heightLow, range.heightHigh);
-        const double width = height * static_cast<double>(range.stretch) * random.uniform(0.75, 1.25);
+        double place = (i + random.uniform(0.1, 0.9)) * step;
         const double base = unit * random.uniform(range.baseLow, range.baseHigh);
-        addCloud(model, random, place, base, width, height);
+        const int clouds = 1 + static_cast<int>(random.uniform() * range.clouds);
+        const int tallest = static_cast<int>(random.uniform() * clouds);
+        for (int j = 0; j < clouds; ++j)
+        {
+            const double tall = random.uniform(range.heightLow, range.heightHigh);
+            const double height = unit * tall * (j == tallest ? 1.0 : random.uniform(0.35, 0.72));
+            const double width = height * static_cast<double>(range.stretch) * random.uniform(0.8, 1.3);
+            place += 0.32 * width;
+            addCloud(model, random, place, base + 0.04 * unit * range.heightHigh * random.uniform(), width,
+                     height);
+            place += random.uniform(0.25, 0.5) * width;
+        }
     }
     const double fade = 0.010 * unit + 0.05 * unit * range.heightHigh;
     for (int y = 0; y < canvas.height(); ++y)
@@ -176,11 +187,9 @@ void paintRange(SkyCanvas& canvas, Model& model, const Range& range, paint::Sequ
         {
             const float bulge = model.bulge.at(x, y);
             if (bulge <= 0.0f) continue;
-            const auto base = static_cast<double>(model.base.at(x, y) + 0.25f * model.warpY.at(x, y));
+            const auto base = static_cast<double>(model.base.at(x, y) + 0.25f * model.frayY(x, y));
             const double floor = paint::ease(y, base - 0.2 * fade, base + fade);
-            const double cover =
-                paint::ease(static_cast<double>(bulge), 0.0, 0.05 * unit * range.heightHigh + 1.0) * floor;
-            if (cover <= 0.0) continue;
+            if (floor <= 0.0) continue;
             // Of the masses and of what stands out from them.
             const float lambert =
                 0.45f * lambertAt(model, x, y, static_cast<int>(0.10 * unit * range.heightHigh + 1.0)) +
@@ -189,33 +198,59 @@ void paintRange(SkyCanvas& canvas, Model& model, const Range& range, paint::Sequ
                 (y - base) / std::max(1.0, static_cast<double>(model.top.at(x, y)) - base), 0.0, 1.0));
             const float light = 0.27f + 0.76f * lambert + 0.34f * (rise - 0.4f);
             const Color color = glm::mix(cloudColor(light), haze, range.haze);
+            // The sunlit edge is sharp, the other dissolves.
+            const double soft = (0.05 + 0.12 * paint::ease(static_cast<double>(-lambert), -0.4, 0.5)) * unit *
+                                    range.heightHigh +
+                                1.0;
+            const double cover = paint::ease(static_cast<double>(bulge), 0.0, soft) * floor;
             Color& pixel = canvas.at(x, y);
-            pixel = glm::mix(pixel, color, static_cast<float>(cover) * 0.97f);
+            pixel = glm::mix(pixel, color, 0.97f * static_cast<float>(cover));
         }
     }
 }
 
-/// Ice clouds, drawn out by the wind.
-void paintWisps(SkyCanvas& canvas, std::uint32_t seed)
+/// Clouds without bodies, drawn out by the wind. Heights are in those of the strip.
+struct Streaks
+{
+    double low, lowFull, highFull, high; // between the full ones they are strongest
+    double patches;                      // in a strip's height, along x
+    double alongX, alongY;               // strokes in a strip's height
+    double strength;
+    Color color;
+};
+const Streaks veils = {0.02, 0.10, 0.26, 0.62, 0.45, 1.3, 7.0, 0.60, {0.900f, 0.885f, 0.925f}};
+const Streaks thinVeils = {0.05, 0.14, 0.24, 0.50, 0.60, 1.6, 9.0, 0.50, {0.945f, 0.920f, 0.930f}};
+const Streaks wisps = {0.42, 0.66, 0.86, 1.30, 0.50, 2.0, 16.0, 0.62, {0.955f, 0.945f, 0.955f}};
+
+void paintStreaks(SkyCanvas& canvas, const Streaks& streaks, std::uint32_t seed)
 {
     const double unit = canvas.height();
-    const int turn = std::max(1, static_cast<int>(std::lround(canvas.width() / unit)));
+    const double turn = canvas.width() / unit;
+    const auto cells = [&](double each)
+    {
+        return std::max(1, static_cast<int>(std::lround(each * turn)));
+    };
+    const int patches = cells(streaks.patches);
+    const int waves = cells(1.0);
+    const int strokes = cells(streaks.alongX);
     for (int y = 0; y < canvas.height(); ++y)
     {
         const double v = y / unit;
-        const double band = paint::ease(v, 0.42, 0.66) * (1.0 - 0.75 * paint::ease(v, 0.86, 1.05));
+        const double band = paint::ease(v, streaks.low, streaks.lowFull) *
+                            (1.0 - paint::ease(v, streaks.highFull, streaks.high));
         if (band <= 0.0) continue;
         for (int x = 0; x < canvas.width(); ++x)
         {
-            const double u = static_cast<double>(x) / canvas.width() * turn;
+            const double u = static_cast<double>(x) / canvas.width();
             const double where =
-                paint::ease(paint::noise(0.5 * u, 2.0 * v, std::max(1, turn / 2), 64, seed + 7), -0.1, 0.6);
+                paint::ease(paint::noise(patches * u, 2.0 * v, patches, 64, seed), -0.15, 0.55);
             if (where <= 0.0) continue;
-            const double lean = v + 0.10 * paint::noise(u, 1.5 * v, turn, 64, seed + 8);
-            const double streak = paint::cloudy(2.0 * u, 16.0 * lean, 2 * turn, 4096, 4, seed + 9);
-            const double cover = 0.62 * band * where * paint::ease(streak, -0.12, 0.62);
+            const double lean = v + 0.10 * paint::noise(waves * u, 1.5 * v, waves, 64, seed + 1);
+            const double streak =
+                paint::cloudy(strokes * u, streaks.alongY * lean, strokes, 4096, 4, seed + 2);
+            const double cover = streaks.strength * band * where * paint::ease(streak, -0.15, 0.6);
             Color& pixel = canvas.at(x, y);
-            pixel = glm::mix(pixel, Color(0.955f, 0.945f, 0.955f), static_cast<float>(cover));
+            pixel = glm::mix(pixel, streaks.color, static_cast<float>(cover));
         }
     }
 }
@@ -229,7 +264,8 @@ float luminance(const Color& color)
 
 void paintClouds(SkyCanvas& canvas, std::uint32_t seed, const Color& haze)
 {
-    paintWisps(canvas, seed);
+    paintStreaks(canvas, wisps, seed + 7);
+    paintStreaks(canvas, veils, seed + 11);
     Model model(canvas.width(), canvas.height());
     const double cell = 0.11 * canvas.height();
     const int cells = std::max(1, static_cast<int>(std::lround(canvas.width() / cell)));
@@ -239,16 +275,16 @@ void paintClouds(SkyCanvas& canvas, std::uint32_t seed, const Color& haze)
         {
             const double u = static_cast<double>(x) / canvas.width() * cells;
             const double v = y / cell;
-            const double strength = 0.055 * canvas.height();
-            model.warpX.at(x, y) =
-                static_cast<float>(strength * paint::cloudy(u, v, cells, 4096, 4, seed + 21));
-            model.warpY.at(x, y) =
-                static_cast<float>(strength * paint::cloudy(u, v, cells, 4096, 4, seed + 31));
+            model.fray.at(x, y) =
+                static_cast<float>(0.055 * canvas.height() * paint::cloudy(u, v, cells, 4096, 4, seed + 21));
         }
     }
     paint::Sequence random(seed + 41);
     for (const Range& range : ranges)
+    {
         paintRange(canvas, model, range, random, haze);
+        if (&range == &ranges[1]) paintStreaks(canvas, thinVeils, seed + 15);
+    }
 }
 
 void paintInStrokes(SkyCanvas& canvas, std::uint32_t seed)
