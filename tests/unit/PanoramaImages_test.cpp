@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <osg/Image>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -42,7 +43,7 @@ double step(const osg::Image& image, int channel, int x, bool upwards)
     return sum / along;
 }
 
-/// The seam must not differ from the other columns: as many of them are rougher as by chance.
+/// The seam must not differ from the other columns more than they do from each other.
 void expectNoSeam(const osg::Image& image, int channel, bool upwards)
 {
     const int across = upwards ? image.t() : image.s();

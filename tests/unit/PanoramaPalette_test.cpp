@@ -175,15 +175,15 @@ TEST(PanoramaPalette, ImagesOfOtherSizesAreResampled)
 
 TEST(PanoramaPalette, ColumnsOfWideImagesAreAveraged)
 {
-    const osg::ref_ptr<osg::Image> stripes = grey(512, 8);
+    const osg::ref_ptr<osg::Image> stripes = grey(1024, 8);
     for (int y = 0; y < 8; ++y)
-        for (int x = 0; x < 512; x += 2)
+        for (int x = 0; x < 1024; x += 4)
             *stripes->data(x, y) = 200;
     std::string error;
     const osg::ref_ptr<osg::Image> palette = paletteFromImage(*stripes, error);
     ASSERT_TRUE(palette) << error;
     for (int column = 0; column < columns; ++column)
-        ASSERT_EQ(palette->data(column, 3)[0], 100) << column;
+        ASSERT_EQ(palette->data(column, 3)[0], 50) << column;
 }
 
 TEST(PanoramaPalette, TheTemplateIsTheKitsOwn)
