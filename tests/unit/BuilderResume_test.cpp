@@ -235,7 +235,7 @@ TEST_F(BuilderResume, KilledInTheMidstOfAFile)
     build("whole");
     const auto whole = contents(_folder / "whole");
     bool inTiles = false;
-    for (const int blocks : {20, 60, 150, 200, 300})
+    for (const int blocks : {20, 60, 150, 300, 420, 500})
     {
         const std::string name = "db" + std::to_string(blocks);
         std::vector<std::string> limited{"sh", "-c", "ulimit -f " + std::to_string(blocks) + "; exec \"$@\"",
