@@ -54,7 +54,7 @@ protected:
         BuildOptions result;
         result.dems = {write("dem.tif", height, GDT_Float32)};
         result.epsg = 32604;
-        result.tileSize = 16;
+        result.tileSize = 8; // several units, so that their borders are seen
         result.output = (_folder / "db").string();
         return result;
     }
@@ -101,16 +101,18 @@ TEST_F(DatabaseCover, ClassesAtTheirPlaces)
     auto o = options(hills);
     addLandCover(o);
     buildDatabase(o);
-    for (const int above : {0, 1})
+    ASSERT_EQ(DatabaseRoot(o.output).finestLevel(), 4);
+    for (const int above : {0, 1, 3, 4}) // the coarsest two are of the upper tier
         forTexels(
             o.output,
             [&](const Texel& texel)
             {
-                // A class is drawn with a B-spline, two pixels wide; half as many pixels above.
-                const double margin = 2.6 * (1 + above);
+                // A class is drawn with a B-spline, two pixels wide; above it is smoothed.
+                const double margin = above < 3 ? 2.6 : 6.0;
                 const double toBorder =
                     std::min(std::abs(texel.column - 40.0), std::abs(texel.column - 70.0));
-                ASSERT_NEAR(texel.shore, codeOf(CELL * (40.0 - texel.column)), 1.01) << texel.column;
+                ASSERT_NEAR(texel.shore, codeOf(CELL * (40.0 - texel.column)), above < 3 ? 1.01 : 3.0)
+                    << texel.column;
                 if (toBorder < margin || std::abs(texel.row - 60.0) < margin) return;
                 const bool sea = texel.column < 40.0, known = sea || texel.row < 60.0,
                            wood = texel.column < 70.0;
@@ -180,6 +182,28 @@ TEST_F(DatabaseCover, PlacesWithoutAClassGoByTheirHeights)
     EXPECT_GT(bay, 100);
 }
 
+TEST_F(DatabaseCover, WoodsStandOnSlopes)
+{
+    for (const double slope : {0.0, 0.1, 0.4, 0.9})
+    {
+        auto o =
+            options([&](int column, int row) { return 100.0 + CELL * slope * (0.6 * column + 0.8 * row); });
+        o.treeLine = 20000.0;
+        buildDatabase(o);
+        const auto likely = glsl::geofx_likelyCover(100.0, slope, 20000.0);
+        forTexels(o.output,
+                  [&](const Texel& texel)
+                  {
+                      if (std::min(texel.column, COLUMNS - texel.column) < 2.0 ||
+                          std::min(texel.row, ROWS - texel.row) < 2.0)
+                          return;
+                      ASSERT_NEAR(texel.trees, 255.0 * likely.trees, 1.0) << slope;
+                      ASSERT_EQ(texel.bare, 0);
+                      ASSERT_LT(texel.shore, 4) << "no shore is near";
+                  });
+    }
+}
+
 TEST_F(DatabaseCover, SeaAndLakesOfHeightsAlone)
 {
     const auto fromLake = [](double column, double row)
@@ -225,7 +249,7 @@ TEST_F(DatabaseCover, OnAGlobeDistancesAreMetres)
                   .crs("EPSG:4326")
                   .fill([](int column, int, int) { return column < 60 ? 0.0 : 5.0; })
                   .write(_folder / "dem.tif")};
-    o.tileSize = 16;
+    o.tileSize = 8; // several units, so that their borders are seen
     o.output = (_folder / "db").string();
     buildDatabase(o);
     forEachTexel(o.output, DatabaseRoot(o.output).finestLevel(), COVER_UNIT,

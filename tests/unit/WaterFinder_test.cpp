@@ -102,6 +102,25 @@ TEST(WaterFinder, LakesOfAnyShape)
                 << column << " " << row;
 }
 
+TEST(WaterFinder, ArmsThatMeetLate)
+{
+    // Two arms, each with a bay that ends before they meet.
+    const auto inLake = [](int column, int row)
+    {
+        if (row < 3 || row > 20 || column < 5 || column > 25) return false;
+        const int arm = std::min(std::abs(column - 5), std::abs(column - 25));
+        return arm == 0 || row >= 19 || (arm == 1 && row == 5) || (arm == 2 && row >= 5 && row <= 9);
+    };
+    const auto ground = found(Heights(
+        30, 30,
+        [&](int column, int row) { return inLake(column, row) ? 7.25 : 9.0 + 0.01 * column + 0.5 * row; }));
+    for (int row = 0; row < 30; ++row)
+        for (int column = 0; column < 30; ++column)
+            EXPECT_EQ(ground[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)],
+                      inLake(column, row) ? Ground::LAKE : Ground::LAND)
+                << column << " " << row;
+}
+
 TEST(WaterFinder, TheSeaReachesTheBorder)
 {
     const auto ground = found(
@@ -123,6 +142,13 @@ TEST(WaterFinder, NoDataBesideLowLandIsTheSea)
     };
     EXPECT_EQ(count(found(bay(0.3)), Ground::SEA), 5 * 30);
     EXPECT_EQ(count(found(bay(20.0)), Ground::SEA), 0);
+    const Heights mostlyHigh(40, 30,
+                             [](int column, int row)
+                             {
+                                 if (column < 5) return static_cast<double>(HOLE);
+                                 return (row < 6 ? 0.3 : 20.0) + 2.0 * (column - 5) + 0.01 * row;
+                             });
+    EXPECT_EQ(count(found(mostlyHigh), Ground::SEA), 0);
     EXPECT_EQ(count(found(Heights(9, 9, [](int, int) { return HOLE; })), Ground::SEA), 0);
 }
 
