@@ -27,7 +27,7 @@ std::string tableFile(const std::string& file)
 {
     const BakedLegend* legend = findLegend(file);
     if (!legend) return file;
-    const std::string path = "/vsimem/osgGeoFX/legends/" + file + ".csv";
+    std::string path = "/vsimem/osgGeoFX/legends/" + file + ".csv";
     static std::mutex mutex;
     const std::lock_guard<std::mutex> lock(mutex);
     VSIStatBufL status;
