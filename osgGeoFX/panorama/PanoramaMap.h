@@ -98,13 +98,13 @@ public:
     /// Where woods end if the tiles do not tell what grows, metres; −1, the default, takes it from the latitude.
     bool setTreeLine(double metres) { return assign("treeLine", metres); }
     double getTreeLine() const { return _treeLine; }
-    /// Steeper ground is rock, rise over run; 0.05…10, 0.8 by default.
+    /// Steeper ground is rock, rise over run; 0.05…10, 0.85 by default.
     bool setCliffSlope(double slope) { return assign("cliffSlope", slope); }
     double getCliffSlope() const { return _cliffSlope; }
-    /// Ground less steep is field, rise over run; 0.005…10, 0.12 by default.
+    /// Ground less steep is field, rise over run; 0.005…10, 0.18 by default.
     bool setHillSlope(double slope) { return assign("hillSlope", slope); }
     double getHillSlope() const { return _hillSlope; }
-    /// By how much slopes are lit as steeper than they are; 0.1…20, 2.5 by default.
+    /// By how much slopes are lit as steeper than they are; 0.1…20, 2.2 by default.
     bool setRelief(double factor) { return assign("relief", factor); }
     double getRelief() const { return _relief; }
     /// How much brush strokes turn the ground's normals; 0…2, 0.35 by default.
@@ -123,7 +123,7 @@ public:
     /// Whether the scene's light 0 shines instead; false by default.
     bool setSceneLight(bool on) { return assign("sceneLight", on ? 1.0 : 0.0); }
     bool getSceneLight() const { return _sceneLight; }
-    /// How much of the air's blue the horizon has; 0…1, 0.75 by default.
+    /// How much of the air's blue the horizon has; 0…1, 0.8 by default.
     bool setAtmosphere(double strength) { return assign("atmosphere", strength); }
     double getAtmosphere() const { return _atmosphere; }
     /// The colours of classes from light to shade, as makePalette() describes; null, the default, for the kit's own.
@@ -138,11 +138,11 @@ public:
     /// Whether water is painted as such; true by default.
     bool setWater(bool on) { return assign("water", on ? 1.0 : 0.0); }
     bool getWater() const { return _water; }
-    /// From where on water is deep, metres from the shore (metres of depth over 0.02 where depths are known); 1…1e6, 3000 by
+    /// From where on water is deep, metres from the shore (metres of depth over 0.02 where depths are known); 1…1e6, 2200 by
     /// default.
     bool setDeepShore(double metres) { return assign("deepShore", metres); }
     double getDeepShore() const { return _deepShore; }
-    /// How much of the terrain and the sky the water shows; 0…1, 0.6 by default.
+    /// How much of the terrain and the sky the water shows; 0…1, 0.5 by default.
     bool setReflection(double strength) { return assign("reflection", strength); }
     double getReflection() const { return _reflection; }
     /// How far ripples move reflections; 0…10, 1 by default.
@@ -167,10 +167,10 @@ public:
     /// Whether trees, cliffs and houses are painted as strokes; true by default.
     bool setStrokes(bool on) { return assign("strokes", on ? 1.0 : 0.0); }
     bool getStrokes() const { return _strokes; }
-    /// How high a tree is painted, pixels; 1…200, 9 by default.
+    /// How high a tree is painted, pixels; 1…200, 5 by default.
     bool setStrokeSize(double pixels) { return assign("strokeSize", pixels); }
     double getStrokeSize() const { return _strokeSize; }
-    /// How far trees stand apart on the screen, pixels; 1…200, 6.5 by default.
+    /// How far trees stand apart on the screen, pixels; 1…200, 4.2 by default.
     bool setStrokeSpacing(double pixels) { return assign("strokeSpacing", pixels); }
     double getStrokeSpacing() const { return _strokeSpacing; }
     /// How far they stand apart on the ground at least, metres; 1…10 000, 25 by default. Each tile's are made anew when it changes.
@@ -223,24 +223,24 @@ private:
     double _snowLine = -1.0;
     double _snowWidth = 500.0;
     double _treeLine = -1.0;
-    double _cliffSlope = 0.8;
-    double _hillSlope = 0.12;
-    double _relief = 2.5;
+    double _cliffSlope = 0.85;
+    double _hillSlope = 0.18;
+    double _relief = 2.2;
     double _brush = 0.35;
     double _bottomShade = 0.3;
     double _lightAzimuth = -osg::PI / 3.0;
     double _lightElevation = 32.0 * osg::PI / 180.0;
     bool _sceneLight = false;
-    double _atmosphere = 0.75;
+    double _atmosphere = 0.8;
     bool _water = true;
-    double _deepShore = 3000.0;
-    double _reflection = 0.6;
+    double _deepShore = 2200.0;
+    double _reflection = 0.5;
     double _ripples = 1.0;
     bool _sky = true;
     int _clouds = 1;
     bool _strokes = true;
-    double _strokeSize = 9.0;
-    double _strokeSpacing = 6.5;
+    double _strokeSize = 5.0;
+    double _strokeSpacing = 4.2;
     double _strokeStep = 25.0;
     int _coverUnit = 7;
     int _firstUnit = 4;

@@ -65,7 +65,7 @@ GEOFX_INLINE geofx_StrokeShape geofx_strokeShape(int kind, Number seed)
     Number slim = geofx_strokeRandom(seed, Number(2));
     Number turn = geofx_strokeRandom(seed, Number(3)) - Number(0.5);
     geofx_StrokeShape shape;
-    shape.tone = Number(0.44) * (geofx_strokeRandom(seed, Number(4)) - Number(0.5));
+    shape.tone = Number(0.36) * (geofx_strokeRandom(seed, Number(4)) - Number(0.5));
     if (kind == GEOFX_STROKE_CLIFF)
     {
         shape.size = Vector2(Number(0.24) + Number(0.12) * slim, size * (Number(0.8) + Number(0.6) * slim));
@@ -74,7 +74,7 @@ GEOFX_INLINE geofx_StrokeShape geofx_strokeShape(int kind, Number seed)
     }
     else if (kind == GEOFX_STROKE_HOUSE)
     {
-        shape.size = Vector2(size * (Number(0.4) + Number(0.12) * slim), size * Number(0.42));
+        shape.size = Vector2(size * (Number(0.34) + Number(0.1) * slim), size * Number(0.34));
         shape.lean = Number(0.05) * turn;
     }
     else

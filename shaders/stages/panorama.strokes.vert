@@ -77,13 +77,13 @@ void main()
     {
         // Walls in the town's colour, roofs of tiles or slate.
         SLOT_lightTone_in = mix(SLOT_tone(6, light), vec3(1.0), 0.25);
-        vec3 roof = geofx_strokeRandom(seed, 5.0) < 0.7 ? vec3(0.72, 0.26, 0.18) : vec3(0.45, 0.45, 0.52);
+        vec3 roof = geofx_strokeRandom(seed, 5.0) < 0.7 ? vec3(0.80, 0.42, 0.30) : vec3(0.58, 0.56, 0.60);
         SLOT_darkTone_in = roof * (0.75 + 0.3 * light);
     }
     else
     {
         int row = kind == GEOFX_STROKE_CLIFF ? 2 : 5;
-        float contrast = kind == GEOFX_STROKE_CLIFF ? 0.4 : 0.36;
+        float contrast = kind == GEOFX_STROKE_CLIFF ? 0.35 : 0.24;
         SLOT_lightTone_in = SLOT_tone(row, light + contrast);
         SLOT_darkTone_in = SLOT_tone(row, light - contrast);
     }

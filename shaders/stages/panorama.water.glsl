@@ -4,8 +4,8 @@
 // The water of panorama maps, after Section 3.4 of Brown and Samavati (2017): on the ground, and where there is none.
 #include "lib/painting.glsl"
 
-const vec3 geofx_deepWater = vec3(0.045, 0.25, 0.52);
-const vec3 geofx_shallowWater = vec3(0.12, 0.62, 0.70);
+const vec3 geofx_deepWater = vec3(0.07, 0.32, 0.60);
+const vec3 geofx_shallowWater = vec3(0.05, 0.58, 0.68);
 
 // A place of the water.
 struct geofx_WaterPlace
@@ -21,7 +21,8 @@ struct geofx_WaterPlace
 // The water's own colour by its depth.
 vec3 geofx_waterBody(float shore, float deepShore)
 {
-    float t = geofx_waterDepth(shore + 0.1 * deepShore, deepShore);
+    // Not white at once: rivers and ponds are pale blue.
+    float t = mix(0.16, 1.0, geofx_waterDepth(shore, deepShore));
     return geofx_waterColour(mix(geofx_shallowWater, geofx_deepWater, t), t);
 }
 
@@ -40,7 +41,7 @@ vec3 geofx_water(geofx_WaterPlace place, vec4 water, float seconds, sampler2D br
     {
         // A soft brush, drawn downwards; what stands before the water is not in it.
         float step = float(i) - 2.0;
-        vec2 offset = vec2(0.0025 * (step * step - 2.0), 0.007 * step) * (1.0 - 0.4 * place.far);
+        vec2 offset = vec2(0.003 * (step * step - 2.0), 0.009 * step) * (1.0 - 0.4 * place.far);
         vec4 texel = texture(mirror, clamp(at + offset, vec2(0.002), vec2(0.998)));
         float weight = (3.0 - abs(step)) * (texel.a + 0.01 >= place.s ? 1.0 : 0.02);
         seen += weight * texel.rgb;
