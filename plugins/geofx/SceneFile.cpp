@@ -102,13 +102,21 @@ private:
         {
             if (node->type != XML_ELEMENT_NODE) continue;
             const osg::ref_ptr<Effect> effect = createEffect(reinterpret_cast<const char*>(node->name));
-            _xml.set(*effect, node);
+            _xml.set(*effect, node, {"palette", "skyImage"});
             scene.effects.push_back(effect);
             if (auto* mappings = dynamic_cast<ProjectiveMappings*>(effect.get()))
                 scene.mappings.push_back(readMappings(_xml, node, *mappings));
             if (auto* closeUps = dynamic_cast<CloseUps*>(effect.get()))
                 scene.closeUps.push_back(readCloseUps(_xml, node, *closeUps));
+            if (auto* map = dynamic_cast<PanoramaMap*>(effect.get()))
+                scene.panoramas.push_back({map, pathIfAny(node, "palette"), pathIfAny(node, "skyImage")});
         }
+    }
+
+    std::optional<ScenePath> pathIfAny(xmlNode* node, const char* attribute) const
+    {
+        if (attributeOf(node, attribute).empty()) return std::nullopt;
+        return _xml.path(node, attribute);
     }
 
     const SceneXml& _xml;
@@ -182,6 +190,11 @@ std::vector<std::string> missingFiles(const SceneFile& scene)
         {
             if (closeUp.image) paths.push_back(*closeUp.image);
         }
+    }
+    for (const ScenePanorama& panorama : scene.panoramas)
+    {
+        if (panorama.palette) paths.push_back(*panorama.palette);
+        if (panorama.skyImage) paths.push_back(*panorama.skyImage);
     }
     std::vector<std::string> errors;
     for (const ScenePath& path : paths)

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 
 #include <osg/ref_ptr>
 
@@ -182,6 +183,13 @@ struct SceneCloseUps
     std::vector<SceneCloseUp> closeUps; ///< as many as the effect has, in the same order
 };
 
+/// A panorama map, and the pictures that it has of its own.
+struct ScenePanorama
+{
+    osg::ref_ptr<PanoramaMap> effect;
+    std::optional<ScenePath> palette, skyImage;
+};
+
 /** What a .geofx file says; data/geofx.xsd has the meaning, range and default of everything.
 
     All functions may be called from any thread. The effects belong to whoever has the value. */
@@ -197,6 +205,7 @@ struct SceneFile
     std::vector<osg::ref_ptr<Effect>> effects; ///< in their order
     std::vector<SceneMappings> mappings;       ///< of the effects among them that have mappings
     std::vector<SceneCloseUps> closeUps;       ///< of the effects among them that have close-ups
+    std::vector<ScenePanorama> panoramas;      ///< of the effects among them that are panorama maps
 };
 
 /// A scene, or else at least one sentence of the form `FILE:LINE: <element>: what was expected`.

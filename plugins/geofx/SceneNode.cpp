@@ -4,6 +4,7 @@
 
 #include "CloseUpsLoader.h"
 #include "MappingsLoader.h"
+#include "PanoramasLoader.h"
 
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
@@ -123,6 +124,7 @@ bool loadEffects(const SceneFile& scene, const EffectScene& node, const osg::Nod
         SceneTerrain ground(node, terrain);
         loadMappings(scene, ground);
         loadCloseUps(scene, ground);
+        loadPanoramas(scene);
         return true;
     }
     catch (const SceneFailure& failure)

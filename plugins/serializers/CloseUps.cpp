@@ -105,7 +105,7 @@ bool writeOutline(osgDB::OutputStream& stream, const RegionOfInterest& region)
 void addOutlineAndImage(osgDB::ObjectWrapper& wrapper)
 {
     addOwn<RegionOfInterest>(wrapper, "Outline", &hasOutline, &readOutline, &writeOutline);
-    addImage<RegionOfInterest>(wrapper);
+    addImage<RegionOfInterest, &RegionOfInterest::getImage, &RegionOfInterest::setImage>(wrapper, "Image");
 }
 
 // In the order of SurfaceData::Kind.

@@ -6,6 +6,7 @@
 
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 
 namespace osgGeoFX
 {
@@ -32,6 +33,13 @@ void addViews(osgDB::ObjectWrapper& wrapper)
                                                                                       "PedestrianView");
 }
 
+void addImages(osgDB::ObjectWrapper& wrapper)
+{
+    using Self = PanoramaMap;
+    addImage<Self, &Self::getPalette, &Self::setPalette>(wrapper, "Palette");
+    addImage<Self, &Self::getSkyImage, &Self::setSkyImage>(wrapper, "SkyImage");
+}
+
 const std::string effect = "osg::Object osgGeoFX::Effect";
 const std::string deformation = effect + " osgGeoFX::Deformation";
 const std::string bend = deformation + " osgGeoFX::PerspectiveBend";
@@ -44,6 +52,8 @@ const Wrapper<PedestrianView> pedestrianView("osgGeoFX::PedestrianView", bend + 
 const Wrapper<BlendedView, addViews> blendedView("osgGeoFX::BlendedView", bend + " osgGeoFX::BlendedView");
 const Wrapper<VerticalExaggeration> verticalExaggeration("osgGeoFX::VerticalExaggeration",
                                                          deformation + " osgGeoFX::VerticalExaggeration");
+const Wrapper<PanoramaMap, addImages> panoramaMap("osgGeoFX::PanoramaMap",
+                                                  deformation + " osgGeoFX::PanoramaMap");
 
 } // namespace
 

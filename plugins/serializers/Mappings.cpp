@@ -17,6 +17,11 @@ namespace osgGeoFX
 namespace
 {
 
+void addPicture(osgDB::ObjectWrapper& wrapper)
+{
+    addImage<DataLayer, &DataLayer::getImage, &DataLayer::setImage>(wrapper, "Image");
+}
+
 void addMappingParts(osgDB::ObjectWrapper& wrapper)
 {
     using Self = ProjectiveMapping;
@@ -110,8 +115,7 @@ private:
 };
 
 const TableWrapper tableWrapper;
-const Wrapper<DataLayer, addImage<DataLayer>> layerWrapper("osgGeoFX::DataLayer",
-                                                           "osg::Object osgGeoFX::DataLayer");
+const Wrapper<DataLayer, addPicture> layerWrapper("osgGeoFX::DataLayer", "osg::Object osgGeoFX::DataLayer");
 const Wrapper<ColorTransfer> transferWrapper("osgGeoFX::ColorTransfer",
                                              "osg::Object osgGeoFX::ColorTransfer");
 const Wrapper<ProjectiveMapping, addMappingParts> mappingWrapper("osgGeoFX::ProjectiveMapping",

@@ -99,24 +99,24 @@ void addParts(osgDB::ObjectWrapper& wrapper, const char* name)
         });
 }
 
-/// An object's image, if it has one.
-template<typename Owner>
-void addImage(osgDB::ObjectWrapper& wrapper)
+/// An image that an object has or has not.
+template<typename Owner, const osg::Image* (Owner::*Get)() const, auto Set>
+void addImage(osgDB::ObjectWrapper& wrapper, const char* name)
 {
     addOwn<Owner>(
-        wrapper, "Image", [](const Owner& owner) { return owner.getImage() != nullptr; },
+        wrapper, name, [](const Owner& owner) { return (owner.*Get)() != nullptr; },
         [](osgDB::InputStream& stream, Owner& owner)
         {
             stream >> stream.BEGIN_BRACKET;
             const osg::ref_ptr<osg::Image> image = stream.readImage();
             stream >> stream.END_BRACKET;
-            owner.setImage(image);
+            (owner.*Set)(image);
             return true;
         },
         [](osgDB::OutputStream& stream, const Owner& owner)
         {
             stream << stream.BEGIN_BRACKET << std::endl;
-            stream.writeImage(owner.getImage());
+            stream.writeImage((owner.*Get)());
             stream << stream.END_BRACKET << std::endl;
             return true;
         });

@@ -105,7 +105,8 @@ TEST_F(EffectKeysTest, TurnTheMainPropertyOfEachKind)
         {"birdsEyeView", {"horizonLine", 0.87}},
         {"pedestrianView", {"bendAngle", 1.0471975511965976 + 0.05}},
         {"blendedView", {"highHeight", 1725.0}},
-        {"verticalExaggeration", {"factor", 1.15}}};
+        {"verticalExaggeration", {"factor", 1.15}},
+        {"panoramaMap", {"exaggeration", 2.3}}};
     for (const auto& [kind, turned] : expected)
     {
         SCOPED_TRACE(kind);

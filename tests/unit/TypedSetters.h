@@ -8,6 +8,7 @@
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <unit/TypedSetter.h>
 
 namespace geofx::test
@@ -361,6 +362,50 @@ inline TypedSetters surfaceSetters()
     };
 }
 
+inline TypedSetters panoramaSetters()
+{
+    using Self = osgGeoFX::PanoramaMap;
+    return {
+        {"enabled", typed(&osgGeoFX::Effect::setEnabled, &osgGeoFX::Effect::getEnabled)},
+        {"projection", typed(&Self::setProjection, &Self::getProjection)},
+        {"viewRadius", typed(&Self::setViewRadius, &Self::getViewRadius)},
+        {"horizonLine", typed(&Self::setHorizonLine, &Self::getHorizonLine)},
+        {"curveDistance", typed(&Self::setCurveDistance, &Self::getCurveDistance)},
+        {"horizonDistance", typed(&Self::setHorizonDistance, &Self::getHorizonDistance)},
+        {"horizonBend", typed(&Self::setHorizonBend, &Self::getHorizonBend)},
+        {"exaggeration", typed(&Self::setExaggeration, &Self::getExaggeration)},
+        {"baseHeight", typed(&Self::setBaseHeight, &Self::getBaseHeight)},
+        {"baseFromTerrain", typed(&Self::setBaseFromTerrain, &Self::getBaseFromTerrain)},
+        {"detail", typed(&Self::setDetail, &Self::getDetail)},
+        {"paint", typed(&Self::setPaint, &Self::getPaint)},
+        {"season", typed(&Self::setSeason, &Self::getSeason)},
+        {"snowLine", typed(&Self::setSnowLine, &Self::getSnowLine)},
+        {"snowWidth", typed(&Self::setSnowWidth, &Self::getSnowWidth)},
+        {"treeLine", typed(&Self::setTreeLine, &Self::getTreeLine)},
+        {"cliffSlope", typed(&Self::setCliffSlope, &Self::getCliffSlope)},
+        {"hillSlope", typed(&Self::setHillSlope, &Self::getHillSlope)},
+        {"relief", typed(&Self::setRelief, &Self::getRelief)},
+        {"brush", typed(&Self::setBrush, &Self::getBrush)},
+        {"bottomShade", typed(&Self::setBottomShade, &Self::getBottomShade)},
+        {"lightAzimuth", typed(&Self::setLightAzimuth, &Self::getLightAzimuth)},
+        {"lightElevation", typed(&Self::setLightElevation, &Self::getLightElevation)},
+        {"sceneLight", typed(&Self::setSceneLight, &Self::getSceneLight)},
+        {"atmosphere", typed(&Self::setAtmosphere, &Self::getAtmosphere)},
+        {"water", typed(&Self::setWater, &Self::getWater)},
+        {"deepShore", typed(&Self::setDeepShore, &Self::getDeepShore)},
+        {"reflection", typed(&Self::setReflection, &Self::getReflection)},
+        {"ripples", typed(&Self::setRipples, &Self::getRipples)},
+        {"sky", typed(&Self::setSky, &Self::getSky)},
+        {"clouds", typed(&Self::setClouds, &Self::getClouds)},
+        {"strokes", typed(&Self::setStrokes, &Self::getStrokes)},
+        {"strokeSize", typed(&Self::setStrokeSize, &Self::getStrokeSize)},
+        {"strokeSpacing", typed(&Self::setStrokeSpacing, &Self::getStrokeSpacing)},
+        {"strokeStep", typed(&Self::setStrokeStep, &Self::getStrokeStep)},
+        {"coverUnit", typed(&Self::setCoverUnit, &Self::getCoverUnit)},
+        {"firstUnit", typed(&Self::setFirstUnit, &Self::getFirstUnit)},
+    };
+}
+
 inline const TypedSetters& typedSetters(const std::string& kind)
 {
     static const TypedSetters deformations = deformationSetters();
@@ -374,6 +419,7 @@ inline const TypedSetters& typedSetters(const std::string& kind)
         {"regionOfInterest", regionSetters()},
         {"anchor", anchorSetters()},
         {"surfaceData", surfaceSetters()},
+        {"panoramaMap", panoramaSetters()},
     };
     const auto found = others.find(kind);
     return found == others.end() ? deformations : found->second;
