@@ -729,16 +729,34 @@ float CompensatingCullVisitor::getDistanceFromEyePoint(const osg::Vec3& position
 
 void CompensatingCullVisitor::showBounds(const EyeBox& box)
 {
-    _mode.chain->bound(box, _hull);
-    const osg::Vec4 colour =
-        _hull.points.size() > 8 ? osg::Vec4(1, 0.2f, 0.1f, 1) : osg::Vec4(1, 0.9f, 0.2f, 1);
-    // The hull's points in their order are a grid; its outline shows what the box became.
-    for (std::size_t i = 0; i + 1 < _hull.points.size(); ++i)
+    const Ball ball = box.ball();
+    const auto& frames = _mode.chain->frames();
+    const bool curved =
+        std::any_of(frames.begin(), frames.end(),
+                    [&](const auto& frame) { return frame->reach(ball) == DeformationFrame::Reach::Curved; });
+    const osg::Vec4 colour = curved ? osg::Vec4(1, 0.2f, 0.1f, 1) : osg::Vec4(1, 0.9f, 0.2f, 1);
+    // What the box's twelve edges became.
+    constexpr int pieces = 8;
+    std::vector<osg::Vec3d> corners;
+    box.corners(corners);
+    for (std::size_t a = 0; a < corners.size(); ++a)
     {
-        _bounds.lines->push_back(_hull.points[i]);
-        _bounds.lines->push_back(_hull.points[i + 1]);
-        _bounds.colours->push_back(colour);
-        _bounds.colours->push_back(colour);
+        for (const std::size_t axis : {1u, 2u, 4u})
+        {
+            if (a & axis) continue;
+            const osg::Vec3d step = (corners[a | axis] - corners[a]) / pieces;
+            osg::Vec3d from = _mode.chain->deform(corners[a]);
+            for (int piece = 1; piece <= pieces; ++piece)
+            {
+                const osg::Vec3d to = _mode.chain->deform(corners[a] + step * piece);
+                for (const osg::Vec3d& end : {from, to})
+                {
+                    _bounds.lines->push_back(end);
+                    _bounds.colours->push_back(colour);
+                }
+                from = to;
+            }
+        }
     }
 }
 

@@ -35,6 +35,15 @@ struct OSGGEOFX_EXPORT EyeBox
     static EyeBox of(const osg::BoundingBox& box, const osg::Matrixd& modelView);
     /// A ball around it.
     Ball ball() const;
+    /// Puts its eight corners in the place of what was in there.
+    void corners(std::vector<osg::Vec3d>& points) const;
+};
+
+/// What a deformed box lies within: the convex hull of points, and a margin around it, metres.
+struct Hull
+{
+    std::vector<osg::Vec3d> points;
+    double margin = 0.0;
 };
 
 /** A deformation as one camera has it in one frame: a function of eye space, and what culling must know of it.
@@ -68,6 +77,9 @@ public:
     virtual double lipschitz(const Ball& ball) const = 0;
     /// A ball around what becomes of a ball: what follows from the four above. To be overridden for speed alone.
     virtual Ball bound(const Ball& ball) const;
+    /// A hull around what becomes of a box: what follows from the four above and sag(). To be overridden for speed and a
+    /// tighter hull. `hull` is reused for speed; `fineness` is DeformationChain::bound()'s.
+    virtual void boundBox(const EyeBox& box, Hull& hull, double fineness) const;
 
     /// How far from straight the image of a straight edge within a ball is: a bound of the second derivative along
     /// it, and of the jump of the first, both for the whole edge. Between the ends of an edge, straight
@@ -78,7 +90,8 @@ public:
         double kink = 0.0;  ///< metres
         double most = 1e30; ///< metres that it can be off in any case
     };
-    virtual Sag sag(const Ball& ball, const osg::Vec3d& edge) const = 0;
+    /// What follows from lipschitz() unless it is overridden.
+    virtual Sag sag(const Ball& ball, const osg::Vec3d& edge) const;
 
     /// How much more detail a ball deserves, beside what follows from lipschitz(): 1 as much as ever, 2 twice.
     virtual double detail(const Ball&) const { return 1.0; }

@@ -3,7 +3,6 @@
 #include <osgGeoFX/deformation/DeformationChain.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace osgGeoFX
@@ -11,75 +10,6 @@ namespace osgGeoFX
 
 namespace
 {
-
-using Reach = DeformationFrame::Reach;
-
-/// At most this many cells along one axis of a box.
-constexpr int mostCells = 8;
-
-double sagOf(const DeformationFrame::Sag& sag, int cells)
-{
-    return std::min(sag.curve / (8.0 * cells * cells) + sag.kink / (4.0 * cells), sag.most);
-}
-
-void addCorners(const EyeBox& box, Hull& hull)
-{
-    for (const double a : {-1.0, 1.0})
-    {
-        for (const double b : {-1.0, 1.0})
-        {
-            for (const double c : {-1.0, 1.0})
-            {
-                hull.points.push_back(box.centre + box.half[0] * a + box.half[1] * b + box.half[2] * c);
-            }
-        }
-    }
-}
-
-/// The deformed corners of a grid over the box, and how far the image of the box can be from their hull.
-void sample(const DeformationFrame& frame, const EyeBox& box, const Ball& ball, double fineness, Hull& hull)
-{
-    hull.points.clear();
-    hull.margin = 0.0;
-    const Reach reach = frame.reach(ball);
-    std::array<int, 3> cells = {1, 1, 1};
-    if (reach != Reach::Curved)
-    {
-        // A box again, from where its middle and the ends of its axes go.
-        EyeBox image = box;
-        if (reach == Reach::Affine)
-        {
-            image.centre = frame.roughly(box.centre);
-            for (int axis = 0; axis < 3; ++axis)
-                image.half[axis] = frame.roughly(box.centre + box.half[axis]) - image.centre;
-        }
-        addCorners(image, hull);
-        return;
-    }
-    // Interpolation over a cell of the grid is off by the sum of what it is off along its three edges.
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        const DeformationFrame::Sag sag = frame.sag(ball, box.half[axis] * 2.0);
-        int& count = cells[axis];
-        while (count < mostCells && sagOf(sag, count) > fineness * ball.radius)
-            ++count;
-        hull.margin += sagOf(sag, count);
-    }
-    hull.margin += frame.roughness(ball);
-    for (int i = 0; i <= cells[0]; ++i)
-    {
-        const osg::Vec3d atI = box.centre + box.half[0] * (2.0 * i / cells[0] - 1.0);
-        for (int j = 0; j <= cells[1]; ++j)
-        {
-            const osg::Vec3d atJ = atI + box.half[1] * (2.0 * j / cells[1] - 1.0);
-            for (int k = 0; k <= cells[2]; ++k)
-            {
-                const osg::Vec3d point = atJ + box.half[2] * (2.0 * k / cells[2] - 1.0);
-                hull.points.push_back(frame.roughly(point));
-            }
-        }
-    }
-}
 
 /// A box with the axes of another one around a hull.
 EyeBox around(const Hull& hull, const EyeBox& former)
@@ -176,7 +106,8 @@ osg::Matrixd DeformationChain::placement(const osg::Vec3d& reference) const
 bool DeformationChain::leavesAlone(const Ball& ball) const
 {
     return std::all_of(_frames.begin(), _frames.end(),
-                       [&](const auto& frame) { return frame->reach(ball) == Reach::Identity; });
+                       [&](const auto& frame)
+                       { return frame->reach(ball) == DeformationFrame::Reach::Identity; });
 }
 
 bool DeformationChain::hides(const Ball& ball) const
@@ -202,16 +133,15 @@ void DeformationChain::bound(const EyeBox& box, Hull& hull, double fineness) con
 {
     if (_frames.empty())
     {
-        hull.points.clear();
         hull.margin = 0.0;
-        addCorners(box, hull);
+        box.corners(hull.points);
         return;
     }
     EyeBox current = box;
     for (std::size_t i = 0; i < _frames.size(); ++i)
     {
         if (i > 0) current = around(hull, current);
-        sample(*_frames[i], current, current.ball(), fineness, hull);
+        _frames[i]->boundBox(current, hull, fineness);
     }
 }
 
@@ -233,7 +163,7 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
     double detail = 1.0;
     for (const auto& frame : _frames)
     {
-        if (frame->reach(current) == Reach::Identity) continue;
+        if (frame->reach(current) == DeformationFrame::Reach::Identity) continue;
         if (const std::optional<double> distance = frame->viewDistance(current))
             return ball.radius + *distance / (detail * frame->detail(current));
         detail *= frame->detail(current) * frame->lipschitz(current);

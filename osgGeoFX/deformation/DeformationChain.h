@@ -11,13 +11,6 @@
 namespace osgGeoFX
 {
 
-/// What a deformed box lies within: the convex hull of points, and a margin around it, metres.
-struct Hull
-{
-    std::vector<osg::Vec3d> points;
-    double margin = 0.0;
-};
-
 /** All deformations of one camera and frame, one after the other. Immutable; every thread may use it.
 
     The bounds are safe: nothing that the deformations make of a ball or a box lies outside of them. */

@@ -36,20 +36,16 @@ public:
         case glsl::GEOFX_CURVE_BEZIER:
             _curvature = 2.0 * std::abs(bend.bisector.y) / d;
             _turnRate = 2.0 * slope / d;
-            _borderTurnRate = slope / (d * (1.0 + slope * slope)) * 2.0;
             _turnChange = 2.6 * slope * slope / (d * d);
             break;
         case glsl::GEOFX_CURVE_ARC_LENGTH:
             _turnRate = bend.arc * slope / d;
             _curvature = _turnRate;
-            _borderTurnRate = _turnRate;
-            _borderSlowness = 1.0 - bend.arc * bend.bisector.x / 2.0;
             _turnChange = 4.2 * slope * slope / (d * d);
             break;
         default:
             _turnRate = std::abs(bend.angle) / d;
             _curvature = _turnRate;
-            _borderTurnRate = _turnRate;
         }
         fillTable();
     }
@@ -114,22 +110,16 @@ public:
         // Along h lengths stay; along s they grow by speed − h·turnRate, and the speed is at most 1.
         return 1.0 + (std::abs(at.y) + ball.radius) * _turnRate;
     }
-    Sag sag(const Ball& ball, const osg::Vec3d& edge) const override
+    void boundBox(const EyeBox& box, Hull& hull, double fineness) const override
     {
-        const glm::dvec2 at = profile(ball.centre);
-        const double height = std::abs(at.y) + ball.radius;
-        const double along = std::abs(edge * toOsg(_view.forward));
-        const double up = std::abs(edge * toOsg(_view.normal));
-        Sag sag;
-        // P = C(s) + h·N(s)
-        sag.curve = (_curvature + height * (_turnChange + _turnRate * _turnRate)) * along * along +
-                    2.0 * _turnRate * along * up;
-        const bool border = at.x - ball.radius < 0.0 || at.x + ball.radius > _view.bend.size;
-        if (border) sag.kink = (_borderSlowness + height * _borderTurnRate) * along;
-        // However narrow the zone, directions turn by the bend's angle at most: along the edge, and at the height's end.
-        const double turn = 2.0 * std::abs(_view.bend.bisector.y);
-        sag.most = turn * (along / 2.0 + up + 2.0 * height);
-        return sag;
+        const Extent extent = extentOf(box);
+        hull.margin = 0.0;
+        box.corners(hull.points);
+        if (extent.middle.x + extent.along <= 0.0) return;
+        const bool inZone = extent.middle.x - extent.along < _view.bend.size;
+        if (inZone) addSlices(box, extent, fineness, hull);
+        for (std::size_t i = 0; i < boxCorners; ++i)
+            hull.points[i] = roughly(hull.points[i]);
     }
     double detail(const Ball& ball) const override
     {
@@ -140,16 +130,11 @@ public:
     std::string complaint(const EyeBox& box) const override
     {
         if (!_look.foldPossible || reach(box.ball()) != Reach::Curved) return {};
-        const osg::Vec3d normal = toOsg(_view.normal);
         // The ball reaches farther than the box does.
-        double along = 0.0;
-        for (const osg::Vec3d& half : box.half)
-            along += std::abs(half * toOsg(_view.forward));
-        const double middle = profile(box.centre).x;
-        if (middle + along <= 0.0 || middle - along >= _view.bend.size) return {};
-        double inner = profile(box.centre).y * (_view.bend.angle > 0.0 ? 1.0 : -1.0);
-        for (const osg::Vec3d& half : box.half)
-            inner += std::abs(half * normal);
+        const Extent extent = extentOf(box);
+        if (extent.middle.x + extent.along <= 0.0 || extent.middle.x - extent.along >= _view.bend.size)
+            return {};
+        const double inner = extent.middle.y * (_view.bend.angle > 0.0 ? 1.0 : -1.0) + extent.up;
         if (inner * std::abs(glsl::geofx_bendCurvature(_view.bend)) < 1.0) return {};
         return "something in the transition zone reaches " + std::to_string(std::lround(inner)) + " m " +
                (_view.bend.angle > 0.0 ? "above" : "below") +
@@ -192,8 +177,7 @@ private:
             const TableEntry& b = _table[below + 1];
             to = a.foot + share * (b.foot - a.foot) + point.y * (a.normal + share * (b.normal - a.normal));
         }
-        const glm::dvec2 offset = to - point;
-        return position + toOsg(_view.forward * offset.x + _view.normal * offset.y);
+        return moved(position, point, to);
     }
     /// `height` from T at most.
     double roughness(double height) const
@@ -202,6 +186,92 @@ private:
         return (_curvature + height * (_turnChange + _turnRate * _turnRate)) * cell * cell / 8.0;
     }
 
+    /// Of a box, in the profile.
+    struct Extent
+    {
+        glm::dvec2 middle;
+        std::array<glm::dvec2, 3> half; ///< of its axes
+        double along = 0.0;             ///< from the middle, at most
+        double up = 0.0;
+    };
+    Extent extentOf(const EyeBox& box) const
+    {
+        Extent extent;
+        extent.middle = profile(box.centre);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const osg::Vec3d& half = box.half[axis];
+            extent.half[axis] = {half * toOsg(_view.forward), half * toOsg(_view.normal)};
+            extent.along += std::abs(extent.half[axis].x);
+            extent.up += std::abs(extent.half[axis].y);
+        }
+        return extent;
+    }
+    /// How far what becomes of a box is from the hull of its corners and of its sections by planes `width` apart across
+    /// the zone. Before the zone, behind it, and in such a plane the bend is affine. Anything else in the box lies on a line
+    /// along one of its axes, between two planes, or a plane and a face; what is on the face, between others; what is
+    /// on an edge at last, between points of the hull.
+    double sliceSag(const Extent& extent, double width) const
+    {
+        const double change =
+            _curvature + (std::abs(extent.middle.y) + extent.up) * (_turnChange + _turnRate * _turnRate);
+        double sag = 0.0;
+        for (const glm::dvec2& half : extent.half)
+        {
+            const double axis = 2.0 * std::abs(half.x);
+            if (axis == 0.0) continue;
+            const double along = std::min(width, axis);
+            const double up = 2.0 * std::abs(half.y) * along / axis;
+            // P = C(s) + h·N(s)
+            sag += along * (change * along / 8.0 + _turnRate * up / 4.0);
+        }
+        return sag;
+    }
+    /// What becomes of a box's sections by as many planes as `fineness` asks for; and the margin.
+    void addSlices(const EyeBox& box, const Extent& extent, double fineness, Hull& hull) const
+    {
+        const double size = _view.bend.size;
+        const double allowed = fineness * box.ball().radius;
+        std::size_t slices = 1;
+        while (slices < tableCells && sliceSag(extent, size / static_cast<double>(slices)) > allowed)
+            slices *= 2;
+        const double width = size / static_cast<double>(slices);
+        hull.margin = sliceSag(extent, width) + roughness(std::abs(extent.middle.y) + extent.up);
+        for (std::size_t slice = 0; slice <= slices; ++slice)
+        {
+            const double s = width * static_cast<double>(slice);
+            if (std::abs(s - extent.middle.x) > extent.along) continue;
+            // Corners a and b differ in one of the bits that their numbers have for the axes.
+            for (std::size_t a = 0; a < boxCorners; ++a)
+            {
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                {
+                    if (a & (4u >> axis)) continue;
+                    const glm::dvec2 from = cornerOf(extent, a);
+                    const double share = (s - from.x) / (2.0 * extent.half[axis].x);
+                    if (!(share >= 0.0 && share <= 1.0)) continue;
+                    const osg::Vec3d at = hull.points[a] + box.half[axis] * (2.0 * share);
+                    const double h = from.y + extent.half[axis].y * 2.0 * share;
+                    const TableEntry& frame = _table[slice * (tableCells / slices)];
+                    hull.points.push_back(moved(at, {s, h}, frame.foot + h * frame.normal));
+                }
+            }
+        }
+    }
+    static glm::dvec2 cornerOf(const Extent& extent, std::size_t corner)
+    {
+        glm::dvec2 at = extent.middle;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            at += (corner & (4u >> axis) ? 1.0 : -1.0) * extent.half[axis];
+        return at;
+    }
+    osg::Vec3d moved(const osg::Vec3d& position, const glm::dvec2& from, const glm::dvec2& to) const
+    {
+        const glm::dvec2 offset = to - from;
+        return position + toOsg(_view.forward * offset.x + _view.normal * offset.y);
+    }
+
+    static constexpr std::size_t boxCorners = 8;
     static constexpr std::size_t tableCells = 32;
     struct TableEntry
     {
@@ -217,16 +287,16 @@ private:
             const glsl::geofx_BendFrame frame = glsl::geofx_bendFrame(_view.bend, s);
             _table[i] = {frame.foot, {-frame.tangent.y, frame.tangent.x}};
         }
+        // A hinge turns at once.
+        _table.back() = {_view.bend.end, {-_view.bend.direction.y, _view.bend.direction.x}};
     }
 
     glsl::geofx_BendView _view;
     Look _look;
     std::array<TableEntry, tableCells + 1> _table;
-    double _curvature = 0.0;      ///< of |C''|, at most
-    double _turnRate = 0.0;       ///< of the frame, at most
-    double _borderTurnRate = 0.0; ///< at the zone's borders
-    double _borderSlowness = 0.0; ///< 1 − speed there
-    double _turnChange = 0.0;     ///< of the turn rate's derivative, at most
+    double _curvature = 0.0;  ///< of |C''|, at most
+    double _turnRate = 0.0;   ///< of the frame, at most
+    double _turnChange = 0.0; ///< of the turn rate's derivative, at most
 };
 
 } // namespace

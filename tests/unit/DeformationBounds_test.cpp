@@ -310,6 +310,7 @@ TEST(DeformationBounds, HullsAreTight)
     RecordProperty("median", std::to_string(median(ratios)));
     RecordProperty("median_in_the_zone", std::to_string(median(curved)));
     RecordProperty("95_percent_in_the_zone", std::to_string(curved[curved.size() * 95 / 100]));
-    EXPECT_LT(median(ratios), 1.05);
-    EXPECT_LT(median(curved), 1.1);
+    EXPECT_LT(median(ratios), 1.01);
+    EXPECT_LT(median(curved), 1.02);
+    EXPECT_LT(curved[curved.size() * 95 / 100], 1.2);
 }
