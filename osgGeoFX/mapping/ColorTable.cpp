@@ -104,13 +104,16 @@ osg::Vec4 mix(const Stop& a, const Stop& b, double value)
     return color;
 }
 
-osg::Vec4ub bytes(const osg::Vec4& color)
+/// A colour in whole numbers, of which the largest is full intensity.
+template<typename Texel>
+Texel whole(const osg::Vec4& color)
 {
-    const auto byte = [](float part)
+    using Part = typename Texel::value_type;
+    const auto part = [](float share)
     {
-        return static_cast<unsigned char>(std::lround(part * 255.0f));
+        return static_cast<Part>(std::lround(share * static_cast<float>(std::numeric_limits<Part>::max())));
     };
-    return {byte(color[0]), byte(color[1]), byte(color[2]), byte(color[3])};
+    return {part(color[0]), part(color[1]), part(color[2]), part(color[3])};
 }
 
 /// Places of values among the texels of a row, as the shader finds them.
@@ -203,14 +206,25 @@ std::pair<double, double> ColorTable::range() const
 
 bool ColorTable::row(double low, double high, osg::Vec4ub* texels, int width) const
 {
+    return fillRow(low, high, texels, width);
+}
+
+bool ColorTable::row(double low, double high, osg::Vec4us* texels, int width) const
+{
+    return fillRow(low, high, texels, width);
+}
+
+template<typename Texel>
+bool ColorTable::fillRow(double low, double high, Texel* texels, int width) const
+{
     if (!(high > low) || !std::isfinite(high - low) || width < 2)
     {
-        std::fill(texels, texels + std::max(0, width), bytes(at(low)));
+        std::fill(texels, texels + std::max(0, width), whole<Texel>(at(low)));
         return true;
     }
     const Places places{low, high, width - 1};
     for (int i = 0; i < width; ++i)
-        texels[i] = bytes(at(places.value(i)));
+        texels[i] = whole<Texel>(at(places.value(i)));
     if (_mode == LINEAR)
         snapJumps(low, high, texels, width);
     else
@@ -225,7 +239,8 @@ bool ColorTable::row(double low, double high, osg::Vec4ub* texels, int width) co
     return true;
 }
 
-void ColorTable::snapJumps(double low, double high, osg::Vec4ub* texels, int width) const
+template<typename Texel>
+void ColorTable::snapJumps(double low, double high, Texel* texels, int width) const
 {
     const Places places{low, high, width - 1};
     const auto [first, end] = within(_stops, low, high);
@@ -237,16 +252,17 @@ void ColorTable::snapJumps(double low, double high, osg::Vec4ub* texels, int wid
         // The margin is for a value that is a texel's own but for rounding.
         const int texel = static_cast<int>(std::floor(places.of(stop->value) + 1e-3));
         const bool ramp = stop + 1 != _stops.end() && places.of((stop + 1)->value) > texel + 1;
-        texels[texel] = bytes(ramp ? mix(*stop, *(stop + 1), places.value(texel)) : stop->color);
+        texels[texel] = whole<Texel>(ramp ? mix(*stop, *(stop + 1), places.value(texel)) : stop->color);
     }
 }
 
-void ColorTable::snapStops(double low, double high, osg::Vec4ub* texels, int width) const
+template<typename Texel>
+void ColorTable::snapStops(double low, double high, Texel* texels, int width) const
 {
     const Places places{low, high, width - 1};
     const auto [first, end] = within(_stops, low, high);
     for (auto stop = first; stop != end; ++stop)
-        texels[places.nearest(stop->value)] = bytes(stop->color);
+        texels[places.nearest(stop->value)] = whole<Texel>(stop->color);
 }
 
 osg::ref_ptr<ColorTable> ColorTable::named(const std::string& name, double low, double high)
@@ -288,7 +304,8 @@ osg::ref_ptr<osg::Image> ColorTable::legend(double low, double high, int width, 
         row(low, high, bar.data(), static_cast<int>(bar.size()));
     else if (const auto [first, end] = within(_stops, low, high); first != end)
         for (std::size_t i = 0; i < bar.size(); ++i)
-            bar[i] = bytes(first[static_cast<std::ptrdiff_t>(i * (end - first) / bar.size())].color);
+            bar[i] =
+                whole<osg::Vec4ub>(first[static_cast<std::ptrdiff_t>(i * (end - first) / bar.size())].color);
 
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(width, height, 1, GL_RGBA, GL_UNSIGNED_BYTE);

@@ -8,6 +8,7 @@
 #include <osg/Object>
 #include <osg/Vec4>
 #include <osg/Vec4ub>
+#include <osg/Vec4us>
 
 #include <string>
 #include <utility>
@@ -83,6 +84,8 @@ public:
         Where high is not above low, all texels have the colour at low. False where two stops with different values
         between low and high lie less than a texel apart, so that colours are lost. */
     bool row(double low, double high, osg::Vec4ub* texels, int width) const;
+    /// The same, finer: 65535 is full intensity, and the ½/255 become ½/65535.
+    bool row(double low, double high, osg::Vec4us* texels, int width) const;
 
     /// Grows with each change.
     unsigned int revision() const { return _revision; }
@@ -103,8 +106,12 @@ protected:
     ~ColorTable() override;
 
 private:
-    void snapJumps(double low, double high, osg::Vec4ub* texels, int width) const;
-    void snapStops(double low, double high, osg::Vec4ub* texels, int width) const;
+    template<typename Texel>
+    bool fillRow(double low, double high, Texel* texels, int width) const;
+    template<typename Texel>
+    void snapJumps(double low, double high, Texel* texels, int width) const;
+    template<typename Texel>
+    void snapStops(double low, double high, Texel* texels, int width) const;
 
     Stops _stops;
     Mode _mode = LINEAR;

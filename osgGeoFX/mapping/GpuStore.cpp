@@ -117,7 +117,7 @@ std::uint64_t GpuStore::commit(TexelArena& arena, Commit changes)
     {
         _tables[table.row] = table;
         _rows = std::max(_rows, powerOfTwo(table.row + 1));
-        entry.bytes += table.texels.size();
+        entry.bytes += table.texels.size() * sizeof(std::uint16_t);
     }
     entry.changes = std::move(changes);
     _journalBytes += entry.bytes;
@@ -210,9 +210,9 @@ void GpuStore::uploadAllLayers(Context& context, osg::State& state)
 
 void GpuStore::uploadTable(const Table& table)
 {
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, table.row, tableWidth, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, table.row, tableWidth, 1, GL_RGBA, GL_UNSIGNED_SHORT,
                     table.texels.data());
-    _uploaded += table.texels.size();
+    _uploaded += table.texels.size() * sizeof(std::uint16_t);
 }
 
 void GpuStore::uploadAllTables(Context& context)
@@ -220,7 +220,7 @@ void GpuStore::uploadAllTables(Context& context)
     context.rows = _rows;
     glBindTexture(GL_TEXTURE_2D, context.tables);
     setFilter(GL_TEXTURE_2D, GL_LINEAR, GL_LINEAR);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, tableWidth, _rows, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16, tableWidth, _rows, 0, GL_RGBA, GL_UNSIGNED_SHORT, nullptr);
     for (const auto& [row, table] : _tables)
         uploadTable(table);
 }

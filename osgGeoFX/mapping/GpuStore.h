@@ -46,7 +46,7 @@ public:
     struct Table
     {
         int row = 0;
-        std::vector<std::uint8_t> texels; ///< RGBA
+        std::vector<std::uint16_t> texels; ///< RGBA, finer than bytes: blending may square them
     };
     struct Commit
     {

@@ -335,9 +335,9 @@ void MappingDrawing::updateTables()
             _freeRows.erase(table.row);
             _changed.insert(table.users.begin(), table.users.end());
         }
-        std::vector<osg::Vec4ub> row(GpuStore::tableWidth);
+        std::vector<osg::Vec4us> row(GpuStore::tableWidth);
         table.table->row(key.low, key.high, row.data(), GpuStore::tableWidth);
-        GpuStore::Table upload{table.row, std::vector<std::uint8_t>(4 * row.size())};
+        GpuStore::Table upload{table.row, std::vector<std::uint16_t>(4 * row.size())};
         for (std::size_t i = 0; i < row.size(); ++i)
             std::copy(row[i].ptr(), row[i].ptr() + 4,
                       upload.texels.begin() + static_cast<std::ptrdiff_t>(4 * i));

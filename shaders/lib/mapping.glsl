@@ -30,6 +30,16 @@ GEOFX_INLINE Vector2 geofx_projectPlane(geofx_Projector projector, Vector2 place
     return w > Number(1e-6) ? Number(0.5) + uv / w : Vector2(-1, -1);
 }
 
+// What raster coordinates change by along a step, at the place: where the step itself would end behind the projection's
+// horizon, there is no difference to take.
+GEOFX_INLINE Vector2 geofx_projectPlaneStep(geofx_Projector projector, Vector2 place, Vector2 step)
+{
+    Vector2 d = place - projector.centre;
+    Number w = max(1 + dot(projector.rowW, d), Number(1e-6));
+    Vector2 uv = Vector2(dot(projector.rowU, d), dot(projector.rowV, d)) / w;
+    return (Vector2(dot(projector.rowU, step), dot(projector.rowV, step)) - uv * dot(projector.rowW, step)) / w;
+}
+
 // A camera with lens distortion after Brown: radial k1 k2 k3, tangential p1 p2, in tangents of the view's angles.
 struct geofx_Pinhole
 {
@@ -63,6 +73,26 @@ GEOFX_INLINE Vector2 geofx_projectPinhole(geofx_Pinhole camera, Position positio
     Vector2 bent = radial * t + Vector2(camera.tangential.x * cross + camera.tangential.y * (r2 + 2 * t.x * t.x),
                                         camera.tangential.x * (r2 + 2 * t.y * t.y) + camera.tangential.y * cross);
     return Number(0.5) + Number(0.5) * bent / camera.tangents;
+}
+
+// As geofx_projectPlaneStep.
+GEOFX_INLINE Vector2 geofx_projectPinholeStep(geofx_Pinhole camera, Position position, Vector3 step)
+{
+    Vector3 d = position - camera.eye;
+    Length depth = max(dot(d, camera.forward), Number(1e-6));
+    Vector2 t = Vector2(dot(d, camera.right), dot(d, camera.up)) / depth * camera.tangents;
+    Vector2 dt =
+        (Vector2(dot(step, camera.right), dot(step, camera.up)) * camera.tangents - t * dot(step, camera.forward)) /
+        depth;
+    // The derivative of geofx_projectPinhole's polynomial.
+    Number r2 = dot(t, t);
+    Number dr2 = 2 * dot(t, dt);
+    Number radial = 1 + r2 * (camera.radial.x + r2 * (camera.radial.y + r2 * camera.radial.z));
+    Number growth = dr2 * (camera.radial.x + r2 * (2 * camera.radial.y + r2 * 3 * camera.radial.z));
+    Number cross = 2 * (dt.x * t.y + t.x * dt.y);
+    Vector2 tangential = Vector2(camera.tangential.x * cross + camera.tangential.y * (dr2 + 4 * t.x * dt.x),
+                                 camera.tangential.x * (dr2 + 4 * t.y * dt.y) + camera.tangential.y * cross);
+    return Number(0.5) * (radial * dt + growth * t + tangential) / camera.tangents;
 }
 
 // How much of a pixel lies within the raster along one axis: 0 at its edge, 1 from a pixel inwards on. `width` is the

@@ -258,8 +258,8 @@ SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
                                              more.zw, radial.w);
         result.uv =
             distance(camera.eye, SLOT_position) <= eye.w ? geofx_projectPinhole(camera, SLOT_position) : vec2(-1.0);
-        result.across = geofx_projectPinhole(camera, SLOT_position + fragment.positionAcross) - result.uv;
-        result.up = geofx_projectPinhole(camera, SLOT_position + fragment.positionUp) - result.uv;
+        result.across = geofx_projectPinholeStep(camera, SLOT_position, fragment.positionAcross);
+        result.up = geofx_projectPinholeStep(camera, SLOT_position, fragment.positionUp);
         return result;
     }
 #endif
@@ -294,8 +294,8 @@ SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
     {
         projector.rowW = uintBitsToFloat(texelFetch(SLOT_data, record + 9).xy);
         result.uv = geofx_projectPlane(projector, fragment.place.xy);
-        result.across = geofx_projectPlane(projector, fragment.place.xy + fragment.across.xy) - result.uv;
-        result.up = geofx_projectPlane(projector, fragment.place.xy + fragment.up.xy) - result.uv;
+        result.across = geofx_projectPlaneStep(projector, fragment.place.xy, fragment.across.xy);
+        result.up = geofx_projectPlaneStep(projector, fragment.place.xy, fragment.up.xy);
         return result;
     }
 #endif

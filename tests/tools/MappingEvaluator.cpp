@@ -42,6 +42,15 @@ glm::dvec4 bytes(LayerPixels::Texel texel)
     return glm::dvec4(texel & 0xffu, texel >> 8u & 0xffu, texel >> 16u & 0xffu, texel >> 24u);
 }
 
+/// What a projection changes by along a step, by a small part of the step to both sides: at the step's end there may be
+/// no picture.
+template<typename Projection, typename Vector>
+glm::dvec2 slope(const Projection& project, const Vector& at, const Vector& step)
+{
+    constexpr double part = 1e-4;
+    return (project(at + part * step) - project(at - part * step)) / (2.0 * part);
+}
+
 constexpr double weights = 256.0; // of filters in bytes
 
 /// Between two colours; those of filters in bytes are bytes again.
@@ -224,8 +233,8 @@ bool MappingEvaluator::coordinates(const ProjectiveMapping& mapping, const Fragm
         uv = glm::distance(fragment.position, glm::dvec3(c.eye.x(), c.eye.y(), c.eye.z())) <= c.range
                  ? project(fragment.position)
                  : glm::dvec2(-1.0);
-        across = project(fragment.position + fragment.positionAcross) - uv;
-        up = project(fragment.position + fragment.positionUp) - uv;
+        across = slope(project, fragment.position, fragment.positionAcross);
+        up = slope(project, fragment.position, fragment.positionUp);
         return true;
     }
     const osg::Vec2d centre = mapping.getCentre();
@@ -253,8 +262,8 @@ bool MappingEvaluator::coordinates(const ProjectiveMapping& mapping, const Fragm
         return glm::dvec2(raster) / raster.z;
     };
     uv = project(glm::dvec2(fragment.place));
-    across = project(glm::dvec2(fragment.place + fragment.across)) - uv;
-    up = project(glm::dvec2(fragment.place + fragment.up)) - uv;
+    across = slope(project, glm::dvec2(fragment.place), glm::dvec2(fragment.across));
+    up = slope(project, glm::dvec2(fragment.place), glm::dvec2(fragment.up));
     return true;
 }
 

@@ -309,6 +309,23 @@ TEST(ColorTableRow, StepsAndNearestAreRightAwayFromTheirBorders)
     }
 }
 
+TEST(ColorTableRow, FinerOnesAreRightWithinAFractionOfAByte)
+{
+    const auto table = makeTable({{0, red}, {10, green}, {20, blue}});
+    std::vector<osg::Vec4us> fine(1024);
+    EXPECT_TRUE(table->row(0, 20, fine.data(), 1024));
+    const std::vector<osg::Vec4ub> coarse = rowOf(*table, 0, 20);
+    for (int i = 0; i < 1024; ++i)
+    {
+        const osg::Vec4 color = table->at(20.0 * i / 1023.0);
+        for (int part = 0; part < 4; ++part)
+        {
+            EXPECT_NEAR(fine[i][part], 65535.0 * static_cast<double>(color[part]), 0.51);
+            EXPECT_NEAR(coarse[i][part], fine[i][part] / 257.0, 0.51);
+        }
+    }
+}
+
 TEST(ColorTableRow, SaysWhereStopsAreTooClose)
 {
     std::vector<osg::Vec4ub> row(16);
