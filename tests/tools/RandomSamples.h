@@ -44,4 +44,15 @@ inline int sampleCount()
     return fullTest() ? 100000 : 5000;
 }
 
+/// What one of several tests takes of the samples that they share, so that none of them takes too long for ctest.
+struct SampleRange
+{
+    SampleRange(int count, int part, int parts) : first(count * part / parts), end(count * (part + 1) / parts)
+    {
+    }
+    int count() const { return end - first; }
+
+    int first, end;
+};
+
 } // namespace geofx::test
