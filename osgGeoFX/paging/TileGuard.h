@@ -67,6 +67,7 @@ public:
     /// Tells a listener of each tile that is read from now on. It is held weakly: who adds it keeps it. Null and one that is there
     /// already are ignored. Tiles that OSG takes from its cache of objects, and those that failed, are not told of.
     void addListener(TileListener* listener);
+    /// It may still be told of a tile that is just being read.
     void removeListener(TileListener* listener);
 
     /// Totals since the guard was made.

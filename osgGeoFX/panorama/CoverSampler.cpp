@@ -13,10 +13,10 @@ namespace osgGeoFX
 namespace
 {
 
-const osg::Image* imageOf(const osg::StateSet* state)
+const osg::Image* imageOf(const osg::StateSet* state, unsigned int unit)
 {
     const osg::StateAttribute* attribute =
-        state ? state->getTextureAttribute(CoverSampler::unit, osg::StateAttribute::TEXTURE) : nullptr;
+        state ? state->getTextureAttribute(unit, osg::StateAttribute::TEXTURE) : nullptr;
     const auto* texture = dynamic_cast<const osg::Texture2D*>(attribute);
     const osg::Image* image = texture ? texture->getImage() : nullptr;
     const bool readable = image && image->data() && image->s() > 0 && image->t() > 0 &&
@@ -26,12 +26,12 @@ const osg::Image* imageOf(const osg::StateSet* state)
 
 } // namespace
 
-CoverSampler::CoverSampler(const osg::Geometry& geometry)
+CoverSampler::CoverSampler(const osg::Geometry& geometry, unsigned int unit)
 {
     const osg::Node* node = &geometry;
     while (node && !_image)
     {
-        _image = imageOf(node->getStateSet());
+        _image = imageOf(node->getStateSet(), unit);
         node = node->getNumParents() > 0 ? node->getParent(0) : nullptr;
     }
 }

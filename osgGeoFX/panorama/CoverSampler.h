@@ -15,16 +15,13 @@ namespace osgGeoFX
 class OSGGEOFX_EXPORT CoverSampler
 {
 public:
-    /// The texture unit of the cover; its texture coordinates are those of unit 0.
-    static constexpr unsigned int unit = 7;
-
     /// With the 2D texture at the unit in the state of the geometry or, where it has none, of the nearest node above it, by first
     /// parents.
-    explicit CoverSampler(const osg::Geometry& geometry);
+    explicit CoverSampler(const osg::Geometry& geometry, unsigned int unit = 7);
 
     /// Whether there is a texture that can be read.
     bool valid() const { return _image.valid(); }
-    /// The texel at texture coordinates, filtered and clamped to the border; (0, 0, 0, 1) without a texture.
+    /// The texel at texture coordinates (those of unit 0), filtered and clamped to the border; (0, 0, 0, 1) without a texture.
     glsl::Rgba at(double s, double t) const;
 
 private:

@@ -63,7 +63,8 @@ class Painter
 public:
     Painter(const osg::Geometry& mesh, const StrokeScan& scan, const StrokeLattice& lattice,
             const StrokeParameters& parameters)
-        : _mesh(mesh), _scan(scan), _lattice(lattice), _parameters(parameters), _cover(mesh)
+        : _mesh(mesh), _scan(scan), _lattice(lattice), _parameters(parameters),
+          _cover(mesh, parameters.coverUnit)
     {
     }
 

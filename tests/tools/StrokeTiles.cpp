@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <tools/StrokeTiles.h>
 
-#include <osgGeoFX/panorama/CoverSampler.h>
-
 #include <cmath>
 
 namespace geofx::test
@@ -117,8 +115,7 @@ osg::ref_ptr<osg::MatrixTransform> StrokeTiles::tile(double west, double south, 
     geometry->setTexCoordArray(0, coordinates);
     geometry->addPrimitiveSet(triangles);
     if (cover)
-        geometry->getOrCreateStateSet()->setTextureAttribute(CoverSampler::unit,
-                                                             texture(*this, west, south, east, north));
+        geometry->getOrCreateStateSet()->setTextureAttribute(7, texture(*this, west, south, east, north));
     osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(toWorld);
     transform->addChild(geometry);
     return transform;

@@ -205,7 +205,7 @@ TEST(TileStrokes, WithoutACoverItIsGuessed)
     const osg::ref_ptr<osg::MatrixTransform> tile = unknown.tile(0.0, 0.0, 2500.0, 2500.0);
     osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
     auto* texture = static_cast<osg::Texture2D*>(
-        mesh.getStateSet()->getTextureAttribute(CoverSampler::unit, osg::StateAttribute::TEXTURE));
+        mesh.getStateSet()->getTextureAttribute(7, osg::StateAttribute::TEXTURE));
     for (unsigned int i = 0; i < texture->getImage()->getTotalSizeInBytes(); ++i)
         texture->getImage()->data()[i] = i % 4 == 3 ? 255 : 0;
     const osg::ref_ptr<TileStrokes> strokes = TileStrokes::make(mesh, tile->getMatrix(), {}, nullptr);
@@ -229,6 +229,7 @@ TEST(TileStrokes, TheCoverIsTakenFromStatesAbove)
     const CoverSampler sampler(mesh);
     ASSERT_TRUE(sampler.valid());
     EXPECT_NEAR(sampler.at(0.5, 0.5).x, 1.0, 1e-9);
+    EXPECT_FALSE(CoverSampler(mesh, 6).valid());
     tile->setStateSet(nullptr);
     EXPECT_FALSE(CoverSampler(mesh).valid());
     EXPECT_EQ(CoverSampler(mesh).at(0.5, 0.5), glsl::Rgba(0.0, 0.0, 0.0, 1.0));
@@ -243,7 +244,7 @@ TEST(TileStrokes, TheCoverIsFilteredAsAGpuDoes)
     image->setColor(osg::Vec4(0.0f, 1.0f, 0.0f, 0.0f), 0, 1);
     image->setColor(osg::Vec4(1.0f, 1.0f, 0.0f, 0.0f), 1, 1);
     osg::ref_ptr<osg::Geometry> mesh = new osg::Geometry;
-    mesh->getOrCreateStateSet()->setTextureAttribute(CoverSampler::unit, new osg::Texture2D(image));
+    mesh->getOrCreateStateSet()->setTextureAttribute(7, new osg::Texture2D(image));
     const CoverSampler sampler(*mesh);
     EXPECT_NEAR(sampler.at(0.25, 0.25).x, 0.0, 1e-12);
     EXPECT_NEAR(sampler.at(0.4, 0.25).x, 0.3, 1e-12);
@@ -385,7 +386,7 @@ TEST(StrokeMaker, NewParametersGiveNewStrokes)
 TEST(StrokeMaker, ParametersDifferWhereAnyOfThemDoes)
 {
     const StrokeParameters same;
-    std::vector<StrokeParameters> others(7);
+    std::vector<StrokeParameters> others(8);
     others[0].spacing += 1.0;
     others[1].referenceLatitude += 0.1;
     others[2].jitter += 0.1;
@@ -393,6 +394,7 @@ TEST(StrokeMaker, ParametersDifferWhereAnyOfThemDoes)
     others[4].treeLine += 1.0;
     others[5].seed += 1;
     others[6].strokesAlongTile += 1.0;
+    others[7].coverUnit += 1;
     for (const StrokeParameters& other : others)
         EXPECT_NE(other, same);
     EXPECT_EQ(StrokeParameters(), same);
