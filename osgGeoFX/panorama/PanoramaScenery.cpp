@@ -182,6 +182,7 @@ public:
         StrokeParameters parameters;
         parameters.spacing = map.getStrokeStep();
         parameters.referenceLatitude = std::clamp(ground.latitude, -1.4, 1.4);
+        parameters.coverUnit = map.getCoverUnit();
         parameters.cliffSlope = 1.2 * map.getCliffSlope();
         parameters.treeLine = map.getTreeLine() >= 0.0 ? map.getTreeLine() : treeLineAt(ground.latitude);
         if (_maker->getParameters() != parameters) _maker->setParameters(parameters);

@@ -68,7 +68,8 @@ vec4 SLOT_colour(vec4 colour)
     else
         cover = geofx_likelyCover(SLOT_place.z, SLOT_facing.w, SLOT_slopes.z);
     float edge = max(fwidth(texel.a), 1e-4);
-    float wet = geofx_coverKnown(texel) ? clamp((texel.a - 128.0 / 255.0) / edge + 0.5, 0.0, 1.0)
+    // Half a pixel more than there is, so that rivers stay in sight.
+    float wet = geofx_coverKnown(texel) ? clamp((texel.a - 128.0 / 255.0) / edge + 0.9, 0.0, 1.0)
                                         : step(0.0, cover.shore);
     wet *= SLOT_water.w;
 

@@ -31,9 +31,13 @@ float SLOT_strokeLight(vec3 position, vec3 normal, float y)
     return geofx_paintLight(dot(steep, towards), y, SLOT_slopes.w);
 }
 
-vec3 SLOT_strokeAir(vec3 colour, vec3 position)
+float SLOT_strokeFar(vec3 position)
 {
     geofx_Panorama view = SLOT_view();
-    float far = clamp(geofx_panoramaPlace(view, position).y / view.horizon, 0.0, 1.0);
-    return geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(far, SLOT_hand.z));
+    return clamp(geofx_panoramaPlace(view, position).y / view.horizon, 0.0, 1.0);
+}
+
+vec3 SLOT_strokeAir(vec3 colour, vec3 position)
+{
+    return geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(SLOT_strokeFar(position), SLOT_hand.z));
 }

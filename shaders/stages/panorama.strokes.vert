@@ -12,6 +12,8 @@ vec4 geofx_vertex(vec4 eyePosition);
 float SLOT_groundScale(vec3 eyePosition);
 float SLOT_strokeLight(vec3 eyePosition, vec3 eyeNormal, float y);
 vec3 SLOT_strokeAir(vec3 colour, vec3 eyePosition);
+// 0 at the picture's base, 1 at the horizon.
+float SLOT_strokeFar(vec3 eyePosition);
 
 uniform vec4 SLOT_viewport;    // width and height in pixels, and one over each
 uniform vec4 SLOT_stroke;      // size and wanted spacing in pixels, step of the lattice in metres
@@ -72,7 +74,8 @@ void main()
     gl_Position = gl_ProjectionMatrix * moved;
     if (nearer.w > 0.0) gl_Position.z = nearer.z / nearer.w * gl_Position.w;
     float y = 0.5 + 0.5 * gl_Position.y / max(gl_Position.w, 1e-6);
-    float light = SLOT_strokeLight(eye.xyz, normalize(gl_NormalMatrix * gl_Normal), y) + shape.tone;
+    float light = SLOT_strokeLight(eye.xyz, normalize(gl_NormalMatrix * gl_Normal), y) +
+                  shape.tone * (1.0 - 0.6 * SLOT_strokeFar(eye.xyz));
     if (kind == GEOFX_STROKE_HOUSE)
     {
         // Walls in the town's colour, roofs of tiles or slate.
@@ -83,7 +86,8 @@ void main()
     else
     {
         int row = kind == GEOFX_STROKE_CLIFF ? 2 : 5;
-        float contrast = kind == GEOFX_STROKE_CLIFF ? 0.35 : 0.24;
+        // Far away, light and shade come nearer to each other.
+        float contrast = (kind == GEOFX_STROKE_CLIFF ? 0.35 : 0.24) * (1.0 - 0.6 * SLOT_strokeFar(eye.xyz));
         SLOT_lightTone_in = SLOT_tone(row, light + contrast);
         SLOT_darkTone_in = SLOT_tone(row, light - contrast);
     }

@@ -52,5 +52,7 @@ vec3 geofx_water(geofx_WaterPlace place, vec4 water, float seconds, sampler2D br
     float strength = clamp(water.y * (1.0 + 0.7 * calm * ripple.y + 0.8 * grazing * grazing), 0.0, 1.0);
     // White clouds have a hue of nearly nothing; in water they are blue.
     vec3 cool = min(seen / weights * vec3(0.80, 0.95, 1.15), vec3(1.0));
-    return geofx_waterMix(geofx_waterBody(place.shore, water.x), cool, strength);
+    // The brush shows, and the picture's base is darker, as on land.
+    float tone = (1.0 + 0.28 * calm * ripple.x) * (1.0 - 0.28 * geofx_share(1.0 - place.picture.y / GEOFX_BOTTOM_SHARE));
+    return tone * geofx_waterMix(geofx_waterBody(place.shore, water.x), cool, strength);
 }
