@@ -308,6 +308,7 @@ void run(Arguments& arguments)
     const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(arguments.scene, error);
     if (!scene) throw Failure(badInput, error);
     addEffects(arguments, *scene->effects);
+    scene->effects->listenTo(*scene->guard);
     osgGeoFX::SceneRenderer::Options& options = arguments.renderer;
     options.fieldOfView =
         arguments.fieldOfView != 0.0 ? arguments.fieldOfView : scene->settings.homeFov.value_or(30.0);
