@@ -18,6 +18,10 @@ namespace
 /// From D2 to where nothing shows any more, of D2.
 constexpr double endOfHeights = 1.25;
 constexpr double leastRadius = 1e-3;
+/// Without any exaggeration heights could not be told from the picture.
+constexpr double leastExaggeration = 1e-6;
+/// Of what is seen from the eye, of that of the picture's base.
+constexpr double leastDistance = 1e-6;
 
 osg::Vec4d vec4(const glm::dvec3& vector, double w)
 {
@@ -86,7 +90,7 @@ std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const Vie
     panorama.horizon = map.getHorizonDistance() * radius;
     panorama.end = endOfHeights * panorama.horizon;
     panorama.along = 4.0 * map.getHorizonLine() / (panorama.curve + panorama.horizon);
-    panorama.lift = map.getExaggeration() * high / wide / radius;
+    panorama.lift = std::max(map.getExaggeration(), leastExaggeration) * high / wide / radius;
     panorama.arch = 2.0 * map.getHorizonBend();
     panorama.nearest = radius * (perspective ? wide : 1.0);
     setRays(panorama, view);
@@ -108,7 +112,10 @@ osg::Vec3d PanoramaFrame::deform(const osg::Vec3d& position) const
 
 osg::Vec3d PanoramaFrame::undeform(const osg::Vec3d& position) const
 {
-    return toOsg(glsl::geofx_panoramaUndeform(_view, toGlm(position)));
+    // Nothing is seen at the eye and behind it.
+    osg::Vec3d before = position;
+    before.z() = std::min(before.z(), _view.origin.z - leastDistance * _view.nearest);
+    return toOsg(glsl::geofx_panoramaUndeform(_view, toGlm(before)));
 }
 
 /// What bounds need of a ball: its place, and how the place changes at most over a metre within it.

@@ -23,7 +23,7 @@ inline double treeLineAt(double latitude)
 }
 
 /** The projection of a panorama map for one camera and frame (shaders/lib/panorama.glsl). Immutable. */
-class PanoramaFrame : public DeformationFrame
+class OSGGEOFX_EXPORT PanoramaFrame : public DeformationFrame
 {
 public:
     /// `viewDistance`: the distance at which the camera's own projection would show ground as large as the picture's base does,

@@ -42,6 +42,11 @@ double sensibleValue(const std::string& name, Random& random)
     if (name == "highHeight") return random.uniform(500.0, 5000.0);
     if (name == "factor") return die < 7 ? random.logarithmic(0.2, 5.0) : random.logarithmic(0.01, 100.0);
     if (name == "base") return die < 5 ? 0.0 : random.uniform(-100.0, 4000.0);
+    if (name == "viewRadius") return die < 6 ? 0.0 : random.logarithmic(100.0, 3e5);
+    if (name == "curveDistance") return die == 0 ? 0.0 : random.logarithmic(0.05, 5.0);
+    if (name == "horizonDistance") return random.logarithmic(0.3, 20.0);
+    if (name == "exaggeration") return die == 0 ? 0.0 : random.logarithmic(0.1, 20.0);
+    if (name == "baseHeight") return die < 5 ? 0.0 : random.uniform(-500.0, 4000.0);
     return std::nan("");
 }
 
