@@ -341,4 +341,36 @@ TEST(StrokeScan, PolesAndWholeGlobes)
     EXPECT_GT(scan(-180.0, -90.0, 180.0, 90.0), 4000u);
 }
 
+TEST(StrokeScan, PointsOnEdgesBelongToOneTriangle)
+{
+    // Rows without jitter, on the borders of tiles and on the diagonals of their cells.
+    StrokeParameters parameters;
+    parameters.jitter = 0.0;
+    const StrokeLattice lattice(parameters, nullptr);
+    StrokeTiles tiles;
+    std::set<Point> found;
+    for (const double west : {-1600.0, 0.0, 1600.0})
+    {
+        const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(west, 0.0, west + 1600.0, 1600.0);
+        const StrokeScan scan(lattice, StrokeTiles::geometryOf(*tile), tile->getMatrix(), 128.0);
+        EXPECT_EQ(scan.spots().size(), 64u * 64u);
+        for (const StrokeSpot& spot : scan.spots())
+            EXPECT_TRUE(found.insert({spot.column, spot.row}).second);
+    }
+}
+
+TEST(StrokeScan, TrianglesAroundAPoleHaveNone)
+{
+    const osg::ref_ptr<osg::EllipsoidModel> ellipsoid = new osg::EllipsoidModel;
+    const StrokeLattice lattice({}, ellipsoid);
+    osg::ref_ptr<osg::Geometry> mesh = new osg::Geometry;
+    osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+    const double pole = ellipsoid->getRadiusPolar();
+    for (const auto& [angle, away] : {std::pair(0.5, 1e6), std::pair(2.6, 3e5), std::pair(4.7, 5e4)})
+        vertices->push_back(osg::Vec3d(away * std::cos(angle), away * std::sin(angle), pole));
+    mesh->setVertexArray(vertices);
+    mesh->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
+    EXPECT_TRUE(StrokeScan(lattice, *mesh, {}, 128.0).spots().empty());
+}
+
 } // namespace
