@@ -99,7 +99,7 @@ osg::ref_ptr<const DeformationFrame> PanoramaMap::frame(const ViewGeometry& view
     if (!panorama) return nullptr;
     const bool perspective = view.projection(3, 3) == 0.0;
     const double scale = perspective ? std::abs(view.projection(0, 0)) : orthographicScale;
-    return new PanoramaFrame(*panorama, scale / panorama->across / (std::max(1.0, _exaggeration) * _detail));
+    return new PanoramaFrame(*panorama, scale / panorama->across / _detail);
 }
 
 SurfaceEffect* PanoramaMap::asSurfaceEffect()

@@ -75,7 +75,8 @@ public:
     /// Whether the lowest ground of the database lies there where it is higher; true by default.
     bool setBaseFromTerrain(bool on) { return assign("baseFromTerrain", on ? 1.0 : 0.0); }
     bool getBaseFromTerrain() const { return _baseFromTerrain; }
-    /// How much finer levels of detail are than a plain view of the same scale asks for; 0.05…16, 1 by default.
+    /// How much finer levels of detail are than a plain view of the same scale asks for; 0.05…16, 1 by default. Heights, and by how
+    /// much those of coarse tiles are off, show as much larger as the exaggeration says.
     bool setDetail(double factor) { return assign("detail", factor); }
     double getDetail() const { return _detail; }
     /// @}

@@ -28,9 +28,9 @@ namespace
 {
 
 /// The picture in the water is as many times smaller than the camera's: what is blurred needs no more.
-constexpr int mirrorShrink = 3;
+constexpr int mirrorShrink = 4;
 /// Its levels of detail are as many times coarser.
-constexpr double mirrorDetail = 0.5;
+constexpr double mirrorDetail = 0.3;
 /// Drawn before the camera's picture, after the application's own textures.
 constexpr int mirrorOrder = -5;
 /// Over what is opaque, so that it is drawn where nothing else is.

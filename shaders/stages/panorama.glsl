@@ -27,9 +27,24 @@ geofx_Panorama SLOT_view()
                           SLOT_directionX.xyz, SLOT_directionY.xyz);
 }
 
+// The place that was asked for last: the painting and the projection mostly ask for the same.
+vec3 SLOT_knownPosition = vec3(1e30);
+vec3 SLOT_knownPlace;
+
+vec3 SLOT_placeOf(vec3 position)
+{
+    if (position != SLOT_knownPosition)
+    {
+        SLOT_knownPosition = position;
+        SLOT_knownPlace = geofx_panoramaPlace(SLOT_view(), position);
+    }
+    return SLOT_knownPlace;
+}
+
 vec3 SLOT_deform(vec3 position)
 {
-    return geofx_panoramaDeform(SLOT_view(), position);
+    geofx_Panorama view = SLOT_view();
+    return geofx_panoramaEye(view, geofx_panoramaPicture(view, SLOT_placeOf(position)));
 }
 
 // The ground is lit as it lies.

@@ -15,7 +15,7 @@ vec3 SLOT_vertical;
 void SLOT_locate(vec3 position)
 {
     geofx_Panorama view = SLOT_view();
-    vec3 place = geofx_panoramaPlace(view, position);
+    vec3 place = SLOT_placeOf(position);
     SLOT_place = vec3(place.x * view.across, place.yz);
     SLOT_texels = vec4(gl_MultiTexCoord0.xy, dot(position, SLOT_brushX.xyz) + SLOT_brushX.w,
                        dot(position, SLOT_brushY.xyz) + SLOT_brushY.w);

@@ -19,7 +19,7 @@ float SLOT_groundScale(vec3 position)
 {
     if (SLOT_strokeView.x > 0.0) return SLOT_strokeView.x / max(length(position), 1e-3);
     geofx_Panorama view = SLOT_view();
-    float slope = geofx_panoramaSlope(view, geofx_panoramaPlace(view, position).y);
+    float slope = geofx_panoramaSlope(view, SLOT_placeOf(position).y);
     return 0.5 * sqrt(SLOT_viewport.x * view.across * SLOT_viewport.y * view.along * max(slope, 0.06));
 }
 
@@ -34,7 +34,7 @@ float SLOT_strokeLight(vec3 position, vec3 normal, float y)
 float SLOT_strokeFar(vec3 position)
 {
     geofx_Panorama view = SLOT_view();
-    return clamp(geofx_panoramaPlace(view, position).y / view.horizon, 0.0, 1.0);
+    return clamp(SLOT_placeOf(position).y / view.horizon, 0.0, 1.0);
 }
 
 vec3 SLOT_strokeAir(vec3 colour, vec3 position)
