@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "BenchError.h"
-#include "ChildProcess.h"
-#include "OahuSource.h"
+#include "OahuTerrain.h"
 #include "OffscreenView.h"
 #include "Outline.h"
 #include "SingleMesh.h"
@@ -198,22 +197,8 @@ private:
 std::vector<Figure> measureDrawing(const Settings& settings, const std::filesystem::path& folder)
 {
     if (!settings.wants("drawing")) return {};
-    std::filesystem::path terrain = settings.terrain;
-    if (terrain.empty())
-    {
-        const int samples = settings.smoke ? 256 : 1621;
-        const std::filesystem::path oahu = settings.data / "oahu", source = folder / "window.vrt";
-        writeWindowOfOahu(oahu / "elevation.tif", samples, source);
-        std::vector<std::string> command = builderCommand(settings, source, folder / "window", 2);
-        // For the screen that is drawn to, as a user would build for his own; tiles are small, as it is.
-        const double pixels = osgGeoFX::pixelsPerRadian(SIZE.height, FIELD_OF_VIEW);
-        command.insert(command.end(), {"--landcover", (oahu / "landcover.tif").string(), "--landcover-table",
-                                       (oahu / "landcover.csv").string(), "--pixels-per-radian",
-                                       std::to_string(pixels), "--tile-size", "64"});
-        announce("building the terrain to draw");
-        runChild(command);
-        terrain = folder / "window" / "terrain.osgb";
-    }
+    const std::filesystem::path terrain =
+        windowToDraw(settings, folder, osgGeoFX::pixelsPerRadian(SIZE.height, FIELD_OF_VIEW));
     Comparison comparison(terrain, settings);
     std::vector<Figure> figures;
     for (const NamedView& view : views())
