@@ -565,7 +565,7 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
     const Ball deformed = _mode.chain->bound(ball);
     depth = -deformed.centre.z();
     const bool test = drawable.isCullingActive();
-    if (test && _mode.chain->hides(ball)) return false;
+    if (test && _outerCullingMode != NO_CULLING && _mode.chain->hides(ball)) return false;
     if (test && _cullSmall && planeDistance(_pixelSize, deformed.centre) * _smallPixels > deformed.radius)
         return false;
     EyeFrustum::Mask planes = test ? _mode.planes : 0;

@@ -18,6 +18,10 @@ namespace
 /// From D2 to where nothing shows any more, of D2.
 constexpr double endOfHeights = 1.25;
 constexpr double leastRadius = 1e-3;
+/// Of the picture's half width, with room for rounding.
+constexpr double beside = 1.0 + 1e-6;
+/// Where the ground falls away behind the Earth, of its radius.
+constexpr double mostTurned = 1.3;
 /// Without any exaggeration heights could not be told from the picture.
 constexpr double leastExaggeration = 1e-6;
 /// Of what is seen from the eye, of that of the picture's base.
@@ -133,6 +137,7 @@ struct PanoramaFrame::Extent
     double x;          ///< of the picture, at most
     double n;          ///< at most
     double nSecond;    ///< of n by s, 1/metre
+    double turned;     ///< share of the ground's radius that the ball reaches to from the eye
 };
 
 PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
@@ -159,6 +164,7 @@ PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
     extent.x = _view.across * (std::abs(extent.place.x) + extent.reach);
     extent.n = _view.nearest + std::max(farS, 0.0);
     extent.nSecond = nearS < 0.0 ? 2.0 / _view.nearest : 0.0;
+    extent.turned = k * (glm::length(toGlm(ball.centre)) + ball.radius);
     return extent;
 }
 
@@ -217,9 +223,20 @@ DeformationFrame::Sag PanoramaFrame::sag(const Ball& ball, const osg::Vec3d& edg
     const double curve = x2 * sideX + y2 * sideY + n2 * away +
                          2.0 * n1 * (x1 * glm::length(_view.directionX) + y1 * glm::length(_view.directionY));
     // Where the ground falls away behind the Earth the projection has a kink.
-    const double k = _view.globe.curvature;
-    const double kink = k * (glm::length(toGlm(ball.centre)) + ball.radius) > 1.3 ? 40.0 * length : 0.0;
-    return {curve, kink};
+    if (extent.turned > mostTurned) return {curve, 40.0 * length};
+    // Nowhere is it off by more than all of the ball is apart in the picture.
+    const double nearS = extent.place.y - extent.reach;
+    const double farS = extent.place.y + extent.reach;
+    const double apartX = farS > _view.end ? 2.0 * extent.x : 2.0 * _view.across * extent.reach;
+    const double apartY =
+        _view.along * (glsl::geofx_panoramaRise(_view, farS) - glsl::geofx_panoramaRise(_view, nearS)) +
+        2.0 * lift * (farS > _view.horizon ? extent.height : ball.radius * extent.stretch) + 2.0 * _view.arch;
+    const double apartN = 2.0 * extent.reach;
+    const double mostY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + apartY;
+    const double most = apartX * sideX + apartY * sideY +
+                        apartN * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
+                                  mostY * glm::length(_view.directionY));
+    return {curve, 0.0, most};
 }
 
 osg::ref_ptr<const PanoramaFrame> PanoramaFrame::mirrored(double level, double detail) const
@@ -233,7 +250,14 @@ osg::ref_ptr<const PanoramaFrame> PanoramaFrame::mirrored(double level, double d
 bool PanoramaFrame::hides(const Ball& ball) const
 {
     const Extent extent = extentOf(ball);
-    return extent.place.y - extent.reach > 2.0 * _view.end - _view.horizon;
+    const double nearS = extent.place.y - extent.reach;
+    const double farS = extent.place.y + extent.reach;
+    if (nearS > 2.0 * _view.end - _view.horizon) return true;
+    // What has x and s of its own lies beside the picture or below it as the ground does, which its bounds in eye space, where
+    // everything there is stretched, may not tell.
+    if (extent.turned > mostTurned || farS > _view.end) return false;
+    if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside) return true;
+    return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside;
 }
 
 std::optional<double> PanoramaFrame::viewDistance(const Ball&) const

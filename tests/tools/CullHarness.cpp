@@ -57,7 +57,16 @@ bool visible(const std::array<osg::Vec4d, 3>& corners)
         polygon.swap(kept);
         if (polygon.empty()) return false;
     }
-    return true;
+    // What is gathered in a point or seen from its edge covers no pixel.
+    double area = 0.0;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+    {
+        const osg::Vec4d& a = polygon[i];
+        const osg::Vec4d& b = polygon[(i + 1) % polygon.size()];
+        if (a.w() < 1e-9 || b.w() < 1e-9) return true;
+        area += (a.x() * b.y() - b.x() * a.y()) / (a.w() * b.w());
+    }
+    return std::abs(area) > 1e-9;
 }
 
 struct VisibleTriangle
