@@ -57,16 +57,16 @@ bool visible(const std::array<osg::Vec4d, 3>& corners)
         polygon.swap(kept);
         if (polygon.empty()) return false;
     }
-    // What is gathered in a point or seen from its edge covers no pixel.
-    double area = 0.0;
-    for (std::size_t i = 0; i < polygon.size(); ++i)
+    // What is gathered in a point covers no pixel.
+    const osg::Vec4d& first = polygon[0];
+    for (const osg::Vec4d& corner : polygon)
     {
-        const osg::Vec4d& a = polygon[i];
-        const osg::Vec4d& b = polygon[(i + 1) % polygon.size()];
-        if (a.w() < 1e-9 || b.w() < 1e-9) return true;
-        area += (a.x() * b.y() - b.x() * a.y()) / (a.w() * b.w());
+        if (first.w() < 1e-9 || corner.w() < 1e-9) return true;
+        if (std::hypot(corner.x() / corner.w() - first.x() / first.w(),
+                       corner.y() / corner.w() - first.y() / first.w()) > 1e-9)
+            return true;
     }
-    return std::abs(area) > 1e-9;
+    return false;
 }
 
 struct VisibleTriangle
