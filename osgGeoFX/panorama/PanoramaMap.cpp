@@ -6,6 +6,7 @@
 #include <osgGeoFX/panorama/PanoramaGround.h>
 #include <osgGeoFX/panorama/PanoramaScenery.h>
 #include <osgGeoFX/panorama/PanoramaTextures.h>
+#include <osgGeoFX/panorama/StrokeLines.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +30,8 @@ PanoramaMap::PanoramaMap()
 
 PanoramaMap::PanoramaMap(const PanoramaMap& other, const osg::CopyOp& copy)
     : Deformation(other, copy), _palette(copy(other._palette.get())), _skyImage(copy(other._skyImage.get())),
-      _textures(std::make_unique<PanoramaTextures>()), _ground(new Ground(*this, *_textures)),
-      _scenery(new Scenery(*this, *_textures))
+      _lines(other._lines), _textures(std::make_unique<PanoramaTextures>()),
+      _ground(new Ground(*this, *_textures)), _scenery(new Scenery(*this, *_textures))
 {
     for (const Property& property : PanoramaMap::properties())
         property.put(*this, property.get(other));
@@ -121,6 +122,12 @@ void PanoramaMap::setPalette(osg::Image* image)
 void PanoramaMap::setSkyImage(osg::Image* image)
 {
     _skyImage = image;
+    touch();
+}
+
+void PanoramaMap::setLines(StrokeLines* lines)
+{
+    _lines = lines;
     touch();
 }
 

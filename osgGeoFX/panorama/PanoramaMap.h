@@ -13,6 +13,7 @@ namespace osgGeoFX
 {
 
 class PanoramaTextures;
+class StrokeLines;
 
 /** A panorama map: the terrain below the scene in the manner of Heinrich Berann's paintings, live.
 
@@ -30,7 +31,8 @@ class PanoramaTextures;
     of its own from light to shade. What is not ground keeps its look below a state set with
     `setDefine("GEOFX_PAINTED", OFF)`.
 
-    **Strokes** (Section 3.3): trees, cliffs and houses, placed on a lattice of the whole Earth, as dense on the screen at any zoom.
+    **Strokes** (Section 3.3): trees, cliffs and houses, placed on a lattice of the whole Earth, as dense on the screen at any zoom;
+    and roads, rivers and towns from vector data.
 
     **Water** (Section 3.4): by the distance to the shore, with the reflection of terrain and sky. **Atmosphere** (Section 3.5)
     and a painted **sky**.
@@ -177,6 +179,11 @@ public:
     /// How far they stand apart on the ground at least, metres; 1…10 000, 25 by default. Each tile's are made anew when it changes.
     bool setStrokeStep(double metres) { return assign("strokeStep", metres); }
     double getStrokeStep() const { return _strokeStep; }
+    /// Roads, rivers and towns, painted with the strokes: in degrees above a globe, in the terrain's metres else; those in other
+    /// units are not drawn. It must not change any more. Null, the default: none. Each tile's are made anew when another is set.
+    void setLines(StrokeLines* lines);
+    StrokeLines* getLines() { return _lines.get(); }
+    const StrokeLines* getLines() const { return _lines.get(); }
     /// @}
 
     /// @name Texture units
@@ -247,6 +254,7 @@ private:
     int _firstUnit = 4;
     osg::ref_ptr<osg::Image> _palette;
     osg::ref_ptr<osg::Image> _skyImage;
+    osg::ref_ptr<StrokeLines> _lines;
     std::unique_ptr<PanoramaTextures> _textures;
     osg::ref_ptr<Ground> _ground;
     osg::ref_ptr<Scenery> _scenery;

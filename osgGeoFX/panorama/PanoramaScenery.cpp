@@ -185,6 +185,7 @@ public:
         parameters.coverUnit = map.getCoverUnit();
         parameters.cliffSlope = 1.2 * map.getCliffSlope();
         parameters.treeLine = map.getTreeLine() >= 0.0 ? map.getTreeLine() : treeLineAt(ground.latitude);
+        parameters.lines = map.getLines();
         if (_maker->getParameters() != parameters) _maker->setParameters(parameters);
         return _maker;
     }

@@ -58,6 +58,18 @@ osg::Vec3d StrokeLattice::coordinates(const osg::Vec3d& world) const
     return {place.x() * _perUnit.x(), place.y() * _perUnit.y(), place.z()};
 }
 
+osg::Vec2d StrokeLattice::fromMap(const osg::Vec2d& point) const
+{
+    const double unit = _ellipsoid ? osg::PI / 180.0 : 1.0;
+    return {point.x() * unit * _perUnit.x(), point.y() * unit * _perUnit.y()};
+}
+
+osg::Vec2d StrokeLattice::toMap(const osg::Vec2d& place) const
+{
+    const double unit = _ellipsoid ? 180.0 / osg::PI : 1.0;
+    return {place.x() / _perUnit.x() * unit, place.y() / _perUnit.y() * unit};
+}
+
 osg::Vec3d StrokeLattice::up(const osg::Vec3d& world) const
 {
     if (!_ellipsoid) return {0.0, 0.0, 1.0};

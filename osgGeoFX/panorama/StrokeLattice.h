@@ -45,6 +45,10 @@ public:
 
     /// Column, row (both with fractions, at the steps of the lattice) and height in metres of a place of the world.
     osg::Vec3d coordinates(const osg::Vec3d& world) const;
+    /// Column and row of a point of the map: degrees on a globe, else metres; and back.
+    osg::Vec2d fromMap(const osg::Vec2d& point) const;
+    osg::Vec2d toMap(const osg::Vec2d& place) const;
+    bool onGlobe() const { return _ellipsoid.valid(); }
     /// Unit vector away from the ground, in the world.
     osg::Vec3d up(const osg::Vec3d& world) const;
 

@@ -2,6 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/panorama/StrokeLines.h>
+
+#include <osg/ref_ptr>
+
 #include <cstdint>
 #include <tuple>
 
@@ -20,13 +24,14 @@ struct StrokeParameters
     std::uint32_t seed = 0;     ///< another one gives other strokes
     double strokesAlongTile =
         128.0; ///< most lattice points along a tile's edge, ≥ 1: coarser tiles leave finer ones out
+    osg::ref_ptr<const StrokeLines> lines; ///< roads, rivers and towns in the terrain's units; null: none
 
     friend bool operator==(const StrokeParameters& a, const StrokeParameters& b)
     {
         const auto tie = [](const StrokeParameters& p)
         {
             return std::tie(p.spacing, p.referenceLatitude, p.jitter, p.cliffSlope, p.treeLine, p.coverUnit,
-                            p.seed, p.strokesAlongTile);
+                            p.seed, p.strokesAlongTile, p.lines);
         };
         return tie(a) == tie(b);
     }

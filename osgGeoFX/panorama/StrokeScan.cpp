@@ -41,6 +41,24 @@ struct StrokeScan::Triangle
 {
     std::array<unsigned int, 3> corners;
     std::array<osg::Vec2d, 3> at;
+
+    /// A way on the lattice as one in the mesh's frame.
+    osg::Vec3d onGround(const osg::Vec3Array& vertices, const osg::Vec2d& way) const
+    {
+        const osg::Vec2d ab = at[1] - at[0], ac = at[2] - at[0];
+        const double area = ab.x() * ac.y() - ab.y() * ac.x();
+        const double s = (way.x() * ac.y() - way.y() * ac.x()) / area;
+        const double t = (ab.x() * way.y() - ab.y() * way.x()) / area;
+        const osg::Vec3d a(vertices[corners[0]]);
+        return (osg::Vec3d(vertices[corners[1]]) - a) * s + (osg::Vec3d(vertices[corners[2]]) - a) * t;
+    }
+};
+
+/// Where a place lies; nowhere without a triangle.
+struct StrokeScan::Footing
+{
+    const Triangle* triangle = nullptr;
+    std::array<double, 3> weights{};
 };
 
 struct StrokeScan::Collect
@@ -77,7 +95,7 @@ struct StrokeScan::Collect
 };
 
 StrokeScan::StrokeScan(const StrokeLattice& lattice, const osg::Geometry& mesh, const osg::Matrixd& toWorld,
-                       double strokesAlongTile)
+                       double strokesAlongTile, const StrokeLines* lines, double spacing)
     : _lattice(lattice), _mesh(mesh), _vertices(dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray())),
       _toWorld(toWorld)
 {
@@ -89,7 +107,10 @@ StrokeScan::StrokeScan(const StrokeLattice& lattice, const osg::Geometry& mesh, 
     if (triangles.empty()) return;
     chooseLevel(triangles, std::clamp(strokesAlongTile, 1.0, 1024.0));
     const osg::Vec2d size = _high - _low;
-    if (std::max(size.x(), size.y()) < mostSteps) settle(triangles);
+    if (std::max(size.x(), size.y()) >= mostSteps) return;
+    settle(triangles);
+    if (lines && (lines->getUnits() == StrokeLines::DEGREES) == _lattice.onGlobe())
+        settleLines(triangles, *lines, std::max(spacing, 1e-3));
 }
 
 osg::Vec3d StrokeScan::up(unsigned int vertex) const
@@ -155,11 +176,10 @@ void StrokeScan::sow(std::vector<StrokeSpot>& spots) const
     }
 }
 
-void StrokeScan::settle(const std::vector<Triangle>& triangles)
+std::vector<StrokeScan::Footing> StrokeScan::footings(const std::vector<Triangle>& triangles,
+                                                      const std::vector<osg::Vec2d>& places) const
 {
     // The points, sorted into the cells of a grid over the box.
-    std::vector<StrokeSpot> sown;
-    sow(sown);
     const double cell = StrokeLattice::spacingOf(_finest);
     const auto cellOf = [&](double at, double low)
     {
@@ -167,12 +187,10 @@ void StrokeScan::settle(const std::vector<Triangle>& triangles)
     };
     const int across = cellOf(_high.x(), _low.x()) + 1, along = cellOf(_high.y(), _low.y()) + 1;
     const auto cells = static_cast<std::size_t>(across) * static_cast<std::size_t>(along);
-    std::vector<osg::Vec2d> places(sown.size());
-    std::vector<std::size_t> cellOfPoint(sown.size(), cells); // those outside come last
+    std::vector<std::size_t> cellOfPoint(places.size(), cells); // those outside come last
     std::vector<std::uint32_t> firsts(cells + 2, 0);
-    for (std::size_t i = 0; i < sown.size(); ++i)
+    for (std::size_t i = 0; i < places.size(); ++i)
     {
-        places[i] = _lattice.place(sown[i].column, sown[i].row);
         const int x = cellOf(places[i].x(), _low.x()), y = cellOf(places[i].y(), _low.y());
         if (x >= -1 && y >= -1 && x <= across && y <= along)
         {
@@ -183,8 +201,8 @@ void StrokeScan::settle(const std::vector<Triangle>& triangles)
         ++firsts[cellOfPoint[i] + 1];
     }
     std::partial_sum(firsts.begin(), firsts.end(), firsts.begin());
-    std::vector<std::uint32_t> sorted(sown.size()), next = firsts;
-    for (std::size_t i = 0; i < sown.size(); ++i)
+    std::vector<std::uint32_t> sorted(places.size()), next = firsts;
+    for (std::size_t i = 0; i < places.size(); ++i)
         sorted[next[cellOfPoint[i]]++] = static_cast<std::uint32_t>(i);
 
     const osg::Vec2d origin(std::floor(_low.x()), std::floor(_low.y()));
@@ -200,7 +218,7 @@ void StrokeScan::settle(const std::vector<Triangle>& triangles)
         return Point{2 * static_cast<std::int64_t>(std::floor((at.x() - origin.x()) * cuts)) + 1,
                      2 * static_cast<std::int64_t>(std::floor((at.y() - origin.y()) * cuts)) + 1};
     };
-    std::vector<bool> taken(sown.size(), false);
+    std::vector<Footing> footings(places.size());
     for (const Triangle& triangle : triangles)
     {
         const Point a = rounded(triangle.at[0]), b = rounded(triangle.at[1]), c = rounded(triangle.at[2]);
@@ -223,24 +241,72 @@ void StrokeScan::settle(const std::vector<Triangle>& triangles)
                 for (std::uint32_t k = firsts[here]; k < firsts[here + 1]; ++k)
                 {
                     const std::uint32_t i = sorted[k];
-                    if (taken[i]) continue;
+                    if (footings[i].triangle) continue;
                     const Point p = middle(places[i]);
                     const std::int64_t u = crossed(b, c, p), v = crossed(c, a, p), w = crossed(a, b, p);
                     if (u < 0 || v < 0 || w < 0) continue;
                     if ((u == 0 && !owns(b, c)) || (v == 0 && !owns(c, a)) || (w == 0 && !owns(a, b)))
                         continue;
-                    taken[i] = true;
-                    StrokeSpot& spot = sown[i];
-                    spot.corners = triangle.corners;
                     const auto whole = static_cast<double>(area);
-                    spot.weights = {static_cast<double>(u) / whole, static_cast<double>(v) / whole,
-                                    static_cast<double>(w) / whole};
+                    footings[i] = {&triangle,
+                                   {static_cast<double>(u) / whole, static_cast<double>(v) / whole,
+                                    static_cast<double>(w) / whole}};
                 }
             }
         }
     }
+    return footings;
+}
+
+void StrokeScan::settle(const std::vector<Triangle>& triangles)
+{
+    std::vector<StrokeSpot> sown;
+    sow(sown);
+    std::vector<osg::Vec2d> places;
+    places.reserve(sown.size());
+    for (const StrokeSpot& spot : sown)
+        places.push_back(_lattice.place(spot.column, spot.row));
+    const std::vector<Footing> found = footings(triangles, places);
     for (std::size_t i = 0; i < sown.size(); ++i)
-        if (taken[i]) _spots.push_back(sown[i]);
+    {
+        if (!found[i].triangle) continue;
+        sown[i].corners = found[i].triangle->corners;
+        sown[i].weights = found[i].weights;
+        _spots.push_back(sown[i]);
+    }
+}
+
+void StrokeScan::settleLines(const std::vector<Triangle>& triangles, const StrokeLines& lines, double spacing)
+{
+    // A globe's lines may have been given a turn away from the tile.
+    const auto around = static_cast<double>(_lattice.columns());
+    for (const double turn :
+         around > 0.0 ? std::vector<double>{-around, 0.0, around} : std::vector<double>{0.0})
+    {
+        const osg::Vec2d shift(turn, 0.0), room(1.0, 1.0);
+        const std::vector<StrokeLines::Mark> marks =
+            lines.marks(_lattice.toMap(_low + shift - room), _lattice.toMap(_high + shift + room),
+                        0.5 * spacing, _finest / 2);
+        std::vector<osg::Vec2d> places;
+        places.reserve(marks.size());
+        for (const StrokeLines::Mark& mark : marks)
+            places.push_back(_lattice.fromMap(mark.place) - shift);
+        const std::vector<Footing> found = footings(triangles, places);
+        for (std::size_t i = 0; i < marks.size(); ++i)
+        {
+            const Triangle* triangle = found[i].triangle;
+            if (!triangle) continue;
+            StrokeLineSpot spot;
+            spot.column = marks[i].index;
+            spot.row = marks[i].line;
+            spot.halfLevel = std::min(2 * marks[i].level - 2, StrokeLattice::highest);
+            spot.corners = triangle->corners;
+            spot.weights = found[i].weights;
+            spot.kind = lines.getLines()[marks[i].line].kind;
+            spot.along = triangle->onGround(*_vertices, _lattice.fromMap(marks[i].along));
+            _lineSpots.push_back(spot);
+        }
+    }
 }
 
 } // namespace osgGeoFX

@@ -57,6 +57,20 @@ std::optional<osg::Vec3d> vectorAt(const osg::Array* array, unsigned int index)
     }
 }
 
+/// How many of the lattice points in a town from vector data are houses, where the cover knows of fewer.
+constexpr double townShare = 0.7;
+
+/// Nothing where none lie on the mesh.
+std::optional<StrokeLines::Towns> townsOf(const StrokeScan& scan, const StrokeLattice& lattice,
+                                          const StrokeParameters& parameters)
+{
+    const StrokeLines* lines = parameters.lines;
+    if (!lines || (lines->getUnits() == StrokeLines::DEGREES) != lattice.onGlobe()) return {};
+    StrokeLines::Towns towns(*lines, lattice.toMap(scan.low()), lattice.toMap(scan.high()));
+    if (towns.empty()) return {};
+    return towns;
+}
+
 /// Makes strokes of the spots on a mesh.
 class Painter
 {
@@ -64,11 +78,12 @@ public:
     Painter(const osg::Geometry& mesh, const StrokeScan& scan, const StrokeLattice& lattice,
             const StrokeParameters& parameters)
         : _mesh(mesh), _scan(scan), _lattice(lattice), _parameters(parameters),
-          _cover(mesh, parameters.coverUnit)
+          _cover(mesh, parameters.coverUnit), _towns(townsOf(scan, lattice, parameters))
     {
     }
 
     void paint(const StrokeSpot& spot);
+    void paint(const StrokeLineSpot& spot);
     osg::ref_ptr<osg::Geometry> points() const;
 
 private:
@@ -76,17 +91,20 @@ private:
     osg::Vec3d normalAt(const StrokeSpot& spot) const;
     glsl::geofx_Cover coverAt(const StrokeSpot& spot, double steepness) const;
     std::optional<TileStrokes::Kind> kindAt(const StrokeSpot& spot, double steepness) const;
+    void add(const StrokeSpot& spot, const osg::Vec3d& normal, const osg::Vec3d& direction,
+             TileStrokes::Kind kind, GLshort threshold);
 
     const osg::Geometry& _mesh;
     const StrokeScan& _scan;
     const StrokeLattice& _lattice;
     const StrokeParameters& _parameters;
     const CoverSampler _cover;
+    const std::optional<StrokeLines::Towns> _towns;
     osg::ref_ptr<osg::Vec3Array> _vertices = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec3sArray> _normals = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec4sArray> _traits = new osg::Vec4sArray(osg::Array::BIND_PER_VERTEX);
-    osg::ref_ptr<osg::Vec3sArray> _downhill = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
-    bool _cliffs = false;
+    osg::ref_ptr<osg::Vec3sArray> _directions = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
+    bool _directed = false; ///< whether any stroke has a direction of its own
 };
 
 std::optional<osg::Vec3d> Painter::between(const osg::Array* array, const StrokeSpot& spot) const
@@ -132,7 +150,7 @@ glsl::geofx_Cover Painter::coverAt(const StrokeSpot& spot, double steepness) con
 
 std::optional<TileStrokes::Kind> Painter::kindAt(const StrokeSpot& spot, double steepness) const
 {
-    const glsl::geofx_Cover cover = coverAt(spot, steepness);
+    glsl::geofx_Cover cover = coverAt(spot, steepness);
     if (cover.shore > 0.0) return {};
     const auto chance = [&](StrokeChance which)
     {
@@ -142,6 +160,11 @@ std::optional<TileStrokes::Kind> Painter::kindAt(const StrokeSpot& spot, double 
     const double cliff = std::max(_parameters.cliffSlope, 1e-3);
     if (chance(StrokeChance::Cliff) < std::clamp(2.0 * (steepness - cliff) / cliff, 0.0, 1.0))
         return TileStrokes::Cliff;
+    if (_towns && _towns->contain(_lattice.toMap(_lattice.place(spot.column, spot.row))))
+    {
+        cover.town = std::max(cover.town, townShare);
+        cover.trees = std::min(cover.trees, 1.0 - townShare);
+    }
     const double drawn = chance(StrokeChance::Cover);
     if (drawn < cover.trees) return TileStrokes::Tree;
     if (drawn < cover.trees + cover.town) return TileStrokes::House;
@@ -160,14 +183,32 @@ void Painter::paint(const StrokeSpot& spot)
     {
         downhill = normal * (normal * up) - up;
         downhill.normalize();
-        _cliffs = true;
+        _directed = true;
     }
+    add(spot, normal, downhill, *kind,
+        toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Threshold)));
+}
+
+void Painter::paint(const StrokeLineSpot& spot)
+{
+    // Roads cross water, and a river in a lake is not to be seen.
+    if (spot.kind == StrokeLines::RIVER && coverAt(spot, 0.0).shore > 0.0) return;
+    osg::Vec3d along = spot.along;
+    along.normalize();
+    _directed = true;
+    add(spot, normalAt(spot), along, spot.kind == StrokeLines::RIVER ? TileStrokes::River : TileStrokes::Road,
+        static_cast<GLshort>(_scan.finestOfLines()));
+}
+
+void Painter::add(const StrokeSpot& spot, const osg::Vec3d& normal, const osg::Vec3d& direction,
+                  TileStrokes::Kind kind, GLshort threshold)
+{
     _vertices->push_back(osg::Vec3(*between(_mesh.getVertexArray(), spot)));
     _normals->push_back(toShorts(normal));
-    _downhill->push_back(toShorts(downhill));
+    _directions->push_back(toShorts(direction));
     _traits->push_back(osg::Vec4s(toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Seed)),
-                                  static_cast<GLshort>(spot.halfLevel), static_cast<GLshort>(*kind),
-                                  toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Threshold))));
+                                  static_cast<GLshort>(spot.halfLevel), static_cast<GLshort>(kind),
+                                  threshold));
 }
 
 osg::ref_ptr<osg::Geometry> Painter::points() const
@@ -176,7 +217,7 @@ osg::ref_ptr<osg::Geometry> Painter::points() const
     _vertices->trim();
     _normals->trim();
     _traits->trim();
-    _downhill->trim();
+    _directions->trim();
     _normals->setNormalize(true);
     osg::ref_ptr<osg::Geometry> points = new osg::Geometry;
     points->setName("strokes");
@@ -186,8 +227,8 @@ osg::ref_ptr<osg::Geometry> Painter::points() const
     points->setNormalArray(_normals);
     points->setTexCoordArray(0, _traits);
     // In a buffer of its own: Mesa frowns on more than three arrays that are written into one.
-    _downhill->setVertexBufferObject(new osg::VertexBufferObject);
-    if (_cliffs) points->setTexCoordArray(1, _downhill);
+    _directions->setVertexBufferObject(new osg::VertexBufferObject);
+    if (_directed) points->setTexCoordArray(1, _directions);
     points->addPrimitiveSet(new osg::DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(_vertices->size())));
     points->getBound(); // here, and not on two threads that draw
     return points;
@@ -212,9 +253,12 @@ osg::ref_ptr<TileStrokes> TileStrokes::make(const osg::Geometry& terrain, const 
 {
     osg::ref_ptr<TileStrokes> strokes = new TileStrokes(parameters, ellipsoid);
     const StrokeLattice lattice(parameters, ellipsoid);
-    const StrokeScan scan(lattice, terrain, toWorld, parameters.strokesAlongTile);
+    const StrokeScan scan(lattice, terrain, toWorld, parameters.strokesAlongTile, parameters.lines,
+                          parameters.spacing);
     Painter painter(terrain, scan, lattice, parameters);
     for (const StrokeSpot& spot : scan.spots())
+        painter.paint(spot);
+    for (const StrokeLineSpot& spot : scan.lineSpots())
         painter.paint(spot);
     strokes->_finest = scan.finest();
     strokes->_points = painter.points();

@@ -18,8 +18,9 @@ namespace osgGeoFX
     The points' arrays, in the frame of the tile's geometry:
     - vertices (vec3): where strokes stand;
     - normals (3 shorts, normalised): of the ground;
-    - texture coordinates 0 (4 shorts): seed, 0…32767; level, in halves; kind, 0 tree, 1 cliff, 2 house; threshold, 0…32767;
-    - texture coordinates 1 (3 shorts), where there are cliffs: the direction downhill along the ground, of any length.
+    - texture coordinates 0 (4 shorts): seed, 0…32767; level, in halves; kind, 0 tree, 1 cliff, 2 house, 3 road, 4
+      river; threshold, 0…32767, or of roads and rivers the finest level that the tile has of them, in halves;
+    - texture coordinates 1 (3 shorts), where there are cliffs, roads or rivers: along the ground the direction downhill or of the line.
 
     For copies and files it is an empty string: they get strokes of their own when they are drawn. */
 class OSGGEOFX_EXPORT TileStrokes : public osg::StringValueObject
@@ -29,7 +30,9 @@ public:
     {
         Tree,
         Cliff,
-        House
+        House,
+        Road,
+        River
     };
 
     /// Those of a geometry, from `maker`'s parameters: made of the mesh and its cover texture. `toWorld` is the

@@ -4,6 +4,9 @@
 
 #include <osgGeoFX/panorama/PanoramaPalette.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace osgGeoFX
 {
 
@@ -19,14 +22,36 @@ osg::ref_ptr<osg::Image> paletteOf(const ScenePath& file)
     return palette;
 }
 
+osg::ref_ptr<StrokeLines> linesOf(const std::vector<ScenePanorama::Lines>& files, const SceneTerrain& terrain)
+{
+    std::vector<StrokeLines::Line> all;
+    for (const ScenePanorama::Lines& each : files)
+    {
+        StrokeVectorsRequest request;
+        request.file = each.file.path;
+        request.layer = each.layer;
+        request.kind = each.kind;
+        request.frame = terrain.frame();
+        const std::string fault =
+            SceneTerrain::ask(each.file.place, "strokeVectors", &request, "leave the <lines> out");
+        if (!request.done) fail(each.file.place, fault);
+        std::move(request.lines.begin(), request.lines.end(), std::back_inserter(all));
+    }
+    osg::ref_ptr<StrokeLines> lines = new StrokeLines;
+    if (!lines->set(terrain.ellipsoid() ? StrokeLines::DEGREES : StrokeLines::METRES, std::move(all)))
+        fail(files.front().file.place, "the lines have points that are no places; check them with ogrinfo.");
+    return lines;
+}
+
 } // namespace
 
-void loadPanoramas(const SceneFile& scene)
+void loadPanoramas(const SceneFile& scene, const SceneTerrain& terrain)
 {
     for (const ScenePanorama& panorama : scene.panoramas)
     {
         if (panorama.palette) panorama.effect->setPalette(paletteOf(*panorama.palette));
         if (panorama.skyImage) panorama.effect->setSkyImage(pictureOf(*panorama.skyImage));
+        if (!panorama.lines.empty()) panorama.effect->setLines(linesOf(panorama.lines, terrain));
     }
 }
 

@@ -7,7 +7,17 @@
 namespace osgGeoFX
 {
 
-/// Gives the panorama maps of a scene the pictures that it names. Throws SceneFailure.
-void loadPanoramas(const SceneFile& scene);
+/// What osgdb_geofxdata is asked for under the name "strokeVectors", and its answer.
+struct StrokeVectorsRequest
+{
+    std::string file, layer;
+    StrokeLines::Kind kind = StrokeLines::ROAD;
+    MappingFrame frame;
+    std::vector<StrokeLines::Line> lines;
+    bool done = false;
+};
+
+/// Gives the panorama maps of a scene the pictures and vector data that it names. Throws SceneFailure.
+void loadPanoramas(const SceneFile& scene, const SceneTerrain& terrain);
 
 } // namespace osgGeoFX

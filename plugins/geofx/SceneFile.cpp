@@ -109,7 +109,8 @@ private:
             if (auto* closeUps = dynamic_cast<CloseUps*>(effect.get()))
                 scene.closeUps.push_back(readCloseUps(_xml, node, *closeUps));
             if (auto* map = dynamic_cast<PanoramaMap*>(effect.get()))
-                scene.panoramas.push_back({map, pathIfAny(node, "palette"), pathIfAny(node, "skyImage")});
+                scene.panoramas.push_back(
+                    {map, pathIfAny(node, "palette"), pathIfAny(node, "skyImage"), strokeLines(node)});
         }
     }
 
@@ -117,6 +118,20 @@ private:
     {
         if (attributeOf(node, attribute).empty()) return std::nullopt;
         return _xml.path(node, attribute);
+    }
+
+    std::vector<ScenePanorama::Lines> strokeLines(xmlNode* parent) const
+    {
+        std::vector<ScenePanorama::Lines> result;
+        for (xmlNode* node = child(parent, "lines"); node; node = SceneXml::next(node->next, "lines"))
+        {
+            const std::string kind = attributeOf(node, "kind");
+            result.push_back({_xml.path(node, "file"), attributeOf(node, "layer"),
+                              kind == "river"  ? StrokeLines::RIVER
+                              : kind == "town" ? StrokeLines::TOWN
+                                               : StrokeLines::ROAD});
+        }
+        return result;
     }
 
     const SceneXml& _xml;
@@ -195,6 +210,8 @@ std::vector<std::string> missingFiles(const SceneFile& scene)
     {
         if (panorama.palette) paths.push_back(*panorama.palette);
         if (panorama.skyImage) paths.push_back(*panorama.skyImage);
+        for (const ScenePanorama::Lines& lines : panorama.lines)
+            paths.push_back(lines.file);
     }
     std::vector<std::string> errors;
     for (const ScenePath& path : paths)

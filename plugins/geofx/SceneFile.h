@@ -5,6 +5,7 @@
 #include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/StrokeLines.h>
 
 #include <osg/ref_ptr>
 
@@ -183,11 +184,19 @@ struct SceneCloseUps
     std::vector<SceneCloseUp> closeUps; ///< as many as the effect has, in the same order
 };
 
-/// A panorama map, and the pictures that it has of its own.
+/// A panorama map, and the pictures and vector data that it has of its own.
 struct ScenePanorama
 {
+    struct Lines
+    {
+        ScenePath file;
+        std::string layer; ///< empty: all
+        StrokeLines::Kind kind = StrokeLines::ROAD;
+    };
+
     osg::ref_ptr<PanoramaMap> effect;
     std::optional<ScenePath> palette, skyImage;
+    std::vector<Lines> lines;
 };
 
 /** What a .geofx file says; data/geofx.xsd has the meaning, range and default of everything.

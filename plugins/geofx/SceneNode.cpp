@@ -124,7 +124,7 @@ bool loadEffects(const SceneFile& scene, const EffectScene& node, const osg::Nod
         SceneTerrain ground(node, terrain);
         loadMappings(scene, ground);
         loadCloseUps(scene, ground);
-        loadPanoramas(scene);
+        loadPanoramas(scene, ground);
         return true;
     }
     catch (const SceneFailure& failure)

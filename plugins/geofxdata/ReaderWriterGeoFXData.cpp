@@ -8,7 +8,9 @@
 
 #include <geofx/CloseUpsLoader.h>
 #include <geofx/MappingsLoader.h>
+#include <geofx/PanoramasLoader.h>
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 
 #include <osg/ValueObject>
@@ -25,9 +27,10 @@ public:
         supportsExtension("geofxdata", "osgGeoFX's services that need GDAL; not a file format");
         supportsOption("wkt", "for the object \"georeference\": the projected coordinate system, as WKT");
         supportsOption("rasters", "for the object \"terrain\": the rasters of a .geofx scene (plugin data)");
-        supportsOption("request",
-                       "for the objects \"mappingRaster\" and \"surfaceData\": a raster of a .geofx scene "
-                       "(plugin data)");
+        supportsOption(
+            "request",
+            "for the objects \"mappingRaster\", \"surfaceData\" and \"strokeVectors\": a raster or "
+            "vector data of a .geofx scene (plugin data)");
         supportsOption("version", "for the objects of scenes: the version of the plugin that asks");
     }
 
@@ -39,6 +42,7 @@ public:
         if (name == "terrain" && options) return terrain(*options);
         if (name == "mappingRaster" && options) return mappingRaster(*options);
         if (name == "surfaceData" && options) return surfaceData(*options);
+        if (name == "strokeVectors" && options) return strokeVectors(*options);
         return ReadResult::FILE_NOT_HANDLED;
     }
 
@@ -100,6 +104,20 @@ private:
         auto* request = static_cast<SurfaceRequest*>(const_cast<void*>(options.getPluginData("request")));
         if (!request) return ReadResult::FILE_NOT_HANDLED;
         request->done = addSurface(*request, *request->surface, error);
+        if (!request->done) return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult strokeVectors(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request =
+            static_cast<StrokeVectorsRequest*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        request->done = StrokeVectors::read(request->file, request->layer, request->kind, request->frame,
+                                            request->lines, error);
         if (!request->done) return error;
         return ReadResult(ReadResult::FILE_LOADED);
     }

@@ -7,6 +7,7 @@
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/StrokeLines.h>
 
 namespace osgGeoFX
 {
@@ -33,11 +34,12 @@ void addViews(osgDB::ObjectWrapper& wrapper)
                                                                                       "PedestrianView");
 }
 
-void addImages(osgDB::ObjectWrapper& wrapper)
+void addImagesAndLines(osgDB::ObjectWrapper& wrapper)
 {
     using Self = PanoramaMap;
     addImage<Self, &Self::getPalette, &Self::setPalette>(wrapper, "Palette");
     addImage<Self, &Self::getSkyImage, &Self::setSkyImage>(wrapper, "SkyImage");
+    addPart<Self, StrokeLines, &Self::getLines, &Self::setLines>(wrapper, "Lines");
 }
 
 const std::string effect = "osg::Object osgGeoFX::Effect";
@@ -52,8 +54,8 @@ const Wrapper<PedestrianView> pedestrianView("osgGeoFX::PedestrianView", bend + 
 const Wrapper<BlendedView, addViews> blendedView("osgGeoFX::BlendedView", bend + " osgGeoFX::BlendedView");
 const Wrapper<VerticalExaggeration> verticalExaggeration("osgGeoFX::VerticalExaggeration",
                                                          deformation + " osgGeoFX::VerticalExaggeration");
-const Wrapper<PanoramaMap, addImages> panoramaMap("osgGeoFX::PanoramaMap",
-                                                  deformation + " osgGeoFX::PanoramaMap");
+const Wrapper<PanoramaMap, addImagesAndLines> panoramaMap("osgGeoFX::PanoramaMap",
+                                                          deformation + " osgGeoFX::PanoramaMap");
 
 } // namespace
 

@@ -9,6 +9,7 @@
 #include <osgDB/OutputStream>
 
 #include <string>
+#include <type_traits>
 
 namespace osgGeoFX
 {
@@ -48,7 +49,7 @@ void addOwn(osgDB::ObjectWrapper& wrapper, const char* name, bool (*has)(const O
 }
 
 /// An object that another one has or has not. It may be shared with others.
-template<typename Owner, typename Part, Part* (Owner::*Get)(), bool (Owner::*Set)(Part*)>
+template<typename Owner, typename Part, Part* (Owner::*Get)(), auto Set>
 void addPart(osgDB::ObjectWrapper& wrapper, const char* name)
 {
     addOwn<Owner>(
@@ -58,7 +59,15 @@ void addPart(osgDB::ObjectWrapper& wrapper, const char* name)
             stream >> stream.BEGIN_BRACKET;
             const osg::ref_ptr<Part> part = stream.readObjectOfType<Part>();
             stream >> stream.END_BRACKET;
-            return !part || (owner.*Set)(part);
+            if constexpr (std::is_void_v<decltype((owner.*Set)(part))>)
+            {
+                if (part) (owner.*Set)(part);
+                return true;
+            }
+            else
+            {
+                return !part || (owner.*Set)(part);
+            }
         },
         [](osgDB::OutputStream& stream, const Owner& owner)
         {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Brush strokes of panorama maps, after Section 3.3 of Brown and Samavati (2017): trees, cliffs and houses.
+// Brush strokes of panorama maps, after Section 3.3 of Brown and Samavati (2017): trees, cliffs and houses; and roads and
+// rivers in the same hand.
 //
 // Strokes stand on a lattice that covers the ground. Those of level 0, 1/2, 1, 3/2 ... and all higher ones stand at a spacing
 // of 2^level steps, and each half level has twice as many strokes as are above it. `wanted` is the level, with
@@ -13,6 +14,8 @@
 const int GEOFX_STROKE_TREE = 0;
 const int GEOFX_STROKE_CLIFF = 1;
 const int GEOFX_STROKE_HOUSE = 2;
+const int GEOFX_STROKE_ROAD = 3;
+const int GEOFX_STROKE_RIVER = 4;
 
 // Half of the levels that a stroke takes to go.
 const Number GEOFX_STROKE_WINDOW = Number(0.06);
@@ -45,6 +48,18 @@ GEOFX_INLINE Number geofx_strokeGrowth(Number wanted)
     return clamp(exp(Number(-0.6931471805599453) * wanted), Number(1), Number(3));
 }
 
+// The strokes of roads and rivers go level by level; the next ones are as long by then as to cover their places.
+GEOFX_INLINE bool geofx_strokeOfLine(Number level, Number wanted)
+{
+    return level >= floor(wanted);
+}
+
+// Half of their length on the ground, from the step of the lattice and the finest level that there is: they overlap.
+GEOFX_INLINE Length geofx_strokeReach(Length step, Number finest, Number wanted)
+{
+    return Number(0.65) * step * exp(Number(0.6931471805599453) * max(wanted, finest));
+}
+
 // One of several random numbers, 0 to 1, from the seed of a stroke, which has 15 bits.
 GEOFX_INLINE Number geofx_strokeRandom(Number seed, Number which)
 {
@@ -65,6 +80,14 @@ GEOFX_INLINE geofx_StrokeShape geofx_strokeShape(int kind, Number seed)
     Number slim = geofx_strokeRandom(seed, Number(2));
     Number turn = geofx_strokeRandom(seed, Number(3)) - Number(0.5);
     geofx_StrokeShape shape;
+    if (kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER)
+    {
+        // Half the width; their length comes from the ground.
+        shape.size = Vector2(Number(kind == GEOFX_STROKE_ROAD ? 0.26 : 0.22), Number(0));
+        shape.lean = Angle(0);
+        shape.tone = Number(0);
+        return shape;
+    }
     shape.tone = Number(0.36) * (geofx_strokeRandom(seed, Number(4)) - Number(0.5));
     if (kind == GEOFX_STROKE_CLIFF)
     {
@@ -103,6 +126,7 @@ GEOFX_INLINE Number geofx_strokeInside(int kind, Vector2 point, Number seed)
         Number sides = (y > 0 ? roof : Number(0.74)) - abs(x);
         return min(sides, min(Number(0.85) - y, y + Number(0.85)));
     }
+    if (kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER) return 1 - max(abs(x), abs(y));
     Number bristle = geofx_strokeBristle(x, seed);
     if (kind == GEOFX_STROKE_CLIFF)
     {

@@ -29,6 +29,10 @@ void main()
         float gable = SLOT_point.x * (SLOT_light.x < 0.0 ? -1.0 : 1.0) < -0.1 ? 0.8 : 1.0;
         colour = gable * (SLOT_point.y > 0.0 ? SLOT_darkTone : SLOT_lightTone);
     }
+    else if (kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER)
+    {
+        colour = mix(SLOT_lightTone, SLOT_darkTone, smoothstep(0.5, 0.85, abs(SLOT_point.x)));
+    }
     else
     {
         // The light's direction as the stroke sees it.

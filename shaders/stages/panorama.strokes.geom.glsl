@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Brush strokes of PanoramaMap in the geometry stage: a rectangle on the screen for each point. Trees and houses stand on it, cliffs
-// have it in their middle. EffectProgram puts the other effects' variables in the place of GEOFX_VARYINGS.
+// Brush strokes of PanoramaMap in the geometry stage: a rectangle on the screen for each point. Trees and houses stand on it, cliffs,
+// roads and rivers have it in their middle. EffectProgram puts the other effects' variables in the place of GEOFX_VARYINGS.
 layout(points) in;
 layout(triangle_strip, max_vertices = 4) out;
 
@@ -30,7 +30,7 @@ void main()
     vec2 room = vec2(1.0) + 1.0 / max(brush.xy, vec2(0.5));
     vec2 up = brush.zw * brush.y;
     vec2 across = vec2(brush.w, -brush.z) * brush.x;
-    vec2 middle = SLOT_traits_in[i].x == 1.0 ? vec2(0.0) : 0.85 * up;
+    vec2 middle = SLOT_traits_in[i].x == 1.0 || SLOT_traits_in[i].x > 2.5 ? vec2(0.0) : 0.85 * up;
     for (int corner = 0; corner < 4; ++corner)
     {
         vec2 point = room * vec2((corner & 1) == 0 ? -1.0 : 1.0, (corner & 2) == 0 ? -1.0 : 1.0);

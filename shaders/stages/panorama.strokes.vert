@@ -44,13 +44,28 @@ void main()
     float level = 0.5 * gl_MultiTexCoord0.y;
     int kind = int(gl_MultiTexCoord0.z + 0.5);
     float threshold = gl_MultiTexCoord0.w / 32767.0;
+    bool isLine = kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER;
 
     float groundScale = SLOT_groundScale(eye.xyz);
     float wanted = geofx_strokeWanted(SLOT_stroke.y, SLOT_stroke.z, groundScale);
-    float size = SLOT_stroke.x * geofx_strokeScale(level, threshold, wanted) * geofx_strokeGrowth(wanted);
+    float size = SLOT_stroke.x * geofx_strokeGrowth(wanted);
+    if (isLine)
+        size *= geofx_strokeOfLine(level, wanted) ? 1.0 - 0.4 * SLOT_strokeFar(eye.xyz) : 0.0;
+    else
+        size *= geofx_strokeScale(level, threshold, wanted);
 
     geofx_StrokeShape shape = geofx_strokeShape(kind, seed);
     vec2 axis = vec2(0.0, 1.0);
+    float lineLength = 0.0; // half of it, pixels
+    if (isLine && size > 0.0)
+    {
+        float reach = geofx_strokeReach(SLOT_stroke.z, 0.5 * gl_MultiTexCoord0.w, wanted);
+        vec3 along = reach * normalize(gl_NormalMatrix * gl_MultiTexCoord1.xyz);
+        vec2 way = 0.5 * (SLOT_pixel(gl_ProjectionMatrix * geofx_vertex(vec4(eye.xyz + along, 1.0))) -
+                          SLOT_pixel(gl_ProjectionMatrix * geofx_vertex(vec4(eye.xyz - along, 1.0))));
+        axis = length(way) > 0.05 ? normalize(way) : axis;
+        lineLength = max(length(way), size * shape.size.x);
+    }
     if (kind == GEOFX_STROKE_CLIFF && size > 0.0)
     {
         // The fall line on the screen, upwards: the way of a place a little down the slope.
@@ -63,13 +78,15 @@ void main()
     }
     float c = cos(shape.lean);
     float s = sin(shape.lean);
-    SLOT_stamp_in = vec4(size * shape.size, axis.x * c + axis.y * s, axis.y * c - axis.x * s);
+    vec2 extent = isLine ? vec2(size * shape.size.x, lineLength) : size * shape.size;
+    SLOT_stamp_in = vec4(extent, axis.x * c + axis.y * s, axis.y * c - axis.x * s);
     SLOT_traits_in = vec2(float(kind), seed);
 
     // Ground that rises behind a stroke must not cut it off: it gets the depth of a place nearer by about its height.
     vec4 moved = geofx_vertex(eye);
     vec4 nearer = moved;
-    nearer.z += min(1.4 * SLOT_stamp_in.y / max(groundScale, 1e-9), 0.5 * abs(moved.z));
+    float height = 1.4 * SLOT_stamp_in.y + (isLine ? 2.0 * SLOT_stroke.x : 0.0); // trees must not hide lines
+    nearer.z += min(height / max(groundScale, 1e-9), 0.5 * abs(moved.z));
     nearer = gl_ProjectionMatrix * nearer;
     gl_Position = gl_ProjectionMatrix * moved;
     if (nearer.w > 0.0) gl_Position.z = nearer.z / nearer.w * gl_Position.w;
@@ -82,6 +99,16 @@ void main()
         SLOT_lightTone_in = mix(SLOT_tone(6, light), vec3(1.0), 0.25);
         vec3 roof = geofx_strokeRandom(seed, 5.0) < 0.7 ? vec3(0.80, 0.42, 0.30) : vec3(0.58, 0.56, 0.60);
         SLOT_darkTone_in = roof * (0.75 + 0.3 * light);
+    }
+    else if (kind == GEOFX_STROKE_ROAD)
+    {
+        SLOT_lightTone_in = vec3(0.98, 0.91, 0.72) * (0.88 + 0.12 * light);
+        SLOT_darkTone_in = vec3(0.52, 0.40, 0.36) * (0.88 + 0.12 * light);
+    }
+    else if (kind == GEOFX_STROKE_RIVER)
+    {
+        SLOT_lightTone_in = vec3(0.70, 0.84, 0.90);
+        SLOT_darkTone_in = vec3(0.42, 0.64, 0.80);
     }
     else
     {
