@@ -102,11 +102,16 @@ TEST_F(PanoramaLines, ARoadIsClosedAtEveryZoom)
     oahu->effects->addEffect(map);
     const osg::ref_ptr<StrokeLines> all = lines();
     const std::vector<osg::Vec2d>& points = all->getLines()[0].points;
-    for (const double radius : {28000.0, 9000.0, 3000.0})
+    struct Zoom
+    {
+        double radius; ///< metres
+        int parts;     ///< of each kilometre of the road that are looked at
+    };
+    for (const auto& [radius, parts] : {Zoom{28000.0, 1}, Zoom{9000.0, 4}, Zoom{3000.0, 12}})
     {
         SCOPED_TRACE(radius);
         map->setViewRadius(radius);
-        const double base = 21.30 - radius / 111e3;
+        const double base = 21.365 - 1.2 * radius / 111e3;
         const osg::Matrixd view = viewFrom(*oahu, "-157.95," + std::to_string(base) + ",20000,0,-45");
         map->setLines(nullptr);
         const osg::ref_ptr<osg::Image> without = draw(*oahu, view, "without");
@@ -121,9 +126,10 @@ TEST_F(PanoramaLines, ARoadIsClosedAtEveryZoom)
         int asked = 0, drawn = 0;
         for (std::size_t i = 1; i < points.size(); ++i)
         {
-            for (int j = 0; j < 40; ++j)
+            for (int j = 0; j < parts; ++j)
             {
-                const osg::Vec2d at = points[i - 1] + (points[i] - points[i - 1]) * (j / 40.0);
+                const osg::Vec2d at =
+                    points[i - 1] + (points[i] - points[i - 1]) * (static_cast<double>(j) / parts);
                 const double longitude = osg::DegreesToRadians(at.x()),
                              latitude = osg::DegreesToRadians(at.y());
                 double ground = 0.0, there[2] = {};
