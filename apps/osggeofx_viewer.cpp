@@ -5,8 +5,10 @@
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/deformation/ClickAndFly.h>
 #include <osgGeoFX/mapping/MappingPanel.h>
+#include <osgGeoFX/paging/EffectPanel.h>
 #include <osgGeoFX/paging/Scene.h>
 #include <osgGeoFX/paging/ViewerHandlers.h>
+#include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/scene/EffectKeys.h>
 #include <osgGeoFX/scene/EffectKinds.h>
 
@@ -48,8 +50,9 @@ void describe(osg::ApplicationUsage& usage)
     usage.setDescription(
         "osggeofx_viewer shows terrain databases, .geofx scenes and whatever else OpenSceneGraph reads. "
         "It takes osgviewer's options and keys; press h in the window for the keys. F9 lists the scene's "
-        "mappings. A click makes a close-up active (the key u says when), Shift and the left button drag "
-        "it.");
+        "mappings, F10 its effects with all their properties. A click makes a close-up active (the key u "
+        "says when), Shift and the left button drag "
+        "it. A panorama map has a manipulator of its own, key 0.");
     usage.setCommandLineUsage("osggeofx_viewer [options] FILE ...");
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
@@ -111,6 +114,22 @@ osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> makeManipulators(osg::ArgumentPa
     return manipulators;
 }
 
+/// Panorama maps begin with the manipulator that is made for them, unless a path is played.
+void addPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::EffectScene& scene)
+{
+    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+    {
+        auto* map = dynamic_cast<osgGeoFX::PanoramaMap*>(scene.getEffect(i));
+        if (!map) continue;
+        manipulators.addMatrixManipulator('0', "Panorama", new osgGeoFX::PanoramaManipulator(scene, *map));
+        const bool plays =
+            dynamic_cast<osgGA::AnimationPathManipulator*>(manipulators.getCurrentMatrixManipulator());
+        // The first in the order of keys.
+        if (map->getEnabled() && !plays) manipulators.selectMatrixManipulator(0);
+        return;
+    }
+}
+
 /// Home is the scene's home view, for every manipulator but those that play a path.
 void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Scene& scene,
              double fieldOfView, double aspect)
@@ -145,6 +164,7 @@ void addHandlers(osgViewer::Viewer& viewer, osg::ArgumentParser& arguments, cons
     viewer.addEventHandler(new osgGeoFX::LodScaleFollower(scene));
     viewer.addEventHandler(new osgGeoFX::EffectKeys(*scene.effects));
     viewer.addEventHandler(new osgGeoFX::ClickAndFly(*scene.effects));
+    viewer.addEventHandler(new osgGeoFX::EffectPanel(*scene.effects));
     const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
     if (panel->hasEffect()) viewer.addEventHandler(panel);
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
@@ -237,6 +257,7 @@ int main(int argc, char** argv)
     const osg::Viewport* viewport = viewer.getCamera()->getViewport();
     const double aspect = viewport ? viewport->aspectRatio() : 1.0;
     viewer.getCamera()->setProjectionMatrixAsPerspective(fieldOfView, aspect, 1.0, 1e6);
+    addPanorama(*manipulators, *scene->effects);
     setHome(*manipulators, *scene, fieldOfView, aspect);
     viewer.setCameraManipulator(manipulators);
     return viewer.run();

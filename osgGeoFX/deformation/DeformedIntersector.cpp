@@ -52,7 +52,8 @@ double meet(const osg::Vec3d& origin, const osg::Vec3d& direction, const osg::Ve
     const osg::Vec3d ac = c - a;
     const osg::Vec3d p = direction ^ ac;
     const double determinant = ab * p;
-    if (determinant == 0.0) return -1.0;
+    // Where a deformation gathers ground in one point of the picture, triangles are lines of sight, and nothing but rounding.
+    if (std::abs(determinant) <= 1e-10 * ab.length() * p.length()) return -1.0;
     const osg::Vec3d from = origin - a;
     const double u = (from * p) / determinant;
     const osg::Vec3d q = from ^ ab;

@@ -22,7 +22,13 @@ using Event = osgGA::GUIEventAdapter;
 constexpr std::size_t pageRows = MappingPanelPicture::rows;
 constexpr double opacitySteps = 20.0;
 constexpr int mostOrder = 1000;
-constexpr std::size_t wheelRows = 3;
+const PanelWords words = {"Mappings",
+                          "name",
+                          "order",
+                          "opacity",
+                          "blending",
+                          "Enter on/off   Left/Right opacity   +/- order",
+                          "comma/period blending   Alt+click picks"};
 /// Orders that are looked at in a frame, so that long lists cost no time while nothing happens.
 constexpr std::size_t checkedInAFrame = 4096;
 
@@ -172,31 +178,28 @@ void MappingPanel::relist()
     const auto found = std::find_if(_entries.begin(), _entries.end(),
                                     [&](const Entry& entry) { return entry.mapping == _selected.get(); });
     if (found != _entries.end())
-        _row = static_cast<std::size_t>(found - _entries.begin());
+        _cursor.row = static_cast<std::size_t>(found - _entries.begin());
     else
         // The one that took the place of what was removed.
-        _row = _entries.empty() ? 0 : std::min(_row, _entries.size() - 1);
-    _selected = _entries.empty() ? nullptr : _entries[_row].mapping.get();
-    _first = std::min(_first, _entries.size() - std::min(_entries.size(), pageRows));
+        _cursor.row = _entries.empty() ? 0 : std::min(_cursor.row, _entries.size() - 1);
+    _selected = _entries.empty() ? nullptr : _entries[_cursor.row].mapping.get();
+    _cursor.first = std::min(_cursor.first, _entries.size() - std::min(_entries.size(), pageRows));
 }
 
 void MappingPanel::choose(std::size_t row)
 {
-    if (_entries.empty()) return;
-    _row = std::min(row, _entries.size() - 1);
-    _selected = _entries[_row].mapping.get();
-    _first = std::min(_first, _row);
-    if (_row >= _first + pageRows) _first = _row - pageRows + 1;
+    _cursor.choose(row, _entries.size());
+    _selected = _entries.empty() ? nullptr : _entries[_cursor.row].mapping.get();
 }
 
 PanelPage MappingPanel::page() const
 {
     PanelPage result;
-    result.first = _first;
-    result.selected = _row;
+    result.first = _cursor.first;
+    result.selected = _cursor.row;
     result.total = _entries.size();
-    const std::size_t last = std::min(_first + pageRows, _entries.size());
-    for (std::size_t i = _first; i < last; ++i)
+    const std::size_t last = std::min(_cursor.first + pageRows, _entries.size());
+    for (std::size_t i = _cursor.first; i < last; ++i)
     {
         const Entry& entry = _entries[i];
         const ProjectiveMapping& mapping = *entry.mapping;
@@ -224,7 +227,7 @@ bool MappingPanel::change(int code, ProjectiveMapping& mapping)
     {
         mapping.setOrder(std::clamp(mapping.getOrder() + step, -mostOrder, mostOrder));
         relist();
-        choose(_row);
+        choose(_cursor.row);
     };
     const auto fade = [&](double step)
     {
@@ -263,29 +266,12 @@ bool MappingPanel::change(int code, ProjectiveMapping& mapping)
 
 bool MappingPanel::key(int code)
 {
-    switch (code)
+    if (_cursor.key(code, _entries.size()))
     {
-    case Event::KEY_Up:
-        choose(_row > 0 ? _row - 1 : 0);
+        choose(_cursor.row);
         return true;
-    case Event::KEY_Down:
-        choose(_row + 1);
-        return true;
-    case Event::KEY_Page_Up:
-        choose(_row > pageRows ? _row - pageRows : 0);
-        return true;
-    case Event::KEY_Page_Down:
-        choose(_row + pageRows);
-        return true;
-    case Event::KEY_Home:
-        choose(0);
-        return true;
-    case Event::KEY_End:
-        choose(_entries.size());
-        return true;
-    default:
-        return _row < _entries.size() && change(code, *_entries[_row].mapping);
     }
+    return _cursor.row < _entries.size() && change(code, *_entries[_cursor.row].mapping);
 }
 
 bool MappingPanel::pick(const Event& event, osgViewer::View& view)
@@ -314,7 +300,7 @@ bool MappingPanel::push(const Event& event, osgViewer::View& view)
         if (leftButton && spot->row && *spot->row < _entries.size())
         {
             choose(*spot->row);
-            if (spot->onBox) change(Event::KEY_Return, *_entries[_row].mapping);
+            if (spot->onBox) change(Event::KEY_Return, *_entries[_cursor.row].mapping);
         }
         return true;
     }
@@ -326,11 +312,7 @@ bool MappingPanel::push(const Event& event, osgViewer::View& view)
 bool MappingPanel::scroll(const Event& event)
 {
     if (!_picture.spotAt(static_cast<double>(event.getX()), static_cast<double>(event.getY()))) return false;
-    const std::size_t last = _entries.size() - std::min(_entries.size(), pageRows);
-    if (event.getScrollingMotion() == Event::SCROLL_UP)
-        _first -= std::min(_first, wheelRows);
-    else if (event.getScrollingMotion() == Event::SCROLL_DOWN)
-        _first = std::min(_first + wheelRows, last);
+    _cursor.scroll(event.getScrollingMotion(), _entries.size());
     return true;
 }
 
@@ -376,7 +358,7 @@ bool MappingPanel::handle(const Event& event, osgGA::GUIActionAdapter& action)
         break;
     case Event::FRAME:
         // Once, however many keys came before it.
-        if (view) _picture.show(*view, page());
+        if (view) _picture.show(*view, page(), words);
         return false;
     default:
         return false;

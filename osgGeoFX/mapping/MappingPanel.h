@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/mapping/MappingPanelPicture.h>
+#include <osgGeoFX/mapping/PanelCursor.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 
 #include <osg/observer_ptr>
@@ -82,8 +83,7 @@ private:
     std::vector<Entry> _entries;                                                    ///< topmost first
     std::vector<std::pair<osg::ref_ptr<ProjectiveMappings>, unsigned int>> _listed; ///< with their revisions
     std::size_t _checked = 0;
-    std::size_t _first = 0;
-    std::size_t _row = 0; ///< the selected one
+    PanelCursor _cursor;
     osg::observer_ptr<ProjectiveMapping> _selected;
 };
 

@@ -37,9 +37,6 @@ constexpr double opacityRight = 27.0;
 constexpr double blendingLeft = 28.2;
 constexpr double listWidth = 34.0;
 
-const char* const keysAbove = "Enter on/off   Left/Right opacity   +/- order";
-const char* const keysBelow = "comma/period blending   Alt+click picks";
-
 } // namespace
 
 std::string PanelPage::count() const
@@ -72,10 +69,21 @@ public:
         }
     }
 
+    /// An outline, with a square in it where it is on.
+    void check(double x, double y, double side, double thin, bool on, const osg::Vec4& color)
+    {
+        box(x, y, side, thin, color);
+        box(x, y + side - thin, side, thin, color);
+        box(x, y, thin, side, color);
+        box(x + side - thin, y, thin, side, color);
+        if (on) box(x + 2.0 * thin, y + 2.0 * thin, side - 4.0 * thin, side - 4.0 * thin, color);
+    }
+
     /// `column` in heights of the text; shortened to `room` pixels where that is above 0. `bottom` is the line's.
     void text(const std::string& words, double column, double bottom, Alignment alignment,
               const osg::Vec4& color, double room = 0.0)
     {
+        if (words.empty()) return;
         osg::ref_ptr<osgText::Text> text = new osgText::Text;
         if (_font) text->setFont(_font);
         text->setCharacterSize(static_cast<float>(_layout.text));
@@ -134,7 +142,7 @@ private:
     osg::ref_ptr<osg::Vec4Array> _colors = new osg::Vec4Array;
 };
 
-MappingPanelPicture::MappingPanelPicture(osgText::Font* font) : _font(font) {}
+MappingPanelPicture::MappingPanelPicture(osgText::Font* font, Corner corner) : _font(font), _corner(corner) {}
 
 MappingPanelPicture::Layout MappingPanelPicture::layout() const
 {
@@ -146,13 +154,13 @@ MappingPanelPicture::Layout MappingPanelPicture::layout() const
     layout.margin = std::round(layout.text * 0.7);
     layout.width = std::round(listWidth * layout.text) + 2.0 * layout.margin;
     layout.height = (static_cast<double>(rows) + otherLines) * layout.line + 2.0 * layout.margin;
-    layout.left = width - layout.width - layout.margin;
+    layout.left = _corner == LEFT ? layout.margin : width - layout.width - layout.margin;
     layout.bottom = height - layout.height - layout.margin;
     layout.rowsTop = layout.bottom + layout.height - layout.margin - 2.0 * layout.line;
     return layout;
 }
 
-void MappingPanelPicture::show(osgViewer::View& view, const PanelPage& page)
+void MappingPanelPicture::show(osgViewer::View& view, const PanelPage& page, const PanelWords& words)
 {
     const osg::Camera& camera = *view.getCamera();
     const osg::Viewport* port = camera.getViewport();
@@ -183,7 +191,7 @@ void MappingPanelPicture::show(osgViewer::View& view, const PanelPage& page)
     _visible = true;
     if (_drawn && page == _page) return;
     _page = page;
-    draw();
+    draw(words);
     _drawn = true;
 }
 
@@ -211,19 +219,19 @@ std::optional<MappingPanelPicture::Spot> MappingPanelPicture::spotAt(double x, d
     return spot;
 }
 
-void MappingPanelPicture::draw()
+void MappingPanelPicture::draw(const PanelWords& words)
 {
     const Layout list = layout();
     Painter painter(list, _font);
     const auto left = osgText::Text::LEFT_BASE_LINE;
     const auto right = osgText::Text::RIGHT_BASE_LINE;
     painter.box(list.left, list.bottom, list.width, list.height, background);
-    painter.text("Mappings", boxLeft, list.rowsTop + list.line, left, bright);
+    painter.text(words.title, boxLeft, list.rowsTop + list.line, left, bright);
     painter.text(_page.count(), listWidth - boxLeft, list.rowsTop + list.line, right, bright);
-    painter.text("name", nameLeft, list.rowsTop, left, dim);
-    painter.text("order", orderRight, list.rowsTop, right, dim);
-    painter.text("opacity", opacityRight, list.rowsTop, right, dim);
-    painter.text("blending", blendingLeft, list.rowsTop, left, dim);
+    painter.text(words.name, nameLeft, list.rowsTop, left, dim);
+    painter.text(words.order, orderRight, list.rowsTop, right, dim);
+    painter.text(words.opacity, opacityRight, list.rowsTop, right, dim);
+    painter.text(words.blending, blendingLeft, list.rowsTop, left, dim);
 
     const double inner = list.left + list.margin;
     const double thin = std::max(std::round(list.text / 12.0), 1.0);
@@ -237,12 +245,8 @@ void MappingPanelPicture::draw()
             selected ? (row.inForce ? brightOnMarked : dimOnMarked) : (row.inForce ? bright : dim);
         const double side = std::round(0.8 * list.text);
         const double x = std::round(inner + boxLeft * list.text);
-        const double y = std::round(bottom + 0.5 * (list.line - side));
-        painter.box(x, y, side, thin, color);
-        painter.box(x, y + side - thin, side, thin, color);
-        painter.box(x, y, thin, side, color);
-        painter.box(x + side - thin, y, thin, side, color);
-        if (row.on) painter.box(x + 2.0 * thin, y + 2.0 * thin, side - 4.0 * thin, side - 4.0 * thin, color);
+        if (row.box)
+            painter.check(x, std::round(bottom + 0.5 * (list.line - side)), side, thin, row.on, color);
         painter.text(row.name, nameLeft, bottom, left, color, (nameRight - nameLeft) * list.text);
         painter.text(row.order, orderRight, bottom, right, color);
         painter.text(row.opacity, opacityRight, bottom, right, color);
@@ -258,8 +262,8 @@ void MappingPanelPicture::draw()
         painter.box(inner + listWidth * list.text + thin, list.rowsTop - bar - way * (height - bar),
                     3.0 * thin, bar, dim);
     }
-    painter.text(keysAbove, boxLeft, list.bottom + list.margin + list.line, left, dim);
-    painter.text(keysBelow, boxLeft, list.bottom + list.margin, left, dim);
+    painter.text(words.keysAbove, boxLeft, list.bottom + list.margin + list.line, left, dim);
+    painter.text(words.keysBelow, boxLeft, list.bottom + list.margin, left, dim);
     _overlay->removeChildren(0, _overlay->getNumChildren());
     _overlay->addChild(painter.take());
 }

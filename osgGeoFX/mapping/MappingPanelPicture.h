@@ -16,7 +16,14 @@
 namespace osgGeoFX
 {
 
-/// What a MappingPanel shows at a time; texts are UTF-8.
+/// What stands around the rows of a panel; texts are UTF-8.
+struct PanelWords
+{
+    std::string title, name, order, opacity, blending; ///< of the list and its columns
+    std::string keysAbove, keysBelow;                  ///< two lines below the rows
+};
+
+/// What a panel shows at a time; texts are UTF-8.
 struct PanelPage
 {
     struct Row
@@ -24,11 +31,12 @@ struct PanelPage
         bool on;
         bool inForce; ///< drawn bright
         std::string name, order, opacity, blending;
+        bool box = true; ///< whether it has a box that switches it
 
         bool operator==(const Row& other) const
         {
             return on == other.on && inForce == other.inForce && name == other.name && order == other.order &&
-                   opacity == other.opacity && blending == other.blending;
+                   opacity == other.opacity && blending == other.blending && box == other.box;
         }
     };
     std::vector<Row> rows;
@@ -45,7 +53,7 @@ struct PanelPage
     }
 };
 
-/** The picture of a MappingPanel: a dark box in the upper right corner of a view, by a slave camera of that view. It grows
+/** The picture of a panel: a dark box in an upper corner of a view, by a slave camera of that view. It grows
     with the window, and is made anew only when what it shows has changed, from new objects, so that a frame that is still
     being drawn keeps its own. For the event traversal. */
 class OSGGEOFX_EXPORT MappingPanelPicture
@@ -53,9 +61,15 @@ class OSGGEOFX_EXPORT MappingPanelPicture
 public:
     static constexpr std::size_t rows = 12; ///< at a time
 
-    explicit MappingPanelPicture(osgText::Font* font);
+    enum Corner
+    {
+        LEFT,
+        RIGHT
+    };
+    explicit MappingPanelPicture(osgText::Font* font, Corner corner = RIGHT);
 
-    void show(osgViewer::View& view, const PanelPage& page);
+    /// The words are the same each time.
+    void show(osgViewer::View& view, const PanelPage& page, const PanelWords& words);
     void hide();
 
     /// Where a pixel of the window lies on the picture.
@@ -79,9 +93,10 @@ private:
     };
     class Painter;
     Layout layout() const;
-    void draw();
+    void draw(const PanelWords& words);
 
     osg::ref_ptr<osgText::Font> _font;
+    Corner _corner;
     osg::ref_ptr<osg::Camera> _overlay;
     PanelPage _page;
     bool _visible = false;
