@@ -68,8 +68,10 @@ double EffectPanel::stepped(const Property& property, double value, double steps
 {
     if (isSwitch(property))
     {
+        // One further, round and round, however long the step would be.
         const double count = property.maximum - property.minimum + 1.0;
-        return property.minimum + std::fmod(value - property.minimum + steps + count, count);
+        return property.minimum +
+               std::fmod(value - property.minimum + std::copysign(1.0, steps) + count, count);
     }
     if (property.kind == Property::Kind::Integer)
         return std::clamp(value + (std::abs(steps) < 1.0 ? std::copysign(1.0, steps) : steps),

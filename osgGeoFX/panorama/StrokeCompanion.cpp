@@ -44,8 +44,9 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
         _state->setAttributeAndModes(new osg::BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA),
                                      osg::StateAttribute::ON | forced);
         _state->setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
-        // Over all of the ground: soft edges mix with it.
-        _state->setRenderBinDetails(2, "RenderBin", osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
+        // Over all of the ground: soft edges mix with it; always in the same order, so that pictures do not depend on addresses.
+        _state->setRenderBinDetails(2, "TraversalOrderBin",
+                                    osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
     }
     const auto put = [&](const char* name, double x, double y, double z, double w)
     {
