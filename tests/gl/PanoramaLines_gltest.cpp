@@ -107,7 +107,7 @@ TEST_F(PanoramaLines, ARoadIsClosedAtEveryZoom)
         double radius; ///< metres
         int parts;     ///< of each kilometre of the road that are looked at
     };
-    for (const auto& [radius, parts] : {Zoom{28000.0, 1}, Zoom{9000.0, 4}, Zoom{3000.0, 12}})
+    for (const auto& [radius, parts] : {Zoom{28000.0, 1}, Zoom{9000.0, 2}, Zoom{3000.0, 12}})
     {
         SCOPED_TRACE(radius);
         map->setViewRadius(radius);
@@ -132,14 +132,20 @@ TEST_F(PanoramaLines, ARoadIsClosedAtEveryZoom)
                     points[i - 1] + (points[i] - points[i - 1]) * (static_cast<double>(j) / parts);
                 const double longitude = osg::DegreesToRadians(at.x()),
                              latitude = osg::DegreesToRadians(at.y());
-                double ground = 0.0, there[2] = {};
+                double ground = 10.0, there[2] = {};
                 osg::Vec2d pixel;
-                if (!seen.project(longitude, latitude, 10.0, *oahu->reference, pixel)) continue;
-                if (pixel.x() < 4.0 || pixel.y() < 4.0 || pixel.x() > width - 4.0 || pixel.y() > height - 4.0)
-                    continue;
-                // Where it is behind a hill or on one, the pixel shows another place.
-                if (!seen.unproject(pixel.x(), pixel.y(), *oahu->reference, there[0], there[1], ground))
-                    continue;
+                bool within = true;
+                // Twice, since the ground's height is not known at first.
+                for (int turn = 0; turn < 2 && within; ++turn)
+                {
+                    within =
+                        seen.project(longitude, latitude, ground, *oahu->reference, pixel) &&
+                        std::min(pixel.x(), pixel.y()) > 4.0 && pixel.x() < width - 4.0 &&
+                        pixel.y() < height - 4.0 &&
+                        seen.unproject(pixel.x(), pixel.y(), *oahu->reference, there[0], there[1], ground);
+                }
+                if (!within) continue;
+                // Where it is behind a hill, the pixel shows another place.
                 const double off =
                     6371000.0 * std::hypot((there[0] - longitude) * std::cos(latitude), there[1] - latitude);
                 if (off > 2.0 * radius / width) continue;
