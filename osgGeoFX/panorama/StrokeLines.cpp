@@ -222,7 +222,8 @@ StrokeLines::Towns::Towns(const StrokeLines& lines, const osg::Vec2d& low, const
         for (std::size_t j = 0; j < points.size(); ++j)
         {
             const Edge edge{static_cast<std::uint32_t>(i), points[j], points[(j + 1) % points.size()]};
-            const auto [least, most] = std::minmax(edge.from.y(), edge.to.y());
+            const double least = std::min(edge.from.y(), edge.to.y());
+            const double most = std::max(edge.from.y(), edge.to.y());
             if (most < low.y() || least > high.y()) continue;
             for (std::size_t row = rowOf(least); row <= rowOf(most); ++row)
                 _rows[row].push_back(edge);
