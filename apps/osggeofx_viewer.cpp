@@ -241,6 +241,7 @@ int main(int argc, char** argv)
 
     for (const auto& effect : effects)
         scene->effects->addEffect(effect);
+    scene->effects->listenTo(*scene->guard);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
     viewer.setSceneData(scene->node);
     const osg::Vec4 color = viewer.getCamera()->getClearColor();
