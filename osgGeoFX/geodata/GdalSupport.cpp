@@ -53,4 +53,36 @@ TransformationPtr createTransformation(const OGRSpatialReference& from, const OG
     return result;
 }
 
+DatasetPtr openVectors(const std::string& file)
+{
+    const GdalErrorScope errors;
+    DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR));
+    if (!dataset)
+        throw BuildError(file + ": it is not vector data that GDAL can read (" + errors.message() +
+                         "); check it with ogrinfo, or convert it with ogr2ogr.");
+    return dataset;
+}
+
+void forEachGeometry(OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
+                     const std::function<void(const OGRGeometry&, OGRCoordinateTransformation&)>& take)
+{
+    const OGRSpatialReference* srs = layer.GetSpatialRef();
+    if (!srs || srs->IsEmpty() || srs->IsLocal())
+        throw BuildError(file + ": its layer " + std::string(layer.GetName()) +
+                         " has no coordinate reference system; name it with ogr2ogr -a_srs EPSG:N.");
+    const TransformationPtr toTarget = createTransformation(gisOrder(*srs), gisOrder(target), file);
+    const double part = srs->IsGeographic() ? 0.01 : 1000.0 / srs->GetLinearUnits();
+    const GdalErrorScope errors;
+    for (const auto& feature : layer)
+    {
+        if (!feature->GetGeometryRef()) continue;
+        const std::unique_ptr<OGRGeometry> geometry(feature->GetGeometryRef()->getLinearGeometry());
+        geometry->segmentize(part);
+        take(*geometry, *toTarget);
+    }
+    if (errors.failed())
+        throw BuildError(file + ": its features cannot be read (" + errors.message() +
+                         "); the file may be cut short: copy or export it again.");
+}
+
 } // namespace osgGeoFX

@@ -6,7 +6,9 @@
 
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -52,5 +54,13 @@ OGRSpatialReference gisOrder(OGRSpatialReference srs);
 /// Transformation between two CRSs; throws BuildError, naming `file`, where PROJ has none.
 TransformationPtr createTransformation(const OGRSpatialReference& from, const OGRSpatialReference& to,
                                        const std::string& file);
+
+/// Opens vector data; throws BuildError where it is none.
+DatasetPtr openVectors(const std::string& file);
+
+/// Hands out each feature's geometry, curves as straight lines and nothing longer than about a kilometre, for what is straight in
+/// the file bends elsewhere; with the way to the target's coordinates. Throws BuildError where the layer has no CRS or cannot be read.
+void forEachGeometry(OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
+                     const std::function<void(const OGRGeometry&, OGRCoordinateTransformation&)>& take);
 
 } // namespace osgGeoFX

@@ -88,24 +88,9 @@ public:
 
     void collect(OGRLayer& layer)
     {
-        const OGRSpatialReference* srs = layer.GetSpatialRef();
-        if (!srs || srs->IsEmpty() || srs->IsLocal())
-            fail(_file, "its layer " + std::string(layer.GetName()) +
-                            " has no coordinate reference system; name it with ogr2ogr -a_srs EPSG:N");
-        const TransformationPtr toTarget = createTransformation(gisOrder(*srs), gisOrder(_target), _file);
-        // What is straight in the file bends on the terrain: in parts of about a kilometre it does not matter.
-        const double part = srs->IsGeographic() ? 0.01 : 1000.0 / srs->GetLinearUnits();
-        const GdalErrorScope errors;
-        for (const auto& feature : layer)
-        {
-            if (!feature->GetGeometryRef()) continue;
-            const std::unique_ptr<OGRGeometry> geometry(feature->GetGeometryRef()->getLinearGeometry());
-            geometry->segmentize(part);
-            take(*geometry, *toTarget);
-        }
-        if (errors.failed())
-            fail(_file, "its features cannot be read (" + errors.message() +
-                            "); the file may be cut short: copy or export it again");
+        forEachGeometry(layer, _target, _file,
+                        [&](const OGRGeometry& geometry, OGRCoordinateTransformation& toTarget)
+                        { take(geometry, toTarget); });
     }
 
 private:
@@ -191,11 +176,7 @@ void readAll(const std::string& file, const std::string& layer, StrokeLines::Kin
         target.SetFromUserInput(crs.definition.c_str());
         metresPerUnit = crs.metresPerUnit;
     }
-    const GdalErrorScope errors;
-    const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR));
-    if (!dataset)
-        fail(file, "it is not vector data that GDAL can read (" + errors.message() +
-                       "); check it with ogrinfo, or convert it with ogr2ogr");
+    const DatasetPtr dataset = openVectors(file);
     const bool areas = kind == StrokeLines::TOWN;
     Collector collector(file, areas, target, metresPerUnit, frame.globe);
     if (layer.empty())

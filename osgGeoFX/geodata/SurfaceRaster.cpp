@@ -351,30 +351,6 @@ void draw(const OGRGeometry& geometry, OGRCoordinateTransformation& toFrame, con
             draw(*part, toFrame, crs, pen);
 }
 
-void drawLayer(OGRLayer& layer, const FrameCrs& crs, const std::string& file, Pen& pen)
-{
-    const OGRSpatialReference* srs = layer.GetSpatialRef();
-    if (!srs || srs->IsEmpty() || srs->IsLocal())
-        fail(file, "its layer " + std::string(layer.GetName()) +
-                       " has no coordinate reference system; name it with ogr2ogr -a_srs EPSG:N");
-    OGRSpatialReference frame;
-    frame.SetFromUserInput(crs.definition.c_str());
-    const TransformationPtr toFrame = createTransformation(gisOrder(*srs), gisOrder(frame), file);
-    // What is straight in the file bends in the frame: in parts of about a kilometre it does not matter.
-    const double part = srs->IsGeographic() ? 0.01 : 1000.0 / srs->GetLinearUnits();
-    const GdalErrorScope errors;
-    for (const auto& feature : layer)
-    {
-        if (!feature->GetGeometryRef()) continue;
-        const std::unique_ptr<OGRGeometry> geometry(feature->GetGeometryRef()->getLinearGeometry());
-        geometry->segmentize(part);
-        draw(*geometry, *toFrame, crs, pen);
-    }
-    if (errors.failed())
-        fail(file, "its features cannot be read (" + errors.message() +
-                       "); the file may be cut short: copy or export it again");
-}
-
 void addLines(SurfaceData& data, const std::string& name, const std::string& file, double width,
               const osg::Vec4f& color, const MappingFrame& frame, int maxSide)
 {
@@ -384,14 +360,14 @@ void addLines(SurfaceData& data, const std::string& name, const std::string& fil
     for (const float channel : {color.r(), color.g(), color.b(), color.a()})
         if (!(channel >= 0.0f && channel <= 1.0f)) fail(file, "its colour is none; give numbers of 0 to 1");
     const FrameCrs crs = crsOf(frameOf(data, frame), file);
-    const GdalErrorScope errors;
-    const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_VERBOSE_ERROR));
-    if (!dataset)
-        fail(file, "it is not vector data that GDAL can read (" + errors.message() +
-                       "); check it with ogrinfo, or convert it with ogr2ogr");
+    const DatasetPtr dataset = openVectors(file);
+    OGRSpatialReference target;
+    target.SetFromUserInput(crs.definition.c_str());
     Pen pen(gridOf(data, 0.0, maxSide), width, color);
     for (OGRLayer* layer : dataset->GetLayers())
-        drawLayer(*layer, crs, file, pen);
+        forEachGeometry(*layer, target, file,
+                        [&](const OGRGeometry& geometry, OGRCoordinateTransformation& toFrame)
+                        { draw(geometry, toFrame, crs, pen); });
     checkAny(*pen.image, file);
     pen.image->setFileName(file);
     data.addLayer(name, SurfaceData::COLOR, pen.image);
