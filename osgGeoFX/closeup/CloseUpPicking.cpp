@@ -99,15 +99,19 @@ public:
     void apply(osg::LOD& node) override
     {
         const double former = _radius;
-        _radius = static_cast<double>(node.getBound().radius()) * largestScale(modelView());
+        const double formerLimit = _limit;
+        const osg::Matrixd here = modelView();
+        _radius = static_cast<double>(node.getBound().radius()) * largestScale(here);
+        _limit = _drawn->lodLimit(node, {osg::Vec3d(node.getBound().center()) * here, _radius});
         DeformedIntersectionVisitor::apply(node);
         _radius = former;
+        _limit = formerLimit;
     }
     float getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const override
     {
         const double distance =
             _drawn->lodDistance({osg::Vec3d(position) * modelView(), _radius}, osg::Vec3d());
-        return static_cast<float>(withLodScale ? distance * _lodScale : distance);
+        return static_cast<float>(std::min(withLodScale ? distance * _lodScale : distance, _limit));
     }
 
 protected:
@@ -117,6 +121,7 @@ private:
     osg::ref_ptr<const DeformationChain> _drawn;
     double _lodScale;
     double _radius = 0.0;
+    double _limit = std::numeric_limits<double>::infinity();
 };
 
 /// Where a line is within |x| and |y| ≤ 1 and near the ground, in multiples of its direction.

@@ -154,8 +154,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     pushViewport(outer.getViewport());
     pushProjectionMatrix(outer.getProjectionMatrix());
     const bool frustumCulls = (_outerCullingMode & VIEW_FRUSTUM_CULLING) && !task.filter;
-    _frustum.set(frustumCulls ? &getProjectionCullingStack().back().getFrustum() : nullptr,
-                 *getProjectionMatrix(), (_outerCullingMode & VIEW_FRUSTUM_SIDES_CULLING) != 0);
+    setFrustum(frustumCulls);
     // OSG's own tests, which the base class makes, pass everything.
     if (task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
     pushReferenceViewPoint(outer.getReferenceViewPoint());
@@ -185,6 +184,31 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
         _bounds.lines = new osg::Vec3Array;
         _bounds.colours = new osg::Vec4Array;
     }
+}
+
+void CompensatingCullVisitor::setFrustum(bool culls)
+{
+    double reach = 0.0;
+    for (const DrawableCompanion* each : _task.companions)
+        reach = std::max(reach, each->reach());
+    const osg::Viewport* viewport = getViewport();
+    const bool sides = (_outerCullingMode & VIEW_FRUSTUM_SIDES_CULLING) != 0;
+    if (!(reach > 0.0) || !viewport || viewport->width() < 1.0 || viewport->height() < 1.0)
+    {
+        _room.set(0.0, 0.0);
+        _frustum.set(culls ? &getProjectionCullingStack().back().getFrustum() : nullptr,
+                     *getProjectionMatrix(), sides);
+        return;
+    }
+    // A wider picture, so that what stands beside the camera's is drawn while it still reaches into it.
+    _room.set(2.0 * reach / viewport->width(), 2.0 * reach / viewport->height());
+    const osg::Matrixd wider =
+        *getProjectionMatrix() * osg::Matrixd::scale(1.0 / (1.0 + _room.x()), 1.0 / (1.0 + _room.y()), 1.0);
+    osg::Polytope planes;
+    planes.setToUnitFrustum((_outerCullingMode & NEAR_PLANE_CULLING) != 0,
+                            (_outerCullingMode & FAR_PLANE_CULLING) != 0);
+    planes.transformProvidingInverse(wider);
+    _frustum.set(culls ? &planes : nullptr, wider, sides);
 }
 
 void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
@@ -264,7 +288,7 @@ bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
     const osg::BoundingSphere& sphere = node.getBound();
     if (!sphere.valid()) return false;
     const Ball undeformed = eyeBall(sphere);
-    if (_mode.chain->hides(undeformed)) return true;
+    if (_mode.chain->hides(undeformed, _room)) return true;
     const Ball ball = _mode.chain->bound(undeformed);
     _middle = ball.centre;
     if (_frustum.side(ball, _mode.planes) == EyeFrustum::Side::Outside) return true;
@@ -407,6 +431,7 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
     // The mesh and its box lie elsewhere in memory; where the middle shows they have nothing to tell.
     if (_mode.planes && !_frustum.holds(_middle, _mode.planes) && tileOutOfSight(node)) return;
     _mode.lodRadius = static_cast<double>(node.getBound().radius()) * _scale;
+    _mode.lodLimit = _mode.chain->lodLimit(node, eyeBall(node.getBound()));
     if (node.getRangeMode() != osg::LOD::PIXEL_SIZE_ON_SCREEN)
     {
         CullVisitor::apply(node);
@@ -513,7 +538,9 @@ bool CompensatingCullVisitor::meshOutside(const osg::Drawable& drawable, EyeFrus
 
 bool CompensatingCullVisitor::misses(const osg::BoundingBox& box, EyeFrustum::Mask planes)
 {
-    _mode.chain->bound(EyeBox::of(box, *getModelViewMatrix()), _hull);
+    const EyeBox eyeBox = EyeBox::of(box, *getModelViewMatrix());
+    if (_mode.chain->hides(eyeBox, _room)) return true;
+    _mode.chain->bound(eyeBox, _hull);
     return _frustum.misses(_hull, planes);
 }
 
@@ -531,9 +558,8 @@ bool CompensatingCullVisitor::witnessInSight(const osg::Drawable& drawable, EyeF
 bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
 {
     // Its sphere is wide for a flat tile; the mesh that stands for it has a box.
-    if (_task.tileError <= 0.0 || node.getNumChildren() == 0 || node.getNumRanges() < 2) return false;
-    const osg::Transform* tile = node.getChild(0)->asTransform();
-    if (!tile || !TileInfo::isTile(*tile) || tile->getNumChildren() != 1) return false;
+    const osg::Transform* tile = _task.tileError > 0.0 ? TileInfo::coarseOf(node) : nullptr;
+    if (!tile || tile->getNumChildren() != 1) return false;
     const osg::Drawable* mesh = tile->getChild(0)->asDrawable();
     if (!mesh || !mesh->getBoundingBox().valid()) return false;
     osg::Matrixd matrix = *getModelViewMatrix();
@@ -547,6 +573,7 @@ bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
     bounds._max += more;
     const EyeBox box = EyeBox::of(bounds, matrix);
     EyeFrustum::Mask planes = _mode.planes;
+    if (_mode.chain->hides(box, _room)) return true;
     const Ball deformed = _mode.chain->bound(box.ball());
     const EyeFrustum::Side side = _frustum.side(deformed, planes);
     if (side != EyeFrustum::Side::Crossing) return side == EyeFrustum::Side::Outside;
@@ -565,7 +592,7 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
     const Ball deformed = _mode.chain->bound(ball);
     depth = -deformed.centre.z();
     const bool test = drawable.isCullingActive();
-    if (test && _outerCullingMode != NO_CULLING && _mode.chain->hides(ball)) return false;
+    if (test && _outerCullingMode != NO_CULLING && _mode.chain->hides(box, _room)) return false;
     if (test && _cullSmall && planeDistance(_pixelSize, deformed.centre) * _smallPixels > deformed.radius)
         return false;
     EyeFrustum::Mask planes = test ? _mode.planes : 0;
@@ -708,7 +735,8 @@ float CompensatingCullVisitor::getDistanceToViewPoint(const osg::Vec3& position,
     const Ball ball = {osg::Vec3d(position) * *_modelviewStack.back(), _mode.lodRadius};
     // The reference view point is in eye space: the origin but for cameras that inherit another one's.
     const double distance = _mode.chain->lodDistance(ball, getReferenceViewPoint());
-    return static_cast<float>(withLodScale ? distance * static_cast<double>(getLODScale()) : distance);
+    return static_cast<float>(
+        std::min(withLodScale ? distance * static_cast<double>(getLODScale()) : distance, _mode.lodLimit));
 }
 
 float CompensatingCullVisitor::getDistanceToEyePoint(const osg::Vec3& position, bool withLodScale) const

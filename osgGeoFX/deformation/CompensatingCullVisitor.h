@@ -46,6 +46,8 @@ public:
     virtual osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) = 0;
     /// With which it is drawn, below the effects' uniforms; the drawable's own state does not count.
     virtual osg::StateSet* state() = 0;
+    /// How far beyond the drawable's own picture it reaches at most, pixels.
+    virtual double reach() const { return 0.0; }
 
 protected:
     ~DrawableCompanion() = default;
@@ -133,6 +135,7 @@ private:
         EyeFrustum::Mask planes = 0; ///< frustum planes that bounds may still cross
         bool ours = true;            ///< false below cameras: OSG's culling, no state of ours
         double lodRadius = 0.0;      ///< of the LOD that is asking for distances
+        double lodLimit = HUGE_VAL;  ///< what it hears at most
     };
     class Scope;
 
@@ -148,6 +151,8 @@ private:
     void meetAll(const osgUtil::StateGraph& state);
     void begin(osgUtil::CullVisitor& outer, const Task& task);
     void end(osgUtil::CullVisitor& outer);
+    /// The planes that cull, with room for the companions.
+    void setFrustum(bool culls);
     /// Whether a node is out of sight; narrows the planes for what is below it.
     bool outOfSight(const osg::Node& node);
     Ball eyeBall(const osg::BoundingSphere& sphere) const;
@@ -175,6 +180,7 @@ private:
     Mode _mode;
     osg::ref_ptr<const DeformationChain> _nothing;
     EyeFrustum _frustum;
+    osg::Vec2d _room; ///< that companions take beside their drawables, in the picture's x and y (−1…1)
     DepthRange _depths;
     CullingMode _outerCullingMode = 0;
     ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;

@@ -8,9 +8,11 @@
 #include <osg/BoundingBox>
 #include <osg/Matrixd>
 #include <osg/Referenced>
+#include <osg/Vec2d>
 #include <osg/Vec3d>
 #include <osg/Vec4d>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -98,8 +100,14 @@ public:
     /// Where the picture is not as large as distances in eye space tell: the distance, metres, from which a plain view would
     /// show what is in a ball as large; levels of detail go by it. Nothing where they tell it.
     virtual std::optional<double> viewDistance(const Ball&) const { return std::nullopt; }
-    /// Whether nothing in a ball is to be drawn, though it may lie in the picture.
-    virtual bool hides(const Ball&) const { return false; }
+    /// How long an edge of a flat mesh in a ball may be, metres: as only its ends are moved, it then misses its curved image by
+    /// `tolerance` at most, a share of the distance from the eye.
+    virtual double longestEdge(const Ball&, double) const { return HUGE_VAL; }
+    /// Whether nothing in a ball is to be drawn, though it may lie in the picture. What is drawn may reach beyond the ball by
+    /// `room`, in the picture's x and y (−1…1).
+    virtual bool hides(const Ball&, const osg::Vec2d&) const { return false; }
+    /// The same of a box; to be overridden where a box tells more.
+    virtual bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const { return hides(box.ball(), room); }
     /// A sentence where something in this box cannot be drawn well; said once by the scene.
     virtual std::string complaint(const EyeBox&) const { return {}; }
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/DeformationChain.h>
 
+#include <osgGeoFX/paging/TerrainInfo.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -110,15 +112,50 @@ bool DeformationChain::leavesAlone(const Ball& ball) const
                        { return frame->reach(ball) == DeformationFrame::Reach::Identity; });
 }
 
-bool DeformationChain::hides(const Ball& ball) const
+bool DeformationChain::hides(const Ball& ball, const osg::Vec2d& room) const
 {
     Ball current = ball;
     for (std::size_t i = 0; i < _frames.size(); ++i)
     {
         if (i > 0) current = _frames[i - 1]->bound(current);
-        if (_frames[i]->hides(current)) return true;
+        if (_frames[i]->hides(current, room)) return true;
     }
     return false;
+}
+
+bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
+{
+    if (_frames.empty()) return false;
+    if (_frames.front()->hidesBox(box, room)) return true;
+    if (_frames.size() == 1) return false;
+    Ball current = box.ball();
+    for (std::size_t i = 1; i < _frames.size(); ++i)
+    {
+        current = _frames[i - 1]->bound(current);
+        if (_frames[i]->hides(current, room)) return true;
+    }
+    return false;
+}
+
+double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
+{
+    if (_tileEdge <= 0.0 || !TileInfo::coarseOf(node) || _tileEdge * ball.radius <= longestEdge(ball))
+        return HUGE_VAL;
+    return 0.999 * static_cast<double>(node.getMaxRange(1));
+}
+
+double DeformationChain::longestEdge(const Ball& ball) const
+{
+    Ball current = ball;
+    double longest = HUGE_VAL;
+    double growth = 1.0;
+    for (const auto& frame : _frames)
+    {
+        longest = std::min(longest, frame->longestEdge(current, _tileError) / growth);
+        growth *= frame->lipschitz(current);
+        current = frame->bound(current);
+    }
+    return longest;
 }
 
 Ball DeformationChain::bound(const Ball& ball) const

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/deformation/Deformation.h>
 
+#include <osg/LOD>
 #include <osg/StateSet>
 
 #include <vector>
@@ -18,6 +19,12 @@ class OSGGEOFX_EXPORT DeformationChain : public osg::Referenced
 {
 public:
     void add(osg::ref_ptr<const DeformationFrame> frame) { _frames.push_back(std::move(frame)); }
+    /// Ground::tileEdge and Ground::tileError.
+    void setTiles(double edge, double error)
+    {
+        _tileEdge = edge;
+        _tileError = error;
+    }
     bool empty() const { return _frames.empty(); }
     const std::vector<osg::ref_ptr<const DeformationFrame>>& frames() const { return _frames; }
 
@@ -33,7 +40,8 @@ public:
     /// Whether nothing happens to any point of a ball.
     bool leavesAlone(const Ball& ball) const;
     /// Whether nothing of a ball is to be drawn.
-    bool hides(const Ball& ball) const;
+    bool hides(const Ball& ball, const osg::Vec2d& room) const;
+    bool hides(const EyeBox& box, const osg::Vec2d& room) const;
     /// A ball around what becomes of a ball.
     Ball bound(const Ball& ball) const;
     /// A hull around what becomes of a box. `hull` is reused for speed. Its margin is to be no larger than `fineness`,
@@ -43,6 +51,9 @@ public:
     /// The distance, metres, at which an undeformed ball would deserve the level of detail that the deformed one does:
     /// what LOD ranges are compared with. `viewPoint` is in eye space.
     double lodDistance(const Ball& ball, const osg::Vec3d& viewPoint) const;
+    /// What is to be taken in the place of distances that are larger, LOD scale included, for the levels of detail of a node with
+    /// this ball: where a tile's triangles are too large for the deformation, one at which finer ones are due, else infinite.
+    double lodLimit(const osg::LOD& node, const Ball& ball) const;
     /// By how much lodDistance() asks for more detail than the distance to the deformed ball alone.
     double detail(const Ball& ball) const;
 
@@ -50,7 +61,11 @@ protected:
     ~DeformationChain() override;
 
 private:
+    double longestEdge(const Ball& ball) const;
+
     std::vector<osg::ref_ptr<const DeformationFrame>> _frames;
+    double _tileEdge = 0.0;
+    double _tileError = 0.0;
 };
 
 /// Whether a subgraph is deformed: the define GEOFX_DEFORMATION of the state sets down to it, by OSG's rules of

@@ -112,6 +112,29 @@ bool DeformedLineIntersector::meets(const Ball& ball) const
     return (toCentre - _direction * along).length2() <= radius * radius;
 }
 
+bool DeformedLineIntersector::missesBox(const osg::BoundingBox& box) const
+{
+    Hull hull;
+    _chain->bound(EyeBox::of(box, _modelView), hull);
+    // Along the ray the hull is a flat figure, and the ray a point: has it a side with nothing of the figure?
+    osg::Vec3d across = _direction ^ osg::Vec3d(0.0, 1.0, 0.0);
+    if (across.length2() < 0.01) across = _direction ^ osg::Vec3d(1.0, 0.0, 0.0);
+    across.normalize();
+    const osg::Vec3d up = across ^ _direction;
+    constexpr int sides = 16;
+    for (int side = 0; side < sides; ++side)
+    {
+        const double angle = 2.0 * osg::PI * side / sides;
+        const osg::Vec3d outward = across * std::cos(angle) + up * std::sin(angle);
+        const double margin = hull.margin + 1e-6;
+        if (std::all_of(hull.points.begin(), hull.points.end(),
+                        [&](const osg::Vec3d& point)
+                        { return (point - _origin) * outward > margin + 1e-9 * point.length(); }))
+            return true;
+    }
+    return false;
+}
+
 bool DeformedLineIntersector::enter(const osg::Node& node)
 {
     if (!node.isCullingActive()) return true;
@@ -126,6 +149,7 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
     if (root()->reachedLimit()) return;
     const osg::BoundingBox& bounds = drawable->getBoundingBox();
     if (!bounds.valid() || !meets(_chain->bound(EyeBox::of(bounds, _modelView).ball()))) return;
+    if (missesBox(bounds)) return;
     Mesh mesh;
     drawable->accept(mesh);
     std::vector<osg::Vec3d> deformed;
@@ -164,7 +188,7 @@ class DeformedIntersectionVisitor::Scope
 {
 public:
     Scope(DeformedIntersectionVisitor& visitor, const osg::Node& node)
-        : _visitor(visitor), _chain(visitor._chain), _radius(visitor._lodRadius),
+        : _visitor(visitor), _chain(visitor._chain), _radius(visitor._lodRadius), _limit(visitor._lodLimit),
           _deformation(visitor._deformation)
     {
         visitor._deformation.meet(node.getStateSet());
@@ -178,6 +202,7 @@ public:
         if (_cloned) _visitor.pop_clone();
         _visitor._chain = _chain;
         _visitor._lodRadius = _radius;
+        _visitor._lodLimit = _limit;
         _visitor._deformation = _deformation;
     }
     Scope(const Scope&) = delete;
@@ -187,6 +212,7 @@ private:
     DeformedIntersectionVisitor& _visitor;
     osg::ref_ptr<const DeformationChain> _chain;
     double _radius;
+    double _limit;
     DeformationSwitch _deformation;
     bool _cloned = false;
 };
@@ -195,7 +221,7 @@ DeformedIntersectionVisitor::DeformedIntersectionVisitor(osgUtil::Intersector* i
                                                          const DeformationChain& chain,
                                                          const osg::Matrixd& modelView, double lodScale)
     : osgUtil::IntersectionVisitor(intersector), _chain(&chain), _whole(&chain),
-      _nothing(new DeformationChain), _view(modelView), _lodScale(lodScale)
+      _nothing(new DeformationChain), _view(modelView), _lodScale(lodScale), _lodLimit(HUGE_VAL)
 {
     // The first one collects; from the second one on they know where they are.
     push_clone();
@@ -257,7 +283,9 @@ void DeformedIntersectionVisitor::apply(osg::Transform& node)
 void DeformedIntersectionVisitor::apply(osg::LOD& node)
 {
     const Scope scope(*this, node);
-    _lodRadius = static_cast<double>(node.getBound().radius()) * largestScale(modelView());
+    const osg::Matrixd here = modelView();
+    _lodRadius = static_cast<double>(node.getBound().radius()) * largestScale(here);
+    _lodLimit = _chain->lodLimit(node, {osg::Vec3d(node.getBound().center()) * here, _lodRadius});
     IntersectionVisitor::apply(static_cast<osg::Group&>(node));
 }
 
@@ -276,7 +304,7 @@ float DeformedIntersectionVisitor::getDistanceToViewPoint(const osg::Vec3& posit
 {
     const double distance =
         _chain->lodDistance({osg::Vec3d(position) * modelView(), _lodRadius}, osg::Vec3d());
-    return static_cast<float>(withLodScale ? distance * _lodScale : distance);
+    return static_cast<float>(std::min(withLodScale ? distance * _lodScale : distance, _lodLimit));
 }
 
 } // namespace osgGeoFX

@@ -54,6 +54,8 @@ protected:
 private:
     DeformedLineIntersector* root() { return _root ? _root : this; }
     bool meets(const Ball& ball) const;
+    /// Whether the ray certainly misses what becomes of a box.
+    bool missesBox(const osg::BoundingBox& box) const;
 
     osg::Vec3d _origin;
     osg::Vec3d _direction;
@@ -107,6 +109,7 @@ private:
     osg::Matrixd _view;
     double _lodScale;
     double _lodRadius = 0.0;
+    double _lodLimit;
 };
 
 } // namespace osgGeoFX

@@ -121,6 +121,13 @@ public:
         for (std::size_t i = 0; i < boxCorners; ++i)
             hull.points[i] = roughly(hull.points[i]);
     }
+    double longestEdge(const Ball& ball, double tolerance) const override
+    {
+        if (reach(ball) != Reach::Curved) return HUGE_VAL;
+        const Ball bent = bound(ball);
+        const double gap = std::max(0.0, bent.centre.length() - bent.radius);
+        return std::sqrt(8.0 * tolerance * gap / (_look.transitionDetail * std::max(_curvature, 1e-30)));
+    }
     double detail(const Ball& ball) const override
     {
         const double s = profile(ball.centre).x;

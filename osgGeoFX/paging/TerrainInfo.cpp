@@ -74,6 +74,7 @@ std::optional<TerrainInfo> TerrainInfo::read(const osg::Node* node, std::string&
         error = "The terrain database's description of itself is incomplete; build it again.";
         return std::nullopt;
     }
+    root.getUserValue("geofx.tileCells", info.tileCells);
     info.geocentric = kind == "geocentric";
     return info;
 }
@@ -81,6 +82,13 @@ std::optional<TerrainInfo> TerrainInfo::read(const osg::Node* node, std::string&
 bool TileInfo::isTile(const osg::Node& node)
 {
     return node.getName().compare(0, 5, "tile ") == 0 && node.asTransform() != nullptr;
+}
+
+const osg::Transform* TileInfo::coarseOf(const osg::LOD& node)
+{
+    if (node.getNumChildren() == 0 || node.getNumRanges() < 2) return nullptr;
+    const osg::Transform* tile = node.getChild(0)->asTransform();
+    return tile && isTile(*tile) ? tile : nullptr;
 }
 
 std::optional<TileInfo> TileInfo::read(const osg::Node& node)

@@ -4,7 +4,8 @@
 
 #include <osgGeoFX/Export.h>
 
-#include <osg/Node>
+#include <osg/LOD>
+#include <osg/Transform>
 #include <osg/Vec3d>
 
 #include <optional>
@@ -30,6 +31,7 @@ struct OSGGEOFX_EXPORT TerrainInfo
     double pixelsPerRadian = 0.0; ///< of the screen on which LOD ranges keep the error bound
     double pixelError = 0.0;      ///< that bound
     int levels = 0;
+    int tileCells = 0;    ///< that a tile's mesh has along its edge at least; 0: not known
     std::string vertical; ///< vertical datum
 
     /// The newest format that this library understands.
@@ -51,6 +53,8 @@ struct OSGGEOFX_EXPORT TileInfo
 
     /// Whether the node is a tile's transform, by its name.
     static bool isTile(const osg::Node& node);
+    /// The tile that a node shows from afar, where it has finer ones; else null.
+    static const osg::Transform* coarseOf(const osg::LOD& node);
     static std::optional<TileInfo> read(const osg::Node& node);
 };
 

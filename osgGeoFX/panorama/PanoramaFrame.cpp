@@ -18,8 +18,8 @@ namespace
 /// From D2 to where nothing shows any more, of D2.
 constexpr double endOfHeights = 1.25;
 constexpr double leastRadius = 1e-3;
-/// Of the picture's half width, with room for rounding.
-constexpr double beside = 1.0 + 1e-6;
+/// Of the picture's half width and height, with room for rounding.
+constexpr double beside = 1.0 + 1e-4;
 /// Where the ground falls away behind the Earth, of its radius.
 constexpr double mostTurned = 1.3;
 /// Without any exaggeration heights could not be told from the picture.
@@ -55,13 +55,15 @@ void setRays(glsl::geofx_Panorama& panorama, const ViewGeometry& view)
 
 bool finite(const glsl::geofx_Panorama& panorama)
 {
-    double sum = panorama.across + panorama.along + panorama.lift + panorama.base + panorama.end +
-                 panorama.nearest + panorama.globe.height;
+    double sum = 0.0;
+    for (const double each : {panorama.across, panorama.along, panorama.lift, panorama.base, panorama.end,
+                              panorama.nearest, panorama.globe.height})
+        sum += std::abs(each);
     for (const glm::dvec3& each : {panorama.right, panorama.forward, panorama.origin, panorama.originX,
                                    panorama.originY, panorama.direction, panorama.directionX,
                                    panorama.directionY, panorama.globe.up, panorama.globe.axis})
-        sum += each.x + each.y + each.z;
-    return std::abs(sum) < 1e12;
+        sum += std::abs(each.x) + std::abs(each.y) + std::abs(each.z);
+    return sum < 1e12;
 }
 
 } // namespace
@@ -247,7 +249,17 @@ osg::ref_ptr<const PanoramaFrame> PanoramaFrame::mirrored(double level, double d
     return new PanoramaFrame(view, _viewDistance / detail);
 }
 
-bool PanoramaFrame::hides(const Ball& ball) const
+double PanoramaFrame::longestEdge(const Ball& ball, double tolerance) const
+{
+    const Extent extent = extentOf(ball);
+    if (extent.place.y - extent.reach > _view.end) return HUGE_VAL;
+    // Of the picture's y: the curve's second derivative, and that of Eq. 1.
+    const double second =
+        _view.along * extent.slopeRate + std::abs(_view.arch) * 2.4675 * _view.across * _view.across;
+    return std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
+}
+
+bool PanoramaFrame::hides(const Ball& ball, const osg::Vec2d& room) const
 {
     const Extent extent = extentOf(ball);
     const double nearS = extent.place.y - extent.reach;
@@ -256,8 +268,50 @@ bool PanoramaFrame::hides(const Ball& ball) const
     // What has x and s of its own lies beside the picture or below it as the ground does, which its bounds in eye space, where
     // everything there is stretched, may not tell.
     if (extent.turned > mostTurned || farS > _view.end) return false;
-    if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside) return true;
-    return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside;
+    if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside + room.x()) return true;
+    return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside - room.y();
+}
+
+bool PanoramaFrame::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
+{
+    const Ball ball = box.ball();
+    if (hides(ball, room)) return true;
+    const Extent extent = extentOf(ball);
+    if (extent.turned > mostTurned) return false;
+    // Places within the box lie between those of its corners, but for what the ground's curve adds.
+    double bent = 0.0;
+    for (const osg::Vec3d& half : box.half)
+        bent += extent.curvature * half.length2() / 2.0;
+    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+    for (int corner = 0; corner < 8; ++corner)
+    {
+        osg::Vec3d position = box.centre;
+        for (int axis = 0; axis < 3; ++axis)
+            position += box.half[axis] * (corner & (1 << axis) ? 1.0 : -1.0);
+        const glm::dvec3 place = glsl::geofx_panoramaPlace(_view, toGlm(position));
+        low = glm::min(low, place - bent);
+        high = glm::max(high, place + bent);
+    }
+    if (low.y > 2.0 * _view.end - _view.horizon) return true;
+    if (high.y > _view.end) return false;
+    const double side = beside + room.x();
+    if (_view.across * low.x > side || _view.across * high.x < -side) return true;
+
+    // Heights and Eq. 1 move what is shown there up or down.
+    const double lifts[] = {_view.lift * (low.z - _view.base), _view.lift * (high.z - _view.base)};
+    const auto lifted = [&](double lift, bool most)
+    {
+        const bool whole = (lift > 0.0) == most;
+        return lift * glsl::geofx_panoramaFade(_view, whole ? low.y : high.y);
+    };
+    const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 +
+                       lifted(std::max(lifts[0], lifts[1]), true);
+    if (top < -beside - room.y()) return true;
+    const double farthest = std::min(_view.across * std::max(std::abs(low.x), std::abs(high.x)), 2.0);
+    const double foot = _view.along * glsl::geofx_panoramaRise(_view, low.y) - 1.0 +
+                        lifted(std::min(lifts[0], lifts[1]), false) -
+                        std::abs(glsl::geofx_panoramaArch(_view, farthest));
+    return foot > beside + room.y();
 }
 
 std::optional<double> PanoramaFrame::viewDistance(const Ball&) const

@@ -37,7 +37,9 @@ public:
     Reach reach(const Ball&) const override { return Reach::Curved; }
     double lipschitz(const Ball& ball) const override;
     Sag sag(const Ball& ball, const osg::Vec3d& edge) const override;
-    bool hides(const Ball& ball) const override;
+    double longestEdge(const Ball& ball, double tolerance) const override;
+    bool hides(const Ball& ball, const osg::Vec2d& room) const override;
+    bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const override;
     std::optional<double> viewDistance(const Ball& ball) const override;
     Uniforms uniforms() const override;
 

@@ -292,15 +292,17 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     if (skyProgram) drawSky(pass.outer, false);
     osg::ref_ptr<DeformationChain> chain = new DeformationChain;
     osg::StateSet& state = mirror.state();
+    bool turned = false;
     for (const auto& frame : pass.chain.frames())
     {
         const auto* own = dynamic_cast<const PanoramaFrame*>(frame.get());
         osg::ref_ptr<const DeformationFrame> seen = frame;
         if (own)
         {
-            const osg::ref_ptr<const PanoramaFrame> turned = own->mirrored(0.0, mirrorDetail);
-            setFrame(state, pass.prefix, *turned);
-            seen = turned;
+            const osg::ref_ptr<const PanoramaFrame> mirrored = own->mirrored(0.0, mirrorDetail);
+            setFrame(state, pass.prefix, *mirrored);
+            seen = mirrored;
+            turned = true;
         }
         chain->add(seen);
     }
@@ -328,7 +330,8 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     task.tileError = pass.tileError;
     task.stage = &stage;
     task.passState = &state;
-    visitor.run(pass.outer, pass.scene, task);
+    // It is the projection that turns the ground over; without it there is the sky to reflect.
+    if (turned) visitor.run(pass.outer, pass.scene, task);
     if (skyProgram)
     {
         const CompensatingCullVisitor::Piece sky = {_cameras->square(), *pass.outer.getModelViewMatrix(),

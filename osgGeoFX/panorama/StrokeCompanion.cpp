@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/StrokeCompanion.h>
 
+#include <osgGeoFX/panorama/PanoramaFrame.h>
+
 #include <osg/BlendFunc>
 #include <osg/Viewport>
 
@@ -23,6 +25,23 @@ PassShaders strokeShaders()
     shaders.fragmentMain = "stages/panorama.strokes.frag";
     return shaders;
 }
+
+/// How many times larger than wanted the strokes of a picture are, where there are too few of them.
+double growthOf(const ScenePass& pass, const PanoramaMap& map, const osg::Viewport& viewport)
+{
+    double groundScale = HUGE_VAL; // near the eye of a perspective picture
+    if (map.getProjection())
+    {
+        const std::optional<glsl::geofx_Panorama> view = panoramaOf(map, pass.view);
+        if (view)
+            groundScale = 0.5 * std::sqrt(viewport.width() * view->across * viewport.height() * view->along);
+    }
+    return glsl::geofx_strokeGrowth(
+        glsl::geofx_strokeWanted(map.getStrokeSpacing(), map.getStrokeStep(), groundScale));
+}
+
+/// Half the length of a cliff's stroke, which is longest, over the size; and a road's over the spacing, seen at a slant.
+constexpr double longestStroke = 2.0, longestLine = 1.5;
 
 } // namespace
 
@@ -48,6 +67,8 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
         _state->setRenderBinDetails(2, "TraversalOrderBin",
                                     osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
     }
+    _reach = longestStroke * map.getStrokeSize() * growthOf(pass, map, *viewport) +
+             longestLine * map.getStrokeSpacing() + 2.0;
     const auto put = [&](const char* name, double x, double y, double z, double w)
     {
         _state->getOrCreateUniform(pass.prefix + name, osg::Uniform::FLOAT_VEC4)

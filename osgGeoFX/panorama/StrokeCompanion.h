@@ -22,6 +22,7 @@ public:
 
     osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) override;
     osg::StateSet* state() override { return _state; }
+    double reach() const override { return _reach; }
     /// Points are the tiles' own, the program the scene's.
     void releaseGLObjects(osg::State*) const {}
 
@@ -30,6 +31,7 @@ private:
     osg::ref_ptr<StrokeMaker> _maker;
     osg::Matrixd _toWorld; ///< from eye space
     unsigned int _coverUnit = 0;
+    double _reach = 0.0; ///< pixels from a stroke's foot to its end, at most
 };
 
 } // namespace osgGeoFX

@@ -364,6 +364,8 @@ Ground EffectScene::ground(const osg::NodePath& above) const
         if (info->geocentric) ground.latitude = osg::DegreesToRadians(0.5 * (info->south + info->north));
         // A range is the radius and error / pixelError · pixelsPerRadian; both meshes may be off by their error.
         if (info->pixelsPerRadian > 0.0) ground.tileError = 2.0 * info->pixelError / info->pixelsPerRadian;
+        // The diagonal of a cell, and half of the tile's.
+        if (info->tileCells > 0) ground.tileEdge = 2.0 / info->tileCells;
     }
     return ground;
 }
@@ -417,9 +419,10 @@ bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, c
     return any;
 }
 
-osg::ref_ptr<DeformationChain> chainOf(const Frames& frames)
+osg::ref_ptr<DeformationChain> chainOf(const Frames& frames, const Ground& ground)
 {
     osg::ref_ptr<DeformationChain> chain = new DeformationChain;
+    chain->setTiles(ground.tileEdge, ground.tileError);
     for (const Placed& placed : frames)
     {
         if (placed.frame) chain->add(placed.frame);
@@ -456,7 +459,8 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformation(const osg::Matrixd
                                                               const osg::Matrixd& projection,
                                                               const osg::NodePath& above) const
 {
-    return chainOf(framesFor(_effects, ViewGeometry(modelView, projection, ground(above))));
+    const Ground known = ground(above);
+    return chainOf(framesFor(_effects, ViewGeometry(modelView, projection, known)), known);
 }
 
 bool EffectScene::cull(osgUtil::CullVisitor& outer)
@@ -476,7 +480,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     const ViewGeometry view(*outer.getModelViewMatrix(), *outer.getProjectionMatrix(), ground(path));
     const Frames frames = framesFor(_effects, view);
     CompensatingCullVisitor::Task task;
-    task.chain = chainOf(frames);
+    task.chain = chainOf(frames, view.ground);
     task.mapUnit = mapUnitOf(_effects);
     Drawing::Camera& own = _drawing->camera(outer);
     if (own.visitor->startsFrame(outer)) own.used = 0;

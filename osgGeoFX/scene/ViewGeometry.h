@@ -21,6 +21,8 @@ struct OSGGEOFX_EXPORT Ground
     /// Of the kit's databases: by how much finer tiles can stick out of a coarser one's box, for each metre that the
     /// coarser one's LOD range is longer than its radius; 0 for other databases.
     double tileError = 0.0;
+    /// Of the kit's databases: the longest edge of a tile's mesh, as a share of its radius; 0 for other databases.
+    double tileEdge = 0.0;
     bool heightsKnown = false; ///< whether the database tells its heights
     /// Radians; of the database's middle where it is known, else 45° north. For what depends on the climate.
     double latitude = 0.25 * osg::PI;

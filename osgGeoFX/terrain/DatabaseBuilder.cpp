@@ -4,6 +4,7 @@
 
 #include "AtomicFile.h"
 #include "BuildPlan.h"
+#include "TileMesh.h"
 #include "TilePass.h"
 
 #include <osg/CoordinateSystemNode>
@@ -120,6 +121,7 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
     root->setUserValue("geofx.pixelsPerRadian", plan.options.pixelsPerRadian);
     root->setUserValue("geofx.pixelError", plan.options.pixelError);
     root->setUserValue("geofx.levels", plan.scheme.finestLevel + 1);
+    root->setUserValue("geofx.tileCells", leastCells(plan.scheme.intervals));
     root->setUserValue("geofx.tiles", static_cast<double>(result.tiles));
     root->setUserValue("geofx.vertical", std::string(vertical[static_cast<int>(plan.options.vertical)]));
     if (!plan.options.landCoverTable.empty())

@@ -63,6 +63,8 @@ private:
         };
         if (crosses(c - dc, c + dc, _lattice.endColumn) || crosses(r - dr, r + dr, _lattice.endRow))
             return std::numeric_limits<float>::max();
+        if (2 * std::max(std::abs(dc), std::abs(dr)) * leastCells(_lattice.intervals) > _lattice.intervals)
+            return std::numeric_limits<float>::max();
         float result = std::abs(h - 0.5f * (a + b)) * perMetre;
         if (!_lattice.places.empty())
             result = (_lattice.place(c, r) -

@@ -81,11 +81,17 @@ private:
 /// Every post of the lattice, row by row from the south-west, and two triangles for each cell that has data.
 TileMesh createFullMesh(const TileLattice& lattice);
 
+/// The number of cells that an adaptive mesh has along a tile's edge at least, so that a plain may be bent.
+inline int leastCells(int intervals)
+{
+    return std::min(intervals, 16);
+}
+
 /** A right-triangulated irregular network: large triangles where the ground is even, small ones where it is not.
 
     No lattice point is farther than `tolerance` metres above or below it, and where the slope changes visibly
-    triangles are as small as the slopes' lattice, so that light and shade stay as they are on a full mesh. Borders of
-    holes in the data are followed post by post. (Evans, Kirkpatrick, Townsend: Right-triangulated irregular
+    triangles are as small as the slopes' lattice, so that light and shade stay as they are on a full mesh. Nowhere are they
+    larger than a cell of leastCells(). Borders of holes in the data are followed post by post. (Evans, Kirkpatrick, Townsend: Right-triangulated irregular
     networks, 2001.) */
 TileMesh createAdaptiveMesh(const TileLattice& lattice, const TileSlopes& slopes, double tolerance);
 

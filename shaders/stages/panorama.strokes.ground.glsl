@@ -37,6 +37,13 @@ float SLOT_strokeFar(vec3 position)
     return clamp(SLOT_placeOf(position).y / view.horizon, 0.0, 1.0);
 }
 
+float SLOT_strokeShown(vec3 position)
+{
+    if (SLOT_strokeView.x > 0.0) return 1.0;
+    geofx_Panorama view = SLOT_view();
+    return geofx_panoramaFade(view, SLOT_placeOf(position).y);
+}
+
 vec3 SLOT_strokeAir(vec3 colour, vec3 position)
 {
     return geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(SLOT_strokeFar(position), SLOT_hand.z));

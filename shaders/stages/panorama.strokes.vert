@@ -14,6 +14,8 @@ float SLOT_strokeLight(vec3 eyePosition, vec3 eyeNormal, float y);
 vec3 SLOT_strokeAir(vec3 colour, vec3 eyePosition);
 // 0 at the picture's base, 1 at the horizon.
 float SLOT_strokeFar(vec3 eyePosition);
+// What is left of it behind the horizon.
+float SLOT_strokeShown(vec3 eyePosition);
 
 uniform vec4 SLOT_viewport;    // width and height in pixels, and one over each
 uniform vec4 SLOT_stroke;      // size and wanted spacing in pixels, step of the lattice in metres
@@ -53,6 +55,8 @@ void main()
         size *= geofx_strokeOfLine(level, wanted) ? 1.0 - 0.4 * SLOT_strokeFar(eye.xyz) : 0.0;
     else
         size *= geofx_strokeScale(level, threshold, wanted);
+    float shown = SLOT_strokeShown(eye.xyz);
+    size *= shown;
 
     geofx_StrokeShape shape = geofx_strokeShape(kind, seed);
     vec2 axis = vec2(0.0, 1.0);
@@ -78,7 +82,7 @@ void main()
     }
     float c = cos(shape.lean);
     float s = sin(shape.lean);
-    vec2 extent = isLine ? vec2(size * shape.size.x, lineLength) : size * shape.size;
+    vec2 extent = isLine ? vec2(size * shape.size.x, shown * lineLength) : size * shape.size;
     SLOT_stamp_in = vec4(extent, axis.x * c + axis.y * s, axis.y * c - axis.x * s);
     SLOT_traits_in = vec2(float(kind), seed);
 

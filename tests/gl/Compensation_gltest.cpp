@@ -31,7 +31,7 @@ double median(std::vector<double> values)
 constexpr int PARTS = 4;
 
 /// For a database, and a part of the cameras.
-class Compensation : public GlFixture, public ::testing::WithParamInterface<std::tuple<const char*, int>>
+class Compensation : public GlFixture, public ::testing::WithParamInterface<std::tuple<OahuCase, int>>
 {
 protected:
     Compensation() : GlFixture(WIDTH, HEIGHT) {}
@@ -39,7 +39,7 @@ protected:
     /// The terrain again, with no tile loaded beyond the root.
     void reload()
     {
-        const std::optional<Scene> loaded = loadOahu(std::get<0>(GetParam()));
+        const std::optional<Scene> loaded = loadOahu(std::get<0>(GetParam()).database);
         ASSERT_TRUE(loaded);
         _scene = loaded->effects;
         _reference = loaded->reference;
@@ -53,6 +53,7 @@ protected:
 
 TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
 {
+    const bool painted = std::get<0>(GetParam()).addEffects == addRandomPainting;
     const SampleRange cameras(fullTest() ? 500 : 24, std::get<1>(GetParam()), PARTS);
     const int count = cameras.count();
     std::vector<double> tileRatios;
@@ -72,7 +73,7 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
             if (!harness) harness = std::make_unique<CullHarness>(context(), _scene, WIDTH, HEIGHT);
             harness->setScene(_scene);
         }
-        addRandomEffects(*_scene, random);
+        std::get<0>(GetParam()).addEffects(*_scene, random);
         const osg::Matrixd view = randomOahuView(random, *_reference);
         const osg::Matrixd projection = randomProjection(random);
         harness->setCamera(view, projection);
@@ -94,22 +95,32 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
         const auto needed = static_cast<double>(oracle.needed.size());
         const std::size_t drawn = culled.drawables().size();
         culledAway += everything.leaves.size() - drawn;
-        EXPECT_LE(static_cast<double>(drawn), 1.5 * needed + 4.0)
-            << needed << " needed, " << _scene->getEffect(0)->className();
+        // A painting draws its mirror's tiles, too, and those beside the picture whose strokes reach into it.
+        if (!painted)
+        {
+            EXPECT_LE(static_cast<double>(drawn), 1.5 * needed + 4.0)
+                << needed << " needed, " << _scene->getEffect(0)->className();
+        }
         if (needed > 0.0) tileRatios.push_back(static_cast<double>(drawn) / needed);
 
         // Whoever is in sight, or has a part in sight, and deserves more detail asks for it; few others do.
         EXPECT_EQ(mistakes.unasked, 0);
         const auto asking = static_cast<double>(culled.requesting().size());
         const auto deserving = static_cast<double>(oracle.deserving.size());
-        EXPECT_LE(asking, 2.0 * deserving + 4.0) << deserving << " deserving";
+        if (!painted)
+        {
+            EXPECT_LE(asking, 2.0 * deserving + 4.0) << deserving << " deserving";
+        }
         if (deserving > 0.0) requestRatios.push_back(asking / deserving);
     }
     EXPECT_GT(loaded, count);
     EXPECT_GT(deformed, count / 2);
     EXPECT_GT(culledAway, static_cast<std::size_t>(10 * count));
     const double tileRatio = median(tileRatios);
-    EXPECT_LE(tileRatio, 1.10);
+    if (!painted)
+    {
+        EXPECT_LE(tileRatio, 1.10);
+    }
     RecordProperty("median tiles drawn over needed", std::to_string(tileRatio));
     RecordProperty("median requests over deserving", std::to_string(median(requestRatios)));
     std::cout << "tiles drawn / needed: median " << tileRatio << ", most "
@@ -119,6 +130,14 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
               << " of " << count << ", " << loaded << " tiles loaded\n";
 }
 
-INSTANTIATE_TEST_SUITE_P(Oahu, Compensation,
-                         ::testing::Combine(::testing::Values("oahu", "oahu_projected"),
-                                            ::testing::Range(0, PARTS)));
+INSTANTIATE_TEST_SUITE_P(
+    Oahu, Compensation,
+    ::testing::Combine(::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects},
+                                         OahuCase{"oahu_projected", "oahu_projected", addRandomEffects},
+                                         OahuCase{"panorama", "oahu", addRandomPanorama},
+                                         OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama},
+                                         OahuCase{"painting", "oahu", addRandomPainting},
+                                         OahuCase{"painting_projected", "oahu_projected", addRandomPainting}),
+                       ::testing::Range(0, PARTS)),
+    [](const auto& each)
+    { return std::string(std::get<0>(each.param).name) + "_" + std::to_string(std::get<1>(each.param)); });

@@ -233,7 +233,12 @@ TEST_F(PanoramaTruth, SummitsStandInTheRatioOfTheirHeightsWhateverTheirDistance)
         const double k = random.logarithmic(0.75, 1.33);
         SCOPED_TRACE(::testing::Message()
                      << i << ": k " << k << ", " << describe(*shot.map) << "; " << shot.pose);
-        const double nearS = random.uniform(0.05, 0.3) * shot.horizon();
+        const double wide = 0.03 * shot.radius();
+        // So that all of the mark at its foot is in the picture, lowered by Eq. 1.
+        const double lowered = shot.map->getHorizonBend() * (1.0 - std::cos(0.5 * osg::PI_2)) + 0.01;
+        const double along = 2.0 * shot.map->getHorizonLine() /
+                             (shot.horizon() + shot.map->getCurveDistance() * shot.radius());
+        const double nearS = std::max(random.uniform(0.05, 0.3) * shot.horizon(), lowered / along + wide);
         const double farS = random.uniform(0.5, 0.95) * shot.horizon();
         double shown[2] = {};
         for (int cone = 0; cone < 2; ++cone)
@@ -241,7 +246,6 @@ TEST_F(PanoramaTruth, SummitsStandInTheRatioOfTheirHeightsWhateverTheirDistance)
             // In the middle of a column of pixels.
             const MapPlace summit{((cone == 0 ? -0.5 : 0.5) + 1.0 / WIDTH) * shot.radius(),
                                   cone == 0 ? nearS : farS, cone == 0 ? high : k * high};
-            const double wide = 0.03 * shot.radius();
             const auto mountain =
                 makeSurface(shot, {1, 1, 1, 1}, 32, 32,
                             [&](double u, double v)

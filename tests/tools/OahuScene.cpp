@@ -7,6 +7,7 @@
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 
 #include <cmath>
 
@@ -44,6 +45,12 @@ osg::ref_ptr<PedestrianView> randomPedestrian(Random& random)
     view->setFocusDistance(random.logarithmic(100.0, 8000.0));
     view->setZoneWidth(random.logarithmic(100.0, 8000.0));
     return view;
+}
+
+void removeEffects(EffectScene& scene)
+{
+    while (scene.getNumEffects())
+        scene.removeEffect(scene.getEffect(0));
 }
 
 } // namespace
@@ -90,10 +97,31 @@ osg::Matrixd randomOahuView(Random& random, const Georeference& reference)
     return view;
 }
 
+void addRandomPainting(EffectScene& scene, Random& random)
+{
+    removeEffects(scene);
+    osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
+    map->setHorizonDistance(random.uniform(0.8, 10.0));
+    map->setCurveDistance(random.uniform(0.0, 0.9) * map->getHorizonDistance());
+    map->setHorizonLine(random.uniform(0.4, 1.0));
+    map->setHorizonBend(random.integer(0, 3) ? random.uniform(0.0, 0.1) : 0.0);
+    map->setExaggeration(random.logarithmic(0.3, 6.0));
+    map->setDetail(random.uniform(0.3, 1.5));
+    if (random.integer(0, 2) == 0) map->setViewRadius(random.logarithmic(1000.0, 4e4));
+    scene.addEffect(map);
+}
+
+void addRandomPanorama(EffectScene& scene, Random& random)
+{
+    addRandomPainting(scene, random);
+    std::string refusal;
+    for (const char* part : {"paint", "strokes", "water", "sky"})
+        scene.getEffect(0)->setProperty(part, 0.0, refusal);
+}
+
 void addRandomEffects(EffectScene& scene, Random& random)
 {
-    while (scene.getNumEffects())
-        scene.removeEffect(scene.getEffect(0));
+    removeEffects(scene);
     const int kind = random.integer(0, 5);
     if (kind == 4 || kind == 5)
     {

@@ -26,4 +26,16 @@ osg::Matrixd randomOahuView(Random& random, const osgGeoFX::Georeference& refere
 /// Puts random effects in the place of a scene's: each kind alone, and bends after exaggeration.
 void addRandomEffects(osgGeoFX::EffectScene& scene, Random& random);
 
+/// Puts a random panorama map in the place of a scene's effects: the projection alone, or with all that it paints.
+void addRandomPanorama(osgGeoFX::EffectScene& scene, Random& random);
+void addRandomPainting(osgGeoFX::EffectScene& scene, Random& random);
+
+/// A parameter of tests: which effects, of which database.
+struct OahuCase
+{
+    const char* name;
+    const char* database;
+    void (*addEffects)(osgGeoFX::EffectScene& scene, Random& random);
+};
+
 } // namespace geofx::test

@@ -359,6 +359,14 @@ TEST(DeformationChain, ActsInItsOrderAndIsUndoneInTheReverse)
                 folds = folds || std::abs(numbers.heightOf(expected)) * 2.9 > 0.9 * numbers.size;
                 scale += std::abs(numbers.start) + numbers.size;
             }
+            // Several exaggerations can take a valley through the middle of the Earth, from where no way leads back.
+            if (view.ground.ellipsoid)
+            {
+                const double radius = view.ground.ellipsoid->getRadiusPolar();
+                const Vec3d middle = view.up * -(radius + view.eyeHeight);
+                folds = folds ||
+                        (next - middle) * (expected - middle) < 0.1 * radius * (expected - middle).length();
+            }
             expected = next;
             scale += expected.length();
         }

@@ -241,6 +241,8 @@ TEST(Panorama, KeepsOrientation)
             const Vec3d point = found.at(place.x(), place.y(), place.z());
             const double step = std::min(1e-5 * (point.length() + found.radius()),
                                          1e-3 * (found.panorama().horizon - found.panorama().curve));
+            // Behind the horizon heights fall, and what falls steeply turns over, out of sight.
+            if (place.y() > found.panorama().horizon - 2.0 * step) return;
             Vec3d columns[3];
             for (int axis = 0; axis < 3; ++axis)
             {
@@ -344,9 +346,36 @@ TEST(Panorama, BendsHorizontalsByEquationOne)
 
 TEST(Panorama, ShowsNothingOfWhatItHides)
 {
-    int behind = 0;
-    int besides = 0;
-    int below = 0;
+    struct Counts
+    {
+        int behind = 0, besides = 0, below = 0, above = 0;
+    };
+    // All at one point of the horizon, or all beyond one of the picture's borders.
+    const auto expectHidden =
+        [](const Case& found, const osg::Vec2d& room, const auto& randomPoint, Counts& counts)
+    {
+        const Vec3d point = found.seen(0.0, 3.0 * found.panorama().end, found.panorama().base);
+        bool gathered = true;
+        bool left = true;
+        bool right = true;
+        bool under = true;
+        bool over = true;
+        for (int i = 0; i < 20; ++i)
+        {
+            const Vec3d seen = found.seen(randomPoint(i));
+            gathered = gathered && std::hypot(seen.x() - point.x(), seen.y() - point.y()) < 1e-9;
+            left = left && seen.x() < -1.0 - room.x();
+            right = right && seen.x() > 1.0 + room.x();
+            under = under && seen.y() < -1.0 - room.y();
+            over = over && seen.y() > 1.0 + room.y();
+        }
+        EXPECT_TRUE(gathered || left || right || under || over);
+        counts.behind += gathered ? 1 : 0;
+        counts.besides += left || right ? 1 : 0;
+        counts.below += under && !left && !right ? 1 : 0;
+        counts.above += over && !left && !right ? 1 : 0;
+    };
+    Counts balls, boxes;
     forRandom(
         [&](const Case& found, Random& random)
         {
@@ -355,29 +384,45 @@ TEST(Panorama, ShowsNothingOfWhatItHides)
             ball.centre = found.at(random.sign() * random.logarithmic(0.1, 30.0) * found.radius(),
                                    random.uniform(-3.0, 3.0) * view.end, random.uniform(-400.0, 9000.0));
             ball.radius = random.logarithmic(1e-3, 1.0) * view.horizon;
-            if (!found.frame->hides(ball)) return;
-            // All at one point of the horizon, or all beyond one of the picture's borders.
-            const Vec3d point = found.seen(0.0, 3.0 * view.end, view.base);
-            bool gathered = true;
-            bool left = true;
-            bool right = true;
-            bool under = true;
-            for (int i = 0; i < 20; ++i)
-            {
-                const Vec3d seen = found.seen(ball.centre + randomDirection(random) * ball.radius);
-                gathered = gathered && std::hypot(seen.x() - point.x(), seen.y() - point.y()) < 1e-9;
-                left = left && seen.x() < -1.0;
-                right = right && seen.x() > 1.0;
-                under = under && seen.y() < -1.0;
-            }
-            EXPECT_TRUE(gathered || left || right || under);
-            behind += gathered ? 1 : 0;
-            besides += left || right ? 1 : 0;
-            below += under && !left && !right ? 1 : 0;
+            const osg::Vec2d room = random.integer(0, 1)
+                                        ? osg::Vec2d()
+                                        : osg::Vec2d(random.uniform(0.0, 0.5), random.uniform(0.0, 0.5));
+            if (found.frame->hides(ball, room))
+                expectHidden(
+                    found, room, [&](int) { return ball.centre + randomDirection(random) * ball.radius; },
+                    balls);
+            // A tile somewhere around the picture, turned any way.
+            osgGeoFX::EyeBox box;
+            box.centre = found.at(random.uniform(-2.0, 2.0) * found.radius(),
+                                  random.uniform(-0.5, 1.6) * view.end, random.uniform(-400.0, 9000.0));
+            const double size = random.logarithmic(1e-3, 0.3) * view.horizon;
+            const osg::Vec3d up = toOsg(view.globe.up);
+            osg::Vec3d across = randomDirection(random) ^ up;
+            across.normalize();
+            box.half[0] = across * size;
+            box.half[1] = (up ^ across) * (size * random.uniform(0.5, 1.0));
+            box.half[2] = up * std::min(size, random.logarithmic(1.0, 2000.0));
+            if (found.frame->hidesBox(box, room))
+                expectHidden(
+                    found, room,
+                    [&](int i)
+                    {
+                        // Its corners first.
+                        osg::Vec3d at = box.centre;
+                        for (int axis = 0; axis < 3; ++axis)
+                            at += box.half[axis] *
+                                  (i < 8 ? (i >> axis) % 2 * 2.0 - 1.0 : random.uniform(-1.0, 1.0));
+                        return at;
+                    },
+                    boxes);
         });
-    EXPECT_GT(behind, sampleCount() / 20);
-    EXPECT_GT(besides, sampleCount() / 20);
-    EXPECT_GT(below, sampleCount() / 100);
+    EXPECT_GT(balls.behind, sampleCount() / 20);
+    EXPECT_GT(balls.besides, sampleCount() / 20);
+    EXPECT_GT(balls.below, sampleCount() / 100);
+    EXPECT_GT(boxes.behind, sampleCount() / 50);
+    EXPECT_GT(boxes.besides, sampleCount() / 20);
+    EXPECT_GT(boxes.below, sampleCount() / 100);
+    EXPECT_GT(boxes.above, sampleCount() / 100);
 }
 
 TEST(Panorama, StillWaterMirrorsHeights)
@@ -442,7 +487,8 @@ TEST(Panorama, IsFiniteAtTheEndsOfTheEarth)
             EXPECT_TRUE(std::isfinite(found.frame->lipschitz(ball)));
             const auto sag = found.frame->sag(ball, Vec3d(1.0, 2.0, 3.0));
             EXPECT_TRUE(std::isfinite(sag.curve) && std::isfinite(sag.kink));
-            found.frame->hides(ball);
+            found.frame->hides(ball, {});
+            EXPECT_GT(found.frame->longestEdge(ball, 1e-3), 0.0);
             const glm::vec3 moved =
                 glslf::geofx_panoramaDeform(inFloats(*found.frame), {point.x(), point.y(), point.z()});
             EXPECT_TRUE(std::isfinite(moved.x) && std::isfinite(moved.y) && std::isfinite(moved.z))
