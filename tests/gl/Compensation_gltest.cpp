@@ -53,8 +53,9 @@ protected:
 
 TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
 {
-    const bool painted = std::get<0>(GetParam()).addEffects == addRandomPainting;
-    const SampleRange cameras(fullTest() ? 500 : 24, std::get<1>(GetParam()), PARTS);
+    const OahuCase& sort = std::get<0>(GetParam());
+    const SampleRange cameras(fullTest() ? sort.many : sort.few, std::get<1>(GetParam()), PARTS);
+    const bool painted = sort.addEffects == addRandomPainting;
     const int count = cameras.count();
     std::vector<double> tileRatios;
     std::vector<double> requestRatios;
@@ -132,12 +133,13 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
 
 INSTANTIATE_TEST_SUITE_P(
     Oahu, Compensation,
-    ::testing::Combine(::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects},
-                                         OahuCase{"oahu_projected", "oahu_projected", addRandomEffects},
-                                         OahuCase{"panorama", "oahu", addRandomPanorama},
-                                         OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama},
-                                         OahuCase{"painting", "oahu", addRandomPainting},
-                                         OahuCase{"painting_projected", "oahu_projected", addRandomPainting}),
-                       ::testing::Range(0, PARTS)),
+    ::testing::Combine(
+        ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 24, 500},
+                          OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 24, 500},
+                          OahuCase{"panorama", "oahu", addRandomPanorama, 12, 100},
+                          OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 12, 100},
+                          OahuCase{"painting", "oahu", addRandomPainting, 8, 40},
+                          OahuCase{"painting_projected", "oahu_projected", addRandomPainting, 8, 40}),
+        ::testing::Range(0, PARTS)),
     [](const auto& each)
     { return std::string(std::get<0>(each.param).name) + "_" + std::to_string(std::get<1>(each.param)); });

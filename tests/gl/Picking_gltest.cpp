@@ -43,7 +43,7 @@ TEST_P(Picking, PixelToGroundToPixel)
     const std::optional<Scene> oahu = loadOahu(GetParam().database);
     if (!oahu) return;
     CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
-    const int cameras = fullTest() ? 50 : 8;
+    const int cameras = fullTest() ? GetParam().many : GetParam().few;
     const int pixels = 20;
     int checked = 0;
     int inZone = 0;
@@ -145,10 +145,10 @@ TEST_P(Picking, WithoutEffectsItIsOsgsOwnIntersector)
     EXPECT_GT(hits, 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Oahu, Picking,
-                         ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects},
-                                           OahuCase{"oahu_projected", "oahu_projected", addRandomEffects},
-                                           OahuCase{"panorama", "oahu", addRandomPanorama},
-                                           OahuCase{"panorama_projected", "oahu_projected",
-                                                    addRandomPanorama}),
-                         [](const auto& each) { return std::string(each.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Oahu, Picking,
+    ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 8, 50},
+                      OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 8, 50},
+                      OahuCase{"panorama", "oahu", addRandomPanorama, 3, 12},
+                      OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 3, 12}),
+    [](const auto& each) { return std::string(each.param.name); });

@@ -36,6 +36,7 @@ struct OahuCase
     const char* name;
     const char* database;
     void (*addEffects)(osgGeoFX::EffectScene& scene, Random& random);
+    int few, many; ///< cameras on each change, and in ./tests/run --full
 };
 
 } // namespace geofx::test
