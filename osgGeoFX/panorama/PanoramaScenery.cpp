@@ -265,7 +265,7 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
             const osg::Uniform* uniform = pass.state.getUniform(pass.prefix + ground);
             osg::Vec4f row;
             if (uniform) uniform->get(row);
-            const osg::Vec3d along(row.x(), row.y(), row.z());
+            const osg::Vec3d along(osg::Vec3f(row.x(), row.y(), row.z()));
             put(name, toOsg(panorama->right) * along / panorama->across, toOsg(panorama->forward) * along,
                 static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along), 0.0);
         };

@@ -223,7 +223,7 @@ struct EffectScene::Drawing
         const std::lock_guard<std::mutex> lock(mutex);
         if (values && values == terrainValues) return terrain;
         std::string error;
-        const std::optional<TerrainInfo> info = TerrainInfo::read(system, error);
+        std::optional<TerrainInfo> info = TerrainInfo::read(system, error);
         // Those of a root further below can come and go.
         if (info && values && values->getUserObjectIndex("geofx.format") < values->getNumUserObjects())
         {
