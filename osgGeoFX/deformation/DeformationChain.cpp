@@ -141,7 +141,8 @@ double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
 {
     if (_tileEdge <= 0.0 || !TileInfo::coarseOf(node) || _tileEdge * ball.radius <= longestEdge(ball))
         return HUGE_VAL;
-    return 0.999 * static_cast<double>(node.getMaxRange(1));
+    // In the middle, so that a pager finds it neither urgent nor idle.
+    return 0.5 * static_cast<double>(node.getMaxRange(1));
 }
 
 double DeformationChain::longestEdge(const Ball& ball) const
