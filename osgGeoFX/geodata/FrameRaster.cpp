@@ -188,7 +188,7 @@ void FrameRaster::readValues(GDALDataset& warped, int row, std::vector<double>& 
     if (warped.GetRasterBand(1)->RasterIO(GF_Read, 0, row, width, 1, values.data(), width, 1, GDT_Float64, 0,
                                           0, nullptr) != CE_None)
         fail("its pixels cannot be read; copy or export it again");
-    constexpr double most = std::numeric_limits<float>::max();
+    constexpr double most = static_cast<double>(std::numeric_limits<float>::max());
     for (double& value : values)
     {
         value = value * scale + offset;

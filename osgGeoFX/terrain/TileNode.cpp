@@ -23,6 +23,8 @@ namespace
 
 // A skirt leans outwards a little, so that it also closes hair lines when one looks straight down.
 constexpr double SKIRT_LEAN = 0.1;
+/// Metres; no camera is as near to a tile's middle.
+constexpr double RANGE_OF_PLAINS = 1e-3;
 // Metres along an edge from which on a tile's part of the globe must be taken exactly.
 constexpr double LARGE_TILE = 25000.0;
 constexpr int COLOR_UNIT = 0, LAND_COVER_UNIT = 1, COVER_UNIT = 7;
@@ -349,7 +351,8 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     const double texel =
         static_cast<double>(arrays.textureError[static_cast<std::size_t>(y * arrays.span + x)]);
     const double error = std::max(relief / _plan.options.pixelError, texel / _plan.options.texelError);
-    const double range = error > 0.0 ? radius + error * _plan.options.pixelsPerRadian : 0.0;
+    // Without an error they are due where a deformation asks for them alone (DeformationChain::lodLimit).
+    const double range = error > 0.0 ? radius + error * _plan.options.pixelsPerRadian : RANGE_OF_PLAINS;
 
     osg::ref_ptr<osg::PagedLOD> lod = new osg::PagedLOD;
     lod->setName("tile " + key.path());

@@ -156,7 +156,7 @@ std::uint64_t seed()
 
 TEST_F(BuilderResume, SameBytesAfterKills)
 {
-    if (fullTest()) makeDem(1500, 1200);
+    if (fullTest()) makeDem(800, 700);
     const auto start = std::chrono::steady_clock::now();
     build("whole");
     const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - start;
@@ -188,7 +188,7 @@ TEST_F(BuilderResume, SameBytesAfterKills)
 
 TEST_F(BuilderResume, SameBytesAfterManyKillsOfOneBuild)
 {
-    if (fullTest()) makeDem(1500, 1200);
+    if (fullTest()) makeDem(800, 700);
     build("whole");
     const std::uint64_t s = seed();
     SCOPED_TRACE("GEOFX_TEST_SEED=" + std::to_string(s));
