@@ -319,7 +319,7 @@ void paintInStrokes(SkyCanvas& canvas, std::uint32_t seed)
             const int reach = std::max(1, static_cast<int>(length * 0.4));
             const float dx = luminance(model.at(x + reach, y)) - luminance(model.at(x - reach, y));
             const float dy = luminance(model.at(x, y + reach)) - luminance(model.at(x, y - reach));
-            const double change = std::hypot(dx, dy);
+            const double change = static_cast<double>(std::hypot(dx, dy));
             // Along what is drawn; where nothing is, across the sky.
             const double along = std::atan2(static_cast<double>(dx), -static_cast<double>(dy));
             const double drawn = paint::ease(change, 0.03, 0.10);
