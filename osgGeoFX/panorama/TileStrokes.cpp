@@ -50,7 +50,7 @@ std::optional<osg::Vec3d> vectorAt(const osg::Array* array, unsigned int index)
     case osg::Array::Vec2ArrayType:
     {
         const osg::Vec2& each = (*static_cast<const osg::Vec2Array*>(array))[index];
-        return {static_cast<double>(each.x()), static_cast<double>(each.y()), 0.0};
+        return osg::Vec3d(static_cast<double>(each.x()), static_cast<double>(each.y()), 0.0);
     }
     default:
         return {};

@@ -52,6 +52,10 @@ public:
     {
         return _lie == Lie::Detail ? 1.0 : _honest->detail(ball);
     }
+    double longestEdge(const Ball& ball, double tolerance) const override
+    {
+        return _lie == Lie::Detail ? HUGE_VAL : _honest->longestEdge(ball, tolerance);
+    }
     Uniforms uniforms() const override { return _honest->uniforms(); }
 
 private:

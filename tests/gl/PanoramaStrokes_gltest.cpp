@@ -139,6 +139,7 @@ float SLOT_groundScale(vec3 eye) { return SLOT_scale; }
 float SLOT_strokeLight(vec3 eye, vec3 normal, float y) { return dot(normal, SLOT_light.xyz); }
 vec3 SLOT_strokeAir(vec3 colour, vec3 eye) { return colour; }
 float SLOT_strokeFar(vec3 eye) { return 0.0; }
+float SLOT_strokeShown(vec3 eye) { return 1.0; }
 )";
 const char* const fragmentStandIns = R"(
 vec4 SLOT_finish(vec4 colour) { return colour; }
