@@ -445,16 +445,18 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
         if (found.empty()) continue;
         // Finer tiles may stand out a little.
         const double slack = 20.0 + 0.1 * (found.highest - found.lowest);
-        if (!partOf(pass, _items[i], found.lowest - slack, found.highest + slack, true)) continue;
+        if (!partOf(pass, _items[i], found.lowest - slack, found.highest + slack, found.longestEdge, true))
+            continue;
         Seen seen = {i, {}, std::nullopt, 0, {nullptr, nullptr}};
         if (!single) drawItem(pass, task, seen, found);
-        const std::optional<PixelRectangle> part = partOf(pass, _items[i], found.lowest, found.highest, true);
+        const std::optional<PixelRectangle> part =
+            partOf(pass, _items[i], found.lowest, found.highest, found.longestEdge, true);
         if (!part) continue;
         seen.part = *part;
-        seen.lifted = partOf(pass, _items[i], found.lowest, found.highest, false);
+        seen.lifted = partOf(pass, _items[i], found.lowest, found.highest, found.longestEdge, false);
         seen.layer = static_cast<int>(2 * all.size());
         all.push_back(seen);
-        widenDepths(pass, _items[i], found.lowest, found.highest);
+        widenDepths(pass, _items[i], found.lowest, found.highest, found.longestEdge);
     }
     if (all.empty()) return sentence;
 

@@ -11,7 +11,7 @@ namespace osgGeoFX
 {
 
 std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& item, double lowest,
-                                     double highest, bool withAnchor)
+                                     double highest, double beyond, bool withAnchor)
 {
     const osg::Viewport& viewport = *pass.outer.getViewport();
     const auto width = static_cast<int>(viewport.width());
@@ -39,7 +39,7 @@ std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& i
     if (withAnchor && (item.stretched() || item.fenced() || line > 0.0))
     {
         Hull hull;
-        pass.chain.bound(item.groundBox(lowest, highest), hull);
+        pass.chain.bound(item.groundBox(lowest, highest, beyond), hull);
         for (const osg::Vec3d& point : hull.points)
         {
             for (const double x : {-hull.margin, hull.margin})
@@ -67,7 +67,7 @@ std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& i
     return PixelRectangle{first[0], first[1], last[0] - first[0], last[1] - first[1]};
 }
 
-void widenDepths(const ScenePass& pass, const CloseUpItem& item, double lowest, double highest)
+void widenDepths(const ScenePass& pass, const CloseUpItem& item, double lowest, double highest, double beyond)
 {
     if (pass.outer.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR) return;
     double nearest = 1e30;
@@ -79,7 +79,7 @@ void widenDepths(const ScenePass& pass, const CloseUpItem& item, double lowest, 
     }
     // Anchors end on the ground, which may be out of the picture.
     Hull hull;
-    pass.chain.bound(item.groundBox(lowest, highest), hull);
+    pass.chain.bound(item.groundBox(lowest, highest, beyond), hull);
     for (const osg::Vec3d& point : hull.points)
         farthest = std::max(farthest, hull.margin - point.z());
     if (farthest <= 0.0) return;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/CloseUpFilter.h>
 
+#include <osgGeoFX/deformation/DeformationChain.h>
+
 #include <algorithm>
 
 namespace osgGeoFX
@@ -52,6 +54,10 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
         if (_culls) _places.push_back({item, modelView * _items[item].toRegion()});
         RegionContents& found = contents[item];
         _items[item].includeHeights(box, found.lowest, found.highest);
+        const osg::Geometry* geometry = _items[item].stretched() ? drawable.asGeometry() : nullptr;
+        if (geometry)
+            found.longestEdge =
+                std::max(found.longestEdge, largestScale(modelView) * _copies.longestEdge(*geometry));
         found.ground.push_back({&drawable, modelView * osg::Matrixd::inverse(_items[item].regionToEye())});
     }
     if (_touched.empty()) return _states;

@@ -102,10 +102,14 @@ std::array<osg::Vec3d, 8> CloseUpItem::liftedCorners(double lowest, double highe
     return corners;
 }
 
-EyeBox CloseUpItem::groundBox(double lowest, double highest) const
+EyeBox CloseUpItem::groundBox(double lowest, double highest, double beyond) const
 {
-    const osg::Vec3d low(-_halfWidth, -_halfDepth, lowest);
-    const osg::Vec3d high(_halfWidth, _halfDepth, highest);
+    // No ground curves away faster than the Earth does from the region's plane.
+    constexpr double earthDiameter = 1.27e7;
+    const double reach = std::hypot(_halfWidth, _halfDepth) + beyond;
+    if (beyond > 0.0) lowest -= reach * reach / earthDiameter;
+    const osg::Vec3d low(-_halfWidth - beyond, -_halfDepth - beyond, lowest);
+    const osg::Vec3d high(_halfWidth + beyond, _halfDepth + beyond, highest);
     return EyeBox::of(osg::BoundingBox(osg::Vec3(low), osg::Vec3(high)), _regionToEye);
 }
 

@@ -46,7 +46,8 @@ public:
     /// Corners of the part of the region between two heights, in the close-up.
     std::array<osg::Vec3d, 8> liftedCorners(double lowest, double highest) const;
     /// The same on the ground.
-    EyeBox groundBox(double lowest, double highest) const;
+    /// Widened by `beyond` metres to all sides.
+    EyeBox groundBox(double lowest, double highest, double beyond = 0.0) const;
 
     bool showsCloseUp() const { return _closeUp->getActivity() != CloseUp::REGION_ONLY; }
     bool showsAnchor() const

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/TriangleCopies.h>
 
+#include <osg/TriangleFunctor>
 #include <osg/TriangleIndexFunctor>
 
 #include <algorithm>
@@ -56,6 +57,15 @@ struct Collect
         for (const unsigned int index : {a, b, c})
             indices->push_back(index);
     }
+};
+
+struct LongestEdge
+{
+    void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)
+    {
+        square = std::max({square, (b - a).length2(), (c - b).length2(), (a - c).length2()});
+    }
+    float square = 0.0f;
 };
 
 unsigned int modifiedCount(const osg::Geometry& geometry)
@@ -131,8 +141,25 @@ osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Reg
     return entry.copy ? entry.copy.get() : &geometry;
 }
 
+double TriangleCopies::longestEdge(const osg::Geometry& geometry)
+{
+    Measured& measured = _measured[&geometry];
+    const unsigned int modified = modifiedCount(geometry);
+    if (!measured.geometry.valid() || measured.modified != modified)
+    {
+        osg::TriangleFunctor<LongestEdge> longest;
+        geometry.accept(longest);
+        measured.geometry = &geometry;
+        measured.modified = modified;
+        measured.longestEdge = std::sqrt(static_cast<double>(longest.square));
+    }
+    return measured.longestEdge;
+}
+
 void TriangleCopies::purge()
 {
+    for (auto measured = _measured.begin(); measured != _measured.end();)
+        measured = measured->second.geometry.valid() ? std::next(measured) : _measured.erase(measured);
     for (auto* entries : {&_triangles, &_patches})
     {
         for (auto entry = entries->begin(); entry != entries->end();)

@@ -29,6 +29,8 @@ public:
     /// Of a geometry that is made of triangles. Null where there is nothing over the regions; the geometry itself where most
     /// of it is. Without regions, all of it.
     osg::Geometry* of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches);
+    /// Of a geometry's triangles, in its own frame; 0 where it has none.
+    double longestEdge(const osg::Geometry& geometry);
     /// Forgets what has been deleted; to be called now and then, when nothing of it is on its way to the screen.
     void purge();
 
@@ -42,9 +44,16 @@ private:
         bool empty = false;
     };
     static void build(Entry& entry, bool patches);
+    struct Measured
+    {
+        osg::observer_ptr<const osg::Geometry> geometry;
+        unsigned int modified = 0;
+        double longestEdge = 0.0;
+    };
 
     using Key = std::pair<osg::Geometry*, std::vector<std::size_t>>;
     std::map<Key, Entry> _triangles, _patches;
+    std::map<const osg::Geometry*, Measured> _measured;
 };
 
 } // namespace osgGeoFX
