@@ -103,7 +103,9 @@ void addCloseUps(CloseUps& closeUps, int count,
     {
         osg::ref_ptr<CloseUp> closeUp = new CloseUp;
         const int rows = (count + columns - 1) / columns;
-        place(*closeUp->getRegion(), (i % columns + 0.5) / columns - 0.5, (i / columns + 0.5) / rows - 0.5);
+        const int column = i % columns;
+        const int row = i / columns;
+        place(*closeUp->getRegion(), (column + 0.5) / columns - 0.5, (row + 0.5) / rows - 0.5);
         closeUp->getRegion()->setSize(diameter, diameter);
         closeUp->setOffset(osg::Vec3d(0.0, 0.0, 0.12 * side));
         closeUp->setScale(1.5, 1.5, 1.5);

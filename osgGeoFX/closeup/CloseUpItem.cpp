@@ -125,12 +125,13 @@ CloseUpItem::Values CloseUpItem::values(const Places& places, const osg::Vec2d& 
     const osg::Vec3d color = own.getColor();
     const bool faded = own.getActivity() == CloseUp::DESATURATED;
     const double span = places.high > places.low ? 1.0 / (places.high - places.low) : 0.0;
+    const double smaller = std::min(_halfWidth, _halfDepth);
     Values values;
     for (int i = 0; i < 4; ++i)
         values[static_cast<std::size_t>(i)] = column(_lift, i);
     for (int i = 0; i < 3; ++i)
         values[static_cast<std::size_t>(4 + i)] = column(_toRegion, i);
-    values[7] = row(places.sun.x(), places.sun.y(), places.sun.z(), 0.0);
+    values[7] = row(places.sun.x(), places.sun.y(), places.sun.z(), _halfWidth / smaller);
     values[8] = row(color.x(), color.y(), color.z(), 1.0);
     values[9] = row(places.mask, own.getEdge(), own.getRegion()->getSoftness() > 0.0 ? 1.0 : 0.0,
                     own.getLighting() == CloseUp::SUN ? 1.0 : 0.0);
@@ -138,8 +139,8 @@ CloseUpItem::Values CloseUpItem::values(const Places& places, const osg::Vec2d& 
     values[11] = row(places.low, span, places.maskSide, own.getMappingChannels());
     values[12] = row(faded ? 0.15 * own.getSaturation() : own.getSaturation(), own.getContrast(),
                      own.getBrightness(), own.getOpacity());
-    values[13] =
-        row(showsAnchor() ? anchor.getLineWidth() * samples : 0.0, 0.0, places.anchorRow, faded ? 0.5 : 1.0);
+    values[13] = row(showsAnchor() ? anchor.getLineWidth() * samples : 0.0, _halfDepth / smaller,
+                     places.anchorRow, faded ? 0.5 : 1.0);
     values[14] = row(shift.x(), shift.y(), layer, anchorLayer);
     const bool changes = stretched() || own.getEdge() == CloseUp::PRIMITIVES;
     values[15] =

@@ -132,6 +132,8 @@ osg::ref_ptr<osg::Geometry> geometryOf(osg::Vec3Array* vertices, osg::Vec2Array*
     geometry->setVertexArray(vertices);
     geometry->setTexCoordArray(0, shares, osg::Array::BIND_PER_VERTEX);
     geometry->addPrimitiveSet(primitives);
+    // OSG gives its buffers to the next one of the same size, which comes with the next tile.
+    geometry->getOrCreateVertexBufferObject()->setUsage(GL_DYNAMIC_DRAW);
     return geometry;
 }
 

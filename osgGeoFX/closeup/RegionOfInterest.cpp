@@ -3,6 +3,7 @@
 #include <osgGeoFX/closeup/RegionOfInterest.h>
 
 #include <osgGeoFX/closeup/RegionMask.h>
+#include <osgGeoFX/scene/GlslFunctions.h>
 
 #include <osg/Math>
 #include <osg/Notify>
@@ -245,8 +246,12 @@ osg::Vec2d RegionOfInterest::maskAt(const osg::Vec2d& place) const
     const int row = static_cast<int>(std::floor(t));
     const double right = s - column;
     const double up = t - row;
-    return (texel(column, row) * (1.0 - right) + texel(column + 1, row) * right) * (1.0 - up) +
-           (texel(column, row + 1) * (1.0 - right) + texel(column + 1, row + 1) * right) * up;
+    const osg::Vec2d value =
+        (texel(column, row) * (1.0 - right) + texel(column + 1, row) * right) * (1.0 - up) +
+        (texel(column, row + 1) * (1.0 - right) + texel(column + 1, row + 1) * right) * up;
+    const double smaller = std::min(_width, _depth);
+    return {value.x(),
+            glsl::geofx_border(value.y(), {place.x(), place.y()}, {_width / smaller, _depth / smaller})};
 }
 
 std::vector<std::vector<osg::Vec2d>> RegionOfInterest::contours(double step) const

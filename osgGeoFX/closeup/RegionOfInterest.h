@@ -110,8 +110,8 @@ public:
     osg::ref_ptr<const osg::Image> mask() const;
     /// Whether no texel of the mask is 0.5 or more: then there is no close-up.
     bool isEmpty() const;
-    /// Mask and distance at a place of the region, as the GPU interpolates them: bilinear between the centres of texels; 0
-    /// and −2 outside −1…1.
+    /// Mask and distance at a place of the region, as the GPU interpolates them: bilinear between the centres of texels, the
+    /// distance on to the region's own border beyond the outermost ones; 0 and −2 outside −1…1.
     osg::Vec2d maskAt(const osg::Vec2d& place) const;
     /// The borders as closed lines in the region, −1…1: where the distance is 0, at the mask's resolution. The inside is on the
     /// left; the last place is joined with the first. `step` is the length of their parts at most, in halves of the smaller

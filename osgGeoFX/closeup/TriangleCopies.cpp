@@ -119,6 +119,9 @@ void TriangleCopies::build(Entry& entry, bool patches)
     entry.copy->setUseDisplayList(false);
     entry.copy->removePrimitiveSet(0, entry.copy->getNumPrimitiveSets());
     entry.copy->addPrimitiveSet(indices);
+    // OSG gives it to the next copy of the same size.
+    if (osg::ElementBufferObject* buffer = indices->getElementBufferObject())
+        buffer->setUsage(GL_DYNAMIC_DRAW);
 }
 
 osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches)

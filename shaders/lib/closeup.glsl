@@ -44,6 +44,15 @@ GEOFX_INLINE Vector2 geofx_between(Vector2 lowLeft, Vector2 lowRight, Vector2 hi
     return low + (high - low) * part.y;
 }
 
+// The distance to a region's border at a place, -1 to 1, where the mask's texels say `distance`: they end half a texel before
+// the region does, which ends where its square does. Distances in the smaller half side; `halfSides` too.
+GEOFX_INLINE Number geofx_border(Number distance, Vector2 place, Vector2 halfSides)
+{
+    Vector2 within = (Vector2(1, 1) - abs(place)) * halfSides;
+    Number edge = min(within.x, within.y);
+    return edge < 0 ? min(distance, Number(0)) + edge : min(distance, edge);
+}
+
 // How much of a pixel is inside, where the border is `distance` away and a pixel `pixel` wide.
 GEOFX_INLINE Number geofx_coverage(Number distance, Number pixel)
 {

@@ -21,12 +21,11 @@ uniform int SLOT_layer;
 // Mask and distance as SLOT_maskAt has them, to a sampler's precision.
 vec2 SLOT_coverAt(int item, vec2 place)
 {
-    float farther = max(max(abs(place.x), abs(place.y)) - 1.0, 0.0);
     float side = SLOT_item(item, 11).z;
     vec2 texel = clamp(geofx_maskTexel(clamp(place, -1.0, 1.0), side), 0.0, side - 1.0) + 0.5;
     vec3 where = vec3(texel / float(textureSize(SLOT_masks, 0).x), SLOT_item(item, 9).x);
     vec2 value = textureLod(SLOT_masks, where, 0.0).rg;
-    return farther > 0.0 ? vec2(0.0, min(value.y, 0.0) - farther) : value;
+    return SLOT_bordered(item, place, value);
 }
 
 int SLOT_channels()
@@ -77,7 +76,7 @@ vec4 SLOT_finish(vec4 colour)
     vec4 anchor = SLOT_item(item, 13);
     vec2 mask = SLOT_coverAt(item, SLOT_place.xy);
     // Where the ground is seen from its edge, a pixel would be as wide as the region.
-    float pixel = min(fwidth(mask.y), 0.04);
+    float pixel = min(length(vec2(dFdx(mask.y), dFdy(mask.y))), 0.04);
     if (SLOT_target != 2 * item)
     {
         if (SLOT_place.z < 0.0001 || SLOT_place.z > 0.9999) discard;

@@ -29,16 +29,22 @@ vec3 SLOT_placeOf(int item, vec3 located)
     return vec3(dot(SLOT_item(item, 4), point), dot(SLOT_item(item, 5), point), dot(SLOT_item(item, 6), point));
 }
 
-// Mask and distance, between texels as floats are: samplers would round the shares. Outside of the region the distance goes
-// on from that of the region's own border.
+// Mask and distance at a place that the texels there say `value` of: no mask outside of the region, where the distance goes on
+// from that of the region's own border.
+vec2 SLOT_bordered(int item, vec2 place, vec2 value)
+{
+    vec2 halfSides = vec2(SLOT_item(item, 7).w, SLOT_item(item, 13).y);
+    bool outside = max(abs(place.x), abs(place.y)) > 1.0;
+    return vec2(outside ? 0.0 : value.x, geofx_border(value.y, place, halfSides));
+}
+
+// Mask and distance, between texels as floats are: samplers would round the shares.
 vec2 SLOT_maskAt(int item, vec2 place)
 {
-    vec2 beyond = max(abs(place) - 1.0, 0.0);
-    place = clamp(place, -1.0, 1.0);
     float side = SLOT_item(item, 11).z;
     ivec2 last = ivec2(int(side) - 1);
     int layer = int(SLOT_item(item, 9).x);
-    vec2 texel = geofx_maskTexel(place, side);
+    vec2 texel = geofx_maskTexel(clamp(place, -1.0, 1.0), side);
     ivec2 low = ivec2(floor(texel));
     ivec2 a = clamp(low, ivec2(0), last);
     ivec2 b = clamp(low + 1, ivec2(0), last);
@@ -46,8 +52,7 @@ vec2 SLOT_maskAt(int item, vec2 place)
                          texelFetch(SLOT_masks, ivec3(b.x, a.y, layer), 0).rg,
                          texelFetch(SLOT_masks, ivec3(a.x, b.y, layer), 0).rg,
                          texelFetch(SLOT_masks, ivec3(b, layer), 0).rg, texel - vec2(low));
-    float farther = max(beyond.x, beyond.y);
-    return farther > 0.0 ? vec2(0.0, min(value.y, 0.0) - farther) : value;
+    return SLOT_bordered(item, place, value);
 }
 
 // Where a point goes in a layer, 0 the close-up's and 1 its anchor's; `place` gets its place and its share of the way.

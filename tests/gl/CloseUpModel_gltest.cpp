@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+
 using namespace osgGeoFX;
 
 namespace
@@ -90,6 +92,59 @@ TEST_F(CloseUpModel, IsTheGroundTurnedAndTilted)
     // Nearly flat: clip planes do not survive a singular matrix.
     closeUp->setScale(1.3, 1.3, 0.01);
     expectSame(*closeUp);
+}
+
+TEST_F(CloseUpModel, RectanglesHaveWholeOutlinesWhateverTheirMask)
+{
+    _root->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    look({0.0, -1.0, 2600.0}, {0.0, 0.0, 0.0});
+    const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({100.0, -50.0}, 500.0, 400.0);
+    closeUp->getRegion()->setShape(RegionOfInterest::RECTANGLE);
+    closeUp->getRegion()->setSize(800.0, 300.0);
+    closeUp->getRegion()->setHeading(0.3);
+    closeUp->getAnchor()->setKind(Anchor::NONE);
+    closeUp->getAnchor()->setLineWidth(3.0);
+    closeUp->setColor({1.0f, 0.0f, 1.0f});
+    _closeUps->addCloseUp(closeUp);
+
+    // Texels of 50 by 19 m, each some ten pixels wide, and of less than a metre.
+    closeUp->getRegion()->setMaskSide(16);
+    const auto [coarse, coarseAgain] = drawBoth();
+    closeUp->getRegion()->setMaskSide(1024);
+    const auto [fine, fineAgain] = drawBoth();
+    EXPECT_LT(differing(*coarse, *fine, 8), 0.001);
+    EXPECT_LT(differing(*coarseAgain, *fineAgain, 8), 0.001);
+
+    // Seen from above the outline is as long as the region's border, magnified, and as wide as it is said to be.
+    const osg::Matrixd lift = osg::Matrixd::inverse(closeUp->getRegion()->frameToWorld(nullptr)) *
+                              closeUp->shape(0.0) * closeUp->getRegion()->frameToWorld(nullptr);
+    osg::Camera& camera = *viewer().getCamera();
+    const osg::Matrixd toPicture = lift * camera.getViewMatrix() * camera.getProjectionMatrix();
+    double length = 0.0;
+    osg::Vec3d before;
+    for (int corner = 0; corner <= 4; ++corner)
+    {
+        const osg::Vec3d place(corner % 4 < 2 ? 400.0 : -400.0, (corner + 1) % 4 < 2 ? 150.0 : -150.0, 0.0);
+        const osg::Vec3d at = place * closeUp->getRegion()->frameToWorld(nullptr) * toPicture;
+        const osg::Vec3d pixel(0.5 * _width * at.x(), 0.5 * _height * at.y(), 0.0);
+        if (corner > 0) length += (pixel - before).length();
+        before = pixel;
+    }
+    closeUp->getRegion()->setMaskSide(16);
+    closeUp->getAnchor()->setLineWidth(0.0);
+    const osg::ref_ptr<osg::Image> without = draw();
+    double covered = 0.0;
+    for (int i = 0; i < without->s() * without->t(); ++i)
+    {
+        const auto colorOf = [&](const osg::Image& image)
+        {
+            const unsigned char* rgb = image.data() + 4 * static_cast<std::ptrdiff_t>(i);
+            return osg::Vec3d(rgb[0], rgb[1], rgb[2]) / 255.0;
+        };
+        const osg::Vec3d toLine = osg::Vec3d(closeUp->getColor()) - colorOf(*without);
+        covered += (colorOf(*coarseAgain) - colorOf(*without)) * toLine / toLine.length2();
+    }
+    EXPECT_NEAR(covered / (3.0 * length), 1.0, 0.15) << length << " pixels of outline";
 }
 
 } // namespace

@@ -185,11 +185,13 @@ TEST_F(CloseUpPipelines, MoreThanOneUniformBlock)
 {
     for (int i = 0; i < 65; ++i)
     {
+        const int column = i % 8;
+        const int row = i / 8;
         const osg::ref_ptr<CloseUp> closeUp =
-            makeCloseUp(osg::Vec2d(220.0 * (i % 8) - 800.0, 220.0 * (i / 8) - 880.0), 160.0, 120.0);
+            makeCloseUp(osg::Vec2d(220.0 * column - 800.0, 220.0 * row - 880.0), 160.0, 120.0);
         closeUp->getRegion()->setMaskSide(32);
         closeUp->setColor(
-            osg::Vec3(0.2f + 0.1f * static_cast<float>(i % 8), 0.9f, 0.1f * static_cast<float>(i / 8)));
+            osg::Vec3(0.2f + 0.1f * static_cast<float>(column), 0.9f, 0.1f * static_cast<float>(row)));
         closeUp->getAnchor()->setKind(static_cast<Anchor::Kind>(i % 3));
         closeUp->setTilt(0.1 * (i % 5));
         _closeUps->addCloseUp(closeUp);

@@ -109,8 +109,8 @@ TEST_F(MappingThreads, AllModelsDrawTheSame)
     const int frames = fullTest() ? 600 : 80;
     const Pictures expected = play(ThreadedViews::models[0], frames);
     ASSERT_FALSE(expected.empty());
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        ASSERT_TRUE(expected[i]);
+    for (const auto& picture : expected)
+        ASSERT_TRUE(picture);
     EXPECT_GT(differing(*expected[0], *expected[3]), WIDTH * HEIGHT / 4);
     EXPECT_GT(differing(*expected[0], *expected[1]), WIDTH * HEIGHT / 4);
     for (const auto model : ThreadedViews::models)

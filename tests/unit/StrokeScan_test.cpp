@@ -45,22 +45,22 @@ class StrokeScanOver : public ::testing::TestWithParam<Area>
 protected:
     StrokeScanOver()
     {
-        unit = GetParam().globe ? osg::PI / 180.0 : 1.0;
-        tiles.ellipsoid = GetParam().globe ? new osg::EllipsoidModel : nullptr;
-        tiles.height = [this](double x, double y)
+        _unit = GetParam().globe ? osg::PI / 180.0 : 1.0;
+        _tiles.ellipsoid = GetParam().globe ? new osg::EllipsoidModel : nullptr;
+        _tiles.height = [this](double x, double y)
         {
-            return 500.0 + 300.0 * std::sin(900.0 * x / unit) * std::cos(700.0 * y / unit);
+            return 500.0 + 300.0 * std::sin(900.0 * x / _unit) * std::cos(700.0 * y / _unit);
         };
         if (!GetParam().globe)
-            tiles.height = [](double x, double y)
+            _tiles.height = [](double x, double y)
             {
                 return 500.0 + 60.0 * std::sin(x / 300.0) * std::cos(y / 400.0);
             };
-        parameters.referenceLatitude = 0.4;
-        parameters.strokesAlongTile = 60.0;
+        _parameters.referenceLatitude = 0.4;
+        _parameters.strokesAlongTile = 60.0;
     }
 
-    StrokeLattice lattice() const { return StrokeLattice(parameters, tiles.ellipsoid); }
+    StrokeLattice lattice() const { return StrokeLattice(_parameters, _tiles.ellipsoid); }
 
     /// How often the tiles of a level have each point; `finest` is that of the coarsest of them.
     std::map<Point, int> points(int level, int& finest)
@@ -76,13 +76,13 @@ protected:
             {
                 const auto at = [&](double low, double high, int k)
                 {
-                    return unit * (low + (high - low) * k / count);
+                    return _unit * (low + (high - low) * k / count);
                 };
                 const osg::ref_ptr<osg::MatrixTransform> tile =
-                    tiles.tile(at(area.west, area.east, x), at(area.south, area.north, y),
-                               at(area.west, area.east, x + 1), at(area.south, area.north, y + 1));
+                    _tiles.tile(at(area.west, area.east, x), at(area.south, area.north, y),
+                                at(area.west, area.east, x + 1), at(area.south, area.north, y + 1));
                 const StrokeScan scan(ours, StrokeTiles::geometryOf(*tile), tile->getMatrix(),
-                                      parameters.strokesAlongTile);
+                                      _parameters.strokesAlongTile);
                 finest = std::max(finest, scan.finest());
                 for (const StrokeSpot& spot : scan.spots())
                 {
@@ -102,7 +102,7 @@ protected:
         const StrokeLattice ours = lattice();
         const auto corner = [&](double x, double y)
         {
-            return ours.coordinates(tiles.world(unit * x, unit * y, 0.0));
+            return ours.coordinates(_tiles.world(_unit * x, _unit * y, 0.0));
         };
         const osg::Vec3d low = corner(area.west, area.south);
         osg::Vec3d high = corner(area.east, area.north);
@@ -137,9 +137,9 @@ protected:
         return points;
     }
 
-    double unit = 1.0;
-    StrokeTiles tiles;
-    StrokeParameters parameters;
+    double _unit = 1.0;
+    StrokeTiles _tiles;
+    StrokeParameters _parameters;
 };
 
 TEST_P(StrokeScanOver, EachPointIsInOneTileOfALevelAndInAllLevels)
@@ -190,12 +190,12 @@ TEST_P(StrokeScanOver, SkirtsHaveNoStrokes)
     const StrokeLattice ours = lattice();
     const auto scan = [&](double skirt)
     {
-        tiles.skirt = skirt;
+        _tiles.skirt = skirt;
         const osg::ref_ptr<osg::MatrixTransform> tile =
-            tiles.tile(unit * area.west, unit * area.south, unit * area.east, unit * area.north);
+            _tiles.tile(_unit * area.west, _unit * area.south, _unit * area.east, _unit * area.north);
         std::vector<Point> found;
         const StrokeScan made(ours, StrokeTiles::geometryOf(*tile), tile->getMatrix(),
-                              parameters.strokesAlongTile);
+                              _parameters.strokesAlongTile);
         for (const StrokeSpot& spot : made.spots())
             found.push_back(canonical(ours, spot));
         return found;

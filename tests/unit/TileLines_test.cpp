@@ -48,16 +48,16 @@ osg::ref_ptr<StrokeLines> windingLines()
 class TileLines : public ::testing::Test
 {
 protected:
-    StrokeTiles tiles;
-    StrokeParameters parameters;
+    StrokeTiles _tiles;
+    StrokeParameters _parameters;
 
     TileLines()
     {
-        tiles.height = [](double x, double y)
+        _tiles.height = [](double x, double y)
         {
             return 100.0 + 0.1 * x + 60.0 * std::sin(y / 900.0);
         };
-        tiles.cover = cover(0.0, -1000.0);
+        _tiles.cover = cover(0.0, -1000.0);
     }
 
     static std::function<glsl::geofx_Cover(double, double)> cover(double trees, double shore)
@@ -73,9 +73,9 @@ protected:
 
     std::vector<Stroke> strokes(double west, double south, double size, int* finest = nullptr) const
     {
-        const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(west, south, west + size, south + size);
-        const osg::ref_ptr<TileStrokes> made =
-            TileStrokes::make(StrokeTiles::geometryOf(*tile), tile->getMatrix(), parameters, tiles.ellipsoid);
+        const osg::ref_ptr<osg::MatrixTransform> tile = _tiles.tile(west, south, west + size, south + size);
+        const osg::ref_ptr<TileStrokes> made = TileStrokes::make(
+            StrokeTiles::geometryOf(*tile), tile->getMatrix(), _parameters, _tiles.ellipsoid);
         if (finest) *finest = made->finest();
         std::vector<Stroke> result;
         const osg::Geometry* points = made->points();
@@ -113,7 +113,7 @@ std::pair<short, short> identity(const Stroke& stroke)
 
 TEST_F(TileLines, LieOnTheGroundAlongTheLine)
 {
-    parameters.lines = linesOf({{StrokeLines::ROAD, {{10.0, 20.0}, {2400.0, 2300.0}}}});
+    _parameters.lines = linesOf({{StrokeLines::ROAD, {{10.0, 20.0}, {2400.0, 2300.0}}}});
     const std::vector<Stroke> road = ofKind(strokes(0.0, 0.0, 2500.0), TileStrokes::Road);
     const double length = std::hypot(2390.0, 2280.0);
     EXPECT_NEAR(static_cast<double>(road.size()), length / 12.5 + 1.5, 1.0);
@@ -124,10 +124,10 @@ TEST_F(TileLines, LieOnTheGroundAlongTheLine)
         const osg::Vec3d from = stroke.place - osg::Vec3d(10.0, 20.0, 0.0);
         EXPECT_LT(std::abs(from.x() * way.y() - from.y() * way.x()), 0.2);
         // The mesh is flat between its posts.
-        EXPECT_LT(std::abs(stroke.place.z() - tiles.height(stroke.place.x(), stroke.place.y())), 1.0);
+        EXPECT_LT(std::abs(stroke.place.z() - _tiles.height(stroke.place.x(), stroke.place.y())), 1.0);
         EXPECT_NEAR(stroke.along.length(), 1.0, 1e-3);
         const osg::Vec3d ahead = stroke.place + stroke.along * 10.0;
-        EXPECT_LT(std::abs(ahead.z() - tiles.height(ahead.x(), ahead.y())), 2.5);
+        EXPECT_LT(std::abs(ahead.z() - _tiles.height(ahead.x(), ahead.y())), 2.5);
         EXPECT_GT(stroke.along * way, 0.98);
         EXPECT_EQ(stroke.traits.w(), -2);
     }
@@ -135,7 +135,7 @@ TEST_F(TileLines, LieOnTheGroundAlongTheLine)
 
 TEST_F(TileLines, AreTheSameInAllTilesAndHaveNoGaps)
 {
-    parameters.lines = windingLines();
+    _parameters.lines = windingLines();
     for (const auto kind : {TileStrokes::Road, TileStrokes::River})
     {
         for (const double size : {12800.0, 3200.0, 1600.0})
@@ -167,8 +167,8 @@ TEST_F(TileLines, ACoarserTileHasTheSameStrokesButFewer)
     {
         SCOPED_TRACE(globe);
         const double unit = globe ? 1.0 / 6378137.0 : 1.0, degrees = globe ? 180.0 / osg::PI : 1.0;
-        tiles.ellipsoid = globe ? new osg::EllipsoidModel : nullptr;
-        tiles.height = [](double, double)
+        _tiles.ellipsoid = globe ? new osg::EllipsoidModel : nullptr;
+        _tiles.height = [](double, double)
         {
             return 100.0;
         };
@@ -177,7 +177,7 @@ TEST_F(TileLines, ACoarserTileHasTheSameStrokesButFewer)
         for (int i = 0; i <= 56; ++i)
             points.emplace_back((west + 50.0 * i * unit) * degrees,
                                 (south + (50.0 * i + 200.0 * std::sin(i / 9.0)) * unit) * degrees);
-        parameters.lines =
+        _parameters.lines =
             linesOf({{StrokeLines::ROAD, points}}, globe ? StrokeLines::DEGREES : StrokeLines::METRES);
         int finest = 0, coarsest = 0;
         const std::vector<Stroke> fine = strokes(west, south, 3000.0 * unit, &finest);
@@ -207,8 +207,8 @@ TEST_F(TileLines, ACoarserTileHasTheSameStrokesButFewer)
 
 TEST_F(TileLines, RiversEndAtWaterAndRoadsCrossIt)
 {
-    parameters.lines = windingLines();
-    tiles.cover = cover(0.0, 50.0);
+    _parameters.lines = windingLines();
+    _tiles.cover = cover(0.0, 50.0);
     const std::vector<Stroke> wet = strokes(0.0, 0.0, 3000.0);
     EXPECT_GT(ofKind(wet, TileStrokes::Road).size(), 100u);
     EXPECT_TRUE(ofKind(wet, TileStrokes::River).empty());
@@ -216,8 +216,8 @@ TEST_F(TileLines, RiversEndAtWaterAndRoadsCrossIt)
 
 TEST_F(TileLines, TownsHaveHouses)
 {
-    tiles.cover = cover(1.0, -1000.0);
-    parameters.lines =
+    _tiles.cover = cover(1.0, -1000.0);
+    _parameters.lines =
         linesOf({{StrokeLines::TOWN, {{500.0, 500.0}, {1500.0, 500.0}, {1500.0, 1500.0}, {500.0, 1500.0}}}});
     std::size_t houses = 0, trees = 0;
     for (const Stroke& stroke : strokes(0.0, 0.0, 2500.0))
@@ -236,30 +236,30 @@ TEST_F(TileLines, TownsHaveHouses)
 
 TEST_F(TileLines, OtherLinesOrUnitsChangeNothingElse)
 {
-    tiles.cover = cover(0.5, -1000.0);
+    _tiles.cover = cover(0.5, -1000.0);
     const std::vector<Stroke> plain = strokes(0.0, 0.0, 2500.0);
-    parameters.lines = linesOf({{StrokeLines::ROAD, {{0.1, 0.1}, {20.0, 20.0}}}}, StrokeLines::DEGREES);
+    _parameters.lines = linesOf({{StrokeLines::ROAD, {{0.1, 0.1}, {20.0, 20.0}}}}, StrokeLines::DEGREES);
     EXPECT_EQ(strokes(0.0, 0.0, 2500.0).size(), plain.size());
-    parameters.lines = windingLines();
+    _parameters.lines = windingLines();
     const std::vector<Stroke> both = strokes(0.0, 0.0, 2500.0);
     EXPECT_EQ(ofKind(both, TileStrokes::Tree).size(), plain.size());
     for (std::size_t i = 0; i < plain.size(); ++i)
         ASSERT_EQ(both[i].place, plain[i].place);
 
-    StrokeParameters other = parameters;
-    EXPECT_EQ(other, parameters);
+    StrokeParameters other = _parameters;
+    EXPECT_EQ(other, _parameters);
     other.lines = windingLines();
-    EXPECT_NE(other, parameters);
+    EXPECT_NE(other, _parameters);
 }
 
 TEST_F(TileLines, NewLinesGiveNewStrokes)
 {
-    const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(0.0, 0.0, 2500.0, 2500.0);
+    const osg::ref_ptr<osg::MatrixTransform> tile = _tiles.tile(0.0, 0.0, 2500.0, 2500.0);
     osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
     const osg::ref_ptr<StrokeMaker> maker = new StrokeMaker(nullptr);
     EXPECT_EQ(maker->strokes(mesh, tile->getMatrix()), nullptr);
-    parameters.lines = windingLines();
-    maker->setParameters(parameters);
+    _parameters.lines = windingLines();
+    maker->setParameters(_parameters);
     const osg::ref_ptr<osg::Geometry> strokes = maker->strokes(mesh, tile->getMatrix());
     ASSERT_NE(strokes, nullptr);
     EXPECT_EQ(maker->strokes(mesh, tile->getMatrix()), strokes);
