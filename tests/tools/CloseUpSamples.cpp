@@ -38,8 +38,9 @@ osg::ref_ptr<osg::Image> makeLayer(int side, const std::function<osg::Vec4(doubl
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(side, side, 1, GL_RGBA, GL_FLOAT);
     auto* texels = reinterpret_cast<osg::Vec4f*>(image->data());
-    for (int i = 0; i < side * side; ++i)
-        texels[i] = texel((i % side + 0.5) / side, (i / side + 0.5) / side);
+    for (int row = 0; row < side; ++row)
+        for (int column = 0; column < side; ++column)
+            *texels++ = texel((column + 0.5) / side, (row + 0.5) / side);
     return image;
 }
 

@@ -20,8 +20,6 @@ namespace glsl = osgGeoFX::glsl;
 namespace
 {
 
-constexpr double tablesTexels = 1024.0;
-
 double grey(const glm::dvec3& rgb)
 {
     return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722));

@@ -65,7 +65,7 @@ double distanceTo(const std::vector<Vec2d>& line, const Vec2d& place)
 class Makers : public ::testing::Test
 {
 protected:
-    osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
+    osg::ref_ptr<ProjectiveMappings> _mappings = new ProjectiveMappings;
 };
 
 using Route = Makers;
@@ -86,8 +86,8 @@ bool refused(const std::function<bool()>& set)
 TEST_F(Route, hasAStripForEachLegAndADiscForEachPoint)
 {
     {
-        osg::ref_ptr<RouteMapping> route = new RouteMapping(*mappings, 10);
-        EXPECT_EQ(mappings->getNumMappings(), 0u);
+        osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings, 10);
+        EXPECT_EQ(_mappings->getNumMappings(), 0u);
         ASSERT_TRUE(route->setWayPoints(zigzag));
         EXPECT_EQ(route->legs(), 3u);
         EXPECT_NEAR(route->length(), 1000 + 800 + std::hypot(800, 700), 1e-9);
@@ -97,22 +97,22 @@ TEST_F(Route, hasAStripForEachLegAndADiscForEachPoint)
         // Strips, joins at two corners and caps at two ends; the casing's joins are at all four points.
         EXPECT_EQ(route->mappings(RouteMapping::LINE).size(), 3u + 2u + 2u);
         EXPECT_EQ(route->mappings(RouteMapping::CASING).size(), 3u + 4u);
-        EXPECT_EQ(mappings->getNumMappings(), 1u + 4u + 4u + 7u + 7u);
+        EXPECT_EQ(_mappings->getNumMappings(), 1u + 4u + 4u + 7u + 7u);
         // From below: the context, the casing, the line, the points.
         EXPECT_EQ(route->mappings(RouteMapping::CONTEXT_MASKED).at(0).getOrder(), 10);
-        EXPECT_EQ(mappings->mappingsAt({0, 0}).front(), &route->mappings(RouteMapping::POINTS).at(0));
-        const auto found = mappings->mappingsAt({500, 0});
+        EXPECT_EQ(_mappings->mappingsAt({0, 0}).front(), &route->mappings(RouteMapping::POINTS).at(0));
+        const auto found = _mappings->mappingsAt({500, 0});
         ASSERT_EQ(found.size(), 3u);
         EXPECT_EQ(found[0]->getTransfer(), route->mappings(RouteMapping::LINE).at(0).getTransfer());
         EXPECT_EQ(found[1]->getTransfer(), route->mappings(RouteMapping::CASING).at(0).getTransfer());
         EXPECT_EQ(found[2], &route->mappings(RouteMapping::CONTEXT_MASKED).at(0));
     }
-    EXPECT_EQ(mappings->getNumMappings(), 0u);
+    EXPECT_EQ(_mappings->getNumMappings(), 0u);
 }
 
 TEST_F(Route, linesAreAsWideAsTheyShould)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*mappings);
+    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
     RouteMapping::Style style;
     style.halfWidth = 10.0;
     style.casing = 4.0;
@@ -150,7 +150,7 @@ TEST_F(Route, linesAreAsWideAsTheyShould)
 
 TEST_F(Route, contextIsMaskedByTheDistanceAndHasNoGapsBeyond)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*mappings);
+    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
     RouteMapping::Style style;
     style.surroundings = 120.0;
     style.softness = 60.0;
@@ -195,7 +195,7 @@ TEST_F(Route, contextIsMaskedByTheDistanceAndHasNoGapsBeyond)
 
 TEST_F(Route, dashesGoOnRoundCorners)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*mappings);
+    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
     RouteMapping::Style style;
     style.halfWidth = 1.0;
     style.casing = 0.0;
@@ -216,18 +216,18 @@ TEST_F(Route, dashesGoOnRoundCorners)
     }
     // Ten dashes, one of which is in two parts with a join, and a cap at the beginning.
     EXPECT_EQ(line.size(), 10u + 1u + 1u + 1u);
-    EXPECT_EQ(mappings->getNumMappings(), line.size());
+    EXPECT_EQ(_mappings->getNumMappings(), line.size());
 }
 
 TEST_F(Route, changesAreSmall)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*mappings);
+    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
     route->setWayPoints(zigzag);
-    const unsigned int all = mappings->getNumMappings();
+    const unsigned int all = _mappings->getNumMappings();
     ProjectiveMapping* first = &route->mappings(RouteMapping::CASING).at(0);
     const unsigned int before = first->revision();
     route->highlight(1);
-    EXPECT_EQ(mappings->getNumMappings(), all);
+    EXPECT_EQ(_mappings->getNumMappings(), all);
     EXPECT_EQ(route->mappings(RouteMapping::LINE_HIGHLIGHTED).size(), 2u); // the strip and the join behind it
     EXPECT_TRUE(covers(route->mappings(RouteMapping::LINE_HIGHLIGHTED).at(0), {1000, 400}));
     EXPECT_EQ(first->revision(), before);
@@ -238,16 +238,16 @@ TEST_F(Route, changesAreSmall)
     route->setWayPoints({{0, 0}, {1000, 0}, {1000, 800}, {300, 1500}});
     EXPECT_EQ(&route->mappings(RouteMapping::CASING).at(0), first);
     EXPECT_EQ(first->revision(), before);
-    EXPECT_EQ(mappings->getNumMappings(), all);
+    EXPECT_EQ(_mappings->getNumMappings(), all);
     route->setWayPoints({{0, 0}});
-    EXPECT_EQ(mappings->getNumMappings(), 1u + 4u + 1u);
+    EXPECT_EQ(_mappings->getNumMappings(), 1u + 4u + 1u);
     route->setWayPoints({});
-    EXPECT_EQ(mappings->getNumMappings(), 0u);
+    EXPECT_EQ(_mappings->getNumMappings(), 0u);
 }
 
 TEST_F(Route, refusesWhatMakesNoSense)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*mappings);
+    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
     ASSERT_TRUE(route->setWayPoints({{0, 0}, {0, 0}, {100, 0}}));
     EXPECT_EQ(route->legs(), 1u);
     EXPECT_TRUE(refused([&] { return static_cast<bool>(route->setWayPoints({{0, 0}, {std::nan(""), 0}})); }));
@@ -263,7 +263,7 @@ TEST_F(Route, refusesWhatMakesNoSense)
 
 TEST_F(Symbols, imagesFadeIntoEachOther)
 {
-    osg::ref_ptr<SymbolMapping> symbols = new SymbolMapping(*mappings);
+    osg::ref_ptr<SymbolMapping> symbols = new SymbolMapping(*_mappings);
     SymbolMapping::Look look;
     look.levels = {{someLayer(), 1000.0}, {someLayer(), 3000.0}, {someLayer(), 9000.0}};
     look.softness = 0.3;
@@ -271,7 +271,7 @@ TEST_F(Symbols, imagesFadeIntoEachOther)
     ASSERT_TRUE(number);
     const auto symbol = symbols->add(*number, {10, 20, 30});
     ASSERT_TRUE(symbol);
-    EXPECT_EQ(mappings->getNumMappings(), 3u);
+    EXPECT_EQ(_mappings->getNumMappings(), 3u);
     const auto levels = symbols->mappings(*symbol);
     const auto ramp = [](double value, double none, double full)
     {
@@ -295,7 +295,7 @@ TEST_F(Symbols, imagesFadeIntoEachOther)
 TEST_F(Symbols, comeMoveAndGo)
 {
     {
-        osg::ref_ptr<SymbolMapping> symbols = new SymbolMapping(*mappings);
+        osg::ref_ptr<SymbolMapping> symbols = new SymbolMapping(*_mappings);
         SymbolMapping::Look look;
         look.levels = {{someLayer(), 5000.0}};
         look.width = 200.0;
@@ -309,7 +309,7 @@ TEST_F(Symbols, comeMoveAndGo)
         for (int i = 0; i < 100; ++i)
             all.push_back(*symbols->add(*number, {i * 300.0, 0.0, 10.0}));
         EXPECT_EQ(symbols->size(), 100u);
-        EXPECT_EQ(mappings->getNumMappings(), 100u);
+        EXPECT_EQ(_mappings->getNumMappings(), 100u);
         const ProjectiveMapping& one = *symbols->mappings(all[3])[0];
         EXPECT_EQ(one.getLayer(), look.levels[0].layer);
         EXPECT_NEAR(one.getU().length(), 100.0, 1e-9);
@@ -328,15 +328,15 @@ TEST_F(Symbols, comeMoveAndGo)
         EXPECT_TRUE(symbols->remove(all[3]));
         EXPECT_FALSE(symbols->remove(all[3]));
         EXPECT_FALSE(symbols->move(all[3], {}));
-        EXPECT_EQ(mappings->getNumMappings(), 99u);
+        EXPECT_EQ(_mappings->getNumMappings(), 99u);
         EXPECT_GT(*symbols->add(*number, {}), all.back());
     }
-    EXPECT_EQ(mappings->getNumMappings(), 0u);
+    EXPECT_EQ(_mappings->getNumMappings(), 0u);
 }
 
 TEST_F(Symbols, refuseLooksThatMakeNoSense)
 {
-    osg::ref_ptr<SymbolMapping> symbols = new SymbolMapping(*mappings);
+    osg::ref_ptr<SymbolMapping> symbols = new SymbolMapping(*_mappings);
     SymbolMapping::Look look;
     EXPECT_TRUE(refused([&] { return static_cast<bool>(symbols->addLook(look)); }));
     look.levels = {{nullptr, 100.0}};
@@ -347,7 +347,7 @@ TEST_F(Symbols, refuseLooksThatMakeNoSense)
     EXPECT_TRUE(symbols->addLook(look));
     EXPECT_TRUE(refused([&] { return static_cast<bool>(symbols->add(1, {})); }));
     EXPECT_TRUE(refused([&] { return static_cast<bool>(symbols->add(0, {std::nan(""), 0.0, 0.0})); }));
-    EXPECT_EQ(mappings->getNumMappings(), 0u);
+    EXPECT_EQ(_mappings->getNumMappings(), 0u);
 }
 
 TEST_F(Swap, takesTurnsAndLeavesNothing)
@@ -356,11 +356,11 @@ TEST_F(Swap, takesTurnsAndLeavesNothing)
     const char* define = "GEOFX_MAPPING_CHANNELS";
     {
         const osg::ref_ptr<GeometrySwap> swap =
-            swapGeometries(*inside, *outside, *rest, *mappings, someLayer(), {100, 200}, 50.0, 30.0);
+            swapGeometries(*inside, *outside, *rest, *_mappings, someLayer(), {100, 200}, 50.0, 30.0);
         EXPECT_EQ(inside->getStateSet()->getDefinePair(define)->first, "1");
         EXPECT_EQ(outside->getStateSet()->getDefinePair(define)->first, "2");
         EXPECT_EQ(rest->getStateSet()->getDefinePair(define)->first, "252");
-        EXPECT_EQ(mappings->getNumMappings(), 6u);
+        EXPECT_EQ(_mappings->getNumMappings(), 6u);
         Random random(3);
         for (int i = 0; i < 1000; ++i)
         {
@@ -368,7 +368,7 @@ TEST_F(Swap, takesTurnsAndLeavesNothing)
             const Vec2d place(random.uniform(0, 200), random.uniform(100, 300));
             const bool within = std::abs(place.x() - 100) < 50 && std::abs(place.y() - 200) < 30;
             int count[3] = {};
-            for (const ProjectiveMapping* mapping : mappings->mappingsAt(place))
+            for (const ProjectiveMapping* mapping : _mappings->mappingsAt(place))
             {
                 ASSERT_EQ(mapping->getTransfer()->getEquation(), ColorTransfer::DISCARD);
                 ASSERT_TRUE(mapping->getChannels() == 1 || mapping->getChannels() == 2);
@@ -380,11 +380,11 @@ TEST_F(Swap, takesTurnsAndLeavesNothing)
         const ProjectiveMapping& inner = swap->mappings().at(0);
         EXPECT_GT(inner.getTransfer()->getRampLow(), inner.getTransfer()->getRampHigh());
         swap->setEnabled(false);
-        EXPECT_TRUE(mappings->mappingsAt({100, 200}).empty());
+        EXPECT_TRUE(_mappings->mappingsAt({100, 200}).empty());
         // A define that someone else has set since stays.
         outside->getStateSet()->setDefine(define, "4");
     }
-    EXPECT_EQ(mappings->getNumMappings(), 0u);
+    EXPECT_EQ(_mappings->getNumMappings(), 0u);
     EXPECT_FALSE(inside->getStateSet()->getDefinePair(define));
     EXPECT_TRUE(outside->getStateSet()->getDefinePair(define));
     EXPECT_FALSE(rest->getStateSet()->getDefinePair(define));

@@ -55,10 +55,10 @@ protected:
     {
         osg::ref_ptr<osg::Geode> ground = new osg::Geode;
         ground->addDrawable(osg::createTexturedQuadGeometry({-1000, -1000, 0}, {2000, 0, 0}, {0, 2000, 0}));
-        scene->addChild(ground);
-        scene->addEffect(mappings);
-        viewer.setSceneData(scene);
-        osg::Camera& camera = *viewer.getCamera();
+        _scene->addChild(ground);
+        _scene->addEffect(_mappings);
+        _viewer.setSceneData(_scene);
+        osg::Camera& camera = *_viewer.getCamera();
         camera.setViewport(0, 0, 200, 100);
         camera.setViewMatrixAsLookAt({0, 0, 500}, {0, 0, 0}, {0, 1, 0});
         // 1000 m across 200 pixels.
@@ -77,13 +77,13 @@ protected:
         event->setScrollingMotion(osgGA::GUIEventAdapter::SCROLL_UP);
         event->setKey('z');
         event->setUnmodifiedKey('z');
-        return handler.handle(*event, viewer);
+        return handler.handle(*event, _viewer);
     }
 
     using Event = osgGA::GUIEventAdapter;
-    osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
-    osg::ref_ptr<EffectScene> scene = new EffectScene;
-    osgViewer::Viewer viewer;
+    osg::ref_ptr<ProjectiveMappings> _mappings = new ProjectiveMappings;
+    osg::ref_ptr<EffectScene> _scene = new EffectScene;
+    osgViewer::Viewer _viewer;
 };
 
 /// Whether a setter refuses, with one warning.
@@ -207,9 +207,10 @@ TEST(Lens, sceneColorsNeedNoPicture)
 
 TEST_F(Pointer, leadsTheLens)
 {
-    osg::ref_ptr<LensMapping> lens = new LensMapping(*mappings);
+    osg::ref_ptr<LensMapping> lens = new LensMapping(*_mappings);
     lens->setRadius(100.0);
-    osg::ref_ptr<LensFollowsPointer> handler = new LensFollowsPointer(*scene, *mappings, *lens, 90.0, 120.0);
+    osg::ref_ptr<LensFollowsPointer> handler =
+        new LensFollowsPointer(*_scene, *_mappings, *lens, 90.0, 120.0);
     EXPECT_FALSE(send(*handler, Event::MOVE, 150.0f, 70.0f)) << "others may want it, too";
     EXPECT_NEAR(lens->getCentre().x(), 250.0, 0.5);
     EXPECT_NEAR(lens->getCentre().y(), 100.0, 0.5);
@@ -223,19 +224,19 @@ TEST_F(Pointer, leadsTheLens)
 
 TEST_F(Pointer, lensFollowsANode)
 {
-    osg::ref_ptr<LensMapping> lens = new LensMapping(*mappings);
+    osg::ref_ptr<LensMapping> lens = new LensMapping(*_mappings);
     osg::ref_ptr<osg::MatrixTransform> outer = new osg::MatrixTransform(osg::Matrix::translate(100, 0, 0));
     osg::ref_ptr<osg::MatrixTransform> vehicle = new osg::MatrixTransform(osg::Matrix::translate(0, 50, 5));
     osg::ref_ptr<osg::Geode> box = new osg::Geode;
     box->addDrawable(osg::createTexturedQuadGeometry({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}));
     vehicle->addChild(box);
     outer->addChild(vehicle);
-    scene->addChild(outer);
-    vehicle->addUpdateCallback(new LensFollowsNode(*scene, *mappings, *lens));
+    _scene->addChild(outer);
+    vehicle->addUpdateCallback(new LensFollowsNode(*_scene, *_mappings, *lens));
     osgUtil::UpdateVisitor update;
     // What is above the scene does not count: the mappings' frame is that of its children.
     osg::ref_ptr<osg::MatrixTransform> root = new osg::MatrixTransform(osg::Matrix::translate(7000, 0, 0));
-    root->addChild(scene);
+    root->addChild(_scene);
     root->accept(update);
     EXPECT_NEAR(lens->getCentre().x(), 100.0, 1e-3);
     EXPECT_NEAR(lens->getCentre().y(), 50.0, 1e-3);
@@ -320,7 +321,7 @@ TEST_F(Pointer, paintsMasks)
     osg::ref_ptr<ProjectiveMapping> mapping = content(nullptr);
     osg::ref_ptr<MaskPainter> painter = new MaskPainter(*mapping, 256, 256);
     painter->setBrush({40.0, 0.5, 1.0, false});
-    osg::ref_ptr<MaskPaintHandler> handler = new MaskPaintHandler(*scene, *mappings, *painter);
+    osg::ref_ptr<MaskPaintHandler> handler = new MaskPaintHandler(*_scene, *_mappings, *painter);
     EXPECT_FALSE(send(*handler, Event::PUSH, 100.0f, 50.0f)) << "without Shift";
     EXPECT_TRUE(send(*handler, Event::PUSH, 100.0f, 50.0f, Event::MODKEY_SHIFT));
     EXPECT_TRUE(send(*handler, Event::DRAG, 140.0f, 50.0f, Event::MODKEY_SHIFT));

@@ -110,7 +110,9 @@ TEST(RegionOfInterest, AnImagesDistancesAreThoseOfItsBorder)
         {
             // The line around a single white texel runs half way to its four neighbours.
             if (*noise->data(k % 48, k / 48) < 128) continue;
-            const Vec2d middle(texel.x() * (i % 48 - k % 48), texel.y() * (i / 48 - k / 48));
+            const int columns = i % 48 - k % 48;
+            const int rows = i / 48 - k / 48;
+            const Vec2d middle(texel.x() * columns, texel.y() * rows);
             const Vec2d u(texel.x() / 2, 0), v(0, texel.y() / 2);
             for (const auto& [a, b] : {std::pair(u, v), {v, -u}, {-u, -v}, {-v, u}})
                 least = std::min(least, toSegment(middle, a, b));
