@@ -104,7 +104,7 @@ TEST_F(CloseUpModel, RectanglesHaveWholeOutlinesWhateverTheirMask)
     closeUp->getRegion()->setHeading(0.3);
     closeUp->getAnchor()->setKind(Anchor::NONE);
     closeUp->getAnchor()->setLineWidth(3.0);
-    closeUp->setColor({1.0f, 0.0f, 1.0f});
+    closeUp->setColor({1.0, 0.0, 1.0});
     _closeUps->addCloseUp(closeUp);
 
     // Texels of 50 by 19 m, each some ten pixels wide, and of less than a metre.
