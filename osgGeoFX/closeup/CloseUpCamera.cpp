@@ -342,28 +342,48 @@ void CloseUpCamera::show(const ScenePass& pass, const Task& task, const std::vec
 {
     if (!_layerProgram) _layerProgram = createLayerProgram();
     if (!_layerProgram) return;
-    const auto put = [&](const Seen& seen, int which)
+    enum class What
     {
-        if (which == 0 && !(_items[seen.item].showsCloseUp() && seen.lifted)) return;
-        // Close-ups hide what lies behind them; anchors let it through.
-        _now->layers.show(pass.outer, _layerProgram,
-                          {seen.layer + which, which == 0 ? *seen.lifted : seen.part,
-                           osg::Vec2i(seen.part.x, seen.part.y), task.samples, task.opacity, task.depthTest,
-                           which == 0});
+        All,
+        Covered, // what hides all that lies behind it
+        Edges    // what is behind them shows
     };
-    if (task.depthTest)
+    const auto put = [&](const Seen& seen, What what)
+    {
+        const CloseUpItem& item = _items[seen.item];
+        if (!item.showsCloseUp() || !seen.lifted) return;
+        // But for rounding to 255 values: the edges' cover is between none and all.
+        const double covered = 0.985 * item.closeUp().getOpacity();
+        _now->layers.show(pass.outer, _layerProgram,
+                          {seen.layer, *seen.lifted, osg::Vec2i(seen.part.x, seen.part.y), task.samples,
+                           task.opacity, task.depthTest, what != What::Edges,
+                           what == What::Covered ? covered : 0.0, what == What::Edges ? covered : 1.0});
+    };
+    const auto putAnchor = [&](const Seen& seen)
+    {
+        _now->layers.show(pass.outer, _layerProgram,
+                          {seen.layer + 1, seen.part, osg::Vec2i(seen.part.x, seen.part.y), task.samples,
+                           task.opacity, task.depthTest, false});
+    };
+    if (!task.depthTest)
     {
         for (const Seen& seen : all)
-            put(seen, 0);
-        for (const Seen& seen : all)
-            put(seen, 1);
+        {
+            putAnchor(seen);
+            put(seen, What::All);
+        }
         return;
     }
+    const bool anchored = std::any_of(all.begin(), all.end(),
+                                      [&](const Seen& seen) { return _items[seen.item].showsAnchor(); });
     for (const Seen& seen : all)
-    {
-        put(seen, 1);
-        put(seen, 0);
-    }
+        put(seen, anchored ? What::Covered : What::All);
+    if (!anchored) return;
+    // An edge that kept its own anchor off would be a pale line between them.
+    for (const Seen& seen : all)
+        putAnchor(seen);
+    for (const Seen& seen : all)
+        put(seen, What::Edges);
 }
 
 std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)

@@ -171,6 +171,8 @@ void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, con
               static_cast<int>(viewport.y()) + what.corner.y(), what.layer % _perArray, what.samples);
     state.getOrCreateUniform("geofx_layerOpacity", osg::Uniform::FLOAT)
         ->set(static_cast<float>(what.opacity));
+    state.getOrCreateUniform("geofx_layerAlphas", osg::Uniform::FLOAT_VEC2)
+        ->set(osg::Vec2(osg::Vec2d(what.above, what.upTo)));
     const auto share = [](int pixel, double size)
     {
         return static_cast<float>(2.0 * pixel / size - 1.0);

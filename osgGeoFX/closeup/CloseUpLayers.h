@@ -54,6 +54,7 @@ public:
         int samples = 1;
         double opacity = 1.0;
         bool depthTest = true, depthWrite = true;
+        double above = 0.0, upTo = 1.0; ///< which of the layer's alphas
     };
     /// Puts a layer into the camera's picture.
     void show(osgUtil::CullVisitor& outer, osg::Program* program, const Show& what);

@@ -5,6 +5,7 @@ uniform sampler2DArray geofx_layerColours;
 uniform sampler2DArray geofx_layerDepths;
 uniform ivec4 geofx_layerOrigin; // the layer's first pixel, the layer, and samples along a pixel's side
 uniform float geofx_layerOpacity;
+uniform vec2 geofx_layerAlphas; // pixels above the first and up to the second
 
 void main()
 {
@@ -22,7 +23,8 @@ void main()
             if (colour.a > 0.0) depth = min(depth, texelFetch(geofx_layerDepths, texel, 0).r);
         }
     }
-    if (sum.a <= 0.0) discard;
-    gl_FragColor = sum * (geofx_layerOpacity / float(samples * samples));
+    sum /= float(samples * samples);
+    if (sum.a <= geofx_layerAlphas.x || sum.a > geofx_layerAlphas.y) discard;
+    gl_FragColor = sum * geofx_layerOpacity;
     gl_FragDepth = depth;
 }

@@ -147,4 +147,32 @@ TEST_F(CloseUpModel, RectanglesHaveWholeOutlinesWhateverTheirMask)
     EXPECT_NEAR(covered / (3.0 * length), 1.0, 0.15) << length << " pixels of outline";
 }
 
+TEST_F(CloseUpModel, EdgesLetTheirAnchorsShow)
+{
+    // From above, nothing stands before a close-up, and its anchor is all below it: as painted one over the other.
+    look({0.0, -1500.0, 1800.0}, {0.0, 0.0, 100.0});
+    const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({0.0, 0.0}, 500.0, 400.0);
+    closeUp->setScale(1.4, 1.4, 1.4);
+    closeUp->setColor({1.0, 0.0, 1.0});
+    closeUp->getAnchor()->setStyle(Anchor::SOLID);
+    _closeUps->addCloseUp(closeUp);
+    for (const auto shape : {RegionOfInterest::ELLIPSE, RegionOfInterest::RECTANGLE, RegionOfInterest::STAR})
+    {
+        SCOPED_TRACE(shape);
+        closeUp->getRegion()->setShape(shape);
+        for (const double softness : {0.0, 0.3})
+        {
+            SCOPED_TRACE(softness);
+            closeUp->getRegion()->setSoftness(softness);
+            _closeUps->setDepthTest(false);
+            const osg::ref_ptr<osg::Image> painted = draw();
+            _closeUps->setDepthTest(true);
+            const auto [single, multi] = drawBoth();
+            // But for the anchor's foot, which the ground hides here and there.
+            EXPECT_LT(differing(*painted, *single, 4), 0.0006);
+            EXPECT_LT(differing(*painted, *multi, 4), 0.0006);
+        }
+    }
+}
+
 } // namespace
