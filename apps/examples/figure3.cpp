@@ -7,6 +7,7 @@
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/scene/Overlay.h>
 
 #include <CLI/CLI.hpp>
 #include <osg/Group>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/MappingPanelPicture.h>
 
-#include <osgGeoFX/mapping/ValueLegend.h>
+#include <osgGeoFX/scene/Overlay.h>
 
 #include <osg/Geometry>
 #include <osgText/Text>
@@ -173,7 +173,6 @@ void MappingPanelPicture::show(osgViewer::View& view, const PanelPage& page, con
         _overlay = makeOverlay(0, 0);
         _overlay->setRenderOrder(osg::Camera::POST_RENDER, 9);
         _overlay->setProjectionResizePolicy(osg::Camera::FIXED);
-        _overlay->setGraphicsContext(view.getCamera()->getGraphicsContext());
         _overlay->setViewport(new osg::Viewport(*port));
     }
     osg::Viewport& own = *_overlay->getViewport();
@@ -185,8 +184,7 @@ void MappingPanelPicture::show(osgViewer::View& view, const PanelPage& page, con
         _overlay->setProjectionMatrixAsOrtho2D(0.0, port->width(), 0.0, port->height());
         _drawn = false;
     }
-    // A slave camera, so that the scene itself stays as it was loaded.
-    if (made) view.addSlave(_overlay, false);
+    if (made) attachOverlay(view, *_overlay);
     _overlay->setNodeMask(~0u);
     _visible = true;
     if (_drawn && page == _page) return;

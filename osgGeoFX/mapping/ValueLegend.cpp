@@ -245,20 +245,4 @@ osg::ref_ptr<osg::Group> makeLegend(const ColorTable& colors, double low, double
     return builder.take();
 }
 
-osg::ref_ptr<osg::Camera> makeOverlay(int width, int height)
-{
-    osg::ref_ptr<osg::Camera> camera = new osg::Camera;
-    camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-    camera->setProjectionMatrixAsOrtho2D(0.0, width, 0.0, height);
-    camera->setViewMatrix(osg::Matrixd::identity());
-    camera->setClearMask(0);
-    camera->setRenderOrder(osg::Camera::POST_RENDER);
-    camera->setAllowEventFocus(false);
-    camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-    osg::StateSet* state = camera->getOrCreateStateSet();
-    state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
-    state->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
-    return camera;
-}
-
 } // namespace osgGeoFX

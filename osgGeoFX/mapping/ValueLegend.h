@@ -4,7 +4,6 @@
 
 #include <osgGeoFX/mapping/ColorTable.h>
 
-#include <osg/Camera>
 #include <osg/Group>
 #include <osg/Vec2d>
 #include <osgText/Font>
@@ -46,9 +45,5 @@ OSGGEOFX_EXPORT std::string tickText(double value, double step);
     Null, with a warning, where low is not below high or a size is not within 1…10000. */
 OSGGEOFX_EXPORT osg::ref_ptr<osg::Group> makeLegend(const ColorTable& colors, double low, double high,
                                                     const LegendStyle& style);
-
-/** A camera that draws what is below it over the picture of the one it is put under; its units are pixels of a picture of this
-    size. Without light and depth test. */
-OSGGEOFX_EXPORT osg::ref_ptr<osg::Camera> makeOverlay(int width, int height);
 
 } // namespace osgGeoFX

@@ -3,6 +3,7 @@
 #include <osgGeoFX/paging/ViewerHandlers.h>
 
 #include <osgGeoFX/deformation/DeformedView.h>
+#include <osgGeoFX/scene/Overlay.h>
 
 #include <osg/Math>
 
@@ -41,7 +42,7 @@ bool LodScaleFollower::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAct
 
 CursorReadout::CursorReadout(const Scene& scene)
     : _effects(scene.effects), _reference(scene.reference), _whyNone(scene.referenceError),
-      _overlay(new osg::Camera), _text(new osgText::Text)
+      _overlay(makeOverlay(0, 0)), _text(new osgText::Text)
 {
     _text->setDataVariance(osg::Object::DYNAMIC);
     _text->setCharacterSize(18.0f);
@@ -50,12 +51,6 @@ CursorReadout::CursorReadout(const Scene& scene)
     _text->setBackdropType(osgText::Text::OUTLINE);
     _text->setBackdropColor(osg::Vec4(0.0f, 0.0f, 0.0f, 1.0f));
     _overlay->setRenderOrder(osg::Camera::POST_RENDER, 10);
-    _overlay->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-    _overlay->setClearMask(0);
-    _overlay->setAllowEventFocus(false);
-    osg::StateSet* state = _overlay->getOrCreateStateSet();
-    state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
-    state->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
     _overlay->addChild(_text);
 }
 
@@ -75,12 +70,10 @@ void CursorReadout::toggle(osgViewer::View& view)
     const osg::Viewport* viewport = view.getCamera()->getViewport();
     if (!_overlay->getGraphicsContext() && viewport)
     {
-        _overlay->setGraphicsContext(view.getCamera()->getGraphicsContext());
         _overlay->setViewport(0, 0, static_cast<int>(viewport->width()),
                               static_cast<int>(viewport->height()));
         _overlay->setProjectionMatrixAsOrtho2D(0.0, viewport->width(), 0.0, viewport->height());
-        // A slave camera, so that the scene itself stays as it was loaded.
-        view.addSlave(_overlay, false);
+        attachOverlay(view, *_overlay);
     }
     _overlay->setNodeMask(_shown ? ~0u : 0u);
     _text->setText(_reference ? std::string("move the pointer over the ground") : _whyNone);

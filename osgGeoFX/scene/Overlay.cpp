@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/Overlay.h>
+
+#include <osgViewer/ViewerBase>
+
+namespace osgGeoFX
+{
+
+osg::ref_ptr<osg::Camera> makeOverlay(int width, int height)
+{
+    osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+    camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+    camera->setProjectionMatrixAsOrtho2D(0.0, width, 0.0, height);
+    camera->setViewMatrix(osg::Matrixd::identity());
+    camera->setClearMask(0);
+    camera->setRenderOrder(osg::Camera::POST_RENDER);
+    camera->setAllowEventFocus(false);
+    camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    osg::StateSet* state = camera->getOrCreateStateSet();
+    state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    state->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
+    return camera;
+}
+
+void attachOverlay(osgViewer::View& view, osg::Camera& overlay)
+{
+    osgViewer::ViewerBase* viewer = view.getViewerBase();
+    const bool threads = viewer && viewer->areThreadsRunning();
+    if (threads) viewer->stopThreading();
+    overlay.setGraphicsContext(view.getCamera()->getGraphicsContext());
+    view.addSlave(&overlay, false);
+    if (threads) viewer->startThreading();
+}
+
+} // namespace osgGeoFX
