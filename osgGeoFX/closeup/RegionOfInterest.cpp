@@ -250,8 +250,8 @@ osg::Vec2d RegionOfInterest::maskAt(const osg::Vec2d& place) const
         (texel(column, row) * (1.0 - right) + texel(column + 1, row) * right) * (1.0 - up) +
         (texel(column, row + 1) * (1.0 - right) + texel(column + 1, row + 1) * right) * up;
     const double smaller = std::min(_width, _depth);
-    return {value.x(),
-            glsl::geofx_border(value.y(), {place.x(), place.y()}, {_width / smaller, _depth / smaller})};
+    return {value.x(), glsl::geofx_border(value.y(), {place.x(), place.y()}, picture->s(),
+                                          {_width / smaller, _depth / smaller})};
 }
 
 std::vector<std::vector<osg::Vec2d>> RegionOfInterest::contours(double step) const

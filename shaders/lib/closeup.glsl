@@ -44,13 +44,20 @@ GEOFX_INLINE Vector2 geofx_between(Vector2 lowLeft, Vector2 lowRight, Vector2 hi
     return low + (high - low) * part.y;
 }
 
-// The distance to a region's border at a place, -1 to 1, where the mask's texels say `distance`: they end half a texel before
-// the region does, which ends where its square does. Distances in the smaller half side; `halfSides` too.
-GEOFX_INLINE Number geofx_border(Number distance, Vector2 place, Vector2 halfSides)
+// How far a place, -1 to 1, is from the edge of the region's square, negative beyond it; `halfSides` are the region's.
+GEOFX_INLINE Number geofx_squareEdge(Vector2 place, Vector2 halfSides)
 {
     Vector2 within = (Vector2(1, 1) - abs(place)) * halfSides;
-    Number edge = min(within.x, within.y);
-    return edge < 0 ? min(distance, Number(0)) + edge : min(distance, edge);
+    return min(within.x, within.y);
+}
+
+// The distance to a region's border at a place, where the nearest texels of a mask with so many on a side say `distance`: they
+// end half a texel before the region does, and the border goes on to its edge as that comes nearer. In the unit of `halfSides`.
+GEOFX_INLINE Number geofx_border(Number distance, Vector2 place, Number side, Vector2 halfSides)
+{
+    Number outermost = 1 - 1 / side;
+    Vector2 within = clamp(place, Vector2(-outermost, -outermost), Vector2(outermost, outermost));
+    return distance + (geofx_squareEdge(place, halfSides) - geofx_squareEdge(within, halfSides));
 }
 
 // How much of a pixel is inside, where the border is `distance` away and a pixel `pixel` wide.

@@ -35,7 +35,7 @@ vec2 SLOT_bordered(int item, vec2 place, vec2 value)
 {
     vec2 halfSides = vec2(SLOT_item(item, 7).w, SLOT_item(item, 13).y);
     bool outside = max(abs(place.x), abs(place.y)) > 1.0;
-    return vec2(outside ? 0.0 : value.x, geofx_border(value.y, place, halfSides));
+    return vec2(outside ? 0.0 : value.x, geofx_border(value.y, place, SLOT_item(item, 11).z, halfSides));
 }
 
 // Mask and distance, between texels as floats are: samplers would round the shares.

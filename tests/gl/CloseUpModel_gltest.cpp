@@ -8,8 +8,11 @@
 #include <osg/MatrixTransform>
 
 #include <gtest/gtest.h>
+#include <osg/Math>
 
-#include <cstddef>
+#include <algorithm>
+#include <cmath>
+#include <string>
 
 using namespace osgGeoFX;
 
@@ -94,57 +97,86 @@ TEST_F(CloseUpModel, IsTheGroundTurnedAndTilted)
     expectSame(*closeUp);
 }
 
-TEST_F(CloseUpModel, RectanglesHaveWholeOutlinesWhateverTheirMask)
+TEST_F(CloseUpModel, OutlinesAreWholeWhateverTheirMask)
 {
     _root->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
     look({0.0, -1.0, 2600.0}, {0.0, 0.0, 0.0});
     const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({100.0, -50.0}, 500.0, 400.0);
-    closeUp->getRegion()->setShape(RegionOfInterest::RECTANGLE);
-    closeUp->getRegion()->setSize(800.0, 300.0);
-    closeUp->getRegion()->setHeading(0.3);
+    RegionOfInterest& region = *closeUp->getRegion();
+    region.setSize(800.0, 400.0);
+    region.setHeading(0.3);
     closeUp->getAnchor()->setKind(Anchor::NONE);
-    closeUp->getAnchor()->setLineWidth(3.0);
     closeUp->setColor({1.0, 0.0, 1.0});
     _closeUps->addCloseUp(closeUp);
-
-    // Texels of 50 by 19 m, each some ten pixels wide, and of less than a metre.
-    closeUp->getRegion()->setMaskSide(16);
-    const auto [coarse, coarseAgain] = drawBoth();
-    closeUp->getRegion()->setMaskSide(1024);
-    const auto [fine, fineAgain] = drawBoth();
-    EXPECT_LT(differing(*coarse, *fine, 8), 0.001);
-    EXPECT_LT(differing(*coarseAgain, *fineAgain, 8), 0.001);
-
-    // Seen from above the outline is as long as the region's border, magnified, and as wide as it is said to be.
-    const osg::Matrixd lift = osg::Matrixd::inverse(closeUp->getRegion()->frameToWorld(nullptr)) *
-                              closeUp->shape(0.0) * closeUp->getRegion()->frameToWorld(nullptr);
-    osg::Camera& camera = *viewer().getCamera();
-    const osg::Matrixd toPicture = lift * camera.getViewMatrix() * camera.getProjectionMatrix();
-    double length = 0.0;
-    osg::Vec3d before;
-    for (int corner = 0; corner <= 4; ++corner)
+    const osg::Matrixd frame = region.frameToWorld(nullptr);
+    const osg::Camera& camera = *viewer().getCamera();
+    const osg::Matrixd toPicture = osg::Matrixd::inverse(frame) * closeUp->shape(0.0) * frame *
+                                   camera.getViewMatrix() * camera.getProjectionMatrix() *
+                                   osg::Matrixd::translate(1.0, 1.0, 0.0) *
+                                   osg::Matrixd::scale(0.5 * _width, 0.5 * _height, 1.0);
+    const auto pixelOf = [&](double angle, RegionOfInterest::Shape shape)
     {
-        const osg::Vec3d place(corner % 4 < 2 ? 400.0 : -400.0, (corner + 1) % 4 < 2 ? 150.0 : -150.0, 0.0);
-        const osg::Vec3d at = place * closeUp->getRegion()->frameToWorld(nullptr) * toPicture;
-        const osg::Vec3d pixel(0.5 * _width * at.x(), 0.5 * _height * at.y(), 0.0);
-        if (corner > 0) length += (pixel - before).length();
-        before = pixel;
-    }
-    closeUp->getRegion()->setMaskSide(16);
-    closeUp->getAnchor()->setLineWidth(0.0);
-    const osg::ref_ptr<osg::Image> without = draw();
-    double covered = 0.0;
-    for (int i = 0; i < without->s() * without->t(); ++i)
+        osg::Vec3d place(std::cos(angle), std::sin(angle), 0.0);
+        if (shape == RegionOfInterest::RECTANGLE) place /= std::max(std::abs(place.x()), std::abs(place.y()));
+        osg::Vec3d at = osg::Vec3d(400.0 * place.x(), 200.0 * place.y(), 0.0) * frame;
+        at.z() = groundHeight(at.x(), at.y());
+        return at * toPicture;
+    };
+
+    for (const auto shape : {RegionOfInterest::RECTANGLE, RegionOfInterest::ELLIPSE})
     {
-        const auto colorOf = [&](const osg::Image& image)
+        region.setShape(shape);
+        // Texels of 25 by 13 m, each several pixels wide, and of less than a metre.
+        for (const int side : {32, 1024})
         {
-            const unsigned char* rgb = image.data() + 4 * static_cast<std::ptrdiff_t>(i);
-            return osg::Vec3d(rgb[0], rgb[1], rgb[2]) / 255.0;
-        };
-        const osg::Vec3d toLine = osg::Vec3d(closeUp->getColor()) - colorOf(*without);
-        covered += (colorOf(*coarseAgain) - colorOf(*without)) * toLine / toLine.length2();
+            SCOPED_TRACE(std::to_string(shape) + ", " + std::to_string(side) + " texels");
+            region.setMaskSide(side);
+            closeUp->getAnchor()->setLineWidth(3.0);
+            const auto [single, multi] = drawBoth();
+            closeUp->getAnchor()->setLineWidth(0.0);
+            const osg::ref_ptr<osg::Image> without = draw();
+            const auto share = [&](const osg::Image& image, int x, int y)
+            {
+                const auto colorOf = [&](const osg::Image& picture)
+                {
+                    const unsigned char* rgb = picture.data(x, y);
+                    return osg::Vec3d(rgb[0], rgb[1], rgb[2]) / 255.0;
+                };
+                const osg::Vec3d toLine = osg::Vec3d(closeUp->getColor()) - colorOf(*without);
+                return (colorOf(image) - colorOf(*without)) * toLine / toLine.length2();
+            };
+            for (const osg::Image* image : {single.get(), multi.get()})
+            {
+                // There all along the border, and as wide as it is said to be.
+                double length = 0.0;
+                constexpr int steps = 2000;
+                osg::Vec3d before = pixelOf(0.0, shape);
+                for (int i = 1; i <= steps; ++i)
+                {
+                    const osg::Vec3d border = pixelOf(2.0 * osg::PI * i / steps, shape);
+                    osg::Vec3d along = border - before;
+                    along.z() = 0.0;
+                    length += along.length();
+                    along.normalize();
+                    const osg::Vec3d inwards(-along.y(), along.x(), 0.0);
+                    double most = 0.0;
+                    for (double way = -1.0; way < 5.0; way += 0.5)
+                    {
+                        const osg::Vec3d at = border + inwards * way;
+                        most =
+                            std::max(most, share(*image, static_cast<int>(at.x()), static_cast<int>(at.y())));
+                    }
+                    EXPECT_GT(most, 0.6) << "a gap at " << border.x() << ", " << border.y();
+                    before = border;
+                }
+                double covered = 0.0;
+                for (int y = 0; y < _height; ++y)
+                    for (int x = 0; x < _width; ++x)
+                        covered += share(*image, x, y);
+                EXPECT_NEAR(covered / (3.0 * length), 1.0, 0.1) << length << " pixels of outline";
+            }
+        }
     }
-    EXPECT_NEAR(covered / (3.0 * length), 1.0, 0.15) << length << " pixels of outline";
 }
 
 TEST_F(CloseUpModel, EdgesLetTheirAnchorsShow)

@@ -100,14 +100,14 @@ TEST(CloseUpShaders, MasksAreReadBetweenTexelsAsRegionsReadThem)
             glsl::geofx_between(value(0, 0), value(1, 0), value(0, 1), value(1, 1), texel - low);
         const double smaller = std::min(region->getWidth(), region->getDepth());
         const double border = glsl::geofx_border(
-            between.y, place, {region->getWidth() / smaller, region->getDepth() / smaller});
+            between.y, place, picture->s(), {region->getWidth() / smaller, region->getDepth() / smaller});
         const osg::Vec2d wanted = region->maskAt({place.x, place.y});
         EXPECT_NEAR(between.x, wanted.x(), 1e-9);
         EXPECT_NEAR(border, wanted.y(), 1e-9);
     }
 }
 
-TEST(CloseUpShaders, BordersOfRectanglesAreExactUpToTheirEdges)
+TEST(CloseUpShaders, BordersGoOnToTheEdgesOfTheirRegion)
 {
     const int count = sampleCount();
     for (int i = 0; i < count; ++i)
@@ -117,21 +117,28 @@ TEST(CloseUpShaders, BordersOfRectanglesAreExactUpToTheirEdges)
         const double side = random.integer(16, 1024);
         Vector2 half(random.logarithmic(1.0, 5.0), 1.0);
         if (random.integer(0, 1)) std::swap(half.x, half.y);
-        const auto toEdge = [&](const Vector2& at)
-        {
-            const Vector2 within = (Vector2(1.0) - glm::abs(at)) * half;
-            return std::min(within.x, within.y);
-        };
         // What the texels say that are nearest where the place is beyond the outermost of them.
         const Vector2 place = randomPlace(random, 1.2);
         const double outermost = 1.0 - 1.0 / side;
-        const double said = toEdge(glm::clamp(place, -outermost, outermost));
-        EXPECT_NEAR(glsl::geofx_border(said, place, half), toEdge(place), 1e-12);
-        EXPECT_NEAR(glslf::geofx_border(static_cast<float>(said), glm::vec2(place), glm::vec2(half)),
-                    toEdge(place), 1e-6);
-        // A border within the region stays where it is, and no place outside of it becomes one of the inside.
-        EXPECT_EQ(glsl::geofx_border(-0.3, Vector2(0.2, -0.1), half), -0.3);
-        EXPECT_LE(glsl::geofx_border(random.uniform(-1.0, 1.0), place, half), std::max(toEdge(place), 0.0));
+        const Vector2 nearest = glm::clamp(place, -outermost, outermost);
+        const double wanted =
+            std::min((1.0 - std::abs(place.x)) * half.x, (1.0 - std::abs(place.y)) * half.y);
+        const double said = glsl::geofx_squareEdge(nearest, half);
+        EXPECT_NEAR(glsl::geofx_squareEdge(place, half), wanted, 1e-12);
+        EXPECT_NEAR(glsl::geofx_border(said, place, side, half), wanted, 1e-12) << "a rectangle's is exact";
+        EXPECT_NEAR(glslf::geofx_border(static_cast<float>(said), glm::vec2(place), static_cast<float>(side),
+                                        glm::vec2(half)),
+                    wanted, 2e-6);
+        // A disc touches the edge, and the border there is the disc's.
+        const double along = 0.3 * random.uniform(-1.0, 1.0) / std::sqrt(side);
+        const double down = random.uniform(outermost, 1.0);
+        const double disc =
+            glsl::geofx_border(1.0 - std::hypot(along, outermost), {along, down}, side, {1.0, 1.0});
+        EXPECT_NEAR(disc, 1.0 - std::hypot(along, down), 0.1 / side);
+        // What no texel doubts stays, and nothing beyond the region is inside.
+        const double any = random.uniform(-1.0, said);
+        EXPECT_TRUE(nearest != place || glsl::geofx_border(any, place, side, half) == any);
+        EXPECT_LE(glsl::geofx_border(any, place, side, half), wanted + 1e-12);
     }
 }
 
