@@ -38,7 +38,7 @@ bool sameBits(const osg::Image& a, const osg::Image& b)
 constexpr int PARTS = 5;
 
 /// On a terrain, and for a part of the set-ups.
-class CloseUpCulling : public GlFixture, public ::testing::WithParamInterface<std::tuple<const char*, int>>
+class CloseUpCulling : public GlFixture, public ::testing::WithParamInterface<std::tuple<std::string, int>>
 {
 protected:
     CloseUpCulling() : GlFixture(WIDTH, HEIGHT) {}
@@ -199,9 +199,8 @@ TEST_P(CloseUpCulling, ChangesNoBit)
 }
 
 INSTANTIATE_TEST_SUITE_P(Terrain, CloseUpCulling,
-                         ::testing::Combine(::testing::Values("oahu", "oahu_projected", "flat", "globe"),
+                         ::testing::Combine(::testing::Values(std::string("oahu"), "oahu_projected", "flat",
+                                                              "globe"),
                                             ::testing::Range(0, PARTS)),
-                         [](const auto& each) {
-                             return std::string(std::get<0>(each.param)) + "_" +
-                                    std::to_string(std::get<1>(each.param));
-                         });
+                         [](const auto& each)
+                         { return std::get<0>(each.param) + "_" + std::to_string(std::get<1>(each.param)); });

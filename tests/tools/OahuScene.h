@@ -8,6 +8,7 @@
 #include <osgGeoFX/paging/Scene.h>
 
 #include <optional>
+#include <ostream>
 #include <string>
 
 namespace geofx::test
@@ -38,5 +39,10 @@ struct OahuCase
     void (*addEffects)(osgGeoFX::EffectScene& scene, Random& random);
     int few, many; ///< cameras on each change, and in ./tests/run --full
 };
+
+inline std::ostream& operator<<(std::ostream& out, const OahuCase& each)
+{
+    return out << each.name;
+}
 
 } // namespace geofx::test
