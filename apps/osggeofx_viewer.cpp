@@ -5,9 +5,9 @@
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/deformation/ClickAndFly.h>
 #include <osgGeoFX/mapping/MappingPanel.h>
-#include <osgGeoFX/paging/EffectPanel.h>
 #include <osgGeoFX/paging/Scene.h>
 #include <osgGeoFX/paging/ViewerHandlers.h>
+#include <osgGeoFX/panel/EffectPanel.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/scene/EffectKeys.h>
 #include <osgGeoFX/scene/EffectKinds.h>

@@ -19,7 +19,6 @@ namespace
 
 using Event = osgGA::GUIEventAdapter;
 
-constexpr std::size_t pageRows = MappingPanelPicture::rows;
 constexpr double opacitySteps = 20.0;
 constexpr int mostOrder = 1000;
 const PanelWords words = {"Mappings",
@@ -90,7 +89,10 @@ std::string nameOf(const ProjectiveMapping& mapping, unsigned int number)
 
 } // namespace
 
-MappingPanel::MappingPanel(EffectScene& scene, osgText::Font* font) : _scene(&scene), _picture(font) {}
+MappingPanel::MappingPanel(EffectScene& scene, osgText::Font* font)
+    : ListPanel(Event::KEY_F9, words, PanelPicture::RIGHT, font), _scene(&scene)
+{
+}
 
 MappingPanel::~MappingPanel() = default;
 
@@ -112,18 +114,18 @@ bool MappingPanel::hasEffect() const
 
 ProjectiveMapping* MappingPanel::selected()
 {
-    return _shown ? _selected.get() : nullptr;
+    return shown() ? _selected.get() : nullptr;
 }
 
 std::vector<std::string> MappingPanel::lines() const
 {
-    if (!_shown) return {};
-    const PanelPage shown = page();
-    std::vector<std::string> result = {shown.count()};
-    for (const PanelPage::Row& row : shown.rows)
+    if (!shown()) return {};
+    const PanelPage rows = page();
+    std::vector<std::string> result = {rows.count()};
+    for (const PanelPage::Row& row : rows.rows)
     {
-        result.push_back((row.on ? "on\t" : "off\t") + row.name + "\t" + row.order + "\t" + row.opacity +
-                         "\t" + row.blending);
+        result.push_back((row.on ? "on\t" : "off\t") + row.name + "\t" + row.order + "\t" + row.value + "\t" +
+                         row.note);
     }
     return result;
 }
@@ -154,7 +156,7 @@ bool MappingPanel::changed()
     return false;
 }
 
-void MappingPanel::list()
+void MappingPanel::collect()
 {
     _entries.clear();
     _listed.clear();
@@ -172,9 +174,9 @@ void MappingPanel::list()
     }
 }
 
-void MappingPanel::relist()
+void MappingPanel::list()
 {
-    list();
+    collect();
     const auto found = std::find_if(_entries.begin(), _entries.end(),
                                     [&](const Entry& entry) { return entry.mapping == _selected.get(); });
     if (found != _entries.end())
@@ -183,50 +185,41 @@ void MappingPanel::relist()
         // The one that took the place of what was removed.
         _cursor.row = _entries.empty() ? 0 : std::min(_cursor.row, _entries.size() - 1);
     _selected = _entries.empty() ? nullptr : _entries[_cursor.row].mapping.get();
-    _cursor.first = std::min(_cursor.first, _entries.size() - std::min(_entries.size(), pageRows));
+    _cursor.first = std::min(_cursor.first, _entries.size() - std::min(_entries.size(), PanelPicture::rows));
 }
 
-void MappingPanel::choose(std::size_t row)
+void MappingPanel::choose(std::size_t number)
 {
-    _cursor.choose(row, _entries.size());
+    ListPanel::choose(number);
     _selected = _entries.empty() ? nullptr : _entries[_cursor.row].mapping.get();
 }
 
-PanelPage MappingPanel::page() const
+PanelPage::Row MappingPanel::row(std::size_t number) const
 {
-    PanelPage result;
-    result.first = _cursor.first;
-    result.selected = _cursor.row;
-    result.total = _entries.size();
-    const std::size_t last = std::min(_cursor.first + pageRows, _entries.size());
-    for (std::size_t i = _cursor.first; i < last; ++i)
-    {
-        const Entry& entry = _entries[i];
-        const ProjectiveMapping& mapping = *entry.mapping;
-        const std::size_t mode = blendModeOf(*mapping.getTransfer());
-        result.rows.push_back({mapping.getEnabled(), mapping.getEnabled() && entry.effect->getEnabled(),
-                               nameOf(mapping, entry.number), std::to_string(mapping.getOrder()),
-                               std::to_string(std::lround(mapping.getOpacity() * 100.0)) + " %",
-                               mode < blendModes.size() ? blendModes[mode].name : "custom"});
-    }
-    return result;
+    const Entry& entry = _entries[number];
+    const ProjectiveMapping& mapping = *entry.mapping;
+    const std::size_t mode = blendModeOf(*mapping.getTransfer());
+    return {mapping.getEnabled(),
+            mapping.getEnabled() && entry.effect->getEnabled(),
+            nameOf(mapping, entry.number),
+            std::to_string(mapping.getOrder()),
+            std::to_string(std::lround(mapping.getOpacity() * 100.0)) + " %",
+            mode < blendModes.size() ? blendModes[mode].name : "custom"};
 }
 
-void MappingPanel::hide()
+void MappingPanel::forget()
 {
-    _shown = false;
-    _picture.hide();
-    // What is removed from now on need not wait for this list.
     _entries.clear();
     _listed.clear();
 }
 
-bool MappingPanel::change(int code, ProjectiveMapping& mapping)
+bool MappingPanel::change(int code, int)
 {
+    ProjectiveMapping& mapping = *_entries[_cursor.row].mapping;
     const auto raise = [&](int step)
     {
         mapping.setOrder(std::clamp(mapping.getOrder() + step, -mostOrder, mostOrder));
-        relist();
+        list();
         choose(_cursor.row);
     };
     const auto fade = [&](double step)
@@ -238,7 +231,7 @@ bool MappingPanel::change(int code, ProjectiveMapping& mapping)
     {
     case Event::KEY_Return:
     case Event::KEY_KP_Enter:
-        mapping.setEnabled(!mapping.getEnabled());
+        pressBox(_cursor.row);
         return true;
     case Event::KEY_Left:
         fade(-1.0);
@@ -264,18 +257,18 @@ bool MappingPanel::change(int code, ProjectiveMapping& mapping)
     }
 }
 
-bool MappingPanel::key(int code)
+void MappingPanel::pressBox(std::size_t number)
 {
-    if (_cursor.key(code, _entries.size()))
-    {
-        choose(_cursor.row);
-        return true;
-    }
-    return _cursor.row < _entries.size() && change(code, *_entries[_cursor.row].mapping);
+    ProjectiveMapping& mapping = *_entries[number].mapping;
+    mapping.setEnabled(!mapping.getEnabled());
 }
 
-bool MappingPanel::pick(const Event& event, osgViewer::View& view)
+bool MappingPanel::pushBeside(const Event& event, osgViewer::View& view)
 {
+    const int modifiers = event.getModKeyMask();
+    if (event.getButton() != Event::LEFT_MOUSE_BUTTON || !(modifiers & Event::MODKEY_ALT) ||
+        (modifiers & Event::MODKEY_CTRL))
+        return false;
     for (const auto& [effect, revision] : _listed)
     {
         if (!effect->getEnabled()) continue;
@@ -289,82 +282,6 @@ bool MappingPanel::pick(const Event& event, osgViewer::View& view)
         return true;
     }
     return false;
-}
-
-bool MappingPanel::push(const Event& event, osgViewer::View& view)
-{
-    const bool leftButton = event.getButton() == Event::LEFT_MOUSE_BUTTON;
-    if (const auto spot =
-            _picture.spotAt(static_cast<double>(event.getX()), static_cast<double>(event.getY())))
-    {
-        if (leftButton && spot->row && *spot->row < _entries.size())
-        {
-            choose(*spot->row);
-            if (spot->onBox) change(Event::KEY_Return, *_entries[_cursor.row].mapping);
-        }
-        return true;
-    }
-    const int modifiers = event.getModKeyMask();
-    return leftButton && (modifiers & Event::MODKEY_ALT) && !(modifiers & Event::MODKEY_CTRL) &&
-           pick(event, view);
-}
-
-bool MappingPanel::scroll(const Event& event)
-{
-    if (!_picture.spotAt(static_cast<double>(event.getX()), static_cast<double>(event.getY()))) return false;
-    _cursor.scroll(event.getScrollingMotion(), _entries.size());
-    return true;
-}
-
-bool MappingPanel::handle(const Event& event, osgGA::GUIActionAdapter& action)
-{
-    const Event::EventType type = event.getEventType();
-    const bool toggled = type == Event::KEYDOWN && event.getKey() == Event::KEY_F9;
-    if (toggled && _shown)
-    {
-        hide();
-        action.requestRedraw();
-        return true;
-    }
-    if (!_shown && (!toggled || !hasEffect())) return false;
-    _shown = true;
-    if (changed()) relist();
-    if (_listed.empty())
-    {
-        // The last effect has gone.
-        hide();
-        return false;
-    }
-    auto* view = dynamic_cast<osgViewer::View*>(&action);
-    bool handled = false;
-    switch (type)
-    {
-    case Event::KEYDOWN:
-        handled = toggled || key(event.getKey());
-        break;
-    case Event::PUSH:
-    case Event::DOUBLECLICK:
-        _held = handled = view && push(event, *view);
-        break;
-    case Event::DRAG:
-        return _held;
-    case Event::RELEASE:
-        // What began here is nothing for a camera manipulator.
-        handled = _held;
-        _held = false;
-        return handled;
-    case Event::SCROLL:
-        handled = scroll(event);
-        break;
-    case Event::FRAME:
-        // Once, however many keys came before it.
-        if (view) _picture.show(*view, page(), words);
-        return false;
-    default:
-        return false;
-    }
-    if (handled) action.requestRedraw();
-    return handled;
 }
 
 } // namespace osgGeoFX

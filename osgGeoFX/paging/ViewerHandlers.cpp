@@ -3,7 +3,7 @@
 #include <osgGeoFX/paging/ViewerHandlers.h>
 
 #include <osgGeoFX/deformation/DeformedView.h>
-#include <osgGeoFX/scene/Overlay.h>
+#include <osgGeoFX/panel/Overlay.h>
 
 #include <osg/Math>
 

@@ -3,7 +3,7 @@
 //
 // The list of effects and their properties: what it lists, and what keys and clicks do to any effect of the kit.
 #include <osgGeoFX/deformation/BlendedView.h>
-#include <osgGeoFX/paging/EffectPanel.h>
+#include <osgGeoFX/panel/EffectPanel.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectKinds.h>
 
@@ -49,7 +49,7 @@ protected:
         {
             const std::string count = _panel->lines().at(0);
             const std::size_t row = static_cast<std::size_t>(std::stoi(count)) - 1;
-            const std::size_t shown = std::min(row, MappingPanelPicture::rows - 1);
+            const std::size_t shown = std::min(row, PanelPicture::rows - 1);
             if (_panel->lines().at(1 + shown).rfind(name + "\t", 0) == 0) return;
             press(Event::KEY_Down);
         }
@@ -98,7 +98,7 @@ TEST_F(EffectPanelTest, ListsEveryPropertyOfEveryEffect)
     EXPECT_EQ(_panel->lines().at(1), "birdsEyeView\ttrue\t");
     EXPECT_EQ(_panel->lines().at(2), "  curve\tarcLength\t");
     EXPECT_EQ(_panel->lines().at(3), "  planeElevation\t0\tm");
-    EXPECT_EQ(_panel->lines().size(), 1 + MappingPanelPicture::rows);
+    EXPECT_EQ(_panel->lines().size(), 1 + PanelPicture::rows);
     select("  birdsEyeView");
     select("  lightAzimuthDegrees");
     // What others change is shown, and what is selected stays so.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/mapping/MappingPanelPicture.h>
+#include <osgGeoFX/panel/PanelPicture.h>
 
-#include <osgGeoFX/scene/Overlay.h>
+#include <osgGeoFX/panel/Overlay.h>
 
 #include <osg/Geometry>
 #include <osgText/Text>
@@ -33,8 +33,8 @@ constexpr double boxLeft = 0.3;
 constexpr double nameLeft = 1.8;
 constexpr double nameRight = 18.0;
 constexpr double orderRight = 21.8;
-constexpr double opacityRight = 27.0;
-constexpr double blendingLeft = 28.2;
+constexpr double valueRight = 27.0;
+constexpr double noteLeft = 28.2;
 constexpr double listWidth = 34.0;
 
 } // namespace
@@ -45,7 +45,7 @@ std::string PanelPage::count() const
 }
 
 /// Collects boxes and texts, and gives them out as one group.
-class MappingPanelPicture::Painter
+class PanelPicture::Painter
 {
 public:
     Painter(const Layout& layout, osgText::Font* font) : _layout(layout), _font(font)
@@ -142,9 +142,9 @@ private:
     osg::ref_ptr<osg::Vec4Array> _colors = new osg::Vec4Array;
 };
 
-MappingPanelPicture::MappingPanelPicture(osgText::Font* font, Corner corner) : _font(font), _corner(corner) {}
+PanelPicture::PanelPicture(osgText::Font* font, Corner corner) : _font(font), _corner(corner) {}
 
-MappingPanelPicture::Layout MappingPanelPicture::layout() const
+PanelPicture::Layout PanelPicture::layout() const
 {
     const double width = _overlay->getViewport()->width();
     const double height = _overlay->getViewport()->height();
@@ -160,7 +160,7 @@ MappingPanelPicture::Layout MappingPanelPicture::layout() const
     return layout;
 }
 
-void MappingPanelPicture::show(osgViewer::View& view, const PanelPage& page, const PanelWords& words)
+void PanelPicture::show(osgViewer::View& view, const PanelPage& page, const PanelWords& words)
 {
     const osg::Camera& camera = *view.getCamera();
     const osg::Viewport* port = camera.getViewport();
@@ -193,13 +193,13 @@ void MappingPanelPicture::show(osgViewer::View& view, const PanelPage& page, con
     _drawn = true;
 }
 
-void MappingPanelPicture::hide()
+void PanelPicture::hide()
 {
     _visible = false;
     if (_overlay) _overlay->setNodeMask(0u);
 }
 
-std::optional<MappingPanelPicture::Spot> MappingPanelPicture::spotAt(double x, double y) const
+std::optional<PanelPicture::Spot> PanelPicture::spotAt(double x, double y) const
 {
     if (!_visible) return std::nullopt;
     const osg::Viewport& port = *_overlay->getViewport();
@@ -217,7 +217,7 @@ std::optional<MappingPanelPicture::Spot> MappingPanelPicture::spotAt(double x, d
     return spot;
 }
 
-void MappingPanelPicture::draw(const PanelWords& words)
+void PanelPicture::draw(const PanelWords& words)
 {
     const Layout list = layout();
     Painter painter(list, _font);
@@ -228,8 +228,8 @@ void MappingPanelPicture::draw(const PanelWords& words)
     painter.text(_page.count(), listWidth - boxLeft, list.rowsTop + list.line, right, bright);
     painter.text(words.name, nameLeft, list.rowsTop, left, dim);
     painter.text(words.order, orderRight, list.rowsTop, right, dim);
-    painter.text(words.opacity, opacityRight, list.rowsTop, right, dim);
-    painter.text(words.blending, blendingLeft, list.rowsTop, left, dim);
+    painter.text(words.value, valueRight, list.rowsTop, right, dim);
+    painter.text(words.note, noteLeft, list.rowsTop, left, dim);
 
     const double inner = list.left + list.margin;
     const double thin = std::max(std::round(list.text / 12.0), 1.0);
@@ -247,8 +247,8 @@ void MappingPanelPicture::draw(const PanelWords& words)
             painter.check(x, std::round(bottom + 0.5 * (list.line - side)), side, thin, row.on, color);
         painter.text(row.name, nameLeft, bottom, left, color, (nameRight - nameLeft) * list.text);
         painter.text(row.order, orderRight, bottom, right, color);
-        painter.text(row.opacity, opacityRight, bottom, right, color);
-        painter.text(row.blending, blendingLeft, bottom, left, color);
+        painter.text(row.value, valueRight, bottom, right, color);
+        painter.text(row.note, noteLeft, bottom, left, color);
     }
     if (_page.total > rows)
     {

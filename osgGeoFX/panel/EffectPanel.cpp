@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/paging/EffectPanel.h>
+#include <osgGeoFX/panel/EffectPanel.h>
 
 #include <osgGeoFX/scene/EffectKinds.h>
 
@@ -58,7 +58,7 @@ void put(PropertyHolder& holder, const Property& property, double value)
 } // namespace
 
 EffectPanel::EffectPanel(EffectScene& scene, osgText::Font* font)
-    : _scene(&scene), _picture(font, MappingPanelPicture::LEFT)
+    : ListPanel(Event::KEY_F10, words, PanelPicture::LEFT, font), _scene(&scene)
 {
 }
 
@@ -94,15 +94,15 @@ void EffectPanel::getUsage(osg::ApplicationUsage& usage) const
 
 std::vector<std::string> EffectPanel::lines() const
 {
-    if (!_shown) return {};
-    const PanelPage shown = page();
-    std::vector<std::string> result = {shown.count()};
-    for (const PanelPage::Row& row : shown.rows)
-        result.push_back(row.name + "\t" + row.opacity + "\t" + row.blending);
+    if (!shown()) return {};
+    const PanelPage rows = page();
+    std::vector<std::string> result = {rows.count()};
+    for (const PanelPage::Row& row : rows.rows)
+        result.push_back(row.name + "\t" + row.value + "\t" + row.note);
     return result;
 }
 
-bool EffectPanel::changed() const
+bool EffectPanel::changed()
 {
     if (_listed.size() != _scene->getNumEffects()) return true;
     for (unsigned int i = 0; i < _scene->getNumEffects(); ++i)
@@ -144,34 +144,22 @@ void EffectPanel::list()
     _cursor.choose(found == _entries.end() ? _cursor.row : row, _entries.size());
 }
 
-PanelPage EffectPanel::page() const
+PanelPage::Row EffectPanel::row(std::size_t number) const
 {
-    PanelPage result;
-    result.first = _cursor.first;
-    result.selected = _cursor.row;
-    result.total = _entries.size();
-    const std::size_t last = std::min(_cursor.first + MappingPanelPicture::rows, _entries.size());
-    for (std::size_t i = _cursor.first; i < last; ++i)
-    {
-        const Entry& entry = _entries[i];
-        const double value = entry.property->get(*entry.holder);
-        PanelPage::Row row{};
-        row.box = entry.property->kind == Property::Kind::Flag;
-        row.on = row.box && value != 0.0;
-        row.inForce = entry.effect->getEnabled();
-        row.name = entry.label;
-        row.opacity = entry.property->text(value);
-        row.blending = entry.property->unit == "rad" ? "" : entry.property->unit;
-        result.rows.push_back(row);
-    }
-    return result;
+    const Entry& entry = _entries[number];
+    const double value = entry.property->get(*entry.holder);
+    PanelPage::Row row{};
+    row.box = entry.property->kind == Property::Kind::Flag;
+    row.on = row.box && value != 0.0;
+    row.inForce = entry.effect->getEnabled();
+    row.name = entry.label;
+    row.value = entry.property->text(value);
+    row.note = entry.property->unit == "rad" ? "" : entry.property->unit;
+    return row;
 }
 
-void EffectPanel::hide()
+void EffectPanel::forget()
 {
-    _shown = false;
-    _picture.hide();
-    // What is removed from now on need not wait for this list.
     _entries.clear();
     _listed.clear();
 }
@@ -189,10 +177,8 @@ void EffectPanel::press(const Entry& entry)
         put(*entry.holder, *entry.property, entry.property->defaultValue);
 }
 
-bool EffectPanel::key(int code, int modifiers)
+bool EffectPanel::change(int code, int modifiers)
 {
-    if (_cursor.key(code, _entries.size())) return true;
-    if (_cursor.row >= _entries.size()) return false;
     const Entry& entry = _entries[_cursor.row];
     const double steps = modifiers & Event::MODKEY_SHIFT ? 10.0 : 1.0;
     switch (code)
@@ -218,63 +204,9 @@ bool EffectPanel::key(int code, int modifiers)
     }
 }
 
-bool EffectPanel::push(const Event& event)
+void EffectPanel::pressBox(std::size_t number)
 {
-    const auto spot = _picture.spotAt(static_cast<double>(event.getX()), static_cast<double>(event.getY()));
-    if (!spot) return false;
-    if (event.getButton() == Event::LEFT_MOUSE_BUTTON && spot->row && *spot->row < _entries.size())
-    {
-        _cursor.choose(*spot->row, _entries.size());
-        if (spot->onBox && isSwitch(*_entries[_cursor.row].property)) press(_entries[_cursor.row]);
-    }
-    return true;
-}
-
-bool EffectPanel::handle(const Event& event, osgGA::GUIActionAdapter& action)
-{
-    const Event::EventType type = event.getEventType();
-    const bool toggled = type == Event::KEYDOWN && event.getKey() == Event::KEY_F10;
-    if (!_shown && !toggled) return false;
-    if ((_shown && toggled) || _scene->getNumEffects() == 0)
-    {
-        const bool was = _shown;
-        hide();
-        if (was) action.requestRedraw();
-        return was && toggled;
-    }
-    _shown = true;
-    if (changed()) list();
-    auto* view = dynamic_cast<osgViewer::View*>(&action);
-    bool handled = false;
-    switch (type)
-    {
-    case Event::KEYDOWN:
-        handled = toggled || key(event.getKey(), event.getModKeyMask());
-        break;
-    case Event::PUSH:
-    case Event::DOUBLECLICK:
-        _held = handled = push(event);
-        break;
-    case Event::DRAG:
-        return _held;
-    case Event::RELEASE:
-        // What began here is nothing for a camera manipulator.
-        handled = _held;
-        _held = false;
-        return handled;
-    case Event::SCROLL:
-        handled =
-            _picture.spotAt(static_cast<double>(event.getX()), static_cast<double>(event.getY())).has_value();
-        if (handled) _cursor.scroll(event.getScrollingMotion(), _entries.size());
-        break;
-    case Event::FRAME:
-        if (view) _picture.show(*view, page(), words);
-        return false;
-    default:
-        return false;
-    }
-    if (handled) action.requestRedraw();
-    return handled;
+    if (isSwitch(*_entries[number].property)) press(_entries[number]);
 }
 
 } // namespace osgGeoFX

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/scene/Overlay.h>
+#include <osgGeoFX/panel/Overlay.h>
 
 #include <osgViewer/ViewerBase>
 

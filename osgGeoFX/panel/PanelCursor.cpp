@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/mapping/PanelCursor.h>
+#include <osgGeoFX/panel/PanelCursor.h>
 
-#include <osgGeoFX/mapping/MappingPanelPicture.h>
+#include <osgGeoFX/panel/PanelPicture.h>
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ namespace
 
 using Event = osgGA::GUIEventAdapter;
 
-constexpr std::size_t pageRows = MappingPanelPicture::rows;
+constexpr std::size_t pageRows = PanelPicture::rows;
 constexpr std::size_t wheelRows = 3;
 
 } // namespace

@@ -19,8 +19,8 @@ namespace osgGeoFX
 /// What stands around the rows of a panel; texts are UTF-8.
 struct PanelWords
 {
-    std::string title, name, order, opacity, blending; ///< of the list and its columns
-    std::string keysAbove, keysBelow;                  ///< two lines below the rows
+    std::string title, name, order, value, note; ///< of the list and its columns
+    std::string keysAbove, keysBelow;            ///< two lines below the rows
 };
 
 /// What a panel shows at a time; texts are UTF-8.
@@ -30,13 +30,13 @@ struct PanelPage
     {
         bool on;
         bool inForce; ///< drawn bright
-        std::string name, order, opacity, blending;
+        std::string name, order, value, note;
         bool box = true; ///< whether it has a box that switches it
 
         bool operator==(const Row& other) const
         {
             return on == other.on && inForce == other.inForce && name == other.name && order == other.order &&
-                   opacity == other.opacity && blending == other.blending && box == other.box;
+                   value == other.value && note == other.note && box == other.box;
         }
     };
     std::vector<Row> rows;
@@ -56,7 +56,7 @@ struct PanelPage
 /** The picture of a panel: a dark box in an upper corner of a view, by a slave camera of that view. It grows
     with the window, and is made anew only when what it shows has changed, from new objects, so that a frame that is still
     being drawn keeps its own. For the event traversal. */
-class OSGGEOFX_EXPORT MappingPanelPicture
+class OSGGEOFX_EXPORT PanelPicture
 {
 public:
     static constexpr std::size_t rows = 12; ///< at a time
@@ -66,7 +66,7 @@ public:
         LEFT,
         RIGHT
     };
-    explicit MappingPanelPicture(osgText::Font* font, Corner corner = RIGHT);
+    explicit PanelPicture(osgText::Font* font, Corner corner = RIGHT);
 
     /// The words are the same each time.
     void show(osgViewer::View& view, const PanelPage& page, const PanelWords& words);
