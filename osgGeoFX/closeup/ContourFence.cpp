@@ -15,13 +15,17 @@ namespace
 {
 
 constexpr double partLength = 0.02; ///< of the border, in halves of the smaller side
+constexpr double longestPart = 0.1; ///< where the ground is level, for what bends it
+constexpr double tolerance = 0.1;   ///< of a texel of the mask
 constexpr double unknown = -std::numeric_limits<double>::infinity();
+
+using Contour = std::vector<osg::Vec2d>;
 
 /// The border's points and the heights below them, found by the cells of a grid over the region.
 class Heights
 {
 public:
-    Heights(const std::vector<std::vector<osg::Vec2d>>& contours, const osg::Vec2d& half) : _half(half)
+    Heights(const std::vector<Contour>& contours, const osg::Vec2d& half) : _half(half)
     {
         for (const auto& contour : contours)
         {
@@ -111,6 +115,36 @@ private:
     std::vector<osg::Vec3d> _vertices;
 };
 
+/// Which points of a closed line on the ground a line needs that is nowhere farther from it than `deviation` and whose parts are no
+/// longer than `longest`; all that have no height stay. The mask's own lines have points at each of its texels.
+std::vector<std::size_t> needed(const std::vector<osg::Vec3d>& line, double deviation, double longest)
+{
+    const auto fits = [&](std::size_t from, std::size_t to)
+    {
+        const osg::Vec3d& start = line[from];
+        osg::Vec3d way = line[to % line.size()] - start;
+        const double length = way.normalize();
+        if (!(length > 0.0 && length <= longest)) return false;
+        for (std::size_t between = from + 1; between < to; ++between)
+        {
+            const osg::Vec3d at = line[between] - start;
+            const double along = at * way;
+            if (!(along >= 0.0 && along <= length && (at - way * along).length() <= deviation)) return false;
+        }
+        return true;
+    };
+    std::vector<std::size_t> kept;
+    for (std::size_t from = 0; from < line.size();)
+    {
+        kept.push_back(from);
+        std::size_t to = from + 1;
+        while (to < line.size() && fits(from, to + 1))
+            ++to;
+        from = to;
+    }
+    return kept;
+}
+
 /// The same place, but for what the camera's matrices round.
 bool same(const osg::Matrixd& one, const osg::Matrixd& other)
 {
@@ -164,7 +198,8 @@ bool ContourFence::update(const RegionOfInterest& region, const std::vector<Grou
 void ContourFence::build(const RegionOfInterest& region, const std::vector<Ground>& ground)
 {
     const osg::Vec2d half(region.getWidth() / 2.0, region.getDepth() / 2.0);
-    const std::vector<std::vector<osg::Vec2d>> contours = region.contours(partLength);
+    const double unit = std::min(half.x(), half.y());
+    const std::vector<Contour> contours = region.contours(partLength);
     Heights heights(contours, half);
     for (const Ground& each : ground)
     {
@@ -180,32 +215,39 @@ void ContourFence::build(const RegionOfInterest& region, const std::vector<Groun
     osg::ref_ptr<osg::Vec2Array> lineShares = new osg::Vec2Array;
     osg::ref_ptr<osg::DrawElementsUInt> lineIndices = new osg::DrawElementsUInt(GL_LINES);
     std::size_t first = 0;
-    for (const std::vector<osg::Vec2d>& contour : contours)
+    for (const Contour& contour : contours)
     {
-        const std::size_t count = contour.size();
-        for (std::size_t i = 0; i < count; ++i)
+        std::vector<osg::Vec3d> points;
+        for (std::size_t i = 0; i < contour.size(); ++i)
+            points.emplace_back(contour[i].x() * half.x(), contour[i].y() * half.y(),
+                                heights.height(first + i));
+        const std::vector<std::size_t> kept =
+            needed(points, tolerance * 2.0 * unit / region.getMaskSide(), longestPart * unit);
+        const auto start = static_cast<unsigned int>(line->size());
+        for (std::size_t i = 0; i < kept.size(); ++i)
         {
-            const double height = heights.height(first + i);
-            const bool known = height > unknown;
-            const osg::Vec3 vertex(
-                osg::Vec3d(contour[i].x() * half.x(), contour[i].y() * half.y(), known ? height : 0.0));
-            const auto at = static_cast<unsigned int>(wall->size());
-            wall->push_back(vertex);
-            wall->push_back(vertex);
-            wallShares->push_back(osg::Vec2(0.0f, 0.0f));
-            wallShares->push_back(osg::Vec2(1.0f, 0.0f));
-            line->push_back(vertex);
+            osg::Vec3d point = points[kept[i]];
+            const bool known = point.z() > unknown;
+            if (!known) point.z() = 0.0;
+            const auto at = static_cast<unsigned int>(line->size());
+            for (const float share : {0.0f, 1.0f})
+            {
+                wall->push_back(osg::Vec3(point));
+                wallShares->push_back(osg::Vec2(share, 0.0f));
+            }
+            line->push_back(osg::Vec3(point));
             lineShares->push_back(osg::Vec2(0.0f, 1.0f));
             // No wall where there is no ground, such as beyond the terrain's border.
-            const std::size_t following = (i + 1) % count;
-            if (!known || !(heights.height(first + following) > unknown)) continue;
-            const auto next = static_cast<unsigned int>(2 * (first + following));
-            for (const unsigned int index : {at, next, at + 1, at + 1, next, next + 1})
+            const std::size_t following = (i + 1) % kept.size();
+            if (!known || !(points[kept[following]].z() > unknown)) continue;
+            const unsigned int next = start + static_cast<unsigned int>(following);
+            for (const unsigned int index :
+                 {2 * at, 2 * next, 2 * at + 1, 2 * at + 1, 2 * next, 2 * next + 1})
                 wallIndices->push_back(index);
-            lineIndices->push_back(at / 2);
-            lineIndices->push_back(next / 2);
+            lineIndices->push_back(at);
+            lineIndices->push_back(next);
         }
-        first += count;
+        first += contour.size();
     }
     _wall = geometryOf(wall, wallShares, wallIndices);
     _line = geometryOf(line, lineShares, lineIndices);

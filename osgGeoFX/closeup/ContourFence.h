@@ -15,7 +15,8 @@ namespace osgGeoFX
 /** The wall between a region's border on the ground and that of its close-up, and the line on the ground: geometry in the
     region's frame, whose first texture coordinate says how far a vertex goes up (stages/closeup.fence.vert).
 
-    Heights are those of the triangles that the camera sees there. One belongs to one camera and close-up. */
+    Heights are those of the triangles that the camera sees there; of the border's points as many as are needed to be within a tenth
+    of the mask's texel. One belongs to one camera and close-up. */
 class ContourFence
 {
 public:
