@@ -19,8 +19,8 @@ struct RegionContents
 {
     double lowest = std::numeric_limits<double>::infinity(); ///< metres above the region's base
     double highest = -std::numeric_limits<double>::infinity();
-    double longestEdge =
-        0.0; ///< of the triangles there, metres; what is stretched reaches that far beyond the region
+    /// Of the triangles there, metres: what is stretched reaches that far beyond the region.
+    double longestEdge = 0.0;
     std::vector<ContourFence::Ground> ground;
 
     bool empty() const { return !(lowest <= highest); }

@@ -45,8 +45,7 @@ public:
     void includeHeights(const EyeBox& box, double& lowest, double& highest) const;
     /// Corners of the part of the region between two heights, in the close-up.
     std::array<osg::Vec3d, 8> liftedCorners(double lowest, double highest) const;
-    /// The same on the ground.
-    /// Widened by `beyond` metres to all sides.
+    /// The same on the ground, widened by `beyond` metres to all sides.
     EyeBox groundBox(double lowest, double highest, double beyond = 0.0) const;
 
     bool showsCloseUp() const { return _closeUp->getActivity() != CloseUp::REGION_ONLY; }

@@ -5,7 +5,7 @@
 #include "lib/closeup.glsl"
 #pragma import_defines(SLOT_MASKED)
 
-// 16 vectors for each close-up; CloseUpItem.h tells which is which.
+// 16 vectors for each close-up; CloseUpItem::values() tells which is which.
 layout(std140) uniform SLOT_Items
 {
     vec4 SLOT_items[1024];
