@@ -178,12 +178,12 @@ void GroundPass::findWater()
     for (int row = _size.rows - 1; row >= 0; --row)
     {
         _heights.read(row, heights.data());
-        const std::vector<Ground> found = finder.mark(heights);
+        const std::vector<GroundKind> found = finder.mark(heights);
         for (int i = 0; i < _size.columns; ++i)
         {
-            const Ground ground = found[static_cast<std::size_t>(i)];
-            if (ground != Ground::LAND && !_classed.at(i, row)) _water.set(i, row);
-            if (ground == Ground::LAKE) _lakes.set(i, row);
+            const GroundKind ground = found[static_cast<std::size_t>(i)];
+            if (ground != GroundKind::LAND && !_classed.at(i, row)) _water.set(i, row);
+            if (ground == GroundKind::LAKE) _lakes.set(i, row);
         }
     }
 }

@@ -143,7 +143,7 @@ void WaterFinder::count(int row)
         if (begin > 0) look(_here[begin], _here[begin - 1]);
         if (end < columns) look(_here[end - 1], _here[end]);
         area.open = area.open || begin == 0 || end == columns || _behind.empty() || _ahead.empty();
-        if (!goesOn) area.ends.push_back({row, static_cast<int>(begin), Ground::LAND});
+        if (!goesOn) area.ends.push_back({row, static_cast<int>(begin), GroundKind::LAND});
     }
     for (const int label : _hereLabels)
         if (label != NO_LABEL && _areas[static_cast<std::size_t>(root(label))].lastRow == row)
@@ -154,25 +154,25 @@ void WaterFinder::count(int row)
 void WaterFinder::decide(int label)
 {
     Area& area = _areas[static_cast<std::size_t>(label)];
-    const Ground ground = groundOf(area);
-    if (ground != Ground::LAND)
+    const GroundKind ground = groundOf(area);
+    if (ground != GroundKind::LAND)
         for (const End& end : area.ends)
             _ends.push_back({end.row, end.column, ground});
     area.lastRow = -1;
     _free.insert(_free.end(), area.labels.begin(), area.labels.end());
 }
 
-Ground WaterFinder::groundOf(const Area& area) const
+GroundKind WaterFinder::groundOf(const Area& area) const
 {
     if (std::isnan(area.height))
-        return 3 * area.lowRim >= std::max<std::int64_t>(area.rim, 1) ? Ground::SEA : Ground::LAND;
+        return 3 * area.lowRim >= std::max<std::int64_t>(area.rim, 1) ? GroundKind::SEA : GroundKind::LAND;
     const bool large = area.squareMetres >= _lakeArea && area.cells >= LAKE_CELLS;
     if (area.height <= 0.0f)
-        return area.open || (large && 2 * area.zeros >= area.cells) ? Ground::SEA : Ground::LAND;
-    return large && area.rim > 0 && 5 * area.lowerRim <= area.rim ? Ground::LAKE : Ground::LAND;
+        return area.open || (large && 2 * area.zeros >= area.cells) ? GroundKind::SEA : GroundKind::LAND;
+    return large && area.rim > 0 && 5 * area.lowerRim <= area.rim ? GroundKind::LAKE : GroundKind::LAND;
 }
 
-std::vector<Ground> WaterFinder::mark(const std::vector<float>& heights)
+std::vector<GroundKind> WaterFinder::mark(const std::vector<float>& heights)
 {
     if (!_sorted)
         std::sort(_ends.begin(), _ends.end(),
@@ -180,18 +180,18 @@ std::vector<Ground> WaterFinder::mark(const std::vector<float>& heights)
                   { return std::pair(a.row, -a.column) < std::pair(b.row, -b.column); });
     _sorted = true;
     --_rows;
-    std::vector<Ground> result(heights.size(), Ground::LAND);
+    std::vector<GroundKind> result(heights.size(), GroundKind::LAND);
     for (std::size_t begin = 0, end = 1; begin < heights.size(); begin = end, ++end)
     {
         while (end < heights.size() && together(heights[end - 1], heights[end]))
             ++end;
-        Ground ground = Ground::LAND;
+        GroundKind ground = GroundKind::LAND;
         if (!_ends.empty() && _ends.back().row == _rows && _ends.back().column == static_cast<int>(begin))
         {
             ground = _ends.back().ground;
             _ends.pop_back();
         }
-        for (std::size_t c = begin; c < end && ground == Ground::LAND && !_marked.empty(); ++c)
+        for (std::size_t c = begin; c < end && ground == GroundKind::LAND && !_marked.empty(); ++c)
             if (together(heights[c], _markedHeights[c])) ground = _marked[c];
         std::fill(result.begin() + static_cast<std::ptrdiff_t>(begin),
                   result.begin() + static_cast<std::ptrdiff_t>(end), ground);

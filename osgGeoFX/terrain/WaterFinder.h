@@ -9,7 +9,7 @@ namespace osgGeoFX
 {
 
 /// What a cell of an elevation raster is.
-enum class Ground : unsigned char
+enum class GroundKind : unsigned char
 {
     LAND,
     SEA,
@@ -37,13 +37,13 @@ public:
     void add(const std::vector<float>& heights);
 
     /// The row before the last one that was marked, at first the last row that was added.
-    std::vector<Ground> mark(const std::vector<float>& heights);
+    std::vector<GroundKind> mark(const std::vector<float>& heights);
 
 private:
     struct End
     {
         int row, column;
-        Ground ground;
+        GroundKind ground;
     };
     struct Area
     {
@@ -61,7 +61,7 @@ private:
     void join(int& a, int& b, float height, int row);
     void count(int row);
     void decide(int label);
-    Ground groundOf(const Area& area) const;
+    GroundKind groundOf(const Area& area) const;
 
     int _columns;
     std::vector<double> _cellArea;
@@ -74,7 +74,7 @@ private:
     std::vector<End> _ends; ///< of water, by rows as they were met
     bool _sorted = false;
     std::vector<float> _markedHeights;
-    std::vector<Ground> _marked;
+    std::vector<GroundKind> _marked;
 };
 
 } // namespace osgGeoFX

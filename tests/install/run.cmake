@@ -14,11 +14,23 @@ endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
 
-# The linker's view of the libraries.
-run(readelf -d ${prefix}/${LIBDIR}/libosgGeoFX.so)
-if(NOT output MATCHES "soname: \\[libosgGeoFX\\.so\\.${SOVERSION}\\]")
-  message(FATAL_ERROR "libosgGeoFX.so has not the soname libosgGeoFX.so.${SOVERSION}:\n${output}")
+# The linker's view of the libraries: the name that programs ask for at run time is that of the versions which the
+# package calls compatible, those with the same minor version.
+string(REGEX REPLACE "^([0-9]+\\.[0-9]+).*" "\\1" compatible ${VERSION})
+file(READ ${prefix}/${LIBDIR}/cmake/osgGeoFX/osgGeoFXConfigVersion.cmake package_version)
+if(NOT package_version MATCHES "major and minor versions are the same")
+  message(FATAL_ERROR "The package no longer asks for equal minor versions; the soname must follow.")
 endif()
+string(REPLACE "." "\\." pattern ${compatible})
+foreach(library osgGeoFXData osgGeoFX)
+  if(NOT DATA AND library STREQUAL "osgGeoFXData")
+    continue()
+  endif()
+  run(readelf -d ${prefix}/${LIBDIR}/lib${library}.so)
+  if(NOT output MATCHES "soname: \\[lib${library}\\.so\\.${pattern}\\]")
+    message(FATAL_ERROR "lib${library}.so has not the soname lib${library}.so.${compatible}:\n${output}")
+  endif()
+endforeach()
 if(output MATCHES "libgdal|libGeographic|libOpenImageIO")
   message(FATAL_ERROR "libosgGeoFX.so must need OSG and GLM alone:\n${output}")
 endif()

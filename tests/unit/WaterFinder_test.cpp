@@ -40,18 +40,18 @@ struct Heights
     std::vector<std::vector<float>> values;
 };
 
-std::vector<std::vector<Ground>> found(const Heights& heights, double lakeArea = LAKE)
+std::vector<std::vector<GroundKind>> found(const Heights& heights, double lakeArea = LAKE)
 {
     WaterFinder finder(heights.columns, std::vector<double>(heights.values.size(), CELL), lakeArea);
     for (const auto& row : heights.values)
         finder.add(row);
-    std::vector<std::vector<Ground>> result;
+    std::vector<std::vector<GroundKind>> result;
     for (auto row = heights.values.rbegin(); row != heights.values.rend(); ++row)
         result.insert(result.begin(), finder.mark(*row));
     return result;
 }
 
-int count(const std::vector<std::vector<Ground>>& ground, Ground wanted)
+int count(const std::vector<std::vector<GroundKind>>& ground, GroundKind wanted)
 {
     int cells = 0;
     for (const auto& row : ground)
@@ -72,14 +72,14 @@ Heights withSquare(double inside, double around = 100.0)
 
 TEST(WaterFinder, LevelGroundAmidHigherIsALake)
 {
-    EXPECT_EQ(count(found(withSquare(95.0)), Ground::LAKE), 64);
-    EXPECT_EQ(count(found(withSquare(95.0), 65 * CELL), Ground::LAKE), 0) << "it is too small";
+    EXPECT_EQ(count(found(withSquare(95.0)), GroundKind::LAKE), 64);
+    EXPECT_EQ(count(found(withSquare(95.0), 65 * CELL), GroundKind::LAKE), 0) << "it is too small";
 }
 
 TEST(WaterFinder, TerracesAndSummitsAreLand)
 {
-    EXPECT_EQ(count(found(withSquare(130.0)), Ground::LAKE), 0);
-    EXPECT_EQ(count(found(withSquare(106.7)), Ground::LAKE), 0) << "half of the rim is lower";
+    EXPECT_EQ(count(found(withSquare(130.0)), GroundKind::LAKE), 0);
+    EXPECT_EQ(count(found(withSquare(106.7)), GroundKind::LAKE), 0) << "half of the rim is lower";
 }
 
 TEST(WaterFinder, LakesOfAnyShape)
@@ -98,7 +98,7 @@ TEST(WaterFinder, LakesOfAnyShape)
     for (int row = 0; row < 30; ++row)
         for (int column = 0; column < 40; ++column)
             EXPECT_EQ(ground[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)],
-                      inLake(column, row) ? Ground::LAKE : Ground::LAND)
+                      inLake(column, row) ? GroundKind::LAKE : GroundKind::LAND)
                 << column << " " << row;
 }
 
@@ -117,7 +117,7 @@ TEST(WaterFinder, ArmsThatMeetLate)
     for (int row = 0; row < 30; ++row)
         for (int column = 0; column < 30; ++column)
             EXPECT_EQ(ground[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)],
-                      inLake(column, row) ? Ground::LAKE : Ground::LAND)
+                      inLake(column, row) ? GroundKind::LAKE : GroundKind::LAND)
                 << column << " " << row;
 }
 
@@ -125,9 +125,9 @@ TEST(WaterFinder, TheSeaReachesTheBorder)
 {
     const auto ground = found(
         Heights(40, 30, [](int column, int row) { return column < 5 ? -row : 3.0 + column + 0.1 * row; }));
-    EXPECT_EQ(count(ground, Ground::SEA), 5 * 30);
-    EXPECT_EQ(count(found(withSquare(-60.0)), Ground::SEA), 0) << "a depression";
-    EXPECT_EQ(count(found(withSquare(0.0)), Ground::SEA), 64) << "a lagoon";
+    EXPECT_EQ(count(ground, GroundKind::SEA), 5 * 30);
+    EXPECT_EQ(count(found(withSquare(-60.0)), GroundKind::SEA), 0) << "a depression";
+    EXPECT_EQ(count(found(withSquare(0.0)), GroundKind::SEA), 64) << "a lagoon";
 }
 
 TEST(WaterFinder, NoDataBesideLowLandIsTheSea)
@@ -140,20 +140,20 @@ TEST(WaterFinder, NoDataBesideLowLandIsTheSea)
                                              : shore + 2.0 * (column - 5) + 0.01 * row;
                        });
     };
-    EXPECT_EQ(count(found(bay(0.3)), Ground::SEA), 5 * 30);
-    EXPECT_EQ(count(found(bay(20.0)), Ground::SEA), 0);
+    EXPECT_EQ(count(found(bay(0.3)), GroundKind::SEA), 5 * 30);
+    EXPECT_EQ(count(found(bay(20.0)), GroundKind::SEA), 0);
     const Heights mostlyHigh(40, 30,
                              [](int column, int row)
                              {
                                  if (column < 5) return static_cast<double>(HOLE);
                                  return (row < 6 ? 0.3 : 20.0) + 2.0 * (column - 5) + 0.01 * row;
                              });
-    EXPECT_EQ(count(found(mostlyHigh), Ground::SEA), 0);
-    EXPECT_EQ(count(found(Heights(9, 9, [](int, int) { return HOLE; })), Ground::SEA), 0);
+    EXPECT_EQ(count(found(mostlyHigh), GroundKind::SEA), 0);
+    EXPECT_EQ(count(found(Heights(9, 9, [](int, int) { return HOLE; })), GroundKind::SEA), 0);
 }
 
 /// The areas of WaterFinder's rules, by flood fill.
-Ground groundByFlood(const Heights& heights, int column, int row)
+GroundKind groundByFlood(const Heights& heights, int column, int row)
 {
     const auto low = [](float height)
     {
@@ -199,12 +199,12 @@ Ground groundByFlood(const Heights& heights, int column, int row)
             }
         }
     }
-    if (cells == 1) return Ground::LAND; // single cells are not looked at
+    if (cells == 1) return GroundKind::LAND; // single cells are not looked at
     const float here = heights.at(column, row);
     const bool large = cells * CELL >= LAKE && cells >= 32;
-    if (std::isnan(here)) return 3 * lowRim >= std::max(rim, 1) ? Ground::SEA : Ground::LAND;
-    if (low(here)) return border || (large && 2 * zeros >= cells) ? Ground::SEA : Ground::LAND;
-    return large && rim > 0 && 5 * lower <= rim ? Ground::LAKE : Ground::LAND;
+    if (std::isnan(here)) return 3 * lowRim >= std::max(rim, 1) ? GroundKind::SEA : GroundKind::LAND;
+    if (low(here)) return border || (large && 2 * zeros >= cells) ? GroundKind::SEA : GroundKind::LAND;
+    return large && rim > 0 && 5 * lower <= rim ? GroundKind::LAKE : GroundKind::LAND;
 }
 
 TEST(WaterFinder, EqualsAFloodFill)
@@ -232,11 +232,11 @@ TEST(WaterFinder, EqualsAFloodFill)
         for (int row = 0; row < heights.rows; ++row)
             for (int column = 0; column < heights.columns; ++column)
             {
-                const Ground expected = groundByFlood(heights, column, row);
+                const GroundKind expected = groundByFlood(heights, column, row);
                 ASSERT_EQ(ground[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)], expected)
                     << column << " " << row << " of " << heights.columns << " " << heights.rows;
-                lakes += expected == Ground::LAKE;
-                sea += expected == Ground::SEA;
+                lakes += expected == GroundKind::LAKE;
+                sea += expected == GroundKind::SEA;
             }
     }
     EXPECT_GT(lakes, 100);
