@@ -2,17 +2,20 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Picking through the deformation: pixel → ground → pixel, against what the GPU drew at the pixel, and that the ground is the
-// terrain's.
+// terrain's. Where the GPU drew sky there is nothing to be picked, and what is picked is something that was drawn.
 #include <tools/CullHarness.h>
 #include <tools/GlFixture.h>
 #include <tools/OahuScene.h>
 
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/DeformedView.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgUtil/LineSegmentIntersector>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -36,6 +39,37 @@ double depthOf(float value, const osg::Matrixd& projection)
     return -(osg::Vec3d(0.0, 0.0, 2.0 * static_cast<double>(value) - 1.0) * inverse).z();
 }
 
+float valueAt(const osg::Image& depths, int x, int y)
+{
+    return *reinterpret_cast<const float*>(
+        depths.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y)));
+}
+
+/// Whether a pixel and all around it show sky.
+bool skyAround(const osg::Image& depths, int x, int y)
+{
+    for (int row = std::max(y - 1, 0); row <= std::min(y + 1, HEIGHT - 1); ++row)
+    {
+        for (int column = std::max(x - 1, 0); column <= std::min(x + 1, WIDTH - 1); ++column)
+            if (valueAt(depths, column, row) < 1.0f) return false;
+    }
+    return true;
+}
+
+/// By how much depths change within half a pixel of a point of the picture, metres; endless beside the sky.
+double footprintAt(const DeformedView& picture, double x, double y, double depth)
+{
+    double most = 0.0;
+    for (const auto& [right, up] :
+         {std::pair(0.5, 0.0), std::pair(-0.5, 0.0), std::pair(0.0, 0.5), std::pair(0.0, -0.5)})
+    {
+        const auto hit = picture.pick(x + right, y + up);
+        if (!hit) return HUGE_VAL;
+        most = std::max(most, std::abs(-hit->deformed.z() - depth));
+    }
+    return most;
+}
+
 } // namespace
 
 TEST_P(Picking, PixelToGroundToPixel)
@@ -47,6 +81,8 @@ TEST_P(Picking, PixelToGroundToPixel)
     const int pixels = 20;
     int checked = 0;
     int inZone = 0;
+    int sky = 0;
+    int footprints = 0;
     double worst = 0.0;
     for (int camera = 0; camera < cameras; ++camera)
     {
@@ -70,12 +106,15 @@ TEST_P(Picking, PixelToGroundToPixel)
         {
             const int x = random.integer(0, WIDTH - 1);
             const int y = random.integer(0, HEIGHT - 1);
-            const float depth = *reinterpret_cast<const float*>(
-                depths->data(static_cast<unsigned int>(x), static_cast<unsigned int>(y)));
+            const float depth = valueAt(*depths, x, y);
             const auto hit = picture.pick(x + 0.5, y + 0.5);
             if (depth >= 1.0f)
             {
-                // Sky; at the skyline the pixel's middle may just miss what its neighbours show.
+                // At the skyline the pixel's middle may just miss what its neighbours show.
+                if (!skyAround(*depths, x, y)) continue;
+                ++sky;
+                EXPECT_FALSE(hit) << "the sky at pixel " << x << ' ' << y << " is ground "
+                                  << (hit ? -hit->deformed.z() : 0.0) << " m away";
                 continue;
             }
             double longitude = 0.0;
@@ -97,17 +136,68 @@ TEST_P(Picking, PixelToGroundToPixel)
             const double pixelSize = -hit->deformed.z() * 2.0 * half / 50.0 / HEIGHT;
             EXPECT_NEAR(-hit->deformed.z(), drawn, 10.0 * pixelSize + precision + 1e-4 * drawn)
                 << "pixel " << x << ' ' << y;
+            // Half a pixel's ground at that slant, and the rounding of positions in floats.
+            const double footprint = footprintAt(picture, x + 0.5, y + 0.5, -hit->deformed.z());
+            EXPECT_NEAR(-hit->deformed.z(), drawn, footprint + precision + 1e-5 * drawn)
+                << "pixel " << x << ' ' << y;
+            if (std::isfinite(footprint)) ++footprints;
             const double style = picture.chain().style(hit->world * picture.modelView());
             inZone += style > 0.0 && style < 1.0 ? 1 : 0;
         }
     }
-    std::cout << checked << " pixels, " << inZone << " in the transition zone, worst " << worst
-              << " pixels\n";
+    std::cout << checked << " pixels, " << inZone << " in the transition zone, " << sky << " of sky, "
+              << footprints << " compared with their footprint, worst " << worst << " pixels\n";
     EXPECT_GT(checked, cameras * pixels / 4);
+    EXPECT_GT(sky, 0);
     if (GetParam().addEffects == addRandomEffects)
     {
         EXPECT_GT(inZone, checked / 20);
+        EXPECT_GT(footprints, checked / 2);
     }
+}
+
+TEST_P(Picking, WhatIsPickedIsDrawnWhateverTheLodScale)
+{
+    const std::optional<Scene> oahu = loadOahu(GetParam().database);
+    if (!oahu) return;
+    CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
+    const int cameras = fullTest() ? GetParam().many : GetParam().few;
+    int hits = 0;
+    std::set<int> levels;
+    for (int camera = 0; camera < cameras; ++camera)
+    {
+        SCOPED_TRACE("camera " + std::to_string(camera));
+        Random random(static_cast<std::uint64_t>(camera) + 2000);
+        GetParam().addEffects(*oahu->effects, random);
+        const osg::Matrixd view = randomOahuView(random, *oahu->reference);
+        const osg::Matrixd projection = osg::Matrixd::perspective(
+            random.uniform(25.0, 60.0), static_cast<double>(WIDTH) / HEIGHT, 50.0, 2e5);
+        const double lodScale = camera % 2 ? random.uniform(0.3, 0.7) : random.uniform(2.0, 6.0);
+        harness.camera().setLODScale(static_cast<float>(lodScale));
+        harness.setCamera(view, projection);
+        // All that this camera and a finer one want is in memory, so that the scale alone decides.
+        for (const double scale : {lodScale / 4.0, lodScale})
+        {
+            harness.camera().setLODScale(static_cast<float>(scale));
+            for (int step = 0; step < 5; ++step)
+                CullHarness::load(harness.frame(true, false).requests, random, 1.0);
+        }
+        const std::set<const osg::Drawable*> drawn = harness.frame(true, false).drawables();
+        const DeformedView picture(*oahu->effects, view, projection, WIDTH, HEIGHT, lodScale);
+        for (int i = 0; i < 20; ++i)
+        {
+            const auto hit = picture.pick(random.uniform(0.0, WIDTH), random.uniform(0.0, HEIGHT));
+            if (!hit) continue;
+            ++hits;
+            EXPECT_TRUE(drawn.count(hit->drawable))
+                << "what is picked at LOD scale " << lodScale << " is not drawn";
+            const osg::Node* tile = hit->drawable->getNumParents() ? hit->drawable->getParent(0) : nullptr;
+            const std::optional<TileInfo> info = tile ? TileInfo::read(*tile) : std::nullopt;
+            if (info) levels.insert(info->level);
+        }
+    }
+    EXPECT_GT(hits, 5 * cameras);
+    EXPECT_GT(levels.size(), 2u);
 }
 
 TEST_P(Picking, WithoutEffectsItIsOsgsOwnIntersector)
