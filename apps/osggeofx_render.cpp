@@ -122,12 +122,18 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("S")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    app.add_option(
-           "--stats", arguments.stats,
-           "Write figures as JSON: for each picture cull_ms, draw_ms (with reading it back), total_ms, "
-           "triangles, drawables, tiles_drawn, tiles_loaded, bytes_read; once renderer, gl_version, "
-           "peak_memory_bytes, size, samples")
-        ->type_name("FILE.json");
+    auto* stats =
+        app.add_option(
+               "--stats", arguments.stats,
+               "Write figures as JSON: for each picture cull_ms, draw_ms (with reading it back), total_ms, "
+               "triangles, drawables, tiles_drawn, tiles_loaded, bytes_read; once renderer, gl_version, "
+               "peak_memory_bytes, size, samples")
+            ->type_name("FILE.json");
+    app.add_flag("--least-triangles", arguments.renderer.leastTriangles,
+                 "With --stats: also least_triangles, how few would show the terrain within its pixel error; "
+                 "reads the "
+                 "whole database, which takes a while")
+        ->needs(stats);
     const std::map<std::string, Platform> platforms = {{"egl", Platform::Egl}, {"x11", Platform::X11}};
     app.add_option("--platform", arguments.renderer.platform, "egl needs no X server (the default); or x11")
         ->transform(CLI::CheckedTransformer(platforms).description("egl|x11"));

@@ -113,6 +113,7 @@ bool PictureFiles::write(const osg::Image& image, unsigned int frame)
 
 StatisticsFile::StatisticsFile(const osgGeoFX::SceneRenderer& renderer,
                                const osgGeoFX::SceneRenderer::Options& options)
+    : _least(options.leastTriangles)
 {
     _json["renderer"] = renderer.rendererName();
     _json["gl_version"] = renderer.glVersion();
@@ -124,14 +125,13 @@ StatisticsFile::StatisticsFile(const osgGeoFX::SceneRenderer& renderer,
 
 void StatisticsFile::add(const osgGeoFX::FrameStatistics& frame)
 {
-    _json["frames"].push_back({{"cull_ms", frame.cullMilliseconds},
-                               {"draw_ms", frame.drawMilliseconds},
-                               {"total_ms", frame.totalMilliseconds},
-                               {"triangles", frame.triangles},
-                               {"drawables", frame.drawables},
-                               {"tiles_drawn", frame.tilesDrawn},
-                               {"tiles_loaded", frame.tilesLoaded},
-                               {"bytes_read", frame.bytesRead}});
+    nlohmann::ordered_json figures = {
+        {"cull_ms", frame.cullMilliseconds},   {"draw_ms", frame.drawMilliseconds},
+        {"total_ms", frame.totalMilliseconds}, {"triangles", frame.triangles},
+        {"drawables", frame.drawables},        {"tiles_drawn", frame.tilesDrawn},
+        {"tiles_loaded", frame.tilesLoaded},   {"bytes_read", frame.bytesRead}};
+    if (_least) figures["least_triangles"] = frame.leastTriangles;
+    _json["frames"].push_back(figures);
 }
 
 bool StatisticsFile::write(const std::string& file)

@@ -47,5 +47,6 @@ public:
     bool write(const std::string& file);
 
 private:
+    bool _least; ///< whether the least number of triangles is known
     nlohmann::ordered_json _json;
 };

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/offscreen/DrawnLeaves.h>
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
+#include <osgGeoFX/offscreen/LeastTriangles.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
 
 #include <osg/Group>
@@ -108,6 +109,9 @@ struct SceneRenderer::Parts
     osg::ref_ptr<ImageCapture> capture;
     osg::ref_ptr<CountCallback> counter;
     std::unique_ptr<PagerMonitor> monitor;
+    std::unique_ptr<LeastTriangles> least;
+    osg::ref_ptr<EffectScene> effects;
+    double pixelError = 0.0;
     std::string rendererName;
     std::string glVersion;
     unsigned int samples = 0;
@@ -116,6 +120,7 @@ struct SceneRenderer::Parts
     void setUpScene(const Scene& scene);
     bool describe(osg::GraphicsContext& context);
     osg::ref_ptr<osg::Image> frame(double time, FrameStatistics& statistics);
+    std::uint64_t leastTriangles() const;
 };
 
 void SceneRenderer::Parts::setUpCamera(const Scene& scene, osg::GraphicsContext& context)
@@ -192,6 +197,16 @@ osg::ref_ptr<osg::Image> SceneRenderer::Parts::frame(double time, FrameStatistic
     return image;
 }
 
+std::uint64_t SceneRenderer::Parts::leastTriangles() const
+{
+    if (!least) return 0;
+    const osg::Matrixd& view = viewer->getCamera()->getViewMatrix();
+    const osg::Matrixd& projection = viewer->getCamera()->getProjectionMatrix();
+    return least->count(view, projection,
+                        pixelsPerRadian(options.height, osg::DegreesToRadians(options.fieldOfView)),
+                        pixelError, *effects->deformation(view, projection));
+}
+
 SceneRenderer::SceneRenderer(std::unique_ptr<Parts> parts) : _parts(std::move(parts)) {}
 
 SceneRenderer::~SceneRenderer() = default;
@@ -206,6 +221,13 @@ std::unique_ptr<SceneRenderer> SceneRenderer::create(const Scene& scene, const O
     }
     auto parts = std::make_unique<Parts>();
     parts->options = options;
+    parts->effects = scene.effects;
+    if (options.leastTriangles)
+    {
+        parts->least = LeastTriangles::read(*scene.node, error);
+        if (!parts->least) return nullptr;
+        parts->pixelError = scene.terrain->pixelError;
+    }
     parts->viewer = new StillViewer;
     parts->viewer->setThreadingModel(osgViewer::Viewer::SingleThreaded);
     parts->setUpCamera(scene, *context);
@@ -250,6 +272,7 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
     const PagerMonitor::Progress progress = parts.monitor->takeProgress();
     statistics.tilesLoaded = progress.tilesLoaded;
     statistics.bytesRead = progress.bytesRead;
+    statistics.leastTriangles = parts.leastTriangles();
     return image;
 }
 

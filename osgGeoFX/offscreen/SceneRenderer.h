@@ -23,7 +23,8 @@ struct FrameStatistics
     double cullMilliseconds = 0.0;
     double drawMilliseconds = 0.0;
     double totalMilliseconds = 0.0;
-    std::uint64_t triangles = 0; ///< handed to OpenGL, after culling
+    std::uint64_t triangles = 0;      ///< handed to OpenGL, after culling
+    std::uint64_t leastTriangles = 0; ///< that would do for the terrain (LeastTriangles); 0 unless asked for
     std::uint64_t drawables = 0;
     std::uint64_t tilesDrawn = 0;  ///< terrain tiles among them
     std::uint64_t tilesLoaded = 0; ///< since the picture before
@@ -55,11 +56,12 @@ public:
         bool waitForTiles = true;
         double timeout = 600.0;      ///< seconds for each picture
         bool countTriangles = false; ///< fill the counts of FrameStatistics, which costs a little
+        bool leastTriangles = false; ///< fill the least count, too, which reads the whole database first
         ImageCapture::Format format = ImageCapture::Format::Rgb;
         Platform platform = Platform::Egl;
     };
 
-    /// Null, and a sentence in `error`, where there is no context.
+    /// Null, and a sentence in `error`, where there is no context, or where the least count is asked for and not to be had.
     static std::unique_ptr<SceneRenderer> create(const Scene& scene, const Options& options,
                                                  std::string& error);
     ~SceneRenderer();

@@ -105,6 +105,11 @@ TEST_F(RenderProgram, DrawsFromAboveWithViewAndWithEye)
     EXPECT_GT(frame.at("cull_ms"), 0.0);
     EXPECT_GT(frame.at("draw_ms"), 0.0);
     EXPECT_GT(frame.at("total_ms"), 0.0);
+    EXPECT_FALSE(frame.contains("least_triangles")) << "nobody asked";
+    expectPicture({"terrain.osgb", "-o", "a.png", "--size", "160x120", "--view", "-157.8,21.4,8100,0,-90",
+                   "--stats", "least.json", "--least-triangles"});
+    EXPECT_EQ(nlohmann::json::parse(bytes("least.json")).at("frames").at(0).at("least_triangles"), 0)
+        << "the tiles are level";
 
     TempDir other;
     PagedScene::write(_folder / "flat", PagedScene::Kind::Flat);
@@ -179,6 +184,7 @@ TEST_F(RenderProgram, RefusesBadInputWithASentence)
     expectRefusal({"terrain.osgb", "-o", "out.png", "--platform", "wayland"}, "wayland");
     expectRefusal({"terrain.osgb", "-o", "out.png", "--platform", "x11"}, "DISPLAY");
     expectRefusal({"terrain.osgb", "-o", "out.png", "--stats", "no/such/folder.json"}, "folder.json");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--least-triangles"}, "--stats");
 }
 
 TEST_F(RenderProgram, GivesUpAfterTheTimeout)
