@@ -51,7 +51,7 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
             continue;
         }
         _touched.push_back(item);
-        if (_culls) _places.push_back({item, modelView * _items[item].toRegion()});
+        if (_culls) _places.push_back({item, modelView * _items[item].toRegion(), _items[item].otherSide()});
         RegionContents& found = contents[item];
         _items[item].includeHeights(box, found.lowest, found.highest);
         const osg::Geometry* geometry = _items[item].stretched() ? drawable.asGeometry() : nullptr;

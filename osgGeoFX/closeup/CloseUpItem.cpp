@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -24,6 +25,26 @@ osg::Vec4f column(const osg::Matrixd& matrix, int index)
     return osg::Vec4f(osg::Vec4d(matrix(0, index), matrix(1, index), matrix(2, index), matrix(3, index)));
 }
 
+/// Places in a region may be off by so much as the GPU's floats have them.
+constexpr double slack = 1.001;
+
+/// The part of a convex polygon where a coordinate, times ±1, is no more than a limit.
+using Polygon = std::vector<osg::Vec3d>;
+void cut(Polygon& polygon, int axis, double sign, double limit)
+{
+    Polygon kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+    {
+        const osg::Vec3d& from = polygon[i];
+        const osg::Vec3d& to = polygon[(i + 1) % polygon.size()];
+        const double before = limit - sign * from[axis];
+        const double after = limit - sign * to[axis];
+        if (before >= 0.0) kept.push_back(from);
+        if ((before < 0.0) != (after < 0.0)) kept.push_back(from + (to - from) * (before / (before - after)));
+    }
+    polygon = std::move(kept);
+}
+
 } // namespace
 
 CloseUpItem::CloseUpItem(const CloseUp& closeUp, const ViewGeometry& view, const osg::Matrixd& modelView,
@@ -32,7 +53,10 @@ CloseUpItem::CloseUpItem(const CloseUp& closeUp, const ViewGeometry& view, const
       _halfDepth(closeUp.getRegion()->getDepth() / 2.0)
 {
     const RegionOfInterest& region = *closeUp.getRegion();
-    _regionToEye = region.frameToWorld(view.ground.ellipsoid) * modelView;
+    const osg::Matrixd frame = region.frameToWorld(view.ground.ellipsoid);
+    // A region is a column: without an end it would go on through the planet and hold what lies beyond its middle, too.
+    if (view.ground.ellipsoid) _otherSide = (osg::Vec3d() * osg::Matrixd::inverse(frame)).z();
+    _regionToEye = frame * modelView;
     const osg::Matrixd toFrame = osg::Matrixd::inverse(_regionToEye);
     _toRegion = toFrame * osg::Matrixd::scale(1.0 / _halfWidth, 1.0 / _halfDepth, 1.0);
     const osg::Matrixd placed = _regionToEye * rigidPlacement(chain, _regionToEye.getTrans(), true);
@@ -62,31 +86,65 @@ CloseUpItem::CloseUpItem(const CloseUp& closeUp, const ViewGeometry& view, const
 bool CloseUpItem::outside(const Ball& ball) const
 {
     const osg::Vec3d place = ball.centre * _toRegion;
-    // A little more, as the GPU's floats may have it.
-    return std::abs(place.x()) > 1.001 + ball.radius / _halfWidth ||
-           std::abs(place.y()) > 1.001 + ball.radius / _halfDepth;
+    return std::abs(place.x()) > slack + ball.radius / _halfWidth ||
+           std::abs(place.y()) > slack + ball.radius / _halfDepth || place.z() + ball.radius < _otherSide;
 }
 
 bool CloseUpItem::outside(const EyeBox& box) const
 {
     const osg::Vec3d place = box.centre * _toRegion;
-    osg::Vec3d reach(1.001, 1.001, 0.0);
+    osg::Vec3d reach(slack, slack, 0.0);
     for (const osg::Vec3d& half : box.half)
     {
         const osg::Vec3d axis = osg::Matrixd::transform3x3(half, _toRegion);
-        reach += osg::Vec3d(std::abs(axis.x()), std::abs(axis.y()), 0.0);
+        reach += osg::Vec3d(std::abs(axis.x()), std::abs(axis.y()), std::abs(axis.z()));
     }
-    return std::abs(place.x()) > reach.x() || std::abs(place.y()) > reach.y();
+    return std::abs(place.x()) > reach.x() || std::abs(place.y()) > reach.y() ||
+           place.z() + reach.z() < _otherSide;
 }
 
 void CloseUpItem::includeHeights(const EyeBox& box, double& lowest, double& highest) const
 {
-    const double middle = (box.centre * _toRegion).z();
-    double reach = 0.0;
-    for (const osg::Vec3d& half : box.half)
-        reach += std::abs(osg::Matrixd::transform3x3(half, _toRegion).z());
-    lowest = std::min(lowest, middle - reach);
-    highest = std::max(highest, middle + reach);
+    const osg::Vec3d middle = box.centre * _toRegion;
+    osg::Vec3d half[3], reach;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        half[i] = osg::Matrixd::transform3x3(box.half[i], _toRegion);
+        for (int axis = 0; axis < 3; ++axis)
+            reach[axis] += std::abs(half[i][axis]);
+    }
+    const bool within = std::abs(middle.x()) + reach.x() <= slack &&
+                        std::abs(middle.y()) + reach.y() <= slack && middle.z() - reach.z() >= _otherSide;
+    if (within)
+    {
+        lowest = std::min(lowest, middle.z() - reach.z());
+        highest = std::max(highest, middle.z() + reach.z());
+        return;
+    }
+    // On a globe a wide tile's box leans, and most of it is beside the region. The corners of what both have are on the box's sides.
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    Polygon side;
+    for (std::size_t i = 0; i < 6; ++i)
+    {
+        const osg::Vec3d& u = half[(i + 1) % 3];
+        const osg::Vec3d& v = half[(i + 2) % 3];
+        const osg::Vec3d at = middle + half[i % 3] * (i < 3 ? 1.0 : -1.0);
+        side = {at - u - v, at + u - v, at + u + v, at - u + v};
+        for (const int axis : {0, 1})
+        {
+            for (const double sign : {-1.0, 1.0})
+                cut(side, axis, sign, slack);
+        }
+        for (const osg::Vec3d& corner : side)
+        {
+            low = std::min(low, corner.z());
+            high = std::max(high, corner.z());
+        }
+    }
+    if (high < _otherSide) return;
+    lowest = std::min(lowest, std::max(low, _otherSide));
+    highest = std::max(highest, high);
 }
 
 std::array<osg::Vec3d, 8> CloseUpItem::liftedCorners(double lowest, double highest) const

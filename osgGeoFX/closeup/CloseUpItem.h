@@ -9,6 +9,7 @@
 #include <osg/Vec4d>
 
 #include <array>
+#include <limits>
 
 namespace osgGeoFX
 {
@@ -38,10 +39,12 @@ public:
         return bent + (lifted(position) - bent) * mask;
     }
 
+    /// On a globe the height, metres above the region's base, below which ground is the planet's other side; else −infinity.
+    double otherSide() const { return _otherSide; }
     /// Whether nothing of a ball, or a box, is over the region; false negatives only.
     bool outside(const Ball& ball) const;
     bool outside(const EyeBox& box) const;
-    /// Heights of a box above the base.
+    /// Heights above the base of what of a box is over the region.
     void includeHeights(const EyeBox& box, double& lowest, double& highest) const;
     /// Corners of the part of the region between two heights, in the close-up.
     std::array<osg::Vec3d, 8> liftedCorners(double lowest, double highest) const;
@@ -86,6 +89,7 @@ private:
     const CloseUp* _closeUp;
     osg::Matrixd _regionToEye, _toRegion, _lift;
     double _halfWidth, _halfDepth;
+    double _otherSide = -std::numeric_limits<double>::infinity();
     bool _parallel = false;
 };
 

@@ -20,16 +20,17 @@ constexpr double slack = 1e-3, border = 1.01;
 /// Where vertices are, seen from a region, a bit for each side that they are beyond.
 using Sides = std::vector<unsigned char>;
 
-Sides sidesOf(const osg::Vec3Array& vertices, const osg::Matrixd& toPlaces)
+Sides sidesOf(const osg::Vec3Array& vertices, const TriangleCopies::Region& region)
 {
     Sides sides(vertices.size());
     std::transform(vertices.begin(), vertices.end(), sides.begin(),
                    [&](const osg::Vec3& vertex)
                    {
-                       const osg::Vec3d place = osg::Vec3d(vertex) * toPlaces;
+                       const osg::Vec3d place = osg::Vec3d(vertex) * region.toPlaces;
                        return static_cast<unsigned char>(
                            (place.x() > border ? 1 : 0) | (place.x() < -border ? 2 : 0) |
-                           (place.y() > border ? 4 : 0) | (place.y() < -border ? 8 : 0));
+                           (place.y() > border ? 4 : 0) | (place.y() < -border ? 8 : 0) |
+                           (place.z() < region.otherSide ? 16 : 0));
                    });
     return sides;
 }
@@ -101,7 +102,7 @@ void TriangleCopies::build(Entry& entry, bool patches)
     std::vector<Sides> sides;
     const auto* vertices = dynamic_cast<const osg::Vec3Array*>(geometry.getVertexArray());
     for (std::size_t i = 0; vertices && i < entry.regions.size(); ++i)
-        sides.push_back(sidesOf(*vertices, entry.regions[i].toPlaces));
+        sides.push_back(sidesOf(*vertices, entry.regions[i]));
     osg::ref_ptr<osg::DrawElementsUInt> indices =
         new osg::DrawElementsUInt(patches ? GL_PATCHES : GL_TRIANGLES);
     osg::TriangleIndexFunctor<Collect> collect;

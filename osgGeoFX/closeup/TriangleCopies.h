@@ -6,6 +6,7 @@
 #include <osg/Matrixd>
 #include <osg/observer_ptr>
 
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -19,11 +20,13 @@ namespace osgGeoFX
 class TriangleCopies
 {
 public:
-    /// One region: which it is, and the way from the drawable's frame to places in it, −1…1.
+    /// One region: which it is, the way from the drawable's frame to places in it, −1…1, and metres above its base, and the height
+    /// below which nothing is wanted.
     struct Region
     {
         std::size_t item;
         osg::Matrixd toPlaces;
+        double otherSide = -std::numeric_limits<double>::infinity();
     };
 
     /// Of a geometry that is made of triangles. Null where there is nothing over the regions; the geometry itself where most

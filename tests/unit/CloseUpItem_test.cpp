@@ -3,6 +3,7 @@
 //
 // Where one camera has a close-up, and what its tests and bounds promise to culling.
 #include <osgGeoFX/closeup/CloseUpItem.h>
+#include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <tools/CloseUpSamples.h>
 #include <tools/RandomViews.h>
 
@@ -81,6 +82,100 @@ TEST(CloseUpItem, WhatIsOverTheRegionIsNeverOutside)
     }
     // So that it is a test: there are some that are.
     EXPECT_GT(outside, count / 20);
+}
+
+TEST(CloseUpItem, HeightsAreThoseOverTheRegionOnly)
+{
+    // Wide boxes that lean, as tiles far from a region's middle do: most of their height is beside it.
+    double gained = 0.0;
+    for (int i = 0; i < 200; ++i)
+    {
+        Random random(static_cast<std::uint64_t>(i));
+        Sample sample;
+        sample.pose.height = 1e4;
+        sample.closeUp = new CloseUp;
+        sample.closeUp->getRegion()->setSize(1000.0, 600.0);
+        sample.closeUp->getRegion()->setHeading(random.uniform(-3.0, 3.0));
+        const CloseUpItem item = sample.item();
+        osg::Matrixd leaning = osg::Matrixd::rotate(random.uniform(-1.2, 1.2), randomDirection(random));
+        leaning.setTrans(random.uniform(-1500.0, 1500.0), random.uniform(-1500.0, 1500.0),
+                         random.uniform(-500.0, 500.0));
+        const osg::Vec3d half(2000.0, 1500.0, random.uniform(10.0, 200.0));
+        const EyeBox box =
+            EyeBox::of(osg::BoundingBox(osg::Vec3(-half), osg::Vec3(half)), leaning * item.regionToEye());
+        double lowest = 1e30, highest = -1e30;
+        item.includeHeights(box, lowest, highest);
+        // Along the uprights through a lattice of places: where each enters the box and leaves it.
+        const osg::Matrixd toBox = osg::Matrixd::inverse(leaning);
+        const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, 1.0), toBox);
+        double trueLowest = 1e30, trueHighest = -1e30, wholeHighest = -1e30;
+        constexpr int steps = 100;
+        for (int k = 0; k <= steps; ++k)
+        {
+            for (int j = 0; j <= steps; ++j)
+            {
+                const osg::Vec3d at =
+                    osg::Vec3d(500.0 * (2.0 * j / steps - 1.0), 300.0 * (2.0 * k / steps - 1.0), 0.0) * toBox;
+                double enters = -1e30, leaves = 1e30;
+                for (int axis = 0; axis < 3; ++axis)
+                {
+                    const double one = (-half[axis] - at[axis]) / up[axis];
+                    const double other = (half[axis] - at[axis]) / up[axis];
+                    enters = std::max(enters, std::min(one, other));
+                    leaves = std::min(leaves, std::max(one, other));
+                }
+                if (!(enters < leaves)) continue;
+                trueLowest = std::min(trueLowest, enters);
+                trueHighest = std::max(trueHighest, leaves);
+            }
+        }
+        if (!(trueLowest < trueHighest)) continue;
+        for (int corner = 0; corner < 8; ++corner)
+            wholeHighest = std::max(wholeHighest, (osg::Vec3d((corner & 1) ? half.x() : -half.x(),
+                                                              (corner & 2) ? half.y() : -half.y(),
+                                                              (corner & 4) ? half.z() : -half.z()) *
+                                                   leaning)
+                                                      .z());
+        // The lattice may miss a corner by a step, where the box is as steep as it is.
+        const double steep = 12.0 * std::tan(1.2) + 5.0;
+        EXPECT_LE(lowest, trueLowest + 1e-3) << "sample " << i;
+        EXPECT_GE(highest, trueHighest - 1e-3) << "sample " << i;
+        EXPECT_GE(lowest, trueLowest - steep) << "sample " << i;
+        EXPECT_LE(highest, trueHighest + steep) << "sample " << i;
+        gained = std::max(gained, wholeHighest - highest);
+    }
+    EXPECT_GT(gained, 500.0);
+}
+
+TEST(CloseUpItem, TheOtherSideOfAGlobeIsOutside)
+{
+    Sample sample;
+    sample.pose.globe = true;
+    sample.closeUp = new CloseUp;
+    sample.closeUp->getRegion()->setSize(2e6, 2e6);
+    const CloseUpItem item = sample.item();
+    const auto ballAt = [&](double x, double height)
+    {
+        return Ball{osg::Vec3d(x, 0.0, height) * item.regionToEye(), 1000.0};
+    };
+    EXPECT_FALSE(item.outside(ballAt(0.0, 0.0)));
+    // Ground at the region's border, which the globe's curve takes 79 km below its middle, and the deepest one.
+    EXPECT_FALSE(item.outside(ballAt(1e6, -79e3)));
+    EXPECT_FALSE(item.outside(ballAt(0.0, -12e3)));
+    EXPECT_TRUE(item.outside(ballAt(0.0, -2.0 * 6.37e6)));
+    // A ball that has both sides has this one.
+    EXPECT_FALSE(item.outside(Ball{osg::Vec3d(0.0, 0.0, -6.37e6) * item.regionToEye(), 6.4e6}));
+    const auto boxAt = [&](double height)
+    {
+        return EyeBox::of(osg::BoundingBox(-1000.0f, -1000.0f, -10.0f, 1000.0f, 1000.0f, 10.0f),
+                          osg::Matrixd::translate(0.0, 0.0, height) * item.regionToEye());
+    };
+    EXPECT_FALSE(item.outside(boxAt(-12e3)));
+    EXPECT_TRUE(item.outside(boxAt(-2.0 * 6.37e6)));
+    // On a plane there is no other side.
+    sample.pose.globe = false;
+    const CloseUpItem level = sample.item();
+    EXPECT_FALSE(level.outside(Ball{osg::Vec3d(0.0, 0.0, -2.0 * 6.37e6) * level.regionToEye(), 1000.0}));
 }
 
 TEST(CloseUpItem, CornersHoldTheCloseUp)
@@ -164,6 +259,53 @@ TEST(CloseUpItem, LiftsAsItIsDocumented)
         const osg::Vec3d half = item.raised(eye, eye, 0.5);
         EXPECT_LT((half - (eye + item.lifted(eye)) * 0.5).length(), scale) << "sample " << i;
     }
+}
+
+TEST(CloseUpItem, StartsWhereABendHasMovedItsRegion)
+{
+    int moved = 0;
+    for (int i = 0; i < 1000; ++i)
+    {
+        Random random(static_cast<std::uint64_t>(i));
+        Sample sample;
+        sample.pose.height = random.logarithmic(500.0, 5000.0);
+        sample.pose.heading = random.uniform(-3.0, 3.0);
+        sample.pose.pitch = -random.uniform(0.3, 0.8);
+        const ViewGeometry view = sample.pose.view();
+        const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+        bend->setFocusLine(0.3);
+        bend->setHorizonLine(random.uniform(0.7, 0.9));
+        const auto frame = bend->frame(view);
+        if (!frame) continue;
+        sample.chain->add(frame);
+        sample.closeUp = new CloseUp;
+        CloseUp& closeUp = *sample.closeUp;
+        const double distance = sample.pose.height * random.uniform(1.0, 6.0);
+        const double bearing = sample.pose.heading + random.uniform(-0.3, 0.3);
+        closeUp.getRegion()->setCentre({distance * std::sin(bearing), distance * std::cos(bearing)});
+        closeUp.setOrientation(static_cast<CloseUp::Orientation>(random.integer(0, 1)));
+        closeUp.setOffset(
+            {random.uniform(-500.0, 500.0), random.uniform(-500.0, 500.0), random.uniform(0.0, 900.0)});
+        const CloseUpItem item = sample.item();
+        // Where the bend takes the middle, and how the ground lies there, from three points a metre apart.
+        const auto bent = [&](double x, double y)
+        {
+            return sample.chain->deform(osg::Vec3d(x, y, 0.0) * item.regionToEye());
+        };
+        const osg::Vec3d middle = bent(0.0, 0.0);
+        osg::Vec3d east = bent(1.0, 0.0) - bent(-1.0, 0.0);
+        osg::Vec3d north = bent(0.0, 1.0) - bent(0.0, -1.0);
+        osg::Vec3d up = east ^ north;
+        for (osg::Vec3d* axis : {&east, &north, &up})
+            axis->normalize();
+        const osg::Vec3d offset = closeUp.getOffset();
+        const osg::Vec3d expected = middle + east * offset.x() + north * offset.y() + up * offset.z();
+        const osg::Vec3d at = item.lifted(item.regionToEye().getTrans());
+        EXPECT_LT((at - expected).length(), 0.03 * offset.length()) << "sample " << i;
+        const osg::Vec3d plain = offset * item.regionToEye();
+        moved += (plain - expected).length() > 0.2 * offset.length() ? 1 : 0;
+    }
+    EXPECT_GT(moved, 100);
 }
 
 TEST(CloseUpItem, WithoutPerspectiveAllDepthsAreAsLarge)
