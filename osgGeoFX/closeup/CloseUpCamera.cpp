@@ -342,28 +342,37 @@ void CloseUpCamera::show(const ScenePass& pass, const Task& task, const std::vec
 {
     if (!_layerProgram) _layerProgram = createLayerProgram();
     if (!_layerProgram) return;
+    using Turn = CloseUpLayers::Turn;
     enum class What
     {
         All,
         Covered, // what hides all that lies behind it
         Edges    // what is behind them shows
     };
-    const auto put = [&](const Seen& seen, What what)
+    // But for rounding to 255 values: the edges' cover is between none and all.
+    const auto coverOf = [&](const Seen& seen)
+    {
+        return 0.985 * _items[seen.item].closeUp().getOpacity();
+    };
+    const auto put = [&](const Seen& seen, What what, Turn turn = Turn::Any,
+                         const std::vector<CloseUpLayers::Other>& others = {})
     {
         const CloseUpItem& item = _items[seen.item];
         if (!item.showsCloseUp() || !seen.lifted) return;
-        // But for rounding to 255 values: the edges' cover is between none and all.
-        const double covered = 0.985 * item.closeUp().getOpacity();
+        const double covered = coverOf(seen);
         _now->layers.show(pass.outer, _layerProgram,
                           {seen.layer, *seen.lifted, osg::Vec2i(seen.part.x, seen.part.y), task.samples,
                            task.opacity, task.depthTest, what != What::Edges,
-                           what == What::Covered ? covered : 0.0, what == What::Edges ? covered : 1.0});
+                           what == What::Covered ? covered : 0.0, what == What::Edges ? covered : 1.0, turn,
+                           seen.layer + 1, others});
     };
-    const auto putAnchor = [&](const Seen& seen)
+    const auto putAnchor =
+        [&](const Seen& seen, Turn turn = Turn::Any, const std::vector<CloseUpLayers::Other>& others = {})
     {
+        if (!_items[seen.item].marksGround()) return;
         _now->layers.show(pass.outer, _layerProgram,
                           {seen.layer + 1, seen.part, osg::Vec2i(seen.part.x, seen.part.y), task.samples,
-                           task.opacity, task.depthTest, false});
+                           task.opacity, task.depthTest, false, 0.0, 1.0, turn, -1, others});
     };
     if (!task.depthTest)
     {
@@ -374,16 +383,44 @@ void CloseUpCamera::show(const ScenePass& pass, const Task& task, const std::vec
         }
         return;
     }
-    const bool anchored = std::any_of(all.begin(), all.end(),
-                                      [&](const Seen& seen) { return _items[seen.item].showsAnchor(); });
-    for (const Seen& seen : all)
-        put(seen, anchored ? What::Covered : What::All);
-    if (!anchored) return;
-    // An edge that kept its own anchor off would be a pale line between them.
-    for (const Seen& seen : all)
-        putAnchor(seen);
-    for (const Seen& seen : all)
-        put(seen, What::Edges);
+    if (all.size() == 1 && !_items[all.front().item].marksGround())
+    {
+        put(all.front(), What::All);
+        return;
+    }
+    // The farthest first, as far as one is farther than another as a whole.
+    std::vector<Seen> sorted = all;
+    const auto depthOf = [&](const Seen& seen)
+    {
+        const CloseUpItem& item = _items[seen.item];
+        return item.lifted(item.regionToEye().getTrans()).z();
+    };
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](const Seen& one, const Seen& other) { return depthOf(one) < depthOf(other); });
+    for (const Seen& seen : sorted)
+        put(seen, What::Covered);
+    // What keeps no depth: anchors, and then edges, since one that kept its own anchor off would be a pale line between them. Where
+    // they cross those of a close-up that comes later, those pixels that are nearer wait for it. That is right for any two.
+    std::vector<std::vector<CloseUpLayers::Other>> others(sorted.size());
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+    {
+        for (std::size_t k = i + 1; k < sorted.size(); ++k)
+        {
+            const Seen& other = sorted[k];
+            if (sorted[i].part.overlaps(other.part) && _now->layers.together(sorted[i].layer, other.layer))
+                others[i].push_back({other.layer, other.part, osg::Vec2i(other.part.x, other.part.y),
+                                     _items[other.item].showsCloseUp() ? coverOf(other) : 0.0});
+        }
+    }
+    for (const Turn turn : {Turn::First, Turn::Second})
+    {
+        for (std::size_t i = 0; i < sorted.size(); ++i)
+        {
+            if (turn == Turn::Second && others[i].empty()) continue;
+            putAnchor(sorted[i], turn, others[i]);
+            put(sorted[i], What::Edges, turn, others[i]);
+        }
+    }
 }
 
 std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)

@@ -190,7 +190,8 @@ CloseUpItem::Values CloseUpItem::values(const Places& places, const osg::Vec2d& 
     for (int i = 0; i < 3; ++i)
         values[static_cast<std::size_t>(4 + i)] = column(_toRegion, i);
     values[7] = row(places.sun.x(), places.sun.y(), places.sun.z(), _halfWidth / smaller);
-    values[8] = row(color.x(), color.y(), color.z(), 1.0);
+    const bool rectangle = own.getRegion()->getShape() == RegionOfInterest::RECTANGLE;
+    values[8] = row(color.x(), color.y(), color.z(), rectangle ? 1.0 : 0.0);
     values[9] = row(places.mask, own.getEdge(), own.getRegion()->getSoftness() > 0.0 ? 1.0 : 0.0,
                     own.getLighting() == CloseUp::SUN ? 1.0 : 0.0);
     values[10] = row(places.surfaceLayer, places.surfaceKind, places.tableRow, own.getSurfaceOpacity());

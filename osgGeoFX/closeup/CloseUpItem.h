@@ -64,6 +64,8 @@ public:
     {
         return stretched() || _closeUp->getEdge() == CloseUp::PRIMITIVES || _closeUp->getRoundness() > 0.0;
     }
+    /// Whether something is drawn from its region on the ground: an anchor, or the line around it.
+    bool marksGround() const { return showsAnchor() || _closeUp->getAnchor()->getLineWidth() > 0.0; }
     bool fenced() const { return showsAnchor() && _closeUp->getAnchor()->getKind() == Anchor::CONTOUR; }
 
     /// What it needs of the textures that all share.

@@ -173,6 +173,28 @@ void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, con
         ->set(static_cast<float>(what.opacity));
     state.getOrCreateUniform("geofx_layerAlphas", osg::Uniform::FLOAT_VEC2)
         ->set(osg::Vec2(osg::Vec2d(what.above, what.upTo)));
+    state.getOrCreateUniform("geofx_layerTurn", osg::Uniform::INT)->set(static_cast<int>(what.turn));
+    state.getOrCreateUniform("geofx_layerAnchor", osg::Uniform::INT)
+        ->set(what.anchorLayer < 0 ? -1 : what.anchorLayer % _perArray);
+    const std::size_t others = std::min(what.others.size(), mostOthers);
+    state.getOrCreateUniform("geofx_others", osg::Uniform::INT)->set(static_cast<int>(others));
+    osg::Uniform* const origins =
+        state.getOrCreateUniform("geofx_otherOrigins", osg::Uniform::INT_VEC4, mostOthers);
+    osg::Uniform* const parts =
+        state.getOrCreateUniform("geofx_otherParts", osg::Uniform::INT_VEC4, mostOthers);
+    osg::Uniform* const covers =
+        state.getOrCreateUniform("geofx_otherCovers", osg::Uniform::FLOAT, mostOthers);
+    const int left = static_cast<int>(viewport.x()), bottom = static_cast<int>(viewport.y());
+    for (std::size_t i = 0; i < others; ++i)
+    {
+        const Other& other = what.others[i];
+        const auto at = static_cast<unsigned int>(i);
+        origins->setElement(at, left + other.corner.x(), bottom + other.corner.y(), other.layer % _perArray,
+                            0);
+        parts->setElement(at, left + other.part.x, bottom + other.part.y,
+                          left + other.part.x + other.part.width, bottom + other.part.y + other.part.height);
+        covers->setElement(at, static_cast<float>(other.covers));
+    }
     const auto share = [](int pixel, double size)
     {
         return static_cast<float>(2.0 * pixel / size - 1.0);

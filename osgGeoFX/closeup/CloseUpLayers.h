@@ -18,6 +18,12 @@ namespace osgGeoFX
 struct PixelRectangle
 {
     int x = 0, y = 0, width = 0, height = 0;
+
+    bool overlaps(const PixelRectangle& other) const
+    {
+        return x < other.x + other.width && other.x < x + width && y < other.y + other.height &&
+               other.y < y + height;
+    }
 };
 
 /** The layers that one camera draws close-ups into: texture arrays with their depths, the stages that draw into them, and
@@ -46,6 +52,21 @@ public:
     /// Hands a stage to the camera, when all is culled.
     void draw(osgUtil::CullVisitor& outer, osgUtil::RenderStage& stage, int layer, osg::Viewport* viewport);
 
+    /// A close-up that is put into the picture later and overlaps the one that is shown.
+    struct Other
+    {
+        int layer = 0; ///< the next one is its anchor's
+        PixelRectangle part;
+        osg::Vec2i corner;
+        double covers = 1.0; ///< the alpha above which it hides what is behind it
+    };
+    /// Which pixels of a layer are shown: those with one of the others behind them have to wait for it.
+    enum class Turn
+    {
+        Any,
+        First,
+        Second
+    };
     struct Show
     {
         int layer = 0;
@@ -55,7 +76,13 @@ public:
         double opacity = 1.0;
         bool depthTest = true, depthWrite = true;
         double above = 0.0, upTo = 1.0; ///< which of the layer's alphas
+        Turn turn = Turn::Any;
+        int anchorLayer = -1;      ///< of an edge, which stays over it
+        std::vector<Other> others; ///< in the same texture array; those beyond mostOthers are left out
     };
+    static constexpr std::size_t mostOthers = 16;
+    /// Whether two layers are in one texture array.
+    bool together(int layer, int other) const { return layer / _perArray == other / _perArray; }
     /// Puts a layer into the camera's picture.
     void show(osgUtil::CullVisitor& outer, osg::Program* program, const Show& what);
     void releaseGLObjects(osg::State* state) const;

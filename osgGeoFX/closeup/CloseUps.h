@@ -27,8 +27,8 @@ namespace osgGeoFX
     @endcode
 
     **What it draws.** The overview stays as it is. Each close-up and each anchor is drawn into a layer of a texture array,
-    from the parts of the scene that its region touches, and the layers are put over the overview in the close-ups' order,
-    hidden by what stands in front of them unless depthTest is off. Effects that stand in the scene before and after it
+    from the parts of the scene that its region touches, and the layers are put over the overview: nearer ones over farther ones,
+    hidden by what stands in front of them, or, where depthTest is off, in the close-ups' order. Effects that stand in the scene before and after it
     are in the close-ups, too: mappings show in them, bends move them as wholes.
 
     **Pipelines.** SINGLE_PASS draws what lies in a region once, as detailed as in the overview, and a geometry shader copies each
@@ -51,7 +51,7 @@ public:
     CloseUps(const CloseUps& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, CloseUps);
 
-    /// Null and one that is there already are refused. Drawn over those before it.
+    /// Null and one that is there already are refused. Without the depth test it is drawn over those before it.
     bool addCloseUp(CloseUp* closeUp);
     bool removeCloseUp(CloseUp* closeUp);
     void removeCloseUps();

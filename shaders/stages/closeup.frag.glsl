@@ -28,6 +28,34 @@ vec2 SLOT_coverAt(int item, vec2 place)
     return SLOT_bordered(item, place, value);
 }
 
+// A pixel at most: where the ground is seen from its edge, it would be as wide as the region.
+const float SLOT_widest = 0.04;
+
+// How wide a pixel is across the border, where that matters: near a border with a line of so many pixels. `right` and `up` are by
+// how much the place changes from pixel to pixel. What the distance changes by would vanish on its ridges, such as the diagonals in
+// a rectangle's corners; its slope, which is 1 on both sides of a ridge, only says which way the border lies.
+float SLOT_pixelAt(int item, float distance, vec2 right, vec2 up, float line)
+{
+    vec2 halfSides = vec2(SLOT_item(item, 7).w, SLOT_item(item, 13).y);
+    vec2 alongX = vec2(right.x, up.x) * halfSides.x;
+    vec2 alongY = vec2(right.y, up.y) * halfSides.y;
+    float most = min(length(vec4(alongX, alongY)), SLOT_widest);
+    if (abs(distance) > (line + 1.0) * most) return most;
+    vec2 place = SLOT_place.xy;
+    vec2 x = vec2(2.0 / SLOT_item(item, 11).z, 0.0);
+    vec2 y = x.yx;
+    // The slopes to both sides, the steeper one first.
+    vec2 slopeX = vec2(SLOT_coverAt(item, place + x).y - distance, distance - SLOT_coverAt(item, place - x).y);
+    vec2 slopeY = vec2(SLOT_coverAt(item, place + y).y - distance, distance - SLOT_coverAt(item, place - y).y);
+    slopeX = (abs(slopeX.x) < abs(slopeX.y) ? slopeX.yx : slopeX) / halfSides.x;
+    slopeY = (abs(slopeY.x) < abs(slopeY.y) ? slopeY.yx : slopeY) / halfSides.y;
+    vec2 one = vec2(slopeX.x, slopeY.y);
+    vec2 other = vec2(slopeX.y, slopeY.x);
+    float across = max(length(alongX * one.x + alongY * one.y) / max(length(one), 1e-9),
+                       length(alongX * other.x + alongY * other.y) / max(length(other), 1e-9));
+    return across > 0.0 ? min(across, SLOT_widest) : most;
+}
+
 int SLOT_channels()
 {
     return int(SLOT_item(SLOT_target / 2, 11).w);
@@ -74,9 +102,8 @@ vec4 SLOT_finish(vec4 colour)
     vec4 kinds = SLOT_item(item, 9);
     vec4 tint = SLOT_item(item, 8);
     vec4 anchor = SLOT_item(item, 13);
-    vec2 mask = SLOT_coverAt(item, SLOT_place.xy);
-    // Where the ground is seen from its edge, a pixel would be as wide as the region.
-    float pixel = min(length(vec2(dFdx(mask.y), dFdy(mask.y))), 0.04);
+    vec2 right = dFdx(SLOT_place.xy);
+    vec2 up = dFdy(SLOT_place.xy);
     if (SLOT_target != 2 * item)
     {
         if (SLOT_place.z < 0.0001 || SLOT_place.z > 0.9999) discard;
@@ -86,8 +113,25 @@ vec4 SLOT_finish(vec4 colour)
     }
 
     float cover = 1.0;
-    if (kinds.y < 0.5)
-        cover = kinds.z > 0.5 ? mask.x : geofx_coverage(mask.y, pixel);
+    float line = 0.0;
+    bool sharp = kinds.y < 0.5 && kinds.z < 0.5;
+    if (sharp && tint.w > 0.5)
+    {
+        // A rectangle's sides one by one: in a corner the nearest one need not be that of fewest pixels.
+        vec2 halfSides = vec2(SLOT_item(item, 7).w, SLOT_item(item, 13).y);
+        vec2 within = (1.0 - abs(SLOT_place.xy)) * halfSides;
+        vec2 pixels = min(vec2(length(vec2(right.x, up.x)), length(vec2(right.y, up.y))) * halfSides, SLOT_widest);
+        cover = geofx_coverage(within.x, pixels.x) * geofx_coverage(within.y, pixels.y);
+        line = 1.0 - geofx_coverage(within.x - anchor.x * pixels.x, pixels.x) *
+                         geofx_coverage(within.y - anchor.x * pixels.y, pixels.y);
+    }
+    else if (kinds.y < 0.5)
+    {
+        vec2 mask = SLOT_coverAt(item, SLOT_place.xy);
+        float pixel = sharp ? SLOT_pixelAt(item, mask.y, right, up, anchor.x) : 0.0;
+        cover = sharp ? geofx_coverage(mask.y, pixel) : mask.x;
+        line = 1.0 - geofx_coverage(mask.y - anchor.x * pixel, pixel);
+    }
     else if (SLOT_place.z < 0.9999)
         cover = 0.0;
     if (cover <= 0.0) discard;
@@ -112,11 +156,7 @@ vec4 SLOT_finish(vec4 colour)
 #endif
     result = geofx_restyle(clamp(result, vec3(0.0), vec3(1.0)), style.x, style.y, style.z);
     // The line around it, in the colour of its region.
-    if (anchor.x > 0.0 && kinds.y < 0.5 && kinds.z < 0.5)
-    {
-        float line = 1.0 - geofx_coverage(mask.y - anchor.x * pixel, pixel);
-        result = mix(result, tint.rgb, line);
-    }
+    if (anchor.x > 0.0 && sharp) result = mix(result, tint.rgb, line);
     return vec4(result, opacity * cover * style.w);
 }
 
@@ -125,7 +165,7 @@ vec4 SLOT_fenceColour(vec2 fence)
 {
     int item = SLOT_target / 2;
     vec3 tint = SLOT_item(item, 8).rgb;
-    if (fence.y > 0.5) return vec4(tint, SLOT_item(item, 8).a);
+    if (fence.y > 0.5) return vec4(tint, 1.0);
     vec4 anchor = SLOT_item(item, 13);
     float veil = SLOT_rowAt(anchor.z, fence.x, true).r * anchor.w;
     if (veil < 0.002) discard;
