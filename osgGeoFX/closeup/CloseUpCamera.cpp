@@ -119,6 +119,19 @@ osg::Vec3d sunOf(const CloseUp& closeUp)
 
 } // namespace
 
+void CloseUpCamera::Traversal::use(const std::string& names, const Task& task)
+{
+    std::vector<int> wanted(std::begin(task.units), std::end(task.units));
+    wanted.push_back(static_cast<int>(task.binding));
+    if (prefix == names && places == wanted) return;
+    prefix = names;
+    places = std::move(wanted);
+    base = new osg::StateSet;
+    groups.clear();
+    layerStates.clear();
+    fenceStates.clear();
+}
+
 bool CloseUpCamera::singleIsCheaper() const
 {
     // The geometry stage costs more than another pass over a few drawables, unless several passes would draw the same ones.
@@ -431,6 +444,7 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
     if (starts) _used = 0;
     if (_used == _traversals.size()) _traversals.push_back(std::make_unique<Traversal>());
     _now = _traversals[_used++].get();
+    _now->use(pass.prefix, task);
     _now->layers.startFrame();
     if (starts && stampNumber(pass.outer) % 256 == 0) _now->copies.purge();
 

@@ -49,6 +49,11 @@ private:
     /// What one traversal of a frame needs until it is drawn.
     struct Traversal
     {
+        /// Forgets all state where the names in it, or the places that it binds to, are no longer these.
+        void use(const std::string& names, const Task& task);
+
+        std::string prefix;
+        std::vector<int> places; ///< texture units and the block's binding
         CloseUpItems values;
         CloseUpLayers layers;
         osg::ref_ptr<osg::StateSet> base = new osg::StateSet;

@@ -186,11 +186,12 @@ struct EffectScene::Drawing
     {
         const std::lock_guard<std::mutex> lock(mutex);
         std::string key = prefix + shaders.vertexMain + ';' + shaders.fragmentMain + ';';
-        for (const auto* files :
-             {&shaders.vertex, &shaders.tessellationControl, &shaders.geometry, &shaders.fragment})
+        for (const auto* files : {&shaders.vertex, &shaders.tessellationControl,
+                                  &shaders.tessellationEvaluation, &shaders.geometry, &shaders.fragment})
         {
             for (const std::string& file : *files)
                 key += file + ';';
+            key += '|';
         }
         for (const auto& [name, binding] : shaders.blocks)
             key += name + std::to_string(binding) + ';';
@@ -463,19 +464,31 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformation(const osg::Matrixd
     return chainOf(framesFor(_effects, ViewGeometry(modelView, projection, known)), known);
 }
 
+namespace
+{
+
+/** Whether it is not the view's own camera that is being culled for.
+
+    OSG never puts the view's camera, or a slave's, on the node path, and the stage that culling begins with is that
+    camera's. Parents tell nothing: the cameras of osgShadow and of other techniques have none, and a slave of a view may
+    have some. */
+bool isNested(osgUtil::CullVisitor& outer)
+{
+    const osg::NodePath& path = outer.getNodePath();
+    return outer.getCurrentCamera() != outer.getRenderStage()->getCamera() ||
+           std::any_of(path.begin(), path.end(), [](osg::Node* node) { return node->asCamera() != nullptr; });
+}
+
+} // namespace
+
 bool EffectScene::cull(osgUtil::CullVisitor& outer)
 {
     const bool wanted =
         std::any_of(_effects.begin(), _effects.end(), [](const auto& each) { return each->getEnabled(); });
     if (!wanted || dynamic_cast<CompensatingCullVisitor*>(&outer)) return false;
-    const osg::Camera* camera = outer.getRenderStage() ? outer.getCurrentCamera() : nullptr;
-    if (!camera) return false;
+    if (!outer.getRenderStage() || !outer.getCurrentCamera()) return false;
     const osg::NodePath& path = outer.getNodePath();
-    const bool nested =
-        camera->getNumParents() > 0 ||
-        std::any_of(path.begin(), path.end(),
-                    [](osg::Node* node) { return node->asCamera() != nullptr && node->getNumParents() > 0; });
-    if (nested && !_nestedCameras) return false;
+    if (!_nestedCameras && isNested(outer)) return false;
 
     const ViewGeometry view(*outer.getModelViewMatrix(), *outer.getProjectionMatrix(), ground(path));
     const Frames frames = framesFor(_effects, view);

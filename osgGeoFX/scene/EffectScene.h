@@ -39,7 +39,9 @@ class TileGuard;
     `stateSet->setDefine("GEOFX_DEFORMATION", OFF)` and, since the groups above it are culled by what the deformation
     makes of their bounds, `setCullingActive(false)` on its node.
     Cameras and projections below it (render to texture, head-up displays) are drawn as ever. So is everything in
-    cameras that stand above it in the graph, such as a shadow map's, unless nestedCameras is on.
+    cameras above it that are not the view's own or its slaves', such as a shadow map's, unless nestedCameras is on. Shadows are
+    thus those of the undeformed world: a program that looks them up by the position that it gives to geofx_vertex() finds
+    them wherever the ground goes.
 
     **Culling.** The terrain's nodes are not touched, whoever loads them, and may be shared with other scenes. Below the
     group a cull visitor of our own takes the place of the camera's: it culls by what the deformation makes of bounds,
