@@ -227,6 +227,47 @@ TEST_F(CloseUpStyles, WideLinesAreWhole)
     }
 }
 
+TEST_F(CloseUpStyles, MasksLieWhereTheirRegionDoes)
+{
+    // A white disc over the ground, of few texels: half of one would be two pixels.
+    const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({0.0, 0.0}, 200.0, 100.0);
+    closeUp->setScale(1.0, 1.0, 1.0);
+    closeUp->setBrightness(1.0);
+    closeUp->getAnchor()->setKind(Anchor::NONE);
+    closeUp->getAnchor()->setLineWidth(0.0);
+    closeUp->getRegion()->setMaskSide(24);
+    _closeUps->addCloseUp(closeUp);
+    constexpr double radius = 50.0; // pixels
+    for (const double softness : {0.0, 0.5})
+    {
+        closeUp->getRegion()->setSoftness(softness);
+        for (const CloseUps::Pipeline pipeline : pipelines)
+        {
+            SCOPED_TRACE(::testing::Message() << "softness " << softness << ", pipeline " << pipeline);
+            _closeUps->setPipeline(pipeline);
+            const osg::ref_ptr<osg::Image> image = draw();
+            double cover = 0.0;
+            osg::Vec2d middle;
+            for (int y = 0; y < _height; ++y)
+            {
+                for (int x = 0; x < _width; ++x)
+                {
+                    const double share = (colourAt(*image, x, y).x() - grey) / (1.0 - grey);
+                    cover += share;
+                    middle += osg::Vec2d(x + 0.5, y + 0.5) * share;
+                }
+            }
+            middle /= cover;
+            EXPECT_NEAR(middle.x(), 0.5 * _width, 0.1);
+            EXPECT_NEAR(middle.y(), 0.5 * _height, 0.1);
+            // A disc, or a cone that is cut off halfway from its border to its middle.
+            const double inner = radius * (1.0 - softness);
+            const double expected = osg::PI / 3.0 * (radius * radius + radius * inner + inner * inner);
+            EXPECT_NEAR(cover / expected, 1.0, 0.02);
+        }
+    }
+}
+
 TEST_F(CloseUpStyles, AnchorsAreAsOpaqueAsTheirTableSaysOfTheirHeight)
 {
     fromTheSouth();
