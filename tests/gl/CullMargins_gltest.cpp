@@ -12,6 +12,7 @@
 #include <osg/MatrixTransform>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/CompensatingCullVisitor.h>
+#include <osgGeoFX/deformation/DeformedView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <vector>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -141,6 +143,51 @@ osg::ref_ptr<osg::Geometry> makeGrid(const osg::Vec3d& corner, const osg::Vec3d&
     return geometry;
 }
 
+/// A bend of any kind before a camera, and a grid that reaches across its zone.
+struct BentGrid
+{
+    BentGrid(Random& random, const osg::Matrixd& projection)
+    {
+        scene->setTerrainFrame(EffectScene::PROJECTED);
+        osg::ref_ptr<PerspectiveBend> bend;
+        const double eyeHeight = random.logarithmic(50.0, 3000.0);
+        if (random.integer(0, 1))
+        {
+            const osg::ref_ptr<PedestrianView> pedestrian = new PedestrianView;
+            pedestrian->setFocusDistance(eyeHeight * random.uniform(0.0, 2.0));
+            pedestrian->setZoneWidth(eyeHeight * random.uniform(0.5, 4.0));
+            pedestrian->setBendAngle(random.uniform(0.6, 1.57));
+            bend = pedestrian;
+        }
+        else
+        {
+            const osg::ref_ptr<BirdsEyeView> bird = new BirdsEyeView;
+            bird->setFocusLine(random.uniform(0.0, 0.3));
+            bird->setHorizonLine(random.uniform(0.5, 0.9));
+            bend = bird;
+        }
+        bend->setCurve(static_cast<PerspectiveBend::Curve>(random.integer(0, 2)));
+        const double size = eyeHeight * random.uniform(1.0, 6.0);
+        bend->setTallest(0.05 * size);
+        scene->addEffect(bend);
+        view = osg::Matrixd::lookAt(osg::Vec3d(0.0, 0.0, eyeHeight),
+                                    osg::Vec3d(0.0, eyeHeight * random.uniform(0.5, 3.0), 0.0),
+                                    osg::Vec3d(0.0, 0.0, 1.0));
+        chain = scene->deformation(view, projection);
+        const double turn = random.uniform(-0.5, 0.5);
+        const osg::Vec3d along(std::sin(turn), std::cos(turn), random.uniform(-0.04, 0.04));
+        const osg::Vec3d across(std::cos(turn), -std::sin(turn), 0.0);
+        const osg::Vec3d corner(-0.3 * size, eyeHeight * random.uniform(0.0, 1.0), 0.0);
+        grid = makeGrid(corner, along * size, across * (0.6 * size));
+        scene->addChild(grid);
+    }
+
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    osg::ref_ptr<osg::Geometry> grid;
+    osg::Matrixd view;
+    osg::ref_ptr<const DeformationChain> chain;
+};
+
 } // namespace
 
 TEST_F(CullMargins, ACompanionIsDrawnAsFarBesideThePictureAsItReaches)
@@ -204,50 +251,18 @@ TEST_F(CullMargins, NearAndFarContainWhatBulgesBetweenSections)
     {
         SCOPED_TRACE("sample " + std::to_string(i));
         Random random(static_cast<std::uint64_t>(i));
-        const osg::ref_ptr<EffectScene> scene = new EffectScene;
-        scene->setTerrainFrame(EffectScene::PROJECTED);
-        osg::ref_ptr<PerspectiveBend> bend;
-        const double eyeHeight = random.logarithmic(50.0, 3000.0);
-        if (random.integer(0, 1))
-        {
-            const osg::ref_ptr<PedestrianView> pedestrian = new PedestrianView;
-            pedestrian->setFocusDistance(eyeHeight * random.uniform(0.0, 2.0));
-            pedestrian->setZoneWidth(eyeHeight * random.uniform(0.5, 4.0));
-            pedestrian->setBendAngle(random.uniform(0.6, 1.57));
-            bend = pedestrian;
-        }
-        else
-        {
-            const osg::ref_ptr<BirdsEyeView> bird = new BirdsEyeView;
-            bird->setFocusLine(random.uniform(0.0, 0.3));
-            bird->setHorizonLine(random.uniform(0.5, 0.9));
-            bend = bird;
-        }
-        bend->setCurve(static_cast<PerspectiveBend::Curve>(random.integer(0, 2)));
-        const double size = eyeHeight * random.uniform(1.0, 6.0);
-        bend->setTallest(0.05 * size);
-        scene->addEffect(bend);
-        const osg::Matrixd view = osg::Matrixd::lookAt(
-            osg::Vec3d(0.0, 0.0, eyeHeight), osg::Vec3d(0.0, eyeHeight * random.uniform(0.5, 3.0), 0.0),
-            osg::Vec3d(0.0, 0.0, 1.0));
-        const osg::ref_ptr<const DeformationChain> chain = scene->deformation(view, _projection);
-        if (chain->empty()) continue;
-        const double turn = random.uniform(-0.5, 0.5);
-        const osg::Vec3d along(std::sin(turn), std::cos(turn), random.uniform(-0.04, 0.04));
-        const osg::Vec3d across(std::cos(turn), -std::sin(turn), 0.0);
-        const osg::Vec3d corner(-0.3 * size, eyeHeight * random.uniform(0.0, 1.0), 0.0);
-        const osg::ref_ptr<osg::Geometry> grid = makeGrid(corner, along * size, across * (0.6 * size));
-        scene->addChild(grid);
-        CullHarness harness(context(), scene, WIDTH, HEIGHT);
+        const BentGrid bent(random, _projection);
+        if (bent.chain->empty()) continue;
+        CullHarness harness(context(), bent.scene, WIDTH, HEIGHT);
         harness.camera().setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
         harness.camera().setNearFarRatio(1e-6);
-        harness.setCamera(view, _projection);
+        harness.setCamera(bent.view, _projection);
         const Culled culled = harness.frame(true, false);
         double nearest = HUGE_VAL;
         double farthest = 0.0;
-        for (const osg::Vec3& vertex : dynamic_cast<const osg::Vec3Array&>(*grid->getVertexArray()))
+        for (const osg::Vec3& vertex : dynamic_cast<const osg::Vec3Array&>(*bent.grid->getVertexArray()))
         {
-            const osg::Vec3d eye = chain->deform(osg::Vec3d(vertex) * view);
+            const osg::Vec3d eye = bent.chain->deform(osg::Vec3d(vertex) * bent.view);
             const osg::Vec4d clip = osg::Vec4d(eye, 1.0) * _projection;
             if (eye.z() >= 0.0 || std::abs(clip.x()) > clip.w() || std::abs(clip.y()) > clip.w()) continue;
             nearest = std::min(nearest, -eye.z());
@@ -267,6 +282,57 @@ TEST_F(CullMargins, NearAndFarContainWhatBulgesBetweenSections)
     }
     RecordProperty("largest_far_over_farthest", std::to_string(slackest));
     EXPECT_GT(checked, count / 2);
+}
+
+TEST_F(CullMargins, PickingHitsWhatBulgesBetweenSections)
+{
+    const int count = fullTest() ? 3000 : 400;
+    int hits = 0;
+    for (int i = 0; i < count; ++i)
+    {
+        SCOPED_TRACE("sample " + std::to_string(i));
+        Random random(static_cast<std::uint64_t>(i) + 20000);
+        const BentGrid bent(random, _projection);
+        if (bent.chain->empty()) continue;
+        // Where each triangle is drawn, and those that reach farthest in the picture in some directions.
+        const auto& vertices = dynamic_cast<const osg::Vec3Array&>(*bent.grid->getVertexArray());
+        std::vector<osg::Vec2d> places;
+        for (const osg::Vec3& vertex : vertices)
+        {
+            const osg::Vec3d eye = bent.chain->deform(osg::Vec3d(vertex) * bent.view);
+            const osg::Vec3d inPicture = eye * _projection;
+            const bool before = eye.z() < -0.1;
+            places.emplace_back(before ? inPicture.x() : HUGE_VAL, before ? inPicture.y() : HUGE_VAL);
+        }
+        const osg::DrawElements& corners = *bent.grid->getPrimitiveSet(0)->getDrawElements();
+        const DeformedView picture(*bent.scene, bent.view, _projection, WIDTH, HEIGHT);
+        for (const osg::Vec2d& direction :
+             {osg::Vec2d(0, 1), osg::Vec2d(0, -1), osg::Vec2d(1, 0), osg::Vec2d(-1, 0)})
+        {
+            double most = -HUGE_VAL;
+            osg::Vec2d target;
+            for (unsigned int corner = 0; corner + 2 < corners.getNumIndices(); corner += 3)
+            {
+                const osg::Vec2d& a = places[corners.index(corner)];
+                const osg::Vec2d& b = places[corners.index(corner + 1)];
+                const osg::Vec2d& c = places[corners.index(corner + 2)];
+                if (!std::isfinite(a.x() + b.x() + c.x())) continue;
+                for (const osg::Vec2d& tip : {a, b, c})
+                {
+                    // Just within the triangle.
+                    const osg::Vec2d at = tip * 0.98 + (a + b + c) * (0.02 / 3.0);
+                    if (at * direction <= most) continue;
+                    most = at * direction;
+                    target = at;
+                }
+            }
+            if (most == -HUGE_VAL) continue;
+            ++hits;
+            EXPECT_TRUE(picture.pick((target.x() + 1.0) * WIDTH / 2.0, (target.y() + 1.0) * HEIGHT / 2.0))
+                << target.x() << ' ' << target.y();
+        }
+    }
+    EXPECT_GT(hits, 2 * count);
 }
 
 TEST_F(CullMargins, LevelsBySizeGoByTheSizeOfWhatIsStretched)
