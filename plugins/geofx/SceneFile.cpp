@@ -74,6 +74,9 @@ private:
         if (!cache.empty()) result.cache = _xml.joined(cache);
         if (srs != "geocentric") result.epsg = std::stoi(srs.substr(std::strlen("EPSG:")));
         result.vertical = attributeOf(node, "vertical");
+        result.voids = attributeOf(node, "voids");
+        result.voidReach = integer(node, "voidReach");
+        result.voidSmoothing = integer(node, "voidSmoothing");
         result.tileSize = integer(node, "tileSize");
         result.textureSize = integer(node, "textureSize");
         result.pixelError = real(node, "pixelError");

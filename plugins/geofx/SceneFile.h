@@ -57,6 +57,8 @@ struct SceneRasters
     std::string cache; ///< empty: the person's cache folder
     int epsg = 0;      ///< 0: geocentric
     std::string vertical;
+    std::string voids; ///< "fill" or "keep"
+    int voidReach = 0, voidSmoothing = 0;
     int tileSize = 0, textureSize = 0;
     double pixelError = 0.0, texelError = 0.0; ///< pixels
     int memoryMiB = 0;

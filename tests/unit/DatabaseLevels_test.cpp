@@ -195,6 +195,7 @@ TEST(DatabaseLevels, RangesKeepThePixelErrorAroundHoles)
         });
     auto o = options({raster.write(folder / "dem.tif")}, folder / "db", 32604);
     o.texelError = 1e9;
+    o.voids = Voids::KEEP;
     buildDatabase(o);
     const auto shares = largestShareOfBound(o.output);
     ASSERT_GE(shares.size(), 3u);
