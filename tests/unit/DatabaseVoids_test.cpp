@@ -489,6 +489,26 @@ std::map<std::string, std::string> contents(const fs::path& folder)
     return result;
 }
 
+/// The posts are the same however the work is cut, so the heights must be, too: a window shows what the whole would.
+TEST_F(DatabaseVoids, TheSameHeightsHoweverTheWorkIsCut)
+{
+    Dem dem(300, 280, [](int c, int r) { return 300.0 + relief(c, r); });
+    for (int row = 60; row < 220; ++row)
+        for (int column = 60; column < 240; ++column)
+            if ((column - 150) * (column - 150) + (row - 140) * (row - 140) < 70 * 70)
+                dem.at(column, row) = static_cast<float>(NONE);
+    auto options = optionsFor({dem.write(path("dem.tif"))}, path("small"));
+    options.tileSize = 8; // units of 64 posts, smaller than the void
+    buildDatabase(options);
+    options.tileSize = 64; // one unit
+    options.output = path("large");
+    buildDatabase(options);
+    const Dem small = builtHeights(path("small"), dem), large = builtHeights(path("large"), dem);
+    for (int row = 0; row < dem.rows; ++row)
+        for (int column = 0; column < dem.columns; ++column)
+            ASSERT_EQ(small.at(column, row), large.at(column, row)) << column << " " << row;
+}
+
 /// Blobs of many sizes across the units' borders; a build that is stopped at each tenth of its way and taken up again.
 TEST_F(DatabaseVoids, TheSameBytesForAnyThreadsAndInterruptions)
 {
