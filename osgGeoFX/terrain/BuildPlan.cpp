@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "BuildPlan.h"
 
+#include "BuilderCode.h"
+
 #include <osgGeoFX/geodata/BuildError.h>
 
 #include <algorithm>
@@ -287,7 +289,7 @@ void BuildPlan::chooseFingerprint()
     std::ostringstream text;
     text.precision(17);
     text << "osgGeoFX terrain database, format " << FORMAT_VERSION << ", content " << DATABASE_CONTENT
-         << "\n";
+         << "\nbuilder " << builderCode() << "\n";
     const auto source = [&](const char* kind, const std::string& file)
     {
         std::error_code code;

@@ -5,6 +5,7 @@
 #include <osgGeoFX/terrain/ProgressLine.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/terrain/BuilderCode.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 
 #include <gdal_priv.h>
@@ -114,7 +115,10 @@ std::string nameOf(const BuildOptions& options)
     std::ostringstream key;
     key.imbue(std::locale::classic());
     key.precision(17);
-    key << GEOFX_VERSION << "\n" << TerrainInfo::newestFormat << "\n" << DATABASE_CONTENT << "\n";
+    key << GEOFX_VERSION << "\n"
+        << TerrainInfo::newestFormat << "\n"
+        << DATABASE_CONTENT << "\n"
+        << builderCode() << "\n";
     key << options.epsg << "\n";
     key << static_cast<int>(options.vertical) << "\n"
         << options.tileSize << "\n"
