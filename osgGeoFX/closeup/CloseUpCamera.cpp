@@ -73,11 +73,6 @@ bool culls(const ScenePass& pass)
     return pass.compensate && (pass.outer.getCullingMode() & osg::CullSettings::VIEW_FRUSTUM_CULLING) != 0;
 }
 
-unsigned int stampNumber(osgUtil::CullVisitor& outer)
-{
-    return outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
-}
-
 bool tessellates(osgUtil::CullVisitor& outer)
 {
     const osg::GLExtensions* extensions = extensionsOf(outer);
@@ -446,7 +441,9 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
     _now = _traversals[_used++].get();
     _now->use(pass.prefix, task);
     _now->layers.startFrame();
-    if (starts && stampNumber(pass.outer) % 256 == 0) _now->copies.purge();
+    // What was drawn in the last frame is no longer on its way, and copies keep the arrays of what has been deleted.
+    for (std::size_t i = 0; starts && i < _traversals.size(); ++i)
+        _traversals[i]->copies.purge();
 
     _items.clear();
     const osg::FrameStamp* stamp = pass.outer.getFrameStamp();

@@ -19,7 +19,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <mutex>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -125,7 +127,6 @@ public:
 
     osg::Texture2D* colours() const { return _colours; }
     osg::Viewport* viewport() const { return _viewport; }
-    CompensatingCullVisitor& visitor() { return *_visitor; }
     osg::StateSet& state() { return *_state; }
     osg::StateSet& skyState(bool mirrored) { return *(mirrored ? _mirroredSky : _sky); }
 
@@ -141,7 +142,6 @@ private:
     osg::ref_ptr<osg::FrameBufferObject> _target;
     osg::ref_ptr<osg::Viewport> _viewport;
     osg::ref_ptr<osgUtil::RenderStage> _stage;
-    osg::ref_ptr<CompensatingCullVisitor> _visitor = new CompensatingCullVisitor;
     osg::ref_ptr<osg::StateSet> _state = new osg::StateSet;
     osg::ref_ptr<osg::StateSet> _sky = new osg::StateSet;
     osg::ref_ptr<osg::StateSet> _mirroredSky = new osg::StateSet;
@@ -171,8 +171,41 @@ double headingOf(const ScenePass& pass, const glsl::geofx_Panorama& panorama)
 class PanoramaMap::Scenery::Cameras
 {
 public:
-    PerCamera<Mirror> mirrors;
-    PerCamera<StrokeCompanion> strokes;
+    /// What one traversal of a frame needs until it is drawn.
+    struct Look
+    {
+        Mirror mirror;
+        StrokeCompanion strokes;
+    };
+
+    /// One camera's. Its cull visitor may come by several times, for a camera that renders to a texture or a scene with two
+    /// parents, before anything is drawn.
+    class Looks
+    {
+    public:
+        /// That of the traversal that is on its way.
+        Look& now(osgUtil::CullVisitor& outer)
+        {
+            if (_visitor->startsFrame(outer)) _used = 0;
+            if (_used == _all.size()) _all.push_back(std::make_unique<Look>());
+            return *_all[_used];
+        }
+        /// The traversal needs its look no more until it is drawn.
+        void end() { ++_used; }
+        CompensatingCullVisitor& visitor() { return *_visitor; }
+
+        void releaseGLObjects(osg::State* state) const
+        {
+            for (const std::unique_ptr<Look>& each : _all)
+                each->mirror.releaseGLObjects(state);
+        }
+
+    private:
+        osg::ref_ptr<CompensatingCullVisitor> _visitor = new CompensatingCullVisitor;
+        std::vector<std::unique_ptr<Look>> _all;
+        std::size_t _used = 0;
+    };
+    PerCamera<Looks> looks;
 
     /// Who makes the strokes of a terrain, with the map's parameters.
     osg::ref_ptr<StrokeMaker> maker(const PanoramaMap& map, const osgGeoFX::Ground& ground)
@@ -201,7 +234,7 @@ public:
 
     void releaseGLObjects(osg::State* state) const
     {
-        mirrors.releaseGLObjects(state);
+        looks.releaseGLObjects(state);
         const std::lock_guard<std::mutex> lock(_mutex);
         if (_skyProgram) _skyProgram->releaseGLObjects(state);
         _square->releaseGLObjects(state);
@@ -229,10 +262,12 @@ const Properties& PanoramaMap::Scenery::properties() const
 
 void PanoramaMap::Scenery::cull(const ScenePass& pass)
 {
+    Cameras::Looks& looks = _cameras->looks.of(pass.outer, pass.scene);
+    Mirror& mirror = looks.now(pass.outer).mirror;
+    looks.end();
     if (!pass.outer.getViewport()) return;
     const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(_map, pass.view);
     if (!panorama) return;
-    Mirror& mirror = _cameras->mirrors.of(pass.outer, pass.scene);
     const bool reflects = _map.getWater() && _map.getReflection() > 0.0 && _map.getPaint();
     osg::Program* skyProgram = _map.getSky() ? _cameras->skyProgram() : nullptr;
     const auto fillSky = [&](bool mirrored) -> osg::StateSet&
@@ -317,8 +352,7 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
         ->set(osg::Vec4(0.0f, 0.0f, static_cast<float>(1.0 / size.width()),
                         static_cast<float>(1.0 / size.height())));
 
-    CompensatingCullVisitor& visitor = mirror.visitor();
-    visitor.startsFrame(pass.outer);
+    CompensatingCullVisitor& visitor = looks.visitor();
     CompensatingCullVisitor::Task task;
     task.chain = chain;
     task.state = &pass.state;
@@ -344,7 +378,7 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
 DrawableCompanion* PanoramaMap::Scenery::companion(const ScenePass& pass)
 {
     if (!_map.getStrokes() || !_map.getPaint()) return nullptr;
-    StrokeCompanion& strokes = _cameras->strokes.of(pass.outer, pass.scene);
+    StrokeCompanion& strokes = _cameras->looks.of(pass.outer, pass.scene).now(pass.outer).strokes;
     return strokes.begin(pass, _map, *_cameras->maker(_map, pass.view.ground)) ? &strokes : nullptr;
 }
 

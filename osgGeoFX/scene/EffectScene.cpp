@@ -6,12 +6,12 @@
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/NodeFinder.h>
 #include <osgGeoFX/scene/PassEffect.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
 #include <osgGeoFX/scene/SurfaceEffect.h>
 
 #include <osg/CoordinateSystemNode>
-#include <osg/LOD>
 #include <osg/Notify>
 #include <osg/observer_ptr>
 
@@ -27,24 +27,20 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr int deepestTerrainRoot = 8;
+/// How far below the scene a coordinate system may be, and a terrain.
+constexpr std::size_t deepestSystem = 9, deepestTerrain = 32;
 
-const osg::CoordinateSystemNode* findCoordinateSystem(const osg::Node* node, int depth)
+bool isSystem(const osg::Node& node)
 {
-    const osg::Group* group = node->asGroup();
-    if (!group) return nullptr;
-    // Asked in every frame, and casts take their time: transforms are neither of the two.
-    if (!node->asTransform())
-    {
-        if (const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node)) return found;
-        if (dynamic_cast<const osg::LOD*>(node)) return nullptr;
-    }
-    if (depth == 0) return nullptr;
-    for (unsigned int i = 0; i < group->getNumChildren(); ++i)
-    {
-        if (const auto* found = findCoordinateSystem(group->getChild(i), depth - 1)) return found;
-    }
-    return nullptr;
+    // Asked for many nodes, and casts take their time: transforms are none.
+    return !node.asTransform() && dynamic_cast<const osg::CoordinateSystemNode*>(&node);
+}
+
+bool isTerrainRoot(const osg::Node& node)
+{
+    const osg::UserDataContainer* values = node.getUserDataContainer();
+    return values && values->getUserObjectIndex("geofx.format") < values->getNumUserObjects() &&
+           isSystem(node);
 }
 
 void setDefine(osg::StateSet& state, const std::string& name, bool on)
@@ -168,14 +164,25 @@ struct EffectScene::Drawing
     osg::ref_ptr<osg::Program> programFor(const EffectProgram::Effects& effects)
     {
         const std::lock_guard<std::mutex> lock(mutex);
-        if (programMade && !effectsChanged(effects)) return program;
+        const bool changed = effectsChanged(effects);
+        if (programMade && !changed) return program;
         const std::string key = EffectProgram::key(effects);
         if (!programMade || key != programKey)
         {
             programKey = key;
             programMade = true;
             program = EffectProgram::create(effects);
-            updateFunctions(effects);
+            try
+            {
+                updateFunctions(effects);
+            }
+            catch (const ShaderError&)
+            {
+                // create() has said it; the functions stay as they were.
+                program = nullptr;
+            }
+            // Tried again when something changes.
+            if (!program) programKey.clear();
         }
         return program;
     }
@@ -217,16 +224,26 @@ struct EffectScene::Drawing
         return changed;
     }
 
-    /// What a terrain says of itself. Read again only where the root has other user values than the last time.
-    std::optional<TerrainInfo> terrainOf(const osg::CoordinateSystemNode* system)
+    /// The first coordinate system below the scene; null where there is none.
+    const osg::CoordinateSystemNode* systemBelow(const EffectScene& scene)
     {
-        const osg::UserDataContainer* values = system ? system->getUserDataContainer() : nullptr;
         const std::lock_guard<std::mutex> lock(mutex);
-        if (values && values == terrainValues) return terrain;
+        return dynamic_cast<const osg::CoordinateSystemNode*>(systems.find(scene));
+    }
+
+    /// What a terrain says of itself: that whose root the coordinate system is, else the first one below the scene. Read again
+    /// only where the root has other user values than the last time.
+    std::optional<TerrainInfo> terrainOf(const EffectScene& scene, const osg::CoordinateSystemNode* system)
+    {
+        if (!system) return std::nullopt;
+        const std::lock_guard<std::mutex> lock(mutex);
+        const osg::Node* root = isTerrainRoot(*system) ? system : terrains.find(scene);
+        const osg::UserDataContainer* values = root ? root->getUserDataContainer() : nullptr;
+        if (!values) return std::nullopt;
+        if (values == terrainValues) return terrain;
         std::string error;
-        std::optional<TerrainInfo> info = TerrainInfo::read(system, error);
-        // Those of a root further below can come and go.
-        if (info && values && values->getUserObjectIndex("geofx.format") < values->getNumUserObjects())
+        const std::optional<TerrainInfo> info = TerrainInfo::read(root, error);
+        if (info)
         {
             terrainValues = values;
             terrain = info;
@@ -257,8 +274,12 @@ struct EffectScene::Drawing
 
     std::mutex mutex;
     std::map<osgUtil::CullVisitor*, std::unique_ptr<Camera>> cameras;
+    NodeFinder systems = NodeFinder(&isSystem, deepestSystem);
+    NodeFinder terrains = NodeFinder(&isTerrainRoot, deepestTerrain);
     osg::ref_ptr<const osg::UserDataContainer> terrainValues;
     std::optional<TerrainInfo> terrain;
+    /// Of a globe that has no coordinate system. Always the same: effects tell by it whether the ground has changed.
+    const osg::ref_ptr<const osg::EllipsoidModel> globe = new osg::EllipsoidModel;
     EffectProgram::Effects lastEffects; ///< those that the program was made for, and
     std::vector<unsigned int> revisions;
     std::string programKey;
@@ -353,11 +374,11 @@ Ground EffectScene::ground(const osg::NodePath& above) const
         const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node);
         if (found) system = found;
     }
-    if (!system) system = findCoordinateSystem(this, deepestTerrainRoot);
+    if (!system) system = _drawing->systemBelow(*this);
     Ground ground;
     if (system && _terrainFrame != PROJECTED) ground.ellipsoid = system->getEllipsoidModel();
-    if (!ground.ellipsoid && _terrainFrame == GEOCENTRIC) ground.ellipsoid = new osg::EllipsoidModel;
-    if (const std::optional<TerrainInfo> info = _drawing->terrainOf(system))
+    if (!ground.ellipsoid && _terrainFrame == GEOCENTRIC) ground.ellipsoid = _drawing->globe;
+    if (const std::optional<TerrainInfo> info = _drawing->terrainOf(*this, system))
     {
         ground.heightsKnown = true;
         ground.minHeight = info->minHeight;
