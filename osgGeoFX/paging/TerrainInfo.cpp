@@ -82,6 +82,7 @@ std::optional<TerrainInfo> TerrainInfo::read(const osg::Node* node, std::string&
     if (mask && root.getUserValue("geofx.filledMaskColumns", info.filledMaskColumns) &&
         info.filledMaskColumns > 0 && mask->size() >= static_cast<std::size_t>(info.filledMaskColumns))
         info.filledMask = mask;
+    info.root = finder.found;
     info.geocentric = kind == "geocentric";
     return info;
 }

@@ -8,6 +8,7 @@
 #include <osg/LOD>
 #include <osg/Transform>
 #include <osg/Vec3d>
+#include <osg/observer_ptr>
 #include <osg/ref_ptr>
 
 #include <optional>
@@ -33,8 +34,9 @@ struct OSGGEOFX_EXPORT TerrainInfo
     double pixelsPerRadian = 0.0; ///< of the screen on which LOD ranges keep the error bound
     double pixelError = 0.0;      ///< that bound
     int levels = 0;
-    int tileCells = 0;    ///< that a tile's mesh has along its edge at least; 0: not known
-    std::string vertical; ///< vertical datum
+    int tileCells = 0;                       ///< that a tile's mesh has along its edge at least; 0: not known
+    std::string vertical;                    ///< vertical datum
+    osg::observer_ptr<const osg::Node> root; ///< the node that says so
 
     /// Of the finest posts that have a height, those in voids of the elevation that were filled from around them, 0…1.
     double filledShare = 0.0;

@@ -75,12 +75,15 @@ const Properties& PanoramaMap::properties() const
         Property::number("ripples", 1.0, 0.0, 10.0).of<&Self::_ripples>(),
         Property::flag("sky", true).of<&Self::_sky>(),
         Property::integer("clouds", 1, 0, 9999).of<&Self::_clouds>(),
+        Property::choice("edge", AUTOMATIC, {"automatic", "sea", "haze"}).of<&Self::_edge>(),
+        Property::number("edgeWidth", 0.3, 0.0, 5.0).of<&Self::_edgeWidth>(),
         Property::flag("strokes", true).of<&Self::_strokes>(),
         Property::number("strokeSize", 5.0, 1.0, 200.0).of<&Self::_strokeSize>(),
         Property::number("strokeSpacing", 4.2, 1.0, 200.0).of<&Self::_strokeSpacing>(),
         Property::number("strokeStep", 25.0, 1.0, 10000.0, "m").of<&Self::_strokeStep>(),
         Property::integer("coverUnit", 7, 4, 31).of<&Self::_coverUnit>(),
         Property::integer("firstUnit", 4, 4, 29).of<&Self::_firstUnit>(),
+        Property::integer("edgeUnit", 14, 4, 30).of<&Self::_edgeUnit>(),
     };
     return all;
 }
@@ -90,6 +93,10 @@ std::string PanoramaMap::inconsistency() const
     if (_curveDistance >= _horizonDistance) return "curveDistance must be less than horizonDistance.";
     if (_coverUnit >= _firstUnit && _coverUnit < _firstUnit + 3)
         return "coverUnit must not be one of the three units from firstUnit on.";
+    if (_edgeUnit <= _coverUnit && _coverUnit < _edgeUnit + 2)
+        return "coverUnit must not be one of the two units from edgeUnit on.";
+    if (_edgeUnit < _firstUnit + 3 && _firstUnit < _edgeUnit + 2)
+        return "The two units from edgeUnit on must not be among the three from firstUnit on.";
     return {};
 }
 

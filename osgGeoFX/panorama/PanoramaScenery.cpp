@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/deformation/CompensatingCullVisitor.h>
 #include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/panorama/PanoramaEdge.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaTextures.h>
 #include <osgGeoFX/panorama/StrokeCompanion.h>
@@ -37,8 +38,6 @@ constexpr double mirrorDetail = 0.3;
 constexpr int mirrorOrder = -5;
 /// Over what is opaque, so that it is drawn where nothing else is.
 constexpr int skyBin = 8;
-/// How much of the sky's turn lies across the picture.
-constexpr double skyAcross = 0.5;
 
 osg::ref_ptr<osg::Program> createSkyProgram()
 {
@@ -154,16 +153,6 @@ void setFrame(osg::StateSet& state, const std::string& prefix, const PanoramaFra
 {
     for (const auto& [name, value] : frame.uniforms())
         state.getOrCreateUniform(prefix + name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
-}
-
-/// The heading as a share of a turn, clockwise from the north or from the y axis.
-double headingOf(const ScenePass& pass, const glsl::geofx_Panorama& panorama)
-{
-    const osg::Vec3d forward = toOsg(panorama.forward), right = toOsg(panorama.right);
-    osg::Vec3d north = pass.view.polarAxis;
-    if (!pass.view.ground.ellipsoid)
-        north = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 1.0, 0.0), *pass.outer.getModelViewMatrix());
-    return std::atan2(-(north * right), north * forward) / (2.0 * osg::PI);
 }
 
 } // namespace
@@ -291,8 +280,17 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
         {
             state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4(osg::Vec4d(x, y, z, w)));
         };
-        put("geofx_skyPlace", _map.getHorizonLine(), _map.getHorizonBend(), headingOf(pass, *panorama),
-            skyAcross);
+        const auto putAll = [&](const char* name, const osg::Vec4d& v)
+        {
+            put(name, v.x(), v.y(), v.z(), v.w());
+        };
+        const PanoramaEdge edge(_map, _textures, pass.view, *pass.outer.getModelViewMatrix(), *panorama);
+        putAll("geofx_skyPlace", edge.sky);
+        putAll("geofx_skyEdgeEye", edge.eye);
+        putAll("geofx_skyEdgeWays", edge.ways);
+        putAll("geofx_skyEdgeKind", edge.kind);
+        state.setTextureAttribute(3, edge.map, forced);
+        state.getOrCreateUniform("geofx_skyEdge", osg::Uniform::SAMPLER_2D)->set(3);
         put("geofx_skyCurve", panorama->along, panorama->curve, panorama->horizon, panorama->end);
         // Where the water's ripples lie on the ground, also where there is none.
         const auto axis = [&](const char* name, const std::string& ground)
@@ -302,7 +300,8 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
             if (uniform) uniform->get(row);
             const osg::Vec3d along(osg::Vec3f(row.x(), row.y(), row.z()));
             put(name, toOsg(panorama->right) * along / panorama->across, toOsg(panorama->forward) * along,
-                static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along), 0.0);
+                static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along),
+                1.0 / panorama->across);
         };
         axis("geofx_skyAxisX", "brushX");
         axis("geofx_skyAxisY", "brushY");

@@ -381,6 +381,7 @@ Ground EffectScene::ground(const osg::NodePath& above) const
     if (const std::optional<TerrainInfo> info = _drawing->terrainOf(*this, system))
     {
         ground.heightsKnown = true;
+        ground.terrain = info->root;
         ground.minHeight = info->minHeight;
         ground.maxHeight = info->maxHeight;
         if (info->geocentric) ground.latitude = osg::DegreesToRadians(0.5 * (info->south + info->north));
