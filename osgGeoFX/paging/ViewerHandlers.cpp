@@ -56,9 +56,7 @@ CursorReadout::CursorReadout(const Scene& scene)
 
 void CursorReadout::getUsage(osg::ApplicationUsage& usage) const
 {
-    usage.addKeyboardMouseBinding(_key > ' ' && _key < 127 ? std::string(1, static_cast<char>(_key))
-                                                           : "its key",
-                                  "Toggle the coordinates below the pointer");
+    usage.addKeyboardMouseBinding("c", "Toggle the coordinates of the ground below the pointer");
 }
 
 std::string CursorReadout::text() const
@@ -112,7 +110,7 @@ bool CursorReadout::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAction
     switch (event.getEventType())
     {
     case osgGA::GUIEventAdapter::KEYDOWN:
-        if (event.getKey() != _key) return false;
+        if (event.getKey() != 'c') return false;
         toggle(*view);
         return true;
     case osgGA::GUIEventAdapter::MOVE:

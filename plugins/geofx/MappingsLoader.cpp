@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsLoader.h"
 
-#include <osgGeoFX/scene/EffectKinds.h>
-
 #include <osg/Math>
 
 #include <algorithm>
@@ -45,8 +43,7 @@ public:
     void load()
     {
         for (const SceneMappings::Layer& layer : _mappings.layers)
-            layer.layer->setImage(
-                pictureOf(layer.file, layer.layer->getKind(), _mappings.effect->getPageSide()));
+            layer.layer->setImage(pictureOf(layer.file));
         for (const SceneTable& table : _mappings.tables)
             readTable(table);
         for (const SceneMapping& mapping : _mappings.mappings)
@@ -62,8 +59,6 @@ public:
             // The origin is the first mapping's, or nobody's.
             _hasOrigin = true;
         }
-        const std::string fault = whyItDrawsNothing(_effect);
-        if (!fault.empty()) warn(_mappings.place, fault);
     }
 
 private:
