@@ -15,7 +15,7 @@
 int main(int argc, char** argv)
 {
     osgGeoFX::BuildOptions options;
-    bool geocentric = false, quiet = false;
+    bool geocentric = false, quiet = false, estimate = false;
     std::string srs;
 
     CLI::App app{"Builds a paged terrain database from rasters. Plain osgviewer reads the result: osgviewer "
@@ -56,6 +56,19 @@ int main(int argc, char** argv)
     app.add_option_function<double>(
         "--lake-area", [&](double area) { options.lakeArea = 1e6 * area; },
         "Least area of level ground that is taken for a lake where no land cover tells, km² (0.2)");
+    const std::map<std::string, osgGeoFX::Voids> voids{{"fill", osgGeoFX::Voids::FILL},
+                                                       {"keep", osgGeoFX::Voids::KEEP}};
+    app.add_option(
+           "--voids", options.voids,
+           "What becomes of places inside the elevation that have none: fill them from what lies around "
+           "them (the default), or keep them as holes")
+        ->transform(CLI::CheckedTransformer(voids).description("fill|keep"));
+    app.add_option("--void-reach", options.voidReach,
+                   "How far from the data voids are filled, samples, 1 to 500; larger ones stay")
+        ->capture_default_str();
+    app.add_option("--void-smoothing", options.voidSmoothing,
+                   "How often filled heights are smoothed, 0 to 100 times")
+        ->capture_default_str();
     app.add_option("--tile-size", options.tileSize, "Grid intervals along a tile's edge, at most")
         ->capture_default_str();
     app.add_option("--texture-size", options.textureSize,
@@ -72,6 +85,7 @@ int main(int argc, char** argv)
     app.add_option("--threads", options.threads, "Worker threads; 0 for one for each core")
         ->capture_default_str();
     app.add_flag("--resume", options.resume, "Continue a build that was interrupted");
+    app.add_flag("--estimate", estimate, "Say what the build would take, and build nothing");
     app.add_flag("--quiet", quiet, "No progress and no summary");
     app.add_option("-o,--output", options.output, "Folder of the database")->required()->type_name("DIR");
     try
@@ -94,10 +108,17 @@ int main(int argc, char** argv)
                                            ": write it as EPSG: and a number, such as EPSG:32604.");
             options.epsg = std::stoi(number);
         }
+        if (!quiet || estimate)
+        {
+            std::printf("osggeofx_build: %s.\n", osgGeoFX::estimateBuild(options).text().c_str());
+            std::fflush(stdout);
+        }
+        if (estimate) return 0;
         osgGeoFX::ProgressLine line("osggeofx_build");
         const auto summary =
             osgGeoFX::buildDatabase(options, quiet ? osgGeoFX::BuildProgress() : std::ref(line));
         if (!quiet)
+        {
             std::printf(
                 "%s: %llu tiles (%llu taken over), %d levels, %.3f million samples, %.1f MB, %.1f s, peak "
                 "memory %.0f MiB\n",
@@ -105,6 +126,15 @@ int main(int argc, char** argv)
                 static_cast<unsigned long long>(summary.tilesReused), summary.levels,
                 static_cast<double>(summary.samples) * 1e-6, static_cast<double>(summary.bytes) * 1e-6,
                 summary.seconds, static_cast<double>(summary.peakMemoryBytes) / (1024.0 * 1024.0));
+            if (summary.filledShare > 0.0)
+                std::printf("Voids: %.3g %% of the heights are filled from those around them.\n",
+                            100.0 * summary.filledShare);
+            if (summary.openShare > 0.0)
+                std::printf("Without heights: %.3g %% of the samples lie in gaps that are too large to be "
+                            "filled, or at the "
+                            "data's edge.\n",
+                            100.0 * summary.openShare);
+        }
         return 0;
     }
     catch (const std::exception& error)

@@ -49,6 +49,7 @@ struct Arguments
     bool noCull = false;
     bool noCompensation = false;
     bool debugBounds = false;
+    bool allowOutside = false;
     osgGeoFX::SceneRenderer::Options renderer;
 };
 
@@ -112,6 +113,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
                  "Cull as if nothing were deformed, to see what that would draw");
     app.add_flag("--debug-bounds", arguments.debugBounds, "Draw the deformed bounds that culling decides on");
     app.add_flag("--no-cull", arguments.noCull, "Switch frustum and small-feature culling off");
+    app.add_flag("--allow-outside", arguments.allowOutside,
+                 "Let a .geofx scene name files outside its own folder, and addresses");
     app.add_option("--samples", arguments.renderer.samples, "Samples per pixel (multisampling)")
         ->type_name("N")
         ->check(CLI::Range(0u, 64u))
@@ -311,7 +314,10 @@ void run(Arguments& arguments)
     const std::string statsFault = arguments.stats.empty() ? std::string() : faultOfOutput(arguments.stats);
     if (!statsFault.empty()) throw Failure(badInput, statsFault);
 
-    const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(arguments.scene, error);
+    const osg::ref_ptr<osgDB::Options> reading =
+        new osgDB::Options(arguments.allowOutside ? "allowOutside" : "");
+    const std::optional<osgGeoFX::Scene> scene =
+        osgGeoFX::Scene::load(arguments.scene, error, arguments.allowOutside ? reading.get() : nullptr);
     if (!scene) throw Failure(badInput, error);
     addEffects(arguments, *scene->effects);
     scene->effects->listenTo(*scene->guard);

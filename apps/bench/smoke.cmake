@@ -1,13 +1,14 @@
-# Runs a suite of osggeofx_bench on tiny cases: it must go through, and its JSON must have every figure, measured. What
-# the figures are says nothing here.
+# Runs a suite of osggeofx_bench on tiny cases: it must go through, its JSON must have every figure, measured, and --check must
+# judge them as their numbers do. What the figures are says nothing here.
 #   cmake -DBENCH=FILE -DSUITE=NAME -DFIGURES=A,B,C -DOPTIONS=--x,y -DWORK=FOLDER -P smoke.cmake
 file(MAKE_DIRECTORY ${WORK})
 set(json ${WORK}/bench-smoke.json)
 file(REMOVE ${json})
 string(REPLACE "," ";" options "${OPTIONS}")
-execute_process(COMMAND ${BENCH} --suite ${SUITE} --smoke --json ${json} ${options} --work ${WORK}
+execute_process(COMMAND ${BENCH} --suite ${SUITE} --smoke --check --json ${json} ${options} --work ${WORK}
                 RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
-if(NOT result EQUAL 0)
+# With --check it says by its exit code whether all figures were reached; other codes are failures.
+if(NOT result MATCHES "^[01]$")
   message(FATAL_ERROR "osggeofx_bench exited with ${result}:\n${output}")
 endif()
 file(READ ${json} text)
@@ -20,10 +21,26 @@ foreach(index RANGE ${last})
     message(FATAL_ERROR "The figure ${name} was not measured.")
   endif()
   list(APPEND names ${name})
+  # Judged once more, from the numbers alone.
+  string(JSON relation GET "${text}" suites 0 figures ${index} relation)
+  string(JSON measured GET "${text}" suites 0 figures ${index} measured)
+  if(NOT relation STREQUAL "none")
+    string(JSON asked GET "${text}" suites 0 figures ${index} asked)
+    if((relation STREQUAL "below" AND NOT measured LESS asked)
+       OR (relation STREQUAL "at most" AND NOT measured LESS_EQUAL asked)
+       OR (relation STREQUAL "at least" AND NOT measured GREATER_EQUAL asked))
+      list(APPEND short ${name})
+    endif()
+  endif()
 endforeach()
 string(REPLACE ";" "," names "${names}")
 if(NOT names STREQUAL FIGURES)
   message(FATAL_ERROR "The figures are ${names}; expected were ${FIGURES}.")
+endif()
+if(short AND result EQUAL 0)
+  message(FATAL_ERROR "osggeofx_bench --check exited with 0, though these figures fall short: ${short}")
+elseif(NOT short AND result EQUAL 1)
+  message(FATAL_ERROR "osggeofx_bench --check exited with 1, though no figure falls short:\n${output}")
 endif()
 foreach(field processor processors memoryMiB renderer glVersion)
   string(JSON value GET "${text}" machine ${field})

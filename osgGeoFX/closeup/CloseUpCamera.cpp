@@ -73,11 +73,6 @@ bool culls(const ScenePass& pass)
     return pass.compensate && (pass.outer.getCullingMode() & osg::CullSettings::VIEW_FRUSTUM_CULLING) != 0;
 }
 
-unsigned int stampNumber(osgUtil::CullVisitor& outer)
-{
-    return outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
-}
-
 bool tessellates(osgUtil::CullVisitor& outer)
 {
     const osg::GLExtensions* extensions = extensionsOf(outer);
@@ -156,11 +151,8 @@ void CloseUpCamera::setUp(const ScenePass& pass, const Task& task, std::size_t i
     const std::string& prefix = pass.prefix;
     const char* const names[3] = {"masks", "tables", "surfaces"};
     osg::Texture* const textures[3] = {task.textures.masks, task.textures.tables, task.textures.surfaces};
-    for (const int former : now.units)
-        base.removeTextureAttribute(static_cast<unsigned int>(former), osg::StateAttribute::TEXTURE);
     for (std::size_t i = 0; i < 3; ++i)
     {
-        now.units[i] = task.units[i];
         base.setTextureAttribute(static_cast<unsigned int>(task.units[i]), textures[i]);
         base.getOrCreateUniform(prefix + names[i], osg::Uniform::INT)->set(task.units[i]);
     }
@@ -449,7 +441,9 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
     _now = _traversals[_used++].get();
     _now->use(pass.prefix, task);
     _now->layers.startFrame();
-    if (starts && stampNumber(pass.outer) % 256 == 0) _now->copies.purge();
+    // What was drawn in the last frame is no longer on its way, and copies keep the arrays of what has been deleted.
+    for (std::size_t i = 0; starts && i < _traversals.size(); ++i)
+        _traversals[i]->copies.purge();
 
     _items.clear();
     const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
@@ -588,28 +582,12 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
     return sentence;
 }
 
-void CloseUpCamera::resizeGLObjectBuffers(unsigned int size)
-{
-    for (const std::unique_ptr<Traversal>& each : _traversals)
-    {
-        each->values.resizeGLObjectBuffers(size);
-        each->layers.resizeGLObjectBuffers(size);
-        each->copies.resizeGLObjectBuffers(size);
-        for (ContourFence& fence : each->fences)
-            fence.resizeGLObjectBuffers(size);
-    }
-    osg::resizeGLObjectBuffers(_layerProgram, size);
-}
-
 void CloseUpCamera::releaseGLObjects(osg::State* state) const
 {
     for (const std::unique_ptr<Traversal>& each : _traversals)
     {
         each->values.releaseGLObjects(state);
         each->layers.releaseGLObjects(state);
-        each->copies.releaseGLObjects(state);
-        for (const ContourFence& fence : each->fences)
-            fence.releaseGLObjects(state);
     }
     if (_layerProgram) _layerProgram->releaseGLObjects(state);
 }

@@ -99,9 +99,11 @@ bool CompensatingCullVisitor::startsFrame(osgUtil::CullVisitor& outer)
     const unsigned int frame = outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
     const bool starts = frame != _frame || Access::order(outer) < _order;
     _frame = frame;
+    // Also where nothing is drawn until it is asked again.
+    _order = Access::order(outer);
     if (starts) reset();
     if (starts) _placedUsed = 0;
-    if (starts && frame % 256 == 0) _meshBoxes.purge();
+    if (starts) _meshBoxes.purge();
     return starts;
 }
 

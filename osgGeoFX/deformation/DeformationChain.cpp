@@ -139,10 +139,13 @@ bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
 
 double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
 {
-    if (_tileEdge <= 0.0 || !TileInfo::coarseOf(node) || _tileEdge * ball.radius <= longestEdge(ball))
-        return HUGE_VAL;
-    // In the middle, so that a pager finds it neither urgent nor idle.
-    return 0.5 * static_cast<double>(node.getMaxRange(1));
+    if (_tileEdge <= 0.0 || !TileInfo::coarseOf(node)) return HUGE_VAL;
+    const double share = longestEdge(ball) / (_tileEdge * ball.radius);
+    if (!(share < 1.0)) return HUGE_VAL;
+    // An edge misses its curve by its square. So to a pager the finer tiles are as urgent as those of relief that is as many times
+    // too coarse; a sea far too coarse for a bend that is new would else wait for relief that is nearly right.
+    constexpr double least = 0.001, most = 0.999;
+    return std::clamp(share * share, least, most) * static_cast<double>(node.getMaxRange(1));
 }
 
 double DeformationChain::longestEdge(const Ball& ball) const

@@ -70,32 +70,38 @@ FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
     return crs;
 }
 
-FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted) : _file(std::move(file))
+FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed)
+    : _file(std::move(file))
 {
     GdalErrorScope errors;
     _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
     if (!_chain.back())
         fail("it is not a raster that GDAL can read (" + errors.message() +
              "); check it with gdalinfo, or convert it to GeoTIFF");
-    GDALDataset& dataset = top();
-    if (dataset.GetRasterCount() == 0)
+    if (top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
-    Transform transform{};
-    const bool placed = dataset.GetGeoTransform(transform.data()) == CE_None;
-    if (!placed && dataset.GetGCPCount() == 0)
-        fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
-    const OGRSpatialReference* srs = placed ? dataset.GetSpatialRef() : dataset.GetGCPSpatialRef();
-    if (!srs || srs->IsEmpty() || srs->IsLocal())
-        fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
+    if (placed) checkPlace();
     if (GDALDataTypeIsComplex(band().GetRasterDataType()))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
-    const bool colors = band().GetColorTable() || dataset.GetRasterCount() >= 3;
+    const bool colors = band().GetColorTable() || top().GetRasterCount() >= 3;
     kind = wanted.value_or(colors ? DataLayer::COLOR : DataLayer::VALUE);
     if (kind == DataLayer::COLOR)
         makeColors();
     else
         makeValues();
 }
+
+void FrameRaster::checkPlace() const
+{
+    Transform transform{};
+    const bool placed = top().GetGeoTransform(transform.data()) == CE_None;
+    if (!placed && top().GetGCPCount() == 0)
+        fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
+    const OGRSpatialReference* srs = placed ? top().GetSpatialRef() : top().GetGCPSpatialRef();
+    if (!srs || srs->IsEmpty() || srs->IsLocal())
+        fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
+}
+
 FrameRaster::~FrameRaster()
 {
     // A virtual dataset reads from the one before it, so the last goes first.
@@ -175,9 +181,7 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
     GDALDatasetH source = GDALDataset::ToHandle(_chain.back().get());
     DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
     GDALWarpAppOptionsFree(options);
-    if (!result || errors.failed())
-        fail("its pixels cannot be read (" + errors.message() +
-             "); the file may be cut short: copy or export it again");
+    if (!result || errors.failed()) failToRead(errors);
     return result;
 }
 
@@ -205,6 +209,75 @@ void FrameRaster::readColors(GDALDataset& warped, unsigned char* colors) const
     if (warped.RasterIO(GF_Read, 0, 0, width, height, colors + row * (height - 1), width, height, GDT_Byte, 4,
                         nullptr, 4, -row, 1, nullptr) != CE_None)
         fail("its pixels cannot be read; copy or export it again");
+}
+
+osg::ref_ptr<osg::Image> FrameRaster::picture(int maxSide) const
+{
+    const osg::Vec2d all = size();
+    const double share = std::min(1.0, maxSide / std::max(all.x(), all.y()));
+    const int width = std::max(1, static_cast<int>(std::lround(all.x() * share)));
+    const int height = std::max(1, static_cast<int>(std::lround(all.y() * share)));
+    GDALRasterIOExtraArg how;
+    INIT_RASTERIO_EXTRA_ARG(how);
+    if (kind != DataLayer::CLASS && !_palette) how.eResampleAlg = GRIORA_Average;
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    if (kind == DataLayer::COLOR)
+    {
+        image->allocateImage(width, height, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+        const GSpacing row = 4 * static_cast<GSpacing>(width);
+        GdalErrorScope errors;
+        if (top().RasterIO(GF_Read, 0, 0, static_cast<int>(all.x()), static_cast<int>(all.y()),
+                           image->data() + row * (height - 1), width, height, GDT_Byte, 4, nullptr, 4, -row,
+                           1, &how) != CE_None)
+            failToRead(errors);
+    }
+    else
+    {
+        image->allocateImage(width, height, 1, GL_RED, GL_FLOAT);
+        image->setInternalTextureFormat(GL_R32F);
+        readNumbers(*image, how);
+    }
+    image->setFileName(_file);
+    return image;
+}
+
+void FrameRaster::readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const
+{
+    const int columns = top().GetRasterXSize();
+    const int rows = top().GetRasterYSize();
+    const int width = image.s();
+    const int height = image.t();
+    const std::size_t last = static_cast<std::size_t>(width) * static_cast<std::size_t>(height - 1);
+    auto* numbers = reinterpret_cast<float*>(image.data());
+    const GSpacing row = static_cast<GSpacing>(sizeof(float)) * width;
+    GdalErrorScope errors;
+    if (band().RasterIO(GF_Read, 0, 0, columns, rows, numbers + last, width, height, GDT_Float32,
+                        sizeof(float), -row, &how) != CE_None)
+        failToRead(errors);
+    int hasNoData = FALSE;
+    const auto noData = static_cast<float>(band().GetNoDataValue(&hasNoData));
+    std::vector<GByte> mask;
+    if (!(band().GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)))
+    {
+        mask.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+        if (band().GetMaskBand()->RasterIO(GF_Read, 0, 0, columns, rows, mask.data() + last, width, height,
+                                           GDT_Byte, 1, -width, nullptr) != CE_None)
+            failToRead(errors);
+    }
+    for (std::size_t i = 0; i < last + static_cast<std::size_t>(width); ++i)
+    {
+        const bool isNone = (hasNoData && numbers[i] == noData) || (!mask.empty() && mask[i] == 0);
+        const double number =
+            isNone ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(numbers[i]);
+        numbers[i] = static_cast<float>(number * scale + offset);
+        if (!std::isfinite(numbers[i])) numbers[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+}
+
+void FrameRaster::failToRead(const GdalErrorScope& errors) const
+{
+    fail("its pixels cannot be read (" + errors.message() +
+         "); the file may be cut short: copy or export it again");
 }
 
 void FrameRaster::TransformerDestroyer::operator()(void* transformer) const

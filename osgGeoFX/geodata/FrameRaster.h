@@ -37,7 +37,8 @@ FrameCrs crsOf(const MappingFrame& frame, const std::string& file);
 class FrameRaster
 {
 public:
-    FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted);
+    /// `placed`: whether it needs a georeference, which all but picture() go by.
+    FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed = true);
     ~FrameRaster();
     FrameRaster(const FrameRaster&) = delete;
     FrameRaster& operator=(const FrameRaster&) = delete;
@@ -67,6 +68,11 @@ public:
     /// Colours that were warped, four bytes each, in rows from the south.
     void readColors(GDALDataset& warped, unsigned char* colors) const;
 
+    /// The raster's own pixels, in rows from the south: colours as RGBA bytes, else floats with NaN where there is none. One
+    /// with more than `maxSide` pixels on a side is reduced to it, by area, or of classes and palettes by the nearest pixel.
+    osg::ref_ptr<osg::Image> picture(int maxSide) const;
+    osg::Vec2d size() const { return osg::Vec2d(top().GetRasterXSize(), top().GetRasterYSize()); }
+
 private:
     using Arguments = std::vector<std::string>;
     struct TransformerDestroyer
@@ -79,6 +85,9 @@ private:
     [[noreturn]] void failToPlace(const GdalErrorScope& errors) const;
     GDALDataset& top() const { return *_chain.back(); }
     GDALRasterBand& band() const { return *top().GetRasterBand(1); }
+    [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
+    void checkPlace() const;
+    void readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const;
     void translate(Arguments arguments);
     void makeColors();
     void makeValues();

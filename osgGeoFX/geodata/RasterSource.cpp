@@ -426,6 +426,43 @@ void RasterSource::sampleHeights(const GridCrs& crs, const Lattice& lattice, flo
     warp(crs, lattice, request);
 }
 
+void RasterSource::markCovered(const GridCrs& crs, const Lattice& lattice, unsigned char* covered)
+{
+    const GDALDataset& raster = *_chain.back();
+    const int width = const_cast<GDALDataset&>(raster).GetRasterXSize();
+    const int height = const_cast<GDALDataset&>(raster).GetRasterYSize();
+    const TransformationPtr gridToSource = createTransformation(crs.srs, _srs, _file);
+    const GdalErrorScope errors;
+    LatticeTransformer transformer(lattice, crs.geographic, *gridToSource, _geoTransform,
+                                   _srs.IsGeographic() != 0, width, height);
+    if (!transformer.invertible()) fail("its geotransform is singular; mend it with gdal_translate -a_ullr");
+    const auto columns = static_cast<std::size_t>(lattice.columns);
+    std::vector<double> x, y, z;
+    std::vector<int> success;
+    std::vector<std::size_t> asked;
+    for (int row = 0; row < lattice.rows; ++row)
+    {
+        unsigned char* line = covered + static_cast<std::size_t>(row) * columns;
+        x.clear();
+        asked.clear();
+        for (std::size_t column = 0; column < columns; ++column)
+            if (!line[column])
+            {
+                asked.push_back(column);
+                x.push_back(static_cast<double>(column) + 0.5);
+            }
+        if (asked.empty()) continue;
+        y.assign(x.size(), row + 0.5);
+        z.assign(x.size(), 0.0);
+        success.assign(x.size(), 0);
+        LatticeTransformer::transform(&transformer, TRUE, static_cast<int>(x.size()), x.data(), y.data(),
+                                      z.data(), success.data());
+        for (std::size_t i = 0; i < asked.size(); ++i)
+            if (success[i] && x[i] >= 0.0 && x[i] <= width && y[i] >= 0.0 && y[i] <= height)
+                line[asked[i]] = 1;
+    }
+}
+
 void RasterSource::sampleMeans(const GridCrs& crs, const Lattice& lattice, float* out)
 {
     WarpRequest request;

@@ -64,6 +64,10 @@ public:
     /// Bilinear heights, metres. Points without data are left as they are. `out` has columns × rows values.
     void sampleHeights(const GridCrs& crs, const Lattice& lattice, float* out);
 
+    /// Sets `covered` to 1 at points that lie within the raster's rectangle of pixels, whether these have data or not, and
+    /// leaves it elsewhere. Points that are 1 already cost nothing.
+    void markCovered(const GridCrs& crs, const Lattice& lattice, unsigned char* covered);
+
     /// Colours, four planes (red, green, blue, alpha) of columns × rows bytes, averaged where the lattice is
     /// coarser than the raster. Points without data keep their alpha and colour.
     void sampleColors(const GridCrs& crs, const Lattice& lattice, unsigned char* planes);

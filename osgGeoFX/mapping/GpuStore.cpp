@@ -230,7 +230,6 @@ void GpuStore::uploadAll(Context& context, osg::State& state)
     if (!context.buffer)
     {
         const auto* gl = state.get<osg::GLExtensions>();
-        context.life = osg::get<BufferDeletion>(state.getContextID());
         gl->glGenBuffers(1, &context.buffer);
         GLuint names[3] = {};
         glGenTextures(3, names);
@@ -294,7 +293,6 @@ void GpuStore::bind(Part part, osg::State& state, std::uint64_t upTo)
     const std::lock_guard<std::mutex> lock(_mutex);
     askLimits();
     Context& context = _contexts[state.getContextID()];
-    if (!context.life.valid()) context = {};
     update(context, state, upTo);
     switch (part)
     {
@@ -321,7 +319,7 @@ void GpuStore::releaseGLObjects(osg::State* state)
             ++entry;
             continue;
         }
-        if (context.life.valid())
+        if (context.buffer)
         {
             osg::get<BufferDeletion>(id)->scheduleGLObjectForDeletion(context.buffer);
             for (const unsigned int name : {context.data, context.layers, context.tables})

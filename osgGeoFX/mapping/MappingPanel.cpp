@@ -99,7 +99,8 @@ MappingPanel::~MappingPanel() = default;
 void MappingPanel::getUsage(osg::ApplicationUsage& usage) const
 {
     usage.addKeyboardMouseBinding("F9", "Toggle the list of mappings; with the list:");
-    usage.addKeyboardMouseBinding("Up and Down", "Select a mapping; Page Up and Down, Home, End go farther");
+    usage.addKeyboardMouseBinding("Up and Down", "Select a mapping");
+    usage.addKeyboardMouseBinding("Page Up and Page Down, Home and End", "Go farther in the list");
     usage.addKeyboardMouseBinding("Alt + left button", "Select the topmost mapping below the pointer");
     usage.addKeyboardMouseBinding("Return", "Switch the selected mapping on or off");
     usage.addKeyboardMouseBinding("Left and Right", "Change the selected mapping's opacity");

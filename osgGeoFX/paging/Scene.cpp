@@ -116,7 +116,7 @@ EffectScene* findEffects(osg::Node* node, int depth)
 
 } // namespace
 
-std::optional<Scene> Scene::load(const std::string& file, std::string& error)
+std::optional<Scene> Scene::load(const std::string& file, std::string& error, const osgDB::Options* options)
 {
     addPluginFolder();
     // Names such as "cow.osgt.10.scale" are no files, and yet OSG reads them.
@@ -124,7 +124,7 @@ std::optional<Scene> Scene::load(const std::string& file, std::string& error)
     osgDB::ReaderWriter::ReadResult result;
     try
     {
-        if (reason.empty()) result = osgDB::Registry::instance()->readNode(file, nullptr);
+        if (reason.empty()) result = osgDB::Registry::instance()->readNode(file, options);
     }
     catch (const std::exception& exception)
     {

@@ -12,6 +12,7 @@
 #include <osg/Node>
 #include <osg/Vec4>
 #include <osg/View>
+#include <osgDB/Options>
 
 #include <optional>
 #include <string>
@@ -47,8 +48,10 @@ struct OSGGEOFX_EXPORT Scene
     osg::ref_ptr<Georeference> reference; ///< null where the scene has none
     std::string referenceError;           ///< why there is none
 
-    /// Nothing, and a sentence in `error`, where the scene cannot be read.
-    static std::optional<Scene> load(const std::string& file, std::string& error);
+    /// Nothing, and a sentence in `error`, where the scene cannot be read. With the option string "allowOutside" a .geofx scene
+    /// may name files outside its folder, and addresses; without, it is refused.
+    static std::optional<Scene> load(const std::string& file, std::string& error,
+                                     const osgDB::Options* options = nullptr);
     /// The same for a scene that has been read already.
     static std::optional<Scene> adopt(osg::Node* node, std::string& error);
 

@@ -75,8 +75,29 @@ std::optional<TerrainInfo> TerrainInfo::read(const osg::Node* node, std::string&
         return std::nullopt;
     }
     root.getUserValue("geofx.tileCells", info.tileCells);
+    root.getUserValue("geofx.filledShare", info.filledShare);
+    const osg::UserDataContainer* data = root.getUserDataContainer();
+    const auto* mask =
+        dynamic_cast<const osg::UByteArray*>(data ? data->getUserObject("geofx.filledMask") : nullptr);
+    if (mask && root.getUserValue("geofx.filledMaskColumns", info.filledMaskColumns) &&
+        info.filledMaskColumns > 0 && mask->size() >= static_cast<std::size_t>(info.filledMaskColumns))
+        info.filledMask = mask;
+    info.root = finder.found;
     info.geocentric = kind == "geocentric";
     return info;
+}
+
+double TerrainInfo::filledAt(double x, double y) const
+{
+    if (!filledMask || !(x >= west && x <= east && y >= south && y <= north)) return 0.0;
+    const auto cell = [](double share, std::size_t cells)
+    {
+        return std::min(static_cast<std::size_t>(share * static_cast<double>(cells)), cells - 1);
+    };
+    const auto columns = static_cast<std::size_t>(filledMaskColumns), rows = filledMask->size() / columns;
+    return (*filledMask)[cell((y - south) / (north - south), rows) * columns +
+                         cell((x - west) / (east - west), columns)] /
+           255.0;
 }
 
 bool TileInfo::isTile(const osg::Node& node)

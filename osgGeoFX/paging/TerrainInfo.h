@@ -4,9 +4,12 @@
 
 #include <osgGeoFX/Export.h>
 
+#include <osg/Array>
 #include <osg/LOD>
 #include <osg/Transform>
 #include <osg/Vec3d>
+#include <osg/observer_ptr>
+#include <osg/ref_ptr>
 
 #include <optional>
 #include <string>
@@ -31,8 +34,19 @@ struct OSGGEOFX_EXPORT TerrainInfo
     double pixelsPerRadian = 0.0; ///< of the screen on which LOD ranges keep the error bound
     double pixelError = 0.0;      ///< that bound
     int levels = 0;
-    int tileCells = 0;    ///< that a tile's mesh has along its edge at least; 0: not known
-    std::string vertical; ///< vertical datum
+    int tileCells = 0;                       ///< that a tile's mesh has along its edge at least; 0: not known
+    std::string vertical;                    ///< vertical datum
+    osg::observer_ptr<const osg::Node> root; ///< the node that says so
+
+    /// Of the finest posts that have a height, those in voids of the elevation that were filled from around them, 0…1.
+    double filledShare = 0.0;
+    /// Where they lie: that share for each cell of the extent, a byte from 0 to 255 and more than 0 wherever anything was filled; the
+    /// south-western cell first, row by row, at most 1,024 cells a side. Null where nothing was.
+    osg::ref_ptr<const osg::UByteArray> filledMask;
+    int filledMaskColumns = 0;
+
+    /// The share of filled posts, 0…1, of the mask's cell at a place in the extent's coordinates; 0 outside.
+    double filledAt(double x, double y) const;
 
     /// The newest format that this library understands.
     static constexpr int newestFormat = 1;

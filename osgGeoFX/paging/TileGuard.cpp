@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 
 namespace osgGeoFX
 {
@@ -122,19 +123,17 @@ private:
 class TileGuard::Callback : public osgDB::ReadFileCallback
 {
 public:
-    Callback(TileGuard* tileGuard, osgDB::ReadFileCallback* previous) : guard(tileGuard), _previous(previous)
-    {
-    }
+    Callback(TileGuard* tileGuard, osgDB::ReadFileCallback* before) : guard(tileGuard), previous(before) {}
 
     ReadResult readNode(const std::string& file, const osgDB::Options* options) override
     {
-        return guard->read(file, options, _previous.get());
+        return guard->read(file, options, *this);
     }
 
     const osg::ref_ptr<TileGuard> guard;
-
-private:
-    const osg::ref_ptr<osgDB::ReadFileCallback> _previous;
+    const osg::ref_ptr<osgDB::ReadFileCallback> previous;
+    /// Files that failed with these options. Under the guard's lock.
+    std::set<std::string> failed;
 };
 
 /// Finds PagedLODs and, given a guard, puts it into those that have none.
@@ -210,7 +209,7 @@ void TileGuard::removeListener(TileListener* listener)
     _listeners.erase(std::remove_if(_listeners.begin(), _listeners.end(), gone), _listeners.end());
 }
 
-void TileGuard::tell(osg::Node& tile)
+void TileGuard::tell(osg::Node& tile, const std::string& file)
 {
     // Not under the lock: listeners take their time.
     std::vector<osg::ref_ptr<TileListener>> listeners;
@@ -223,7 +222,25 @@ void TileGuard::tell(osg::Node& tile)
         }
     }
     for (const auto& listener : listeners)
-        listener->tileRead(tile);
+    {
+        std::string reason = "it throws something that is no std::exception";
+        try
+        {
+            listener->tileRead(tile);
+            continue;
+        }
+        catch (const std::exception& exception)
+        {
+            reason = exception.what();
+        }
+        catch (...)
+        {
+        }
+        warnOnce(
+            file,
+            "osgGeoFX: a TileListener fails on the tile \"" + file + "\" (" + reason +
+                "); the tile is drawn, without what the listener would have made of it. Mend the listener.");
+    }
 }
 
 TileGuard::Counts TileGuard::counts() const
@@ -243,75 +260,96 @@ osg::ref_ptr<osgDB::Options> TileGuard::guardedOptions(osgDB::Options* original)
     // Without options of its own a PagedLOD's files are read with the registry's.
     if (!original) original = osgDB::Registry::instance()->getOptions();
     const std::lock_guard<std::mutex> lock(_mutex);
-    osg::ref_ptr<osgDB::Options> guarded;
-    if (!_options[original].lock(guarded))
+    const auto known = _options.find(original);
+    osg::ref_ptr<osgDB::Options> guarded, alive;
+    // Options that are gone may have left their address to others.
+    const bool same = known != _options.end() && (!original || known->second.original.lock(alive));
+    if (same && known->second.guarded.lock(guarded)) return guarded;
+    if (_options.size() >= _purgeSize)
     {
-        guarded = original ? original->cloneOptions() : new osgDB::Options;
-        guarded->setReadFileCallback(new Callback(this, guarded->getReadFileCallback()));
-        _options[original] = guarded;
+        for (auto entry = _options.begin(); entry != _options.end();)
+            entry = entry->second.guarded.valid() && (!entry->first || entry->second.original.valid())
+                        ? std::next(entry)
+                        : _options.erase(entry);
+        _purgeSize = std::max<std::size_t>(64, 2 * _options.size());
     }
+    guarded = original ? original->cloneOptions() : new osgDB::Options;
+    guarded->setReadFileCallback(new Callback(this, guarded->getReadFileCallback()));
+    _options[original] = {original, guarded.get()};
     return guarded;
 }
 
-ReadResult TileGuard::read(const std::string& file, const osgDB::Options* options,
-                           osgDB::ReadFileCallback* previous)
+ReadResult TileGuard::read(const std::string& file, const osgDB::Options* options, Callback& callback)
 {
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        if (_failed.count(file)) return makeStandIn(options).get();
+        if (callback.failed.count(file)) return makeStandIn(options).get();
     }
-    if (!previous) previous = osgDB::Registry::instance()->getReadFileCallback();
+    const osg::ref_ptr<osgDB::ReadFileCallback> previous =
+        callback.previous ? callback.previous.get() : osgDB::Registry::instance()->getReadFileCallback();
     const bool local = !previous && !osgDB::containsServerAddress(file);
     const std::string path = local ? osgDB::findDataFile(file, options) : std::string();
-    if (local)
+    // A name without a file may mean something to the plugin of its extension.
+    if (local && osgDB::getLowerCaseFileExtension(file) == "osgb")
     {
         const std::string fault = faultOf(path);
-        if (!fault.empty()) return fail(file, fault, options);
+        if (!fault.empty()) return fail(file, fault, options, callback);
     }
     ReadResult result;
     try
     {
         result = previous ? previous->readNode(file, options)
                           : osgDB::Registry::instance()->readNodeImplementation(file, options);
+        if (result.validNode() && !result.loadedFromCache())
+        {
+            Installer installer(this);
+            result.getNode()->accept(installer);
+        }
     }
     catch (const std::exception& exception)
     {
-        return fail(file, exception.what(), options);
+        return fail(file, exception.what(), options, callback);
+    }
+    catch (...)
+    {
+        return fail(file, "its reader throws something that is no std::exception", options, callback);
     }
     if (!result.validNode())
     {
-        const std::string message = result.statusMessage();
-        return fail(file, message.empty() ? "it holds nothing that can be drawn" : message, options);
+        const std::string message = result.notFound() ? "it is missing" : result.statusMessage();
+        return fail(file, message.empty() ? "it holds nothing that can be drawn" : message, options,
+                    callback);
     }
-    if (!result.loadedFromCache())
-    {
-        Installer installer(this);
-        result.getNode()->accept(installer);
-        tell(*result.getNode());
-    }
+    if (!result.loadedFromCache()) tell(*result.getNode(), file);
     std::error_code ignored;
-    const std::uintmax_t size = local ? std::filesystem::file_size(path, ignored) : 0;
+    const std::uintmax_t size = path.empty() ? 0 : std::filesystem::file_size(path, ignored);
     const std::lock_guard<std::mutex> lock(_mutex);
     ++_counts.tilesRead;
     _counts.bytesRead += ignored ? 0 : size;
     return result;
 }
 
-ReadResult TileGuard::fail(const std::string& file, const std::string& reason, const osgDB::Options* options)
+ReadResult TileGuard::fail(const std::string& file, const std::string& reason, const osgDB::Options* options,
+                           Callback& callback)
 {
-    bool isNew = false;
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        isNew = _failed.insert(file).second;
-        _counts.tilesFailed = _failed.size();
+        if (callback.failed.insert(file).second) ++_counts.tilesFailed;
+        _failed.insert(file);
     }
-    if (isNew)
-    {
-        OSG_WARN << "osgGeoFX: the tile \"" << file << "\" cannot be read (" << reason
-                 << "); the coarser one stays in its place. Restore the file or build the database again."
-                 << std::endl;
-    }
+    warnOnce(file,
+             "osgGeoFX: the tile \"" + file + "\" cannot be read (" + reason +
+                 "); the coarser one stays in its place. Restore the file or build the database again.");
     return makeStandIn(options).get();
+}
+
+void TileGuard::warnOnce(const std::string& file, const std::string& sentence)
+{
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        if (!_warned.insert(file).second) return;
+    }
+    OSG_WARN << sentence << std::endl;
 }
 
 } // namespace osgGeoFX

@@ -42,8 +42,9 @@ protected:
     with `Compressor=zlib`, as ours are, is protected by its own checksum. Other formats are passed to OSG as
     they are, and only what throws is caught.
 
-    Once failed, a file is not tried again in the guard's lifetime. Thread-safe, in all of OSG's threading models
-    and for any number of pager threads. */
+    Once failed, a file is not tried again with the same options, in the lifetime of these. PagedLODs with options of their
+    own may use one file name for tiles that differ, as loaders do that find in the options what to read. Thread-safe, in
+    all of OSG's threading models and for any number of pager threads. */
 class OSGGEOFX_EXPORT TileGuard : public osg::Referenced
 {
 public:
@@ -64,7 +65,8 @@ public:
 
     TileGuard();
 
-    /// Tells a listener of each tile that is read from now on. It is held weakly: who adds it keeps it. Null and one that is there
+    /// Tells a listener of each tile that is read from now on. What it throws is a warning, once for each tile's file, and the tile
+    /// is drawn nonetheless. It is held weakly: who adds it keeps it. Null and one that is there
     /// already are ignored. Tiles that OSG takes from its cache of objects, and those that failed, are not told of.
     void addListener(TileListener* listener);
     /// It may still be told of a tile that is just being read.
@@ -81,19 +83,26 @@ private:
     class Callback;
     class Installer;
 
-    void tell(osg::Node& tile);
+    void tell(osg::Node& tile, const std::string& file);
+    void warnOnce(const std::string& file, const std::string& sentence);
     osg::ref_ptr<osgDB::Options> guardedOptions(osgDB::Options* original);
     osgDB::ReaderWriter::ReadResult read(const std::string& file, const osgDB::Options* options,
-                                         osgDB::ReadFileCallback* previous);
+                                         Callback& callback);
     osgDB::ReaderWriter::ReadResult fail(const std::string& file, const std::string& reason,
-                                         const osgDB::Options* options);
+                                         const osgDB::Options* options, Callback& callback);
 
     mutable std::mutex _mutex;
-    std::set<std::string> _failed;
+    std::set<std::string> _failed, _warned; ///< file names
     Counts _counts;
     std::vector<osg::observer_ptr<TileListener>> _listeners;
-    /// From original options to guarded ones, which hold the guard, so it must not hold them.
-    std::map<osg::ref_ptr<osgDB::Options>, osg::observer_ptr<osgDB::Options>> _options;
+    struct Guarded
+    {
+        osg::observer_ptr<osgDB::Options> original, guarded;
+    };
+    /// From original options, which only their PagedLODs keep, to guarded ones, which hold the guard, so it must not hold
+    /// them. An entry of options that are gone is removed when there are `_purgeSize`.
+    std::map<const osgDB::Options*, Guarded> _options;
+    std::size_t _purgeSize = 64;
 };
 
 } // namespace osgGeoFX

@@ -56,7 +56,9 @@ CursorReadout::CursorReadout(const Scene& scene)
 
 void CursorReadout::getUsage(osg::ApplicationUsage& usage) const
 {
-    usage.addKeyboardMouseBinding("c", "Toggle the coordinates of the ground below the pointer");
+    usage.addKeyboardMouseBinding(_key > ' ' && _key < 127 ? std::string(1, static_cast<char>(_key))
+                                                           : "its key",
+                                  "Toggle the coordinates below the pointer");
 }
 
 std::string CursorReadout::text() const
@@ -110,7 +112,7 @@ bool CursorReadout::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAction
     switch (event.getEventType())
     {
     case osgGA::GUIEventAdapter::KEYDOWN:
-        if (event.getKey() != 'c') return false;
+        if (event.getKey() != _key) return false;
         toggle(*view);
         return true;
     case osgGA::GUIEventAdapter::MOVE:

@@ -39,6 +39,10 @@ public:
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
     void getUsage(osg::ApplicationUsage& usage) const override;
 
+    /// The key that shows and hides it, as osgGA::GUIEventAdapter has them.
+    void setKey(int key) { _key = key; }
+    int getKey() const { return _key; }
+
     /// What is shown; empty while nothing is.
     std::string text() const;
 
@@ -51,6 +55,7 @@ private:
     std::string _whyNone;
     osg::ref_ptr<osg::Camera> _overlay;
     osg::ref_ptr<osgText::Text> _text;
+    int _key = 'c';
     bool _shown = false;
     bool _moved = false;
     std::chrono::steady_clock::time_point _lastMove;

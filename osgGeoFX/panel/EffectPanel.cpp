@@ -89,7 +89,12 @@ double EffectPanel::stepped(const Property& property, double value, double steps
 
 void EffectPanel::getUsage(osg::ApplicationUsage& usage) const
 {
-    usage.addKeyboardMouseBinding("F10", "Toggle the list of effects and their properties");
+    usage.addKeyboardMouseBinding("F10", "Toggle the list of effects; with the list:");
+    usage.addKeyboardMouseBinding("Up and Down", "Select a property");
+    usage.addKeyboardMouseBinding("Page Up and Page Down, Home and End", "Go farther in the list");
+    usage.addKeyboardMouseBinding("Left and Right", "Change the property by a step, with Shift by ten");
+    usage.addKeyboardMouseBinding(", and .", "Change it by a tenth of a step");
+    usage.addKeyboardMouseBinding("Return", "Switch it, take the next choice, or its default");
 }
 
 std::vector<std::string> EffectPanel::lines() const

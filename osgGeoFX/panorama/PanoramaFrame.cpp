@@ -22,6 +22,8 @@ constexpr double leastRadius = 1e-3;
 constexpr double beside = 1.0 + 1e-4;
 /// Where the ground falls away behind the Earth, of its radius.
 constexpr double mostTurned = 1.3;
+/// By how much x and s grow there at most: 20 for what lies behind, the rest for the projection itself, which goes on.
+constexpr double stretchBehind = 30.0;
 /// Without any exaggeration heights could not be told from the picture.
 constexpr double leastExaggeration = 1e-6;
 /// Of what is seen from the eye, of that of the picture's base.
@@ -150,7 +152,9 @@ PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
     const double tallest = std::abs(extent.place.z) + ball.radius;
     // The angle of arc that the ball reaches to; the equidistant projection stretches by it over its sine.
     const double arc = k * (std::hypot(extent.place.x, extent.place.y) + ball.radius);
+    extent.turned = k * (glm::length(toGlm(ball.centre)) + ball.radius);
     extent.stretch = 1.0 + 0.5 * arc * arc;
+    if (extent.turned > mostTurned) extent.stretch = std::max(extent.stretch, stretchBehind);
     extent.reach = ball.radius * extent.stretch;
     extent.curvature = 2.1 * (4.0 * k + 3.0 * k * k * tallest) * extent.stretch;
     extent.height = std::abs(extent.place.z - _view.base) + ball.radius;
@@ -166,7 +170,6 @@ PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
     extent.x = _view.across * (std::abs(extent.place.x) + extent.reach);
     extent.n = _view.nearest + std::max(farS, 0.0);
     extent.nSecond = nearS < 0.0 ? 2.0 / _view.nearest : 0.0;
-    extent.turned = k * (glm::length(toGlm(ball.centre)) + ball.radius);
     return extent;
 }
 
@@ -225,7 +228,7 @@ DeformationFrame::Sag PanoramaFrame::sag(const Ball& ball, const osg::Vec3d& edg
     const double curve = x2 * sideX + y2 * sideY + n2 * away +
                          2.0 * n1 * (x1 * glm::length(_view.directionX) + y1 * glm::length(_view.directionY));
     // Where the ground falls away behind the Earth the projection has a kink.
-    if (extent.turned > mostTurned) return {curve, 40.0 * length};
+    if (extent.turned > mostTurned) return {curve, lipschitz(ball) * length};
     // Nowhere is it off by more than all of the ball is apart in the picture.
     const double nearS = extent.place.y - extent.reach;
     const double farS = extent.place.y + extent.reach;

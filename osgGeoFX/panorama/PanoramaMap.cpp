@@ -75,12 +75,15 @@ const Properties& PanoramaMap::properties() const
         Property::number("ripples", 1.0, 0.0, 10.0).of<&Self::_ripples>(),
         Property::flag("sky", true).of<&Self::_sky>(),
         Property::integer("clouds", 1, 0, 9999).of<&Self::_clouds>(),
+        Property::choice("edge", AUTOMATIC, {"automatic", "sea", "haze"}).of<&Self::_edge>(),
+        Property::number("edgeWidth", 0.3, 0.0, 5.0).of<&Self::_edgeWidth>(),
         Property::flag("strokes", true).of<&Self::_strokes>(),
         Property::number("strokeSize", 5.0, 1.0, 200.0).of<&Self::_strokeSize>(),
         Property::number("strokeSpacing", 4.2, 1.0, 200.0).of<&Self::_strokeSpacing>(),
         Property::number("strokeStep", 25.0, 1.0, 10000.0, "m").of<&Self::_strokeStep>(),
         Property::integer("coverUnit", 7, 4, 31).of<&Self::_coverUnit>(),
-        Property::integer("firstUnit", -1, -1, 29).of<&Self::_firstUnit>(),
+        Property::integer("firstUnit", 4, 4, 29).of<&Self::_firstUnit>(),
+        Property::integer("edgeUnit", 14, 4, 30).of<&Self::_edgeUnit>(),
     };
     return all;
 }
@@ -88,11 +91,12 @@ const Properties& PanoramaMap::properties() const
 std::string PanoramaMap::inconsistency() const
 {
     if (_curveDistance >= _horizonDistance) return "curveDistance must be less than horizonDistance.";
-    if (_firstUnit >= 0 && _firstUnit < TextureUnits::first)
-        return "firstUnit must be from 4 to 29, for the geometry has those below, or -1 for the scene's "
-               "choice.";
-    if (_firstUnit >= 0 && _coverUnit >= _firstUnit && _coverUnit < _firstUnit + 3)
+    if (_coverUnit >= _firstUnit && _coverUnit < _firstUnit + 3)
         return "coverUnit must not be one of the three units from firstUnit on.";
+    if (_edgeUnit <= _coverUnit && _coverUnit < _edgeUnit + 2)
+        return "coverUnit must not be one of the two units from edgeUnit on.";
+    if (_edgeUnit < _firstUnit + 3 && _firstUnit < _edgeUnit + 2)
+        return "The two units from edgeUnit on must not be among the three from firstUnit on.";
     return {};
 }
 
@@ -132,21 +136,6 @@ void PanoramaMap::setLines(StrokeLines* lines)
 {
     _lines = lines;
     touch();
-}
-
-std::vector<TextureUnitWish> PanoramaMap::textureUnits() const
-{
-    const auto after = [&](int place)
-    {
-        return TextureUnitWish{"firstUnit", _firstUnit < 0 ? -1 : _firstUnit + place, 4 + place};
-    };
-    return {after(0), after(1), after(2), {"coverUnit", _coverUnit, _coverUnit, true, true}};
-}
-
-void PanoramaMap::resizeGLObjectBuffers(unsigned int size)
-{
-    _textures->resizeGLObjectBuffers(size);
-    _scenery->resizeGLObjectBuffers(size);
 }
 
 void PanoramaMap::releaseGLObjects(osg::State* state) const

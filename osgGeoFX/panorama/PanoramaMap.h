@@ -3,7 +3,6 @@
 #pragma once
 
 #include <osgGeoFX/deformation/Deformation.h>
-#include <osgGeoFX/scene/TextureUnits.h>
 
 #include <osg/Image>
 #include <osg/Math>
@@ -41,7 +40,7 @@ class StrokeLines;
     Stands after an exaggeration or a mapping in a scene, and instead of a bend. Positions are exact within 1e-5 of the viewing
     distance up to 60 degrees of arc from the eye. Objects below the scene may be drawn in all threading models; changed as all
     effects are, between frames. */
-class OSGGEOFX_EXPORT PanoramaMap : public Deformation, public TextureUser
+class OSGGEOFX_EXPORT PanoramaMap : public Deformation
 {
 public:
     PanoramaMap();
@@ -152,7 +151,7 @@ public:
     /// How far ripples move reflections; 0…10, 1 by default.
     bool setRipples(double strength) { return assign("ripples", strength); }
     double getRipples() const { return _ripples; }
-    /// Whether there is a painted sky behind the terrain, and sea where no terrain is; true by default.
+    /// Whether there is a painted sky behind the terrain, and where no terrain is what `edge` says; true by default.
     bool setSky(bool on) { return assign("sky", on ? 1.0 : 0.0); }
     bool getSky() const { return _sky; }
     /// Which clouds there are: each number has others; 0…9999.
@@ -163,6 +162,25 @@ public:
     void setSkyImage(osg::Image* image);
     osg::Image* getSkyImage() { return _skyImage; }
     const osg::Image* getSkyImage() const { return _skyImage; }
+    /// @}
+
+    /// @name Where the terrain ends
+    /// @{
+
+    /// What lies beyond the terrain.
+    enum Edge
+    {
+        AUTOMATIC, ///< sea where the data's own border is sea, else as HAZE; of databases of others nothing is known: haze
+        SEA, ///< sea everywhere
+        HAZE ///< the land runs out into haze towards the horizon and the sides, and into paper at the picture's base; the sea, too
+    };
+    /// AUTOMATIC by default. Without a sky nothing is drawn beyond the terrain. That of databases of others has sea or haze behind it, and
+    /// does not run out itself.
+    bool setEdge(Edge edge) { return assign("edge", edge); }
+    Edge getEdge() const { return static_cast<Edge>(_edge); }
+    /// Over how much of the ground the land runs out, view radii; 0…5, 0.3 by default; not over more than a fifth of the terrain.
+    bool setEdgeWidth(double radii) { return assign("edgeWidth", radii); }
+    double getEdgeWidth() const { return _edgeWidth; }
     /// @}
 
     /// @name Strokes
@@ -193,10 +211,12 @@ public:
     /// Where tiles have what they say of the ground; 4…31, 7 by default, as osggeofx_build makes them.
     bool setCoverUnit(int unit) { return assign("coverUnit", unit); }
     int getCoverUnit() const { return _coverUnit; }
-    /// The first of three for the palette, the brush and the reflection; 4…29. −1, the default, leaves them to the scene,
-    /// which gives 4, 5 and 6 where they are free.
+    /// The first of three for the palette, the brush and the reflection; 4…29, 4 by default.
     bool setFirstUnit(int unit) { return assign("firstUnit", unit); }
     int getFirstUnit() const { return _firstUnit; }
+    /// The first of two for the terrain's edge and the sky; 4…30, 14 by default.
+    bool setEdgeUnit(int unit) { return assign("edgeUnit", unit); }
+    int getEdgeUnit() const { return _edgeUnit; }
     /// @}
 
     const Properties& properties() const override;
@@ -207,8 +227,6 @@ public:
     using Deformation::asSurfaceEffect;
     SurfaceEffect* asSurfaceEffect() override;
     PassEffect* asPassEffect() override;
-    std::vector<TextureUnitWish> textureUnits() const override;
-    void resizeGLObjectBuffers(unsigned int size) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
 protected:
@@ -219,14 +237,6 @@ protected:
 private:
     class Ground;
     class Scenery;
-    /// The places of its texture units.
-    enum Unit : std::size_t
-    {
-        PaletteUnit,
-        BrushUnit,
-        MirrorUnit,
-        CoverUnit
-    };
 
     bool _projection = true;
     double _viewRadius = 0.0;
@@ -258,12 +268,15 @@ private:
     double _ripples = 1.0;
     bool _sky = true;
     int _clouds = 1;
+    int _edge = AUTOMATIC;
+    double _edgeWidth = 0.3;
     bool _strokes = true;
     double _strokeSize = 5.0;
     double _strokeSpacing = 4.2;
     double _strokeStep = 25.0;
     int _coverUnit = 7;
-    int _firstUnit = -1;
+    int _firstUnit = 4;
+    int _edgeUnit = 14;
     osg::ref_ptr<osg::Image> _palette;
     osg::ref_ptr<osg::Image> _skyImage;
     osg::ref_ptr<StrokeLines> _lines;

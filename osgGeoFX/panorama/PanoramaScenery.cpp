@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/deformation/CompensatingCullVisitor.h>
 #include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/panorama/PanoramaEdge.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaTextures.h>
 #include <osgGeoFX/panorama/StrokeCompanion.h>
@@ -19,7 +20,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <mutex>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -35,8 +38,6 @@ constexpr double mirrorDetail = 0.3;
 constexpr int mirrorOrder = -5;
 /// Over what is opaque, so that it is drawn where nothing else is.
 constexpr int skyBin = 8;
-/// How much of the sky's turn lies across the picture.
-constexpr double skyAcross = 0.5;
 
 osg::ref_ptr<osg::Program> createSkyProgram()
 {
@@ -123,16 +124,8 @@ public:
         return *_stage;
     }
 
-    void resizeGLObjectBuffers(unsigned int size)
-    {
-        osg::resizeGLObjectBuffers(_colours, size);
-        osg::resizeGLObjectBuffers(_depths, size);
-        osg::resizeGLObjectBuffers(_target, size);
-    }
-
     osg::Texture2D* colours() const { return _colours; }
     osg::Viewport* viewport() const { return _viewport; }
-    CompensatingCullVisitor& visitor() { return *_visitor; }
     osg::StateSet& state() { return *_state; }
     osg::StateSet& skyState(bool mirrored) { return *(mirrored ? _mirroredSky : _sky); }
 
@@ -148,7 +141,6 @@ private:
     osg::ref_ptr<osg::FrameBufferObject> _target;
     osg::ref_ptr<osg::Viewport> _viewport;
     osg::ref_ptr<osgUtil::RenderStage> _stage;
-    osg::ref_ptr<CompensatingCullVisitor> _visitor = new CompensatingCullVisitor;
     osg::ref_ptr<osg::StateSet> _state = new osg::StateSet;
     osg::ref_ptr<osg::StateSet> _sky = new osg::StateSet;
     osg::ref_ptr<osg::StateSet> _mirroredSky = new osg::StateSet;
@@ -163,23 +155,46 @@ void setFrame(osg::StateSet& state, const std::string& prefix, const PanoramaFra
         state.getOrCreateUniform(prefix + name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
 }
 
-/// The heading as a share of a turn, clockwise from the north or from the y axis.
-double headingOf(const ScenePass& pass, const glsl::geofx_Panorama& panorama)
-{
-    const osg::Vec3d forward = toOsg(panorama.forward), right = toOsg(panorama.right);
-    osg::Vec3d north = pass.view.polarAxis;
-    if (!pass.view.ground.ellipsoid)
-        north = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 1.0, 0.0), *pass.outer.getModelViewMatrix());
-    return std::atan2(-(north * right), north * forward) / (2.0 * osg::PI);
-}
-
 } // namespace
 
 class PanoramaMap::Scenery::Cameras
 {
 public:
-    PerCamera<Mirror> mirrors;
-    PerCamera<StrokeCompanion> strokes;
+    /// What one traversal of a frame needs until it is drawn.
+    struct Look
+    {
+        Mirror mirror;
+        StrokeCompanion strokes;
+    };
+
+    /// One camera's. Its cull visitor may come by several times, for a camera that renders to a texture or a scene with two
+    /// parents, before anything is drawn.
+    class Looks
+    {
+    public:
+        /// That of the traversal that is on its way.
+        Look& now(osgUtil::CullVisitor& outer)
+        {
+            if (_visitor->startsFrame(outer)) _used = 0;
+            if (_used == _all.size()) _all.push_back(std::make_unique<Look>());
+            return *_all[_used];
+        }
+        /// The traversal needs its look no more until it is drawn.
+        void end() { ++_used; }
+        CompensatingCullVisitor& visitor() { return *_visitor; }
+
+        void releaseGLObjects(osg::State* state) const
+        {
+            for (const std::unique_ptr<Look>& each : _all)
+                each->mirror.releaseGLObjects(state);
+        }
+
+    private:
+        osg::ref_ptr<CompensatingCullVisitor> _visitor = new CompensatingCullVisitor;
+        std::vector<std::unique_ptr<Look>> _all;
+        std::size_t _used = 0;
+    };
+    PerCamera<Looks> looks;
 
     /// Who makes the strokes of a terrain, with the map's parameters.
     osg::ref_ptr<StrokeMaker> maker(const PanoramaMap& map, const osgGeoFX::Ground& ground)
@@ -206,17 +221,9 @@ public:
 
     osg::Geometry* square() const { return _square; }
 
-    void resizeGLObjectBuffers(unsigned int size)
-    {
-        mirrors.resizeGLObjectBuffers(size);
-        const std::lock_guard<std::mutex> lock(_mutex);
-        osg::resizeGLObjectBuffers(_skyProgram, size);
-        _square->resizeGLObjectBuffers(size);
-    }
-
     void releaseGLObjects(osg::State* state) const
     {
-        mirrors.releaseGLObjects(state);
+        looks.releaseGLObjects(state);
         const std::lock_guard<std::mutex> lock(_mutex);
         if (_skyProgram) _skyProgram->releaseGLObjects(state);
         _square->releaseGLObjects(state);
@@ -244,10 +251,12 @@ const Properties& PanoramaMap::Scenery::properties() const
 
 void PanoramaMap::Scenery::cull(const ScenePass& pass)
 {
+    Cameras::Looks& looks = _cameras->looks.of(pass.outer, pass.scene);
+    Mirror& mirror = looks.now(pass.outer).mirror;
+    looks.end();
     if (!pass.outer.getViewport()) return;
     const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(_map, pass.view);
     if (!panorama) return;
-    Mirror& mirror = _cameras->mirrors.of(pass.outer, pass.scene);
     const bool reflects = _map.getWater() && _map.getReflection() > 0.0 && _map.getPaint();
     osg::Program* skyProgram = _map.getSky() ? _cameras->skyProgram() : nullptr;
     const auto fillSky = [&](bool mirrored) -> osg::StateSet&
@@ -271,8 +280,17 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
         {
             state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4(osg::Vec4d(x, y, z, w)));
         };
-        put("geofx_skyPlace", _map.getHorizonLine(), _map.getHorizonBend(), headingOf(pass, *panorama),
-            skyAcross);
+        const auto putAll = [&](const char* name, const osg::Vec4d& v)
+        {
+            put(name, v.x(), v.y(), v.z(), v.w());
+        };
+        const PanoramaEdge edge(_map, _textures, pass.view, *pass.outer.getModelViewMatrix(), *panorama);
+        putAll("geofx_skyPlace", edge.sky);
+        putAll("geofx_skyEdgeEye", edge.eye);
+        putAll("geofx_skyEdgeWays", edge.ways);
+        putAll("geofx_skyEdgeKind", edge.kind);
+        state.setTextureAttribute(3, edge.map, forced);
+        state.getOrCreateUniform("geofx_skyEdge", osg::Uniform::SAMPLER_2D)->set(3);
         put("geofx_skyCurve", panorama->along, panorama->curve, panorama->horizon, panorama->end);
         // Where the water's ripples lie on the ground, also where there is none.
         const auto axis = [&](const char* name, const std::string& ground)
@@ -282,7 +300,8 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
             if (uniform) uniform->get(row);
             const osg::Vec3d along(osg::Vec3f(row.x(), row.y(), row.z()));
             put(name, toOsg(panorama->right) * along / panorama->across, toOsg(panorama->forward) * along,
-                static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along), 0.0);
+                static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along),
+                1.0 / panorama->across);
         };
         axis("geofx_skyAxisX", "brushX");
         axis("geofx_skyAxisY", "brushY");
@@ -325,18 +344,14 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
     state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
     state.setAttribute(mirror.viewport(), forced);
-    const auto unit = static_cast<unsigned int>(pass.units[MirrorUnit]);
-    // Another effect may have its texture now where this was.
-    for (unsigned int former = 0; former < state.getNumTextureAttributeLists(); ++former)
-        state.removeTextureAttribute(former, osg::StateAttribute::TEXTURE);
+    const auto unit = static_cast<unsigned int>(_map.getFirstUnit() + 2);
     state.setTextureAttribute(unit, _textures.noCover(), forced);
     const osg::Viewport& size = *mirror.viewport();
     state.getOrCreateUniform(pass.prefix + "window", osg::Uniform::FLOAT_VEC4)
         ->set(osg::Vec4(0.0f, 0.0f, static_cast<float>(1.0 / size.width()),
                         static_cast<float>(1.0 / size.height())));
 
-    CompensatingCullVisitor& visitor = mirror.visitor();
-    visitor.startsFrame(pass.outer);
+    CompensatingCullVisitor& visitor = looks.visitor();
     CompensatingCullVisitor::Task task;
     task.chain = chain;
     task.state = &pass.state;
@@ -362,18 +377,13 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
 DrawableCompanion* PanoramaMap::Scenery::companion(const ScenePass& pass)
 {
     if (!_map.getStrokes() || !_map.getPaint()) return nullptr;
-    StrokeCompanion& strokes = _cameras->strokes.of(pass.outer, pass.scene);
+    StrokeCompanion& strokes = _cameras->looks.of(pass.outer, pass.scene).now(pass.outer).strokes;
     return strokes.begin(pass, _map, *_cameras->maker(_map, pass.view.ground)) ? &strokes : nullptr;
 }
 
 osg::ref_ptr<TileListener> PanoramaMap::Scenery::tileListener(const osgGeoFX::Ground& ground)
 {
     return _cameras->maker(_map, ground);
-}
-
-void PanoramaMap::Scenery::resizeGLObjectBuffers(unsigned int size)
-{
-    _cameras->resizeGLObjectBuffers(size);
 }
 
 void PanoramaMap::Scenery::releaseGLObjects(osg::State* state) const

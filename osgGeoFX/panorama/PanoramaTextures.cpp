@@ -9,6 +9,8 @@
 
 #include <osg/Notify>
 
+#include <algorithm>
+
 namespace osgGeoFX
 {
 
@@ -89,11 +91,25 @@ osg::ref_ptr<osg::Texture2D> PanoramaTextures::brush()
     return _brush;
 }
 
-void PanoramaTextures::resizeGLObjectBuffers(unsigned int size)
+osg::ref_ptr<const EdgeMap> PanoramaTextures::edge(const PanoramaMap& map, const osg::Node* root)
 {
+    if (!root) return nullptr;
+    const bool seaGoesOn = map.getEdge() != PanoramaMap::HAZE;
     const std::lock_guard<std::mutex> lock(_mutex);
-    for (const auto& texture : {_noCover, _palette, _sky, _brush})
-        osg::resizeGLObjectBuffers(texture, size);
+    // Those of terrains that have gone, and of former choices.
+    const auto stale = [&](const TerrainEdge& each)
+    {
+        return !each.root.valid() || each.seaGoesOn != seaGoesOn || each.coverUnit != map.getCoverUnit();
+    };
+    _edges.erase(std::remove_if(_edges.begin(), _edges.end(), stale), _edges.end());
+    for (const TerrainEdge& each : _edges)
+        if (each.root.get() == root) return each.map;
+    std::string error;
+    const std::optional<TerrainInfo> info = TerrainInfo::read(root, error);
+    osg::ref_ptr<const EdgeMap> made;
+    if (info) made = EdgeMap::make(*root, *info, static_cast<unsigned int>(map.getCoverUnit()), seaGoesOn);
+    _edges.push_back({root, seaGoesOn, map.getCoverUnit(), made});
+    return made;
 }
 
 void PanoramaTextures::releaseGLObjects(osg::State* state) const
@@ -103,6 +119,8 @@ void PanoramaTextures::releaseGLObjects(osg::State* state) const
     {
         if (texture) texture->releaseGLObjects(state);
     }
+    for (const TerrainEdge& each : _edges)
+        if (each.map && each.map->texture()) each.map->texture()->releaseGLObjects(state);
 }
 
 } // namespace osgGeoFX

@@ -6,6 +6,7 @@
 #include <osg/NodeVisitor>
 #include <osg/UserDataContainer>
 
+#include <algorithm>
 #include <vector>
 
 namespace osgGeoFX
@@ -21,38 +22,17 @@ std::mutex& userDataMutex()
     return mutex;
 }
 
-TileStrokes* found(const osg::Geometry& terrain, const StrokeParameters& parameters,
-                   const osg::EllipsoidModel* ellipsoid)
-{
-    const osg::UserDataContainer* data = terrain.getUserDataContainer();
-    for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
-    {
-        const auto* strokes = dynamic_cast<const TileStrokes*>(data->getUserObject(i));
-        if (strokes && strokes->madeWith(parameters, ellipsoid)) return const_cast<TileStrokes*>(strokes);
-    }
-    return nullptr;
-}
-
-/// Scenes with different parameters may share a terrain; more than these and the oldest go.
-constexpr unsigned int mostSets = 2;
-
-void keep(osg::Geometry& terrain, TileStrokes& strokes)
-{
-    osg::UserDataContainer* data = terrain.getOrCreateUserDataContainer();
-    std::vector<unsigned int> former;
-    for (unsigned int i = 0; i < data->getNumUserObjects(); ++i)
-        if (dynamic_cast<const TileStrokes*>(data->getUserObject(i))) former.push_back(i);
-    if (former.size() >= mostSets) data->removeUserObject(former.front());
-    data->addUserObject(&strokes);
-}
+/// A tile that stands in more places than these loses the strokes of the first ones.
+constexpr int mostPlaces = 4;
 
 } // namespace
 
 class StrokeMaker::Furnisher : public osg::NodeVisitor
 {
 public:
-    Furnisher(const StrokeMaker& maker, const osg::Matrixd& toWorld)
-        : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _maker(maker), _toWorld(toWorld)
+    Furnisher(const StrokeMaker& maker, const osg::Matrixd& above, bool ofPager)
+        : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _maker(maker), _above(above), _toWorld(above),
+          _ofPager(ofPager)
     {
         setNodeMaskOverride(~0u);
     }
@@ -65,11 +45,20 @@ public:
         _toWorld = above;
     }
 
-    void apply(osg::Geometry& geometry) override { _maker.strokes(geometry, _toWorld); }
+    void apply(osg::Geometry& geometry) override
+    {
+        _maker.strokes(geometry, _toWorld);
+        if (!_ofPager) return;
+        const std::lock_guard<std::mutex> lock(userDataMutex());
+        TileStrokes* made = _maker.known(geometry, _toWorld, _maker.getParameters());
+        if (made) made->_above = _above;
+    }
 
 private:
     const StrokeMaker& _maker;
+    const osg::Matrixd _above;
     osg::Matrixd _toWorld;
+    const bool _ofPager;
 };
 
 StrokeMaker::StrokeMaker(const osg::EllipsoidModel* ellipsoid) : _ellipsoid(ellipsoid) {}
@@ -88,9 +77,92 @@ StrokeParameters StrokeMaker::getParameters() const
     return _parameters;
 }
 
+/// Those of a place that are there already; they are this maker's, too, from now on. Under the lock of the user data.
+TileStrokes* StrokeMaker::known(const osg::Geometry& terrain, const osg::Matrixd& toWorld,
+                                const StrokeParameters& parameters) const
+{
+    const osg::UserDataContainer* data = terrain.getUserDataContainer();
+    for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
+    {
+        auto* strokes = const_cast<TileStrokes*>(dynamic_cast<const TileStrokes*>(data->getUserObject(i)));
+        if (!strokes || !strokes->madeWith(parameters, _ellipsoid.get()) || !strokes->madeAt(toWorld))
+            continue;
+        const auto isThis = [&](const auto& each)
+        {
+            return each.get() == this;
+        };
+        if (std::none_of(strokes->_users.begin(), strokes->_users.end(), isThis))
+            strokes->_users.emplace_back(this);
+        return strokes;
+    }
+    return nullptr;
+}
+
+/// Takes strokes into a geometry, and those away that no maker wants any more. Under the lock of the user data.
+void StrokeMaker::keep(osg::Geometry& terrain, TileStrokes& strokes) const
+{
+    osg::UserDataContainer* data = terrain.getOrCreateUserDataContainer();
+    int places = 1;
+    for (unsigned int i = data->getNumUserObjects(); i-- > 0;)
+    {
+        auto* other = dynamic_cast<TileStrokes*>(data->getUserObject(i));
+        if (!other) continue;
+        // This maker's parameters have changed, or it has seen the tile in too many places.
+        const bool same = other->madeWith(strokes.parameters(), _ellipsoid.get());
+        const bool former = !same || ++places > mostPlaces;
+        const auto gone = [&](const auto& each)
+        {
+            return !each.valid() || (former && each.get() == this);
+        };
+        auto& users = other->_users;
+        users.erase(std::remove_if(users.begin(), users.end(), gone), users.end());
+        if (users.empty()) data->removeUserObject(i);
+    }
+    strokes._users.emplace_back(this);
+    data->addUserObject(&strokes);
+}
+
+/// Where the pager's strokes are of another place, there is a transform above its tiles. Under the lock of the user data.
+void StrokeMaker::learn(const osg::Geometry& terrain, const osg::Matrixd& toWorld) const
+{
+    const osg::UserDataContainer* data = terrain.getUserDataContainer();
+    for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
+    {
+        auto* strokes = const_cast<TileStrokes*>(dynamic_cast<const TileStrokes*>(data->getUserObject(i)));
+        const auto isThis = [&](const auto& each)
+        {
+            return each.get() == this;
+        };
+        if (!strokes || !strokes->_above ||
+            std::none_of(strokes->_users.begin(), strokes->_users.end(), isThis))
+            continue;
+        const osg::Matrixd above = *strokes->_above * osg::Matrixd::inverse(strokes->_toWorld) * toWorld;
+        strokes->_users.erase(std::remove_if(strokes->_users.begin(), strokes->_users.end(), isThis),
+                              strokes->_users.end());
+        const std::lock_guard<std::mutex> lock(_mutex);
+        _above = above;
+        return;
+    }
+}
+
+void StrokeMaker::tileRead(osg::Node& tile)
+{
+    osg::Matrixd above;
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        above = _above;
+    }
+    furnishBelow(tile, above, true);
+}
+
 void StrokeMaker::furnish(osg::Node& tile, const osg::Matrixd& toWorld)
 {
-    Furnisher furnisher(*this, toWorld);
+    furnishBelow(tile, toWorld, false);
+}
+
+void StrokeMaker::furnishBelow(osg::Node& tile, const osg::Matrixd& above, bool ofPager)
+{
+    Furnisher furnisher(*this, above, ofPager);
     tile.accept(furnisher);
 }
 
@@ -99,12 +171,13 @@ osg::ref_ptr<osg::Geometry> StrokeMaker::strokes(osg::Geometry& terrain, const o
     const StrokeParameters parameters = getParameters();
     {
         const std::lock_guard<std::mutex> lock(userDataMutex());
-        if (const TileStrokes* known = found(terrain, parameters, _ellipsoid.get())) return known->points();
+        if (const TileStrokes* strokes = known(terrain, toWorld, parameters)) return strokes->points();
     }
     // Not under the lock. Where two threads make the same ones, the first's are kept.
     const osg::ref_ptr<TileStrokes> made = TileStrokes::make(terrain, toWorld, parameters, _ellipsoid.get());
     const std::lock_guard<std::mutex> lock(userDataMutex());
-    if (const TileStrokes* known = found(terrain, parameters, _ellipsoid.get())) return known->points();
+    if (const TileStrokes* strokes = known(terrain, toWorld, parameters)) return strokes->points();
+    learn(terrain, toWorld);
     keep(terrain, *made);
     return made->points();
 }

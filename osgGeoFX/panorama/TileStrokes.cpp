@@ -252,6 +252,7 @@ osg::ref_ptr<TileStrokes> TileStrokes::make(const osg::Geometry& terrain, const 
                                             const osg::EllipsoidModel* ellipsoid)
 {
     osg::ref_ptr<TileStrokes> strokes = new TileStrokes(parameters, ellipsoid);
+    strokes->_toWorld = toWorld;
     const StrokeLattice lattice(parameters, ellipsoid);
     const StrokeScan scan(lattice, terrain, toWorld, parameters.strokesAlongTile, parameters.lines,
                           parameters.spacing);
@@ -270,6 +271,18 @@ bool TileStrokes::madeWith(const StrokeParameters& parameters, const osg::Ellips
     const double equator = ellipsoid ? ellipsoid->getRadiusEquator() : 0.0;
     const double polar = ellipsoid ? ellipsoid->getRadiusPolar() : 0.0;
     return parameters == _parameters && equator == _equator && polar == _polar;
+}
+
+bool TileStrokes::madeAt(const osg::Matrixd& toWorld) const
+{
+    constexpr double least = 0.01; // metres
+    if ((toWorld.getTrans() - _toWorld.getTrans()).length2() > least * least) return false;
+    // No tile is larger than the Earth.
+    constexpr double turned = 1e-9;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            if (std::abs(toWorld(row, column) - _toWorld(row, column)) > turned) return false;
+    return true;
 }
 
 } // namespace osgGeoFX

@@ -2,12 +2,17 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osg/Matrixd>
+#include <osg/observer_ptr>
 #include <osgGeoFX/Export.h>
 #include <osgGeoFX/panorama/StrokeParameters.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Geometry>
 #include <osg/ValueObject>
+
+#include <optional>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -48,15 +53,25 @@ public:
     const StrokeParameters& parameters() const { return _parameters; }
     /// Whether these are what make() would make with them.
     bool madeWith(const StrokeParameters& parameters, const osg::EllipsoidModel* ellipsoid) const;
+    /// Whether they were made for that way to the world, within a centimetre.
+    bool madeAt(const osg::Matrixd& toWorld) const;
+    const osg::Matrixd& toWorld() const { return _toWorld; }
 
 private:
+    friend class StrokeMaker;
+
     TileStrokes(const StrokeParameters& parameters, const osg::EllipsoidModel* ellipsoid);
     ~TileStrokes() override;
 
     const StrokeParameters _parameters;
+    osg::Matrixd _toWorld;
     double _equator = 0.0, _polar = 0.0; ///< radii; 0 on projected terrain
     int _finest = 0;
     osg::ref_ptr<osg::Geometry> _points;
+    std::optional<osg::Matrixd>
+        _above; ///< the pager's: the way from the tile's parent that they were made with; StrokeMaker's lock
+    std::vector<osg::observer_ptr<const osg::Referenced>>
+        _users; ///< the makers that they are kept for; StrokeMaker's lock
 };
 
 } // namespace osgGeoFX

@@ -13,9 +13,9 @@ void EffectKeys::getUsage(osg::ApplicationUsage& usage) const
 {
     usage.addKeyboardMouseBinding("F5", "Switch the effects on or off");
     usage.addKeyboardMouseBinding("F6", "Show the next effect alone");
-    usage.addKeyboardMouseBinding("( and )", "Turn the effect: horizon line, bend angle, exaggeration");
-    usage.addKeyboardMouseBinding("F7", "Toggle the deformed bounds that culling decides on");
-    usage.addKeyboardMouseBinding("F8", "Toggle the compensation of the deformation on the CPU");
+    usage.addKeyboardMouseBinding("( and )", "Turn horizon line, bend angle, exaggeration");
+    usage.addKeyboardMouseBinding("F7", "Toggle the bounds that culling decides on");
+    usage.addKeyboardMouseBinding("F8", "Toggle the CPU's part of the deformation");
 }
 
 void EffectKeys::toggleAll()

@@ -76,6 +76,21 @@ std::string kindOf(const osg::Object& object)
     return name;
 }
 
+std::string whyItDrawsNothing(const Effect& effect)
+{
+    const auto* closeUps = dynamic_cast<const CloseUps*>(&effect);
+    if (closeUps && closeUps->getNumCloseUps() == 0)
+        return "closeUps draws nothing, because it has no close-up; write it with a <closeUp> for each "
+               "region into "
+               "a .geofx scene, or call CloseUps::addCloseUp() in a program.";
+    const auto* mappings = dynamic_cast<const ProjectiveMappings*>(&effect);
+    if (mappings && mappings->getNumMappings() == 0)
+        return "projectiveMappings draws nothing, because it has no mapping; write it with a <raster> or "
+               "<mapping> for "
+               "each into a .geofx scene, or call ProjectiveMappings::addMapping() in a program.";
+    return {};
+}
+
 osg::ref_ptr<Effect> parseEffect(const std::string& text, std::string& error)
 {
     std::istringstream words(text);
@@ -99,7 +114,8 @@ osg::ref_ptr<Effect> parseEffect(const std::string& text, std::string& error)
         texts.emplace_back(word.substr(0, equals), word.substr(equals + 1));
     }
     if (!effect->setPropertyTexts(texts, error)) return nullptr;
-    return effect;
+    error = whyItDrawsNothing(*effect);
+    return error.empty() ? effect : nullptr;
 }
 
 } // namespace osgGeoFX

@@ -6,15 +6,14 @@
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/NodeFinder.h>
 #include <osgGeoFX/scene/PassEffect.h>
-#include <osgGeoFX/scene/PerCamera.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
 #include <osgGeoFX/scene/SurfaceEffect.h>
-#include <osgGeoFX/scene/TextureUnits.h>
 
 #include <osg/CoordinateSystemNode>
-#include <osg/LOD>
 #include <osg/Notify>
+#include <osg/observer_ptr>
 
 #include <algorithm>
 #include <cmath>
@@ -28,24 +27,20 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr int deepestTerrainRoot = 8;
+/// How far below the scene a coordinate system may be, and a terrain.
+constexpr std::size_t deepestSystem = 9, deepestTerrain = 32;
 
-const osg::CoordinateSystemNode* findCoordinateSystem(const osg::Node* node, int depth)
+bool isSystem(const osg::Node& node)
 {
-    const osg::Group* group = node->asGroup();
-    if (!group) return nullptr;
-    // Asked in every frame, and casts take their time: transforms are neither of the two.
-    if (!node->asTransform())
-    {
-        if (const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node)) return found;
-        if (dynamic_cast<const osg::LOD*>(node)) return nullptr;
-    }
-    if (depth == 0) return nullptr;
-    for (unsigned int i = 0; i < group->getNumChildren(); ++i)
-    {
-        if (const auto* found = findCoordinateSystem(group->getChild(i), depth - 1)) return found;
-    }
-    return nullptr;
+    // Asked for many nodes, and casts take their time: transforms are none.
+    return !node.asTransform() && dynamic_cast<const osg::CoordinateSystemNode*>(&node);
+}
+
+bool isTerrainRoot(const osg::Node& node)
+{
+    const osg::UserDataContainer* values = node.getUserDataContainer();
+    return values && values->getUserObjectIndex("geofx.format") < values->getNumUserObjects() &&
+           isSystem(node);
 }
 
 void setDefine(osg::StateSet& state, const std::string& name, bool on)
@@ -80,8 +75,6 @@ bool finite(const DeformationFrame::Uniforms& uniforms)
 struct CameraState
 {
     osg::ref_ptr<osg::StateSet> set;
-    /// Of the effects that it was made for.
-    std::shared_ptr<const TextureUnits> units;
     /// Those of each effect, in the order of its list: to look for them by name takes longer than to set them.
     std::vector<std::vector<osg::ref_ptr<osg::Uniform>>> uniforms;
 };
@@ -118,10 +111,9 @@ void fill(CameraState& state, const Frames& frames)
     }
 }
 
-CameraState createState(int mapUnit, const std::shared_ptr<const TextureUnits>& units)
+CameraState createState(int mapUnit)
 {
     CameraState created;
-    created.units = units;
     created.set = new osg::StateSet;
     osg::StateSet* const state = created.set.get();
     for (int unit = 0; unit < FixedFunctionLook::units; ++unit)
@@ -140,6 +132,7 @@ struct EffectScene::Drawing
     /// For one cull visitor of OSG: so for one camera, and one of the frames that are on their way.
     struct Camera
     {
+        osg::observer_ptr<osgUtil::CullVisitor> outer;
         osg::ref_ptr<CompensatingCullVisitor> visitor = new CompensatingCullVisitor;
         std::vector<CameraState> states; ///< one for each traversal of a frame
         std::size_t used = 0;
@@ -150,41 +143,46 @@ struct EffectScene::Drawing
         untouched->setDefine("GEOFX_DEFORMATION", osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
     }
 
-    /// The same ones as long as the list of effects and what they get stay as they are.
-    std::shared_ptr<const TextureUnits> unitsOf(const EffectProgram::Effects& effects)
+    /// The camera's own data; other threads may ask for theirs at the same time.
+    Camera& camera(osgUtil::CullVisitor& outer)
     {
-        std::shared_ptr<const TextureUnits> changed;
+        const std::lock_guard<std::mutex> lock(mutex);
+        std::unique_ptr<Camera>& found = cameras[&outer];
+        if (!found || !found->outer.valid())
         {
-            const std::lock_guard<std::mutex> lock(mutex);
-            std::vector<unsigned int> now(effects.size());
-            std::transform(effects.begin(), effects.end(), now.begin(),
-                           [](const osg::ref_ptr<Effect>& each) { return each->revision(); });
-            const bool sameList = units && effects == unitEffects;
-            if (sameList && now == unitRevisions) return units;
-            unitRevisions = now;
-            unitEffects = effects;
-            changed = std::make_shared<const TextureUnits>(TextureUnits::of(effects));
-            if (!sameList || changed->ofEffects != units->ofEffects || changed->complete != units->complete)
-                units = changed;
-            else
-                changed = units;
+            for (auto entry = cameras.begin(); entry != cameras.end();)
+            {
+                const bool gone = entry->first != &outer && !entry->second->outer.valid();
+                entry = gone ? cameras.erase(entry) : std::next(entry);
+            }
+            found = std::make_unique<Camera>();
+            found->outer = &outer;
         }
-        for (const std::string& sentence : changed->sentences)
-            sayOnce(sentence);
-        return changed;
+        return *found;
     }
 
     osg::ref_ptr<osg::Program> programFor(const EffectProgram::Effects& effects)
     {
         const std::lock_guard<std::mutex> lock(mutex);
-        if (programMade && !effectsChanged(effects)) return program;
+        const bool changed = effectsChanged(effects);
+        if (programMade && !changed) return program;
         const std::string key = EffectProgram::key(effects);
         if (!programMade || key != programKey)
         {
             programKey = key;
             programMade = true;
             program = EffectProgram::create(effects);
-            updateFunctions(effects);
+            try
+            {
+                updateFunctions(effects);
+            }
+            catch (const ShaderError&)
+            {
+                // create() has said it; the functions stay as they were.
+                program = nullptr;
+            }
+            // Tried again when something changes.
+            if (!program) programKey.clear();
         }
         return program;
     }
@@ -226,16 +224,26 @@ struct EffectScene::Drawing
         return changed;
     }
 
-    /// What a terrain says of itself. Read again only where the root has other user values than the last time.
-    std::optional<TerrainInfo> terrainOf(const osg::CoordinateSystemNode* system)
+    /// The first coordinate system below the scene; null where there is none.
+    const osg::CoordinateSystemNode* systemBelow(const EffectScene& scene)
     {
-        const osg::UserDataContainer* values = system ? system->getUserDataContainer() : nullptr;
         const std::lock_guard<std::mutex> lock(mutex);
-        if (values && values == terrainValues) return terrain;
+        return dynamic_cast<const osg::CoordinateSystemNode*>(systems.find(scene));
+    }
+
+    /// What a terrain says of itself: that whose root the coordinate system is, else the first one below the scene. Read again
+    /// only where the root has other user values than the last time.
+    std::optional<TerrainInfo> terrainOf(const EffectScene& scene, const osg::CoordinateSystemNode* system)
+    {
+        if (!system) return std::nullopt;
+        const std::lock_guard<std::mutex> lock(mutex);
+        const osg::Node* root = isTerrainRoot(*system) ? system : terrains.find(scene);
+        const osg::UserDataContainer* values = root ? root->getUserDataContainer() : nullptr;
+        if (!values) return std::nullopt;
+        if (values == terrainValues) return terrain;
         std::string error;
-        std::optional<TerrainInfo> info = TerrainInfo::read(system, error);
-        // Those of a root further below can come and go.
-        if (info && values && values->getUserObjectIndex("geofx.format") < values->getNumUserObjects())
+        const std::optional<TerrainInfo> info = TerrainInfo::read(root, error);
+        if (info)
         {
             terrainValues = values;
             terrain = info;
@@ -265,12 +273,13 @@ struct EffectScene::Drawing
     }
 
     std::mutex mutex;
-    PerCamera<Camera> cameras;
-    std::shared_ptr<const TextureUnits> units;
-    EffectProgram::Effects unitEffects; ///< those that the units were given to, and
-    std::vector<unsigned int> unitRevisions;
+    std::map<osgUtil::CullVisitor*, std::unique_ptr<Camera>> cameras;
+    NodeFinder systems = NodeFinder(&isSystem, deepestSystem);
+    NodeFinder terrains = NodeFinder(&isTerrainRoot, deepestTerrain);
     osg::ref_ptr<const osg::UserDataContainer> terrainValues;
     std::optional<TerrainInfo> terrain;
+    /// Of a globe that has no coordinate system. Always the same: effects tell by it whether the ground has changed.
+    const osg::ref_ptr<const osg::EllipsoidModel> globe = new osg::EllipsoidModel;
     EffectProgram::Effects lastEffects; ///< those that the program was made for, and
     std::vector<unsigned int> revisions;
     std::string programKey;
@@ -365,13 +374,14 @@ Ground EffectScene::ground(const osg::NodePath& above) const
         const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node);
         if (found) system = found;
     }
-    if (!system) system = findCoordinateSystem(this, deepestTerrainRoot);
+    if (!system) system = _drawing->systemBelow(*this);
     Ground ground;
     if (system && _terrainFrame != PROJECTED) ground.ellipsoid = system->getEllipsoidModel();
-    if (!ground.ellipsoid && _terrainFrame == GEOCENTRIC) ground.ellipsoid = new osg::EllipsoidModel;
-    if (const std::optional<TerrainInfo> info = _drawing->terrainOf(system))
+    if (!ground.ellipsoid && _terrainFrame == GEOCENTRIC) ground.ellipsoid = _drawing->globe;
+    if (const std::optional<TerrainInfo> info = _drawing->terrainOf(*this, system))
     {
         ground.heightsKnown = true;
+        ground.terrain = info->root;
         ground.minHeight = info->minHeight;
         ground.maxHeight = info->maxHeight;
         if (info->geocentric) ground.latitude = osg::DegreesToRadians(0.5 * (info->south + info->north));
@@ -405,27 +415,25 @@ Frames framesFor(const EffectProgram::Effects& effects, const ViewGeometry& firs
 }
 
 /// Of the effects that colour surfaces; whether there are any at work.
-bool fillSurfaces(const EffectProgram::Effects& effects, const TextureUnits& units, osg::StateSet& state,
-                  const ViewGeometry& geometry, osgUtil::CullVisitor& outer)
+bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, const ViewGeometry& geometry,
+                  osgUtil::CullVisitor& outer)
 {
     bool any = false;
     bool repainted = false;
     const osg::Viewport* viewport = outer.getViewport();
     const osg::FrameStamp* stamp = outer.getFrameStamp();
+    const SurfaceView view = {geometry,
+                              *outer.getModelViewMatrix(),
+                              viewport ? viewport->x() : 0.0,
+                              viewport ? viewport->y() : 0.0,
+                              viewport ? viewport->width() : 0.0,
+                              viewport ? viewport->height() : 0.0,
+                              stamp ? stamp->getSimulationTime() : 0.0};
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
         SurfaceEffect* surface = effects[i]->asSurfaceEffect();
         if (!surface) continue;
-        const SurfaceView view = {geometry,
-                                  *outer.getModelViewMatrix(),
-                                  viewport ? viewport->x() : 0.0,
-                                  viewport ? viewport->y() : 0.0,
-                                  viewport ? viewport->width() : 0.0,
-                                  viewport ? viewport->height() : 0.0,
-                                  stamp ? stamp->getSimulationTime() : 0.0,
-                                  units.ofEffects[i]};
-        const bool draws = effects[i]->getEnabled() && units.complete[i] &&
-                           surface->fill(state, EffectProgram::prefix(i), view);
+        const bool draws = effects[i]->getEnabled() && surface->fill(state, EffectProgram::prefix(i), view);
         setDefine(state, EffectProgram::surfaceDefine(i), draws);
         any = any || draws;
         repainted = repainted || (draws && surface->repaints());
@@ -509,16 +517,13 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     CompensatingCullVisitor::Task task;
     task.chain = chainOf(frames, view.ground);
     task.mapUnit = mapUnitOf(_effects);
-    Drawing::Camera& own = _drawing->cameras.of(outer);
+    Drawing::Camera& own = _drawing->camera(outer);
     if (own.visitor->startsFrame(outer)) own.used = 0;
-    const std::shared_ptr<const TextureUnits> units = _drawing->unitsOf(_effects);
-    if (own.used == own.states.size()) own.states.emplace_back();
-    // Made anew for other effects, which would find the uniforms and textures of the former ones under their names.
-    if (own.states[own.used].units != units) own.states[own.used] = createState(task.mapUnit, units);
+    if (own.used == own.states.size()) own.states.push_back(createState(task.mapUnit));
     osg::StateSet& state = *own.states[own.used].set;
     state.getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(task.mapUnit, 0));
     fill(own.states[own.used], frames);
-    const bool surfaces = fillSurfaces(_effects, *units, state, view, outer);
+    const bool surfaces = fillSurfaces(_effects, state, view, outer);
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
     const bool draws = surfaces || _debugBounds || !task.chain->empty();
@@ -534,7 +539,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         {
             task.program = _drawing->programFor(_effects);
             task.state = &state;
-            forPasses(outer, view, *task.chain, state, task.mapUnit, *units,
+            forPasses(outer, view, *task.chain, state, task.mapUnit,
                       [&](PassEffect& effect, const ScenePass& pass)
                       {
                           DrawableCompanion* companion = effect.companion(pass);
@@ -552,7 +557,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     }
     if (passes)
     {
-        forPasses(outer, view, *task.chain, state, task.mapUnit, *units,
+        forPasses(outer, view, *task.chain, state, task.mapUnit,
                   [](PassEffect& effect, const ScenePass& pass) { effect.cull(pass); });
     }
     return true;
@@ -560,7 +565,6 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
 
 void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view,
                             const DeformationChain& chain, osg::StateSet& state, int mapUnit,
-                            const TextureUnits& units,
                             const std::function<void(PassEffect&, const ScenePass&)>& action)
 {
     class Pass : public ScenePass
@@ -568,9 +572,9 @@ void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& vie
     public:
         Pass(EffectScene& group, osgUtil::CullVisitor& visitor, const ViewGeometry& geometry,
              const DeformationChain& deformations, osg::StateSet& stateSet, const std::string& names,
-             int unit, const std::vector<int>& textureUnits)
+             int unit)
             : ScenePass(visitor, group, geometry, deformations, stateSet, *group._drawing->untouched, names,
-                        geometry.ground.tileError, unit, group._compensation, textureUnits),
+                        geometry.ground.tileError, unit, group._compensation),
               _group(group)
         {
         }
@@ -589,9 +593,9 @@ void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& vie
     for (std::size_t i = 0; i < _effects.size(); ++i)
     {
         PassEffect* effect = _effects[i]->asPassEffect();
-        if (!effect || !_effects[i]->getEnabled() || !units.complete[i]) continue;
+        if (!effect || !_effects[i]->getEnabled()) continue;
         const std::string prefix = EffectProgram::prefix(i);
-        action(*effect, Pass(*this, outer, view, chain, state, prefix, mapUnit, units.ofEffects[i]));
+        action(*effect, Pass(*this, outer, view, chain, state, prefix, mapUnit));
     }
 }
 
@@ -622,8 +626,6 @@ void EffectScene::resizeGLObjectBuffers(unsigned int size)
             if (pass.program) pass.program->resizeGLObjectBuffers(size);
         }
     }
-    for (const osg::ref_ptr<Effect>& effect : _effects)
-        effect->resizeGLObjectBuffers(size);
     osg::Group::resizeGLObjectBuffers(size);
 }
 

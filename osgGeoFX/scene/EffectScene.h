@@ -22,7 +22,6 @@ namespace osgGeoFX
 class PassEffect;
 class ScenePass;
 class TileGuard;
-struct TextureUnits;
 
 /** The group that a program puts above its terrain to have the kit's effects.
 
@@ -115,7 +114,7 @@ private:
     struct Drawing;
     bool cull(osgUtil::CullVisitor& outer);
     void forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view, const DeformationChain& chain,
-                   osg::StateSet& state, int mapUnit, const TextureUnits& units,
+                   osg::StateSet& state, int mapUnit,
                    const std::function<void(PassEffect&, const ScenePass&)>& action);
 
     std::vector<osg::ref_ptr<Effect>> _effects;

@@ -22,6 +22,7 @@ namespace osgGeoFX
 namespace glslBuiltIns
 {
 using glm::abs;
+using glm::atan;
 using glm::ceil;
 using glm::clamp;
 using glm::cos;
@@ -69,6 +70,8 @@ using Rgba = glm::dvec4;
 
 #include <shaders/lib/painting.glsl>
 #include <shaders/lib/panorama.glsl>
+
+#include <shaders/lib/edge.glsl>
 } // namespace glsl
 
 namespace glslf
@@ -101,6 +104,8 @@ using Rgba = glm::vec4;
 
 #include <shaders/lib/painting.glsl>
 #include <shaders/lib/panorama.glsl>
+
+#include <shaders/lib/edge.glsl>
 } // namespace glslf
 
 } // namespace osgGeoFX

@@ -8,6 +8,7 @@
 #include <osg/Math>
 #include <osg/Matrixd>
 #include <osg/Vec3d>
+#include <osg/observer_ptr>
 
 namespace osgGeoFX
 {
@@ -26,6 +27,7 @@ struct OSGGEOFX_EXPORT Ground
     bool heightsKnown = false; ///< whether the database tells its heights
     /// Radians; of the database's middle where it is known, else 45° north. For what depends on the climate.
     double latitude = 0.25 * osg::PI;
+    osg::observer_ptr<const osg::Node> terrain; ///< the root of the kit's database; null for other databases
 };
 
 /** One camera over a terrain, in double and in eye space (x right, y up, −z forward, metres).

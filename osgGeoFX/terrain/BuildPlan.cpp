@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "BuildPlan.h"
 
+#include "BuilderCode.h"
+
 #include <osgGeoFX/geodata/BuildError.h>
 
 #include <algorithm>
@@ -19,6 +21,8 @@ namespace
 
 constexpr int FORMAT_VERSION = 1;
 constexpr int MAX_LEVEL = 20;
+// How far beyond its area of use a CRS may serve, degrees: a neighbouring zone, and some more.
+constexpr double CRS_MARGIN = 10.0;
 
 void require(bool condition, const std::string& sentence)
 {
@@ -70,6 +74,30 @@ bool overlaps(const Footprint& print, const TilingScheme& scheme)
     return false;
 }
 
+/// A projected CRS is of use in its own area and some way around it; at its antipode it tears a raster apart.
+void requireWithin(const GridCrs& crs, const std::string& file)
+{
+    double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
+    const char* name = nullptr;
+    if (!crs.srs.GetAreaOfUse(&west, &south, &east, &north, &name) || west < -360.0) return;
+    if (east < west) east += 360.0;
+    const Footprint print = RasterSource(file, RasterKind::Elevation).footprint(GridCrs::geocentric());
+    bool meets = print.wholeCircle;
+    for (const double turn : {-720.0, -360.0, 0.0, 360.0, 720.0})
+        meets = meets || (print.west + turn <= east + CRS_MARGIN && print.east + turn >= west - CRS_MARGIN);
+    if (meets && print.south <= north + CRS_MARGIN && print.north >= south - CRS_MARGIN) return;
+    const auto degrees = [](double value, const char* positive, const char* negative)
+    {
+        value -= 360.0 * std::round(value / 360.0);
+        return std::string(CPLSPrintf("%.4g° %s", std::abs(value), value < 0.0 ? negative : positive));
+    };
+    throw BuildError(file + ": it lies at " + degrees(0.5 * (print.west + print.east), "E", "W") + ", " +
+                     degrees(0.5 * (print.south + print.north), "N", "S") + ", where the CRS \"" +
+                     crs.srs.GetName() + "\" does not reach (it is for " + degrees(west, "E", "W") + " to " +
+                     degrees(east, "E", "W") + ", " + degrees(south, "N", "S") + " to " +
+                     degrees(north, "N", "S") + "); choose a CRS of the region, or --geocentric.");
+}
+
 std::string outside(const std::string& file)
 {
     return file + ": it lies wholly outside the elevation; give an elevation that covers the same region, or "
@@ -99,6 +127,12 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
     require(!options.treeLine || (*options.treeLine >= 0.0 && std::isfinite(*options.treeLine)),
             "The tree line must be a height in metres, 0 or greater.");
     require(options.lakeArea >= 0.0, "The least area of a lake must be 0 or greater.");
+    require(options.voidReach >= 1 && options.voidReach <= 500,
+            "How far voids are filled must be 1 to 500 samples (--void-reach is " +
+                std::to_string(options.voidReach) + ").");
+    require(options.voidSmoothing >= 0 && options.voidSmoothing <= 100,
+            "Filled voids may be smoothed 0 to 100 times (--void-smoothing is " +
+                std::to_string(options.voidSmoothing) + ").");
     require(options.landCoverTable.empty() || !options.landCover.empty(),
             options.landCoverTable + ": a land-cover table needs its raster; name it with --landcover FILE.");
 
@@ -114,12 +148,15 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
         }
     }
     chooseGrid();
+    chooseEstimate();
     chooseUnits();
     chooseFingerprint();
 }
 
 void BuildPlan::chooseGrid()
 {
+    for (const auto& file : options.dems)
+        if (!scheme.crs.geographic) requireWithin(scheme.crs, file);
     auto dems = footprints(options.dems, RasterKind::Elevation, scheme.crs);
     if (scheme.crs.geographic) gatherLongitudes(dems);
     scheme.west = scheme.south = std::numeric_limits<double>::max();
@@ -242,8 +279,7 @@ void BuildPlan::chooseUnits()
     const double texels = std::pow(static_cast<double>(scheme.texels << tiers[0][0].depth), 2.0);
     const double posts = std::pow(static_cast<double>(options.tileSize << tiers[0][0].depth) + 3.0, 2.0);
     const double unitMiB = (texels * 32.0 + posts * 28.0) / (1024.0 * 1024.0) + 64.0;
-    const int wanted =
-        options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+    const int wanted = options.threads > 0 ? options.threads : coreCount();
     const int affordable = static_cast<int>(0.75 * options.memoryMiB / unitMiB);
     threads = std::clamp(wanted, 1, std::max(1, affordable));
 }
@@ -253,7 +289,7 @@ void BuildPlan::chooseFingerprint()
     std::ostringstream text;
     text.precision(17);
     text << "osgGeoFX terrain database, format " << FORMAT_VERSION << ", content " << DATABASE_CONTENT
-         << "\n";
+         << "\nbuilder " << builderCode() << "\n";
     const auto source = [&](const char* kind, const std::string& file)
     {
         std::error_code code;
@@ -280,6 +316,11 @@ void BuildPlan::chooseFingerprint()
     if (!options.treeCover.empty()) source("tree cover", options.treeCover);
     if (options.treeLine) text << "tree line " << *options.treeLine << "\n";
     text << "lake area " << options.lakeArea << "\n";
+    if (options.voids == Voids::FILL)
+        text << "voids filled up to " << options.voidReach << " samples, smoothed " << options.voidSmoothing
+             << " times\n";
+    else
+        text << "voids kept\n";
     text << "CRS "
          << (options.epsg ? "EPSG:" + std::to_string(options.epsg) : std::string("geocentric WGS 84"))
          << "\nvertical datum " << static_cast<int>(options.vertical) << "\ntile size " << options.tileSize
@@ -287,6 +328,11 @@ void BuildPlan::chooseFingerprint()
          << "\ntexel error " << options.texelError << "\npixels per radian " << options.pixelsPerRadian
          << "\n";
     fingerprint = text.str();
+}
+
+int coreCount()
+{
+    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 TileFacts& BuildPlan::fact(const TileKey& key)
@@ -317,8 +363,7 @@ double BuildPlan::skirt(const TileKey& key, int side) const
     const bool outer[] = {key.y == 0, scheme.firstColumn(key) + width >= scheme.lastColumn,
                           scheme.firstRow(key) + width >= scheme.lastRow, key.x == 0};
     // But the globe's eastern and western end are one line, with tiles of all levels on both sides.
-    const bool seam =
-        outer[side] && scheme.crs.geographic && scheme.east - scheme.west > 360.0 - 1e-9 && side % 2 == 1;
+    const bool seam = outer[side] && scheme.wholeCircle() && side % 2 == 1;
     if (outer[side] && !seam) return 0.0;
 
     // Which neighbour stands on the other side is up to the camera and the pager: any from the coarsest level on
@@ -355,6 +400,12 @@ int BuildPlan::validRows(const Unit& unit) const
     return std::min(unit.span() * scheme.intervals,
                     (scheme.lastRow - scheme.firstRow(unit.root) + step - 1) / step) +
            1;
+}
+
+Lattice BuildPlan::postsWithApron(const Unit& unit) const
+{
+    return scheme.lattice(scheme.firstColumn(unit.root) - 1, scheme.firstRow(unit.root) - 1, 1.0,
+                          validColumns(unit) + 2, validRows(unit) + 2);
 }
 
 std::string BuildPlan::tileFile(const TileKey& parent) const

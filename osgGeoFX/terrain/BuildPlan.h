@@ -6,6 +6,7 @@
 #include "GroundRaster.h"
 #include "HeightGrid.h"
 #include "TilingScheme.h"
+#include "VoidRaster.h"
 
 #include <osgGeoFX/geodata/LandCoverTable.h>
 
@@ -26,7 +27,16 @@ struct TileFacts
     float rootError = 0.0f;  ///< of a unit's root: what its own posts miss of the finest heights, metres
     float error = 0.0f;      ///< bound of the vertical distance between its mesh and the finest one, metres
     float skirtBelow = 0.0f; ///< the deepest skirt of the tile and all below it, metres
-    std::int32_t any = 0;    ///< it has at least one post with data
+    std::int32_t voids =
+        0; ///< of a unit's root: its posts lack heights within a raster's rectangle (VoidState)
+    std::int32_t any = 0; ///< it has at least one post with data
+
+    enum VoidState : std::int32_t
+    {
+        NO_VOIDS,
+        HAS_VOIDS,
+        FILLED_VOIDS ///< what can be filled is
+    };
 };
 
 /// A square block of tiles that one worker builds at a time: `root` and the `depth` levels below it. Its arrays
@@ -60,8 +70,10 @@ public:
     /// The widest spacing of the raster of shores that loses none of its sources, in the grid's CRS.
     double groundStepX = 0.0, groundStepY = 0.0;
     std::shared_ptr<const GroundRaster> ground; ///< from the ground pass on
+    std::shared_ptr<const VoidRaster> voids;    ///< null until the voids are filled, and where there are none
     std::string fingerprint;                    ///< what the database's bytes depend on, in words
     int threads = 1;
+    BuildEstimate estimate;
 
     /// By level, row by row from the south.
     std::vector<std::vector<TileFacts>> facts;
@@ -76,6 +88,8 @@ public:
     /// Points of a unit's lattice that lie on the extent; those beyond repeat the last of them.
     int validColumns(const Unit& unit) const;
     int validRows(const Unit& unit) const;
+    /// The posts of a unit of tier 0 that lie on the extent, with one more on each side.
+    Lattice postsWithApron(const Unit& unit) const;
 
     std::string tileFile(const TileKey& parent) const; ///< the file that holds the children of `parent`
     std::string workFile(const char* pass, const Unit& unit) const;
@@ -88,11 +102,18 @@ public:
 
 private:
     void chooseGrid();
+    void chooseEstimate();
     void chooseUnits();
     void chooseFingerprint();
     std::array<const LandCoverClass*, 256> _classByValue{};
     std::mutex _progressMutex;
 };
+
+/// The machine's cores, at least 1.
+int coreCount();
+
+/// "12 MB" of a number of bytes.
+std::string sizeInWords(double bytes);
 
 /// The rasters of a plan, opened for one worker.
 class RasterStack
@@ -103,8 +124,15 @@ public:
     /// Heights on a lattice, metres; NaN where there are none.
     std::vector<float> heights(const Lattice& lattice);
 
-    /// The same as the files have them, not moved to the ellipsoid: level water is level, the sea at 0.
-    std::vector<float> heightsAboveSea(const Lattice& lattice);
+    /// The same as the files have them, not moved to the ellipsoid: level water is level, the sea at 0. Voids are filled as
+    /// soon as the plan knows how; `filled` gets a byte for each point then, 1 where that is so.
+    std::vector<float> heightsAboveSea(const Lattice& lattice, std::vector<unsigned char>* filled = nullptr);
+
+    /// The same without filled voids.
+    std::vector<float> measuredHeights(const Lattice& lattice);
+
+    /// For each point 1 where it has a height or lies within the rectangle of a raster that has none there.
+    std::vector<unsigned char> covered(const Lattice& lattice, const std::vector<float>& heights);
 
     /// Classes on a lattice; 0 where there are none. Empty without land cover.
     std::vector<unsigned char> classes(const Lattice& lattice);

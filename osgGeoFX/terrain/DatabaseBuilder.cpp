@@ -99,6 +99,20 @@ bool prepareFolder(const BuildPlan& plan)
     return false;
 }
 
+double filledShare(const BuildPlan& plan)
+{
+    if (!plan.voids || plan.voids->filledPosts() == 0) return 0.0;
+    const auto filled = static_cast<double>(plan.voids->filledPosts());
+    return filled / (filled + static_cast<double>(plan.voids->dataPosts()));
+}
+
+double openShare(const BuildPlan& plan)
+{
+    if (!plan.voids) return 0.0;
+    return static_cast<double>(plan.voids->openPosts()) /
+           ((plan.scheme.lastColumn + 1.0) * (plan.scheme.lastRow + 1.0));
+}
+
 osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const TilePassResult& result)
 {
     char* wkt = nullptr;
@@ -123,6 +137,18 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
     root->setUserValue("geofx.levels", plan.scheme.finestLevel + 1);
     root->setUserValue("geofx.tileCells", leastCells(plan.scheme.intervals));
     root->setUserValue("geofx.tiles", static_cast<double>(result.tiles));
+    root->setUserValue("geofx.voids", std::string(plan.options.voids == Voids::FILL ? "filled" : "kept"));
+    root->setUserValue("geofx.filledShare", filledShare(plan));
+    root->setUserValue("geofx.openShare", openShare(plan));
+    if (plan.voids && plan.voids->filledPosts() > 0)
+    {
+        // An array and not an image: of an image in the user data OSG writes everything but the pixels.
+        const std::vector<unsigned char>& cells = plan.voids->mask();
+        osg::ref_ptr<osg::UByteArray> mask = new osg::UByteArray(cells.begin(), cells.end());
+        mask->setName("geofx.filledMask");
+        root->getOrCreateUserDataContainer()->addUserObject(mask);
+        root->setUserValue("geofx.filledMaskColumns", plan.voids->maskColumns());
+    }
     root->setUserValue("geofx.vertical", std::string(vertical[static_cast<int>(plan.options.vertical)]));
     if (!plan.options.landCoverTable.empty())
         root->setUserValue("geofx.landCoverTable", landCoverTableText(plan.options.landCoverTable));
@@ -157,6 +183,8 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
             throw BuildError(summary.file +
                              ": the finished database cannot be read; build again without --resume.");
         summary.tiles = summary.tilesReused = static_cast<std::uint64_t>(tiles);
+        root->getUserValue("geofx.filledShare", summary.filledShare);
+        root->getUserValue("geofx.openShare", summary.openShare);
     }
     else
     {
@@ -166,6 +194,8 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
         writeNodeAtomically(*createRoot(plan, result), summary.file);
         summary.tiles = result.tiles;
         summary.tilesReused = result.tilesReused;
+        summary.filledShare = filledShare(plan);
+        summary.openShare = openShare(plan);
     }
     std::error_code code;
     fs::remove_all(plan.workFolder(), code); // what could not be removed does no harm

@@ -15,7 +15,7 @@ namespace osgGeoFX
 {
 
 /// Counts what builders put into databases of one format: older ones are still read, but have less in them.
-constexpr int DATABASE_CONTENT = 3;
+constexpr int DATABASE_CONTENT = 4;
 
 /// How the heights of a DEM are to be understood.
 enum class VerticalDatum
@@ -23,6 +23,13 @@ enum class VerticalDatum
     None,      ///< used as they are: the zero of the DEM is the zero of the database (the default)
     Ellipsoid, ///< metres above the WGS 84 ellipsoid, used as they are
     Egm96      ///< metres above the EGM96 geoid (mean sea level); moved to the ellipsoid by PROJ's grid
+};
+
+/// What becomes of voids: places inside the elevation that have none, such as SRTM's steep slopes and lakes.
+enum class Voids
+{
+    FILL, ///< they get heights from those around them
+    KEEP  ///< they are holes in the terrain
 };
 
 /** What a database is built from and how.
@@ -37,6 +44,11 @@ struct BuildOptions
     std::string treeCover;            ///< raster of the ground's share under trees, percent; empty for none
     int epsg = 0;                     ///< projected database in this CRS; 0 for a geocentric one (WGS 84)
     VerticalDatum vertical = VerticalDatum::None;
+    Voids voids = Voids::FILL;
+    /// How far from the data voids are filled, samples of the elevation, 1…500: where a square of twice as many on a side fits
+    /// into one, it counts as left out, and stays.
+    int voidReach = 100;
+    int voidSmoothing = 10; ///< how often filled heights become means of those around them, 0…100
     /// Metres above the sea up to which trees are likely where no raster tells; nothing for a line by latitude, from
     /// 3,800 m up to 25° down to 0 at 70°.
     std::optional<double> treeLine;
@@ -57,15 +69,32 @@ struct BuildOptions
     bool resume = false;  ///< continue a build of the same options that was interrupted
 };
 
+/** What a build will take, before it has begun. Samples and levels are exact, tiles an upper bound; the rest is about right for
+    terrain of the usual kind: a plain takes a third of the disk, noise twice as much. */
+struct BuildEstimate
+{
+    std::uint64_t samples = 0;   ///< grid posts of the finest level
+    std::uint64_t tiles = 0;     ///< of all levels
+    int levels = 0;              ///< levels of detail
+    std::uint64_t bytes = 0;     ///< of the database
+    std::uint64_t workBytes = 0; ///< of work files, which the end of the build removes
+    double seconds = 0.0;        ///< on a machine like those of today, if it has nothing else to do
+
+    /// All of it in a line, without a full stop.
+    OSGGEOFXDATA_EXPORT std::string text() const;
+};
+
 /// Figures of a finished build.
 struct BuildSummary
 {
-    std::uint64_t tiles = 0;           ///< tiles with geometry, all levels
-    std::uint64_t tilesReused = 0;     ///< of these, taken over from an interrupted build
-    int levels = 0;                    ///< levels of detail
-    std::uint64_t samples = 0;         ///< grid posts of the finest level
-    std::uint64_t bytes = 0;           ///< size of the database on disk
-    double seconds = 0.0;              ///< wall-clock time
+    std::uint64_t tiles = 0;       ///< tiles with geometry, all levels
+    std::uint64_t tilesReused = 0; ///< of these, taken over from an interrupted build
+    int levels = 0;                ///< levels of detail
+    std::uint64_t samples = 0;     ///< grid posts of the finest level
+    double filledShare = 0.0;      ///< of the posts that have a height, those in filled voids, 0…1
+    double openShare = 0.0;        ///< of all posts, those in voids that were too large to be filled, 0…1
+    std::uint64_t bytes = 0;       ///< size of the database on disk
+    double seconds = 0.0;          ///< wall-clock time
     std::uint64_t peakMemoryBytes = 0; ///< largest resident size of the process
     std::string file;                  ///< the file to open: OUTPUT/terrain.osgb
 };
@@ -73,6 +102,10 @@ struct BuildSummary
 /// Called from any worker, never from two at once: work units done and in all, and what is being done.
 /// Return false to cancel; the build then throws BuildError and can be resumed.
 using BuildProgress = std::function<bool(std::uint64_t done, std::uint64_t total, const std::string& phase)>;
+
+/** What buildDatabase() would take, from the rasters' headers; writes nothing. Throws BuildError for what buildDatabase() would
+    refuse: also for a terrain that the disk of the output folder cannot hold. Safe to call from any thread. */
+OSGGEOFXDATA_EXPORT BuildEstimate estimateBuild(const BuildOptions& options);
 
 /** Builds a paged terrain database from rasters.
 

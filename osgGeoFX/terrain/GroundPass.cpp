@@ -53,7 +53,7 @@ private:
     CellMetres _metres;
     std::vector<double> _latitudes; ///< by row, degrees
     CellMask _water, _classed;      ///< of land cover; all else goes by the heights
-    CellMask _lakes;
+    CellMask _lakes, _filled;
     RowFile _heights, _cells;
     std::vector<float> _deepest; ///< by strip, in water; metres above the sea
     bool _allClassed = true, _depths = false;
@@ -67,7 +67,7 @@ std::string workFile(const BuildPlan& plan, const char* name)
 GroundPass::GroundPass(BuildPlan& plan)
     : _plan(plan), _size(GroundRaster::sizeFor(plan)), _columns(static_cast<std::size_t>(_size.columns)),
       _water(_size.columns, _size.rows), _classed(_size.columns, _size.rows),
-      _lakes(_size.columns, _size.rows),
+      _lakes(_size.columns, _size.rows), _filled(_size.columns, _size.rows),
       _heights(workFile(plan, "heights"), _columns * sizeof(float), RowFile::Mode::CREATE),
       _cells(workFile(plan, "cells"), _columns * sizeof(GroundCell), RowFile::Mode::CREATE)
 {
@@ -89,7 +89,7 @@ GroundPass::GroundPass(BuildPlan& plan)
         if (toGeographic && !toGeographic->Transform(1, &x, &latitude, nullptr, &success)) latitude = 0.0;
         _latitudes.push_back(latitude);
     }
-    _metres.wholeCircle = scheme.crs.geographic && scheme.east - scheme.west > 360.0 - 1e-9;
+    _metres.wholeCircle = scheme.wholeCircle();
 }
 
 double GroundPass::treeLine(int row) const
@@ -113,7 +113,8 @@ void GroundPass::sampleStrip(RasterStack& rasters, int firstRow, int rowCount)
         return result;
     };
     HeightGrid heights(_size.columns + 2, rowCount + 2);
-    heights.values = rasters.heightsAboveSea(lattice(1));
+    std::vector<unsigned char> filled;
+    heights.values = rasters.heightsAboveSea(lattice(1), &filled);
     // A sample of the sea beside land is off by what its place was rounded.
     for (float& height : heights.values)
         if (std::abs(height) < 1e-3f) height = 0.0f;
@@ -133,6 +134,8 @@ void GroundPass::sampleStrip(RasterStack& rasters, int firstRow, int rowCount)
                 if (std::isnan(before) || std::isnan(after)) return 0.0;
                 return static_cast<double>(after - before) / (2.0 * step);
             };
+            if (filled[static_cast<std::size_t>(j + 1) * (_columns + 2) + static_cast<std::size_t>(i) + 1])
+                _filled.set(i, row);
             GroundCell cell;
             if (!std::isnan(here))
             {
@@ -170,10 +173,13 @@ void GroundPass::findWater()
     }
     WaterFinder finder(_size.columns, std::move(areas), _plan.options.lakeArea);
     std::vector<float> heights(_columns);
+    std::vector<bool> measured(_columns);
     for (int row = 0; row < _size.rows; ++row)
     {
         _heights.read(row, heights.data());
-        finder.add(heights);
+        for (int i = 0; i < _size.columns; ++i)
+            measured[static_cast<std::size_t>(i)] = !_filled.at(i, row);
+        finder.add(heights, measured);
     }
     for (int row = _size.rows - 1; row >= 0; --row)
     {

@@ -155,18 +155,35 @@ void writeGrid(const BuildPlan& plan, const char* name, const Unit& unit, const 
     writeFileAtomically(plan.workFile(name, unit), writer.bytes().data(), writer.bytes().size());
 }
 
+/// Whether any of the posts lacks a height where a raster should have one.
+bool lacksHeights(RasterStack& rasters, const Lattice& lattice, const HeightGrid& heights)
+{
+    const auto isMissing = [](float height)
+    {
+        return std::isnan(height);
+    };
+    if (std::none_of(heights.values.begin(), heights.values.end(), isMissing)) return false;
+    const std::vector<unsigned char> covered = rasters.covered(lattice, heights.values);
+    for (std::size_t i = 0; i < covered.size(); ++i)
+        if (covered[i] && isMissing(heights.values[i])) return true;
+    return false;
+}
+
 void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
 {
     const TilingScheme& scheme = plan.scheme;
     HeightGrid grid(unit.span() * scheme.intervals + 1, unit.span() * scheme.intervals + 1);
+    TileFacts::VoidState voids = TileFacts::NO_VOIDS;
     if (scheme.exists(unit.root))
     {
-        const int column = scheme.firstColumn(unit.root), row = scheme.firstRow(unit.root);
-        const int validColumns = std::min(grid.columns, scheme.lastColumn - column + 1);
-        const int validRows = std::min(grid.rows, scheme.lastRow - row + 1);
+        const int validColumns = plan.validColumns(unit), validRows = plan.validRows(unit);
         HeightGrid withApron(validColumns + 2, validRows + 2);
-        withApron.values =
-            rasters.heights(scheme.lattice(column - 1, row - 1, 1.0, withApron.columns, withApron.rows));
+        const Lattice lattice = plan.postsWithApron(unit);
+        withApron.values = rasters.heights(lattice);
+        if (plan.voids)
+            voids = TileFacts::FILLED_VOIDS;
+        else if (plan.options.voids == Voids::FILL && lacksHeights(rasters, lattice, withApron))
+            voids = TileFacts::HAS_VOIDS;
         writeGrid(plan, "heights", unit, withApron);
         for (int j = 0; j < validRows; ++j)
             for (int i = 0; i < validColumns; ++i)
@@ -174,6 +191,7 @@ void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
         extendBeyond(grid.values, grid.columns, grid.rows, 1, validColumns, validRows);
     }
     settleFacts(plan, unit, grid);
+    plan.fact(unit.root).voids = voids;
     if (plan.fact(unit.root).any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
 }
 
@@ -220,17 +238,22 @@ HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit)
 void runHeightPass(BuildPlan& plan)
 {
     std::vector<std::unique_ptr<RasterStack>> rasters(static_cast<std::size_t>(plan.threads));
+    const auto sample = [&](int worker, const Unit& unit)
+    {
+        auto& stack = rasters[static_cast<std::size_t>(worker)];
+        if (!stack) stack = std::make_unique<RasterStack>(plan);
+        sampleUnit(plan, unit, *stack);
+    };
     for (const auto& units : plan.tiers)
+    {
         runOnWorkers(plan.threads, units.size(),
                      [&](int worker, std::size_t index)
                      {
                          const Unit& unit = units[index];
                          if (!plan.options.resume || !loadFacts(plan, unit))
                          {
-                             auto& stack = rasters[static_cast<std::size_t>(worker)];
-                             if (unit.tier == 0 && !stack) stack = std::make_unique<RasterStack>(plan);
                              if (unit.tier == 0)
-                                 sampleUnit(plan, unit, *stack);
+                                 sample(worker, unit);
                              else
                                  gatherUnit(plan, unit);
                              // Written last: a unit with facts is a unit that is done.
@@ -238,6 +261,29 @@ void runHeightPass(BuildPlan& plan)
                          }
                          plan.advance("heights");
                      });
+        if (&units != &plan.tiers.front()) continue;
+
+        const auto lacks = [&](const Unit& unit)
+        {
+            return plan.fact(unit.root).voids != TileFacts::NO_VOIDS;
+        };
+        const auto lacking = static_cast<std::uint64_t>(std::count_if(units.begin(), units.end(), lacks));
+        if (lacking == 0) continue;
+        plan.unitsTotal += voidSteps(plan) + lacking;
+        fillVoids(plan);
+        runOnWorkers(plan.threads, units.size(),
+                     [&](int worker, std::size_t index)
+                     {
+                         const Unit& unit = units[index];
+                         if (!lacks(unit)) return;
+                         if (plan.fact(unit.root).voids == TileFacts::HAS_VOIDS)
+                         {
+                             sample(worker, unit);
+                             writeFacts(plan, unit);
+                         }
+                         plan.advance("voids");
+                     });
+    }
     if (!plan.facts[0][0].any)
         throw BuildError(plan.options.dems.front() +
                          ": the elevation has no data at all; check its no-data value with gdalinfo -stats.");

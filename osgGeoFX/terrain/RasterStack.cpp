@@ -88,7 +88,26 @@ std::vector<float> RasterStack::heights(const Lattice& lattice)
     return result;
 }
 
-std::vector<float> RasterStack::heightsAboveSea(const Lattice& lattice)
+std::vector<float> RasterStack::heightsAboveSea(const Lattice& lattice, std::vector<unsigned char>* filled)
+{
+    std::vector<float> result = measuredHeights(lattice);
+    if (filled) filled->assign(result.size(), 0);
+    if (_plan.voids) _plan.voids->fill(lattice, result, filled);
+    return result;
+}
+
+std::vector<unsigned char> RasterStack::covered(const Lattice& lattice, const std::vector<float>& heights)
+{
+    std::vector<unsigned char> result;
+    result.reserve(heights.size());
+    for (const float height : heights)
+        result.push_back(std::isnan(height) ? 0 : 1);
+    for (auto& dem : _dems)
+        dem.markCovered(_plan.scheme.crs, lattice, result.data());
+    return result;
+}
+
+std::vector<float> RasterStack::measuredHeights(const Lattice& lattice)
 {
     std::vector<float> result(static_cast<std::size_t>(lattice.columns) *
                                   static_cast<std::size_t>(lattice.rows),

@@ -36,31 +36,46 @@ RowFile::~RowFile()
 
 void RowFile::write(int row, const void* data)
 {
+    write(row, 0, _rowBytes, data);
+}
+
+void RowFile::read(int row, void* data) const
+{
+    read(row, 0, _rowBytes, data);
+}
+
+void RowFile::write(int row, std::size_t first, std::size_t size, const void* data)
+{
     const char* bytes = static_cast<const char*>(data);
-    const auto start = static_cast<std::size_t>(row) * _rowBytes;
-    for (std::size_t done = 0; done < _rowBytes;)
+    const auto start = static_cast<std::size_t>(row) * _rowBytes + first;
+    for (std::size_t done = 0; done < size;)
     {
         const ssize_t count =
-            pwrite(_descriptor, bytes + done, _rowBytes - done, static_cast<off_t>(start + done));
+            pwrite(_descriptor, bytes + done, size - done, static_cast<off_t>(start + done));
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) failToWrite(_path, count < 0 ? errno : ENOSPC);
         done += static_cast<std::size_t>(count);
     }
 }
 
-void RowFile::read(int row, void* data) const
+void RowFile::read(int row, std::size_t first, std::size_t size, void* data) const
 {
     char* bytes = static_cast<char*>(data);
-    const auto start = static_cast<std::size_t>(row) * _rowBytes;
-    for (std::size_t done = 0; done < _rowBytes;)
+    const auto start = static_cast<std::size_t>(row) * _rowBytes + first;
+    for (std::size_t done = 0; done < size;)
     {
-        const ssize_t count =
-            pread(_descriptor, bytes + done, _rowBytes - done, static_cast<off_t>(start + done));
+        const ssize_t count = pread(_descriptor, bytes + done, size - done, static_cast<off_t>(start + done));
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0)
             throw BuildError(_path + ": this work file is damaged; build again without --resume.");
         done += static_cast<std::size_t>(count);
     }
+}
+
+void RowFile::extend(int rows)
+{
+    const auto size = static_cast<off_t>(static_cast<std::size_t>(rows) * _rowBytes);
+    if (ftruncate(_descriptor, size) != 0) failToWrite(_path, errno);
 }
 
 void RowFile::finish(const std::string& path)

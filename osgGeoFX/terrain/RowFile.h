@@ -26,6 +26,13 @@ public:
     void write(int row, const void* data);
     void read(int row, void* data) const;
 
+    /// Part of a row: `size` bytes from the byte `first` on. Bytes that were never written are 0 where a later row was.
+    void write(int row, std::size_t first, std::size_t size, const void* data);
+    void read(int row, std::size_t first, std::size_t size, void* data) const;
+
+    /// Makes the file as long as so many rows, of which those that are never written are 0 and take no room on the disk.
+    void extend(int rows);
+
     /// Closes a file that was written, and gives it its final name: whoever finds that has all of it.
     void finish(const std::string& path);
 

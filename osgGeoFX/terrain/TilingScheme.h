@@ -34,6 +34,9 @@ struct TilingScheme
     int texels = 0;       ///< texture intervals along a finest tile's edges; texels lie on both ends
     int textureDepth = 0; ///< levels above the finest that keep the finest texels
 
+    /// All around the globe: the last column of posts lies on the first.
+    bool wholeCircle() const { return crs.geographic && east - west > 360.0 - 1e-9; }
+
     int tilesAcross(int level) const { return 1 << level; }
     int step(int level) const
     {

@@ -92,7 +92,13 @@ void WaterFinder::join(int& a, int& b, float height, int row)
 
 void WaterFinder::add(const std::vector<float>& heights)
 {
+    add(heights, std::vector<bool>(heights.size(), true));
+}
+
+void WaterFinder::add(const std::vector<float>& heights, const std::vector<bool>& measured)
+{
     _ahead = heights;
+    _aheadMeasured = measured;
     _aheadLabels.assign(static_cast<std::size_t>(_columns), NO_LABEL);
     for (std::size_t c = 0; c < _ahead.size(); ++c)
     {
@@ -105,6 +111,7 @@ void WaterFinder::add(const std::vector<float>& heights)
     ++_rows;
     _behind = std::move(_here);
     _here = std::move(_ahead);
+    _hereMeasured.swap(_aheadMeasured);
     _hereLabels.swap(_aheadLabels);
     if (static_cast<std::size_t>(_rows) < _cellArea.size()) return;
     _ahead.clear();
@@ -134,9 +141,12 @@ void WaterFinder::count(int row)
         };
         for (std::size_t c = begin; c < end; ++c)
         {
-            ++area.cells;
-            area.zeros += _here[c] == 0.0f ? 1 : 0;
-            area.squareMetres += _cellArea[static_cast<std::size_t>(row)];
+            if (_hereMeasured[c])
+            {
+                ++area.cells;
+                area.zeros += _here[c] == 0.0f ? 1 : 0;
+                area.squareMetres += _cellArea[static_cast<std::size_t>(row)];
+            }
             if (!_behind.empty()) look(_here[c], _behind[c]);
             if (!_ahead.empty()) goesOn = look(_here[c], _ahead[c]) || goesOn;
         }
@@ -166,6 +176,7 @@ GroundKind WaterFinder::groundOf(const Area& area) const
 {
     if (std::isnan(area.height))
         return 3 * area.lowRim >= std::max<std::int64_t>(area.rim, 1) ? GroundKind::SEA : GroundKind::LAND;
+    if (area.cells == 0) return GroundKind::LAND;
     const bool large = area.squareMetres >= _lakeArea && area.cells >= LAKE_CELLS;
     if (area.height <= 0.0f)
         return area.open || (large && 2 * area.zeros >= area.cells) ? GroundKind::SEA : GroundKind::LAND;

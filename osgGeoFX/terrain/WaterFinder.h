@@ -25,6 +25,8 @@ enum class GroundKind : unsigned char
     - those without data are sea where at least a third of the cells around them are no higher than 1 m;
     - those of one height are lakes where they have at least 32 cells and `lakeArea`, and at most a fifth of the
       cells around them, of which there must be some, lie lower: terraces and summits are level, too.
+    Cells that were not measured, such as filled voids, go with the water that they hang together with, but do not
+    make any: they count for no size, and an area of nothing else is land.
 
     Two sweeps over the rows, first add() from the first row to the last, then mark() back. Memory grows with the areas
     that one row crosses, and with the shores' bays, not with the raster. Not thread-safe. */
@@ -35,6 +37,7 @@ public:
     WaterFinder(int columns, std::vector<double> cellArea, double lakeArea);
 
     void add(const std::vector<float>& heights);
+    void add(const std::vector<float>& heights, const std::vector<bool>& measured);
 
     /// The row before the last one that was marked, at first the last row that was added.
     std::vector<GroundKind> mark(const std::vector<float>& heights);
@@ -68,6 +71,7 @@ private:
     double _lakeArea;
     int _rows = 0;                             ///< added so far
     std::vector<float> _behind, _here, _ahead; ///< three rows, the one that is counted in the middle
+    std::vector<bool> _hereMeasured, _aheadMeasured;
     std::vector<int> _hereLabels, _aheadLabels;
     std::vector<int> _parents, _free;
     std::vector<Area> _areas;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "CloseUpsLoader.h"
 
+#include <osgGeoFX/scene/EffectKinds.h>
+
 #include <osg/Math>
 
 #include <algorithm>
@@ -26,6 +28,8 @@ public:
         if (_closeUps.surfaceData) loadData(*_closeUps.surfaceData);
         for (const SceneCloseUp& closeUp : _closeUps.closeUps)
             place(closeUp);
+        const std::string fault = whyItDrawsNothing(*_closeUps.effect);
+        if (!fault.empty()) warn(_closeUps.place, fault);
     }
 
 private:
@@ -113,6 +117,9 @@ private:
                 fail(closeUp.place,
                      "the terrain is a globe; write longitudeDegrees and latitudeDegrees in the place "
                      "of centreX and centreY.");
+            if (closeUp.centre == SceneCloseUp::NOTHING)
+                fail(closeUp.place, "nothing says where the region lies, and the terrain is a globe; give "
+                                    "<region> its longitudeDegrees and latitudeDegrees.");
         }
         else if (closeUp.centre == SceneCloseUp::DEGREES)
         {
@@ -121,6 +128,11 @@ private:
                                  osg::RadiansToDegrees(region.getLatitude()));
             region.setCentre({world.x(), world.y()});
         }
+        const osg::Vec2d centre = _terrain.ellipsoid()
+                                      ? osg::Vec2d(osg::RadiansToDegrees(region.getLongitude()),
+                                                   osg::RadiansToDegrees(region.getLatitude()))
+                                      : region.getCentre();
+        _terrain.warnIfOff(closeUp.place, centre, std::hypot(region.getWidth(), region.getDepth()) / 2.0);
     }
 
     const SceneCloseUps& _closeUps;

@@ -191,6 +191,7 @@ private:
 SceneCloseUps readCloseUps(const SceneXml& xml, xmlNode* element, CloseUps& effect)
 {
     SceneCloseUps result;
+    result.place = xml.place(element);
     result.effect = &effect;
     Reader(xml, result).read(element);
     return result;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsLoader.h"
 
+#include <osgGeoFX/scene/EffectKinds.h>
+
 #include <osg/Math>
 
 #include <algorithm>
@@ -43,7 +45,8 @@ public:
     void load()
     {
         for (const SceneMappings::Layer& layer : _mappings.layers)
-            layer.layer->setImage(pictureOf(layer.file));
+            layer.layer->setImage(
+                pictureOf(layer.file, layer.layer->getKind(), _mappings.effect->getPageSide()));
         for (const SceneTable& table : _mappings.tables)
             readTable(table);
         for (const SceneMapping& mapping : _mappings.mappings)
@@ -59,6 +62,8 @@ public:
             // The origin is the first mapping's, or nobody's.
             _hasOrigin = true;
         }
+        const std::string fault = whyItDrawsNothing(_effect);
+        if (!fault.empty()) warn(_mappings.place, fault);
     }
 
 private:

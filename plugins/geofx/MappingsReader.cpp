@@ -132,6 +132,7 @@ private:
 SceneMappings readMappings(const SceneXml& xml, xmlNode* element, ProjectiveMappings& effect)
 {
     SceneMappings result;
+    result.place = xml.place(element);
     result.effect = &effect;
     result.hasOrigin = isGivenAny(element, {"originX", "originY", "longitudeDegrees", "latitudeDegrees"});
     Reader(xml, result).read(element);

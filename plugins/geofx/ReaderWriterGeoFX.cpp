@@ -4,6 +4,7 @@
 // The osgDB plugin of the scene file. It needs no GDAL: where a scene names rasters, it asks osgdb_geofxdata.
 #include "SceneFile.h"
 #include "SceneNode.h"
+#include "SceneReach.h"
 
 #include <osgGeoFX/paging/TileGuard.h>
 
@@ -13,7 +14,11 @@
 #include <osgDB/Registry>
 #include <osgDB/fstream>
 
+#include <algorithm>
 #include <exception>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -21,7 +26,12 @@ namespace osgGeoFX
 class ReaderWriterGeoFX : public osgDB::ReaderWriter
 {
 public:
-    ReaderWriterGeoFX() { supportsExtension("geofx", "osgGeoFX scene file"); }
+    ReaderWriterGeoFX()
+    {
+        supportsExtension("geofx", "osgGeoFX scene file");
+        supportsOption(allowOutside,
+                       "the scene may name files outside of its folder, addresses and data bases");
+    }
 
     const char* className() const override { return "osgGeoFX scene reader"; }
 
@@ -41,11 +51,18 @@ public:
         stream.read(text.data(), static_cast<std::streamsize>(text.size()));
         text.resize(static_cast<std::size_t>(stream.gcount()));
         // Absolute, so that what is paged later is found from any current folder.
-        SceneResult result = parseScene(text, path, osgDB::getFilePath(osgDB::getRealPath(path)));
-        if (result.scene) result.errors = missingFiles(*result.scene);
+        const std::string real = osgDB::getRealPath(path);
+        const std::string folder = osgDB::getFilePath(real);
+        SceneResult result = parseScene(text, path, folder);
+        if (result.scene) result.errors = faultsOfFiles(*result.scene, folder, consents(options));
         if (!result.errors.empty()) return failure(result.errors);
 
         std::string error;
+        const Nesting nesting(real);
+        if (nesting.tooDeep())
+            return failure({result.scene->place.message("scenes are read within each other without end, or "
+                                                        "more than 16 deep; name a database or rasters in "
+                                                        "<terrain>.")});
         ScenePath database;
         if (result.scene->database)
             database = *result.scene->database;
@@ -61,6 +78,49 @@ public:
     }
 
 private:
+    /// A scene's terrain may be a scene; which ones are being read by this thread.
+    class Nesting
+    {
+    public:
+        explicit Nesting(const std::string& file)
+            : _twice(std::find(open().begin(), open().end(), file) != open().end())
+        {
+            open().push_back(file);
+        }
+        ~Nesting() { open().pop_back(); }
+        Nesting(const Nesting&) = delete;
+        Nesting& operator=(const Nesting&) = delete;
+
+        bool tooDeep() const { return _twice || open().size() > 16; }
+
+    private:
+        static std::vector<std::string>& open()
+        {
+            static thread_local std::vector<std::string> files;
+            return files;
+        }
+        bool _twice;
+    };
+
+    static bool consents(const Options* options)
+    {
+        std::istringstream words(options ? options->getOptionString() : std::string());
+        for (std::string word; words >> word;)
+            if (word == allowOutside) return true;
+        return false;
+    }
+
+    /// Files that lie elsewhere are not even looked for.
+    static std::vector<std::string> faultsOfFiles(const SceneFile& scene, const std::string& folder,
+                                                  bool anywhere)
+    {
+        std::vector<std::string> errors;
+        if (!anywhere) errors = outsidePaths(scene, folder);
+        if (errors.empty()) errors = missingFiles(scene);
+        if (errors.empty() && !anywhere) errors = outsideSources(scene, folder);
+        return errors;
+    }
+
     static ReadResult failure(const std::vector<std::string>& errors)
     {
         std::string text;

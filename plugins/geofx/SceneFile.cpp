@@ -34,6 +34,7 @@ public:
     {
         SceneFile result;
         xmlNode* terrain = child(root, "terrain");
+        result.place = _xml.place(terrain);
         if (xmlNode* database = child(terrain, "database")) result.database = _xml.path(database, "file");
         if (xmlNode* rasterNode = child(terrain, "rasters")) result.rasters = rasters(rasterNode);
         if (xmlNode* view = child(root, "homeView")) result.homeView = homeView(view);
@@ -74,6 +75,9 @@ private:
         if (!cache.empty()) result.cache = _xml.joined(cache);
         if (srs != "geocentric") result.epsg = std::stoi(srs.substr(std::strlen("EPSG:")));
         result.vertical = attributeOf(node, "vertical");
+        result.voids = attributeOf(node, "voids");
+        result.voidReach = integer(node, "voidReach");
+        result.voidSmoothing = integer(node, "voidSmoothing");
         result.tileSize = integer(node, "tileSize");
         result.textureSize = integer(node, "textureSize");
         result.pixelError = real(node, "pixelError");
@@ -168,7 +172,7 @@ SceneResult parseScene(const std::string& text, const std::string& file, const s
     return result;
 }
 
-std::vector<std::string> missingFiles(const SceneFile& scene)
+std::vector<ScenePath> filesOf(const SceneFile& scene)
 {
     std::vector<ScenePath> paths;
     if (scene.database) paths.push_back(*scene.database);
@@ -213,8 +217,13 @@ std::vector<std::string> missingFiles(const SceneFile& scene)
         for (const ScenePanorama::Lines& lines : panorama.lines)
             paths.push_back(lines.file);
     }
+    return paths;
+}
+
+std::vector<std::string> missingFiles(const SceneFile& scene)
+{
     std::vector<std::string> errors;
-    for (const ScenePath& path : paths)
+    for (const ScenePath& path : filesOf(scene))
     {
         const std::string fault = faultOf(path.path);
         if (!fault.empty())

@@ -57,6 +57,8 @@ struct SceneRasters
     std::string cache; ///< empty: the person's cache folder
     int epsg = 0;      ///< 0: geocentric
     std::string vertical;
+    std::string voids; ///< "fill" or "keep"
+    int voidReach = 0, voidSmoothing = 0;
     int tileSize = 0, textureSize = 0;
     double pixelError = 0.0, texelError = 0.0; ///< pixels
     int memoryMiB = 0;
@@ -124,6 +126,7 @@ struct SceneMappings
         osg::ref_ptr<DataLayer> layer; ///< without its picture
         ScenePath file;
     };
+    ScenePlace place;
     osg::ref_ptr<ProjectiveMappings> effect;
     bool hasOrigin = false;
     std::vector<Layer> layers;
@@ -178,6 +181,7 @@ struct SceneCloseUp
 /// An effect with close-ups. The close-ups are in the effect, with all that needs no file and no terrain.
 struct SceneCloseUps
 {
+    ScenePlace place;
     osg::ref_ptr<CloseUps> effect;
     std::vector<SceneTable> tables;
     std::optional<SceneSurfaceData> surfaceData;
@@ -204,6 +208,7 @@ struct ScenePanorama
     All functions may be called from any thread. The effects belong to whoever has the value. */
 struct SceneFile
 {
+    ScenePlace place; ///< of <terrain>
     // One of these two.
     std::optional<ScenePath> database;
     std::optional<SceneRasters> rasters;
@@ -229,6 +234,9 @@ constexpr std::size_t largestScene = 16 * 1024 * 1024;
 
 /// Reads the text of a scene. `file` is for messages; relative paths start at `folder`. No file is opened.
 SceneResult parseScene(const std::string& text, const std::string& file, const std::string& folder);
+
+/// All files that the scene names, in its order; not the names of ready legends, nor the cache.
+std::vector<ScenePath> filesOf(const SceneFile& scene);
 
 /// One sentence for each file that the scene names and that is not there.
 std::vector<std::string> missingFiles(const SceneFile& scene);

@@ -3,16 +3,20 @@
 #include "SceneLoading.h"
 
 #include <osgGeoFX/mapping/ColorRampFile.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/ImageStream>
 #include <osg/Math>
 #include <osg/NodeVisitor>
+#include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <locale>
+#include <sstream>
 
 namespace osgGeoFX
 {
@@ -34,19 +38,11 @@ std::string wktOf(const osg::Node& terrain)
     return finder.wkt;
 }
 
-} // namespace
-
-void fail(const ScenePlace& place, const std::string& text)
+osg::ref_ptr<osg::Image> readByOsg(const std::string& file, std::string& reason)
 {
-    throw SceneFailure{place.message(text)};
-}
-
-osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file)
-{
-    std::string reason;
     try
     {
-        osgDB::ReaderWriter::ReadResult result = osgDB::Registry::instance()->readImage(file.path, nullptr);
+        osgDB::ReaderWriter::ReadResult result = osgDB::Registry::instance()->readImage(file, nullptr);
         osg::ref_ptr<osg::Image> image = result.getImage();
         // A film has no pixels before it plays.
         if (image && (image->valid() || dynamic_cast<osg::ImageStream*>(image.get()))) return image;
@@ -56,9 +52,62 @@ osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file)
     {
         reason = exception.what();
     }
-    fail(file.place, "the picture \"" + file.path + "\" cannot be read (" + reason +
-                         "); convert it to PNG, or put the folder of OSG's plugin for it on "
-                         "OSG_LIBRARY_PATH.");
+    return nullptr;
+}
+
+osg::ref_ptr<osg::Image> rasterOf(const ScenePath& file, DataLayer::Kind kind, int maxSide,
+                                  std::string& reason)
+{
+    PictureRequest request;
+    request.file = file.path;
+    request.kind = kind;
+    request.maxSide = maxSide;
+    const std::optional<std::string> fault = SceneTerrain::askIfAny("picture", &request);
+    reason = fault.value_or("");
+    if (!request.done) return nullptr;
+    if (std::max(request.width, request.height) > maxSide)
+        warn(file.place, "the picture \"" + file.path + "\" has " + std::to_string(request.width) + " × " +
+                             std::to_string(request.height) + " texels, and is reduced to " +
+                             std::to_string(maxSide) + ".");
+    return request.image;
+}
+
+} // namespace
+
+void fail(const ScenePlace& place, const std::string& text)
+{
+    throw SceneFailure{place.message(text)};
+}
+
+void warn(const ScenePlace& place, const std::string& text)
+{
+    OSG_WARN << "osgGeoFX: " << place.message(text) << std::endl;
+}
+
+osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file, DataLayer::Kind kind, int maxSide)
+{
+    PictureRequest look;
+    look.file = file.path;
+    look.look = true;
+    SceneTerrain::askIfAny("picture", &look);
+    // OSG's readers take all of it, and are not asked for more than 256 MiB.
+    constexpr double mostPixels = 8192.0 * 8192.0;
+    const bool isHuge = static_cast<double>(look.width) * static_cast<double>(look.height) > mostPixels;
+    std::string reason;
+    std::string rasterReason;
+    osg::ref_ptr<osg::Image> image;
+    // OSG's reader of TIFF knows no tiles, and says so at length.
+    const std::string extension = osgDB::getLowerCaseFileExtension(file.path);
+    const bool isTiff = extension == "tif" || extension == "tiff";
+    if (kind != DataLayer::COLOR || isHuge || isTiff) image = rasterOf(file, kind, maxSide, rasterReason);
+    if (!image && !isHuge) image = readByOsg(file.path, reason);
+    if (!image && rasterReason.empty()) image = rasterOf(file, kind, maxSide, rasterReason);
+    if (image) return image;
+    if (!rasterReason.empty()) reason += (reason.empty() ? "" : "; ") + rasterReason;
+    fail(file.place,
+         "the picture \"" + file.path + "\" cannot be read (" + reason +
+             "); convert it to PNG, or to GeoTIFF with gdal_translate, or put the folder of OSG's "
+             "plugin for it on OSG_LIBRARY_PATH.");
 }
 
 void readTable(const SceneTable& table)
@@ -104,6 +153,41 @@ void SceneTerrain::straighten(const ScenePlace& place, SceneBox& box) const
     }
 }
 
+void SceneTerrain::warnIfOff(const ScenePlace& place, const osg::Vec2d& point, double reach)
+{
+    std::string reason;
+    const std::optional<TerrainInfo> info = TerrainInfo::read(&_terrain, reason);
+    if (!info || info->geocentric != _ellipsoid.valid())
+    {
+        const osg::BoundingSphere& bound = _terrain.getBound();
+        osg::Vec3d away = worldOfMap(place, point) - osg::Vec3d(bound.center());
+        if (!_ellipsoid) away.z() = 0.0;
+        if (bound.valid() && away.length() > static_cast<double>(bound.radius()) + reach)
+            warn(place, "the region lies off the terrain, and nothing is seen of it; correct its place.");
+        return;
+    }
+    const osg::Vec2d half((info->east - info->west) / 2.0, (info->north - info->south) / 2.0);
+    osg::Vec2d away = point - osg::Vec2d(info->west, info->south) - half;
+    if (_ellipsoid) away.x() = std::remainder(away.x(), 360.0);
+    osg::Vec2d beyond(std::max(0.0, std::abs(away.x()) - half.x()),
+                      std::max(0.0, std::abs(away.y()) - half.y()));
+    if (_ellipsoid)
+    {
+        const double metres = osg::DegreesToRadians(_ellipsoid->getRadiusEquator());
+        beyond.set(beyond.x() * metres * std::cos(osg::DegreesToRadians(point.y())), beyond.y() * metres);
+    }
+    if (beyond.length() <= reach) return;
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text.precision(10);
+    text << "the region lies off the terrain, and nothing is seen of it; correct its place: the terrain "
+            "reaches "
+         << (_ellipsoid ? "from longitude " : "from x = ") << info->west << " to " << info->east
+         << (_ellipsoid ? " and from latitude " : " and from y = ") << info->south << " to " << info->north
+         << ".";
+    warn(place, text.str());
+}
+
 osg::Vec3d SceneTerrain::worldOfMap(const ScenePlace& place, const osg::Vec2d& point)
 {
     return _ellipsoid ? worldOf(place, point.x(), point.y()) : osg::Vec3d(point, 0.0);
@@ -120,12 +204,17 @@ MappingFrame SceneTerrain::frame() const
 std::string SceneTerrain::ask(const ScenePlace& place, const std::string& service, void* request,
                               const std::string& instead)
 {
+    if (const std::optional<std::string> answer = askIfAny(service, request)) return *answer;
+    fail(place,
+         "rasters are brought to their places by the OSG plugin osgdb_geofxdata, which was not found or "
+         "lacks its libraries (GDAL); put its folder on OSG_LIBRARY_PATH, or " +
+             instead + ".");
+}
+
+std::optional<std::string> SceneTerrain::askIfAny(const std::string& service, void* request)
+{
     osgDB::ReaderWriter* data = osgDB::Registry::instance()->getReaderWriterForExtension("geofxdata");
-    if (!data)
-        fail(place,
-             "rasters are brought to their places by the OSG plugin osgdb_geofxdata, which was not found or "
-             "lacks its libraries (GDAL); put its folder on OSG_LIBRARY_PATH, or " +
-                 instead + ".");
+    if (!data) return std::nullopt;
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
     options->setPluginStringData("version", GEOFX_VERSION);
     options->setPluginData("request", request);

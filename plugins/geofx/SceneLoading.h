@@ -21,8 +21,26 @@ struct SceneFailure
 
 [[noreturn]] void fail(const ScenePlace& place, const std::string& text);
 
-/// A picture of a file, or a film.
-osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file);
+/// What osgdb_geofxdata is asked for under the name "picture", and its answer: a raster's own pixels.
+struct PictureRequest
+{
+    std::string file;
+    std::optional<DataLayer::Kind> kind;
+    int maxSide = 0;
+    bool look = false; ///< without pixels
+    int width = 0;     ///< of the file
+    int height = 0;
+    osg::ref_ptr<osg::Image> image;
+    bool done = false;
+};
+
+/** The picture of a file, or a film. Colours are read by OSG, and by GDAL where OSG does not know the file, where it is a TIFF, or
+    where it is so large that it must be reduced while it is read; values and classes by GDAL, and by OSG where GDAL does not know it or is
+    not there. What GDAL reads has no more than `maxSide` texels on a side; a warning says where it had more. */
+osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file, DataLayer::Kind kind = DataLayer::COLOR,
+                                   int maxSide = 16384);
+/// A warning about a place of the scene file.
+void warn(const ScenePlace& place, const std::string& text);
 /// The colours of a file.
 void readTable(const SceneTable& table);
 
@@ -42,6 +60,8 @@ public:
     osg::Vec3d worldOf(const ScenePlace& place, double longitude, double latitude);
     /// Checks the unit of edges; on a globe, the eastern one is beyond the western one afterwards.
     void straighten(const ScenePlace& place, SceneBox& box) const;
+    /// Warns where a region about a point of the map, within so many metres of it, lies off the terrain.
+    void warnIfOff(const ScenePlace& place, const osg::Vec2d& point, double reach);
     /// Of a point of the map: degrees on a globe, else metres.
     osg::Vec3d worldOfMap(const ScenePlace& place, const osg::Vec2d& point);
     /// A frame without its origin.
@@ -50,6 +70,8 @@ public:
     /// rule.
     static std::string ask(const ScenePlace& place, const std::string& service, void* request,
                            const std::string& instead);
+    /// The same; nothing where there is no osgdb_geofxdata.
+    static std::optional<std::string> askIfAny(const std::string& service, void* request);
 
 private:
     const osg::Node& _terrain;

@@ -9,7 +9,10 @@
 #include <geofx/CloseUpsLoader.h>
 #include <geofx/MappingsLoader.h>
 #include <geofx/PanoramasLoader.h>
+#include <geofx/SceneReach.h>
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/FileSources.h>
+#include <osgGeoFX/geodata/PictureRaster.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 
@@ -27,10 +30,9 @@ public:
         supportsExtension("geofxdata", "osgGeoFX's services that need GDAL; not a file format");
         supportsOption("wkt", "for the object \"georeference\": the projected coordinate system, as WKT");
         supportsOption("rasters", "for the object \"terrain\": the rasters of a .geofx scene (plugin data)");
-        supportsOption(
-            "request",
-            "for the objects \"mappingRaster\", \"surfaceData\" and \"strokeVectors\": a raster or "
-            "vector data of a .geofx scene (plugin data)");
+        supportsOption("request", "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
+                                  "\"picture\" and \"sources\": a raster "
+                                  "or vector data of a .geofx scene (plugin data)");
         supportsOption("version", "for the objects of scenes: the version of the plugin that asks");
     }
 
@@ -43,6 +45,8 @@ public:
         if (name == "mappingRaster" && options) return mappingRaster(*options);
         if (name == "surfaceData" && options) return surfaceData(*options);
         if (name == "strokeVectors" && options) return strokeVectors(*options);
+        if (name == "picture" && options) return picture(*options);
+        if (name == "sources" && options) return sources(*options);
         return ReadResult::FILE_NOT_HANDLED;
     }
 
@@ -119,6 +123,40 @@ private:
         request->done = StrokeVectors::read(request->file, request->layer, request->kind, request->frame,
                                             request->lines, error);
         if (!request->done) return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult picture(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<PictureRequest*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        PictureRaster::Options how;
+        how.kind = request->kind;
+        if (request->maxSide > 0) how.maxSide = request->maxSide;
+        const std::optional<PictureRaster> raster = request->look
+                                                        ? PictureRaster::look(request->file, how, error)
+                                                        : PictureRaster::read(request->file, how, error);
+        if (!raster) return error;
+        request->width = raster->width;
+        request->height = raster->height;
+        request->image = raster->image;
+        request->done = true;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult sources(const Options& options)
+    {
+        const std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<SourcesRequest*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        const FileSources found = FileSources::of(request->file);
+        request->files = found.files;
+        request->service = found.service;
         return ReadResult(ReadResult::FILE_LOADED);
     }
 

@@ -5,6 +5,7 @@
 #include <osgGeoFX/terrain/ProgressLine.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/terrain/BuilderCode.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 
 #include <gdal_priv.h>
@@ -60,6 +61,9 @@ BuildOptions buildOptions(const SceneRasters& rasters)
     if (rasters.treeCover) options.treeCover = rasters.treeCover->path;
     options.epsg = rasters.epsg;
     options.vertical = datums.at(rasters.vertical);
+    options.voids = rasters.voids == "keep" ? Voids::KEEP : Voids::FILL;
+    options.voidReach = rasters.voidReach;
+    options.voidSmoothing = rasters.voidSmoothing;
     options.tileSize = rasters.tileSize;
     options.textureSize = rasters.textureSize;
     options.pixelError = rasters.pixelError;
@@ -111,11 +115,17 @@ std::string nameOf(const BuildOptions& options)
     std::ostringstream key;
     key.imbue(std::locale::classic());
     key.precision(17);
-    key << GEOFX_VERSION << "\n" << TerrainInfo::newestFormat << "\n" << DATABASE_CONTENT << "\n";
+    key << GEOFX_VERSION << "\n"
+        << TerrainInfo::newestFormat << "\n"
+        << DATABASE_CONTENT << "\n"
+        << builderCode() << "\n";
     key << options.epsg << "\n";
     key << static_cast<int>(options.vertical) << "\n"
         << options.tileSize << "\n"
         << options.textureSize << "\n";
+    key << static_cast<int>(options.voids) << "\n"
+        << options.voidReach << "\n"
+        << options.voidSmoothing << "\n";
     key << options.pixelError << "\n" << options.texelError << "\n" << options.pixelsPerRadian << "\n";
     for (const auto* files : {&options.dems, &options.imagery})
     {
@@ -188,7 +198,9 @@ std::string cachedTerrain(const SceneRasters& rasters)
     if (!fs::exists(database, code))
     {
         options.output = folder.string();
-        ProgressLine progress("osgGeoFX: building the terrain of " + rasters.place.file);
+        const std::string title = "osgGeoFX: building the terrain of " + rasters.place.file;
+        std::fprintf(stderr, "%s: %s.\n", title.c_str(), estimateBuild(options).text().c_str());
+        ProgressLine progress(title);
         buildDatabase(options, std::ref(progress));
     }
     return database.string();

@@ -5,6 +5,7 @@
 // effect's prefix.
 #pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR)
 #include "stages/panorama.water.glsl"
+#include "stages/panorama.edge.glsl"
 
 uniform sampler2D SLOT_cover;
 uniform sampler2D SLOT_palette;
@@ -21,6 +22,12 @@ uniform vec4 SLOT_window; // the viewport's corner, one over its size
 uniform vec4 SLOT_clock;  // seconds
 uniform vec4 SLOT_scale;
 uniform vec4 SLOT_curve;
+uniform sampler2D SLOT_edgeMap; // how far what is known reaches, metres
+uniform sampler2D SLOT_edgeSky;
+uniform vec4 SLOT_edgeEye;      // as in lib/edge.glsl
+uniform vec4 SLOT_edgeWays;
+uniform vec4 SLOT_edgeKind;     // whether on a globe, the middle's latitude, the width, how it is drawn
+uniform vec4 SLOT_edgePlace;    // the sky's, as in panorama.edge.glsl
 
 in vec3 SLOT_place;
 in vec4 SLOT_facing;
@@ -54,6 +61,15 @@ vec3 SLOT_wet(float shore, vec2 picture, float far)
                                               SLOT_place.y / SLOT_curve.z, far);
     return geofx_water(place, SLOT_water, SLOT_clock.x, SLOT_brush, SLOT_mirror);
 #endif
+}
+
+// How much of the ground is haze or paper.
+float SLOT_gone(float noise, float y)
+{
+    if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return 0.0;
+    geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind);
+    vec2 at = geofx_edgePlace(edge, vec2(SLOT_place.x / SLOT_scale.x, SLOT_place.y));
+    return geofx_edgeAmount(texture(SLOT_edgeMap, at).r, SLOT_edgeKind.z, noise, mix(0.3, 0.9, geofx_edgePaper(y)));
 }
 
 vec4 SLOT_colour(vec4 colour)
@@ -91,11 +107,17 @@ vec4 SLOT_colour(vec4 colour)
         painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, SLOT_facing.w, brush.z, style), light);
     if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far), wet);
     painted = geofx_atmosphere(painted, geofx_airColour(), geofx_airAmount(far, SLOT_hand.z));
+    float gone = SLOT_gone(brush.z, picture.y);
 #ifdef GEOFX_MIRROR
-    // What is below the water is not reflected, nor is water.
-    if (SLOT_place.z <= 0.0 || wet > 0.5) discard;
+    // What is below the water is not reflected, nor is water, nor what has gone.
+    if (SLOT_place.z <= 0.0 || wet > 0.5 || gone > 0.5) discard;
     return vec4(painted, clamp(SLOT_place.y / SLOT_curve.z, 0.0, 0.98));
 #else
+    if (gone > 0.0)
+    {
+        float paper = SLOT_edgeKind.w < GEOFX_EDGE_LAND ? 1.0 : 0.0;
+        painted = mix(painted, geofx_edgeColour(SLOT_edgeSky, SLOT_edgePlace, 2.0 * picture.x - 1.0, picture.y, paper), gone);
+    }
     return vec4(painted, 1.0);
 #endif
 #endif

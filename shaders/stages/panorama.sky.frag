@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Behind a panorama map's terrain: above the horizon the sky as it is painted, below it, where there is no terrain, the sea.
+// Behind a panorama map's terrain: above the horizon the sky as it is painted, below it, where there is no terrain, the sea, or haze
+// and paper where that is not known.
 // In the water the sky hangs from the horizon.
 #pragma import_defines(GEOFX_MIRROR)
 #include "stages/panorama.water.glsl"
+#include "stages/panorama.edge.glsl"
 
 uniform sampler2D geofx_sky;
 uniform sampler2D geofx_skyMirror;
@@ -16,23 +18,12 @@ uniform vec4 geofx_skyAxisX; // from x and s to the brush's picture: of a pictur
 uniform vec4 geofx_skyAxisY;
 uniform vec4 geofx_skyWater; // as in panorama.ground.frag.glsl
 uniform vec4 geofx_skyClock; // seconds, the air's strength, whether there is a reflection
+uniform sampler2D geofx_skyEdge; // how far what is known reaches: on the ground, and where there is none
+uniform vec4 geofx_skyEdgeEye;   // as in lib/edge.glsl
+uniform vec4 geofx_skyEdgeWays;
+uniform vec4 geofx_skyEdgeKind;  // whether on a globe, the middle's latitude, the width, how it is drawn
 
 in vec2 place; // -1 to 1
-
-vec3 sky(float above)
-{
-    float room = 1.0 - geofx_skyPlace.x + geofx_skyPlace.y;
-    float across = geofx_skyPlace.z + 0.5 * geofx_skyPlace.w * place.x;
-    float height = above / max(room, 0.02);
-    vec3 colour = texture(geofx_sky, vec2(across, clamp(height, 0.002, 0.998))).rgb;
-    // Higher than it is painted, the sky is even: the mean of its upper edge.
-    if (height > 0.75)
-    {
-        vec3 even = textureLod(geofx_sky, vec2(0.5, 0.95), 6.0).rgb;
-        colour = mix(colour, even, clamp(4.0 * height - 3.0, 0.0, 1.0));
-    }
-    return colour;
-}
 
 // How far away the ground is that a height of the picture above its base shows: the curve's inverse.
 float distanceAt(float rise)
@@ -42,12 +33,18 @@ float distanceAt(float rise)
     return min(rise, geofx_skyCurve.y) + width * (1.0 - sqrt(1.0 - 2.0 * bent));
 }
 
-vec3 sea(float horizonDrop)
+// What lies below a point of the picture where there is no terrain: distance away, and the place in the brush's picture.
+float groundAt(float horizonDrop, out vec2 brush)
 {
     float s = distanceAt((place.y + 1.0 + 2.0 * horizonDrop) / geofx_skyCurve.x);
+    brush = vec2(geofx_skyAxisX.x * place.x + geofx_skyAxisX.y * s + geofx_skyAxisX.z,
+                 geofx_skyAxisY.x * place.x + geofx_skyAxisY.y * s + geofx_skyAxisY.z);
+    return s;
+}
+
+vec3 sea(float s, vec2 brush)
+{
     float far = clamp(s / geofx_skyCurve.z, 0.0, 1.0);
-    vec2 brush = vec2(geofx_skyAxisX.x * place.x + geofx_skyAxisX.y * s + geofx_skyAxisX.z,
-                      geofx_skyAxisY.x * place.x + geofx_skyAxisY.y * s + geofx_skyAxisY.z);
     vec3 colour = geofx_waterBody(2.0 * geofx_skyWater.x, geofx_skyWater.x);
     if (geofx_skyClock.z > 0.5)
     {
@@ -58,17 +55,41 @@ vec3 sea(float horizonDrop)
     return geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(far, geofx_skyClock.y));
 }
 
+// How much of what lies below is not known to be sea.
+float unknown(float s, vec2 brush)
+{
+    float kind = geofx_skyEdgeKind.w;
+    if (kind != GEOFX_EDGE_MAPPED) return kind == GEOFX_EDGE_UNKNOWN || kind == GEOFX_EDGE_LAND ? 1.0 : 0.0;
+    geofx_Edge edge = geofx_edgeOf(geofx_skyEdgeEye, geofx_skyEdgeWays, geofx_skyEdgeKind);
+    vec2 at = geofx_edgePlace(edge, vec2(place.x * geofx_skyAxisX.w, s));
+    float noise = 2.0 * texture(geofx_skyBrush, brush).b - 1.0;
+    return geofx_edgeAmount(texture(geofx_skyEdge, at).g, geofx_skyEdgeKind.z, noise, 0.3);
+}
+
 void main()
 {
-    float drop = geofx_skyPlace.y * (1.0 - cos(1.5707963 * place.x));
-    float above = 0.5 * place.y + 0.5 - geofx_skyPlace.x + drop;
+    float above = geofx_skyAbove(geofx_skyPlace, place.x, 0.5 * place.y + 0.5);
 #ifdef GEOFX_MIRROR
-    gl_FragColor = vec4(sky(-above), 1.0);
+    gl_FragColor = vec4(geofx_skyColour(geofx_sky, geofx_skyPlace, place.x, -above), 1.0);
 #else
     float edge = 0.5 * fwidth(above);
     vec3 colour = vec3(0.0);
-    if (above > -edge) colour = sky(max(above, 0.0));
-    if (above < edge) colour = mix(sea(drop), colour, clamp(0.5 + 0.5 * above / edge, 0.0, 1.0));
+    if (above > -edge) colour = geofx_skyColour(geofx_sky, geofx_skyPlace, place.x, max(above, 0.0));
+    if (above < edge)
+    {
+        vec2 brush;
+        float s = groundAt(geofx_skyPlace.y * (1.0 - cos(1.5707963 * place.x)), brush);
+        float haze = unknown(s, brush);
+        vec3 below = vec3(0.0);
+        if (haze < 1.0) below = sea(s, brush);
+        if (haze > 0.0)
+        {
+            float paper = geofx_skyEdgeKind.w < GEOFX_EDGE_LAND ? 1.0 : 0.0;
+            vec3 gone = geofx_edgeColour(geofx_sky, geofx_skyPlace, place.x, 0.5 * place.y + 0.5, paper);
+            below = mix(below, gone, haze);
+        }
+        colour = mix(below, colour, clamp(0.5 + 0.5 * above / edge, 0.0, 1.0));
+    }
     gl_FragColor = vec4(colour, 1.0);
 #endif
 }

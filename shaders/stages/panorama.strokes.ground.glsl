@@ -3,11 +3,18 @@
 //
 // What a panorama map's strokes ask of the ground that they stand on, in the vertex stage. SLOT_ stands for the effect's prefix.
 #include "lib/painting.glsl"
+#include "stages/panorama.edge.glsl"
 
 uniform vec4 SLOT_viewport;
 uniform vec4 SLOT_strokeView; // without the projection: the pixels of a metre at a distance of one; else 0
 uniform vec4 SLOT_slopes;
 uniform vec4 SLOT_hand;
+uniform sampler2D SLOT_edgeMap;
+uniform sampler2D SLOT_edgeSky;
+uniform vec4 SLOT_edgeEye;
+uniform vec4 SLOT_edgeWays;
+uniform vec4 SLOT_edgeKind;
+uniform vec4 SLOT_edgePlace;
 
 vec3 SLOT_move(vec3 located, vec3 bent)
 {
@@ -37,14 +44,30 @@ float SLOT_strokeFar(vec3 position)
     return clamp(SLOT_placeOf(position).y / view.horizon, 0.0, 1.0);
 }
 
+// How much of the ground below has gone where the terrain ends.
+float SLOT_strokeGone(vec3 position)
+{
+    if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return 0.0;
+    geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind);
+    float reach = textureLod(SLOT_edgeMap, geofx_edgePlace(edge, SLOT_placeOf(position).xy), 0.0).r;
+    return geofx_edgeAmount(reach, SLOT_edgeKind.z, 0.0, 0.0);
+}
+
 float SLOT_strokeShown(vec3 position)
 {
-    if (SLOT_strokeView.x > 0.0) return 1.0;
+    // They grow sparse and small before the ground has gone.
+    float left = 1.0 - geofx_ease(SLOT_strokeGone(position), 0.1, 0.8);
+    if (SLOT_strokeView.x > 0.0) return left;
     geofx_Panorama view = SLOT_view();
-    return geofx_panoramaFade(view, SLOT_placeOf(position).y);
+    return left * geofx_panoramaFade(view, SLOT_placeOf(position).y);
 }
 
 vec3 SLOT_strokeAir(vec3 colour, vec3 position)
 {
-    return geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(SLOT_strokeFar(position), SLOT_hand.z));
+    vec3 far = geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(SLOT_strokeFar(position), SLOT_hand.z));
+    float gone = SLOT_strokeGone(position);
+    if (gone <= 0.0) return far;
+    bool map = SLOT_edgeKind.w < GEOFX_EDGE_LAND;
+    vec2 picture = map ? geofx_panoramaPicture(SLOT_view(), SLOT_placeOf(position)).xy : vec2(0.0);
+    return mix(far, geofx_edgeColour(SLOT_edgeSky, SLOT_edgePlace, picture.x, 0.5 + 0.5 * picture.y, map ? 1.0 : 0.0), gone);
 }

@@ -4,6 +4,7 @@
 // Any bytes are a scene or give sentences that say why not; what comes out as a scene keeps the schema's
 // promises.
 #include <geofx/SceneFile.h>
+#include <geofx/SceneReach.h>
 #include <osgGeoFX/scene/Effect.h>
 
 #include <cmath>
@@ -85,6 +86,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(result.scene.has_value() == result.errors.empty(), "a scene or errors");
     for (const std::string& error : result.errors)
         require(error.rfind("fuzz.geofx:", 0) == 0, "each error begins with the file");
-    if (result.scene) check(*result.scene);
+    if (result.scene)
+    {
+        check(*result.scene);
+        for (const std::string& error : osgGeoFX::outsidePaths(*result.scene, "/folder"))
+            require(error.find("--allow-outside") != std::string::npos, "the remedy for what leads out");
+    }
     return 0;
 }

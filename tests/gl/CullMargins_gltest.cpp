@@ -188,6 +188,44 @@ struct BentGrid
     osg::ref_ptr<const DeformationChain> chain;
 };
 
+/// The points just within a bent grid that reach farthest in the picture to its four sides; before the eye.
+std::vector<osg::Vec2d> tipsOf(const BentGrid& bent, const osg::Matrixd& projection)
+{
+    const auto& vertices = dynamic_cast<const osg::Vec3Array&>(*bent.grid->getVertexArray());
+    std::vector<osg::Vec2d> places;
+    for (const osg::Vec3& vertex : vertices)
+    {
+        const osg::Vec3d eye = bent.chain->deform(osg::Vec3d(vertex) * bent.view);
+        const osg::Vec3d inPicture = eye * projection;
+        const bool before = eye.z() < -0.1;
+        places.emplace_back(before ? inPicture.x() : HUGE_VAL, before ? inPicture.y() : HUGE_VAL);
+    }
+    const osg::DrawElements& corners = *bent.grid->getPrimitiveSet(0)->getDrawElements();
+    std::vector<osg::Vec2d> tips;
+    for (const osg::Vec2d& direction :
+         {osg::Vec2d(0, 1), osg::Vec2d(0, -1), osg::Vec2d(1, 0), osg::Vec2d(-1, 0)})
+    {
+        double most = -HUGE_VAL;
+        osg::Vec2d target;
+        for (unsigned int corner = 0; corner + 2 < corners.getNumIndices(); corner += 3)
+        {
+            const osg::Vec2d& a = places[corners.index(corner)];
+            const osg::Vec2d& b = places[corners.index(corner + 1)];
+            const osg::Vec2d& c = places[corners.index(corner + 2)];
+            if (!std::isfinite(a.x() + b.x() + c.x())) continue;
+            for (const osg::Vec2d& tip : {a, b, c})
+            {
+                const osg::Vec2d at = tip * 0.98 + (a + b + c) * (0.02 / 3.0);
+                if (at * direction <= most) continue;
+                most = at * direction;
+                target = at;
+            }
+        }
+        if (most > -HUGE_VAL) tips.push_back(target);
+    }
+    return tips;
+}
+
 } // namespace
 
 TEST_F(CullMargins, ACompanionIsDrawnAsFarBesideThePictureAsItReaches)
@@ -294,45 +332,47 @@ TEST_F(CullMargins, PickingHitsWhatBulgesBetweenSections)
         Random random(static_cast<std::uint64_t>(i) + 20000);
         const BentGrid bent(random, _projection);
         if (bent.chain->empty()) continue;
-        // Where each triangle is drawn, and those that reach farthest in the picture in some directions.
-        const auto& vertices = dynamic_cast<const osg::Vec3Array&>(*bent.grid->getVertexArray());
-        std::vector<osg::Vec2d> places;
-        for (const osg::Vec3& vertex : vertices)
-        {
-            const osg::Vec3d eye = bent.chain->deform(osg::Vec3d(vertex) * bent.view);
-            const osg::Vec3d inPicture = eye * _projection;
-            const bool before = eye.z() < -0.1;
-            places.emplace_back(before ? inPicture.x() : HUGE_VAL, before ? inPicture.y() : HUGE_VAL);
-        }
-        const osg::DrawElements& corners = *bent.grid->getPrimitiveSet(0)->getDrawElements();
         const DeformedView picture(*bent.scene, bent.view, _projection, WIDTH, HEIGHT);
-        for (const osg::Vec2d& direction :
-             {osg::Vec2d(0, 1), osg::Vec2d(0, -1), osg::Vec2d(1, 0), osg::Vec2d(-1, 0)})
+        for (const osg::Vec2d& tip : tipsOf(bent, _projection))
         {
-            double most = -HUGE_VAL;
-            osg::Vec2d target;
-            for (unsigned int corner = 0; corner + 2 < corners.getNumIndices(); corner += 3)
-            {
-                const osg::Vec2d& a = places[corners.index(corner)];
-                const osg::Vec2d& b = places[corners.index(corner + 1)];
-                const osg::Vec2d& c = places[corners.index(corner + 2)];
-                if (!std::isfinite(a.x() + b.x() + c.x())) continue;
-                for (const osg::Vec2d& tip : {a, b, c})
-                {
-                    // Just within the triangle.
-                    const osg::Vec2d at = tip * 0.98 + (a + b + c) * (0.02 / 3.0);
-                    if (at * direction <= most) continue;
-                    most = at * direction;
-                    target = at;
-                }
-            }
-            if (most == -HUGE_VAL) continue;
             ++hits;
-            EXPECT_TRUE(picture.pick((target.x() + 1.0) * WIDTH / 2.0, (target.y() + 1.0) * HEIGHT / 2.0))
-                << target.x() << ' ' << target.y();
+            EXPECT_TRUE(picture.pick((tip.x() + 1.0) * WIDTH / 2.0, (tip.y() + 1.0) * HEIGHT / 2.0))
+                << tip.x() << ' ' << tip.y();
         }
     }
     EXPECT_GT(hits, 2 * count);
+}
+
+TEST_F(CullMargins, WhatBulgesBeforeTheFarPlaneIsDrawn)
+{
+    const int count = fullTest() ? 3000 : 300;
+    int checked = 0;
+    for (int i = 0; i < count; ++i)
+    {
+        SCOPED_TRACE("sample " + std::to_string(i));
+        Random random(static_cast<std::uint64_t>(i));
+        const BentGrid bent(random, _projection);
+        if (bent.chain->empty()) continue;
+        double nearest = HUGE_VAL;
+        for (const osg::Vec3& vertex : dynamic_cast<const osg::Vec3Array&>(*bent.grid->getVertexArray()))
+        {
+            const osg::Vec3d eye = bent.chain->deform(osg::Vec3d(vertex) * bent.view);
+            const osg::Vec4d clip = osg::Vec4d(eye, 1.0) * _projection;
+            if (eye.z() >= 0.0 || std::abs(clip.x()) > clip.w() || std::abs(clip.y()) > clip.w()) continue;
+            nearest = std::min(nearest, -eye.z());
+        }
+        if (!std::isfinite(nearest)) continue;
+        // Near and far do not change the bend. All but what is nearest lies behind the picture.
+        const osg::Matrixd shallow = osg::Matrixd::perspective(60.0, static_cast<double>(WIDTH) / HEIGHT,
+                                                               0.5 * nearest, nearest * (1.0 + 1e-4));
+        CullHarness harness(context(), bent.scene, WIDTH, HEIGHT);
+        harness.camera().setCullingMode(osg::CullSettings::VIEW_FRUSTUM_CULLING |
+                                        osg::CullSettings::FAR_PLANE_CULLING);
+        harness.setCamera(bent.view, shallow);
+        EXPECT_EQ(harness.frame(true, false).leaves.size(), 1u) << nearest;
+        ++checked;
+    }
+    EXPECT_GT(checked, count / 2);
 }
 
 TEST_F(CullMargins, LevelsBySizeGoByTheSizeOfWhatIsStretched)

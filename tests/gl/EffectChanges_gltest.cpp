@@ -6,6 +6,9 @@
 #include <osgGeoFX/scene/PassEffect.h>
 #include <tools/CloseUpStage.h>
 #include <tools/ImageComparison.h>
+#include <tools/TempDir.h>
+
+#include <cstdlib>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -168,4 +171,70 @@ TEST_F(EffectChanges, EachPassHasAProgramOfItsOwn)
         return all;
     };
     EXPECT_NE(texts(*passes->programs[0]), texts(*passes->programs[2]));
+}
+
+// A shader file that is broken while a program runs: what was given out stays as it is, and nothing is thrown at OSG.
+TEST_F(EffectChanges, ABrokenShaderFileIsSaidAndNothingElse)
+{
+    _scene->removeEffect(_closeUps);
+    const osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->addShader(new osg::Shader(
+        osg::Shader::VERTEX,
+        "#version 330 compatibility\n"
+        "vec4 geofx_vertex(vec4 eyePosition);\n"
+        "void main()\n{\n"
+        "    gl_Position = gl_ProjectionMatrix * geofx_vertex(gl_ModelViewMatrix * gl_Vertex);\n"
+        "    gl_FrontColor = vec4(gl_Normal, 1.0);\n}\n"));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, "#version 330 compatibility\n"
+                                                              "void main() { gl_FragColor = gl_Color; }\n"));
+    _scene->addFunctions(*program);
+    _scene->getChild(0)->getOrCreateStateSet()->setAttribute(program);
+    const osg::ref_ptr<osg::Image> plain = draw();
+    const osg::ref_ptr<VerticalExaggeration> lift = new VerticalExaggeration;
+    lift->setFactor(3.0);
+    const TempDir folder;
+    folder.write("stages/functions.vert", "#version 330 compatibility\n#include \"lib/missing.glsl\"\n");
+    ASSERT_EQ(setenv("OSGGEOFX_SHADER_PATH", folder.path().c_str(), 1), 0);
+    _scene->addEffect(lift);
+    osg::ref_ptr<osg::Image> broken;
+    std::vector<std::string> said;
+    EXPECT_NO_THROW(said = watch().messagesOf([&] { broken = draw(); }));
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_NE(said.front().find("missing.glsl"), std::string::npos) << said.front();
+    ASSERT_TRUE(broken);
+    EXPECT_TRUE(same(*plain, *broken)) << "as it was before the effect came";
+    EXPECT_TRUE(same(*plain, *draw())) << "and it is not said again";
+    // Mended, and the effects change: all is well again.
+    unsetenv("OSGGEOFX_SHADER_PATH");
+    _scene->removeEffect(lift);
+    EXPECT_TRUE(same(*plain, *draw()));
+    _scene->addEffect(lift);
+    EXPECT_GT(differing(*plain, *draw()), 0.05);
+}
+
+// Tiles that are gone go wholly, arrays and states too, whatever the number of the frame.
+TEST_F(EffectChanges, NothingKeepsTheDeadAlive)
+{
+    _scene->addEffect(new BirdsEyeView);
+    for (const CloseUps::Pipeline pipeline : {CloseUps::SINGLE_PASS, CloseUps::MULTI_PASS})
+    {
+        SCOPED_TRACE(pipeline);
+        _closeUps->setPipeline(pipeline);
+        osg::ref_ptr<osg::Geometry> hills = makeHills();
+        hills->setStateSet(new osg::StateSet);
+        const osg::observer_ptr<osg::Geometry> drawable = hills;
+        const osg::observer_ptr<osg::Array> vertices = hills->getVertexArray();
+        const osg::observer_ptr<osg::StateSet> state = hills->getStateSet();
+        _scene->addChild(hills);
+        draw();
+        draw();
+        EXPECT_GT(_closeUps->statistics().closeUps, 0);
+        _scene->removeChild(hills);
+        hills = nullptr;
+        for (int frame = 0; frame < 4; ++frame)
+            draw();
+        EXPECT_FALSE(drawable.valid());
+        EXPECT_FALSE(vertices.valid());
+        EXPECT_FALSE(state.valid());
+    }
 }

@@ -3,6 +3,7 @@
 //
 // Effects in all of OSG's threading models, in several views at once, and while they are changed between frames: with the
 // real pager, and always the picture that one thread draws. Run with ThreadSanitizer, too: ./tests/run --preset tsan.
+#include <tools/GlRequired.h>
 #include <tools/ImageComparison.h>
 #include <tools/NotifyWatch.h>
 #include <tools/OahuScene.h>
@@ -16,7 +17,6 @@
 #include <osgViewer/CompositeViewer>
 
 #include <chrono>
-#include <cstdlib>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -197,8 +197,7 @@ protected:
         traits->width = traits->height = 8;
         const osg::ref_ptr<EglGraphicsContext> context = new EglGraphicsContext(traits);
         if (context->valid()) return;
-        const char* required = std::getenv("GEOFX_REQUIRE_GL");
-        if (required && std::string(required) == "1") FAIL() << context->error();
+        if (geofx::test::glIsRequired()) FAIL() << context->error();
         GTEST_SKIP() << context->error();
     }
 
@@ -299,7 +298,8 @@ TEST_P(EveryModel, DrawsTheSame)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Oahu, EveryModel, ::testing::Values("oahu", "oahu_projected"));
+INSTANTIATE_TEST_SUITE_P(Oahu, EveryModel, ::testing::Values("oahu", "oahu_projected"),
+                         [](const auto& each) { return std::string(each.param); });
 
 TEST_F(EffectThreads, ViewsShareATerrainEachWithItsEffects)
 {

@@ -11,6 +11,8 @@
 #include <tools/TempDir.h>
 #include <tools/ThreadedViews.h>
 
+#include <osg/Geometry>
+#include <osg/Texture2D>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 #include <osgDB/WriteFile>
@@ -189,6 +191,59 @@ TEST_F(PanoramaStates, MayChangeFromFrameToFrame)
     fresh->addEffect(new PanoramaMap(*_map));
     fresh->addChild(_terrain);
     EXPECT_TRUE(imagesMatch(*old, *draw(fresh)));
+}
+
+// Into a texture and onto the screen, by one cull visitor: each look has a picture in the water and strokes of its own.
+TEST_F(PanoramaStates, OneMapMayBeDrawnTwiceInAFrame)
+{
+    const osg::Camera& screen = *viewer().getCamera();
+    look(60000.0, 1.9);
+    const osg::Matrixd otherView = screen.getViewMatrix();
+    look(24000.0, 0.3);
+    const auto together = [&](const osg::ref_ptr<EffectScene>& first, const osg::ref_ptr<EffectScene>& second)
+    {
+        constexpr int width = 120, height = 75;
+        osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+        texture->setTextureSize(width, height);
+        texture->setInternalFormat(GL_RGBA);
+        texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+        osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+        camera->setRenderOrder(osg::Camera::PRE_RENDER);
+        camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+        camera->setViewport(0, 0, width, height);
+        camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        camera->setViewMatrix(otherView);
+        camera->setProjectionMatrix(screen.getProjectionMatrix());
+        camera->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
+        camera->attach(osg::Camera::COLOR_BUFFER, texture);
+        camera->addChild(second);
+        osg::ref_ptr<osg::Camera> corner = new osg::Camera;
+        corner->setRenderOrder(osg::Camera::POST_RENDER);
+        corner->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+        corner->setClearMask(GL_DEPTH_BUFFER_BIT);
+        corner->setViewport(0, 0, width, height);
+        corner->setProjectionMatrixAsOrtho2D(0, 1, 0, 1);
+        osg::ref_ptr<osg::Geometry> quad = osg::createTexturedQuadGeometry({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        quad->getOrCreateStateSet()->setTextureAttributeAndModes(0, texture);
+        corner->addChild(quad);
+        for (const auto& scene : {first, second})
+            scene->setNestedCameras(true);
+        osg::ref_ptr<osg::Group> root = new osg::Group;
+        root->addChild(camera);
+        root->addChild(first);
+        root->addChild(corner);
+        const osg::ref_ptr<osg::Image> image = draw(root);
+        // And again: what one frame kept must not lead the next one astray.
+        EXPECT_TRUE(imagesMatch(*draw(root), *image, {}, "a later frame"));
+        return image;
+    };
+    const osg::ref_ptr<EffectScene> other = new EffectScene;
+    other->addEffect(osg::clone(_map.get(), osg::CopyOp::DEEP_COPY_ALL));
+    other->addChild(_terrain);
+    const osg::ref_ptr<osg::Image> apart = together(_scene, other);
+    EXPECT_GT(differing(*apart, *draw()), 0.05);
+    // A copy of a map has strokes made anew, some soft edges of which round otherwise.
+    EXPECT_TRUE(imagesMatch(*together(_scene, _scene), *apart, {3 / 255.0f, 0.0, 3 / 255.0f}, "one map"));
 }
 
 TEST_F(PanoramaStates, OneTerrainMayHaveTwoMapsInAllThreadingModels)

@@ -3,6 +3,7 @@
 //
 // A panorama map is calm: when a camera zooms evenly, no step changes the picture much more than the others do. Tiles, strokes
 // and the brush's sizes come and go meanwhile, and must not pop.
+#include <tools/GlRequired.h>
 #include <tools/OahuScene.h>
 
 #include <gtest/gtest.h>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -59,8 +59,7 @@ TEST_P(PanoramaZoom, NoStepChangesThePictureMuchMoreThanTheOthers)
     const std::unique_ptr<SceneRenderer> renderer = SceneRenderer::create(*oahu, options, error);
     if (!renderer)
     {
-        const char* required = std::getenv("GEOFX_REQUIRE_GL");
-        if (required && std::string(required) == "1") FAIL() << error;
+        if (geofx::test::glIsRequired()) FAIL() << error;
         GTEST_SKIP() << error;
     }
 

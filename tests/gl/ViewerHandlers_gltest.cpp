@@ -120,6 +120,8 @@ TEST(ViewerProgram, SaysWhatIsWrong)
         {{}, "Name a file"},
         {{"--nonsense", "terrain.osgb"}, "--nonsense"},
         {{"--fov", "200", "terrain.osgb"}, "--fov"},
+        {{"--effect", "closeUps", "terrain.osgb"}, "closeUps draws nothing, because it has no close-up"},
+        {{"--effect", "projectiveMappings", "terrain.osgb"}, "draws nothing, because it has no mapping"},
         {{"-p", "missing.path", "terrain.osgb"}, "missing.path"},
     };
     for (const auto& [arguments, word] : cases)

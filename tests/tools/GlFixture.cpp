@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <tools/GlFixture.h>
+#include <tools/GlRequired.h>
 
-#include <cstdlib>
 #include <set>
 #include <sstream>
 
@@ -11,12 +11,6 @@ namespace geofx::test
 
 namespace
 {
-
-bool required()
-{
-    const char* value = std::getenv("GEOFX_REQUIRE_GL");
-    return value && std::string(value) == "1";
-}
 
 // Constants of GL_KHR_debug, which OSG's headers lack.
 constexpr GLenum typeError = 0x824C;
@@ -51,7 +45,7 @@ void GlFixture::SetUp()
     _context = new osgGeoFX::EglGraphicsContext(traits.get(), options);
     if (!_context->valid())
     {
-        if (required())
+        if (glIsRequired())
         {
             FAIL() << _context->error();
         }

@@ -21,7 +21,7 @@ namespace geofx::test
 
     Every message of OpenGL that tells of an error, of undefined, deprecated or unportable behaviour, or
     whose severity is medium or high, and every notice and warning of OSG fails the test at once. Without
-    a context the test fails where GEOFX_REQUIRE_GL=1 is in the environment (./tests/run), and is skipped
+    a context the test fails where GEOFX_REQUIRE_GL=1 is in the environment (under ctest), and is skipped
     elsewhere. */
 class GlFixture : public ::testing::Test
 {

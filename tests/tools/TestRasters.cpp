@@ -138,6 +138,16 @@ std::string writeRelief(const std::filesystem::path& file, int columns, int rows
         .write(file);
 }
 
+std::string writeHollow(const std::filesystem::path& file, int columns, int rows)
+{
+    GDALAllRegister();
+    const CPLStringList options = listOf({"SPARSE_OK=TRUE", "BLOCKYSIZE=512"});
+    const DatasetPtr dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+        file.c_str(), columns, rows, 1, GDT_Byte, CPLStringList(options).List()));
+    if (!dataset) throw std::runtime_error("GDAL cannot write " + file.string());
+    return file.string();
+}
+
 std::string writeCrop(const std::string& from, const std::filesystem::path& file, int column, int row,
                       int columns, int rows)
 {

@@ -56,6 +56,9 @@ double relief(double x, double y);
 std::string writeRelief(const std::filesystem::path& file, int columns, int rows, double west, double north,
                         double pixel, const std::string& crs = "EPSG:4326");
 
+/// Writes a GeoTIFF of bytes, all 0, with so many pixels that are not stored: a large raster in a small file. Returns the path.
+std::string writeHollow(const std::filesystem::path& file, int columns, int rows);
+
 /// Part of a raster file as a GeoTIFF of its own; returns the path.
 std::string writeCrop(const std::string& from, const std::filesystem::path& file, int column, int row,
                       int columns, int rows);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // The same bytes for any number of threads, any memory, and through any number of kills.
+#include <osgGeoFX/terrain/BuilderCode.h>
 #include <tools/RandomSamples.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
@@ -233,6 +234,44 @@ TEST_F(BuilderResume, ResumeOfAnotherBuildIsRefused)
     // A source that has changed since is another source.
     fs::last_write_time(_dem, fs::last_write_time(_dem) + std::chrono::seconds(5));
     EXPECT_EQ(runProgram(command("db", {"--resume"})).exitCode, 2);
+}
+
+/// What one builder has begun another must not go on with, and a cache of the one is not one of the other.
+TEST_F(BuilderResume, AnotherBuildersWorkIsNotTakenOver)
+{
+    build("db");
+    const fs::path origin = _folder / "db" / "built-from.txt";
+    std::string text = contents(_folder / "db").at("built-from.txt");
+    const std::string line = std::string("builder ") + osgGeoFX::builderCode();
+    ASSERT_EQ(line.size(), std::string("builder ").size() + 16);
+    const std::size_t place = text.find(line);
+    ASSERT_NE(place, std::string::npos) << text;
+    text[place + line.size() - 1] = text[place + line.size() - 1] == '0' ? '1' : '0';
+    std::ofstream(origin, std::ios::binary) << text;
+    const ProgramResult result = runProgram(command("db", {"--resume"}));
+    EXPECT_EQ(result.exitCode, 2);
+    EXPECT_NE(result.standardError.find("other sources or options"), std::string::npos)
+        << result.standardError;
+}
+
+/// The hash is that of the sources as they are, and another when a letter changes in one of them.
+TEST(BuilderCode, FollowsTheSources)
+{
+    const TempDir folder;
+    const std::string script = GEOFX_SOURCE_DIR "/osgGeoFX/cmake/HashSources.cmake";
+    const std::string one = folder.write("one.cpp", "int one;\n"),
+                      two = folder.write("two.cpp", "int two;\n");
+    const auto hashed = [&]
+    {
+        const ProgramResult result = runProgram({"cmake", "-DFILES=" + one + ";" + two,
+                                                 "-DOUTPUT=" + (folder / "hash.cpp").string(), "-P", script});
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        return contents(folder.path()).at("hash.cpp");
+    };
+    const std::string before = hashed();
+    EXPECT_EQ(hashed(), before);
+    folder.write("two.cpp", "int tvo;\n");
+    EXPECT_NE(hashed(), before);
 }
 
 /// A file size limit kills the program in the midst of the first file that is longer.

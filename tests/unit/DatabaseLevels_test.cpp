@@ -195,6 +195,7 @@ TEST(DatabaseLevels, RangesKeepThePixelErrorAroundHoles)
         });
     auto o = options({raster.write(folder / "dem.tif")}, folder / "db", 32604);
     o.texelError = 1e9;
+    o.voids = Voids::KEEP;
     buildDatabase(o);
     const auto shares = largestShareOfBound(o.output);
     ASSERT_GE(shares.size(), 3u);
@@ -212,6 +213,28 @@ TEST(DatabaseLevels, RangesKeepThePixelErrorWhereTheEarthIsRound)
     ASSERT_GE(shares.size(), 3u);
     for (const auto& [level, share] : shares)
         EXPECT_LE(share, 1.0) << "level " << level;
+}
+
+/// A sea has no relief, so what a tile is off by is the Earth's curve alone: between two posts, and twice as much across a cell's
+/// diagonal. The upper tier has no finer posts to measure it by, and must know.
+TEST(DatabaseLevels, RangesOfASeaAllowForTheEarthsCurve)
+{
+    const TempDir folder;
+    const auto sea = TestRaster(240, 120)
+                         .placed(-30.0, 15.0, 0.25, 0.25)
+                         .crs("EPSG:4326")
+                         .fill([](int, int, int) { return 0.0; })
+                         .write(folder / "sea.tif");
+    auto o = options({sea}, folder / "db");
+    o.texelError = 1e9;
+    o.pixelError = 1e-3; // so that the meshes' own tolerance hides nothing
+    buildDatabase(o);
+    const auto shares = largestShareOfBound(o.output);
+    ASSERT_GE(shares.size(), 3u);
+    ASSERT_TRUE(shares.count(0));
+    for (const auto& [level, share] : shares)
+        EXPECT_LE(share, 1.0) << "level " << level;
+    EXPECT_GE(shares.at(0), 0.5) << "it is not the curve that decides";
 }
 
 TEST(DatabaseLevels, BoxesAreExact)

@@ -269,4 +269,55 @@ TEST(DatabaseSurface, HolesHaveNoPillars)
     EXPECT_GT(DatabaseRoot(o.output).value<double>("geofx.minHeight"), 290.0);
 }
 
+/// Each channel of a coarser texel is the 1-2-1 mean of the finer ones around it, to the nearest byte: were it cut off instead, pictures
+/// would darken by half a byte from level to level.
+TEST(DatabaseSurface, CoarserTexelsAreRoundedMeans)
+{
+    const TempDir folder;
+    auto o = options(writeRelief(folder / "dem.tif", 65, 65, 10.0, 50.0, 0.001), folder / "db");
+    o.textureSize = 16; // as fine as the finest: every level halves
+    o.imagery = {TestRaster(65, 65, 3, GDT_Byte)
+                     .placed(10.0, 50.0, 0.001, 0.001)
+                     .crs("EPSG:4326")
+                     .fill([](int column, int row, int band)
+                           { return (column * 7919 + row * 104729 * (band + 1) + column * row) % 251; })
+                     .write(folder / "image.tif")};
+    buildDatabase(o);
+    std::map<std::array<int, 3>, DatabaseTile> tiles;
+    for (const DatabaseTile& tile : readTiles(o.output))
+        tiles[{tile.level, tile.x, tile.y}] = tile;
+    int compared = 0;
+    double sum = 0.0;
+    for (const auto& [key, tile] : tiles)
+    {
+        const auto [level, x, y] = key;
+        if (level == DatabaseRoot(o.output).finestLevel()) continue;
+        const osg::Image& coarse = *tile.image(0);
+        const int m = coarse.s() - 1;
+        ASSERT_EQ(m, 16);
+        const auto fine = [&, x = x, y = y, level = level](int column, int row, std::size_t channel)
+        {
+            const int east = std::min(column / m, 1), north = std::min(row / m, 1);
+            const DatabaseTile& child = tiles.at({level + 1, 2 * x + east, 2 * y + north});
+            return colorAt(*child.image(0), column - east * m, row - north * m)[channel];
+        };
+        for (int row = 1; row < m; ++row)
+            for (int column = 1; column < m; ++column)
+                for (std::size_t channel = 0; channel < 3; ++channel)
+                {
+                    double mean = 0.0;
+                    for (int dy = -1; dy <= 1; ++dy)
+                        for (int dx = -1; dx <= 1; ++dx)
+                            mean += (2 - std::abs(dx)) * (2 - std::abs(dy)) / 16.0 *
+                                    fine(2 * column + dx, 2 * row + dy, channel);
+                    const int found = colorAt(coarse, column, row)[channel];
+                    ASSERT_NEAR(found, mean, 0.5) << tile.transform->getName();
+                    sum += found - mean;
+                    ++compared;
+                }
+    }
+    EXPECT_EQ(compared, 5 * 15 * 15 * 3);
+    EXPECT_NEAR(sum / compared, 0.0, 0.06) << "all levels together are lighter or darker";
+}
+
 } // namespace

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // What deformations tell of themselves, against what they do: each bound is measured by moving points, and is needed by
 // more than half somewhere, so that one that is half as large does not pass.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/DeformationChain.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
@@ -287,4 +288,47 @@ TEST(DeformationMeasures, TheLevelOfDetailFollowsHowLargeThingsAreDrawn)
                    EXPECT_NEAR(chain->lodDistance(ball, Vec3d()), expected,
                                1e-6 * (place.length() + expected));
                });
+}
+
+TEST(DeformationMeasures, NothingOfTheGlobesGroundFoldsBelowABend)
+{
+    // What lies far off falls away below the reference plane, on the inner side of a bend downwards.
+    int deep = 0;
+    double sharpest = 0.0;
+    forSamples(sampleCount(),
+               [&](Random& random)
+               {
+                   CameraPose pose = randomCommonPose(random);
+                   pose.globe = true;
+                   pose.lens = CameraPose::PERSPECTIVE;
+                   pose.roll = 0.0;
+                   pose.height = random.logarithmic(3e3, 2e5);
+                   const osg::ref_ptr<osgGeoFX::BirdsEyeView> effect = new osgGeoFX::BirdsEyeView;
+                   const auto curve = static_cast<osgGeoFX::PerspectiveBend::Curve>(random.integer(0, 2));
+                   EXPECT_TRUE(effect->setCurve(curve));
+                   const double horizon = random.uniform(0.3, 0.95);
+                   EXPECT_TRUE(effect->setFocusLine(0.0));
+                   EXPECT_TRUE(effect->setHorizonLine(horizon));
+                   EXPECT_TRUE(effect->setFocusLine(horizon * random.uniform(0.8, 0.99)));
+                   EXPECT_TRUE(effect->setContextTilt(random.uniform(0.5, 0.9)));
+                   const osgGeoFX::ViewGeometry view = pose.view();
+                   const auto frame = effect->frame(view);
+                   BendNumbers bend;
+                   if (!frame || !bendNumbers(*frame, bend)) return;
+                   constexpr double radius = 6378137.0;
+                   const double along = bend.start + bend.size * random.uniform(0.0, 1.0);
+                   if (along > 0.4 * radius) return;
+                   const double fall = radius - std::sqrt(radius * radius - along * along);
+                   const double lowest = view.ground.minHeight - view.eyeHeight;
+                   const Vec3d point = bend.forward * along + bend.normal * (lowest - fall);
+                   const double depth = -bend.heightOf(point);
+                   if (depth <= 0.0) return;
+                   const double bent = depth * std::abs(bendCurvature(bend, curve));
+                   sharpest = std::max(sharpest, bent);
+                   EXPECT_LT(bent, 1.0) << depth << " m below the plane, zone " << bend.size << " m from "
+                                        << bend.start << " m on";
+                   deep += bent > 0.5 && fall > 0.5 * depth ? 1 : 0;
+               });
+    RecordProperty("sharpest", std::to_string(sharpest));
+    EXPECT_GT(deep, 0) << "no ground comes near to folding because the globe is round";
 }

@@ -5,6 +5,8 @@
 #include <cpl_conv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
+#include <osg/Node>
+#include <osg/ValueObject>
 #include <osgDB/Registry>
 
 #include <filesystem>
@@ -22,6 +24,25 @@ inline std::string wktOf(int epsg)
     std::string wkt = text;
     CPLFree(text);
     return wkt;
+}
+
+/// Gives a node what a terrain database says about itself: its extent in degrees, or in metres of a projected one.
+inline void describeTerrain(osg::Node& root, bool geocentric, double west, double south, double east,
+                            double north)
+{
+    root.setName("osgGeoFX terrain");
+    root.setUserValue("geofx.format", 1);
+    root.setUserValue("geofx.kind", std::string(geocentric ? "geocentric" : "projected"));
+    root.setUserValue("geofx.west", west);
+    root.setUserValue("geofx.south", south);
+    root.setUserValue("geofx.east", east);
+    root.setUserValue("geofx.north", north);
+    root.setUserValue("geofx.minHeight", 0.0);
+    root.setUserValue("geofx.maxHeight", 1000.0);
+    root.setUserValue("geofx.pixelsPerRadian", 2000.0);
+    root.setUserValue("geofx.pixelError", 1.0);
+    root.setUserValue("geofx.levels", 1);
+    root.setUserValue("geofx.vertical", std::string("none"));
 }
 
 /// Tests of the osgDB plugins of this build.

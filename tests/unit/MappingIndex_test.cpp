@@ -30,7 +30,8 @@ class MappingIndexSizes : public testing::TestWithParam<std::size_t>
 {
 };
 
-INSTANTIATE_TEST_SUITE_P(Counts, MappingIndexSizes, testing::Values(1, 16, 17, 256, 257, 1024, 65537));
+INSTANTIATE_TEST_SUITE_P(Counts, MappingIndexSizes, testing::Values(1, 16, 17, 256, 257, 1024, 65537),
+                         [](const auto& each) { return std::to_string(each.param); });
 
 TEST_P(MappingIndexSizes, findsWhatCoversAPlace)
 {

@@ -239,6 +239,27 @@ TEST(Painting, SnowGrowsWithHeightAndTowardsWinter)
     EXPECT_NEAR(glsl::geofx_snowLineNow(style), 1900.0, 1e-9);
 }
 
+TEST(Painting, SnowComesInOverItsWidth)
+{
+    for (const double width : {100.0, 500.0, 2000.0})
+    {
+        glsl::geofx_PaintStyle style = alps();
+        style.snowWidth = width;
+        const auto snowAt = [&](double height)
+        {
+            glsl::geofx_Cover cover{};
+            cover.shore = -1000.0;
+            return glsl::geofx_classify(cover, height, 0.1, 0.0, style).snow;
+        };
+        // In midsummer the Alps' line lies 2900 m high: half of the even ground is white there.
+        EXPECT_NEAR(snowAt(2900.0), 0.5, 1e-9);
+        EXPECT_EQ(snowAt(2900.0 - 0.5 * width), 0.0);
+        EXPECT_GT(snowAt(2900.0 - 0.45 * width), 0.0);
+        EXPECT_LT(snowAt(2900.0 + 0.45 * width), 1.0);
+        EXPECT_EQ(snowAt(2900.0 + 0.5 * width), 1.0);
+    }
+}
+
 TEST(Painting, SnowLinesOfTheWorld)
 {
     EXPECT_NEAR(glsl::geofx_snowLine(0.0), 5000.0, 1e-9);

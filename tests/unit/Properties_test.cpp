@@ -447,4 +447,37 @@ TEST(Effects, AreParsedFromALineInAnyOrder)
     }
 }
 
+TEST(Effects, ThatALineCannotSayAllOfAreRefusedWithTheRemedy)
+{
+    const std::pair<const char*, const char*> cases[] = {
+        {"closeUps", "<closeUp>"},
+        {"closeUps supersampling=2 enabled=false", "<closeUp>"},
+        {"projectiveMappings", "<raster> or <mapping>"},
+    };
+    for (const auto& [line, remedy] : cases)
+    {
+        std::string error;
+        EXPECT_FALSE(osgGeoFX::parseEffect(line, error)) << line;
+        EXPECT_NE(error.find("draws nothing, because"), std::string::npos) << error;
+        EXPECT_NE(error.find(remedy), std::string::npos) << error;
+        EXPECT_NE(error.find(".geofx scene"), std::string::npos) << error;
+    }
+    // What is wrong with a property comes first.
+    std::string error;
+    EXPECT_FALSE(osgGeoFX::parseEffect("closeUps supersampling=200", error));
+    EXPECT_NE(error.find("supersampling must be a whole number between"), std::string::npos) << error;
+
+    for (const std::string& kind : osgGeoFX::effectKinds())
+    {
+        const bool needsParts = kind == "closeUps" || kind == "projectiveMappings";
+        EXPECT_EQ(osgGeoFX::whyItDrawsNothing(*osgGeoFX::createEffect(kind)).empty(), !needsParts) << kind;
+    }
+    const osg::ref_ptr<osgGeoFX::CloseUps> closeUps = new osgGeoFX::CloseUps;
+    closeUps->addCloseUp(new osgGeoFX::CloseUp);
+    EXPECT_EQ(osgGeoFX::whyItDrawsNothing(*closeUps), "");
+    const osg::ref_ptr<osgGeoFX::ProjectiveMappings> mappings = new osgGeoFX::ProjectiveMappings;
+    mappings->addMapping(new osgGeoFX::ProjectiveMapping);
+    EXPECT_EQ(osgGeoFX::whyItDrawsNothing(*mappings), "");
+}
+
 } // namespace

@@ -12,8 +12,11 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 #include <osg/CoordinateSystemNode>
+#include <osg/Geode>
 #include <osg/Group>
 #include <osg/Math>
+#include <osg/Shape>
+#include <osg/ShapeDrawable>
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
 
@@ -255,10 +258,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SceneCloseUps, UnitsMustDiffer)
 {
-    const SceneResult result = parseScene(sceneWith("", "maskUnit='12' tableUnit='12'"), "x.geofx", "/");
+    const SceneResult result = parseScene(sceneWith("", "maskUnit='12'"), "x.geofx", "/");
     ASSERT_EQ(result.errors.size(), 1u);
     EXPECT_EQ(result.errors[0],
-              "x.geofx:2: <closeUps>: CloseUps: maskUnit and tableUnit must differ.");
+              "x.geofx:2: <closeUps>: CloseUps: maskUnit, tableUnit and surfaceUnit must differ.");
 }
 
 TEST(SceneCloseUps, NameFilesThatAreNotThere)
@@ -298,6 +301,31 @@ protected:
         else
             root->setCoordinateSystem(wktOf(epsg));
         root->setFormat("WKT");
+        ASSERT_TRUE(osgDB::writeNodeFile(*root, (_folder / "terrain.osgb").string()));
+    }
+
+    /// A database that says how far it reaches, in its own coordinates.
+    void writeTerrain(int epsg, double west, double south, double east, double north)
+    {
+        const osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
+        if (epsg == 0)
+            root->setEllipsoidModel(new osg::EllipsoidModel);
+        else
+            root->setCoordinateSystem(wktOf(epsg));
+        root->setFormat("WKT");
+        geofx::test::describeTerrain(*root, epsg == 0, west, south, east, north);
+        ASSERT_TRUE(osgDB::writeNodeFile(*root, (_folder / "terrain.osgb").string()));
+    }
+
+    /// Some other file, 10 km about 0°, 0° on a globe.
+    void writeBall()
+    {
+        const osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
+        root->setEllipsoidModel(new osg::EllipsoidModel);
+        const osg::ref_ptr<osg::Geode> geode = new osg::Geode;
+        geode->addDrawable(
+            new osg::ShapeDrawable(new osg::Sphere(osg::Vec3(6378137.0f, 0.0f, 0.0f), 10000.0f)));
+        root->addChild(geode);
         ASSERT_TRUE(osgDB::writeNodeFile(*root, (_folder / "terrain.osgb").string()));
     }
 
@@ -390,7 +418,7 @@ TEST_F(SceneCloseUpsPlugin, SurfaceDataLieWhereTheirEdgesAre)
     CloseUps* closeUps =
         read("<surfaceData west='-157.9' south='21.35' east='-157.7' north='21.45' maxSide='64'>"
              "<surface name='h' file='dem.tif' kind='height'/><derived name='s' kind='slope'/></surfaceData>"
-             "<closeUp surface='s'/>");
+             "<closeUp surface='s'><region longitudeDegrees='-157.8' latitudeDegrees='21.4'/></closeUp>");
     ASSERT_TRUE(closeUps);
     const SurfaceData* data = closeUps->getSurfaceData();
     ASSERT_TRUE(data);
@@ -424,9 +452,12 @@ TEST_F(SceneCloseUpsPlugin, SurfaceDataOfADemCoverIt)
     writeDem();
     _folder.write("roads.geojson",
                   R"({"type": "LineString", "coordinates": [[-158, 21.4], [-157.6, 21.4]]})");
+    const std::string somewhere =
+        "<closeUp><region longitudeDegrees='-157.8' latitudeDegrees='21.4'/></closeUp>";
     CloseUps* closeUps = read("<surfaceData maxSide='16' radius='0'><dem file='dem.tif'/>"
                               "<vectors name='roads' file='roads.geojson' width='9000' colour='#ff0000'/>"
-                              "<surface name='v' file='dem.tif' kind='value'/></surfaceData>");
+                              "<surface name='v' file='dem.tif' kind='value'/></surfaceData>" +
+                              somewhere);
     ASSERT_TRUE(closeUps);
     const SurfaceData* data = closeUps->getSurfaceData();
     ASSERT_TRUE(data);
@@ -445,7 +476,8 @@ TEST_F(SceneCloseUpsPlugin, SurfaceDataOfADemCoverIt)
 
     setTerrain(32604);
     closeUps = read("<surfaceData west='620000' south='2365000' east='624000' north='2367000'>"
-                    "<dem file='dem.tif'/></surfaceData>");
+                    "<dem file='dem.tif'/></surfaceData>" +
+                    somewhere);
     ASSERT_TRUE(closeUps);
     data = closeUps->getSurfaceData();
     ASSERT_TRUE(data);
@@ -476,6 +508,10 @@ TEST_F(SceneCloseUpsPlugin, MistakesAreNamedWithPlaceAndMend)
     expectMistake("<surfaceData west='-90' south='2' east='90' north='4'/>", 3, "surfaceData",
                   "120 degrees at most");
     expectMistake("<closeUp>\n<region centreX='1'/></closeUp>", 4, "region", "the terrain is a globe");
+    const std::string remedy = "longitudeDegrees and latitudeDegrees";
+    expectMistake("<closeUp>\n<region width='9'/></closeUp>", 4, "region", remedy);
+    expectMistake("\n<closeUp/>", 4, "closeUp", remedy);
+    expectMistake("<closeUp>\n<anchor/></closeUp>", 3, "closeUp", remedy);
     setTerrain(32604);
     expectMistake("<surfaceData west='3' south='2' east='1' north='4'/>", 3, "surfaceData",
                   "west must be less than east.");
@@ -487,6 +523,57 @@ TEST_F(SceneCloseUpsPlugin, MistakesAreNamedWithPlaceAndMend)
                   "no coordinate system");
     expectMistake("<surfaceData>\n<dem file='dem.tif'/></surfaceData>", 4, "dem",
                   "the terrain has no coordinate system");
+}
+
+TEST_F(SceneCloseUpsPlugin, RegionsOffTheTerrainAreSaid)
+{
+    const auto warningsOf = [&](const std::string& region)
+    {
+        std::string all;
+        for (const std::string& message :
+             _watch.messagesOf([&] { EXPECT_TRUE(read("<closeUp>\n" + region + "</closeUp>")) << region; }))
+            all += message;
+        return all;
+    };
+    const auto expectOff = [&](const std::string& region, const std::string& holds)
+    {
+        const std::string warning = warningsOf(region);
+        EXPECT_NE(warning.find("x.geofx:4: <region>: the region lies off the terrain"), std::string::npos)
+            << region << warning;
+        EXPECT_NE(warning.find(holds), std::string::npos) << warning;
+    };
+    // A database says how far it reaches: here from 179° to 181°.
+    writeTerrain(0, 179.0, -1.0, 181.0, 1.0);
+    EXPECT_EQ(warningsOf("<region longitudeDegrees='-179.5' latitudeDegrees='0'/>"), "");
+    EXPECT_EQ(warningsOf("<region longitudeDegrees='179.5' latitudeDegrees='0.9'/>"), "");
+    EXPECT_EQ(warningsOf("<region longitudeDegrees='-178.999' latitudeDegrees='0' width='500'/>"), "")
+        << "a part of it lies on the terrain";
+    expectOff("<region longitudeDegrees='-178.9' latitudeDegrees='0' width='500'/>",
+              "from longitude 179 to 181 and from latitude -1 to 1.");
+    expectOff("<region longitudeDegrees='0' latitudeDegrees='0'/>", "from longitude 179");
+    expectOff("<region longitudeDegrees='180' latitudeDegrees='1.1'/>", "latitude -1 to 1");
+    // Swapped, as people write them.
+    writeTerrain(0, -158.4, 21.1, -157.5, 21.85);
+    expectOff("<region longitudeDegrees='21.3' latitudeDegrees='-57.8'/>", "from longitude -158.4 to -157.5");
+    writeTerrain(32604, 560000.0, 2330000.0, 650000.0, 2420000.0);
+    EXPECT_EQ(warningsOf("<region centreX='600000' centreY='2400000'/>"), "");
+    EXPECT_EQ(warningsOf("<region longitudeDegrees='-157.9' latitudeDegrees='21.3'/>"), "");
+    expectOff("<region width='500'/>", "from x = 560000 to 650000 and from y = 2330000 to 2420000.");
+    expectOff("<region centreX='600000' centreY='2300000'/>", "from x = 560000");
+    // Without a database's word, by its bounding sphere: 10 km about 0°, 0°.
+    writeBall();
+    EXPECT_EQ(warningsOf("<region longitudeDegrees='0.05' latitudeDegrees='-0.05'/>"), "");
+    expectOff("<region longitudeDegrees='0.2' latitudeDegrees='0'/>", "correct its place.");
+}
+
+TEST_F(SceneCloseUpsPlugin, NoneAtAllIsSaid)
+{
+    std::string all;
+    for (const std::string& message : _watch.messagesOf([&] { EXPECT_TRUE(read("")); }))
+        all += message;
+    EXPECT_NE(all.find("x.geofx:2: <closeUps>: closeUps draws nothing, because it has no close-up; "),
+              std::string::npos)
+        << all;
 }
 
 } // namespace

@@ -52,7 +52,7 @@ TEST(SceneFile, ReadsAllThatASceneSays)
             verticalFieldOfView="35"/>
   <terrain>
     <rasters cache="cache" srs=" EPSG:32604 " vertical="egm96" tileSize="64" textureSize="256" pixelError="0.5"
-             texelError="3" memory="512">
+             texelError="3" memory="512" voids="keep" voidReach="30" voidSmoothing="0">
       <dem file="a.tif"/>
       <dem file="/data/b.tif"/>
       <imagery file="c d.jp2"/>
@@ -81,6 +81,9 @@ TEST(SceneFile, ReadsAllThatASceneSays)
     EXPECT_EQ(scene.rasters->pixelError, 0.5);
     EXPECT_EQ(scene.rasters->texelError, 3.0);
     EXPECT_EQ(scene.rasters->memoryMiB, 512);
+    EXPECT_EQ(scene.rasters->voids, "keep");
+    EXPECT_EQ(scene.rasters->voidReach, 30);
+    EXPECT_EQ(scene.rasters->voidSmoothing, 0);
     EXPECT_EQ(scene.homeView->longitude, -157.905);
     EXPECT_EQ(scene.homeView->latitude, 21.245);
     EXPECT_EQ(scene.homeView->altitude, 1400.0);
@@ -107,6 +110,9 @@ TEST(SceneFile, HasTheSchemasDefaults)
     EXPECT_EQ(scene.rasters->pixelError, 1.0);
     EXPECT_EQ(scene.rasters->texelError, 2.0);
     EXPECT_EQ(scene.rasters->memoryMiB, 1024);
+    EXPECT_EQ(scene.rasters->voids, "fill");
+    EXPECT_EQ(scene.rasters->voidReach, 100);
+    EXPECT_EQ(scene.rasters->voidSmoothing, 10);
     EXPECT_TRUE(scene.rasters->imagery.empty());
     EXPECT_FALSE(scene.rasters->landCover || scene.homeView || scene.sun || scene.background);
 

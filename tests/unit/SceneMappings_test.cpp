@@ -3,6 +3,7 @@
 //
 // <projectiveMappings> of the scene file: the parser alone, then with files and terrain through the plugin osgdb_geofx.
 #include <geofx/SceneFile.h>
+#include <osgGeoFX/mapping/LayerPixels.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <tools/NotifyWatch.h>
 #include <tools/TempDir.h>
@@ -147,20 +148,6 @@ TEST(SceneMappings, NamesBelongToOneEffect)
     ASSERT_EQ(result.scene->mappings.size(), 2u);
     EXPECT_NE(result.scene->mappings[0].mappings[0].mapping->getLayer(),
               result.scene->mappings[1].mappings[0].mapping->getLayer());
-}
-
-TEST(SceneMappings, SetsOfOneSceneHaveUnitsOfTheirOwn)
-{
-    const SceneResult result =
-        parseScene("<geofx version='1'><terrain><database file='terrain.osgb'/></terrain><effects>"
-                   "<projectiveMappings/><projectiveMappings dataUnit='9' layerUnit='-1'/>"
-                   "<closeUps/><panoramaMap/></effects></geofx>",
-                   "x.geofx", "/");
-    ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
-    const TextureUnits given = TextureUnits::of(result.scene->effects);
-    EXPECT_EQ(given.ofEffects,
-              (std::vector<TextureUnits::Units>{{8, 4, 10}, {9, 5, 6}, {11, 12, 13}, {14, 15, 16, 7}}));
-    EXPECT_TRUE(given.sentences.empty());
 }
 
 struct Mistake
@@ -479,6 +466,113 @@ TEST_F(SceneMappingsPlugin, RastersLieWhereTheirGeoreferenceSays)
     EXPECT_NEAR(mappings->getOrigin().x(), easting, 1e-3);
     EXPECT_NEAR(mappings->getOrigin().y(), northing, 1e-3);
     EXPECT_NEAR(mappings->getMapping(0)->getCentre().length(), 0.0, 100.0);
+}
+
+TEST_F(SceneMappingsPlugin, WhatGdalReadsIsALayer)
+{
+    // Tiled floats with no-data and a scale, without any georeference: OSG's own reader of TIFF gives up on tiles.
+    geofx::test::TestRaster values(70, 40);
+    values.fill([](int column, int row, int)
+                { return column == 3 && row == 2 ? -99.0 : 100.0 * column + row; });
+    values.dataset().GetRasterBand(1)->SetNoDataValue(-99.0);
+    values.dataset().GetRasterBand(1)->SetScale(0.5);
+    values.dataset().GetRasterBand(1)->SetOffset(-7.0);
+    values.write(_folder / "v.tif", {"TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16"});
+    geofx::test::TestRaster(3, 2, 1, GDT_Int16)
+        .fill([](int column, int row, int) { return -10.0 * column - row; })
+        .write(_folder / "below.tif");
+    geofx::test::TestRaster colours(20, 10, 3, GDT_Byte);
+    colours.fill([](int column, int row, int band) { return 10.0 * column + row + 60.0 * band; })
+        .write(_folder / "c.tif", {"TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16", "PHOTOMETRIC=RGB"});
+
+    const ProjectiveMappings* mappings =
+        read("<layer name='v' file='v.tif' kind='value'/><layer name='b' file='below.tif' kind='class'/>"
+             "<layer name='c' file='c.tif'/><mapping layer='v'/><mapping layer='b'/><mapping layer='c'/>");
+    ASSERT_TRUE(mappings);
+    ASSERT_EQ(mappings->getNumMappings(), 3u);
+    const auto imageOf = [&](unsigned int number)
+    {
+        return mappings->getMapping(number)->getLayer()->getImage();
+    };
+    const osg::Image* image = imageOf(0);
+    ASSERT_TRUE(image);
+    ASSERT_EQ(image->s(), 70);
+    ASSERT_EQ(image->t(), 40);
+    ASSERT_EQ(image->getDataType(), static_cast<GLenum>(GL_FLOAT));
+    const auto value = [&](unsigned int column, unsigned int rowFromNorth)
+    {
+        return static_cast<double>(
+            *reinterpret_cast<const float*>(imageOf(0)->data(column, 39 - rowFromNorth)));
+    };
+    EXPECT_EQ(value(0, 0), -7.0);
+    EXPECT_EQ(value(69, 39), 0.5 * 6939.0 - 7.0);
+    EXPECT_TRUE(std::isnan(value(3, 2))) << "no data";
+    EXPECT_EQ(value(4, 2), 0.5 * 402.0 - 7.0);
+    image = imageOf(1);
+    ASSERT_TRUE(image);
+    std::string error;
+    osgGeoFX::LayerPixels::Options options;
+    options.kind = osgGeoFX::LayerPixels::Kind::Class;
+    const auto pixels = osgGeoFX::LayerPixels::make(*image, options, error);
+    ASSERT_TRUE(pixels) << error;
+    EXPECT_EQ(osgGeoFX::LayerPixels::value(pixels->levels[0][2]), -21.0f) << "negative numbers stay so";
+    image = imageOf(2);
+    ASSERT_TRUE(image);
+    ASSERT_EQ(image->s(), 20);
+    const osg::Vec4 colour = image->getColor(3, 8); // row 1 from the north
+    EXPECT_NEAR(static_cast<double>(colour.r()), 31.0 / 255.0, 1e-6);
+    EXPECT_NEAR(static_cast<double>(colour.g()), 91.0 / 255.0, 1e-6);
+    EXPECT_NEAR(static_cast<double>(colour.b()), 151.0 / 255.0, 1e-6);
+    EXPECT_EQ(colour.a(), 1.0f);
+}
+
+TEST_F(SceneMappingsPlugin, TheElevationOfOahuIsALayer)
+{
+    std::filesystem::copy_file(GEOFX_SOURCE_DIR "/data/oahu/elevation.tif", _folder / "elevation.tif");
+    std::string warnings;
+    ProjectiveMappings* mappings = nullptr;
+    for (const std::string& message : _watch.messagesOf(
+             [&]
+             {
+                 mappings = read("<layer name='h' file='elevation.tif' kind='value'/><mapping layer='h'/>",
+                                 "pageSide='1024'");
+             }))
+        warnings += message;
+    ASSERT_TRUE(mappings);
+    const osg::Image* image = mappings->getMapping(0)->getLayer()->getImage();
+    ASSERT_TRUE(image);
+    // More than a page holds is read coarser, by area, and said.
+    EXPECT_EQ(image->s(), 1024);
+    EXPECT_EQ(image->t(), 853);
+    EXPECT_NE(warnings.find("elevation.tif\" has 3240 × 2700 texels"), std::string::npos) << warnings;
+    // Kaʻala, 1,220 m, is the highest place.
+    double highest = 0.0;
+    const auto* values = reinterpret_cast<const float*>(image->data());
+    for (int i = 0; i < image->s() * image->t(); ++i)
+        highest = std::max(highest, static_cast<double>(values[i]));
+    EXPECT_GT(highest, 1100.0);
+    EXPECT_LT(highest, 1230.0);
+}
+
+TEST_F(SceneMappingsPlugin, HugePicturesAreReducedOrRefused)
+{
+    // 68 million pixels in a few kilobytes, without tiles: OSG's reader would take them all.
+    geofx::test::writeHollow(_folder / "huge.tif", 8320, 8192);
+    ProjectiveMappings* mappings = nullptr;
+    _watch.messagesOf(
+        [&]
+        {
+            mappings = read("<layer name='v' file='huge.tif' kind='value'/><layer name='c' file='huge.tif'/>"
+                            "<mapping layer='v'/><mapping layer='c'/>");
+        });
+    ASSERT_TRUE(mappings);
+    for (unsigned int i = 0; i < 2; ++i)
+    {
+        const osg::Image* image = mappings->getMapping(i)->getLayer()->getImage();
+        ASSERT_TRUE(image);
+        EXPECT_EQ(image->s(), 2048);
+        EXPECT_EQ(image->t(), 2016);
+    }
 }
 
 TEST_F(SceneMappingsPlugin, MistakesAreNamedWithPlaceAndMend)

@@ -94,6 +94,7 @@ TEST_F(ScenePlugin, SceneTellsProgramsWhatItSays)
     ASSERT_TRUE(sun);
     EXPECT_EQ(sun->getLightNum(), 0);
     EXPECT_EQ(sun->getDiffuse(), osg::Vec4(0, 1, 0, 1));
+    EXPECT_EQ(sun->getSpecular(), osg::Vec4(0, 1, 0, 1)) << "glints have the sun's colour";
     EXPECT_EQ(sun->getAmbient(), osg::Vec4(0, 0, 1, 1));
 
     const auto bare = folder.write("b.geofx", sceneWith(""));

@@ -351,8 +351,12 @@ TEST(StrokeMaker, FurnishesWhatIsBelowANode)
     // Where the tile's parent moves it, it has the strokes of that place.
     const osg::ref_ptr<osg::MatrixTransform> c = tiles.tile(0.0, 0.0, 2500.0, 2500.0);
     maker->furnish(*c, osg::Matrixd::translate(2500.0, 0.0, 0.0));
-    EXPECT_EQ(maker->strokes(StrokeTiles::geometryOf(*c), {})->getVertexArray()->getNumElements(),
-              maker->strokes(StrokeTiles::geometryOf(*b), {})->getVertexArray()->getNumElements());
+    const osg::Matrixd moved = c->getMatrix() * osg::Matrixd::translate(2500.0, 0.0, 0.0);
+    EXPECT_EQ(StrokeTiles::geometryOf(*c).getUserDataContainer()->getNumUserObjects(), 1u);
+    EXPECT_EQ(
+        maker->strokes(StrokeTiles::geometryOf(*c), moved)->getVertexArray()->getNumElements(),
+        maker->strokes(StrokeTiles::geometryOf(*b), b->getMatrix())->getVertexArray()->getNumElements());
+    EXPECT_EQ(StrokeTiles::geometryOf(*c).getUserDataContainer()->getNumUserObjects(), 1u);
 }
 
 TEST(StrokeMaker, NewParametersGiveNewStrokes)
@@ -381,6 +385,76 @@ TEST(StrokeMaker, NewParametersGiveNewStrokes)
     EXPECT_NE(theirs, ours);
     EXPECT_EQ(other->strokes(mesh, tile->getMatrix()), theirs);
     EXPECT_EQ(maker->strokes(mesh, tile->getMatrix()), ours);
+}
+
+TEST(StrokeMaker, AnyNumberOfScenesWithWishesOfTheirOwnShareATerrain)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(0.0, 0.0, 2500.0, 2500.0);
+    osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
+    std::vector<osg::ref_ptr<StrokeMaker>> makers;
+    std::vector<osg::Geometry*> first;
+    for (int i = 0; i < 5; ++i)
+    {
+        StrokeParameters parameters;
+        parameters.spacing = 25.0 * (i + 1);
+        makers.push_back(new StrokeMaker(nullptr));
+        makers.back()->setParameters(parameters);
+        first.push_back(makers.back()->strokes(mesh, tile->getMatrix()).get());
+    }
+    // Frame by frame nobody's are made anew.
+    for (int frame = 0; frame < 3; ++frame)
+        for (std::size_t i = 0; i < makers.size(); ++i)
+            EXPECT_EQ(makers[i]->strokes(mesh, tile->getMatrix()), first[i]) << i;
+    EXPECT_EQ(mesh.getUserDataContainer()->getNumUserObjects(), 5u);
+    // What nobody wants any more goes when others come.
+    makers.resize(2);
+    StrokeParameters parameters;
+    parameters.spacing = 500.0;
+    makers[0]->setParameters(parameters);
+    makers[0]->strokes(mesh, tile->getMatrix());
+    EXPECT_EQ(mesh.getUserDataContainer()->getNumUserObjects(), 2u);
+    EXPECT_EQ(makers[1]->strokes(mesh, tile->getMatrix()), first[1]);
+}
+
+TEST(StrokeMaker, TilesBelowATransformHaveTheStrokesOfTheirPlace)
+{
+    StrokeTiles tiles;
+    tiles.cover = [](double x, double)
+    {
+        glsl::geofx_Cover cover{};
+        cover.trees = x < 2500.0 ? 1.0 : 0.4;
+        cover.shore = -400.0;
+        return cover;
+    };
+    // A pager's tile knows nothing of the transform above it.
+    const osg::Matrixd above = osg::Matrixd::translate(137.0, -2045.0, 12.0);
+    const osg::ref_ptr<StrokeMaker> maker = new StrokeMaker(nullptr);
+    for (int i = 0; i < 3; ++i)
+    {
+        const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(2500.0 * i, 0.0, 2500.0 * (i + 1), 2500.0);
+        osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
+        maker->tileRead(*tile);
+        const osg::ref_ptr<osg::Geometry> read =
+            static_cast<const TileStrokes&>(*mesh.getUserDataContainer()->getUserObject(0)).points();
+        const osg::Matrixd toWorld = tile->getMatrix() * above;
+        const osg::ref_ptr<osg::Geometry> drawn = maker->strokes(mesh, toWorld);
+        // The first one shows that there is a transform; the pager's thread makes the others right.
+        EXPECT_EQ(drawn == read, i > 0) << i;
+        EXPECT_EQ(mesh.getUserDataContainer()->getNumUserObjects(), 1u) << i;
+        const osg::ref_ptr<TileStrokes> expected = TileStrokes::make(mesh, toWorld, {}, nullptr);
+        const auto& a = static_cast<const osg::Vec3Array&>(*drawn->getVertexArray());
+        const auto& b = static_cast<const osg::Vec3Array&>(*expected->points()->getVertexArray());
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t k = 0; k < a.size(); ++k)
+            ASSERT_LT((a[k] - b[k]).length(), 0.05f) << k;
+        const osg::ref_ptr<TileStrokes> unmoved = TileStrokes::make(mesh, tile->getMatrix(), {}, nullptr);
+        EXPECT_NE(unmoved->points()->getVertexArray()->getNumElements(), 0u);
+        const auto& c = static_cast<const osg::Vec3Array&>(*unmoved->points()->getVertexArray());
+        const bool differs = a.size() != c.size() || (a[0] - c[0]).length() > 1.0f;
+        EXPECT_TRUE(differs) << "the transform makes no difference, so that the test would see nothing";
+    }
 }
 
 TEST(StrokeMaker, ParametersDifferWhereAnyOfThemDoes)

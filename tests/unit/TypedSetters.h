@@ -397,12 +397,15 @@ inline TypedSetters panoramaSetters()
         {"ripples", typed(&Self::setRipples, &Self::getRipples)},
         {"sky", typed(&Self::setSky, &Self::getSky)},
         {"clouds", typed(&Self::setClouds, &Self::getClouds)},
+        {"edge", typed(&Self::setEdge, &Self::getEdge)},
+        {"edgeWidth", typed(&Self::setEdgeWidth, &Self::getEdgeWidth)},
         {"strokes", typed(&Self::setStrokes, &Self::getStrokes)},
         {"strokeSize", typed(&Self::setStrokeSize, &Self::getStrokeSize)},
         {"strokeSpacing", typed(&Self::setStrokeSpacing, &Self::getStrokeSpacing)},
         {"strokeStep", typed(&Self::setStrokeStep, &Self::getStrokeStep)},
         {"coverUnit", typed(&Self::setCoverUnit, &Self::getCoverUnit)},
         {"firstUnit", typed(&Self::setFirstUnit, &Self::getFirstUnit)},
+        {"edgeUnit", typed(&Self::setEdgeUnit, &Self::getEdgeUnit)},
     };
 }
 

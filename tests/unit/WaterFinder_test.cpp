@@ -76,6 +76,53 @@ TEST(WaterFinder, LevelGroundAmidHigherIsALake)
     EXPECT_EQ(count(found(withSquare(95.0), 65 * CELL), GroundKind::LAKE), 0) << "it is too small";
 }
 
+/// Of a row of rows with the same cells measured.
+int countMeasured(const Heights& heights, const std::function<bool(int, int)>& measured, GroundKind wanted)
+{
+    WaterFinder finder(heights.columns, std::vector<double>(heights.values.size(), CELL), LAKE);
+    for (int row = 0; row < heights.rows; ++row)
+    {
+        std::vector<bool> cells;
+        for (int column = 0; column < heights.columns; ++column)
+            cells.push_back(measured(column, row));
+        finder.add(heights.values[static_cast<std::size_t>(row)], cells);
+    }
+    int cells = 0;
+    for (int row = heights.rows - 1; row >= 0; --row)
+    {
+        const auto line = finder.mark(heights.values[static_cast<std::size_t>(row)]);
+        cells += static_cast<int>(std::count(line.begin(), line.end(), wanted));
+    }
+    return cells;
+}
+
+TEST(WaterFinder, WhatWasNotMeasuredMakesNoWater)
+{
+    const auto lake = withSquare(95.0), hollow = withSquare(-1.0);
+    const auto notIn = [](int west, int east)
+    {
+        return [=](int column, int row)
+        {
+            return column < west || column >= east || row < 12 || row >= 20;
+        };
+    };
+    EXPECT_EQ(countMeasured(lake, notIn(10, 18), GroundKind::LAKE), 0) << "all of it is filled";
+    EXPECT_EQ(countMeasured(lake, notIn(10, 14), GroundKind::LAKE), 0) << "what is measured is too small";
+    EXPECT_EQ(countMeasured(lake, notIn(10, 11), GroundKind::LAKE), 64) << "a lake with a void in it";
+    EXPECT_EQ(countMeasured(withSquare(0.0), notIn(10, 18), GroundKind::SEA), 0);
+    EXPECT_EQ(countMeasured(withSquare(0.0), notIn(10, 11), GroundKind::SEA), 64);
+    EXPECT_EQ(countMeasured(hollow, notIn(10, 11), GroundKind::SEA), 0);
+    // A void that the border cuts is no way in for the sea.
+    const Heights cut(30, 30,
+                      [](int column, int row) { return column < 4 && row < 4 ? -1.0 : 50.0 + column; });
+    EXPECT_EQ(countMeasured(
+                  cut, [](int, int) { return true; }, GroundKind::SEA),
+              16);
+    EXPECT_EQ(countMeasured(
+                  cut, [](int column, int row) { return column >= 4 || row >= 4; }, GroundKind::SEA),
+              0);
+}
+
 TEST(WaterFinder, TerracesAndSummitsAreLand)
 {
     EXPECT_EQ(count(found(withSquare(130.0)), GroundKind::LAKE), 0);

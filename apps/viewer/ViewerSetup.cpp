@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "ViewerSetup.h"
+
+#include <osgGeoFX/closeup/CloseUpHandler.h>
+#include <osgGeoFX/deformation/ClickAndFly.h>
+#include <osgGeoFX/mapping/MappingPanel.h>
+#include <osgGeoFX/paging/ViewerHandlers.h>
+#include <osgGeoFX/panel/EffectPanel.h>
+#include <osgGeoFX/panel/HelpPage.h>
+#include <osgGeoFX/panorama/PanoramaManipulator.h>
+#include <osgGeoFX/scene/EffectKeys.h>
+
+#include <osg/Math>
+#include <osgDB/FileUtils>
+#include <osgGA/AnimationPathManipulator>
+#include <osgGA/DriveManipulator>
+#include <osgGA/FirstPersonManipulator>
+#include <osgGA/FlightManipulator>
+#include <osgGA/OrbitManipulator>
+#include <osgGA/SphericalManipulator>
+#include <osgGA/StateSetManipulator>
+#include <osgGA/TerrainManipulator>
+#include <osgGA/TrackballManipulator>
+#include <osgViewer/ViewerEventHandlers>
+
+#include <algorithm>
+#include <vector>
+
+namespace geofx::viewer
+{
+
+osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> makeManipulators(osg::ArgumentParser& arguments)
+{
+    osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> manipulators = new osgGA::KeySwitchMatrixManipulator;
+    // The keys are osgviewer's.
+    manipulators->addMatrixManipulator('1', "Trackball", new osgGA::TrackballManipulator);
+    manipulators->addMatrixManipulator('2', "Flight", new osgGA::FlightManipulator);
+    manipulators->addMatrixManipulator('3', "Drive", new osgGA::DriveManipulator);
+    manipulators->addMatrixManipulator('4', "Terrain", new osgGA::TerrainManipulator);
+    manipulators->addMatrixManipulator('5', "Orbit", new osgGA::OrbitManipulator);
+    manipulators->addMatrixManipulator('6', "FirstPerson", new osgGA::FirstPersonManipulator);
+    manipulators->addMatrixManipulator('7', "Spherical", new osgGA::SphericalManipulator);
+    manipulators->selectMatrixManipulator(3);
+
+    double speed = 1.0;
+    arguments.read("--speed", speed);
+    std::string file;
+    for (int key = '8'; arguments.read("-p", file); ++key)
+    {
+        osg::ref_ptr<osgGA::AnimationPathManipulator> path;
+        if (osgDB::fileExists(file)) path = new osgGA::AnimationPathManipulator(file);
+        if (!path || path->getAnimationPath()->empty())
+        {
+            arguments.reportError("The camera path \"" + file + "\" cannot be read");
+            continue;
+        }
+        path->setTimeScale(speed);
+        const unsigned int index = manipulators->getNumMatrixManipulators();
+        manipulators->addMatrixManipulator(key, "Path", path);
+        manipulators->selectMatrixManipulator(index);
+    }
+    return manipulators;
+}
+
+void addPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::EffectScene& scene)
+{
+    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+    {
+        auto* map = dynamic_cast<osgGeoFX::PanoramaMap*>(scene.getEffect(i));
+        if (!map) continue;
+        manipulators.addMatrixManipulator('0', "Panorama", new osgGeoFX::PanoramaManipulator(scene, *map));
+        const bool plays =
+            dynamic_cast<osgGA::AnimationPathManipulator*>(manipulators.getCurrentMatrixManipulator());
+        // The first in the order of keys.
+        if (map->getEnabled() && !plays) manipulators.selectMatrixManipulator(0);
+        return;
+    }
+}
+
+void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Scene& scene,
+             double fieldOfView, double aspect)
+{
+    osg::Vec3d eye;
+    osg::Vec3d center;
+    osg::Vec3d up;
+    const osg::Matrixd view = scene.homeViewMatrix(osg::DegreesToRadians(fieldOfView), aspect);
+    const osg::BoundingSphere& bound = scene.node->getBound();
+    const osg::Vec3d inEye = osg::Vec3d(bound.center()) * view;
+    view.getLookAt(eye, center, up, std::max(-inEye.z(), 0.01 * static_cast<double>(bound.radius())));
+    for (auto& entry : manipulators.getKeyManipMap())
+    {
+        osgGA::CameraManipulator* manipulator = entry.second.second.get();
+        if (dynamic_cast<osgGA::AnimationPathManipulator*>(manipulator)) continue;
+        manipulator->setAutoComputeHomePosition(false);
+        manipulator->setHomePosition(eye, center, up);
+    }
+}
+
+void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
+                 const osgGA::KeySwitchMatrixManipulator& manipulators)
+{
+    viewer.addEventHandler(new osgGA::StateSetManipulator(viewer.getCamera()->getOrCreateStateSet()));
+    viewer.addEventHandler(new osgViewer::ThreadingHandler);
+    viewer.addEventHandler(new osgViewer::WindowSizeHandler);
+    viewer.addEventHandler(new osgViewer::StatsHandler);
+    viewer.addEventHandler(new osgViewer::RecordCameraPathHandler);
+    viewer.addEventHandler(new osgViewer::LODScaleHandler);
+    viewer.addEventHandler(new osgViewer::ScreenCaptureHandler);
+    viewer.addEventHandler(new osgGeoFX::LodScaleFollower(scene));
+
+    std::vector<osgGeoFX::HelpPage::Group> groups;
+    const auto add = [&](const std::string& title, osgGA::GUIEventHandler* handler)
+    {
+        viewer.addEventHandler(handler);
+        const auto known = std::find_if(groups.begin(), groups.end(),
+                                        [&](const auto& group) { return group.title == title; });
+        if (known == groups.end())
+            groups.push_back({title, {handler}});
+        else
+            known->handlers.emplace_back(handler);
+    };
+    const osg::ref_ptr<osgGeoFX::CursorReadout> readout = new osgGeoFX::CursorReadout(scene);
+    // OSG takes pictures of the window with c.
+    readout->setKey('g');
+    add("Ground", readout);
+    add("Ground", new osgGeoFX::ClickAndFly(*scene.effects));
+    add("Effects", new osgGeoFX::EffectKeys(*scene.effects));
+    add("List of effects", new osgGeoFX::EffectPanel(*scene.effects));
+    const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
+    if (panel->hasEffect()) add("List of mappings", panel);
+    for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
+    {
+        auto* closeUps = dynamic_cast<osgGeoFX::CloseUps*>(scene.effects->getEffect(i));
+        if (closeUps) add("Close-ups", new osgGeoFX::CloseUpHandler(*scene.effects, *closeUps));
+    }
+    for (const auto& [key, manipulator] : manipulators.getKeyManipMap())
+    {
+        const auto* panorama = dynamic_cast<const osgGeoFX::PanoramaManipulator*>(manipulator.second.get());
+        if (panorama) groups.push_back({"Panorama map", {panorama}});
+    }
+    // The last, which looks at all others.
+    viewer.addEventHandler(new osgGeoFX::HelpPage(groups));
+}
+
+} // namespace geofx::viewer

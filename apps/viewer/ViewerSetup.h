@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/paging/Scene.h>
+
+#include <osg/ArgumentParser>
+#include <osgGA/KeySwitchMatrixManipulator>
+#include <osgViewer/Viewer>
+
+/// What osggeofx_viewer puts into its viewer; apart from main(), so that tests press its keys.
+namespace geofx::viewer
+{
+
+/// osgviewer's, under osgviewer's keys, the terrain manipulator first. Takes -p and --speed from the arguments, and reports what is
+/// wrong with them there.
+osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> makeManipulators(osg::ArgumentParser& arguments);
+
+/// Panorama maps begin with the manipulator that is made for them, unless a path is played.
+void addPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::EffectScene& scene);
+
+/// Home is the scene's home view, for every manipulator but those that play a path. `fieldOfView` is the vertical one in degrees.
+void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Scene& scene,
+             double fieldOfView, double aspect);
+
+/// The event handlers: OSG's, ours, and the help page with the keys of both. The manipulators' own keys stand there, too.
+void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
+                 const osgGA::KeySwitchMatrixManipulator& manipulators);
+
+} // namespace geofx::viewer

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include "SceneFile.h"
+
+namespace osgGeoFX
+{
+
+/* A scene is often somebody else's, so it may name files beside itself and below, and nothing else: no other folder, no link that
+   leads to one, no address, none of GDAL's file systems and services. A program consents to more with the option string
+   "allowOutside". What files hold in their turn is followed as far as GDAL tells (sourcesOf()); what a database's tiles
+   name is theirs. */
+
+/// The option string by which a program consents.
+extern const char* const allowOutside;
+
+/// Whether a path lies in a folder or below it, links followed. An address does not, nor does what GDAL reads without a file.
+bool isWithin(const std::string& path, const std::string& folder);
+
+/// One sentence for each path that leads out of the scene's folder, the cache among them.
+std::vector<std::string> outsidePaths(const SceneFile& scene, const std::string& folder);
+
+/// What osgdb_geofxdata is asked for under the name "sources", and its answer: where a file takes its data from.
+struct SourcesRequest
+{
+    std::string file;
+    std::vector<std::string> files; ///< as complete paths where they are paths
+    std::string service;            ///< the format's name, where the data come from a network or a data base
+};
+
+/// One sentence for each file of the scene that takes its data from outside the folder, such as a GDAL virtual raster. They are asked
+/// of osgdb_geofxdata; without it nothing is known, and nothing of the kind can be read.
+std::vector<std::string> outsideSources(const SceneFile& scene, const std::string& folder);
+
+} // namespace osgGeoFX

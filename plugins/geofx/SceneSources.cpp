@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "SceneLoading.h"
+#include "SceneReach.h"
+
+#include <set>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Virtual files upon virtual files; more than these are no person's.
+constexpr std::size_t mostFiles = 10000;
+
+/// What keeps a file from being read; empty where all that it takes its data from lies within the folder.
+std::string faultOf(const std::string& file, const std::string& folder)
+{
+    std::set<std::string> known{file};
+    std::vector<std::string> open{file};
+    while (!open.empty())
+    {
+        SourcesRequest request;
+        request.file = open.back();
+        open.pop_back();
+        SceneTerrain::askIfAny("sources", &request);
+        if (!request.service.empty()) return "takes its data from elsewhere (" + request.service + ")";
+        for (const std::string& source : request.files)
+        {
+            if (!isWithin(source, folder)) return "takes data from \"" + source + "\"";
+            if (known.insert(source).second) open.push_back(source);
+        }
+        if (known.size() > mostFiles) return "takes its data from more than 10,000 files";
+    }
+    return {};
+}
+
+} // namespace
+
+std::vector<std::string> outsideSources(const SceneFile& scene, const std::string& folder)
+{
+    std::vector<std::string> errors;
+    for (const ScenePath& path : filesOf(scene))
+    {
+        // GDAL does not read databases.
+        if (scene.database && path.path == scene.database->path) continue;
+        const std::string fault = faultOf(path.path, folder);
+        if (fault.empty()) continue;
+        errors.push_back(path.place.message("the file \"" + path.path + "\" " + fault +
+                                            ", which lies outside the scene's folder; convert it to GeoTIFF "
+                                            "with gdal_translate (vector data: to "
+                                            "GeoPackage with ogr2ogr); or, if you trust the scene, start the "
+                                            "program with --allow-outside, or give "
+                                            "OSG the option string \"allowOutside\"."));
+    }
+    return errors;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The sky of panorama maps, and the haze and the paper that their land ends in. The same wherever a point of the picture is
+// asked for, on the ground and behind it, so that no border shows between the two.
+#include "lib/edge.glsl"
+
+const vec3 geofx_paper = vec3(0.985, 0.968, 0.930);
+const vec3 geofx_haze = vec3(0.90, 0.925, 0.945);
+
+// How the terrain's edge is drawn.
+const float GEOFX_EDGE_NONE = 0.0;     // not at all: the sea behind the land
+const float GEOFX_EDGE_MAPPED = 1.0;   // as the picture of the terrain's extent tells
+const float GEOFX_EDGE_UNKNOWN = 2.0;  // no such picture: haze behind the land
+const float GEOFX_EDGE_LAND = 3.0;     // a perspective picture of land: haze behind it
+const float GEOFX_EDGE_ISLAND = 4.0;   // of an island: the sea behind it
+
+geofx_Edge geofx_edgeOf(vec4 eye, vec4 ways, vec4 kind)
+{
+    return geofx_Edge(kind.x, eye.xy, ways.xy, ways.zw, eye.zw, kind.y);
+}
+
+// `place` is the horizon's height in the picture, its arch, the heading and the part across, in turns; x the picture's, -1 to 1; y 0 to
+// 1. How far above the horizon the point is.
+float geofx_skyAbove(vec4 place, float x, float y)
+{
+    return y - place.x + place.y * (1.0 - cos(1.5707963 * x));
+}
+
+vec3 geofx_skyColour(sampler2D sky, vec4 place, float x, float above)
+{
+    float room = 1.0 - place.x + place.y;
+    float across = place.z + 0.5 * place.w * x;
+    float height = above / max(room, 0.02);
+    vec3 colour = texture(sky, vec2(across, clamp(height, 0.002, 0.998))).rgb;
+    // Higher than it is painted, the sky is even: the mean of its upper edge.
+    if (height > 0.75)
+    {
+        vec3 even = textureLod(sky, vec2(0.5, 0.95), 6.0).rgb;
+        colour = mix(colour, even, clamp(4.0 * height - 3.0, 0.0, 1.0));
+    }
+    return colour;
+}
+
+// What a point of the picture shows where the land has gone.
+vec3 geofx_edgeColour(sampler2D sky, vec4 place, float x, float y, float paper)
+{
+    float above = geofx_skyAbove(place, x, y);
+    vec3 colour = geofx_skyColour(sky, place, x, max(above, 0.0));
+    if (above >= 0.0) return colour;
+    // Down from the horizon the sky's light runs into haze.
+    vec3 low = textureLod(sky, vec2(place.z + 0.5 * place.w * x, 0.02), 5.0).rgb;
+    float depth = -above / max(place.x, 0.05);
+    colour = mix(colour, low, smoothstep(0.0, 0.06, depth));
+    colour = mix(colour, geofx_haze, 0.65 * smoothstep(0.02, 0.35, depth));
+    colour = mix(colour, geofx_paper, paper * geofx_edgePaper(y));
+    // So even a wash would show the steps of its bytes.
+    float grain = fract(52.9829189 * fract(dot(vec2(x, y), vec2(53.7, 41.9) * 1.9)));
+    return colour + (grain - 0.5) * (2.0 / 255.0);
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// What a build will take is told before its first byte, and what cannot be is refused with a remedy.
+#include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <tools/RunProgram.h>
+#include <tools/TempDir.h>
+#include <tools/TestRasters.h>
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <regex>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+namespace fs = std::filesystem;
+
+namespace
+{
+
+class BuilderEstimate : public ::testing::Test
+{
+protected:
+    /// 36 × 18 pixels of 10°.
+    std::string coarseWorld() const { return writeRelief(_folder / "world.tif", 36, 18, -180.0, 90.0, 10.0); }
+    BuildOptions options(const std::vector<std::string>& dems) const
+    {
+        BuildOptions result;
+        result.dems = dems;
+        result.output = (_folder / "db").string();
+        return result;
+    }
+    /// Refused at once, with a sentence, and without a byte.
+    void expectRefusal(const std::vector<std::string>& arguments, const std::vector<std::string>& parts) const
+    {
+        std::vector<std::string> command{builtProgram("osggeofx_build")};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        command.insert(command.end(), {"-o", _folder / "db"});
+        const ProgramResult result = runProgram(command);
+        EXPECT_FALSE(result.timedOut);
+        EXPECT_EQ(result.exitCode, 2);
+        for (const std::string& part : parts)
+            EXPECT_NE(result.standardError.find(part), std::string::npos)
+                << "no \"" << part << "\" in: " << result.standardError;
+        EXPECT_EQ(std::count(result.standardError.begin(), result.standardError.end(), '\n'), 1)
+            << result.standardError;
+        EXPECT_FALSE(fs::exists(_folder / "db"));
+    }
+
+    const TempDir _folder;
+};
+
+TEST_F(BuilderEstimate, IsAboutWhatTheBuildTakes)
+{
+    const std::string smooth = TestRaster(700, 500)
+                                   .placed(10.0, 47.0, 1.0 / 3600.0, 1.0 / 3600.0)
+                                   .crs("EPSG:4326")
+                                   .fill([](int column, int row, int) { return 2.0 * column + row; })
+                                   .write(_folder / "smooth.tif");
+    const std::string oahu =
+        writeCrop(GEOFX_SOURCE_DIR "/data/oahu/elevation.tif", _folder / "oahu.tif", 1500, 1300, 900, 700);
+    for (const std::string& dem : {smooth, oahu})
+    {
+        SCOPED_TRACE(dem);
+        fs::remove_all(_folder / "db");
+        auto o = options({dem});
+        const BuildEstimate estimate = estimateBuild(o);
+        EXPECT_FALSE(fs::exists(o.output));
+        const BuildSummary summary = buildDatabase(o);
+        EXPECT_EQ(estimate.samples, summary.samples);
+        EXPECT_EQ(estimate.levels, summary.levels);
+        EXPECT_EQ(estimate.tiles, summary.tiles);
+        EXPECT_GT(estimate.bytes, summary.bytes / 3);
+        EXPECT_LT(estimate.bytes, summary.bytes * 6);
+    }
+}
+
+TEST_F(BuilderEstimate, IsPrintedFirst)
+{
+    const std::string dem = writeRelief(_folder / "dem.tif", 300, 200, 10.0, 47.0, 0.001);
+    const auto run = [&](const std::vector<std::string>& more)
+    {
+        std::vector<std::string> command{builtProgram("osggeofx_build"), "--dem", dem, "-o", _folder / "db"};
+        command.insert(command.end(), more.begin(), more.end());
+        return runProgram(command);
+    };
+    const std::regex line(
+        R"(osggeofx_build: 0\.060 million samples, up to 9 tiles, 3 levels; about [0-9.]+ [kM]B on the )"
+        R"(disk, and [0-9.]+ [kM]B more while it is built; about [0-9]+ s\.\n)");
+    const ProgramResult told = run({"--estimate"});
+    EXPECT_EQ(told.exitCode, 0) << told.standardError;
+    EXPECT_TRUE(std::regex_match(told.standardOutput, line)) << told.standardOutput;
+    EXPECT_FALSE(fs::exists(_folder / "db"));
+    const ProgramResult built = run({});
+    EXPECT_EQ(built.standardOutput.rfind(told.standardOutput, 0), 0u) << built.standardOutput;
+    EXPECT_NE(built.standardOutput.find("/terrain.osgb: "), std::string::npos);
+    EXPECT_EQ(run({"--quiet"}).standardOutput, "");
+}
+
+TEST_F(BuilderEstimate, WhatTheDiskCannotHoldIsRefused)
+{
+    const std::string fine = writeRelief(_folder / "fine.tif", 40, 40, 10.0, 47.0, 1e-5);
+    expectRefusal({"--dem", coarseWorld(), fine}, {"samples", "tiles", "on the disk", "are free",
+                                                   "another folder with -o", "coarser rasters"});
+    EXPECT_THROW(estimateBuild(options({coarseWorld(), fine})), BuildError);
+}
+
+TEST_F(BuilderEstimate, PixelsOfNothing)
+{
+    const std::string tiny = writeRelief(_folder / "tiny.tif", 40, 40, 10.0, 47.0, 1e-9);
+    expectRefusal({"--dem", coarseWorld(), tiny}, {"levels", "coarser rasters"});
+    // By itself it is a stone of 4 mm.
+    const ProgramResult result =
+        runProgram({builtProgram("osggeofx_build"), "--dem", tiny, "-o", _folder / "stone"});
+    EXPECT_EQ(result.exitCode, 0) << result.standardError;
+}
+
+TEST_F(BuilderEstimate, ACrsThatDoesNotReach)
+{
+    const std::string antipode = writeRelief(_folder / "antipode.tif", 60, 60, -170.0, -51.5, 0.01);
+    expectRefusal({"--dem", antipode, "--srs", "EPSG:3035"},
+                  {"antipode.tif", "ETRS89-extended / LAEA Europe", "does not reach", "--geocentric"});
+    expectRefusal({"--dem", antipode, "--srs", "EPSG:32632"}, {"UTM zone 32N", "does not reach"});
+    // The zone beside one's own serves, and so does an area on both sides of the antimeridian.
+    auto o = options({writeRelief(_folder / "beside.tif", 60, 60, 13.0, 47.5, 0.001)});
+    o.epsg = 32632;
+    EXPECT_NO_THROW(estimateBuild(o));
+    o = options({writeRelief(_folder / "fiji.tif", 60, 60, 179.97, -17.0, 0.001)});
+    o.epsg = 3460; // Fiji 1986
+    EXPECT_NO_THROW(estimateBuild(o));
+    o.epsg = 3857;
+    EXPECT_NO_THROW(estimateBuild(o));
+}
+
+} // namespace
