@@ -243,6 +243,7 @@ TEST(DatabaseSurface, HolesHaveNoPillars)
                 { return hole(column, row) < 15.0 ? -9999.0 : 300.0 + relief(column, row) * 0.1; });
     auto o = options(raster.write(folder / "dem.tif"), folder / "db");
     o.epsg = 32604;
+    o.voids = Voids::KEEP;
     buildDatabase(o);
     const int finest = DatabaseRoot(o.output).finestLevel();
     int triangles = 0;
