@@ -4,12 +4,11 @@
 
 #include <osgGeoFX/closeup/LiftFrame.h>
 #include <osgGeoFX/deformation/DeformedView.h>
+#include <osgGeoFX/deformation/DrawableTriangles.h>
 
 #include <osg/LOD>
-#include <osg/TriangleIndexFunctor>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -156,33 +155,6 @@ bool shows(const CloseUp& closeUp)
     return closeUp.getEnabled() && !closeUp.getRegion()->isEmpty();
 }
 
-/// One of a drawable's triangles, by its number.
-struct NumberedTriangle
-{
-    void operator()(unsigned int a, unsigned int b, unsigned int c)
-    {
-        if (passed++ == number) corners = {a, b, c};
-    }
-    unsigned int number = 0, passed = 0;
-    std::array<unsigned int, 3> corners = {};
-};
-
-class TriangleFinder : public osg::TriangleIndexFunctor<NumberedTriangle>
-{
-public:
-    using osg::TriangleIndexFunctor<NumberedTriangle>::setVertexArray;
-    void setVertexArray(unsigned int, const osg::Vec3* vertices) override { _single = vertices; }
-    void setVertexArray(unsigned int, const osg::Vec3d* vertices) override { _double = vertices; }
-    osg::Vec3d position(unsigned int corner) const
-    {
-        return _double ? _double[corner] : osg::Vec3d(_single[corner]);
-    }
-
-private:
-    const osg::Vec3* _single = nullptr;
-    const osg::Vec3d* _double = nullptr;
-};
-
 using Found = DeformedLineIntersector::Intersection;
 
 bool isWhole(const CloseUp& closeUp, const osg::Vec3d& inRegion)
@@ -193,13 +165,12 @@ bool isWhole(const CloseUp& closeUp, const osg::Vec3d& inRegion)
 /// Whether a triangle has all corners where the mask is 1.
 bool isWhole(const CloseUp& closeUp, const Found& found, const osg::Matrixd& worldToRegion)
 {
-    TriangleFinder triangle;
-    triangle.number = found.triangle;
-    found.drawable->accept(triangle);
+    const DrawableTriangles mesh(*found.drawable);
     const osg::Matrixd toRegion = osg::computeLocalToWorld(found.path) * worldToRegion;
-    return std::all_of(triangle.corners.begin(), triangle.corners.end(),
+    const unsigned int* const first = &mesh.corners()[std::size_t{3} * found.triangle];
+    return std::all_of(first, first + 3,
                        [&](unsigned int corner)
-                       { return isWhole(closeUp, triangle.position(corner) * toRegion); });
+                       { return isWhole(closeUp, mesh.positions()[corner] * toRegion); });
 }
 
 /// What a ray meets of a close-up.

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/ContourFence.h>
 
-#include <osg/TriangleIndexFunctor>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,23 +39,15 @@ public:
     /// All triangles of a geometry; the highest one counts. Upright ones, such as skirts, have no area.
     void add(const osg::Geometry& geometry, const osg::Matrixd& toRegion)
     {
-        const auto* vertices = dynamic_cast<const osg::Vec3Array*>(geometry.getVertexArray());
-        if (!vertices) return;
-        _vertices.resize(vertices->size());
-        std::transform(vertices->begin(), vertices->end(), _vertices.begin(),
-                       [&](const osg::Vec3& vertex) { return osg::Vec3d(vertex) * toRegion; });
-        struct Collect
-        {
-            Heights* heights = nullptr;
-            void operator()(unsigned int a, unsigned int b, unsigned int c)
-            {
-                const auto count = static_cast<unsigned int>(heights->_vertices.size());
-                if (a < count && b < count && c < count) heights->addTriangle(a, b, c);
-            }
-        };
-        osg::TriangleIndexFunctor<Collect> collect;
-        collect.heights = this;
-        geometry.accept(collect);
+        // Where instances stand no one knows.
+        if (DrawableTriangles::instanced(geometry)) return;
+        const DrawableTriangles mesh(geometry);
+        _vertices.resize(mesh.positions().size());
+        std::transform(mesh.positions().begin(), mesh.positions().end(), _vertices.begin(),
+                       [&](const osg::Vec3d& vertex) { return vertex * toRegion; });
+        const std::vector<unsigned int>& corners = mesh.corners();
+        for (std::size_t i = 0; i < corners.size(); i += 3)
+            addTriangle(corners[i], corners[i + 1], corners[i + 2]);
     }
 
     bool anyKnown() const
@@ -178,7 +168,12 @@ bool ContourFence::isKnown(const RegionOfInterest& region, const std::vector<Gro
     return _wall && _region == &region && _revision == region.revision() && ground.size() == _known.size() &&
            std::equal(ground.begin(), ground.end(), _known.begin(),
                       [](const Ground& now, const Known& known)
-                      { return known.drawable == now.drawable.get() && same(now.toRegion, known.toRegion); });
+                      {
+                          const osg::Geometry* geometry = now.drawable->asGeometry();
+                          return known.drawable == now.drawable.get() && known.drawable.valid() &&
+                                 same(now.toRegion, known.toRegion) &&
+                                 (!geometry || known.stamp.matches(*geometry));
+                      });
 }
 
 bool ContourFence::update(const RegionOfInterest& region, const std::vector<Ground>& ground)
@@ -189,7 +184,11 @@ bool ContourFence::update(const RegionOfInterest& region, const std::vector<Grou
         _revision = region.revision();
         _known.clear();
         for (const Ground& each : ground)
-            _known.push_back({osg::observer_ptr<const osg::Drawable>(each.drawable), each.toRegion});
+        {
+            const osg::Geometry* geometry = each.drawable->asGeometry();
+            _known.push_back({osg::observer_ptr<const osg::Drawable>(each.drawable), each.toRegion,
+                              geometry ? GeometryStamp(*geometry) : GeometryStamp()});
+        }
         build(region, ground);
     }
     return _grounded;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/closeup/RegionOfInterest.h>
+#include <osgGeoFX/deformation/DrawableTriangles.h>
 
 #include <osg/Geometry>
 #include <osg/observer_ptr>
@@ -38,6 +39,7 @@ private:
     {
         osg::observer_ptr<const osg::Drawable> drawable;
         osg::Matrixd toRegion;
+        GeometryStamp stamp;
     };
     bool isKnown(const RegionOfInterest& region, const std::vector<Ground>& ground) const;
     void build(const RegionOfInterest& region, const std::vector<Ground>& ground);

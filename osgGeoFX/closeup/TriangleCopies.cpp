@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/TriangleCopies.h>
 
-#include <osg/TriangleFunctor>
-#include <osg/TriangleIndexFunctor>
-
 #include <algorithm>
 #include <cmath>
 
@@ -20,13 +17,13 @@ constexpr double slack = 1e-3, border = 1.01;
 /// Where vertices are, seen from a region, a bit for each side that they are beyond.
 using Sides = std::vector<unsigned char>;
 
-Sides sidesOf(const osg::Vec3Array& vertices, const TriangleCopies::Region& region)
+Sides sidesOf(const std::vector<osg::Vec3d>& vertices, const TriangleCopies::Region& region)
 {
     Sides sides(vertices.size());
     std::transform(vertices.begin(), vertices.end(), sides.begin(),
-                   [&](const osg::Vec3& vertex)
+                   [&](const osg::Vec3d& vertex)
                    {
-                       const osg::Vec3d place = osg::Vec3d(vertex) * region.toPlaces;
+                       const osg::Vec3d place = vertex * region.toPlaces;
                        return static_cast<unsigned char>(
                            (place.x() > border ? 1 : 0) | (place.x() < -border ? 2 : 0) |
                            (place.y() > border ? 4 : 0) | (place.y() < -border ? 8 : 0) |
@@ -35,46 +32,13 @@ Sides sidesOf(const osg::Vec3Array& vertices, const TriangleCopies::Region& regi
     return sides;
 }
 
-struct Collect
+/// Whether a triangle is not wholly beyond one side of each region; without regions, all are wanted.
+bool wanted(const unsigned int* corners, const std::vector<Sides>& regions)
 {
-    osg::DrawElementsUInt* indices = nullptr;
-    const std::vector<Sides>* regions = nullptr; ///< empty: everything is wanted
-    std::size_t all = 0;
-
-    bool wanted(unsigned int a, unsigned int b, unsigned int c) const
-    {
-        return regions->empty() || std::any_of(regions->begin(), regions->end(),
-                                               [&](const Sides& sides)
-                                               {
-                                                   return a >= sides.size() || b >= sides.size() ||
-                                                          c >= sides.size() ||
-                                                          (sides[a] & sides[b] & sides[c]) == 0;
-                                               });
-    }
-    void operator()(unsigned int a, unsigned int b, unsigned int c)
-    {
-        ++all;
-        if (!wanted(a, b, c)) return;
-        for (const unsigned int index : {a, b, c})
-            indices->push_back(index);
-    }
-};
-
-struct LongestEdge
-{
-    void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)
-    {
-        square = std::max({square, (b - a).length2(), (c - b).length2(), (a - c).length2()});
-    }
-    float square = 0.0f;
-};
-
-unsigned int modifiedCount(const osg::Geometry& geometry)
-{
-    unsigned int count = geometry.getVertexArray() ? geometry.getVertexArray()->getModifiedCount() : 0;
-    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : geometry.getPrimitiveSetList())
-        count += primitives->getModifiedCount() + primitives->getNumIndices();
-    return count;
+    return regions.empty() ||
+           std::any_of(regions.begin(), regions.end(),
+                       [&](const Sides& sides)
+                       { return (sides[corners[0]] & sides[corners[1]] & sides[corners[2]]) == 0; });
 }
 
 /// Whether what is in a box is in the same place of the regions, but for what a camera's matrices round.
@@ -99,30 +63,46 @@ bool same(const std::vector<TriangleCopies::Region>& some, const std::vector<Tri
 void TriangleCopies::build(Entry& entry, bool patches)
 {
     const osg::Geometry& geometry = *entry.geometry;
+    const DrawableTriangles mesh(geometry);
     std::vector<Sides> sides;
-    const auto* vertices = dynamic_cast<const osg::Vec3Array*>(geometry.getVertexArray());
-    for (std::size_t i = 0; vertices && i < entry.regions.size(); ++i)
-        sides.push_back(sidesOf(*vertices, entry.regions[i]));
-    osg::ref_ptr<osg::DrawElementsUInt> indices =
-        new osg::DrawElementsUInt(patches ? GL_PATCHES : GL_TRIANGLES);
-    osg::TriangleIndexFunctor<Collect> collect;
-    collect.indices = indices;
-    collect.regions = &sides;
-    geometry.accept(collect);
-    entry.empty = indices->empty();
+    // Instances, and what a shader moves, lie elsewhere than the vertices say.
+    for (std::size_t i = 0; mesh.tellAll() && i < entry.regions.size(); ++i)
+        sides.push_back(sidesOf(mesh.positions(), entry.regions[i]));
+    std::vector<osg::ref_ptr<osg::DrawElementsUInt>> copies;
+    std::size_t count = 0;
+    std::size_t corner = 0;
+    for (const DrawableTriangles::Part& part : mesh.parts())
+    {
+        osg::ref_ptr<osg::DrawElementsUInt> indices =
+            new osg::DrawElementsUInt(patches ? GL_PATCHES : GL_TRIANGLES);
+        indices->setNumInstances(part.instances);
+        for (; corner < part.end; corner += 3)
+        {
+            const unsigned int* corners = &mesh.corners()[corner];
+            if (wanted(corners, sides)) indices->insert(indices->end(), corners, corners + 3);
+        }
+        count += indices->size();
+        if (!indices->empty()) copies.push_back(indices);
+    }
+    // Vertices that could not be read may be anywhere.
+    const bool unread = mesh.positions().empty();
+    entry.empty = count == 0 && !unread;
     entry.copy = nullptr;
     constexpr double most = 0.8;
     const bool worthIt =
-        patches || static_cast<double>(indices->size()) < 3.0 * most * static_cast<double>(collect.all);
-    if (entry.empty || !worthIt) return;
+        patches || static_cast<double>(count) < most * static_cast<double>(mesh.corners().size());
+    if (entry.empty || unread || !worthIt) return;
     entry.copy = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
     // The arrays are another's, who may be drawing them: their buffers stay as they are.
     entry.copy->setUseDisplayList(false);
     entry.copy->removePrimitiveSet(0, entry.copy->getNumPrimitiveSets());
-    entry.copy->addPrimitiveSet(indices);
-    // OSG gives it to the next copy of the same size.
-    if (osg::ElementBufferObject* buffer = indices->getElementBufferObject())
-        buffer->setUsage(GL_DYNAMIC_DRAW);
+    for (const osg::ref_ptr<osg::DrawElementsUInt>& indices : copies)
+    {
+        entry.copy->addPrimitiveSet(indices);
+        // OSG gives it to the next copy of the same size.
+        if (osg::ElementBufferObject* buffer = indices->getElementBufferObject())
+            buffer->setUsage(GL_DYNAMIC_DRAW);
+    }
 }
 
 osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches)
@@ -131,13 +111,12 @@ osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Reg
     for (const Region& region : regions)
         key.second.push_back(region.item);
     Entry& entry = (patches ? _patches : _triangles)[key];
-    const unsigned int modified = modifiedCount(geometry);
-    const bool known = entry.geometry.valid() && entry.modified == modified &&
+    const bool known = entry.geometry.valid() && entry.stamp.matches(geometry) &&
                        same(entry.regions, regions, geometry.getBoundingBox());
     if (!known)
     {
         entry.geometry = &geometry;
-        entry.modified = modified;
+        entry.stamp = GeometryStamp(geometry, GeometryStamp::ALL_ARRAYS);
         entry.regions = regions;
         build(entry, patches);
     }
@@ -148,14 +127,20 @@ osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Reg
 double TriangleCopies::longestEdge(const osg::Geometry& geometry)
 {
     Measured& measured = _measured[&geometry];
-    const unsigned int modified = modifiedCount(geometry);
-    if (!measured.geometry.valid() || measured.modified != modified)
+    if (!measured.geometry.valid() || !measured.stamp.matches(geometry))
     {
-        osg::TriangleFunctor<LongestEdge> longest;
-        geometry.accept(longest);
+        const DrawableTriangles mesh(geometry);
+        double square = 0.0;
+        const auto edge = [&](std::size_t from, std::size_t to)
+        {
+            const std::vector<unsigned int>& corners = mesh.corners();
+            return (mesh.positions()[corners[to]] - mesh.positions()[corners[from]]).length2();
+        };
+        for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
+            square = std::max({square, edge(i, i + 1), edge(i + 1, i + 2), edge(i + 2, i)});
         measured.geometry = &geometry;
-        measured.modified = modified;
-        measured.longestEdge = std::sqrt(static_cast<double>(longest.square));
+        measured.stamp = GeometryStamp(geometry);
+        measured.longestEdge = std::sqrt(square);
     }
     return measured.longestEdge;
 }

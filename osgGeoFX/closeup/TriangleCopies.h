@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/deformation/DrawableTriangles.h>
+
 #include <osg/Geometry>
 #include <osg/Matrixd>
 #include <osg/observer_ptr>
@@ -17,7 +19,7 @@ namespace osgGeoFX
 /** Those triangles of a geometry that lie over some regions, as triangles or as the patches that tessellation asks for:
     geometries that share the arrays of what they copy. Made when first asked for, and kept while the drawable lives and
     lies where it is. For one thread at a time. */
-class TriangleCopies
+class OSGGEOFX_EXPORT TriangleCopies
 {
 public:
     /// One region: which it is, the way from the drawable's frame to places in it, −1…1, and metres above its base, and the height
@@ -41,7 +43,7 @@ private:
     struct Entry
     {
         osg::observer_ptr<osg::Geometry> geometry;
-        unsigned int modified = 0;
+        GeometryStamp stamp;
         std::vector<Region> regions;
         osg::ref_ptr<osg::Geometry> copy; ///< null where the geometry itself is as good
         bool empty = false;
@@ -50,7 +52,7 @@ private:
     struct Measured
     {
         osg::observer_ptr<const osg::Geometry> geometry;
-        unsigned int modified = 0;
+        GeometryStamp stamp;
         double longestEdge = 0.0;
     };
 

@@ -5,7 +5,6 @@
 #include <osgGeoFX/deformation/RigidReference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 
-#include <osg/Billboard>
 #include <osg/LOD>
 #include <osg/OcclusionQueryNode>
 #include <osg/Projection>
@@ -67,27 +66,13 @@ void computeBounds(const osg::Group& group)
 
 } // namespace
 
-/// Restores the mode at its end; says whether the node is out of sight.
-class CompensatingCullVisitor::Scope
+CompensatingCullVisitor::Scope::Scope(CompensatingCullVisitor& visitor, const osg::Node& node)
+    : _visitor(visitor), _former(visitor._mode)
 {
-public:
-    Scope(CompensatingCullVisitor& visitor, const osg::Node& node) : _visitor(visitor), _former(visitor._mode)
-    {
-        if (!visitor._mode.ours) return;
-        visitor.meet(node.getStateSet());
-        if (visitor._task.compensate) _skip = visitor.outOfSight(node);
-    }
-    ~Scope() { _visitor._mode = _former; }
-    Scope(const Scope&) = delete;
-    Scope& operator=(const Scope&) = delete;
-
-    bool skip() const { return _skip; }
-
-private:
-    CompensatingCullVisitor& _visitor;
-    const Mode _former;
-    bool _skip = false;
-};
+    if (!visitor._mode.ours) return;
+    visitor.meet(node.getStateSet());
+    if (visitor._task.compensate) _skip = visitor.outOfSight(node);
+}
 
 CompensatingCullVisitor::CompensatingCullVisitor() : _nothing(new DeformationChain) {}
 
@@ -103,6 +88,7 @@ bool CompensatingCullVisitor::startsFrame(osgUtil::CullVisitor& outer)
     _order = Access::order(outer);
     if (starts) reset();
     if (starts) _placedUsed = 0;
+    if (starts) _programs.startFrame();
     if (starts) _meshBoxes.purge();
     return starts;
 }
@@ -175,8 +161,13 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
             osg::CullingSet::computePixelSizeVector(*getViewport(), *getProjectionMatrix(), osg::Matrix());
     }
     _mode = Mode();
+    _mode.chain = task.chain;
     meetAll(*_entry);
     meet(task.state);
+    _strangers.clear();
+    _ownGraphs.clear();
+    _graphsBefore = graphsIn(*_currentRenderBin->getStage());
+    _top = _entry;
     _mode.planes = _frustum.all();
     _scale = largestScale(*getModelViewMatrix());
     _depths.clear();
@@ -215,6 +206,7 @@ void CompensatingCullVisitor::setFrustum(bool culls)
 
 void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
 {
+    adoptLeaves();
     _order = _traversalOrderNumber;
     Access::order(outer) = _traversalOrderNumber;
     if (!_task.compensate)
@@ -243,6 +235,7 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene
     begin(outer, task);
     if (task.state) pushStateSet(task.state);
     if (task.passState) pushStateSet(task.passState);
+    _top = _currentStateGraph;
     for (unsigned int i = 0; i < scene.getNumChildren(); ++i)
         scene.getChild(i)->accept(*this);
     if (task.passState) popStateSet();
@@ -260,7 +253,7 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const std::vector
     for (const Piece& piece : pieces)
     {
         pushStateSet(piece.state);
-        addDrawableAndDepth(piece.drawable, createOrReuseMatrix(piece.modelView), 0.0f);
+        addLeaf(*piece.drawable, createOrReuseMatrix(piece.modelView), 0.0);
         popStateSet();
     }
     if (task.passState) popStateSet();
@@ -290,13 +283,30 @@ bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
     const osg::BoundingSphere& sphere = node.getBound();
     if (!sphere.valid()) return false;
     const Ball undeformed = eyeBall(sphere);
-    if (_mode.chain->hides(undeformed, _room)) return true;
-    const Ball ball = _mode.chain->bound(undeformed);
-    _middle = ball.centre;
-    if (_frustum.side(ball, _mode.planes) == EyeFrustum::Side::Outside) return true;
-    if (!_cullSmall) return false;
-    const double pixelsOfOne = planeDistance(_pixelSize, ball.centre);
-    return pixelsOfOne * _smallPixels > ball.radius;
+    bool out = _mode.chain->hides(undeformed, _room);
+    if (!out)
+    {
+        const Ball ball = _mode.chain->bound(undeformed);
+        _middle = ball.centre;
+        out = outOfSight(ball, _mode.planes);
+    }
+    return out && !partsInSight(node, undeformed);
+}
+
+bool CompensatingCullVisitor::outOfSight(const Ball& ball, EyeFrustum::Mask& planes) const
+{
+    if (_frustum.side(ball, planes) == EyeFrustum::Side::Outside) return true;
+    return _cullSmall && planeDistance(_pixelSize, ball.centre) * _smallPixels > ball.radius;
+}
+
+bool CompensatingCullVisitor::partsInSight(const osg::Node& node, const Ball& undeformed)
+{
+    if (_mode.chain->empty()) return false;
+    EyeFrustum::Mask planes = _frustum.all();
+    if (outOfSight(undeformed, planes) || !_undeformedParts.below(node, _programs, _frame)) return false;
+    _mode.planes = _frustum.all();
+    _middle = undeformed.centre;
+    return true;
 }
 
 void CompensatingCullVisitor::apply(osg::Node& node)
@@ -327,8 +337,17 @@ void CompensatingCullVisitor::apply(osg::Group& node)
 
 void CompensatingCullVisitor::meet(const osg::StateSet* state)
 {
+    if (!state) return;
+    const osg::StateAttribute* former = _mode.deformation.program;
     _mode.deformation.meet(state);
-    _mode.chain = _mode.deformation.on ? _task.chain.get() : _nothing.get();
+    const osg::StateAttribute* program = _mode.deformation.program;
+    if (program != former) _mode.stranger = _programs.isStranger(program);
+    _mode.chain = _mode.stranger ? _nothing.get() : &definedChain();
+}
+
+const DeformationChain& CompensatingCullVisitor::definedChain() const
+{
+    return _mode.deformation.on ? *_task.chain : *_nothing;
 }
 
 void CompensatingCullVisitor::meetAll(const osgUtil::StateGraph& state)
@@ -344,7 +363,7 @@ void CompensatingCullVisitor::applyRigid(RigidReference& node)
     meet(node.getStateSet());
     const osg::Matrixd& modelView = *getModelViewMatrix();
     const osg::Vec3d reference = node.referencePoint() * modelView;
-    const osg::Matrixd placement = rigidPlacement(*_mode.chain, reference, node.getTurn());
+    const osg::Matrixd placement = rigidPlacement(definedChain(), reference, node.getTurn());
     pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
     meet(_task.untouched);
     pushStateSet(_task.untouched);
@@ -379,7 +398,23 @@ void CompensatingCullVisitor::applyTile(osg::Transform& node)
     const Mode former = _mode;
     osg::StateSet* state = node.getStateSet();
     meet(state);
-    if (!node.isCullingActive()) _mode.planes = _frustum.all();
+    if (!node.isCullingActive())
+    {
+        _mode.planes = _frustum.all();
+    }
+    else if (_cullSmall && node.getNumChildren() > 1 && !_task.filter)
+    {
+        // OSG leaves out nodes that are too small, never single drawables.
+        EyeFrustum::Mask planes = _mode.planes;
+        const osg::BoundingSphere& sphere = node.getBound();
+        if (sphere.valid() && outOfSight(_mode.chain->bound(eyeBall(sphere)), planes) &&
+            !partsInSight(node, eyeBall(sphere)))
+        {
+            _mode = former;
+            return;
+        }
+    }
+    _mode.tile = node.getNumChildren() == 1;
     if (state) pushStateSet(state);
     osg::RefMatrix* matrix = createOrReuseMatrix(*getModelViewMatrix());
     node.computeLocalToWorldMatrix(*matrix, this);
@@ -454,14 +489,6 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
     setLODScale(former);
 }
 
-void CompensatingCullVisitor::apply(osg::Billboard& node)
-{
-    const Scope scope(*this, node);
-    if (scope.skip()) return;
-    if (_mode.ours && _task.compensate) _depths.include(_mode.chain->bound(eyeBall(node.getBound())));
-    CullVisitor::apply(node);
-}
-
 void CompensatingCullVisitor::apply(osg::OcclusionQueryNode& node)
 {
     // Its query would ask for the box where the box is not.
@@ -496,6 +523,7 @@ void CompensatingCullVisitor::passUntouched(NodeType& node)
     }
     _mode.ours = false;
     _mode.chain = _nothing.get();
+    const std::size_t graphs = graphsIn(*_currentRenderBin->getStage());
     setCullingMode(_outerCullingMode);
     setComputeNearFarMode(_outerNearFar);
     const value_type formerNear = _computed_znear;
@@ -506,6 +534,8 @@ void CompensatingCullVisitor::passUntouched(NodeType& node)
     setCullSettings(formerSettings);
     _currentStateGraph = formerGraph;
     _mode = formerMode;
+    // Not to be looked for among what is ours.
+    _graphsBefore += graphsIn(*_currentRenderBin->getStage()) - graphs;
 }
 
 void CompensatingCullVisitor::apply(osg::Camera& node)
@@ -595,7 +625,8 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
     depth = -deformed.centre.z();
     const bool test = drawable.isCullingActive();
     if (test && _outerCullingMode != NO_CULLING && _mode.chain->hides(box, _room)) return false;
-    if (test && _cullSmall && planeDistance(_pixelSize, deformed.centre) * _smallPixels > deformed.radius)
+    if (test && _mode.tile && _cullSmall &&
+        planeDistance(_pixelSize, deformed.centre) * _smallPixels > deformed.radius)
         return false;
     EyeFrustum::Mask planes = test ? _mode.planes : 0;
     if (planes && _frustum.side(deformed, planes) == EyeFrustum::Side::Outside) return false;
@@ -625,7 +656,11 @@ osg::StateSet* CompensatingCullVisitor::lookFor(const osg::Drawable& drawable)
     }
     FixedFunctionState state = _state;
     if (drawable.getStateSet()) state.meet(*drawable.getStateSet());
-    const FixedFunctionLook look = state.look(_task.mapUnit);
+    return lookOf(state.look(_task.mapUnit));
+}
+
+osg::StateSet* CompensatingCullVisitor::lookOf(const FixedFunctionLook& look)
+{
     if (look.ownProgram) return nullptr;
     if (look.unsupported && !_warnedOfLook)
     {
@@ -657,11 +692,16 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     }
     const Mode former = _mode;
     meet(drawable.getStateSet());
+    if (_mode.stranger) noteStranger();
     if (!_task.compensate)
     {
         osg::StateSet* look = lookFor(drawable);
         if (look) pushStateSet(look);
+        const osg::StateSet* own = drawable.getStateSet();
+        const osgUtil::StateGraph* graph = own ? _currentStateGraph->find_or_insert(own) : _currentStateGraph;
+        const bool empty = graph->leaves_empty();
         CullVisitor::apply(drawable);
+        if (empty && !graph->leaves_empty()) _ownGraphs.push_back(graph);
         if (look) popStateSet();
         drawCompanions(drawable, 0.0);
         _mode = former;
@@ -686,7 +726,7 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         if (look) pushStateSet(look);
         osg::StateSet* state = drawable.getStateSet();
         if (state) pushStateSet(state);
-        addDrawableAndDepth(&drawable, getModelViewMatrix(), static_cast<float>(depth));
+        addLeaf(drawable, getModelViewMatrix(), depth);
         if (state) popStateSet();
         if (look) popStateSet();
         drawCompanions(drawable, depth);
@@ -701,7 +741,7 @@ void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, double dep
         osg::Drawable* companion = each->companion(drawable, *getModelViewMatrix());
         if (!companion) continue;
         pushStateSet(each->state());
-        addDrawableAndDepth(companion, getModelViewMatrix(), static_cast<float>(depth));
+        addLeaf(*companion, getModelViewMatrix(), depth);
         popStateSet();
     }
 }
@@ -716,7 +756,8 @@ void CompensatingCullVisitor::applyInPass(osg::Drawable& drawable)
     osg::StateSet* look = lookFor(drawable);
     const std::vector<osg::StateSet*>& passes =
         _task.filter->states(drawable, box, modelView, look == nullptr);
-    osg::Drawable* drawn = passes.empty() ? nullptr : _task.filter->drawn(drawable);
+    // What does not call the functions would stand in the pass where it stands on the ground.
+    osg::Drawable* drawn = passes.empty() || _mode.stranger ? nullptr : _task.filter->drawn(drawable);
     if (!drawn) return;
     for (osg::StateSet* pass : passes)
     {
@@ -724,7 +765,7 @@ void CompensatingCullVisitor::applyInPass(osg::Drawable& drawable)
         if (look) pushStateSet(look);
         osg::StateSet* state = drawable.getStateSet();
         if (state) pushStateSet(state);
-        addDrawableAndDepth(drawn, getModelViewMatrix(), static_cast<float>(-box.centre.z()));
+        addLeaf(*drawn, getModelViewMatrix(), -box.centre.z());
         if (state) popStateSet();
         if (look) popStateSet();
         popStateSet();
@@ -808,7 +849,7 @@ void CompensatingCullVisitor::drawBounds()
     geometry.removePrimitiveSet(0, geometry.getNumPrimitiveSets());
     geometry.addPrimitiveSet(new osg::DrawArrays(GL_LINES, 0, static_cast<GLsizei>(_bounds.lines->size())));
     pushStateSet(geometry.getStateSet());
-    addDrawableAndDepth(&geometry, createOrReuseMatrix(osg::Matrix()), 0.0f);
+    addLeaf(geometry, createOrReuseMatrix(osg::Matrix()), 0.0);
     popStateSet();
 }
 

@@ -5,10 +5,13 @@
 #include <osgGeoFX/deformation/DeformationChain.h>
 #include <osgGeoFX/deformation/EyeFrustum.h>
 #include <osgGeoFX/deformation/MeshBoxes.h>
+#include <osgGeoFX/deformation/UndeformedParts.h>
 #include <osgGeoFX/scene/FixedFunctionLook.h>
+#include <osgGeoFX/scene/OwnPrograms.h>
 
 #include <osg/Geometry>
 #include <osgUtil/CullVisitor>
+#include <osgUtil/RenderLeaf>
 
 #include <algorithm>
 #include <map>
@@ -64,6 +67,8 @@ protected:
       by the hull of what it makes of a drawable's box;
     - levels of detail by DeformationChain::lodDistance;
     - near and far planes from the deformed boxes;
+    - what nodes put into the render graph by themselves (osgSim::LightPointNode) gets the effects' state afterwards;
+    - what is drawn by a program that does not call the effects' functions is culled undeformed, and left out of passes;
     - below cameras and projections it is OSG's cull visitor, without our state. */
 class CompensatingCullVisitor : public osgUtil::CullVisitor
 {
@@ -104,6 +109,15 @@ public:
     /// Draws pieces in a pass, in the place of the scene.
     void run(osgUtil::CullVisitor& outer, const std::vector<Piece>& pieces, const Task& task);
 
+    /// A program that does not call the functions, though effects would move what it draws.
+    struct Stranger
+    {
+        osg::observer_ptr<const osg::StateAttribute> program;
+        osg::NodePath path; ///< to where it was met
+    };
+    /// Those of the last run.
+    const std::vector<Stranger>& strangers() const { return _strangers; }
+
     /// What is to be said once, from the last run; empty as a rule.
     const std::string& complaint() const { return _complaint; }
 
@@ -114,7 +128,12 @@ public:
     void apply(osg::Transform& node) override;
     void apply(osg::LOD& node) override;
     void apply(osg::Billboard& node) override;
+    void apply(osg::ClearNode& node) override;
+    void apply(osg::ClipNode& node) override;
+    void apply(osg::LightSource& node) override;
+    void apply(osg::OccluderNode& node) override;
     void apply(osg::OcclusionQueryNode& node) override;
+    void apply(osg::TexGenNode& node) override;
     void apply(osg::Camera& node) override;
     void apply(osg::Projection& node) override;
     void apply(osg::Drawable& drawable) override;
@@ -132,12 +151,29 @@ private:
     {
         const DeformationChain* chain = nullptr; ///< empty below what keeps its shape or is left out
         DeformationSwitch deformation;
+        bool stranger = false;       ///< the program in force does not call the functions
+        bool tile = false;           ///< a drawable's own size tells whether its node is too small
         EyeFrustum::Mask planes = 0; ///< frustum planes that bounds may still cross
         bool ours = true;            ///< false below cameras: OSG's culling, no state of ours
         double lodRadius = 0.0;      ///< of the LOD that is asking for distances
         double lodLimit = HUGE_VAL;  ///< what it hears at most
     };
-    class Scope;
+    /// For as long as a node is visited: its mode, and whether it is out of sight.
+    class Scope
+    {
+    public:
+        Scope(CompensatingCullVisitor& visitor, const osg::Node& node);
+        ~Scope() { _visitor._mode = _former; }
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+
+        bool skip() const { return _skip; }
+
+    private:
+        CompensatingCullVisitor& _visitor;
+        const Mode _former;
+        bool _skip = false;
+    };
 
     /// For what is below an object that was moved as a whole: the way back.
     osg::StateSet* placed(const osg::Matrixd& placement);
@@ -151,10 +187,29 @@ private:
     void meetAll(const osgUtil::StateGraph& state);
     void begin(osgUtil::CullVisitor& outer, const Task& task);
     void end(osgUtil::CullVisitor& outer);
+    /// What the define says, whatever the program does.
+    const DeformationChain& definedChain() const;
+    template<typename NodeType>
+    void applyUntested(NodeType& node);
+    void noteStranger();
+    /// As the base class does it, and remembers that it was done here.
+    void addLeaf(osg::Drawable& drawable, osg::RefMatrix* matrix, double depth);
+    /// Gives what nodes have put into the render graph by themselves the state of what is drawn here.
+    void adoptLeaves();
+    void adoptLeaves(osgUtil::RenderBin& bin);
+    void adoptLeaves(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph);
+    /// Those with leaves that a bin and those in it know.
+    static std::size_t graphsIn(osgUtil::RenderBin& bin);
+    bool isForeign(const osgUtil::StateGraph& graph) const;
+    osg::StateSet* lookOf(const FixedFunctionLook& look);
     /// The planes that cull, with room for the companions.
     void setFrustum(bool culls);
     /// Whether a node is out of sight; narrows the planes for what is below it.
     bool outOfSight(const osg::Node& node);
+    /// Of a ball that has been deformed, or not.
+    bool outOfSight(const Ball& ball, EyeFrustum::Mask& planes) const;
+    /// Whether parts of a node that is out of sight, deformed, are in sight since they are not.
+    bool partsInSight(const osg::Node& node, const Ball& undeformed);
     Ball eyeBall(const osg::BoundingSphere& sphere) const;
     /// Whether all smaller boxes of a drawable miss the picture; false where it has none.
     bool meshOutside(const osg::Drawable& drawable, EyeFrustum::Mask planes);
@@ -194,7 +249,14 @@ private:
     std::vector<osg::ref_ptr<osg::StateSet>> _placed; ///< one for each such object of a frame
     std::size_t _placedUsed = 0;
     std::string _complaint;
-    osgUtil::StateGraph* _entry = nullptr; ///< the outer visitor's, where our state begins
+    OwnPrograms _programs;
+    UndeformedParts _undeformedParts;
+    std::vector<Stranger> _strangers;
+    osgUtil::StateGraph* _top = nullptr;                ///< below which all is ours
+    std::vector<const osgUtil::StateGraph*> _ownGraphs; ///< that got their first leaf here
+    std::size_t _graphsBefore = 0;                      ///< with leaves, when the run began
+    osg::ref_ptr<osg::StateSet> _lightPoints; ///< the modes that osgSim's light points set themselves
+    osgUtil::StateGraph* _entry = nullptr;    ///< the outer visitor's, where our state begins
 
     unsigned int _frame = 0;
     unsigned int _order = 0;

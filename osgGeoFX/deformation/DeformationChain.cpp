@@ -219,7 +219,15 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
 
 void DeformationSwitch::meet(const osg::StateSet* state)
 {
-    if (!state || state->getDefineList().empty()) return;
+    if (!state) return;
+    const osg::StateSet::RefAttributePair* attribute =
+        state->getAttributeList().empty() ? nullptr : state->getAttributePair(osg::StateAttribute::PROGRAM);
+    if (attribute && (!programOverridden || (attribute->second & osg::StateAttribute::PROTECTED)))
+    {
+        program = attribute->first;
+        programOverridden = (attribute->second & osg::StateAttribute::OVERRIDE) != 0;
+    }
+    if (state->getDefineList().empty()) return;
     const osg::StateSet::DefinePair* define = state->getDefinePair("GEOFX_DEFORMATION");
     if (!define || (overridden && !(define->second & osg::StateAttribute::PROTECTED))) return;
     on = (define->second & osg::StateAttribute::ON) != 0;
@@ -228,17 +236,52 @@ void DeformationSwitch::meet(const osg::StateSet* state)
 
 double largestScale(const osg::Matrixd& matrix)
 {
-    double square = 0.0;
+    osg::Vec3d rows[3];
     for (int row = 0; row < 3; ++row)
+        rows[row].set(matrix(row, 0), matrix(row, 1), matrix(row, 2));
+    // The root of the largest eigenvalue of the matrix times its transpose, which is symmetric.
+    const double diagonal[3] = {rows[0].length2(), rows[1].length2(), rows[2].length2()};
+    const double beside[3] = {rows[1] * rows[2], rows[2] * rows[0], rows[0] * rows[1]};
+    const double largest = std::max({diagonal[0], diagonal[1], diagonal[2]});
+    const double square = beside[0] * beside[0] + beside[1] * beside[1] + beside[2] * beside[2];
+    double eigenvalue = largest;
+    // Most are turns and equal scales, whose rows stand upright on each other.
+    if (square > 1e-18 * largest * largest)
     {
-        square = std::max(square, osg::Vec3d(matrix(row, 0), matrix(row, 1), matrix(row, 2)).length2());
+        // In closed form; Smith, Eigenvalues of a symmetric 3 × 3 matrix, 1961.
+        const double mean = (diagonal[0] + diagonal[1] + diagonal[2]) / 3.0;
+        const double x = diagonal[0] - mean;
+        const double y = diagonal[1] - mean;
+        const double z = diagonal[2] - mean;
+        const double spread = std::sqrt((x * x + y * y + z * z + 2.0 * square) / 6.0);
+        const double determinant = x * (y * z - beside[0] * beside[0]) -
+                                   beside[2] * (beside[2] * z - beside[0] * beside[1]) +
+                                   beside[1] * (beside[2] * beside[0] - y * beside[1]);
+        const double share = std::clamp(determinant / (2.0 * spread * spread * spread), -1.0, 1.0);
+        eigenvalue = std::max(largest, mean + 2.0 * spread * std::cos(std::acos(share) / 3.0));
     }
-    return std::sqrt(square) * (1.0 + 1e-6);
+    return std::sqrt(eigenvalue) * (1.0 + 1e-6);
 }
 
 osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn)
 {
     return turn ? chain.placement(reference) : osg::Matrixd::translate(chain.deform(reference) - reference);
+}
+
+osg::Matrixd billboardModelView(const DeformationChain& chain, const osg::Billboard& billboard,
+                                unsigned int drawable, const osg::Matrixd& modelView)
+{
+    // Children that were added as to any group have none.
+    const bool placed = drawable < billboard.getPositionList().size();
+    const osg::Vec3 position = placed ? billboard.getPosition(drawable) : osg::Vec3();
+    const osg::Vec3d place = osg::Vec3d(position) * modelView;
+    const bool moved = !chain.leavesAlone({place, 0.0});
+    const osg::Matrixd placement = moved ? chain.placement(place) : osg::Matrixd();
+    osg::Matrixd turned = moved ? modelView * placement : modelView;
+    const osg::Vec3 eye(osg::Matrixd::inverse(turned).getTrans());
+    billboard.computeMatrix(turned, eye, position);
+    if (moved) turned.postMult(osg::Matrixd::inverse(placement));
+    return turned;
 }
 
 } // namespace osgGeoFX

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/deformation/Deformation.h>
 
+#include <osg/Billboard>
 #include <osg/LOD>
 #include <osg/StateSet>
 
@@ -68,20 +69,27 @@ private:
     double _tileError = 0.0;
 };
 
-/// Whether a subgraph is deformed: the define GEOFX_DEFORMATION of the state sets down to it, by OSG's rules of
+/// Whether a subgraph is deformed: the define GEOFX_DEFORMATION of the state sets down to it, and the program, by OSG's rules of
 /// inheritance, which are the GPU's.
-struct DeformationSwitch
+struct OSGGEOFX_EXPORT DeformationSwitch
 {
     bool on = true;
     bool overridden = false;
+    const osg::StateAttribute* program = nullptr; ///< the one in force, of whatever class
+    bool programOverridden = false;
     /// Goes down into a state set; null is nothing.
     void meet(const osg::StateSet* state);
 };
 
-/// By how much a matrix lengthens a unit vector along an axis at most, rounded up, so that bounds do not shrink.
-double largestScale(const osg::Matrixd& matrix);
+/// By how much a matrix lengthens any vector at most (its spectral norm), rounded up, so that bounds do not shrink.
+OSGGEOFX_EXPORT double largestScale(const osg::Matrixd& matrix);
 
 /// Where an object that keeps its shape goes: eye space to eye space; upright where it does not `turn`.
 osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn);
+
+/// The modelview matrix of one of a billboard's drawables, from that of the billboard: it turns to where the eye is as seen from its
+/// deformed place. It is still to be deformed itself.
+osg::Matrixd billboardModelView(const DeformationChain& chain, const osg::Billboard& billboard,
+                                unsigned int drawable, const osg::Matrixd& modelView);
 
 } // namespace osgGeoFX

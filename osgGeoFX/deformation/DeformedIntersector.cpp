@@ -2,10 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/DeformedIntersector.h>
 
+#include <osgGeoFX/deformation/DrawableTriangles.h>
 #include <osgGeoFX/deformation/RigidReference.h>
+#include <osgGeoFX/deformation/UndeformedParts.h>
 
 #include <osg/PagedLOD>
-#include <osg/TriangleIndexFunctor>
 
 #include <algorithm>
 #include <cmath>
@@ -15,33 +16,6 @@ namespace osgGeoFX
 
 namespace
 {
-
-/// The triangles of a drawable as corners' numbers, and its vertices.
-struct Triangles
-{
-    void operator()(unsigned int a, unsigned int b, unsigned int c)
-    {
-        corners.push_back(a);
-        corners.push_back(b);
-        corners.push_back(c);
-    }
-    std::vector<unsigned int> corners;
-};
-
-class Mesh : public osg::TriangleIndexFunctor<Triangles>
-{
-public:
-    using osg::TriangleIndexFunctor<Triangles>::setVertexArray;
-    void setVertexArray(unsigned int count, const osg::Vec3* vertices) override
-    {
-        positions.assign(vertices, vertices + count);
-    }
-    void setVertexArray(unsigned int count, const osg::Vec3d* vertices) override
-    {
-        positions.assign(vertices, vertices + count);
-    }
-    std::vector<osg::Vec3d> positions;
-};
 
 /// Distance along a ray to a triangle, in units of the direction; negative where it misses. Möller and Trumbore, from
 /// both sides.
@@ -97,6 +71,7 @@ osgUtil::Intersector* DeformedLineIntersector::clone(osgUtil::IntersectionVisito
     if (auto* ours = dynamic_cast<DeformedIntersectionVisitor*>(&visitor))
     {
         result->_chain = &ours->chain();
+        result->_programs = &ours->_programs;
         result->_modelView = ours->modelView();
         result->_scale = largestScale(result->_modelView);
     }
@@ -140,8 +115,11 @@ bool DeformedLineIntersector::enter(const osg::Node& node)
     if (!node.isCullingActive()) return true;
     const osg::BoundingSphere& sphere = node.getBound();
     if (!sphere.valid()) return false;
-    return meets(_chain->bound(
-        {osg::Vec3d(sphere.center()) * _modelView, static_cast<double>(sphere.radius()) * _scale}));
+    const Ball undeformed = {osg::Vec3d(sphere.center()) * _modelView,
+                             static_cast<double>(sphere.radius()) * _scale};
+    if (meets(_chain->bound(undeformed))) return true;
+    // What stays where it is while the rest is deformed, as in culling.
+    return _programs && !_chain->empty() && meets(undeformed) && UndeformedParts::search(node, *_programs);
 }
 
 void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, osg::Drawable* drawable)
@@ -150,16 +128,15 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
     const osg::BoundingBox& bounds = drawable->getBoundingBox();
     if (!bounds.valid() || !meets(_chain->bound(EyeBox::of(bounds, _modelView).ball()))) return;
     if (missesBox(bounds)) return;
-    Mesh mesh;
-    drawable->accept(mesh);
+    const DrawableTriangles mesh(*drawable);
     std::vector<osg::Vec3d> deformed;
-    deformed.reserve(mesh.positions.size());
-    for (const osg::Vec3d& position : mesh.positions)
+    deformed.reserve(mesh.positions().size());
+    for (const osg::Vec3d& position : mesh.positions())
         deformed.push_back(_chain->deform(position * _modelView));
 
-    for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3)
+    for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
     {
-        const unsigned int* corner = &mesh.corners[i];
+        const unsigned int* corner = &mesh.corners()[i];
         const double distance =
             meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]);
         if (!(distance >= 0.0)) continue;
@@ -174,7 +151,7 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         osg::Matrixd toLocal;
         toLocal.invert(_modelView);
         hit.world = _chain->undeform(hit.deformed) * toLocal * model;
-        const osg::Vec3d* first = mesh.positions.data();
+        const osg::Vec3d* first = mesh.positions().data();
         hit.normal = (first[corner[1]] - first[corner[0]]) ^ (first[corner[2]] - first[corner[0]]);
         hit.normal = osg::Matrixd::transform3x3(hit.normal, model);
         hit.normal.normalize();
@@ -192,8 +169,8 @@ public:
           _deformation(visitor._deformation)
     {
         visitor._deformation.meet(node.getStateSet());
-        if (visitor._deformation.on == _deformation.on) return;
-        visitor._chain = visitor._deformation.on ? visitor._whole : visitor._nothing;
+        visitor.choose();
+        if (visitor._chain == _chain) return;
         visitor.push_clone();
         _cloned = true;
     }
@@ -235,6 +212,11 @@ osg::Matrixd DeformedIntersectionVisitor::modelView() const
     return model ? osg::Matrixd(*model) * _view : _view;
 }
 
+void DeformedIntersectionVisitor::choose()
+{
+    _chain = _programs.isStranger(_deformation.program) ? _nothing.get() : &definedChain();
+}
+
 void DeformedIntersectionVisitor::apply(osg::Node& node)
 {
     const Scope scope(*this, node);
@@ -263,11 +245,13 @@ void DeformedIntersectionVisitor::applyRigid(RigidReference& node)
     const Scope scope(*this, node);
     const osg::Matrixd view = _view;
     const osg::Matrixd here = modelView();
-    const osg::Matrixd placement = rigidPlacement(*_chain, node.referencePoint() * here, node.getTurn());
+    const osg::Matrixd placement =
+        rigidPlacement(definedChain(), node.referencePoint() * here, node.getTurn());
     // Places on it are told as it stands, undeformed: only the view is moved.
     _view = _view * placement;
     _chain = _nothing;
-    _deformation = {false, true};
+    _deformation.on = false;
+    _deformation.overridden = true;
     push_clone();
     IntersectionVisitor::apply(node);
     pop_clone();
@@ -278,6 +262,24 @@ void DeformedIntersectionVisitor::apply(osg::Transform& node)
 {
     const Scope scope(*this, node);
     IntersectionVisitor::apply(node);
+}
+
+void DeformedIntersectionVisitor::apply(osg::Billboard& node)
+{
+    const Scope scope(*this, node);
+    if (!enter(node)) return;
+    const osg::Matrixd fromEye = osg::Matrixd::inverse(_view);
+    for (unsigned int i = 0; i < node.getNumDrawables(); ++i)
+    {
+        osg::Drawable* drawable = node.getDrawable(i);
+        if (!drawable) continue;
+        pushModelMatrix(new osg::RefMatrix(billboardModelView(*_chain, node, i, modelView()) * fromEye));
+        push_clone();
+        drawable->accept(*this);
+        pop_clone();
+        popModelMatrix();
+    }
+    leave();
 }
 
 void DeformedIntersectionVisitor::apply(osg::LOD& node)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/scene/OwnPrograms.h>
 
 #include <osg/Geode>
 #include <osgUtil/IntersectionVisitor>
@@ -62,6 +63,7 @@ private:
     // Of a clone: the intersector that collects, and what is in force below its node.
     DeformedLineIntersector* _root = nullptr;
     osg::ref_ptr<const DeformationChain> _chain;
+    OwnPrograms* _programs = nullptr;
     osg::Matrixd _modelView;
     double _scale = 1.0;
     std::vector<Intersection> _found;
@@ -88,6 +90,7 @@ public:
     void apply(osg::Geode& node) override;
     void apply(osg::Group& node) override;
     void apply(osg::Transform& node) override;
+    void apply(osg::Billboard& node) override;
     void apply(osg::LOD& node) override;
     void apply(osg::PagedLOD& node) override;
     void apply(osg::Drawable& drawable) override;
@@ -99,13 +102,18 @@ protected:
     ~DeformedIntersectionVisitor() override;
 
 private:
+    friend class DeformedLineIntersector;
     class Scope;
     void applyRigid(RigidReference& node);
+    const DeformationChain& definedChain() const { return _deformation.on ? *_whole : *_nothing; }
+    /// The chain that the state so far asks for.
+    void choose();
 
     osg::ref_ptr<const DeformationChain> _chain;
     osg::ref_ptr<const DeformationChain> _whole;
     osg::ref_ptr<const DeformationChain> _nothing;
     DeformationSwitch _deformation;
+    OwnPrograms _programs;
     osg::Matrixd _view;
     double _lodScale;
     double _lodRadius = 0.0;

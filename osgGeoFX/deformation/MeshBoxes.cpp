@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/MeshBoxes.h>
 
-#include <osg/Geometry>
-#include <osg/TriangleFunctor>
-
 #include <algorithm>
 
 namespace osgGeoFX
@@ -18,7 +15,7 @@ constexpr int cellsOnSide = 6;
 /// Sorts triangles into the cells of a grid over the two longer sides of a box.
 struct Sorter
 {
-    void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)
+    void add(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c)
     {
         const osg::Vec3 middle = (a + b + c) / 3.0f;
         osg::BoundingBox& box =
@@ -42,28 +39,12 @@ struct Sorter
     MeshBoxes::Boxes boxes = MeshBoxes::Boxes(static_cast<std::size_t>(cellsOnSide * cellsOnSide));
 };
 
-/// Whether a drawable is nothing but triangles that can be read.
-bool onlyTriangles(const osg::Drawable& drawable)
+/// Whether what was found out of a drawable still holds. One that is no geometry has no boxes, whatever becomes of it.
+bool isCurrent(const MeshBoxes::Entry& entry, const osg::Drawable& drawable)
 {
+    if (!entry.drawable.valid()) return false;
     const osg::Geometry* geometry = drawable.asGeometry();
-    if (!geometry) return false;
-    for (unsigned int i = 0; i < geometry->getNumPrimitiveSets(); ++i)
-    {
-        const GLenum mode = geometry->getPrimitiveSet(i)->getMode();
-        if (mode == GL_POINTS || mode == GL_LINES || mode == GL_LINE_STRIP || mode == GL_LINE_LOOP ||
-            mode >= 0xA)
-        {
-            return false;
-        }
-    }
-    return geometry->getVertexArray() != nullptr;
-}
-
-unsigned int modifiedCount(const osg::Drawable& drawable)
-{
-    const osg::Geometry* geometry = drawable.asGeometry();
-    const osg::Array* vertices = geometry ? geometry->getVertexArray() : nullptr;
-    return vertices ? vertices->getModifiedCount() : 0;
+    return !geometry || entry.stamp.matches(*geometry);
 }
 
 } // namespace
@@ -71,21 +52,28 @@ unsigned int modifiedCount(const osg::Drawable& drawable)
 MeshBoxes::Entry& MeshBoxes::of(const osg::Drawable& drawable)
 {
     Entry& entry = _entries[&drawable];
-    const unsigned int modified = modifiedCount(drawable);
-    if (entry.drawable.valid() && entry.modified == modified) return entry;
+    if (isCurrent(entry, drawable)) return entry;
+    const osg::Geometry* geometry = drawable.asGeometry();
     entry.drawable = &drawable;
-    entry.modified = modified;
+    entry.stamp = geometry ? GeometryStamp(*geometry) : GeometryStamp();
     entry.boxes.clear();
     entry.witness = 0;
-    // A callback may draw what the vertices do not tell.
-    if (!onlyTriangles(drawable) || drawable.getComputeBoundingBoxCallback()) return entry;
-    osg::TriangleFunctor<Sorter> sorter;
+    if (!geometry) return entry;
+    // Where it may draw what its vertices do not tell, the whole box is all that is known.
+    const DrawableTriangles mesh(drawable);
+    if (!mesh.tellAll()) return entry;
+    Sorter sorter;
     sorter.bounds = drawable.getBoundingBox();
     const osg::Vec3 size = sorter.bounds._max - sorter.bounds._min;
     const int shortest = size.x() < size.y() ? (size.x() < size.z() ? 0 : 2) : (size.y() < size.z() ? 1 : 2);
     sorter.first = shortest == 0 ? 1 : 0;
     sorter.second = shortest == 2 ? 1 : 2;
-    drawable.accept(sorter);
+    const auto at = [&](std::size_t corner)
+    {
+        return osg::Vec3(mesh.positions()[mesh.corners()[corner]]);
+    };
+    for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
+        sorter.add(at(i), at(i + 1), at(i + 2));
     // For a handful of triangles the whole box is as good.
     if (sorter.triangles < 2 * sorter.boxes.size()) return entry;
     std::copy_if(sorter.boxes.begin(), sorter.boxes.end(), std::back_inserter(entry.boxes),
@@ -97,8 +85,7 @@ const MeshBoxes::Entry* MeshBoxes::find(const osg::Drawable& drawable) const
 {
     const auto found = _entries.find(&drawable);
     if (found == _entries.end()) return nullptr;
-    const Entry& entry = found->second;
-    return entry.drawable.valid() && entry.modified == modifiedCount(drawable) ? &entry : nullptr;
+    return isCurrent(found->second, drawable) ? &found->second : nullptr;
 }
 
 void MeshBoxes::purge()

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/deformation/DrawableTriangles.h>
+
 #include <osg/BoundingBox>
 #include <osg/Drawable>
 #include <osg/observer_ptr>
@@ -25,7 +27,7 @@ public:
     struct Entry
     {
         osg::observer_ptr<const osg::Drawable> drawable;
-        unsigned int modified = 0; ///< of the drawable's vertices
+        GeometryStamp stamp;
         Boxes boxes;
         std::size_t witness = 0; ///< a box that was in sight when last asked, for who asks to remember
     };

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/StrokeScan.h>
 
-#include <osg/TriangleIndexFunctor>
+#include <osgGeoFX/deformation/DrawableTriangles.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -61,45 +61,15 @@ struct StrokeScan::Footing
     std::array<double, 3> weights{};
 };
 
-struct StrokeScan::Collect
-{
-    void operator()(unsigned int a, unsigned int b, unsigned int c) const
-    {
-        const std::size_t size = scan->_coordinates.size();
-        if (a >= size || b >= size || c >= size) return;
-        Triangle triangle{{a, b, c}, {}};
-        double reference = triangles->empty() ? scan->_coordinates[a].x() : triangles->front().at[0].x();
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            const osg::Vec3d& each = scan->_coordinates[triangle.corners[i]];
-            if (!std::isfinite(each.x() + each.y() + each.z())) return;
-            triangle.at[i].set(scan->_lattice.columnNear(each.x(), reference), each.y());
-            reference = triangle.at[0].x();
-        }
-        const osg::Vec2d ab = triangle.at[1] - triangle.at[0], ac = triangle.at[2] - triangle.at[0];
-        // Around a pole columns run together.
-        const auto around = static_cast<double>(scan->_lattice.columns());
-        if (around > 0.0 &&
-            std::max({std::abs(ab.x()), std::abs(ac.x()), std::abs(ac.x() - ab.x())}) > around / 8.0)
-            return;
-        if (!(ab.x() * ac.y() - ab.y() * ac.x() > 0.0)) return;
-        const osg::Vec3Array& vertices = *scan->_vertices;
-        const osg::Vec3d normal =
-            osg::Vec3d(vertices[b] - vertices[a]) ^ osg::Vec3d(vertices[c] - vertices[a]);
-        if (!(normal * scan->up(a) > steepest * normal.length())) return;
-        triangles->push_back(triangle);
-    }
-
-    const StrokeScan* scan = nullptr;
-    std::vector<Triangle>* triangles = nullptr;
-};
-
 StrokeScan::StrokeScan(const StrokeLattice& lattice, const osg::Geometry& mesh, const osg::Matrixd& toWorld,
                        double strokesAlongTile, const StrokeLines* lines, double spacing)
-    : _lattice(lattice), _mesh(mesh), _vertices(dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray())),
+    : _lattice(lattice), _vertices(dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray())),
       _toWorld(toWorld)
 {
-    if (!_vertices) return;
+    const DrawableTriangles read(mesh);
+    if (read.positions().empty()) return;
+    if (!_vertices) _vertices = new osg::Vec3Array(read.positions().begin(), read.positions().end());
+    _corners = read.corners();
     _coordinates.reserve(_vertices->size());
     for (const osg::Vec3& vertex : *_vertices)
         _coordinates.push_back(_lattice.coordinates(osg::Vec3d(vertex) * _toWorld));
@@ -124,11 +94,34 @@ osg::Vec3d StrokeScan::up(unsigned int vertex) const
 std::vector<StrokeScan::Triangle> StrokeScan::usable() const
 {
     std::vector<Triangle> triangles;
-    osg::TriangleIndexFunctor<Collect> functor;
-    functor.scan = this;
-    functor.triangles = &triangles;
-    _mesh.accept(functor);
+    for (std::size_t i = 0; i < _corners.size(); i += 3)
+        addIfUsable(&_corners[i], triangles);
     return triangles;
+}
+
+void StrokeScan::addIfUsable(const unsigned int* corners, std::vector<Triangle>& triangles) const
+{
+    const unsigned int a = corners[0], b = corners[1], c = corners[2];
+    Triangle triangle{{a, b, c}, {}};
+    double reference = triangles.empty() ? _coordinates[a].x() : triangles.front().at[0].x();
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const osg::Vec3d& each = _coordinates[triangle.corners[i]];
+        if (!std::isfinite(each.x() + each.y() + each.z())) return;
+        triangle.at[i].set(_lattice.columnNear(each.x(), reference), each.y());
+        reference = triangle.at[0].x();
+    }
+    const osg::Vec2d ab = triangle.at[1] - triangle.at[0], ac = triangle.at[2] - triangle.at[0];
+    // Around a pole columns run together.
+    const auto around = static_cast<double>(_lattice.columns());
+    if (around > 0.0 &&
+        std::max({std::abs(ab.x()), std::abs(ac.x()), std::abs(ac.x() - ab.x())}) > around / 8.0)
+        return;
+    if (!(ab.x() * ac.y() - ab.y() * ac.x() > 0.0)) return;
+    const osg::Vec3Array& vertices = *_vertices;
+    const osg::Vec3d normal = osg::Vec3d(vertices[b] - vertices[a]) ^ osg::Vec3d(vertices[c] - vertices[a]);
+    if (!(normal * up(a) > steepest * normal.length())) return;
+    triangles.push_back(triangle);
 }
 
 void StrokeScan::chooseLevel(const std::vector<Triangle>& triangles, double strokesAlongTile)

@@ -44,7 +44,7 @@ struct StrokeLineSpot : StrokeSpot
 class OSGGEOFX_EXPORT StrokeScan
 {
 public:
-    /// `toWorld` is the way from the geometry's frame to the world. The geometry must outlive the scan. `lines` in other units
+    /// `toWorld` is the way from the geometry's frame to the world. `lines` in other units
     /// than the lattice's terrain has are none; `spacing` is the lattice's, metres.
     StrokeScan(const StrokeLattice& lattice, const osg::Geometry& mesh, const osg::Matrixd& toWorld,
                double strokesAlongTile, const StrokeLines* lines = nullptr, double spacing = 25.0);
@@ -60,14 +60,16 @@ public:
     const osg::Vec2d& high() const { return _high; }
     /// Height above the ellipsoid or z = 0, and the unit vector upwards in the geometry's frame, of a vertex of a spot.
     double height(unsigned int vertex) const { return _coordinates[vertex].z(); }
+    /// The mesh's vertices; null where it has none that can be read.
+    const osg::Vec3Array* vertices() const { return _vertices; }
     osg::Vec3d up(unsigned int vertex) const;
 
 private:
     struct Triangle;
-    struct Collect;
     struct Footing;
 
     std::vector<Triangle> usable() const;
+    void addIfUsable(const unsigned int* corners, std::vector<Triangle>& triangles) const;
     void chooseLevel(const std::vector<Triangle>& triangles, double strokesAlongTile);
     void sow(std::vector<StrokeSpot>& spots) const;
     std::vector<Footing> footings(const std::vector<Triangle>& triangles,
@@ -76,8 +78,8 @@ private:
     void settleLines(const std::vector<Triangle>& triangles, const StrokeLines& lines, double spacing);
 
     const StrokeLattice& _lattice;
-    const osg::Geometry& _mesh;
-    const osg::Vec3Array* _vertices = nullptr;
+    osg::ref_ptr<const osg::Vec3Array> _vertices; ///< the mesh's, or as many of another type
+    std::vector<unsigned int> _corners;           ///< of the mesh's triangles
     const osg::Matrixd _toWorld;
     std::vector<osg::Vec3d> _coordinates; ///< of the vertices: column, row, height
     osg::Vec2d _low, _high;               ///< of the triangles

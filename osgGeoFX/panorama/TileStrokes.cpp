@@ -124,7 +124,7 @@ osg::Vec3d Painter::normalAt(const StrokeSpot& spot) const
     std::optional<osg::Vec3d> normal = between(_mesh.getNormalArray(), spot);
     if (!normal || !(normal->length2() > 0.0))
     {
-        const osg::Array* vertices = _mesh.getVertexArray();
+        const osg::Array* vertices = _scan.vertices();
         const osg::Vec3d a = *vectorAt(vertices, spot.corners[0]);
         normal = (*vectorAt(vertices, spot.corners[1]) - a) ^ (*vectorAt(vertices, spot.corners[2]) - a);
     }
@@ -203,7 +203,7 @@ void Painter::paint(const StrokeLineSpot& spot)
 void Painter::add(const StrokeSpot& spot, const osg::Vec3d& normal, const osg::Vec3d& direction,
                   TileStrokes::Kind kind, GLshort threshold)
 {
-    _vertices->push_back(osg::Vec3(*between(_mesh.getVertexArray(), spot)));
+    _vertices->push_back(osg::Vec3(*between(_scan.vertices(), spot)));
     _normals->push_back(toShorts(normal));
     _directions->push_back(toShorts(direction));
     _traits->push_back(osg::Vec4s(toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Seed)),

@@ -272,6 +272,24 @@ struct EffectScene::Drawing
         if (said.insert(kind).second) OSG_WARN << "osgGeoFX: " << sentence << std::endl;
     }
 
+    /// Once for each program, whatever it is called.
+    void warnOf(const CompensatingCullVisitor::Stranger& stranger)
+    {
+        osg::ref_ptr<const osg::StateAttribute> own;
+        if (!stranger.program.lock(own)) return;
+        const std::lock_guard<std::mutex> lock(mutex);
+        osg::observer_ptr<const osg::StateAttribute>& known = strangers[own.get()];
+        if (known.valid()) return;
+        known = own.get();
+        OSG_WARN
+            << "osgGeoFX: " << OwnPrograms::describe(*own, stranger.path)
+            << " does not call geofx_vertex(), so what it draws stays where it is, without the scene's "
+               "effects. Let its vertex shader call the function (EffectScene::addFunctions), or put what "
+               "it draws below an osgGeoFX::RigidReference, or leave it out with "
+               "setDefine(\"GEOFX_DEFORMATION\", OFF) in its state set."
+            << std::endl;
+    }
+
     std::mutex mutex;
     std::map<osgUtil::CullVisitor*, std::unique_ptr<Camera>> cameras;
     NodeFinder systems = NodeFinder(&isSystem, deepestSystem);
@@ -296,6 +314,7 @@ struct EffectScene::Drawing
     osg::ref_ptr<osg::Shader> fragmentFunctions;
     osg::ref_ptr<osg::StateSet> untouched = new osg::StateSet;
     std::set<std::string> said;
+    std::map<const osg::StateAttribute*, osg::observer_ptr<const osg::StateAttribute>> strangers;
 };
 
 EffectScene::EffectScene() : _drawing(std::make_unique<Drawing>())
@@ -550,6 +569,8 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         task.tileError = view.ground.tileError;
         own.visitor->run(outer, *this, task);
         _drawing->sayOnce(own.visitor->complaint());
+        for (const auto& stranger : own.visitor->strangers())
+            _drawing->warnOf(stranger);
     }
     else
     {

@@ -35,9 +35,10 @@ class TileGuard;
     **What it draws.** Everything below it, deformed by its effects in their order. Geometry without a shader keeps its
     look: materials, lights, up to four 2D textures with their environments, fog. Geometry with shaders of its own is
     deformed if these call geofx_vertex() and geofx_fragment() (shaders/stages/functions.*), after addFunctions();
-    else it is drawn where it is, and should be left out. A subgraph is left out with
-    `stateSet->setDefine("GEOFX_DEFORMATION", OFF)` and, since the groups above it are culled by what the deformation
-    makes of their bounds, `setCullingActive(false)` on its node.
+    else it is drawn and culled where it is, and a warning tells once of each such program. It may stand below a
+    RigidReference, which needs no shaders. A subgraph is left out with `stateSet->setDefine("GEOFX_DEFORMATION", OFF)`. Changes of
+    programs and defines below a node that is out of sight are noticed after some frames; `setCullingActive(false)` makes
+    it at once.
     Cameras and projections below it (render to texture, head-up displays) are drawn as ever. So is everything in
     cameras above it that are not the view's own or its slaves', such as a shadow map's, unless nestedCameras is on. Shadows are
     thus those of the undeformed world: a program that looks them up by the position that it gives to geofx_vertex() finds

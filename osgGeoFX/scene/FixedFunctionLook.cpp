@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/FixedFunctionLook.h>
 
+#include <osgGeoFX/scene/OwnPrograms.h>
+
 #include <osg/Fog>
 #include <osg/Image>
 #include <osg/LightModel>
@@ -390,8 +392,7 @@ int FixedFunctionState::texGen(unsigned int unit) const
 FixedFunctionLook FixedFunctionState::look(int mapUnit) const
 {
     FixedFunctionLook look;
-    const auto* program = static_cast<const osg::Program*>(_attributes[Program]);
-    if (program && !program->isFixedFunction())
+    if (OwnPrograms::isOwn(_attributes[Program]))
     {
         look.ownProgram = true;
         return look;

@@ -27,6 +27,7 @@ void SLOT_emit(int target, vec3 positions[3], vec3 places[3])
         gl_Layer = int(target == 2 * item ? shift.z : shift.w);
         gl_Position = gl_ProjectionMatrix * vec4(positions[i], 1.0);
         gl_Position.xy += shift.xy * gl_Position.w;
+        gl_ClipVertex = vec4(SLOT_located_in[i], 1.0); // clip planes cut the ground as it lies
         gl_FrontColor = gl_in[i].gl_FrontColor;
 #ifdef GEOFX_COLOR_SUM
         gl_FrontSecondaryColor = gl_in[i].gl_FrontSecondaryColor;

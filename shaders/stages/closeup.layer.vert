@@ -7,5 +7,7 @@ uniform vec4 geofx_layerPart; // its corners, -1 to 1
 
 void main()
 {
+    // What is in the layer has been clipped already: no plane above the scene cuts what is 0.
+    gl_ClipVertex = vec4(0.0);
     gl_Position = vec4(mix(geofx_layerPart.xy, geofx_layerPart.zw, gl_Vertex.xy), 0.0, 1.0);
 }

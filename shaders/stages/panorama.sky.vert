@@ -8,5 +8,6 @@ out vec2 place; // in the picture, -1 to 1
 void main()
 {
     place = gl_Vertex.xy;
+    gl_ClipVertex = vec4(0.0); // no plane above the scene cuts the sky
     gl_Position = vec4(gl_Vertex.xy, 1.0, 1.0);
 }

@@ -10,6 +10,7 @@ in vec3 SLOT_lightTone_in[];
 in vec3 SLOT_darkTone_in[];
 in vec4 SLOT_stamp_in[];
 in vec2 SLOT_traits_in[];
+in vec3 SLOT_ground_in[];
 flat out vec3 SLOT_lightTone;
 flat out vec3 SLOT_darkTone;
 flat out vec4 SLOT_stamp;
@@ -36,6 +37,7 @@ void main()
         vec2 point = room * vec2((corner & 1) == 0 ? -1.0 : 1.0, (corner & 2) == 0 ? -1.0 : 1.0);
         vec2 pixels = middle + point.x * across + point.y * up;
         gl_Position = foot + vec4(2.0 * pixels * SLOT_viewport.zw * foot.w, 0.0, 0.0);
+        gl_ClipVertex = vec4(SLOT_ground_in[i], 1.0); // clip planes cut the ground as it lies
         SLOT_point = point;
         SLOT_lightTone = SLOT_lightTone_in[i];
         SLOT_darkTone = SLOT_darkTone_in[i];

@@ -25,6 +25,7 @@ out vec3 SLOT_lightTone_in;
 out vec3 SLOT_darkTone_in;
 out vec4 SLOT_stamp_in;  // half its width and its height in pixels, and the direction of its height
 out vec2 SLOT_traits_in; // kind and seed
+out vec3 SLOT_ground_in; // where it stands on the undeformed ground, in eye space
 
 vec3 SLOT_tone(int row, float light)
 {
@@ -42,6 +43,7 @@ vec2 SLOT_pixel(vec4 clip)
 void main()
 {
     vec4 eye = gl_ModelViewMatrix * gl_Vertex;
+    SLOT_ground_in = eye.xyz;
     float seed = gl_MultiTexCoord0.x / 32767.0;
     float level = 0.5 * gl_MultiTexCoord0.y;
     int kind = int(gl_MultiTexCoord0.z + 0.5);

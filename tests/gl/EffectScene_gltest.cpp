@@ -147,7 +147,10 @@ TEST_F(EffectSceneTest, OwnShadersThatDoNotCallStay)
     const osg::ref_ptr<osg::Geometry> ground = makeGround();
     ground->getOrCreateStateSet()->setAttribute(makeProgram(false));
     const osg::ref_ptr<osg::Image> expected = render(makePlain({ground}));
-    EXPECT_TRUE(same(*render(makeScene({ground})), *expected));
+    osg::ref_ptr<osg::Image> drawn;
+    const std::vector<std::string> said = watch().messagesOf([&] { drawn = render(makeScene({ground})); });
+    EXPECT_TRUE(same(*drawn, *expected));
+    EXPECT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
 }
 
 // Functions that were added before the effects, and to a second program.

@@ -11,6 +11,7 @@
 #include <tools/TempDir.h>
 #include <tools/ThreadedViews.h>
 
+#include <osg/ClipNode>
 #include <osg/Geometry>
 #include <osg/Texture2D>
 #include <osgDB/ReadFile>
@@ -115,6 +116,29 @@ protected:
 };
 
 } // namespace
+
+// A plane between the eye and all that it sees: sky and strokes have no place of their own there to be cut at.
+TEST_F(PanoramaStates, PlanesAboveItCutWhatIsBeyondThem)
+{
+    const osg::Matrixd eye = osg::Matrixd::inverse(viewer().getCamera()->getViewMatrix());
+    const osg::Vec3d ahead = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, -1.0), eye);
+    const auto clipped = [&](double distance, bool away)
+    {
+        const osg::ref_ptr<osg::ClipNode> clip = new osg::ClipNode;
+        const double side = away ? -1.0 : 1.0;
+        clip->addClipPlane(new osg::ClipPlane(
+            0, osg::Vec4d(ahead * side, -side * (ahead * (eye.getTrans() + ahead * distance)))));
+        clip->setStateSetModes(*clip->getOrCreateStateSet(), osg::StateAttribute::ON);
+        clip->addChild(_scene);
+        return draw(clip);
+    };
+    ASSERT_TRUE(_map->getStrokes() && _map->getSky());
+    const osg::ref_ptr<osg::Image> expected = draw();
+    EXPECT_LT(differing(*clipped(50.0, false), *expected), 0.002);
+    // What is beyond a plane is gone, strokes and all.
+    _map->setSky(false);
+    EXPECT_EQ(differing(*clipped(50.0, true), *draw(new osg::Group)), 0.0);
+}
 
 TEST_F(PanoramaStates, DrawsTheSameFromFiles)
 {

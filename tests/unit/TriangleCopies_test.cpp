@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Copies of the triangles over a region have what lies there, are drawn as often, and follow the geometry.
+#include <gtest/gtest.h>
+#include <osgGeoFX/closeup/TriangleCopies.h>
+
+#include <cmath>
+
+using namespace osgGeoFX;
+
+namespace
+{
+
+/// A row of squares, x from 0 to 10.
+osg::ref_ptr<osg::Geometry> makeRow()
+{
+    osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+    osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
+    for (int i = 0; i <= 10; ++i)
+    {
+        for (const float y : {0.0f, 1.0f})
+            vertices->push_back({static_cast<float>(i), y, 0.0f});
+        if (i == 10) continue;
+        for (const int index : {0, 2, 1, 1, 2, 3})
+            triangles->push_back(static_cast<GLushort>(2 * i + index));
+    }
+    osg::ref_ptr<osg::Geometry> row = new osg::Geometry;
+    row->setVertexArray(vertices);
+    row->addPrimitiveSet(triangles);
+    return row;
+}
+
+/// A region around the first of the squares.
+std::vector<TriangleCopies::Region> aroundFirst()
+{
+    return {{0, osg::Matrixd::translate(-0.5, -0.5, 0.0)}};
+}
+
+} // namespace
+
+TEST(TriangleCopies, HaveWhatLiesOverARegion)
+{
+    TriangleCopies copies;
+    const osg::ref_ptr<osg::Geometry> row = makeRow();
+    const osg::Geometry* copy = copies.of(*row, aroundFirst(), false);
+    ASSERT_TRUE(copy && copy != row.get());
+    // The first square and, with the border around the region, the second's corners.
+    EXPECT_EQ(copy->getPrimitiveSet(0)->getNumIndices(), 12u);
+    EXPECT_EQ(copies.of(*row, aroundFirst(), false), copy);
+    EXPECT_EQ(copies.of(*row, {{0, osg::Matrixd::translate(-50.0, 0.0, 0.0)}}, false), nullptr);
+    EXPECT_DOUBLE_EQ(copies.longestEdge(*row), std::sqrt(2.0));
+}
+
+TEST(TriangleCopies, FollowNewArrays)
+{
+    TriangleCopies copies;
+    const osg::ref_ptr<osg::Geometry> row = makeRow();
+    copies.of(*row, aroundFirst(), false);
+    EXPECT_DOUBLE_EQ(copies.longestEdge(*row), std::sqrt(2.0));
+    osg::ref_ptr<osg::Vec3Array> wider =
+        new osg::Vec3Array(static_cast<osg::Vec3Array&>(*row->getVertexArray()));
+    for (osg::Vec3& vertex : *wider)
+        vertex.x() *= 4.0f;
+    row->setVertexArray(wider);
+    const osg::Geometry* copy = copies.of(*row, aroundFirst(), false);
+    ASSERT_TRUE(copy);
+    EXPECT_EQ(copy->getVertexArray(), wider.get());
+    EXPECT_EQ(copy->getPrimitiveSet(0)->getNumIndices(), 6u);
+    EXPECT_DOUBLE_EQ(copies.longestEdge(*row), std::sqrt(17.0));
+    const osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array(22);
+    row->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+    copy = copies.of(*row, aroundFirst(), false);
+    EXPECT_EQ(copy->getColorArray(), colours.get());
+}
+
+TEST(TriangleCopies, AreDrawnAsOften)
+{
+    TriangleCopies copies;
+    const osg::ref_ptr<osg::Geometry> row = makeRow();
+    row->getPrimitiveSet(0)->setNumInstances(5);
+    row->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
+    // Where instances stand no one knows: all are wanted, wherever the region lies.
+    for (const double away : {0.0, 50.0})
+    {
+        const std::vector<TriangleCopies::Region> region = {{0, osg::Matrixd::translate(-away, 0.0, 0.0)}};
+        EXPECT_EQ(copies.of(*row, region, false), row.get());
+        const osg::Geometry* patches = copies.of(*row, region, true);
+        ASSERT_TRUE(patches && patches != row.get());
+        ASSERT_EQ(patches->getNumPrimitiveSets(), 2u);
+        EXPECT_EQ(patches->getPrimitiveSet(0)->getMode(), static_cast<GLenum>(GL_PATCHES));
+        EXPECT_EQ(patches->getPrimitiveSet(0)->getNumInstances(), 5);
+        EXPECT_EQ(patches->getPrimitiveSet(0)->getNumIndices(), 60u);
+        EXPECT_EQ(patches->getPrimitiveSet(1)->getNumInstances(), 0);
+        EXPECT_EQ(patches->getPrimitiveSet(1)->getNumIndices(), 3u);
+    }
+    // A box that the owner has told: a shader may move the vertices into the region.
+    const osg::ref_ptr<osg::Geometry> told = makeRow();
+    told->setInitialBound(osg::BoundingBox(0, 0, 0, 100, 1, 1));
+    EXPECT_EQ(copies.of(*told, {{0, osg::Matrixd::translate(-50.0, 0.0, 0.0)}}, false), told.get());
+}
