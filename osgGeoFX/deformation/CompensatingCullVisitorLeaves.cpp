@@ -21,16 +21,16 @@ namespace osgGeoFX
 namespace
 {
 
-/// Whether it is one of osgSim's, which set modes behind the state's back; as a rule there is one for all nodes of a state.
-bool isLightPoints(const osg::Drawable& drawable)
-{
-    return std::strcmp(drawable.libraryName(), "osgSim") == 0 &&
-           std::strncmp(drawable.className(), "LightPoint", 10) == 0;
-}
-
 bool isSprites(const osg::Drawable& drawable)
 {
     return std::strcmp(drawable.className(), "LightPointSpriteDrawable") == 0;
+}
+
+/// Whether it is one of osgSim's, which set modes behind the state's back; as a rule there is one for all nodes of a state. Their
+/// classes are not for others to include, and do not name their library.
+bool isLightPoints(const osg::Drawable& drawable)
+{
+    return std::strcmp(drawable.className(), "LightPointDrawable") == 0 || isSprites(drawable);
 }
 
 osg::ref_ptr<osg::StateSet> lightPointModes()

@@ -246,7 +246,7 @@ TEST_F(OwnProgramsTest, AreCulledAsWhatTheyAre)
         // What the picture shows can be picked, and nothing else.
         const DeformedView picture(*scene, camera);
         constexpr unsigned char background[] = {26, 51, 77};
-        for (int pixel = 0; pixel < 12; ++pixel)
+        for (int pixel = 0; pixel < 60; ++pixel)
         {
             const int x = random.integer(1, WIDTH - 2);
             const int y = random.integer(1, HEIGHT - 2);
