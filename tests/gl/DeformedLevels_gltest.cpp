@@ -13,6 +13,7 @@
 #include <osg/CullingSet>
 #include <osg/Geometry>
 #include <osg/LOD>
+#include <osg/MatrixTransform>
 #include <osg/Transform>
 #include <osg/UserDataContainer>
 #include <osgDB/ReadFile>
@@ -381,7 +382,10 @@ TEST_F(DeformedLevels, SmallThingsGoByTheirDeformedSize)
         const double pixels = plain.pixels(deformed, radius);
         if (std::abs(pixels / threshold - 1.0) < 0.02) continue;
         const osg::ref_ptr<osg::Geometry> thing = makeSquare(place, radius / std::sqrt(2.0));
-        plain.scene->addChild(thing);
+        // As OSG does it, nodes are left out, and not single drawables. A transform of one drawable goes another way.
+        const osg::ref_ptr<osg::Group> node = i % 2 ? new osg::MatrixTransform : new osg::Group;
+        node->addChild(thing);
+        plain.scene->addChild(node);
         harness.camera().setCullingMode(osg::CullSettings::SMALL_FEATURE_CULLING);
         harness.camera().setSmallFeatureCullingPixelSize(static_cast<float>(threshold));
         harness.setCamera(plain.view, plain.projection);
