@@ -151,8 +151,11 @@ void CloseUpCamera::setUp(const ScenePass& pass, const Task& task, std::size_t i
     const std::string& prefix = pass.prefix;
     const char* const names[3] = {"masks", "tables", "surfaces"};
     osg::Texture* const textures[3] = {task.textures.masks, task.textures.tables, task.textures.surfaces};
+    for (const int former : now.units)
+        base.removeTextureAttribute(static_cast<unsigned int>(former), osg::StateAttribute::TEXTURE);
     for (std::size_t i = 0; i < 3; ++i)
     {
+        now.units[i] = task.units[i];
         base.setTextureAttribute(static_cast<unsigned int>(task.units[i]), textures[i]);
         base.getOrCreateUniform(prefix + names[i], osg::Uniform::INT)->set(task.units[i]);
     }
@@ -582,12 +585,28 @@ std::string CloseUpCamera::cull(const ScenePass& pass, const Task& task)
     return sentence;
 }
 
+void CloseUpCamera::resizeGLObjectBuffers(unsigned int size)
+{
+    for (const std::unique_ptr<Traversal>& each : _traversals)
+    {
+        each->values.resizeGLObjectBuffers(size);
+        each->layers.resizeGLObjectBuffers(size);
+        each->copies.resizeGLObjectBuffers(size);
+        for (ContourFence& fence : each->fences)
+            fence.resizeGLObjectBuffers(size);
+    }
+    osg::resizeGLObjectBuffers(_layerProgram, size);
+}
+
 void CloseUpCamera::releaseGLObjects(osg::State* state) const
 {
     for (const std::unique_ptr<Traversal>& each : _traversals)
     {
         each->values.releaseGLObjects(state);
         each->layers.releaseGLObjects(state);
+        each->copies.releaseGLObjects(state);
+        for (const ContourFence& fence : each->fences)
+            fence.releaseGLObjects(state);
     }
     if (_layerProgram) _layerProgram->releaseGLObjects(state);
 }

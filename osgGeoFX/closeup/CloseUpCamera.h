@@ -43,6 +43,7 @@ public:
     /// A sentence that is to be said once; empty as a rule.
     std::string cull(const ScenePass& pass, const Task& task);
     const CloseUps::Statistics& statistics() const { return _statistics; }
+    void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;
 
 private:
@@ -57,6 +58,7 @@ private:
         CloseUpItems values;
         CloseUpLayers layers;
         osg::ref_ptr<osg::StateSet> base = new osg::StateSet;
+        int units[3] = {};                                                      ///< where its textures are
         std::map<std::vector<std::size_t>, osg::ref_ptr<osg::StateSet>> groups; ///< of a single pass
         TriangleCopies copies;
         std::vector<osg::ref_ptr<osg::StateSet>>

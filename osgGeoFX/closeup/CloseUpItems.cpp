@@ -39,6 +39,12 @@ osg::ref_ptr<osg::UniformBufferBinding> CloseUpItems::binding(std::size_t block,
     return new osg::UniformBufferBinding(index, found.items.front(), 0, size);
 }
 
+void CloseUpItems::resizeGLObjectBuffers(unsigned int size)
+{
+    for (const Block& block : _blocks)
+        block.buffer->resizeGLObjectBuffers(size);
+}
+
 void CloseUpItems::releaseGLObjects(osg::State* state) const
 {
     for (const Block& block : _blocks)

@@ -25,6 +25,7 @@ public:
     static int placeInBlock(std::size_t item) { return static_cast<int>(item % perBlock); }
     /// Binds a block; `index` is its binding point.
     osg::ref_ptr<osg::UniformBufferBinding> binding(std::size_t block, unsigned int index) const;
+    void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;
 
 private:

@@ -208,6 +208,19 @@ void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, con
     outer.popStateSet();
 }
 
+void CloseUpLayers::resizeGLObjectBuffers(unsigned int size)
+{
+    _square->resizeGLObjectBuffers(size);
+    for (const Array& array : _arrays)
+    {
+        array.colours->resizeGLObjectBuffers(size);
+        array.depths->resizeGLObjectBuffers(size);
+        array.all->resizeGLObjectBuffers(size);
+        for (const auto& target : array.single)
+            target->resizeGLObjectBuffers(size);
+    }
+}
+
 void CloseUpLayers::releaseGLObjects(osg::State* state) const
 {
     _square->releaseGLObjects(state);

@@ -85,6 +85,7 @@ public:
     bool together(int layer, int other) const { return layer / _perArray == other / _perArray; }
     /// Puts a layer into the camera's picture.
     void show(osgUtil::CullVisitor& outer, osg::Program* program, const Show& what);
+    void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;
 
 private:

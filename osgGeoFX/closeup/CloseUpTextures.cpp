@@ -226,6 +226,14 @@ CloseUpTextures::State CloseUpTextures::update(const CloseUpList& closeUps, cons
     return _state;
 }
 
+void CloseUpTextures::resizeGLObjectBuffers(unsigned int size)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    osg::resizeGLObjectBuffers(_state.masks, size);
+    osg::resizeGLObjectBuffers(_state.tables, size);
+    osg::resizeGLObjectBuffers(_state.surfaces, size);
+}
+
 void CloseUpTextures::releaseGLObjects(osg::State* state) const
 {
     const std::lock_guard<std::mutex> lock(_mutex);

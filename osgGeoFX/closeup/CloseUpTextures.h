@@ -33,6 +33,7 @@ public:
     };
     using CloseUpList = std::vector<osg::ref_ptr<CloseUp>>;
     State update(const CloseUpList& closeUps, const SurfaceData* data);
+    void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;
 
 private:

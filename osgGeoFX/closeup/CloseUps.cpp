@@ -5,6 +5,7 @@
 #include <osgGeoFX/closeup/CloseUpCamera.h>
 #include <osgGeoFX/scene/PerCamera.h>
 
+#include <osg/GLExtensions>
 #include <osg/Notify>
 
 #include <algorithm>
@@ -40,6 +41,12 @@ public:
         textures.releaseGLObjects(state);
     }
 
+    void resizeGLObjectBuffers(unsigned int size)
+    {
+        cameras.resizeGLObjectBuffers(size);
+        textures.resizeGLObjectBuffers(size);
+    }
+
     CloseUpTextures textures;
 
 private:
@@ -47,6 +54,21 @@ private:
     Statistics _statistics;
     std::set<std::string> _said;
 };
+
+namespace
+{
+
+/// Texels along the side of a texture, and of a picture; before the context has drawn what those with OpenGL 4 have.
+int gpuTexels(osgUtil::CullVisitor& outer)
+{
+    constexpr int usual = 16384;
+    const osg::State* state = outer.getRenderInfo().getState();
+    const osg::GLExtensions* extensions =
+        state ? osg::GLExtensions::Get(state->getContextID(), false) : nullptr;
+    return extensions && extensions->maxTextureSize > 0 ? extensions->maxTextureSize : usual;
+}
+
+} // namespace
 
 CloseUps::CloseUps() : _drawing(std::make_unique<Drawing>()) {}
 
@@ -117,9 +139,9 @@ const Properties& CloseUps::properties() const
         Property::integer("supersampling", 1, 1, 4).of<&Self::_supersampling>(),
         Property::flag("depthTest", true).of<&Self::_depthTest>(),
         Property::integer("maxLayers", 2048, 2, 2048).of<&Self::_maxLayers>(),
-        Property::integer("maskUnit", 11, 4, 31).of<&Self::_maskUnit>(),
-        Property::integer("tableUnit", 12, 4, 31).of<&Self::_tableUnit>(),
-        Property::integer("surfaceUnit", 13, 4, 31).of<&Self::_surfaceUnit>(),
+        TextureUnits::property("maskUnit").of<&Self::_maskUnit>(),
+        TextureUnits::property("tableUnit").of<&Self::_tableUnit>(),
+        TextureUnits::property("surfaceUnit").of<&Self::_surfaceUnit>(),
         Property::integer("blockBinding", 7, 0, 35).of<&Self::_blockBinding>(),
     };
     return all;
@@ -127,9 +149,14 @@ const Properties& CloseUps::properties() const
 
 std::string CloseUps::inconsistency() const
 {
-    if (_maskUnit == _tableUnit || _maskUnit == _surfaceUnit || _tableUnit == _surfaceUnit)
-        return "maskUnit, tableUnit and surfaceUnit must differ.";
-    return {};
+    return TextureUnits::inconsistency(textureUnits());
+}
+
+std::vector<TextureUnitWish> CloseUps::textureUnits() const
+{
+    return {{"maskUnit", _maskUnit, 11, false},
+            {"tableUnit", _tableUnit, 12, false},
+            {"surfaceUnit", _surfaceUnit, 13, false}};
 }
 
 void CloseUps::cull(const ScenePass& pass)
@@ -140,20 +167,37 @@ void CloseUps::cull(const ScenePass& pass)
                  [](const osg::ref_ptr<CloseUp>& each)
                  { return each->getEnabled() && !each->getRegion()->isEmpty(); });
     if (drawn.empty()) return;
+    // A layer is a part of the picture, but the GPU's viewport is as large as all of it.
+    const double side =
+        std::max({pass.outer.getViewport()->width(), pass.outer.getViewport()->height(), 1.0});
+    const int limit = gpuTexels(pass.outer);
+    const int samples = std::clamp(static_cast<int>(limit / side), 1, _supersampling);
+    std::string fewer;
+    if (samples < _supersampling)
+        fewer = "CloseUps draws " + std::to_string(samples) +
+                " samples along a pixel's side in the place of " + std::to_string(_supersampling) +
+                ", for the picture would have more than the " + std::to_string(limit) +
+                " texels of this GPU; make the picture smaller or lower supersampling.";
     const CloseUpCamera::Task task = {drawn,
                                       _surfaceData,
                                       _drawing->textures.update(drawn, _surfaceData),
                                       getPipeline(),
                                       _tessellation,
                                       _opacity,
-                                      _supersampling,
+                                      samples,
                                       _depthTest,
                                       _maxLayers,
-                                      {_maskUnit, _tableUnit, _surfaceUnit},
+                                      {pass.units[0], pass.units[1], pass.units[2]},
                                       static_cast<unsigned int>(_blockBinding)};
     CloseUpCamera& camera = _drawing->cameras.of(pass.outer, pass.scene);
     const std::string sentence = camera.cull(pass, task);
     _drawing->saw(camera.statistics(), sentence);
+    if (!fewer.empty()) _drawing->saw(camera.statistics(), fewer);
+}
+
+void CloseUps::resizeGLObjectBuffers(unsigned int size)
+{
+    _drawing->resizeGLObjectBuffers(size);
 }
 
 void CloseUps::releaseGLObjects(osg::State* state) const

@@ -5,6 +5,7 @@
 #include <osgGeoFX/closeup/CloseUp.h>
 #include <osgGeoFX/closeup/SurfaceData.h>
 #include <osgGeoFX/scene/PassEffect.h>
+#include <osgGeoFX/scene/TextureUnits.h>
 
 #include <memory>
 #include <vector>
@@ -44,7 +45,7 @@ namespace osgGeoFX
     has too few layers for SINGLE_PASS, MULTI_PASS draws, and one warning says so.
 
     **Threads.** Changed between frames; any number of cameras, views and contexts draws it, in all threading models. */
-class OSGGEOFX_EXPORT CloseUps : public PassEffect
+class OSGGEOFX_EXPORT CloseUps : public PassEffect, public TextureUser
 {
 public:
     CloseUps();
@@ -80,7 +81,8 @@ public:
     /// Of all close-ups together, 0…1; what keys turn. 1 by default.
     bool setOpacity(double opacity) { return assign("opacity", opacity); }
     double getOpacity() const { return _opacity; }
-    /// Samples along each side of a pixel in the layers, 1…4; smooth edges cost their square. 1 by default.
+    /// Samples along each side of a pixel in the layers, 1…4; smooth edges cost their square. 1 by default. Fewer, after a
+    /// warning, where the picture would be larger than the GPU's textures.
     bool setSupersampling(int samples) { return assign("supersampling", samples); }
     int getSupersampling() const { return _supersampling; }
     /// Whether what stands in front hides close-ups and anchors. True by default; the paper draws them over everything.
@@ -89,8 +91,8 @@ public:
     /// Layers of a texture array at most, 2…2048: less where the GPU has less. 2048 by default.
     bool setMaxLayers(int layers) { return assign("maxLayers", layers); }
     int getMaxLayers() const { return _maxLayers; }
-    /// Texture units of masks, tables and surface layers while the layers are drawn, 4…31, all different. 11, 12 and 13 by
-    /// default.
+    /// Texture units of masks, tables and surface layers while the layers are drawn, 4…31, all different. −1, the default,
+    /// leaves one to the scene, which gives 11, 12 and 13 where they are free.
     bool setUnits(int masks, int tables, int surface)
     {
         return assign({{"maskUnit", masks}, {"tableUnit", tables}, {"surfaceUnit", surface}});
@@ -115,7 +117,9 @@ public:
     Statistics statistics() const;
 
     const Properties& properties() const override;
+    std::vector<TextureUnitWish> textureUnits() const override;
     void cull(const ScenePass& pass) override;
+    void resizeGLObjectBuffers(unsigned int size) override;
     void releaseGLObjects(osg::State* state) const override;
 
 protected:
@@ -133,7 +137,7 @@ private:
     int _supersampling = 1;
     bool _depthTest = true;
     int _maxLayers = 2048;
-    int _maskUnit = 11, _tableUnit = 12, _surfaceUnit = 13, _blockBinding = 7;
+    int _maskUnit = -1, _tableUnit = -1, _surfaceUnit = -1, _blockBinding = 7;
     std::unique_ptr<Drawing> _drawing;
 };
 

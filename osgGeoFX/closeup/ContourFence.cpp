@@ -252,4 +252,16 @@ void ContourFence::build(const RegionOfInterest& region, const std::vector<Groun
     _line = geometryOf(line, lineShares, lineIndices);
 }
 
+void ContourFence::resizeGLObjectBuffers(unsigned int size)
+{
+    osg::resizeGLObjectBuffers(_wall, size);
+    osg::resizeGLObjectBuffers(_line, size);
+}
+
+void ContourFence::releaseGLObjects(osg::State* state) const
+{
+    osg::releaseGLObjects(_wall, state);
+    osg::releaseGLObjects(_line, state);
+}
+
 } // namespace osgGeoFX

@@ -33,6 +33,8 @@ public:
     /// In the region's frame; as they were at the last update. New ones whenever they change.
     osg::Geometry* wall() { return _wall.get(); }
     osg::Geometry* line() { return _line.get(); }
+    void resizeGLObjectBuffers(unsigned int size);
+    void releaseGLObjects(osg::State* state) const;
 
 private:
     struct Known

@@ -156,4 +156,22 @@ void TriangleCopies::purge()
     }
 }
 
+void TriangleCopies::resizeGLObjectBuffers(unsigned int size)
+{
+    for (auto* entries : {&_triangles, &_patches})
+    {
+        for (auto& [key, entry] : *entries)
+            osg::resizeGLObjectBuffers(entry.copy, size);
+    }
+}
+
+void TriangleCopies::releaseGLObjects(osg::State* state) const
+{
+    for (const auto* entries : {&_triangles, &_patches})
+    {
+        for (const auto& [key, entry] : *entries)
+            osg::releaseGLObjects(entry.copy, state);
+    }
+}
+
 } // namespace osgGeoFX

@@ -38,6 +38,9 @@ public:
     double longestEdge(const osg::Geometry& geometry);
     /// Forgets what has been deleted; to be called now and then, when nothing of it is on its way to the screen.
     void purge();
+    void resizeGLObjectBuffers(unsigned int size);
+    /// Of the copies alone: what they share with the geometries is released with these.
+    void releaseGLObjects(osg::State* state) const;
 
 private:
     struct Entry

@@ -230,6 +230,7 @@ void GpuStore::uploadAll(Context& context, osg::State& state)
     if (!context.buffer)
     {
         const auto* gl = state.get<osg::GLExtensions>();
+        context.life = osg::get<BufferDeletion>(state.getContextID());
         gl->glGenBuffers(1, &context.buffer);
         GLuint names[3] = {};
         glGenTextures(3, names);
@@ -293,6 +294,7 @@ void GpuStore::bind(Part part, osg::State& state, std::uint64_t upTo)
     const std::lock_guard<std::mutex> lock(_mutex);
     askLimits();
     Context& context = _contexts[state.getContextID()];
+    if (!context.life.valid()) context = {};
     update(context, state, upTo);
     switch (part)
     {
@@ -319,7 +321,7 @@ void GpuStore::releaseGLObjects(osg::State* state)
             ++entry;
             continue;
         }
-        if (context.buffer)
+        if (context.life.valid())
         {
             osg::get<BufferDeletion>(id)->scheduleGLObjectForDeletion(context.buffer);
             for (const unsigned int name : {context.data, context.layers, context.tables})

@@ -9,6 +9,7 @@
 #include <osg/Referenced>
 #include <osg/State>
 #include <osg/StateAttribute>
+#include <osg/observer_ptr>
 
 #include <cstdint>
 #include <deque>
@@ -98,6 +99,8 @@ private:
     };
     struct Context
     {
+        /// Of the context's own data, and gone when it is closed: the next one with its number has none of these names.
+        osg::observer_ptr<osg::Referenced> life;
         std::uint64_t number = 0;
         unsigned int buffer = 0, data = 0, layers = 0, tables = 0;
         int pages = 0;

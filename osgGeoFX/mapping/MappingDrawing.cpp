@@ -78,30 +78,6 @@ void MappingDrawing::change(ProjectiveMapping& mapping)
     if (_items.count(&mapping)) _changed.insert(&mapping);
 }
 
-bool MappingDrawing::has(ProjectiveMapping& mapping) const
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return _items.count(&mapping) > 0;
-}
-
-MappingIndex::Root MappingDrawing::root() const
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return _index ? _index->root() : MappingIndex::Root();
-}
-
-std::size_t MappingDrawing::longestList() const
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return _index ? _index->longestList() : 0;
-}
-
-std::uint32_t MappingDrawing::features() const
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return _features;
-}
-
 void MappingDrawing::reset(Settings settings)
 {
     if (_store)
@@ -164,50 +140,53 @@ void MappingDrawing::use(Item& item)
         key = {mapping.getTable(), transfer.getLowValue(), transfer.getHighValue()};
     DataLayer* layer = mapping.getLayer();
     DataLayer* mask = transfer.getAlpha() == ColorTransfer::FROM_MASK ? mapping.getMask() : nullptr;
-    const bool sameTable = !(key < item.table) && !(item.table < key);
-    if (item.layer == layer && item.mask == mask && sameTable) return;
-    leave(item);
+    // A layer that it goes on to use keeps its place, and its texels there.
+    for (osg::ref_ptr<DataLayer>* former : {&item.layer, &item.mask})
+    {
+        if (*former != layer && *former != mask) leaveLayer(*former, mapping);
+    }
     item.layer = layer;
     item.mask = mask;
-    item.table = key;
     if (layer) _layers[layer].users.insert(&mapping);
     if (mask) _layers[mask].users.insert(&mapping);
-    if (key.table)
-    {
-        Table& table = _tables[key];
-        table.table = mapping.getTable();
-        table.users.insert(&mapping);
-    }
+    if (!(key < item.table) && !(item.table < key)) return;
+    leaveTable(item.table, mapping);
+    item.table = key;
+    if (!key.table) return;
+    Table& table = _tables[key];
+    table.table = mapping.getTable();
+    table.users.insert(&mapping);
 }
 
 void MappingDrawing::leave(Item& item)
 {
-    for (osg::ref_ptr<DataLayer>* data : {&item.layer, &item.mask})
-    {
-        const auto found = _layers.find(data->get());
-        if (found != _layers.end())
-        {
-            found->second.users.erase(item.mapping.get());
-            if (found->second.users.empty())
-            {
-                unplace(found->second);
-                if (found->second.leftOut) --_layersLeftOut;
-                _layers.erase(found);
-            }
-        }
-        *data = nullptr;
-    }
-    const auto table = _tables.find(item.table);
-    if (table != _tables.end())
-    {
-        table->second.users.erase(item.mapping.get());
-        if (table->second.users.empty())
-        {
-            if (table->second.row >= 0) _freeRows.insert(table->second.row);
-            _tables.erase(table);
-        }
-    }
+    leaveLayer(item.layer, *item.mapping);
+    leaveLayer(item.mask, *item.mapping);
+    leaveTable(item.table, *item.mapping);
+    item.layer = nullptr;
+    item.mask = nullptr;
     item.table = {};
+}
+
+void MappingDrawing::leaveLayer(DataLayer* data, ProjectiveMapping& mapping)
+{
+    const auto found = _layers.find(data);
+    if (found == _layers.end()) return;
+    found->second.users.erase(&mapping);
+    if (!found->second.users.empty()) return;
+    unplace(found->second);
+    if (found->second.leftOut) --_layersLeftOut;
+    _layers.erase(found);
+}
+
+void MappingDrawing::leaveTable(const TableKey& key, ProjectiveMapping& mapping)
+{
+    const auto found = _tables.find(key);
+    if (found == _tables.end()) return;
+    found->second.users.erase(&mapping);
+    if (!found->second.users.empty()) return;
+    if (found->second.row >= 0) _freeRows.insert(found->second.row);
+    _tables.erase(found);
 }
 
 void MappingDrawing::unplace(Layer& layer)
@@ -525,8 +504,10 @@ void MappingDrawing::warnOfLimits()
     _warnedLayers = _layersLeftOut > 0;
 }
 
-std::uint64_t MappingDrawing::commit(const Settings& settings, const PositionOf& positionOf)
+MappingDrawing::Frame MappingDrawing::commit(const Settings& settings, const PositionOf& positionOf,
+                                             CameraList& list, const Wanted& wanted)
 {
+    // Under one lock: another camera's commit would come between.
     const std::lock_guard<std::mutex> lock(_mutex);
     reset(settings);
     for (ProjectiveMapping* mapping : _changed)
@@ -537,16 +518,28 @@ std::uint64_t MappingDrawing::commit(const Settings& settings, const PositionOf&
     _changed.clear();
     _roomMade = false;
     warnOfLimits();
+    drop(list);
+    if (wanted) setList(list, wanted);
     const std::uint64_t number = _store->commit(_arena, std::move(_commit));
     _commit = {};
-    return number;
+    return {number, _index->root(), _index->longestList(), _features, _store};
 }
 
-std::uint64_t MappingDrawing::setList(CameraList& list, const Wanted& wanted)
+void MappingDrawing::release(CameraList& list)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    if (list.texels > 0) _arena.release(list.offset, list.texels);
+    drop(list);
+}
+
+void MappingDrawing::drop(CameraList& list)
+{
+    // With the store, the arena that it was in has gone.
+    if (list.texels > 0 && list.store == _store) _arena.release(list.offset, list.texels);
     list = {};
+}
+
+void MappingDrawing::setList(CameraList& list, const Wanted& wanted)
+{
     std::unordered_map<std::uint32_t, const ProjectiveMapping*> mappings;
     for (const auto& [mapping, item] : _items)
     {
@@ -558,20 +551,14 @@ std::uint64_t MappingDrawing::setList(CameraList& list, const Wanted& wanted)
         if (wanted(*mappings.at(record))) words.push_back(record);
     }
     words[0] = static_cast<std::uint32_t>(words.size() - 1);
-    list.texels = static_cast<std::uint32_t>((words.size() + 3) / 4);
-    list.offset = words[0] > 0 ? _arena.allocate(list.texels) : 0;
-    if (list.offset == 0)
-    {
-        list.texels = 0;
-    }
-    else
-    {
-        words.resize(4u * list.texels);
-        TexelArena::Texel* texels = _arena.edit(list.offset, list.texels);
-        for (std::size_t i = 0; i < words.size(); ++i)
-            texels[i / 4][i % 4] = words[i];
-    }
-    return _store->commit(_arena, {});
+    const auto count = static_cast<std::uint32_t>((words.size() + 3) / 4);
+    const std::uint32_t offset = words[0] > 0 ? _arena.allocate(count) : 0;
+    if (offset == 0) return;
+    list = {offset, count, _store};
+    words.resize(4u * list.texels);
+    TexelArena::Texel* texels = _arena.edit(list.offset, list.texels);
+    for (std::size_t i = 0; i < words.size(); ++i)
+        texels[i / 4][i % 4] = words[i];
 }
 
 ProjectiveMappings::Capacity MappingDrawing::capacity() const

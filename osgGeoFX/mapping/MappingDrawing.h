@@ -20,31 +20,34 @@
 namespace osgGeoFX
 {
 
-/** The other side of ProjectiveMappings: keeps the GPU's copy of the mappings, their layers and tables.
+/// What of ProjectiveMappings decides on the room and the positions.
+struct MappingSettings
+{
+    int pageSide = 0;
+    int maxPages = 0;
+    int maxTexels = 0;
+    /// What the positions depend on, beside the ground.
+    double longitude = 0.0;
+    double latitude = 0.0;
 
-    Changes are noted by the thread that makes them, and worked in by the first camera that culls thereafter. */
+    bool sameRoom(const MappingSettings& other) const
+    {
+        return pageSide == other.pageSide && maxPages == other.maxPages && maxTexels == other.maxTexels;
+    }
+    bool sameFrame(const MappingSettings& other) const
+    {
+        return longitude == other.longitude && latitude == other.latitude;
+    }
+};
+
+/** The other side of ProjectiveMappings: keeps the GPU's copy of the mappings, their layers and tables, for all scenes with the
+    same ground.
+
+    Changes are noted by the thread that makes them, and worked in by the first camera that culls thereafter. Thread-safe. */
 class MappingDrawing
 {
 public:
-    struct Settings
-    {
-        int pageSide = 0;
-        int maxPages = 0;
-        int maxTexels = 0;
-        /// What the positions depend on.
-        const void* ellipsoid = nullptr;
-        double longitude = 0.0;
-        double latitude = 0.0;
-
-        bool sameRoom(const Settings& other) const
-        {
-            return pageSide == other.pageSide && maxPages == other.maxPages && maxTexels == other.maxTexels;
-        }
-        bool sameFrame(const Settings& other) const
-        {
-            return ellipsoid == other.ellipsoid && longitude == other.longitude && latitude == other.latitude;
-        }
-    };
+    using Settings = MappingSettings;
     /// Where in the frame a place of the plane at a height is.
     using PositionOf = std::function<osg::Vec3d(const osg::Vec3d& place)>;
 
@@ -52,25 +55,31 @@ public:
     void remove(ProjectiveMapping& mapping);
     void clear();
     void change(ProjectiveMapping& mapping);
-    bool has(ProjectiveMapping& mapping) const;
 
-    /// Works in what has changed; the number of the frame's commit. Locks.
-    std::uint64_t commit(const Settings& settings, const PositionOf& positionOf);
-
-    /// The list of the given mappings for one camera, lowest first, in the place of its former one; 0 for none. Locks.
+    /// A camera's list of mappings, lowest first.
     struct CameraList
     {
-        std::uint32_t offset = 0;
+        std::uint32_t offset = 0; ///< 0 for none
         std::uint32_t texels = 0;
+        osg::ref_ptr<GpuStore> store; ///< the one that it is in
     };
     using Wanted = std::function<bool(const ProjectiveMapping&)>;
-    std::uint64_t setList(CameraList& list, const Wanted& wanted);
-
-    MappingIndex::Root root() const;
-    std::size_t longestList() const;
-    /// What the shader's code must have; only grows, so that it is not compiled again and again.
-    std::uint32_t features() const;
-    GpuStore* store() { return _store.get(); }
+    /// All that a frame is drawn with, as it was at one time.
+    struct Frame
+    {
+        std::uint64_t number = 0; ///< of the frame's commit
+        MappingIndex::Root root;
+        std::size_t longestList = 0;
+        /// What the shader's code must have; only grows, so that it is not compiled again and again.
+        std::uint32_t features = 0;
+        osg::ref_ptr<GpuStore> store;
+    };
+    /// Works in what has changed. With `wanted`, makes the camera's list of those in the place of its former one; without, it has
+    /// none.
+    Frame commit(const Settings& settings, const PositionOf& positionOf, CameraList& list,
+                 const Wanted& wanted);
+    /// Gives a list back.
+    void release(CameraList& list);
     ProjectiveMappings::Capacity capacity() const;
     void releaseGLObjects(osg::State* state);
 
@@ -116,8 +125,12 @@ private:
     };
 
     void reset(Settings settings);
+    void drop(CameraList& list);
+    void setList(CameraList& list, const Wanted& wanted);
     void use(Item& item);
     void leave(Item& item);
+    void leaveLayer(DataLayer* data, ProjectiveMapping& mapping);
+    void leaveTable(const TableKey& key, ProjectiveMapping& mapping);
     void updateLayers();
     bool updateLayer(DataLayer& data, Layer& layer);
     void unplace(Layer& layer);

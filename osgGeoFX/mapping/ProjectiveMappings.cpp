@@ -5,51 +5,106 @@
 #include <osgGeoFX/deformation/DeformationChain.h>
 #include <osgGeoFX/mapping/MappingDrawing.h>
 #include <osgGeoFX/scene/GlobeFrame.h>
+#include <osgGeoFX/scene/PerCamera.h>
 
 #include <glm/glm.hpp>
 #include <osg/Math>
 #include <osg/Notify>
-#include <osg/observer_ptr>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <mutex>
+#include <unordered_set>
 
 namespace osgGeoFX
 {
 
 /// What drawing needs and no one else sees.
-class ProjectiveMappings::Drawing : public MappingDrawing
+class ProjectiveMappings::Drawing
 {
 public:
     /// One camera's, in one of the frames that are on their way.
     struct Camera
     {
-        osg::observer_ptr<osg::StateSet> state;
+        Camera() = default;
+        Camera(const Camera&) = delete;
+        Camera& operator=(const Camera&) = delete;
+        ~Camera() { show(nullptr); }
+
+        /// In the place of the former ones.
+        void show(const std::shared_ptr<MappingDrawing>& others)
+        {
+            if (drawing == others) return;
+            if (drawing) drawing->release(list);
+            drawing = others;
+        }
+
+        std::shared_ptr<MappingDrawing> drawing;
         /// Two of each, in turn: OSG does not apply anew what it has applied last.
         std::array<std::array<osg::ref_ptr<StoreTexture>, 3>, 2> textures;
         osg::ref_ptr<GpuStore> store;
         std::size_t turn = 0;
-        std::array<int, 3> units = {};
-        CameraList list;
+        MappingDrawing::CameraList list;
     };
 
-    Camera& camera(osg::StateSet& state)
+    /// The mappings as they lie on a ground. One for each ground that some camera sees them on, and for the last one in any
+    /// case.
+    std::shared_ptr<MappingDrawing> on(const osg::EllipsoidModel* ellipsoid, const Mappings& mappings)
     {
-        const std::lock_guard<std::mutex> lock(_cameraMutex);
-        std::unique_ptr<Camera>& found = _cameras[&state];
-        if (!found || !found->state.valid())
+        // By what they say: scenes have ellipsoids of their own that say the same.
+        const osg::Vec2d radii =
+            ellipsoid ? osg::Vec2d(ellipsoid->getRadiusEquator(), ellipsoid->getRadiusPolar()) : osg::Vec2d();
+        const std::lock_guard<std::mutex> lock(_mutex);
+        _grounds.erase(std::remove_if(_grounds.begin(), _grounds.end(),
+                                      [](const Ground& ground) { return ground.drawing.expired(); }),
+                       _grounds.end());
+        for (const Ground& ground : _grounds)
         {
-            found = std::make_unique<Camera>();
-            found->state = &state;
+            if (ground.radii == radii) _last = ground.drawing.lock();
+            if (ground.radii == radii) return _last;
         }
-        return *found;
+        _last = std::make_shared<MappingDrawing>();
+        for (const osg::ref_ptr<ProjectiveMapping>& mapping : mappings)
+            _last->add(*mapping);
+        _grounds.push_back({radii, _last});
+        return _last;
     }
 
+    /// Tells all of them.
+    template<class Action>
+    void each(const Action& action) const
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const Ground& ground : _grounds)
+        {
+            if (const std::shared_ptr<MappingDrawing> drawing = ground.drawing.lock()) action(*drawing);
+        }
+    }
+
+    Capacity capacity() const
+    {
+        std::uint64_t uploaded = 0;
+        each([&](const MappingDrawing& drawing) { uploaded += drawing.capacity().uploadedBytes; });
+        const std::lock_guard<std::mutex> lock(_mutex);
+        Capacity result = _last ? _last->capacity() : Capacity();
+        result.uploadedBytes = uploaded;
+        return result;
+    }
+
+    PerCamera<Camera, osg::StateSet> cameras;
+    std::unordered_set<const ProjectiveMapping*> all; ///< to be found faster than in the list
+
 private:
-    std::mutex _cameraMutex;
-    std::map<osg::StateSet*, std::unique_ptr<Camera>> _cameras;
+    struct Ground
+    {
+        osg::Vec2d radii; ///< of the ellipsoid, metres; 0 without one
+        std::weak_ptr<MappingDrawing> drawing;
+    };
+    mutable std::mutex _mutex;
+    std::vector<Ground> _grounds;
+    std::shared_ptr<MappingDrawing> _last;
 };
 
 namespace
@@ -111,9 +166,9 @@ const Properties& ProjectiveMappings::properties() const
         Property::flag("wholeList", false).of<&Self::_wholeList>(),
         Property::integer("anisotropy", 8, 1, 16).of<&Self::_anisotropy>(),
         Property::flag("linear", false).of<&Self::_linear>(),
-        Property::integer("dataUnit", 8, 4, 31).of<&Self::_dataUnit>(),
-        Property::integer("layerUnit", 9, 4, 31).of<&Self::_layerUnit>(),
-        Property::integer("tableUnit", 10, 4, 31).of<&Self::_tableUnit>(),
+        TextureUnits::property("dataUnit").of<&Self::_dataUnit>(),
+        TextureUnits::property("layerUnit").of<&Self::_layerUnit>(),
+        TextureUnits::property("tableUnit").of<&Self::_tableUnit>(),
         Property::integer("pageSide", 2048, 64, 16384).of<&Self::_pageSide>(),
         Property::integer("maxPages", 64, 1, 2048).of<&Self::_maxPages>(),
         Property::number("maxDataSize", 2048.0, 0.001, 32000.0, "MiB").of<&Self::_maxDataSize>(),
@@ -123,11 +178,14 @@ const Properties& ProjectiveMappings::properties() const
 
 std::string ProjectiveMappings::inconsistency() const
 {
-    if (_dataUnit == _layerUnit || _dataUnit == _tableUnit || _layerUnit == _tableUnit)
-        return "dataUnit, layerUnit and tableUnit must differ.";
     if (!isPowerOfTwo(_pageSide))
         return "pageSide must be a power of two, not " + std::to_string(_pageSide) + ".";
-    return {};
+    return TextureUnits::inconsistency(textureUnits());
+}
+
+std::vector<TextureUnitWish> ProjectiveMappings::textureUnits() const
+{
+    return {{"dataUnit", _dataUnit, 8}, {"layerUnit", _layerUnit, 9}, {"tableUnit", _tableUnit, 10}};
 }
 
 osg::Matrixd ProjectiveMappings::frameToWorld(const osg::EllipsoidModel* ellipsoid) const
@@ -167,7 +225,7 @@ osg::Vec3d ProjectiveMappings::positionOf(const osg::Vec3d& place, const osg::El
 
 bool ProjectiveMappings::addMapping(ProjectiveMapping* mapping)
 {
-    if (!mapping || _drawing->has(*mapping))
+    if (!mapping || _drawing->all.count(mapping) > 0)
     {
         OSG_WARN << "osgGeoFX: ProjectiveMappings::addMapping got "
                  << (mapping ? "a mapping that it has already" : "no mapping") << "; nothing changes."
@@ -176,7 +234,8 @@ bool ProjectiveMappings::addMapping(ProjectiveMapping* mapping)
     }
     _mappings.emplace_back(mapping);
     mapping->addListener(*this);
-    _drawing->add(*mapping);
+    _drawing->all.insert(mapping);
+    _drawing->each([&](MappingDrawing& drawing) { drawing.add(*mapping); });
     touch();
     return true;
 }
@@ -186,7 +245,8 @@ bool ProjectiveMappings::removeMapping(ProjectiveMapping* mapping)
     const auto found = std::find(_mappings.begin(), _mappings.end(), mapping);
     if (found == _mappings.end()) return false;
     mapping->removeListener(*this);
-    _drawing->remove(*mapping);
+    _drawing->all.erase(mapping);
+    _drawing->each([&](MappingDrawing& drawing) { drawing.remove(*mapping); });
     _mappings.erase(found);
     touch();
     return true;
@@ -196,14 +256,16 @@ void ProjectiveMappings::removeMappings()
 {
     for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
         mapping->removeListener(*this);
-    _drawing->clear();
+    _drawing->all.clear();
+    _drawing->each([](MappingDrawing& drawing) { drawing.clear(); });
     _mappings.clear();
     touch();
 }
 
 void ProjectiveMappings::propertyChanged(PropertyHolder& mapping)
 {
-    _drawing->change(static_cast<ProjectiveMapping&>(mapping));
+    _drawing->each([&](MappingDrawing& drawing)
+                   { drawing.change(static_cast<ProjectiveMapping&>(mapping)); });
 }
 
 std::vector<ProjectiveMapping*> ProjectiveMappings::mappingsAt(const osg::Vec2d& place) const
@@ -230,32 +292,33 @@ ProjectiveMappings::Capacity ProjectiveMappings::capacity() const
     return _drawing->capacity();
 }
 
-std::uint64_t ProjectiveMappings::commit(const osg::EllipsoidModel* ellipsoid)
+MappingSettings ProjectiveMappings::settings(const osg::EllipsoidModel* ellipsoid) const
 {
-    MappingDrawing::Settings settings;
+    MappingSettings settings;
     settings.pageSide = _pageSide;
     settings.maxPages = _maxPages;
     settings.maxTexels = static_cast<int>(std::min(_maxDataSize * texelsInMegabyte, 2147483647.0));
-    settings.ellipsoid = ellipsoid;
     if (ellipsoid)
     {
         settings.longitude = _longitude;
         settings.latitude = _latitude;
     }
-    return _drawing->commit(settings, [&](const osg::Vec3d& place) { return positionOf(place, ellipsoid); });
+    return settings;
 }
 
 void ProjectiveMappings::update(const osg::EllipsoidModel* ellipsoid)
 {
-    commit(ellipsoid);
+    MappingDrawing::CameraList none;
+    _drawing->on(ellipsoid, _mappings)
+        ->commit(
+            settings(ellipsoid), [&](const osg::Vec3d& place) { return positionOf(place, ellipsoid); }, none,
+            nullptr);
 }
 
 bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view)
 {
     if (_mappings.empty() || _opacity <= 0.0) return false;
     const osg::EllipsoidModel* ellipsoid = view.geometry.ground.ellipsoid.get();
-    std::uint64_t number = commit(ellipsoid);
-
     const osg::Matrixd frameToEye = frameToWorld(ellipsoid) * view.modelView;
     const osg::Matrixd eyeToFrame = osg::Matrixd::inverse(frameToEye);
     // What a pixel spans, metres: at a metre from the eye, and whatever the distance.
@@ -264,32 +327,34 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
         2.0 / std::max(std::abs(projection(1, 1)) * std::max(view.viewportHeight, 1.0), 1e-30);
     const bool parallel = projection(3, 3) != 0.0;
 
-    Drawing::Camera& camera = _drawing->camera(state);
-    int start = 0;
-    if (_wholeList)
+    Drawing::Camera& camera = _drawing->cameras.of(state);
+    camera.show(_drawing->on(ellipsoid, _mappings));
+    const osg::Vec3d eye = eyeToFrame.getTrans();
+    const auto position = [&](const osg::Vec3d& place)
     {
-        const osg::Vec3d eye = eyeToFrame.getTrans();
-        number = _drawing->setList(
-            camera.list,
-            [&](const ProjectiveMapping& mapping)
-            {
-                if (mapping.getPixelsNone() <= 0.0 || mapping.getProjector() == ProjectiveMapping::PINHOLE)
-                    return true;
-                const osg::Vec2d centre = mapping.getCentre();
-                const osg::Vec3d at = positionOf({centre.x(), centre.y(), mapping.getHeight()}, ellipsoid);
-                const double metres = parallel ? span : (at - eye).length() * span;
-                const double size = 2.0 * std::sqrt(mapping.getU().length() * mapping.getV().length());
-                // A little more than what the shader draws.
-                return size / metres > 0.99 * mapping.getPixelsNone();
-            });
-        start = static_cast<int>(camera.list.offset);
-    }
-    const MappingIndex::Root root = _drawing->root();
+        return positionOf(place, ellipsoid);
+    };
+    const auto largeEnough = [&](const ProjectiveMapping& mapping)
+    {
+        if (mapping.getPixelsNone() <= 0.0 || mapping.getProjector() == ProjectiveMapping::PINHOLE)
+            return true;
+        const osg::Vec2d centre = mapping.getCentre();
+        const osg::Vec3d at = position({centre.x(), centre.y(), mapping.getHeight()});
+        const double metres = parallel ? span : (at - eye).length() * span;
+        const double size = 2.0 * std::sqrt(mapping.getU().length() * mapping.getV().length());
+        // A little more than what the shader draws.
+        return size / metres > 0.99 * mapping.getPixelsNone();
+    };
+    const MappingDrawing::Frame frame =
+        camera.drawing->commit(settings(ellipsoid), position, camera.list,
+                               _wholeList ? MappingDrawing::Wanted(largeEnough) : nullptr);
+    const MappingIndex::Root& root = frame.root;
+    const auto start = static_cast<int>(camera.list.offset);
     if (root.block == 0 || (_wholeList && start == 0)) return false;
 
-    if (camera.store != _drawing->store())
+    if (camera.store != frame.store)
     {
-        camera.store = _drawing->store();
+        camera.store = frame.store;
         for (auto& textures : camera.textures)
         {
             textures = {new StoreTexture(camera.store, GpuStore::Part::Data),
@@ -298,24 +363,12 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
         }
     }
     camera.turn = 1 - camera.turn;
-    const std::array<int, 3> units = {_dataUnit, _layerUnit, _tableUnit};
-    if (units != camera.units)
-    {
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            // Another effect's may be there by now.
-            const auto unit = static_cast<unsigned int>(camera.units[i]);
-            const osg::StateAttribute* there = state.getTextureAttribute(unit, osg::StateAttribute::TEXTURE);
-            if (there == camera.textures[0][i] || there == camera.textures[1][i])
-                state.removeTextureAttribute(unit, osg::StateAttribute::TEXTURE);
-        }
-        camera.units = units;
-    }
+    const std::vector<int>& units = view.units;
     const char* const names[3] = {"data", "layers", "tables"};
     for (std::size_t i = 0; i < 3; ++i)
     {
         StoreTexture* texture = camera.textures[camera.turn][i];
-        texture->show(number);
+        texture->show(frame.number);
         state.setTextureAttribute(static_cast<unsigned int>(units[i]), texture);
         setUniform(state, prefix + names[i], osg::Uniform::INT, units[i]);
     }
@@ -323,9 +376,8 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     {
         state.setDefine(prefix + name, on ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
     };
-    const std::uint32_t features = _drawing->features();
     for (std::size_t i = 0; i < std::size(MappingRecord::features); ++i)
-        define(MappingRecord::features[i], (features & 1u << i) != 0);
+        define(MappingRecord::features[i], (frame.features & 1u << i) != 0);
     setUniform(state, prefix + "toFrame", osg::Uniform::FLOAT_MAT4, osg::Matrixf(eyeToFrame));
     setUniform(state, prefix + "root", osg::Uniform::FLOAT_VEC4,
                osg::Vec4(osg::Vec4d(root.origin.x(), root.origin.y(), 1.0 / root.size, 0.0)));
@@ -334,18 +386,17 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     state.getOrCreateUniform(prefix + "start", osg::Uniform::INT_VEC2)
         ->set(static_cast<int>(root.block), start);
     // The paper's loop works out each mapping in its turn, too.
-    define("IN_TURN", _wholeList || _drawing->longestList() > longList);
+    define("IN_TURN", _wholeList || frame.longestList > longList);
     define("LINEAR", _linear);
     setUniform(state, prefix + "quality", osg::Uniform::FLOAT_VEC3,
-               osg::Vec3(static_cast<float>(_anisotropy),
-                         1.0f / static_cast<float>(_drawing->store()->pageSide()),
+               osg::Vec3(static_cast<float>(_anisotropy), 1.0f / static_cast<float>(frame.store->pageSide()),
                          1.0f / GpuStore::tableWidth));
     osg::Vec4d globe, curve;
     if (ellipsoid)
     {
-        const glsl::geofx_Exaggeration frame = globeOf(*ellipsoid, _latitude);
-        globe.set(frame.axis.x, frame.axis.y, frame.axis.z, frame.flattening);
-        curve.set(frame.curvature, frame.scale, 0.0, 0.0);
+        const glsl::geofx_Exaggeration globeFrame = globeOf(*ellipsoid, _latitude);
+        globe.set(globeFrame.axis.x, globeFrame.axis.y, globeFrame.axis.z, globeFrame.flattening);
+        curve.set(globeFrame.curvature, globeFrame.scale, 0.0, 0.0);
     }
     setUniform(state, prefix + "globe", osg::Uniform::FLOAT_VEC4, osg::Vec4(globe));
     setUniform(state, prefix + "curve", osg::Uniform::FLOAT_VEC4, osg::Vec4(curve));
@@ -354,7 +405,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
 
 void ProjectiveMappings::releaseGLObjects(osg::State* state) const
 {
-    _drawing->releaseGLObjects(state);
+    _drawing->each([&](MappingDrawing& drawing) { drawing.releaseGLObjects(state); });
 }
 
 } // namespace osgGeoFX

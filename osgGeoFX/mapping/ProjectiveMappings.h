@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
 #include <osgGeoFX/scene/SurfaceEffect.h>
+#include <osgGeoFX/scene/TextureUnits.h>
 
 #include <osg/CoordinateSystemNode>
 
@@ -12,6 +13,8 @@
 
 namespace osgGeoFX
 {
+
+struct MappingSettings;
 
 /** Throws any number of georeferenced rasters onto everything below its EffectScene, in one pass and at run time: the
     system of Trapp and Döllner (2009).
@@ -33,17 +36,18 @@ namespace osgGeoFX
 
     **What it costs.** A fragment walks a grid to the few mappings over its place (MappingIndex); thousands elsewhere cost
     it nothing. With `wholeList` each fragment goes through all that are not too small instead, as in the paper; the picture
-    is the same. Between frames only what changed is uploaded. Three textures in all, on units of one's choice.
+    is the same. Between frames only what changed is uploaded. Three textures in all, on units that the scene gives them or
+    of one's choice.
 
     **Limits.** There is no limit of its own. What the GPU cannot hold is left out, the least important first
     (`importance`, then the smaller ones), one warning says which limit it is, and capacity() tells how much that is.
 
     **With other effects.** Mappings lie on the undeformed ground and bend with it. They colour in the scene's order of
-    effects. A subgraph keeps clear of all with the define GEOFX_MAPPING_CHANNELS 0, and takes some with their bits.
+    effects, and any number of sets may stand there. A subgraph keeps clear of all with the define GEOFX_MAPPING_CHANNELS 0, and takes some with their bits.
 
     **Threads.** Mappings, layers, tables and transfers are changed between frames; the next frame has it, in all
     threading models. Any number of cameras, views and contexts draws them. May be hosted by several scenes. */
-class OSGGEOFX_EXPORT ProjectiveMappings : public SurfaceEffect, private PropertyListener
+class OSGGEOFX_EXPORT ProjectiveMappings : public SurfaceEffect, public TextureUser, private PropertyListener
 {
 public:
     ProjectiveMappings();
@@ -92,7 +96,8 @@ public:
     /// For scenes that are lit in linear light: colours are taken as sRGB and made linear before blending. False by default.
     bool setLinear(bool linear) { return assign("linear", linear ? 1.0 : 0.0); }
     bool getLinear() const { return _linear; }
-    /// Texture units of the data, the layers and the tables, 4…31, all different. 8, 9 and 10 by default.
+    /// Texture units of the data, the layers and the tables, 4…31, all different. −1, the default, leaves one to the scene,
+    /// which gives 8, 9 and 10 where they are free.
     bool setUnits(int data, int layers, int tables)
     {
         return assign({{"dataUnit", data}, {"layerUnit", layers}, {"tableUnit", tables}});
@@ -129,6 +134,7 @@ public:
     const Properties& properties() const override;
     std::string vertexFile() const override { return "stages/mappings.vert.glsl"; }
     std::string fragmentFile() const override { return "stages/mappings.frag.glsl"; }
+    std::vector<TextureUnitWish> textureUnits() const override;
     bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) override;
     void releaseGLObjects(osg::State* state) const override;
 
@@ -138,18 +144,19 @@ protected:
 
 private:
     class Drawing;
+    using Mappings = std::vector<osg::ref_ptr<ProjectiveMapping>>;
     void propertyChanged(PropertyHolder& mapping) override;
-    std::uint64_t commit(const osg::EllipsoidModel* ellipsoid);
+    MappingSettings settings(const osg::EllipsoidModel* ellipsoid) const;
 
     double _originX = 0.0, _originY = 0.0, _longitude = 0.0, _latitude = 0.0;
     double _opacity = 1.0;
     bool _wholeList = false;
     int _anisotropy = 8;
     bool _linear = false;
-    int _dataUnit = 8, _layerUnit = 9, _tableUnit = 10;
+    int _dataUnit = -1, _layerUnit = -1, _tableUnit = -1;
     int _pageSide = 2048, _maxPages = 64;
     double _maxDataSize = 2048.0;
-    std::vector<osg::ref_ptr<ProjectiveMapping>> _mappings;
+    Mappings _mappings;
     std::unique_ptr<Drawing> _drawing;
 };
 

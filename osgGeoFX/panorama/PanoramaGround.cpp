@@ -120,19 +120,18 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
                    1.0 / std::max(view.viewportHeight, 1.0)});
     put("clock", {std::fmod(view.time, 3600.0), 0.0, 0.0, 0.0});
 
-    const int first = _map.getFirstUnit();
-    setTexture(state, prefix + "palette", first, _textures.palette(_map));
-    setTexture(state, prefix + "brush", first + 1, _textures.brush());
-    setTexture(state, prefix + "cover", _map.getCoverUnit(), _textures.noCover());
+    setTexture(state, prefix + "palette", view.units[PaletteUnit], _textures.palette(_map));
+    setTexture(state, prefix + "brush", view.units[BrushUnit], _textures.brush());
+    setTexture(state, prefix + "cover", view.units[CoverUnit], _textures.noCover());
     const PanoramaEdge edge(_map, _textures, view.geometry, view.modelView, *panorama);
     put("edgeEye", edge.eye);
     put("edgeWays", edge.ways);
     put("edgeKind", edge.kind);
     put("edgePlace", edge.sky);
-    setTexture(state, prefix + "edgeMap", _map.getEdgeUnit(), edge.map);
-    setTexture(state, prefix + "edgeSky", _map.getEdgeUnit() + 1, edge.skyTexture);
+    setTexture(state, prefix + "edgeMap", view.units[EdgeMapUnit], edge.map);
+    setTexture(state, prefix + "edgeSky", view.units[EdgeSkyUnit], edge.skyTexture);
     // The scenery puts the reflection there, where there is one.
-    state.getOrCreateUniform(prefix + "mirror", osg::Uniform::SAMPLER_2D)->set(first + 2);
+    state.getOrCreateUniform(prefix + "mirror", osg::Uniform::SAMPLER_2D)->set(view.units[MirrorUnit]);
     return true;
 }
 

@@ -82,8 +82,8 @@ const Properties& PanoramaMap::properties() const
         Property::number("strokeSpacing", 4.2, 1.0, 200.0).of<&Self::_strokeSpacing>(),
         Property::number("strokeStep", 25.0, 1.0, 10000.0, "m").of<&Self::_strokeStep>(),
         Property::integer("coverUnit", 7, 4, 31).of<&Self::_coverUnit>(),
-        Property::integer("firstUnit", 4, 4, 29).of<&Self::_firstUnit>(),
-        Property::integer("edgeUnit", 14, 4, 30).of<&Self::_edgeUnit>(),
+        Property::integer("firstUnit", -1, -1, 29).of<&Self::_firstUnit>(),
+        Property::integer("edgeUnit", -1, -1, 30).of<&Self::_edgeUnit>(),
     };
     return all;
 }
@@ -91,11 +91,17 @@ const Properties& PanoramaMap::properties() const
 std::string PanoramaMap::inconsistency() const
 {
     if (_curveDistance >= _horizonDistance) return "curveDistance must be less than horizonDistance.";
-    if (_coverUnit >= _firstUnit && _coverUnit < _firstUnit + 3)
+    if (_firstUnit >= 0 && _firstUnit < TextureUnits::first)
+        return "firstUnit must be from 4 to 29, for the geometry has those below, or -1 for the scene's "
+               "choice.";
+    if (_firstUnit >= 0 && _coverUnit >= _firstUnit && _coverUnit < _firstUnit + 3)
         return "coverUnit must not be one of the three units from firstUnit on.";
-    if (_edgeUnit <= _coverUnit && _coverUnit < _edgeUnit + 2)
+    if (_edgeUnit >= 0 && _edgeUnit < TextureUnits::first)
+        return "edgeUnit must be from 4 to 30, for the geometry has those below, or -1 for the scene's "
+               "choice.";
+    if (_edgeUnit >= 0 && _edgeUnit <= _coverUnit && _coverUnit < _edgeUnit + 2)
         return "coverUnit must not be one of the two units from edgeUnit on.";
-    if (_edgeUnit < _firstUnit + 3 && _firstUnit < _edgeUnit + 2)
+    if (_edgeUnit >= 0 && _firstUnit >= 0 && _edgeUnit < _firstUnit + 3 && _firstUnit < _edgeUnit + 2)
         return "The two units from edgeUnit on must not be among the three from firstUnit on.";
     return {};
 }
@@ -136,6 +142,26 @@ void PanoramaMap::setLines(StrokeLines* lines)
 {
     _lines = lines;
     touch();
+}
+
+std::vector<TextureUnitWish> PanoramaMap::textureUnits() const
+{
+    const auto after = [&](int place)
+    {
+        return TextureUnitWish{"firstUnit", _firstUnit < 0 ? -1 : _firstUnit + place, 4 + place};
+    };
+    const auto edge = [&](int place)
+    {
+        return TextureUnitWish{"edgeUnit", _edgeUnit < 0 ? -1 : _edgeUnit + place, 14 + place};
+    };
+    return {after(0), after(1), after(2),
+            edge(0),  edge(1),  {"coverUnit", _coverUnit, _coverUnit, true, true}};
+}
+
+void PanoramaMap::resizeGLObjectBuffers(unsigned int size)
+{
+    _textures->resizeGLObjectBuffers(size);
+    _scenery->resizeGLObjectBuffers(size);
 }
 
 void PanoramaMap::releaseGLObjects(osg::State* state) const

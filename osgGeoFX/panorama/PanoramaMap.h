@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/deformation/Deformation.h>
+#include <osgGeoFX/scene/TextureUnits.h>
 
 #include <osg/Image>
 #include <osg/Math>
@@ -40,7 +41,7 @@ class StrokeLines;
     Stands after an exaggeration or a mapping in a scene, and instead of a bend. Positions are exact within 1e-5 of the viewing
     distance up to 60 degrees of arc from the eye. Objects below the scene may be drawn in all threading models; changed as all
     effects are, between frames. */
-class OSGGEOFX_EXPORT PanoramaMap : public Deformation
+class OSGGEOFX_EXPORT PanoramaMap : public Deformation, public TextureUser
 {
 public:
     PanoramaMap();
@@ -211,10 +212,12 @@ public:
     /// Where tiles have what they say of the ground; 4…31, 7 by default, as osggeofx_build makes them.
     bool setCoverUnit(int unit) { return assign("coverUnit", unit); }
     int getCoverUnit() const { return _coverUnit; }
-    /// The first of three for the palette, the brush and the reflection; 4…29, 4 by default.
+    /// The first of three for the palette, the brush and the reflection; 4…29. −1, the default, leaves them to the scene,
+    /// which gives 4, 5 and 6 where they are free.
     bool setFirstUnit(int unit) { return assign("firstUnit", unit); }
     int getFirstUnit() const { return _firstUnit; }
-    /// The first of two for the terrain's edge and the sky; 4…30, 14 by default.
+    /// The first of two for the terrain's edge and the sky; 4…30. −1, the default, leaves them to the scene,
+    /// which gives 14 and 15 where they are free.
     bool setEdgeUnit(int unit) { return assign("edgeUnit", unit); }
     int getEdgeUnit() const { return _edgeUnit; }
     /// @}
@@ -227,6 +230,8 @@ public:
     using Deformation::asSurfaceEffect;
     SurfaceEffect* asSurfaceEffect() override;
     PassEffect* asPassEffect() override;
+    std::vector<TextureUnitWish> textureUnits() const override;
+    void resizeGLObjectBuffers(unsigned int size) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
 protected:
@@ -237,6 +242,16 @@ protected:
 private:
     class Ground;
     class Scenery;
+    /// The places of its texture units.
+    enum Unit : std::size_t
+    {
+        PaletteUnit,
+        BrushUnit,
+        MirrorUnit,
+        EdgeMapUnit,
+        EdgeSkyUnit,
+        CoverUnit
+    };
 
     bool _projection = true;
     double _viewRadius = 0.0;
@@ -275,8 +290,8 @@ private:
     double _strokeSpacing = 4.2;
     double _strokeStep = 25.0;
     int _coverUnit = 7;
-    int _firstUnit = 4;
-    int _edgeUnit = 14;
+    int _firstUnit = -1;
+    int _edgeUnit = -1;
     osg::ref_ptr<osg::Image> _palette;
     osg::ref_ptr<osg::Image> _skyImage;
     osg::ref_ptr<StrokeLines> _lines;

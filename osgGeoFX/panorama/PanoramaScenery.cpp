@@ -124,6 +124,13 @@ public:
         return *_stage;
     }
 
+    void resizeGLObjectBuffers(unsigned int size)
+    {
+        osg::resizeGLObjectBuffers(_colours, size);
+        osg::resizeGLObjectBuffers(_depths, size);
+        osg::resizeGLObjectBuffers(_target, size);
+    }
+
     osg::Texture2D* colours() const { return _colours; }
     osg::Viewport* viewport() const { return _viewport; }
     osg::StateSet& state() { return *_state; }
@@ -220,6 +227,14 @@ public:
     }
 
     osg::Geometry* square() const { return _square; }
+
+    void resizeGLObjectBuffers(unsigned int size)
+    {
+        mirrors.resizeGLObjectBuffers(size);
+        const std::lock_guard<std::mutex> lock(_mutex);
+        osg::resizeGLObjectBuffers(_skyProgram, size);
+        _square->resizeGLObjectBuffers(size);
+    }
 
     void releaseGLObjects(osg::State* state) const
     {
@@ -344,7 +359,10 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
     state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
     state.setAttribute(mirror.viewport(), forced);
-    const auto unit = static_cast<unsigned int>(_map.getFirstUnit() + 2);
+    const auto unit = static_cast<unsigned int>(pass.units[MirrorUnit]);
+    // Another effect may have its texture now where this was.
+    for (unsigned int former = 0; former < state.getNumTextureAttributeLists(); ++former)
+        state.removeTextureAttribute(former, osg::StateAttribute::TEXTURE);
     state.setTextureAttribute(unit, _textures.noCover(), forced);
     const osg::Viewport& size = *mirror.viewport();
     state.getOrCreateUniform(pass.prefix + "window", osg::Uniform::FLOAT_VEC4)
@@ -384,6 +402,11 @@ DrawableCompanion* PanoramaMap::Scenery::companion(const ScenePass& pass)
 osg::ref_ptr<TileListener> PanoramaMap::Scenery::tileListener(const osgGeoFX::Ground& ground)
 {
     return _cameras->maker(_map, ground);
+}
+
+void PanoramaMap::Scenery::resizeGLObjectBuffers(unsigned int size)
+{
+    _cameras->resizeGLObjectBuffers(size);
 }
 
 void PanoramaMap::Scenery::releaseGLObjects(osg::State* state) const

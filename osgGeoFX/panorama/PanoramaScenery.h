@@ -23,6 +23,7 @@ public:
     void cull(const ScenePass& pass) override;
     DrawableCompanion* companion(const ScenePass& pass) override;
     osg::ref_ptr<TileListener> tileListener(const osgGeoFX::Ground& ground) override;
+    void resizeGLObjectBuffers(unsigned int size) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
 protected:

@@ -112,6 +112,13 @@ osg::ref_ptr<const EdgeMap> PanoramaTextures::edge(const PanoramaMap& map, const
     return made;
 }
 
+void PanoramaTextures::resizeGLObjectBuffers(unsigned int size)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& texture : {_noCover, _palette, _sky, _brush})
+        osg::resizeGLObjectBuffers(texture, size);
+}
+
 void PanoramaTextures::releaseGLObjects(osg::State* state) const
 {
     const std::lock_guard<std::mutex> lock(_mutex);

@@ -30,6 +30,7 @@ public:
     /// Where the terrain below a root ends, as the map wants it; null where nothing is known.
     osg::ref_ptr<const EdgeMap> edge(const PanoramaMap& map, const osg::Node* root);
 
+    void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;
 
 private:

@@ -8,12 +8,13 @@
 #include <osgGeoFX/scene/EffectProgram.h>
 #include <osgGeoFX/scene/NodeFinder.h>
 #include <osgGeoFX/scene/PassEffect.h>
+#include <osgGeoFX/scene/PerCamera.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
 #include <osgGeoFX/scene/SurfaceEffect.h>
+#include <osgGeoFX/scene/TextureUnits.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Notify>
-#include <osg/observer_ptr>
 
 #include <algorithm>
 #include <cmath>
@@ -75,6 +76,8 @@ bool finite(const DeformationFrame::Uniforms& uniforms)
 struct CameraState
 {
     osg::ref_ptr<osg::StateSet> set;
+    /// Of the effects that it was made for.
+    std::shared_ptr<const TextureUnits> units;
     /// Those of each effect, in the order of its list: to look for them by name takes longer than to set them.
     std::vector<std::vector<osg::ref_ptr<osg::Uniform>>> uniforms;
 };
@@ -111,9 +114,10 @@ void fill(CameraState& state, const Frames& frames)
     }
 }
 
-CameraState createState(int mapUnit)
+CameraState createState(int mapUnit, const std::shared_ptr<const TextureUnits>& units)
 {
     CameraState created;
+    created.units = units;
     created.set = new osg::StateSet;
     osg::StateSet* const state = created.set.get();
     for (int unit = 0; unit < FixedFunctionLook::units; ++unit)
@@ -132,7 +136,6 @@ struct EffectScene::Drawing
     /// For one cull visitor of OSG: so for one camera, and one of the frames that are on their way.
     struct Camera
     {
-        osg::observer_ptr<osgUtil::CullVisitor> outer;
         osg::ref_ptr<CompensatingCullVisitor> visitor = new CompensatingCullVisitor;
         std::vector<CameraState> states; ///< one for each traversal of a frame
         std::size_t used = 0;
@@ -143,22 +146,28 @@ struct EffectScene::Drawing
         untouched->setDefine("GEOFX_DEFORMATION", osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
     }
 
-    /// The camera's own data; other threads may ask for theirs at the same time.
-    Camera& camera(osgUtil::CullVisitor& outer)
+    /// The same ones as long as the list of effects and what they get stay as they are.
+    std::shared_ptr<const TextureUnits> unitsOf(const EffectProgram::Effects& effects)
     {
-        const std::lock_guard<std::mutex> lock(mutex);
-        std::unique_ptr<Camera>& found = cameras[&outer];
-        if (!found || !found->outer.valid())
+        std::shared_ptr<const TextureUnits> changed;
         {
-            for (auto entry = cameras.begin(); entry != cameras.end();)
-            {
-                const bool gone = entry->first != &outer && !entry->second->outer.valid();
-                entry = gone ? cameras.erase(entry) : std::next(entry);
-            }
-            found = std::make_unique<Camera>();
-            found->outer = &outer;
+            const std::lock_guard<std::mutex> lock(mutex);
+            std::vector<unsigned int> now(effects.size());
+            std::transform(effects.begin(), effects.end(), now.begin(),
+                           [](const osg::ref_ptr<Effect>& each) { return each->revision(); });
+            const bool sameList = units && effects == unitEffects;
+            if (sameList && now == unitRevisions) return units;
+            unitRevisions = now;
+            unitEffects = effects;
+            changed = std::make_shared<const TextureUnits>(TextureUnits::of(effects));
+            if (!sameList || changed->ofEffects != units->ofEffects || changed->complete != units->complete)
+                units = changed;
+            else
+                changed = units;
         }
-        return *found;
+        for (const std::string& sentence : changed->sentences)
+            sayOnce(sentence);
+        return changed;
     }
 
     osg::ref_ptr<osg::Program> programFor(const EffectProgram::Effects& effects)
@@ -291,7 +300,10 @@ struct EffectScene::Drawing
     }
 
     std::mutex mutex;
-    std::map<osgUtil::CullVisitor*, std::unique_ptr<Camera>> cameras;
+    PerCamera<Camera> cameras;
+    std::shared_ptr<const TextureUnits> units;
+    EffectProgram::Effects unitEffects; ///< those that the units were given to, and
+    std::vector<unsigned int> unitRevisions;
     NodeFinder systems = NodeFinder(&isSystem, deepestSystem);
     NodeFinder terrains = NodeFinder(&isTerrainRoot, deepestTerrain);
     osg::ref_ptr<const osg::UserDataContainer> terrainValues;
@@ -434,25 +446,27 @@ Frames framesFor(const EffectProgram::Effects& effects, const ViewGeometry& firs
 }
 
 /// Of the effects that colour surfaces; whether there are any at work.
-bool fillSurfaces(const EffectProgram::Effects& effects, osg::StateSet& state, const ViewGeometry& geometry,
-                  osgUtil::CullVisitor& outer)
+bool fillSurfaces(const EffectProgram::Effects& effects, const TextureUnits& units, osg::StateSet& state,
+                  const ViewGeometry& geometry, osgUtil::CullVisitor& outer)
 {
     bool any = false;
     bool repainted = false;
     const osg::Viewport* viewport = outer.getViewport();
     const osg::FrameStamp* stamp = outer.getFrameStamp();
-    const SurfaceView view = {geometry,
-                              *outer.getModelViewMatrix(),
-                              viewport ? viewport->x() : 0.0,
-                              viewport ? viewport->y() : 0.0,
-                              viewport ? viewport->width() : 0.0,
-                              viewport ? viewport->height() : 0.0,
-                              stamp ? stamp->getSimulationTime() : 0.0};
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
         SurfaceEffect* surface = effects[i]->asSurfaceEffect();
         if (!surface) continue;
-        const bool draws = effects[i]->getEnabled() && surface->fill(state, EffectProgram::prefix(i), view);
+        const SurfaceView view = {geometry,
+                                  *outer.getModelViewMatrix(),
+                                  viewport ? viewport->x() : 0.0,
+                                  viewport ? viewport->y() : 0.0,
+                                  viewport ? viewport->width() : 0.0,
+                                  viewport ? viewport->height() : 0.0,
+                                  stamp ? stamp->getSimulationTime() : 0.0,
+                                  units.ofEffects[i]};
+        const bool draws = effects[i]->getEnabled() && units.complete[i] &&
+                           surface->fill(state, EffectProgram::prefix(i), view);
         setDefine(state, EffectProgram::surfaceDefine(i), draws);
         any = any || draws;
         repainted = repainted || (draws && surface->repaints());
@@ -536,13 +550,16 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     CompensatingCullVisitor::Task task;
     task.chain = chainOf(frames, view.ground);
     task.mapUnit = mapUnitOf(_effects);
-    Drawing::Camera& own = _drawing->camera(outer);
+    Drawing::Camera& own = _drawing->cameras.of(outer);
     if (own.visitor->startsFrame(outer)) own.used = 0;
-    if (own.used == own.states.size()) own.states.push_back(createState(task.mapUnit));
+    const std::shared_ptr<const TextureUnits> units = _drawing->unitsOf(_effects);
+    if (own.used == own.states.size()) own.states.emplace_back();
+    // Made anew for other effects, which would find the uniforms and textures of the former ones under their names.
+    if (own.states[own.used].units != units) own.states[own.used] = createState(task.mapUnit, units);
     osg::StateSet& state = *own.states[own.used].set;
     state.getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(task.mapUnit, 0));
     fill(own.states[own.used], frames);
-    const bool surfaces = fillSurfaces(_effects, state, view, outer);
+    const bool surfaces = fillSurfaces(_effects, *units, state, view, outer);
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
     const bool draws = surfaces || _debugBounds || !task.chain->empty();
@@ -558,7 +575,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         {
             task.program = _drawing->programFor(_effects);
             task.state = &state;
-            forPasses(outer, view, *task.chain, state, task.mapUnit,
+            forPasses(outer, view, *task.chain, state, task.mapUnit, *units,
                       [&](PassEffect& effect, const ScenePass& pass)
                       {
                           DrawableCompanion* companion = effect.companion(pass);
@@ -578,7 +595,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     }
     if (passes)
     {
-        forPasses(outer, view, *task.chain, state, task.mapUnit,
+        forPasses(outer, view, *task.chain, state, task.mapUnit, *units,
                   [](PassEffect& effect, const ScenePass& pass) { effect.cull(pass); });
     }
     return true;
@@ -586,6 +603,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
 
 void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view,
                             const DeformationChain& chain, osg::StateSet& state, int mapUnit,
+                            const TextureUnits& units,
                             const std::function<void(PassEffect&, const ScenePass&)>& action)
 {
     class Pass : public ScenePass
@@ -593,9 +611,9 @@ void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& vie
     public:
         Pass(EffectScene& group, osgUtil::CullVisitor& visitor, const ViewGeometry& geometry,
              const DeformationChain& deformations, osg::StateSet& stateSet, const std::string& names,
-             int unit)
+             int unit, const std::vector<int>& textureUnits)
             : ScenePass(visitor, group, geometry, deformations, stateSet, *group._drawing->untouched, names,
-                        geometry.ground.tileError, unit, group._compensation),
+                        geometry.ground.tileError, unit, group._compensation, textureUnits),
               _group(group)
         {
         }
@@ -614,9 +632,9 @@ void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& vie
     for (std::size_t i = 0; i < _effects.size(); ++i)
     {
         PassEffect* effect = _effects[i]->asPassEffect();
-        if (!effect || !_effects[i]->getEnabled()) continue;
+        if (!effect || !_effects[i]->getEnabled() || !units.complete[i]) continue;
         const std::string prefix = EffectProgram::prefix(i);
-        action(*effect, Pass(*this, outer, view, chain, state, prefix, mapUnit));
+        action(*effect, Pass(*this, outer, view, chain, state, prefix, mapUnit, units.ofEffects[i]));
     }
 }
 
@@ -647,6 +665,8 @@ void EffectScene::resizeGLObjectBuffers(unsigned int size)
             if (pass.program) pass.program->resizeGLObjectBuffers(size);
         }
     }
+    for (const osg::ref_ptr<Effect>& effect : _effects)
+        effect->resizeGLObjectBuffers(size);
     osg::Group::resizeGLObjectBuffers(size);
 }
 

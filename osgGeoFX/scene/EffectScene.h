@@ -22,6 +22,7 @@ namespace osgGeoFX
 class PassEffect;
 class ScenePass;
 class TileGuard;
+struct TextureUnits;
 
 /** The group that a program puts above its terrain to have the kit's effects.
 
@@ -115,7 +116,7 @@ private:
     struct Drawing;
     bool cull(osgUtil::CullVisitor& outer);
     void forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view, const DeformationChain& chain,
-                   osg::StateSet& state, int mapUnit,
+                   osg::StateSet& state, int mapUnit, const TextureUnits& units,
                    const std::function<void(PassEffect&, const ScenePass&)>& action);
 
     std::vector<osg::ref_ptr<Effect>> _effects;

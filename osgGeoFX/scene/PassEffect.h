@@ -56,7 +56,8 @@ public:
     const std::string& prefix; ///< of the effect's names
     double tileError;          ///< Ground::tileError
     int mapUnit;
-    bool compensate; ///< EffectScene::getCompensation()
+    bool compensate;               ///< EffectScene::getCompensation()
+    const std::vector<int>& units; ///< texture units that the effect has here (TextureUser)
 
     virtual ~ScenePass();
     /// A program of all effects with the pass' own shaders; the same one until effects or shaders change. Null, after a
@@ -68,9 +69,10 @@ public:
 protected:
     ScenePass(osgUtil::CullVisitor& visitor, osg::Group& group, const ViewGeometry& geometry,
               const DeformationChain& deformations, osg::StateSet& stateSet, osg::StateSet& left,
-              const std::string& names, double error, int unit, bool compensation)
+              const std::string& names, double error, int unit, bool compensation,
+              const std::vector<int>& textureUnits)
         : outer(visitor), scene(group), view(geometry), chain(deformations), state(stateSet), untouched(left),
-          prefix(names), tileError(error), mapUnit(unit), compensate(compensation)
+          prefix(names), tileError(error), mapUnit(unit), compensate(compensation), units(textureUnits)
     {
     }
 };

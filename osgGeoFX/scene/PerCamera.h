@@ -11,34 +11,39 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
 
 /** What an effect keeps for each camera: for each cull visitor of OSG, and so for one thread at a time and for one of the frames
-    that are on their way, and for each scene that hosts the effect. What belongs to visitors that are gone goes, too. */
-template<class Data>
+    that are on their way, and for each scene that hosts the effect. Or, with another Owner, for each object that stands for
+    as much, such as a camera's state set. What belongs to owners that are gone goes as soon as another one asks. */
+template<class Data, class Owner = osgUtil::CullVisitor>
 class PerCamera
 {
 public:
     /// The camera's own; other threads may ask for theirs at the same time.
-    Data& of(osgUtil::CullVisitor& visitor, const osg::Group& scene)
+    Data& of(Owner& owner, const osg::Group* scene = nullptr)
     {
+        // Let go of when the lock is, since it may take others.
+        std::vector<std::unique_ptr<Camera>> gone;
         const std::lock_guard<std::mutex> lock(_mutex);
-        std::unique_ptr<Camera>& found = _all[{&visitor, &scene}];
-        if (!found || !found->visitor.valid())
+        for (auto entry = _all.begin(); entry != _all.end();)
         {
-            for (auto entry = _all.begin(); entry != _all.end();)
-            {
-                const bool gone =
-                    entry->second && !entry->second->visitor.valid() && &entry->second != &found;
-                entry = gone ? _all.erase(entry) : std::next(entry);
-            }
+            const bool lives = entry->second->owner.valid();
+            if (!lives) gone.push_back(std::move(entry->second));
+            entry = lives ? std::next(entry) : _all.erase(entry);
+        }
+        std::unique_ptr<Camera>& found = _all[{&owner, scene}];
+        if (!found)
+        {
             found = std::make_unique<Camera>();
-            found->visitor = &visitor;
+            found->owner = &owner;
         }
         return found->data;
     }
+    Data& of(Owner& owner, const osg::Group& scene) { return of(owner, &scene); }
 
     void releaseGLObjects(osg::State* state) const
     {
@@ -47,14 +52,21 @@ public:
             camera->data.releaseGLObjects(state);
     }
 
+    void resizeGLObjectBuffers(unsigned int size)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto& [key, camera] : _all)
+            camera->data.resizeGLObjectBuffers(size);
+    }
+
 private:
     struct Camera
     {
-        osg::observer_ptr<osgUtil::CullVisitor> visitor;
+        osg::observer_ptr<Owner> owner;
         Data data;
     };
     mutable std::mutex _mutex;
-    std::map<std::pair<osgUtil::CullVisitor*, const osg::Group*>, std::unique_ptr<Camera>> _all;
+    std::map<std::pair<Owner*, const osg::Group*>, std::unique_ptr<Camera>> _all;
 };
 
 } // namespace osgGeoFX

@@ -8,6 +8,7 @@
 #include <osg/StateSet>
 
 #include <string>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -21,7 +22,8 @@ struct SurfaceView
     double viewportY;
     double viewportWidth;
     double viewportHeight;
-    double time; ///< of the simulation, seconds
+    double time;                   ///< of the simulation, seconds
+    const std::vector<int>& units; ///< texture units that the effect has here (TextureUser)
 };
 
 /** An effect that colours what is drawn, fragment by fragment, in the geometry's undeformed place.
@@ -44,8 +46,9 @@ public:
     /// state set with `setDefine("GEOFX_PAINTED", OFF)` it does, and SLOT_colour() should hand it on.
     virtual bool repaints() const { return false; }
 
-    /** Puts what the shaders need into a camera's state: uniforms with the prefix, and textures. False where there is
-        nothing to draw. Several cameras' threads may call it at once; the state is the caller's own. */
+    /** Puts what the shaders need into a camera's state: uniforms with the prefix, and textures on the view's units. False
+        where there is nothing to draw. Several cameras' threads may call it at once; the state is the caller's own, and the
+        same one until the scene's effects or their units change. */
     virtual bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) = 0;
 
 protected:

@@ -139,6 +139,7 @@ TEST_F(EffectPanelTest, KeysTurnTheSelectedPropertyAlone)
     EXPECT_FALSE(map->getEnabled());
     press(Event::KEY_Return);
     // What does not fit the others is refused without a word.
+    map->setFirstUnit(4);
     select("  coverUnit");
     for (int i = 0; i < 5; ++i)
         press(Event::KEY_Left);

@@ -258,10 +258,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SceneCloseUps, UnitsMustDiffer)
 {
-    const SceneResult result = parseScene(sceneWith("", "maskUnit='12'"), "x.geofx", "/");
+    const SceneResult result = parseScene(sceneWith("", "maskUnit='12' tableUnit='12'"), "x.geofx", "/");
     ASSERT_EQ(result.errors.size(), 1u);
-    EXPECT_EQ(result.errors[0],
-              "x.geofx:2: <closeUps>: CloseUps: maskUnit, tableUnit and surfaceUnit must differ.");
+    EXPECT_EQ(result.errors[0], "x.geofx:2: <closeUps>: CloseUps: maskUnit and tableUnit must differ.");
 }
 
 TEST(SceneCloseUps, NameFilesThatAreNotThere)

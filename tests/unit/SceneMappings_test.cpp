@@ -150,6 +150,20 @@ TEST(SceneMappings, NamesBelongToOneEffect)
               result.scene->mappings[1].mappings[0].mapping->getLayer());
 }
 
+TEST(SceneMappings, SetsOfOneSceneHaveUnitsOfTheirOwn)
+{
+    const SceneResult result =
+        parseScene("<geofx version='1'><terrain><database file='terrain.osgb'/></terrain><effects>"
+                   "<projectiveMappings/><projectiveMappings dataUnit='9' layerUnit='-1'/>"
+                   "<closeUps/><panoramaMap/></effects></geofx>",
+                   "x.geofx", "/");
+    ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
+    const TextureUnits given = TextureUnits::of(result.scene->effects);
+    EXPECT_EQ(given.ofEffects, (std::vector<TextureUnits::Units>{
+                                   {8, 4, 10}, {9, 5, 6}, {11, 12, 13}, {14, 15, 16, 17, 18, 7}}));
+    EXPECT_TRUE(given.sentences.empty());
+}
+
 struct Mistake
 {
     const char* name;

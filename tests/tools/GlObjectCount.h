@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osg/GLExtensions>
+#include <osg/GLObjects>
+#include <osg/State>
+
+#include <ostream>
+
+namespace geofx::test
+{
+
+/// How many objects a context has, asked name by name. What OSG has put aside to be deleted is deleted first.
+struct GlObjectCount
+{
+    int textures = 0, buffers = 0, frameBuffers = 0, programs = 0, vertexArrays = 0;
+
+    /// The context must be current.
+    static GlObjectCount of(osg::State& state)
+    {
+        osg::flushAllDeletedGLObjects(state.getContextID());
+        const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+        // OSG has no use for this one.
+        GLboolean(GL_APIENTRY * isFrameBuffer)(GLuint) = nullptr;
+        osg::setGLExtensionFuncPtr(isFrameBuffer, "glIsFramebuffer");
+        // Names are handed out from the lowest on.
+        constexpr GLuint mostNames = 20000;
+        GlObjectCount count;
+        for (GLuint name = 1; name < mostNames; ++name)
+        {
+            count.textures += glIsTexture(name) ? 1 : 0;
+            count.buffers += gl.glIsBuffer(name) ? 1 : 0;
+            count.frameBuffers += isFrameBuffer && isFrameBuffer(name) ? 1 : 0;
+            count.programs += gl.glIsProgram(name) ? 1 : 0;
+            count.vertexArrays += gl.glIsVertexArray(name) ? 1 : 0;
+        }
+        return count;
+    }
+
+    bool operator==(const GlObjectCount& other) const
+    {
+        return textures == other.textures && buffers == other.buffers && frameBuffers == other.frameBuffers &&
+               programs == other.programs && vertexArrays == other.vertexArrays;
+    }
+
+    friend std::ostream& operator<<(std::ostream& stream, const GlObjectCount& count)
+    {
+        return stream << count.textures << " textures, " << count.buffers << " buffers, "
+                      << count.frameBuffers << " frame buffers, " << count.programs << " programs, "
+                      << count.vertexArrays << " vertex arrays";
+    }
+};
+
+} // namespace geofx::test
