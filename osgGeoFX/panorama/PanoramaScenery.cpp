@@ -190,6 +190,11 @@ public:
         void end() { ++_used; }
         CompensatingCullVisitor& visitor() { return *_visitor; }
 
+        void resizeGLObjectBuffers(unsigned int size)
+        {
+            for (const std::unique_ptr<Look>& each : _all)
+                each->mirror.resizeGLObjectBuffers(size);
+        }
         void releaseGLObjects(osg::State* state) const
         {
             for (const std::unique_ptr<Look>& each : _all)
@@ -230,7 +235,7 @@ public:
 
     void resizeGLObjectBuffers(unsigned int size)
     {
-        mirrors.resizeGLObjectBuffers(size);
+        looks.resizeGLObjectBuffers(size);
         const std::lock_guard<std::mutex> lock(_mutex);
         osg::resizeGLObjectBuffers(_skyProgram, size);
         _square->resizeGLObjectBuffers(size);
