@@ -179,5 +179,5 @@ TEST_F(EffectKeysTest, AreInTheHelp)
     for (const char* key : {"F5", "F6", "F7", "F8", "( and )"})
         EXPECT_EQ(bindings.count(key), 1u) << key;
     EXPECT_EQ(bindings.size(), 5u);
-    EXPECT_EQ(bindings.at("( and )"), "Turn the effect: horizon line, bend angle, exaggeration");
+    EXPECT_EQ(bindings.at("( and )"), "Turn horizon line, bend angle, exaggeration");
 }

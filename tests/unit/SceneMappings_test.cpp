@@ -158,8 +158,8 @@ TEST(SceneMappings, SetsOfOneSceneHaveUnitsOfTheirOwn)
                    "<closeUps/><panoramaMap/></effects></geofx>",
                    "x.geofx", "/");
     ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
-    const TextureUnits given = TextureUnits::of(result.scene->effects);
-    EXPECT_EQ(given.ofEffects, (std::vector<TextureUnits::Units>{
+    const osgGeoFX::TextureUnits given = osgGeoFX::TextureUnits::of(result.scene->effects);
+    EXPECT_EQ(given.ofEffects, (std::vector<osgGeoFX::TextureUnits::Units>{
                                    {8, 4, 10}, {9, 5, 6}, {11, 12, 13}, {14, 15, 16, 17, 18, 7}}));
     EXPECT_TRUE(given.sentences.empty());
 }
