@@ -310,7 +310,8 @@ TEST_F(SerializersCloseUps, FilesOfAnotherHandAreTakenOrRefusedWithAWarning)
         {"RegionOfInterest", "  Shape circle\n  Points 2\n", {"shape", "points"}},
         {"SurfaceData", "  HighX -2000\n", {"low corner"}},
         {"CloseUp", "  ScaleX 0\n", {"scaleX"}},
-        {"CloseUps", "  MaskUnit 12\n", {"must differ"}},
+        {"CloseUps", "  MaskUnit 12\n", {}},
+        {"CloseUps", "  MaskUnit 12\n  TableUnit 12\n", {"must differ"}},
     };
     for (const Lines& lines : all)
     {
