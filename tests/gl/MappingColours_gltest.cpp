@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+// Colours of mappings that random scenes against the CPU do not tell of: linear light, and neighbours on a page.
+#include <tools/MappingStage.h>
+
+#include <cmath>
+
+using namespace geofx::test;
+using namespace osgGeoFX;
+
+class MappingColours : public MappingStage
+{
+};
+
+TEST_F(MappingColours, AreMadeLinearAsSRgbSays)
+{
+    lookDown({0.0, 0.0}, 2.0);
+    _mappings->setLinear(true);
+    const osg::ref_ptr<ProjectiveMapping> mapping = makeSolid({0.0, 0.0}, 100.0, {0.0, 0.0, 0.0});
+    _mappings->addMapping(mapping);
+    // IEC 61966-2-1, on both sides of where its curve begins.
+    const auto linear = [](double shade)
+    {
+        return shade <= 0.04045 ? shade / 12.92 : std::pow((shade + 0.055) / 1.055, 2.4);
+    };
+    for (const double shade : {0.0, 0.02, 0.04, 0.1, 0.3, 0.5, 0.8, 1.0})
+    {
+        mapping->getTransfer()->setConstant({shade, 1.0 - shade, 0.5 * shade, 1.0});
+        const osg::Vec3d drawn = at(*draw(), pixelOf(osg::Vec2d(0.0, 0.0)));
+        const osg::Vec3d expected(linear(shade), linear(1.0 - shade), linear(0.5 * shade));
+        EXPECT_LE(difference(drawn, expected), tolerance) << shade << ": " << drawn.x();
+    }
+}
+
+TEST_F(MappingColours, OfNeighboursOnAPageDoNotMix)
+{
+    // Four pictures fill a page; each seen at levels between two, to its very edges.
+    _mappings->setPageSide(256);
+    const osg::Vec3d colours[4] = {{0.9, 0.1, 0.1}, {0.1, 0.9, 0.1}, {0.1, 0.1, 0.9}, {0.9, 0.9, 0.9}};
+    const double half = 450.0;
+    for (int i = 0; i < 4; ++i)
+        _mappings->addMapping(
+            makePicture({i % 2 ? 480.0 : -480.0, i / 2 ? 480.0 : -480.0}, half, makeImage(128, colours[i])));
+    for (const double level : {0.3, 0.8, 1.2, 1.5, 1.9})
+    {
+        const double pixel = std::exp2(level) * 2.0 * half / 128.0;
+        lookDown({0.0, 0.0}, pixel);
+        const osg::ref_ptr<osg::Image> drawn = draw();
+        for (int i = 0; i < 4; ++i)
+        {
+            const osg::Vec2d middle(i % 2 ? 480.0 : -480.0, i / 2 ? 480.0 : -480.0);
+            const osg::Vec2d low = pixelOf(middle - osg::Vec2d(half, half));
+            const osg::Vec2d high = pixelOf(middle + osg::Vec2d(half, half));
+            for (int y = static_cast<int>(std::ceil(low.y())); y < std::floor(high.y()); ++y)
+            {
+                for (int x = static_cast<int>(std::ceil(low.x())); x < std::floor(high.x()); ++x)
+                {
+                    if (!inside({x + 0.5, y + 0.5})) continue;
+                    ASSERT_LE(difference(at(*drawn, x, y), colours[i]), tolerance)
+                        << "picture " << i << ", level " << level << ", pixel " << x << ", " << y;
+                }
+            }
+        }
+    }
+    EXPECT_EQ(_mappings->capacity().pagesUsed, 1);
+}
