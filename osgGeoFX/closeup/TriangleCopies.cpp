@@ -170,7 +170,13 @@ void TriangleCopies::releaseGLObjects(osg::State* state) const
     for (const auto* entries : {&_triangles, &_patches})
     {
         for (const auto& [key, entry] : *entries)
-            osg::releaseGLObjects(entry.copy, state);
+        {
+            if (!entry.copy) continue;
+            // osg::Geometry's would take the arrays' buffers, too, which another geometry draws from.
+            entry.copy->Drawable::releaseGLObjects(state);
+            for (const osg::ref_ptr<osg::PrimitiveSet>& indices : entry.copy->getPrimitiveSetList())
+                indices->releaseGLObjects(state);
+        }
     }
 }
 

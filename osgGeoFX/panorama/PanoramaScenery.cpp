@@ -193,12 +193,18 @@ public:
         void resizeGLObjectBuffers(unsigned int size)
         {
             for (const std::unique_ptr<Look>& each : _all)
+            {
                 each->mirror.resizeGLObjectBuffers(size);
+                each->strokes.resizeGLObjectBuffers(size);
+            }
         }
         void releaseGLObjects(osg::State* state) const
         {
             for (const std::unique_ptr<Look>& each : _all)
+            {
                 each->mirror.releaseGLObjects(state);
+                each->strokes.releaseGLObjects(state);
+            }
         }
 
     private:

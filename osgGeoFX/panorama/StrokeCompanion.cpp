@@ -8,6 +8,7 @@
 #include <osg/Viewport>
 
 #include <cmath>
+#include <iterator>
 
 namespace osgGeoFX
 {
@@ -51,6 +52,7 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
     if (!viewport || viewport->width() < 1.0 || viewport->height() < 1.0) return false;
     const osg::ref_ptr<osg::Program> program = pass.program(strokeShaders());
     if (!program) return false;
+    forgetGone();
     _maker = &maker;
     _toWorld.invert(*pass.outer.getModelViewMatrix());
     _coverUnit = static_cast<unsigned int>(map.getCoverUnit());
@@ -89,7 +91,38 @@ osg::Drawable* StrokeCompanion::companion(osg::Drawable& drawable, const osg::Ma
         !terrain->getStateSet()->getTextureAttribute(_coverUnit, osg::StateAttribute::TEXTURE))
         return nullptr;
     // The geometry keeps them.
-    return _maker->strokes(*terrain, modelView * _toWorld).get();
+    osg::Drawable* const strokes = _maker->strokes(*terrain, modelView * _toWorld).get();
+    if (!strokes) return nullptr;
+    osg::observer_ptr<osg::Drawable>& known = _drawn[strokes];
+    if (!known.valid()) known = strokes;
+    return strokes;
+}
+
+void StrokeCompanion::forgetGone()
+{
+    constexpr std::size_t few = 256;
+    if (_drawn.size() < 2 * _remembered + few) return;
+    for (auto entry = _drawn.begin(); entry != _drawn.end();)
+        entry = entry->second.valid() ? std::next(entry) : _drawn.erase(entry);
+    _remembered = _drawn.size();
+}
+
+void StrokeCompanion::resizeGLObjectBuffers(unsigned int size)
+{
+    for (const auto& [address, drawn] : _drawn)
+    {
+        osg::ref_ptr<osg::Drawable> strokes;
+        if (drawn.lock(strokes)) strokes->resizeGLObjectBuffers(size);
+    }
+}
+
+void StrokeCompanion::releaseGLObjects(osg::State* state) const
+{
+    for (const auto& [address, drawn] : _drawn)
+    {
+        osg::ref_ptr<osg::Drawable> strokes;
+        if (drawn.lock(strokes)) strokes->releaseGLObjects(state);
+    }
 }
 
 } // namespace osgGeoFX

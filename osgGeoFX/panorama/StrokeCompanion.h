@@ -8,6 +8,10 @@
 #include <osgGeoFX/scene/PassEffect.h>
 
 #include <osg/Texture2D>
+#include <osg/observer_ptr>
+
+#include <cstddef>
+#include <map>
 
 namespace osgGeoFX
 {
@@ -23,15 +27,20 @@ public:
     osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) override;
     osg::StateSet* state() override { return _state; }
     double reach() const override { return _reach; }
-    /// Points are the tiles' own, the program the scene's.
-    void releaseGLObjects(osg::State*) const {}
+    /// Of the points, which tiles keep to themselves; the program is the scene's.
+    void resizeGLObjectBuffers(unsigned int size);
+    void releaseGLObjects(osg::State* state) const;
 
 private:
+    void forgetGone();
+
     osg::ref_ptr<osg::StateSet> _state = new osg::StateSet;
     osg::ref_ptr<StrokeMaker> _maker;
     osg::Matrixd _toWorld; ///< from eye space
     unsigned int _coverUnit = 0;
     double _reach = 0.0; ///< pixels from a stroke's foot to its end, at most
+    std::map<const osg::Drawable*, osg::observer_ptr<osg::Drawable>> _drawn; ///< all strokes so far, and
+    std::size_t _remembered = 0; ///< how many lived when last looked
 };
 
 } // namespace osgGeoFX

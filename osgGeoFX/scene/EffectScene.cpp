@@ -5,6 +5,7 @@
 #include <osgGeoFX/deformation/CompensatingCullVisitor.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>
+#include <osgGeoFX/scene/ContextWatch.h>
 #include <osgGeoFX/scene/EffectProgram.h>
 #include <osgGeoFX/scene/NodeFinder.h>
 #include <osgGeoFX/scene/PassEffect.h>
@@ -114,7 +115,8 @@ void fill(CameraState& state, const Frames& frames)
     }
 }
 
-CameraState createState(int mapUnit, const std::shared_ptr<const TextureUnits>& units)
+CameraState createState(const EffectProgram::Effects& effects, int mapUnit,
+                        const std::shared_ptr<const TextureUnits>& units)
 {
     CameraState created;
     created.units = units;
@@ -125,6 +127,7 @@ CameraState createState(int mapUnit, const std::shared_ptr<const TextureUnits>& 
         state->addUniform(new osg::Uniform(("geofx_texture" + std::to_string(unit)).c_str(), unit));
     }
     state->addUniform(new osg::Uniform("geofx_map", std::max(mapUnit, 0)));
+    state->setAttribute(new ContextWatch(effects));
     return created;
 }
 
@@ -180,6 +183,7 @@ struct EffectScene::Drawing
         {
             programKey = key;
             programMade = true;
+            retire(program);
             program = EffectProgram::create(effects);
             try
             {
@@ -214,8 +218,40 @@ struct EffectScene::Drawing
         PassProgram& found = passPrograms[key];
         const std::string effectsKey = EffectProgram::key(effects);
         if (!found.made || found.effects != effectsKey)
+        {
+            retire(found.program);
             found = {true, effectsKey, EffectProgram::create(effects, shaders, prefix)};
+        }
         return found.program;
+    }
+
+    /// One that is in use no more; state sets of frames and of cameras that have gone may hold it for a while.
+    void retire(const osg::ref_ptr<osg::Program>& former)
+    {
+        const auto gone = [](const osg::observer_ptr<osg::Program>& each)
+        {
+            return !each.valid();
+        };
+        retired.erase(std::remove_if(retired.begin(), retired.end(), gone), retired.end());
+        if (former) retired.emplace_back(former);
+    }
+
+    /// All programs that may have GL objects.
+    std::vector<osg::ref_ptr<osg::Program>> programs()
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        std::vector<osg::ref_ptr<osg::Program>> all;
+        if (program) all.push_back(program);
+        for (const auto& [key, pass] : passPrograms)
+        {
+            if (pass.program) all.push_back(pass.program);
+        }
+        for (const osg::observer_ptr<osg::Program>& each : retired)
+        {
+            osg::ref_ptr<osg::Program> former;
+            if (each.lock(former)) all.push_back(former);
+        }
+        return all;
     }
 
     /// Whether an effect has changed, or the list of them, since the last call.
@@ -322,6 +358,7 @@ struct EffectScene::Drawing
         osg::ref_ptr<osg::Program> program;
     };
     std::map<std::string, PassProgram> passPrograms;
+    std::vector<osg::observer_ptr<osg::Program>> retired;
     osg::ref_ptr<osg::Shader> vertexFunctions;
     osg::ref_ptr<osg::Shader> fragmentFunctions;
     osg::ref_ptr<osg::StateSet> untouched = new osg::StateSet;
@@ -555,7 +592,8 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     const std::shared_ptr<const TextureUnits> units = _drawing->unitsOf(_effects);
     if (own.used == own.states.size()) own.states.emplace_back();
     // Made anew for other effects, which would find the uniforms and textures of the former ones under their names.
-    if (own.states[own.used].units != units) own.states[own.used] = createState(task.mapUnit, units);
+    if (own.states[own.used].units != units)
+        own.states[own.used] = createState(_effects, task.mapUnit, units);
     osg::StateSet& state = *own.states[own.used].set;
     state.getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(task.mapUnit, 0));
     fill(own.states[own.used], frames);
@@ -657,14 +695,8 @@ void EffectScene::traverse(osg::NodeVisitor& visitor)
 
 void EffectScene::resizeGLObjectBuffers(unsigned int size)
 {
-    {
-        const std::lock_guard<std::mutex> lock(_drawing->mutex);
-        if (_drawing->program) _drawing->program->resizeGLObjectBuffers(size);
-        for (const auto& [key, pass] : _drawing->passPrograms)
-        {
-            if (pass.program) pass.program->resizeGLObjectBuffers(size);
-        }
-    }
+    for (const osg::ref_ptr<osg::Program>& program : _drawing->programs())
+        program->resizeGLObjectBuffers(size);
     for (const osg::ref_ptr<Effect>& effect : _effects)
         effect->resizeGLObjectBuffers(size);
     osg::Group::resizeGLObjectBuffers(size);
@@ -672,14 +704,8 @@ void EffectScene::resizeGLObjectBuffers(unsigned int size)
 
 void EffectScene::releaseGLObjects(osg::State* state) const
 {
-    {
-        const std::lock_guard<std::mutex> lock(_drawing->mutex);
-        if (_drawing->program) _drawing->program->releaseGLObjects(state);
-        for (const auto& [key, pass] : _drawing->passPrograms)
-        {
-            if (pass.program) pass.program->releaseGLObjects(state);
-        }
-    }
+    for (const osg::ref_ptr<osg::Program>& program : _drawing->programs())
+        program->releaseGLObjects(state);
     for (const osg::ref_ptr<Effect>& effect : _effects)
     {
         effect->releaseGLObjects(state);

@@ -182,8 +182,32 @@ TEST_F(GlObjects, ContextsCloseAndOpen)
         const osg::ref_ptr<osg::Image> expected = drawSettled();
         reopen();
         EXPECT_TRUE(same(*expected, *drawSettled()));
-        withContext([&](osg::State&) { _root->releaseGLObjects(nullptr); });
+        // In another context: OSG draws on from buffers that it knows, though they have been deleted.
+        withContext([&](osg::State& state) { _root->releaseGLObjects(&state); });
+        reopen();
         EXPECT_TRUE(same(*expected, *drawSettled())) << "released, and drawn again";
+    }
+}
+
+TEST_F(GlObjects, EffectsThatAreElsewhereLetGoOfAContextThatCloses)
+{
+    _closeUps->setPipeline(CloseUps::MULTI_PASS);
+    for (const auto& [what, effects] : all())
+    {
+        SCOPED_TRACE(what);
+        show(effects);
+        const osg::ref_ptr<osg::Image> expected = drawSettled();
+        show({});
+        const osg::ref_ptr<osg::Image> plain = drawSettled();
+        reopen();
+        // The names that the effects had are others' now.
+        EXPECT_TRUE(same(*plain, *drawSettled()));
+        for (const osg::ref_ptr<Effect>& effect : effects)
+            effect->releaseGLObjects(nullptr);
+        count(); // deletes what has been released
+        EXPECT_TRUE(same(*plain, *drawSettled())) << "what others have went with the effects";
+        show(effects);
+        EXPECT_TRUE(same(*expected, *drawSettled()));
     }
 }
 

@@ -32,10 +32,18 @@ struct GlObjectCount
             count.textures += glIsTexture(name) ? 1 : 0;
             count.buffers += gl.glIsBuffer(name) ? 1 : 0;
             count.frameBuffers += isFrameBuffer && isFrameBuffer(name) ? 1 : 0;
-            count.programs += gl.glIsProgram(name) ? 1 : 0;
+            count.programs += isProgram(gl, name) ? 1 : 0;
             count.vertexArrays += gl.glIsVertexArray(name) ? 1 : 0;
         }
         return count;
+    }
+
+    /// A driver may hold a program that has been deleted until it draws with another one; its name lives as long.
+    static bool isProgram(const osg::GLExtensions& gl, GLuint name)
+    {
+        GLint deleted = GL_FALSE;
+        if (gl.glIsProgram(name)) gl.glGetProgramiv(name, GL_DELETE_STATUS, &deleted);
+        return gl.glIsProgram(name) && !deleted;
     }
 
     bool operator==(const GlObjectCount& other) const
