@@ -420,6 +420,8 @@ bool MappingDrawing::placeAll(const std::vector<Item*>& items, const PositionOf&
     {
         if (item.record != 0) entries.push_back({item.record, item.rank, mapping->footprint()});
     }
+    std::sort(entries.begin(), entries.end(),
+              [](const auto& one, const auto& other) { return one.rank < other.rank; });
     return _index->assign(entries);
 }
 
@@ -464,6 +466,9 @@ void MappingDrawing::updateMappings(const PositionOf& positionOf)
         else
             takeOff(item);
     }
+    // How the grid is split depends on the order, and that of the set is one of addresses.
+    std::sort(items.begin(), items.end(),
+              [](const Item* one, const Item* other) { return one->sequence < other->sequence; });
     bool placed = true;
     if (items.size() >= bulk)
     {
