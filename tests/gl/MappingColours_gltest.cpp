@@ -4,6 +4,7 @@
 #include <tools/MappingStage.h>
 
 #include <cmath>
+#include <cstring>
 
 using namespace geofx::test;
 using namespace osgGeoFX;
@@ -63,4 +64,44 @@ TEST_F(MappingColours, OfNeighboursOnAPageDoNotMix)
         }
     }
     EXPECT_EQ(_mappings->capacity().pagesUsed, 1);
+}
+
+TEST_F(MappingColours, OfAnImageThatGrowsInPlaceAreIts)
+{
+    const osg::Vec3d before(0.9, 0.2, 0.1), after(0.2, 0.8, 0.3), other(0.1, 0.2, 0.9);
+    lookDown({0.0, 0.0}, 2.0);
+    const osg::ref_ptr<osg::Image> image = makeImage(16, before);
+    _mappings->addMapping(makePicture({-80.0, 0.0}, 50.0, image));
+    _mappings->addMapping(makePicture({80.0, 0.0}, 50.0, makeImage(16, other)));
+    const osg::Vec2d here = pixelOf(osg::Vec2d(-80.0, 0.0)), there = pixelOf(osg::Vec2d(80.0, 0.0));
+    EXPECT_TRUE(alike(at(*draw(), here), before));
+    // It has no room any more where it is on the pages.
+    const osg::ref_ptr<osg::Image> grown = makeImage(64, after);
+    image->allocateImage(64, 64, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    std::memcpy(image->data(), grown->data(), grown->getTotalSizeInBytes());
+    image->dirty();
+    const osg::ref_ptr<osg::Image> drawn = draw();
+    EXPECT_TRUE(alike(at(*drawn, here), after)) << at(*drawn, here).x();
+    EXPECT_TRUE(alike(at(*drawn, there), other)) << at(*drawn, there).x();
+}
+
+TEST_F(MappingColours, OfALayerThatHadToGoAreNoOtherLayers)
+{
+    const osg::Vec3d lesser(0.9, 0.2, 0.1), better(0.1, 0.2, 0.9);
+    lookDown({0.0, 0.0}, 2.0);
+    _mappings->setPageSide(64);
+    _mappings->setMaxPages(1);
+    const osg::Vec2d here = pixelOf(osg::Vec2d(-80.0, 0.0)), there = pixelOf(osg::Vec2d(80.0, 0.0));
+    const osg::ref_ptr<ProjectiveMapping> first = makePicture({-80.0, 0.0}, 50.0, makeImage(64, lesser));
+    first->getLayer()->setImportance(0.2);
+    _mappings->addMapping(first);
+    draw();
+    EXPECT_TRUE(alike(at(*draw(), here), lesser));
+    const osg::ref_ptr<ProjectiveMapping> second = makePicture({80.0, 0.0}, 50.0, makeImage(64, better));
+    second->getLayer()->setImportance(0.9);
+    _mappings->addMapping(second);
+    osg::ref_ptr<osg::Image> drawn;
+    EXPECT_EQ(watch().messagesOf([&] { drawn = draw(); }).size(), 1u);
+    EXPECT_TRUE(alike(at(*drawn, here), groundColour())) << at(*drawn, here).x();
+    EXPECT_TRUE(alike(at(*drawn, there), better)) << at(*drawn, there).x();
 }

@@ -104,6 +104,26 @@ TEST(MappingIndex, edgesOfTheRootAndOfCells)
     EXPECT_TRUE(index.at({std::numeric_limits<double>::infinity(), 0}).empty());
 }
 
+TEST(MappingIndex, placesThatRoundingPutsIntoTheNextCell)
+{
+    TexelArena arena;
+    MappingIndex index(arena);
+    ASSERT_TRUE(index.insert(entryOf(1, PlaneFootprint::box({0.0, 0.0}, {1000.0, 1000.0}))));
+    const MappingIndex::Root root = index.root();
+    for (std::uint64_t column = 1; column < 8; ++column)
+    {
+        // As far before a cell's border as float does not tell from the border.
+        const double border = root.origin.x() + root.size * static_cast<double>(column) / 8.0;
+        const Vec2d high(border - 2e-9 * root.size, 600.0);
+        if (high.x() < 100.0 || high.x() > 1000.0) continue;
+        const Entry entry = entryOf(column + 1, PlaneFootprint::box(high - Vec2d(50.0, 200.0), high));
+        ASSERT_TRUE(index.insert(entry));
+        const Ids found = index.at({high.x() - 1e-9 * root.size, 500.0});
+        EXPECT_NE(std::find(found.begin(), found.end(), entry.id), found.end()) << column;
+    }
+    EXPECT_EQ(index.root().size, root.size);
+}
+
 TEST(MappingIndex, farFromTheOrigin)
 {
     for (const double far : {1e6, 1e7, 1e10})
