@@ -103,6 +103,9 @@ osg::ref_ptr<osg::Group> ordered(osg::Node* scene)
     return root;
 }
 
+/// More than there are at a time.
+constexpr unsigned int contexts = 32;
+
 /// A composite viewer (of one view or more) that draws frames until every view has all its tiles.
 class Views
 {
@@ -143,6 +146,10 @@ public:
     osg::Camera& camera(unsigned int i) { return *_viewer->getView(i)->getCamera(); }
     void realize()
     {
+        // OSG gives a scene room for the contexts that there are when a view takes it. Threads that draw the first frame of a shared
+        // scene would make room for theirs at the same time, without a lock.
+        for (unsigned int i = 0; i < _viewer->getNumViews(); ++i)
+            _viewer->getView(i)->getSceneData()->resizeGLObjectBuffers(contexts);
         _viewer->realize();
         for (unsigned int i = 0; i < _windows.size(); ++i)
         {

@@ -57,7 +57,13 @@ public:
         view->setSceneData(scene);
         _viewer->addView(view);
     }
-    void realize() { _viewer->realize(); }
+    void realize()
+    {
+        // Room for the contexts of all threads: OSG's own, in the first frame of a shared scene, is made without a lock.
+        for (unsigned int i = 0; i < _viewer->getNumViews(); ++i)
+            _viewer->getView(i)->getSceneData()->resizeGLObjectBuffers(32);
+        _viewer->realize();
+    }
     void frame() { _viewer->frame(++_time / 1000.0); }
     /// Of the next frame; the frames on their way may be of an older state.
     std::vector<osg::ref_ptr<osg::Image>> pictures()
