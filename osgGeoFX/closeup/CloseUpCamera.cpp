@@ -215,6 +215,7 @@ CompensatingCullVisitor::Task CloseUpCamera::passTask(const ScenePass& pass, con
     CompensatingCullVisitor::Task result;
     result.chain = &pass.chain;
     result.state = &pass.state;
+    result.following = &pass.following;
     result.untouched = &pass.untouched;
     result.mapUnit = pass.mapUnit;
     result.compensate = true;

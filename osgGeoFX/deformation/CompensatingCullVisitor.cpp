@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/deformation/RigidReference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/scene/FollowingPrograms.h>
 
 #include <osg/LOD>
 #include <osg/OcclusionQueryNode>
@@ -102,6 +103,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
         _looks.clear();
         _look = nullptr;
     }
+    _following.clear();
 
     setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
     setTraversalNumber(outer.getTraversalNumber());
@@ -683,6 +685,15 @@ osg::StateSet* CompensatingCullVisitor::lookOf(const FixedFunctionLook& look)
     return _look;
 }
 
+osg::StateSet* CompensatingCullVisitor::followingState()
+{
+    const osg::StateAttribute* program = _mode.deformation.program;
+    if (!program || !_task.following) return nullptr;
+    const auto [found, isNew] = _following.try_emplace(program);
+    if (isNew) found->second = _task.following->of(*program);
+    return found->second;
+}
+
 void CompensatingCullVisitor::apply(osg::Drawable& drawable)
 {
     if (!_mode.ours)
@@ -696,6 +707,7 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     if (!_task.compensate)
     {
         osg::StateSet* look = lookFor(drawable);
+        if (!look) look = followingState();
         if (look) pushStateSet(look);
         const osg::StateSet* own = drawable.getStateSet();
         const osgUtil::StateGraph* graph = own ? _currentStateGraph->find_or_insert(own) : _currentStateGraph;
@@ -723,10 +735,13 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     else if (drawableInSight(drawable, depth) && std::isfinite(depth))
     {
         osg::StateSet* look = lookFor(drawable);
+        osg::StateSet* following = look ? nullptr : followingState();
         if (look) pushStateSet(look);
         osg::StateSet* state = drawable.getStateSet();
         if (state) pushStateSet(state);
+        if (following) pushStateSet(following);
         addLeaf(drawable, getModelViewMatrix(), depth);
+        if (following) popStateSet();
         if (state) popStateSet();
         if (look) popStateSet();
         drawCompanions(drawable, depth);
@@ -756,6 +771,7 @@ void CompensatingCullVisitor::applyInPass(osg::Drawable& drawable)
     osg::StateSet* look = lookFor(drawable);
     const std::vector<osg::StateSet*>& passes =
         _task.filter->states(drawable, box, modelView, look == nullptr);
+    osg::StateSet* following = look ? nullptr : followingState();
     // What does not call the functions would stand in the pass where it stands on the ground.
     osg::Drawable* drawn = passes.empty() || _mode.stranger ? nullptr : _task.filter->drawn(drawable);
     if (!drawn) return;
@@ -765,7 +781,9 @@ void CompensatingCullVisitor::applyInPass(osg::Drawable& drawable)
         if (look) pushStateSet(look);
         osg::StateSet* state = drawable.getStateSet();
         if (state) pushStateSet(state);
+        if (following) pushStateSet(following);
         addLeaf(*drawn, getModelViewMatrix(), -box.centre.z());
+        if (following) popStateSet();
         if (state) popStateSet();
         if (look) popStateSet();
         popStateSet();

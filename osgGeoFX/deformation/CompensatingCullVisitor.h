@@ -21,6 +21,7 @@
 namespace osgGeoFX
 {
 
+class FollowingPrograms;
 class RigidReference;
 
 /// Which parts of a scene are drawn again, and with what: asked while such a pass culls.
@@ -80,7 +81,9 @@ public:
     {
         osg::ref_ptr<const DeformationChain> chain;
         osg::StateSet* state = nullptr; ///< uniforms and defines of the effects; null where they draw nothing
-        osg::Program* program = nullptr;    ///< for what has none
+        osg::Program* program = nullptr; ///< for what has none
+        FollowingPrograms* following =
+            nullptr; ///< for what has one of the application's with the effects' functions
         osg::StateSet* untouched = nullptr; ///< takes the deformation away
         int mapUnit = -1;
         bool compensate = true;
@@ -202,6 +205,8 @@ private:
     static std::size_t graphsIn(osgUtil::RenderBin& bin);
     bool isForeign(const osgUtil::StateGraph& graph) const;
     osg::StateSet* lookOf(const FixedFunctionLook& look);
+    /// The copy of the program in force that has the effects' functions; null where that draws by itself.
+    osg::StateSet* followingState();
     /// The planes that cull, with room for the companions.
     void setFrustum(bool culls);
     /// Whether a node is out of sight; narrows the planes for what is below it.
@@ -264,6 +269,8 @@ private:
     std::map<FixedFunctionLook::Key, osg::ref_ptr<osg::StateSet>> _looks;
     osg::StateSet* _look = nullptr; ///< the last one; neighbours mostly look alike
     FixedFunctionLook::Key _lookKey{};
+    std::map<const osg::StateAttribute*, osg::ref_ptr<osg::StateSet>>
+        _following;                                   ///< by programs, of this run
     const osgUtil::StateGraph* _stateGraph = nullptr; ///< whose state is gathered
     FixedFunctionState _state;
     bool _warnedOfLook = false;

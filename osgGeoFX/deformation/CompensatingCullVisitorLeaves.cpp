@@ -135,11 +135,12 @@ void CompensatingCullVisitor::adoptLeaves(osgUtil::RenderBin& bin, osgUtil::Stat
             own.meet(*_lightPoints);
         }
         osg::StateSet* look = _task.program ? lookOf(own.look(_task.mapUnit)) : nullptr;
+        osg::StateSet* above = look ? look : followingState();
         if (!_task.filter)
         {
             if (_task.compensate && bounds.valid() && _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR)
                 _depths.add(box, _mode.chain->bound(box.ball()), *_mode.chain);
-            put(look ? *graph.find_or_insert(look) : graph, leaf);
+            put(above ? *graph.find_or_insert(above) : graph, leaf);
             continue;
         }
         if (!bounds.valid() || _task.filter->outside(box.ball())) continue;
@@ -150,7 +151,7 @@ void CompensatingCullVisitor::adoptLeaves(osgUtil::RenderBin& bin, osgUtil::Stat
         for (osg::StateSet* pass : passes)
         {
             osgUtil::StateGraph* target = graph.find_or_insert(pass);
-            if (look) target = target->find_or_insert(look);
+            if (above) target = target->find_or_insert(above);
             put(*target, createOrReuseRenderLeaf(drawn, leaf->_projection.get(), leaf->_modelview.get(),
                                                  leaf->_depth));
         }

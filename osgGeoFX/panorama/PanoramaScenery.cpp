@@ -386,6 +386,7 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     task.state = &pass.state;
     const osg::ref_ptr<osg::Program> program = pass.sceneProgram();
     task.program = program;
+    task.following = &pass.following;
     task.untouched = &pass.untouched;
     task.mapUnit = pass.mapUnit;
     task.compensate = pass.compensate;

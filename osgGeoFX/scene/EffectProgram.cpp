@@ -315,6 +315,31 @@ std::string EffectProgram::passFunctions(const Effects& effects, const PassShade
     return library.assemble(parts.fill(library.read(file)), file);
 }
 
+void EffectProgram::addFunctions(osg::Program& program, const Effects& effects)
+{
+    if (hasFunctions(program)) return;
+    const osg::ref_ptr<osg::Shader> vertex = functionShader(effects, osg::Shader::VERTEX);
+    const osg::ref_ptr<osg::Shader> fragment = functionShader(effects, osg::Shader::FRAGMENT);
+    program.addShader(vertex);
+    program.addShader(fragment);
+}
+
+bool EffectProgram::isFunctions(const osg::Shader& shader)
+{
+    // A name outlives copies and files.
+    return (shader.getType() == osg::Shader::VERTEX || shader.getType() == osg::Shader::FRAGMENT) &&
+           shader.getName() == fileOf(shader.getType());
+}
+
+bool EffectProgram::hasFunctions(const osg::Program& program)
+{
+    for (unsigned int i = 0; i < program.getNumShaders(); ++i)
+    {
+        if (isFunctions(*program.getShader(i))) return true;
+    }
+    return false;
+}
+
 osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects, const PassShaders& pass,
                                                  const std::string& prefix)
 {
@@ -364,8 +389,7 @@ osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects)
         program->setName("osgGeoFX");
         program->addShader(library.createShader(osg::Shader::VERTEX, "stages/fixed.vert"));
         program->addShader(library.createShader(osg::Shader::FRAGMENT, "stages/fixed.frag"));
-        program->addShader(functionShader(effects, osg::Shader::VERTEX));
-        program->addShader(functionShader(effects, osg::Shader::FRAGMENT));
+        addFunctions(*program, effects);
         return program;
     }
     catch (const ShaderError& error)

@@ -31,6 +31,11 @@ public:
     static std::string key(const Effects& effects);
     /// The text of a function shader; ShaderError as ShaderLibrary has it.
     static std::string functions(const Effects& effects, osg::Shader::Type stage);
+    /// Adds the functions of effects to a program that has none yet; ShaderError.
+    static void addFunctions(osg::Program& program, const Effects& effects);
+    /// Whether a shader is one of those that addFunctions() adds; create() has such, too.
+    static bool isFunctions(const osg::Shader& shader);
+    static bool hasFunctions(const osg::Program& program);
     /// A program for geometry that has none. A new one each time, since one that is in use must not change. Null, after a
     /// warning, where a shader file is missing.
     static osg::ref_ptr<osg::Program> create(const Effects& effects);

@@ -7,6 +7,7 @@
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/scene/ContextWatch.h>
 #include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/FollowingPrograms.h>
 #include <osgGeoFX/scene/NodeFinder.h>
 #include <osgGeoFX/scene/PassEffect.h>
 #include <osgGeoFX/scene/PerCamera.h>
@@ -185,17 +186,11 @@ struct EffectScene::Drawing
             programMade = true;
             retire(program);
             program = EffectProgram::create(effects);
-            try
-            {
-                updateFunctions(effects);
-            }
-            catch (const ShaderError&)
-            {
-                // create() has said it; the functions stay as they were.
-                program = nullptr;
-            }
-            // Tried again when something changes.
-            if (!program) programKey.clear();
+            // An application's programs keep the last functions that were well; tried again when something changes.
+            if (program)
+                following.follow(*program);
+            else
+                programKey.clear();
         }
         return program;
     }
@@ -240,7 +235,7 @@ struct EffectScene::Drawing
     std::vector<osg::ref_ptr<osg::Program>> programs()
     {
         const std::lock_guard<std::mutex> lock(mutex);
-        std::vector<osg::ref_ptr<osg::Program>> all;
+        std::vector<osg::ref_ptr<osg::Program>> all = following.programs();
         if (program) all.push_back(program);
         for (const auto& [key, pass] : passPrograms)
         {
@@ -296,16 +291,6 @@ struct EffectScene::Drawing
         return info;
     }
 
-    void updateFunctions(const EffectProgram::Effects& effects)
-    {
-        for (const osg::ref_ptr<osg::Shader>& shader : {vertexFunctions, fragmentFunctions})
-        {
-            if (!shader) continue;
-            const std::string source = EffectProgram::functions(effects, shader->getType());
-            if (source != shader->getShaderSource()) shader->setShaderSource(source);
-        }
-    }
-
     void sayOnce(const std::string& sentence)
     {
         if (sentence.empty()) return;
@@ -359,8 +344,7 @@ struct EffectScene::Drawing
     };
     std::map<std::string, PassProgram> passPrograms;
     std::vector<osg::observer_ptr<osg::Program>> retired;
-    osg::ref_ptr<osg::Shader> vertexFunctions;
-    osg::ref_ptr<osg::Shader> fragmentFunctions;
+    FollowingPrograms following;
     osg::ref_ptr<osg::StateSet> untouched = new osg::StateSet;
     std::set<std::string> said;
     std::map<const osg::StateAttribute*, osg::observer_ptr<const osg::StateAttribute>> strangers;
@@ -411,27 +395,14 @@ bool EffectScene::removeEffect(Effect* effect)
 
 void EffectScene::addFunctions(osg::Program& program)
 {
-    const std::lock_guard<std::mutex> lock(_drawing->mutex);
-    if (!_drawing->vertexFunctions)
-    {
-        _drawing->vertexFunctions = new osg::Shader(osg::Shader::VERTEX);
-        _drawing->fragmentFunctions = new osg::Shader(osg::Shader::FRAGMENT);
-        _drawing->vertexFunctions->setName("stages/functions.vert");
-        _drawing->fragmentFunctions->setName("stages/functions.frag");
-    }
-    // The effects may differ from those that were drawn last; the next frame looks again.
-    _drawing->programMade = false;
     try
     {
-        _drawing->updateFunctions(_effects);
+        EffectProgram::addFunctions(program, _effects);
     }
     catch (const ShaderError& error)
     {
         OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
-        return;
     }
-    program.addShader(_drawing->vertexFunctions);
-    program.addShader(_drawing->fragmentFunctions);
 }
 
 Ground EffectScene::ground(const osg::NodePath& above) const
@@ -612,6 +583,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         if (draws)
         {
             task.program = _drawing->programFor(_effects);
+            task.following = &_drawing->following;
             task.state = &state;
             forPasses(outer, view, *task.chain, state, task.mapUnit, *units,
                       [&](PassEffect& effect, const ScenePass& pass)
@@ -650,8 +622,9 @@ void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& vie
         Pass(EffectScene& group, osgUtil::CullVisitor& visitor, const ViewGeometry& geometry,
              const DeformationChain& deformations, osg::StateSet& stateSet, const std::string& names,
              int unit, const std::vector<int>& textureUnits)
-            : ScenePass(visitor, group, geometry, deformations, stateSet, *group._drawing->untouched, names,
-                        geometry.ground.tileError, unit, group._compensation, textureUnits),
+            : ScenePass(visitor, group, geometry, deformations, stateSet, *group._drawing->untouched,
+                        group._drawing->following, names, geometry.ground.tileError, unit,
+                        group._compensation, textureUnits),
               _group(group)
         {
         }

@@ -91,7 +91,8 @@ public:
     void setTerrainFrame(TerrainFrame frame) { _terrainFrame = frame; }
     TerrainFrame getTerrainFrame() const { return _terrainFrame; }
 
-    /// Adds the functions geofx_vertex, geofx_normal and geofx_fragment to a program. They follow the scene's effects.
+    /// Adds the functions geofx_vertex, geofx_normal and geofx_fragment to a program. Wherever an EffectScene draws with it, it draws
+    /// with a copy that has the functions of its own effects; the program itself never changes.
     void addFunctions(osg::Program& program);
 
     /// The deformation of a camera: `modelView` from the children's frame to eye space. Never null; empty where

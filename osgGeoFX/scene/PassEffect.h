@@ -23,6 +23,7 @@ namespace osgGeoFX
 
 class DeformationChain;
 class DrawableCompanion;
+class FollowingPrograms;
 class TileListener;
 
 /** The shader files of an effect that draws the scene again. In all of them `SLOT_` stands for the effect's prefix.
@@ -51,10 +52,11 @@ public:
     osg::Group& scene;           ///< whose children are drawn
     const ViewGeometry& view;
     const DeformationChain& chain;
-    osg::StateSet& state;      ///< uniforms and defines of all effects for this camera
-    osg::StateSet& untouched;  ///< takes the deformation away
-    const std::string& prefix; ///< of the effect's names
-    double tileError;          ///< Ground::tileError
+    osg::StateSet& state;         ///< uniforms and defines of all effects for this camera
+    osg::StateSet& untouched;     ///< takes the deformation away
+    FollowingPrograms& following; ///< for programs of the application's own
+    const std::string& prefix;    ///< of the effect's names
+    double tileError;             ///< Ground::tileError
     int mapUnit;
     bool compensate;               ///< EffectScene::getCompensation()
     const std::vector<int>& units; ///< texture units that the effect has here (TextureUser)
@@ -69,10 +71,11 @@ public:
 protected:
     ScenePass(osgUtil::CullVisitor& visitor, osg::Group& group, const ViewGeometry& geometry,
               const DeformationChain& deformations, osg::StateSet& stateSet, osg::StateSet& left,
-              const std::string& names, double error, int unit, bool compensation,
-              const std::vector<int>& textureUnits)
+              FollowingPrograms& programs, const std::string& names, double error, int unit,
+              bool compensation, const std::vector<int>& textureUnits)
         : outer(visitor), scene(group), view(geometry), chain(deformations), state(stateSet), untouched(left),
-          prefix(names), tileError(error), mapUnit(unit), compensate(compensation), units(textureUnits)
+          following(programs), prefix(names), tileError(error), mapUnit(unit), compensate(compensation),
+          units(textureUnits)
     {
     }
 };

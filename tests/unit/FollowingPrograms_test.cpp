@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The copies of an application's programs: what they have, and when there is a new one.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/FollowingPrograms.h>
+
+#include <gtest/gtest.h>
+
+using namespace osgGeoFX;
+
+namespace
+{
+
+/// An application's own class.
+class TintedProgram : public osg::Program
+{
+public:
+    TintedProgram() = default;
+    TintedProgram(const TintedProgram& other, const osg::CopyOp& copy)
+        : osg::Program(other, copy), tint(other.tint)
+    {
+    }
+    META_StateAttribute(geofxTest, TintedProgram, osg::StateAttribute::PROGRAM);
+
+    int tint = 0;
+
+protected:
+    ~TintedProgram() override = default;
+};
+
+const osg::Program* programOf(const osg::StateSet* state)
+{
+    return state ? dynamic_cast<const osg::Program*>(state->getAttribute(osg::StateAttribute::PROGRAM))
+                 : nullptr;
+}
+
+osg::ref_ptr<TintedProgram> makeProgram()
+{
+    osg::ref_ptr<TintedProgram> program = new TintedProgram;
+    program->tint = 7;
+    program->addShader(new osg::Shader(osg::Shader::VERTEX, "#pragma import_defines(OWN)\nvoid main() {}\n"));
+    EffectProgram::addFunctions(*program, {});
+    program->setName("the grass");
+    program->setParameter(GL_GEOMETRY_VERTICES_OUT_EXT, 5);
+    program->addBindAttribLocation("blade", 6);
+    program->addBindFragDataLocation("result", 1);
+    program->addBindUniformBlock("Wind", 3);
+    program->addTransformFeedBackVarying("tip");
+    program->getShaderDefines().insert("BY_HAND");
+    return program;
+}
+
+} // namespace
+
+TEST(FollowingPrograms, CopiesHaveAllThatTheProgramHas)
+{
+    FollowingPrograms following;
+    const osg::ref_ptr<TintedProgram> program = makeProgram();
+    EXPECT_FALSE(following.of(*program)) << "nothing to follow yet";
+    const osg::ref_ptr<osg::Program> effects = EffectProgram::create({new BirdsEyeView});
+    following.follow(*effects);
+    const osg::ref_ptr<osg::StateSet> state = following.of(*program);
+    const auto* copy = dynamic_cast<const TintedProgram*>(programOf(state));
+    ASSERT_TRUE(copy);
+    ASSERT_NE(copy, program);
+    EXPECT_EQ(copy->tint, 7);
+    EXPECT_EQ(copy->getName(), "the grass");
+    EXPECT_EQ(copy->getParameter(GL_GEOMETRY_VERTICES_OUT_EXT), 5);
+    EXPECT_EQ(copy->getAttribBindingList(), program->getAttribBindingList());
+    EXPECT_EQ(copy->getFragDataBindingList(), program->getFragDataBindingList());
+    EXPECT_EQ(copy->getUniformBlockBindingList(), program->getUniformBlockBindingList());
+    ASSERT_EQ(copy->getNumTransformFeedBackVaryings(), 1u);
+    EXPECT_EQ(copy->getTransformFeedBackVarying(0), "tip");
+    for (const char* define : {"OWN", "BY_HAND", "GEOFX_EFFECT_0", "GEOFX_DEFORMATION"})
+        EXPECT_EQ(copy->getShaderDefines().count(define), 1u) << define;
+    // Its own shader, and the effects' functions in the place of those that it was given.
+    ASSERT_EQ(copy->getNumShaders(), 3u);
+    EXPECT_EQ(copy->getShader(0), program->getShader(0));
+    for (const unsigned int i : {1u, 2u})
+    {
+        EXPECT_NE(copy->getShader(i), program->getShader(i));
+        EXPECT_EQ(copy->getShader(i)->getType(), program->getShader(i)->getType());
+        EXPECT_EQ(copy->getShader(i)->getShaderSource(),
+                  EffectProgram::functions({new BirdsEyeView}, copy->getShader(i)->getType()));
+        EXPECT_EQ(program->getShader(i)->getShaderSource(),
+                  EffectProgram::functions({}, program->getShader(i)->getType()));
+    }
+}
+
+TEST(FollowingPrograms, OthersAreLeftAsTheyAre)
+{
+    FollowingPrograms following;
+    const osg::ref_ptr<osg::Program> effects = EffectProgram::create({});
+    following.follow(*effects);
+    EXPECT_FALSE(following.of(*osg::ref_ptr<osg::Program>(new osg::Program)));
+    const osg::ref_ptr<osg::Program> own = new osg::Program;
+    own->addShader(new osg::Shader(osg::Shader::VERTEX, "void main() {}\n"));
+    EXPECT_FALSE(following.of(*own));
+    EXPECT_TRUE(following.programs().empty());
+}
+
+TEST(FollowingPrograms, AChangeMakesANewCopyAndLeavesTheFormerOne)
+{
+    FollowingPrograms following;
+    const osg::ref_ptr<osg::Program> first = EffectProgram::create({});
+    const osg::ref_ptr<osg::Program> second = EffectProgram::create({new BirdsEyeView});
+    following.follow(*first);
+    const osg::ref_ptr<TintedProgram> program = makeProgram();
+    osg::ref_ptr<osg::StateSet> last = following.of(*program);
+    const auto next = [&](const char* what)
+    {
+        const osg::ref_ptr<osg::StateSet> state = following.of(*program);
+        const osg::ref_ptr<const osg::Program> former = programOf(last);
+        EXPECT_NE(state, last) << what;
+        EXPECT_NE(programOf(state), former) << what;
+        EXPECT_EQ(following.of(*program), state) << what;
+        // Frames on their way hold it, and so its GL objects go with the others'.
+        EXPECT_EQ(following.programs().size(), 2u) << what;
+        last = state;
+    };
+    EXPECT_EQ(following.of(*program), last);
+    following.follow(*second);
+    next("other effects");
+    following.follow(*second);
+    EXPECT_EQ(following.of(*program), last);
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, "void main() {}\n"));
+    next("a shader more");
+    program->removeShader(program->getShader(0));
+    next("a shader less");
+    program->addBindAttribLocation("blade", 7);
+    next("an attribute");
+    program->addBindFragDataLocation("result", 2);
+    next("an output");
+    program->addBindUniformBlock("Wind", 4);
+    next("a block");
+    program->setParameter(GL_GEOMETRY_VERTICES_OUT_EXT, 6);
+    next("a parameter");
+    program->addTransformFeedBackVarying("foot");
+    next("feedback");
+    program->getShaderDefines().insert("MORE");
+    next("a define");
+}
+
+TEST(FollowingPrograms, NothingIsKeptOfProgramsThatAreGone)
+{
+    FollowingPrograms following;
+    const osg::ref_ptr<osg::Program> effects = EffectProgram::create({});
+    following.follow(*effects);
+    osg::ref_ptr<TintedProgram> program = makeProgram();
+    const osg::observer_ptr<const osg::Program> copy = programOf(following.of(*program));
+    EXPECT_TRUE(copy.valid());
+    program = makeProgram();
+    following.of(*program);
+    EXPECT_FALSE(copy.valid());
+    EXPECT_EQ(following.programs().size(), 1u);
+}
