@@ -32,6 +32,8 @@ namespace
 
 /// The picture in the water is as many times smaller than the camera's: what is blurred needs no more.
 constexpr int mirrorShrink = 4;
+/// Over so many grounds one map may hang at a time, with strokes that stay.
+constexpr std::size_t mostGrounds = 8;
 /// Its levels of detail are as many times coarser.
 constexpr double mirrorDetail = 0.3;
 /// Drawn before the camera's picture, after the application's own textures.
@@ -214,20 +216,38 @@ public:
     };
     PerCamera<Looks> looks;
 
-    /// Who makes the strokes of a terrain, with the map's parameters.
+    /// Who makes the strokes of a terrain, with the map's parameters. Scenes over different grounds, whose threads may ask at once,
+    /// have different ones.
     osg::ref_ptr<StrokeMaker> maker(const PanoramaMap& map, const osgGeoFX::Ground& ground)
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        if (!_maker || _maker->getEllipsoid() != ground.ellipsoid) _maker = new StrokeMaker(ground.ellipsoid);
+        const double latitude = std::clamp(ground.latitude, -1.4, 1.4);
+        const auto madeFor = [&](double at)
+        {
+            return std::find_if(_makers.begin(), _makers.end(),
+                                [&](const osg::ref_ptr<StrokeMaker>& each) {
+                                    return each->isFor(ground.ellipsoid) &&
+                                           each->getParameters().referenceLatitude == at;
+                                });
+        };
+        auto known = madeFor(latitude);
+        // A maker that a pager has been given before there was a terrain goes on with it.
+        if (known == _makers.end()) known = madeFor(0.0);
+        const osg::ref_ptr<StrokeMaker> maker =
+            known == _makers.end() ? new StrokeMaker(ground.ellipsoid) : known->get();
+        // The one that was asked for last comes first.
+        if (known != _makers.end()) _makers.erase(known);
+        _makers.insert(_makers.begin(), maker);
+        if (_makers.size() > mostGrounds) _makers.pop_back();
         StrokeParameters parameters;
         parameters.spacing = map.getStrokeStep();
-        parameters.referenceLatitude = std::clamp(ground.latitude, -1.4, 1.4);
+        parameters.referenceLatitude = latitude;
         parameters.coverUnit = map.getCoverUnit();
         parameters.cliffSlope = 1.2 * map.getCliffSlope();
         parameters.treeLine = map.getTreeLine() >= 0.0 ? map.getTreeLine() : treeLineAt(ground.latitude);
         parameters.lines = map.getLines();
-        if (_maker->getParameters() != parameters) _maker->setParameters(parameters);
-        return _maker;
+        if (maker->getParameters() != parameters) maker->setParameters(parameters);
+        return maker;
     }
 
     osg::Program* skyProgram()
@@ -257,7 +277,7 @@ public:
 
 private:
     mutable std::mutex _mutex;
-    osg::ref_ptr<StrokeMaker> _maker;
+    std::vector<osg::ref_ptr<StrokeMaker>> _makers;
     osg::ref_ptr<osg::Program> _skyProgram;
     osg::ref_ptr<osg::Geometry> _square = createSquare();
 };

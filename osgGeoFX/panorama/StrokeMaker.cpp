@@ -65,6 +65,12 @@ StrokeMaker::StrokeMaker(const osg::EllipsoidModel* ellipsoid) : _ellipsoid(elli
 
 StrokeMaker::~StrokeMaker() = default;
 
+bool StrokeMaker::isFor(const osg::EllipsoidModel* ellipsoid) const
+{
+    if (!ellipsoid || !_ellipsoid) return ellipsoid == _ellipsoid;
+    return *ellipsoid == *_ellipsoid;
+}
+
 void StrokeMaker::setParameters(const StrokeParameters& parameters)
 {
     const std::lock_guard<std::mutex> lock(_mutex);

@@ -34,6 +34,8 @@ public:
     void setParameters(const StrokeParameters& parameters);
     StrokeParameters getParameters() const;
     const osg::EllipsoidModel* getEllipsoid() const { return _ellipsoid.get(); }
+    /// Whether strokes for a terrain with that ellipsoid would be the same; null for projected terrain.
+    bool isFor(const osg::EllipsoidModel* ellipsoid) const;
 
     /// Makes the strokes of all geometries at and below a node that have none yet or outdated ones. `toWorld` is the way from the node's parent.
     /// No other thread may use the nodes.

@@ -3,8 +3,10 @@
 //
 // Brush strokes of tiles: kinds by what covers the ground, the same ones after every reload, and who keeps them.
 #include <osgGeoFX/panorama/CoverSampler.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeLattice.h>
 #include <osgGeoFX/panorama/StrokeMaker.h>
+#include <osgGeoFX/scene/PassEffect.h>
 #include <tools/NotifyWatch.h>
 #include <tools/StrokeTiles.h>
 #include <tools/TempDir.h>
@@ -479,6 +481,62 @@ TEST(StrokeMaker, ParametersDifferWhereAnyOfThemDoes)
     EXPECT_TRUE(made.strokes->madeWith({}, nullptr));
     EXPECT_FALSE(made.strokes->madeWith({}, globe));
     EXPECT_FALSE(made.strokes->madeWith(others[0], nullptr));
+}
+
+// One map over several scenes, each with an ellipsoid of its own: what counts is its size, not which object it is.
+TEST(StrokeMaker, EachGroundHasOneWhateverObjectsItIsToldBy)
+{
+    const osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
+    const auto makerOf = [&](const Ground& ground)
+    {
+        const osg::ref_ptr<TileListener> listener = map->asPassEffect()->tileListener(ground);
+        return osg::ref_ptr<StrokeMaker>(dynamic_cast<StrokeMaker*>(listener.get()));
+    };
+    const auto groundWith = [](osg::EllipsoidModel* ellipsoid, double latitude)
+    {
+        Ground ground;
+        ground.ellipsoid = ellipsoid;
+        ground.latitude = latitude;
+        return ground;
+    };
+    constexpr double here = 0.4;
+    StrokeTiles tiles;
+    tiles.ellipsoid = new osg::EllipsoidModel;
+    tiles.cover = everywhere(1.0, 0.0);
+    const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(here, here, here + 0.0003, here + 0.0003);
+    osg::Geometry& mesh = StrokeTiles::geometryOf(*tile);
+    const auto strokesOf = [&](const Ground& ground)
+    {
+        return makerOf(ground)->strokes(mesh, tile->getMatrix());
+    };
+    // A pager may have it, which does not keep it alive, before the terrain is there.
+    const osg::observer_ptr<StrokeMaker> first = makerOf(groundWith(tiles.ellipsoid, 0.0));
+    const Ground one = groundWith(tiles.ellipsoid, here);
+    const osg::ref_ptr<osg::Geometry> strokes = strokesOf(one);
+    ASSERT_TRUE(strokes);
+    EXPECT_EQ(makerOf(one), first.get());
+    const Ground equal = groundWith(new osg::EllipsoidModel, here);
+    const Ground wider = groundWith(new osg::EllipsoidModel(6.4e6), here);
+    const Ground northern = groundWith(new osg::EllipsoidModel, 1.0);
+    const Ground flat = groundWith(nullptr, here);
+    for (int turn = 0; turn < 3; ++turn)
+    {
+        EXPECT_EQ(strokesOf(equal), strokes);
+        EXPECT_EQ(makerOf(equal), first.get());
+        EXPECT_EQ(strokesOf(one), strokes);
+        for (const Ground& other : {wider, northern})
+        {
+            EXPECT_NE(makerOf(other), first.get());
+            EXPECT_NE(strokesOf(other), strokes);
+        }
+        EXPECT_NE(makerOf(flat), first.get());
+        EXPECT_NE(makerOf(flat), makerOf(wider));
+    }
+    // All of them follow the map.
+    map->setCliffSlope(1.5 * map->getCliffSlope());
+    EXPECT_EQ(makerOf(one), first.get());
+    EXPECT_NE(strokesOf(one), strokes);
+    EXPECT_EQ(makerOf(wider)->getParameters().cliffSlope, makerOf(one)->getParameters().cliffSlope);
 }
 
 TEST(StrokeMaker, ThreadsThatAskAtOnceGetTheSame)
