@@ -12,8 +12,11 @@
 #include <osg/ClearNode>
 #include <osg/ClipNode>
 #include <osg/ComputeBoundsVisitor>
+#include <osg/Depth>
 #include <osg/Geode>
 #include <osg/LightSource>
+#include <osg/MatrixTransform>
+#include <osg/Projection>
 #include <osg/TexGenNode>
 #include <osgGeoFX/closeup/CloseUpPicking.h>
 #include <osgGeoFX/deformation/DeformedView.h>
@@ -332,6 +335,34 @@ TEST_F(RenderGraph, LeftOutBelowGroupsThatAreBentOutOfSight)
     EXPECT_TRUE(same(*image, *plain));
 }
 
+namespace
+{
+
+/// A sky behind all else, in the place of clearing: what a ClearNode that clears nothing is for.
+osg::ref_ptr<osg::Projection> makeSky(const osg::Vec4& colour)
+{
+    const osg::ref_ptr<osg::Geometry> square =
+        osg::createTexturedQuadGeometry({-1.0f, -1.0f, 0.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 2.0f, 0.0f});
+    const osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array(1);
+    colours->front() = colour;
+    square->setColorArray(colours, osg::Array::BIND_OVERALL);
+    square->setCullingActive(false);
+    osg::StateSet* state = square->getOrCreateStateSet();
+    state->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 1.0, 1.0));
+    state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    state->setRenderBinDetails(-100, "RenderBin");
+    const osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform;
+    transform->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+    transform->setCullingActive(false);
+    transform->addChild(square);
+    const osg::ref_ptr<osg::Projection> sky = new osg::Projection(osg::Matrix());
+    sky->setCullingActive(false);
+    sky->addChild(transform);
+    return sky;
+}
+
+} // namespace
+
 TEST_F(LiftedGraph, ClearNodesClearThePictureAlone)
 {
     osg::ref_ptr<osg::ClearNode> clear = new osg::ClearNode;
@@ -345,6 +376,30 @@ TEST_F(LiftedGraph, ClearNodesClearThePictureAlone)
         const osg::ref_ptr<osg::Image> expected = draw();
         _scene->addChild(clear);
         EXPECT_TRUE(same(*draw(), *expected));
+        _scene->removeChild(clear);
+        EXPECT_EQ(_closeUps->statistics().closeUps, 1);
+    }
+}
+
+// Without clearing, layers would keep what earlier frames have drawn.
+TEST_F(LiftedGraph, LayersAreClearedWhereThePictureIsNot)
+{
+    _root->addChild(makeSky({0.6f, 0.7f, 0.9f, 1.0f}));
+    osg::ref_ptr<osg::ClearNode> clear = new osg::ClearNode;
+    clear->setRequiresClear(false);
+    const osg::Vec3d here = _closeUp->getOffset();
+    for (const CloseUps::Pipeline pipeline : {CloseUps::SINGLE_PASS, CloseUps::MULTI_PASS})
+    {
+        SCOPED_TRACE(pipeline);
+        _closeUps->setPipeline(pipeline);
+        const osg::ref_ptr<osg::Image> expected = draw();
+        _scene->addChild(clear);
+        // Elsewhere for a while.
+        _closeUp->setOffset(here + osg::Vec3d(60.0, 40.0, 30.0));
+        EXPECT_GT(differing(*draw(), *expected), 0.005);
+        _closeUp->setOffset(here);
+        const osg::ref_ptr<osg::Image> image = draw();
+        EXPECT_TRUE(same(*image, *expected)) << differing(*image, *expected);
         _scene->removeChild(clear);
         EXPECT_EQ(_closeUps->statistics().closeUps, 1);
     }
