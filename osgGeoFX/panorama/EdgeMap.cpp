@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace osgGeoFX
@@ -29,6 +30,15 @@ constexpr double seaShare = 0.02, seaHeight = 10.0;
 
 /// Holes within the data that are smaller than this share of it are gaps.
 constexpr double largestGap = 0.02;
+/// Behind land the sea may show from so many cells on.
+constexpr double landCells = 3.0;
+/// The land along the border: cells that are so far from it, not the last ones, which are not drawn in a picture of all of it; in blocks
+/// of so many, which count a quarter at so many.
+constexpr double besideFirst = 4.0, besideLast = 14.0;
+constexpr int blockCells = 8;
+constexpr double farCells = 16.0;
+/// Most of its mountains are lower than so many standard deviations above the mean.
+constexpr double summits = 1.2;
 
 enum class Cell : unsigned char
 {
@@ -300,6 +310,79 @@ std::vector<double> squaredDistances(const std::vector<char>& marks, double step
     return distances;
 }
 
+/// How high the land along the border lies, smoothed along it and in the same way away from it, so that it tells of none of its
+/// mountains; 0 where there is none. `distances`: to where what is known ends, in cells.
+std::vector<float> borderHeights(const Extent& extent, const std::vector<float>& distances)
+{
+    constexpr int blocks = whole / blockCells;
+    struct Block
+    {
+        double x = 0.0, y = 0.0, height = 0.0, square = 0.0, count = 0.0;
+    };
+    std::vector<Block> all(std::size_t{blocks} * blocks), seeds;
+    for (int row = 0; row < within; ++row)
+    {
+        for (int column = 0; column < within; ++column)
+        {
+            const std::size_t cell = Extent::index(column, row);
+            const int x = column + around, y = row + around;
+            const auto away = static_cast<double>(
+                distances[static_cast<std::size_t>(y) * whole + static_cast<std::size_t>(x)]);
+            if (extent.cells[cell] != Cell::LAND || away < besideFirst || away > besideLast) continue;
+            Block& block = all[static_cast<std::size_t>(y / blockCells) * blocks +
+                               static_cast<std::size_t>(x / blockCells)];
+            block.x += x;
+            block.y += y;
+            const auto height = static_cast<double>(extent.heights[cell]);
+            block.height += height;
+            block.square += height * height;
+            block.count += 1.0;
+        }
+    }
+    std::copy_if(all.begin(), all.end(), std::back_inserter(seeds),
+                 [](const Block& block) { return block.count > 0.0; });
+    // Between the blocks' corners it changes little.
+    constexpr int corners = blocks + 1;
+    std::vector<double> coarse(std::size_t{corners} * corners, 0.0);
+    for (int row = 0; row < corners; ++row)
+    {
+        for (int column = 0; column < corners; ++column)
+        {
+            double sum = 0.0, squares = 0.0, weights = 0.0;
+            for (const Block& seed : seeds)
+            {
+                const double x = seed.x / seed.count - column * blockCells;
+                const double y = seed.y / seed.count - row * blockCells;
+                const double far = x * x + y * y + farCells * farCells;
+                const double weight = 1.0 / (far * far);
+                sum += weight * seed.height;
+                squares += weight * seed.square;
+                weights += weight * seed.count;
+            }
+            if (!(weights > 0.0)) continue;
+            const double mean = sum / weights;
+            const double spread = std::sqrt(std::max(squares / weights - mean * mean, 0.0));
+            coarse[static_cast<std::size_t>(row) * corners + static_cast<std::size_t>(column)] =
+                mean + summits * spread;
+        }
+    }
+    std::vector<float> heights(std::size_t{whole} * whole);
+    for (int row = 0; row < whole; ++row)
+    {
+        for (int column = 0; column < whole; ++column)
+        {
+            const double x = (column + 0.5) / blockCells, y = (row + 0.5) / blockCells;
+            const auto left = static_cast<std::size_t>(x), low = static_cast<std::size_t>(y);
+            const double u = x - static_cast<double>(left), v = y - static_cast<double>(low);
+            const double* at = &coarse[low * corners + left];
+            heights[static_cast<std::size_t>(row) * whole + static_cast<std::size_t>(column)] =
+                static_cast<float>((1.0 - v) * ((1.0 - u) * at[0] + u * at[1]) +
+                                   v * ((1.0 - u) * at[corners] + u * at[corners + 1]));
+        }
+    }
+    return heights;
+}
+
 /// Distances to where marks begin or end, positive outside of them.
 std::vector<float> signedDistances(const std::vector<char>& marks, double stepX, double stepY)
 {
@@ -324,6 +407,11 @@ EdgeMap::~EdgeMap() = default;
 double EdgeMap::inner()
 {
     return static_cast<double>(within) / whole;
+}
+
+double EdgeMap::widest()
+{
+    return 0.2;
 }
 
 osg::ref_ptr<const EdgeMap> EdgeMap::make(const osg::Node& root, const TerrainInfo& info,
@@ -393,7 +481,7 @@ osg::ref_ptr<const EdgeMap> EdgeMap::make(const osg::Node& root, const TerrainIn
     extent.tellGaps();
 
     // What is not known: beyond land, and holes. Where there is no ground, land does not count, either.
-    std::vector<char> gone(std::size_t{whole} * whole), unseen(gone.size());
+    std::vector<char> gone(std::size_t{whole} * whole), land(gone.size());
     const Border border(extent);
     for (int row = 0; row < whole; ++row)
     {
@@ -402,11 +490,10 @@ osg::ref_ptr<const EdgeMap> EdgeMap::make(const osg::Node& root, const TerrainIn
             const int x = column - around, y = row - around;
             const bool inside = x >= 0 && y >= 0 && x < within && y < within;
             const Cell cell = inside ? extent.cells[Extent::index(x, y)] : Cell::HOLE;
-            const bool water = cell == Cell::WATER || cell == Cell::WET_HOLE;
             const bool open = !inside && seaGoesOn && border.sea(x, y);
             const std::size_t at = static_cast<std::size_t>(row) * whole + static_cast<std::size_t>(column);
             gone[at] = (inside ? cell != Cell::HOLE : open) ? 0 : 1;
-            unseen[at] = water || open ? 0 : 1;
+            land[at] = inside && (cell == Cell::LAND || cell == Cell::GAP) ? 1 : 0;
             map->_ends = map->_ends || gone[at];
         }
     }
@@ -420,19 +507,27 @@ osg::ref_ptr<const EdgeMap> EdgeMap::make(const osg::Node& root, const TerrainIn
         sizeY *= osg::DegreesToRadians(1.0) * globe.getRadiusEquator();
     }
     map->_size = std::min(sizeX, sizeY);
-    const std::vector<float> ground = signedDistances(gone, sizeX / within, sizeY / within);
-    const std::vector<float> behind = signedDistances(unseen, sizeX / within, sizeY / within);
+    const double stepX = sizeX / within, stepY = sizeY / within;
+    const std::vector<float> ground = signedDistances(gone, stepX, stepY);
+    const std::vector<float> shores = signedDistances(land, stepX, stepY);
+    std::vector<float> inCells(ground);
+    for (float& distance : inCells)
+        distance /= static_cast<float>(0.5 * (stepX + stepY));
+    const std::vector<float> heights = borderHeights(extent, inCells);
+    // Land is told from what lies behind it at once, however wide the land runs out.
+    const auto steep = static_cast<float>(widest() * within / landCells);
     map->_image = new osg::Image;
-    map->_image->allocateImage(whole, whole, 1, GL_RG, GL_FLOAT);
-    map->_image->setInternalTextureFormat(GL_RG32F);
+    map->_image->allocateImage(whole, whole, 1, GL_RGB, GL_FLOAT);
+    map->_image->setInternalTextureFormat(GL_RGB32F);
     auto* values = reinterpret_cast<float*>(map->_image->data());
     for (std::size_t i = 0; i < ground.size(); ++i)
     {
-        values[2 * i] = ground[i];
-        values[2 * i + 1] = behind[i];
+        values[3 * i] = ground[i];
+        values[3 * i + 1] = std::min(ground[i], steep * shores[i]);
+        values[3 * i + 2] = heights[i];
     }
     map->_texture = new osg::Texture2D(map->_image);
-    map->_texture->setInternalFormat(GL_RG32F);
+    map->_texture->setInternalFormat(GL_RGB32F);
     map->_texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
     map->_texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
     map->_texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);

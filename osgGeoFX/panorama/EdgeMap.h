@@ -34,12 +34,14 @@ public:
     bool island() const { return _island; }
     /// Of the extent's sides the shorter one, metres.
     double size() const { return _size; }
-    /// Two floats for each texel, metres, to where what is known ends, negative beyond: for the ground, and for what is seen where there
-    /// is no ground, where land does not count as known.
+    /// Three floats for each texel, metres. Two to where what is known ends, negative beyond: for the ground, and for what is seen where
+    /// there is no ground, where land does not count as known. Then how high the land along the nearest border lies, its mountains smoothed.
     osg::Image* image() const { return _image; }
     osg::Texture2D* texture() const { return _texture; }
     /// The share of the picture that the extent takes across; the same along.
     static double inner();
+    /// The land runs out over this share of its size at most.
+    static double widest();
 
 protected:
     ~EdgeMap() override;

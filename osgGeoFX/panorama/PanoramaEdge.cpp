@@ -17,8 +17,6 @@ namespace
 
 /// How much of the sky's turn lies across the picture.
 constexpr double skyAcross = 0.5;
-/// The land does not run out over more than this share of the terrain.
-constexpr double mostOfTerrain = 0.2;
 
 /// As in shaders/stages/panorama.edge.glsl.
 enum Drawn
@@ -62,7 +60,7 @@ PanoramaEdge::PanoramaEdge(const PanoramaMap& settings, PanoramaTextures& textur
     map = edge->texture();
     const TerrainInfo& info = edge->info();
     const double radius = 1.0 / panorama.across;
-    kind.z() = std::min(settings.getEdgeWidth() * radius, mostOfTerrain * edge->size());
+    kind.z() = std::min(settings.getEdgeWidth() * radius, EdgeMap::widest() * edge->size());
     kind.w() = settings.getProjection() ? MAPPED : edge->island() ? ISLAND : LAND;
 
     osg::Matrixd toWorld;

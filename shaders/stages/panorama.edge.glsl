@@ -15,9 +15,42 @@ const float GEOFX_EDGE_UNKNOWN = 2.0;  // no such picture: haze behind the land
 const float GEOFX_EDGE_LAND = 3.0;     // a perspective picture of land: haze behind it
 const float GEOFX_EDGE_ISLAND = 4.0;   // of an island: the sea behind it
 
+// The sea runs out over this share of the land's width.
+const float GEOFX_EDGE_SEA_WIDTH = 0.55;
+
 geofx_Edge geofx_edgeOf(vec4 eye, vec4 ways, vec4 kind)
 {
     return geofx_Edge(kind.x, eye.xy, ways.xy, ways.zw, eye.zw, kind.y);
+}
+
+// How much of a place of the ground is haze or paper, and how much of that has gone wholly, 1 where what lies behind it shows. `place` is x,
+// s and height; `scale` and `curve` as the projection has them.
+//
+// Land that comes in from the picture's base does so as one wash, over ridges and over valleys behind them: the ground is as far from the
+// end as land at the border's own height that is seen at the same point of the picture. Ridges would else be white before valleys.
+// `sea`, 0 to 1: whether it is sea, which hides nothing and stays itself nearly to the end.
+vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 scale, vec4 curve, float sea, float noise,
+                    float rough)
+{
+    vec2 at = geofx_edgePlace(edge, place.xy);
+    vec3 here = textureLod(map, at, 0.0).rgb;
+    float width = kind.z;
+    float reach = here.r;
+    rough *= 1.0 - sea;
+    if (kind.w != GEOFX_EDGE_MAPPED) return vec2(geofx_edgeAmount(reach, width, noise, rough), 0.0);
+    if (reach > 2.5 * width) return vec2(0.0);
+    // Which part of the way to the end is the way back to the picture's base.
+    float aside = max(0.35 * width, 1.0);
+    vec2 ahead = (geofx_edgePlace(edge, place.xy + vec2(0.0, aside)) - at) / aside;
+    float grows = textureLod(map, at + aside * ahead, 0.0).r - textureLod(map, at - aside * ahead, 0.0).r;
+    float before = geofx_ease(grows / (2.0 * aside), 0.0, 0.5);
+    float slope = clamp((curve.y - place.y) / max(curve.y - curve.x, 1e-3), 0.1, 1.0);
+    float rise = scale.z * (place.z - here.b) / (scale.y * slope);
+    rise = (1.0 - sea) * before * clamp(rise, -1.5 * width, 1.5 * width);
+    float seen = textureLod(map, at + rise * ahead, 0.0).r;
+    width *= mix(1.0, GEOFX_EDGE_SEA_WIDTH, sea);
+    float cut = geofx_edgeAmount(reach, width, 0.0, 0.0);
+    return vec2(max(geofx_edgeAmount(seen, width, noise, rough), geofx_ease(cut, 0.8, 1.0)), cut);
 }
 
 // `place` is the horizon's height in the picture, its arch, the heading and the part across, in turns; x the picture's, -1 to 1; y 0 to

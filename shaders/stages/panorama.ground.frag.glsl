@@ -63,13 +63,16 @@ vec3 SLOT_wet(float shore, vec2 picture, float far)
 #endif
 }
 
-// How much of the ground is haze or paper.
-float SLOT_gone(float noise, float y)
+// How much of the ground is haze or paper, and whether it has gone.
+vec2 SLOT_gone(float noise, float y, float wet, float shore)
 {
-    if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return 0.0;
+    if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return vec2(0.0);
     geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind);
-    vec2 at = geofx_edgePlace(edge, vec2(SLOT_place.x / SLOT_scale.x, SLOT_place.y));
-    return geofx_edgeAmount(texture(SLOT_edgeMap, at).r, SLOT_edgeKind.z, noise, mix(0.3, 0.9, geofx_edgePaper(y)));
+    vec3 place = vec3(SLOT_place.x / SLOT_scale.x, SLOT_place.yz);
+    // A lake runs out as the land around it, and so does the shore.
+    float sea = wet * (1.0 - geofx_ease(SLOT_place.z, 10.0, 30.0)) * geofx_ease(shore, 0.0, 0.2 * SLOT_edgeKind.z);
+    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, place, SLOT_scale, SLOT_curve, sea, noise,
+                          mix(0.3, 0.6, geofx_edgePaper(y)));
 }
 
 vec4 SLOT_colour(vec4 colour)
@@ -107,16 +110,18 @@ vec4 SLOT_colour(vec4 colour)
         painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, SLOT_facing.w, brush.z, style), light);
     if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far), wet);
     painted = geofx_atmosphere(painted, geofx_airColour(), geofx_airAmount(far, SLOT_hand.z));
-    float gone = SLOT_gone(brush.z, picture.y);
+    vec2 gone = SLOT_gone(brush.z, picture.y, wet, cover.shore);
 #ifdef GEOFX_MIRROR
     // What is below the water is not reflected, nor is water, nor what has gone.
-    if (SLOT_place.z <= 0.0 || wet > 0.5 || gone > 0.5) discard;
+    if (SLOT_place.z <= 0.0 || wet > 0.5 || max(gone.x, gone.y) > 0.5) discard;
     return vec4(painted, clamp(SLOT_place.y / SLOT_curve.z, 0.0, 0.98));
 #else
-    if (gone > 0.0)
+    // What lies behind it shows, and the border leaves no trace.
+    if (gone.y >= 1.0) discard;
+    if (gone.x > 0.0)
     {
         float paper = SLOT_edgeKind.w < GEOFX_EDGE_LAND ? 1.0 : 0.0;
-        painted = mix(painted, geofx_edgeColour(SLOT_edgeSky, SLOT_edgePlace, 2.0 * picture.x - 1.0, picture.y, paper), gone);
+        painted = mix(painted, geofx_edgeColour(SLOT_edgeSky, SLOT_edgePlace, 2.0 * picture.x - 1.0, picture.y, paper), gone.x);
     }
     return vec4(painted, 1.0);
 #endif

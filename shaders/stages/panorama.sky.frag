@@ -56,14 +56,13 @@ vec3 sea(float s, vec2 brush)
 }
 
 // How much of what lies below is not known to be sea.
-float unknown(float s, vec2 brush)
+float unknown(float s)
 {
     float kind = geofx_skyEdgeKind.w;
     if (kind != GEOFX_EDGE_MAPPED) return kind == GEOFX_EDGE_UNKNOWN || kind == GEOFX_EDGE_LAND ? 1.0 : 0.0;
     geofx_Edge edge = geofx_edgeOf(geofx_skyEdgeEye, geofx_skyEdgeWays, geofx_skyEdgeKind);
     vec2 at = geofx_edgePlace(edge, vec2(place.x * geofx_skyAxisX.w, s));
-    float noise = 2.0 * texture(geofx_skyBrush, brush).b - 1.0;
-    return geofx_edgeAmount(texture(geofx_skyEdge, at).g, geofx_skyEdgeKind.z, noise, 0.3);
+    return geofx_edgeAmount(texture(geofx_skyEdge, at).g, GEOFX_EDGE_SEA_WIDTH * geofx_skyEdgeKind.z, 0.0, 0.0);
 }
 
 void main()
@@ -79,7 +78,7 @@ void main()
     {
         vec2 brush;
         float s = groundAt(geofx_skyPlace.y * (1.0 - cos(1.5707963 * place.x)), brush);
-        float haze = unknown(s, brush);
+        float haze = unknown(s);
         vec3 below = vec3(0.0);
         if (haze < 1.0) below = sea(s, brush);
         if (haze > 0.0)

@@ -49,8 +49,7 @@ float SLOT_strokeGone(vec3 position)
 {
     if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return 0.0;
     geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind);
-    float reach = textureLod(SLOT_edgeMap, geofx_edgePlace(edge, SLOT_placeOf(position).xy), 0.0).r;
-    return geofx_edgeAmount(reach, SLOT_edgeKind.z, 0.0, 0.0);
+    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, SLOT_placeOf(position), SLOT_scale, SLOT_curve, 0.0, 0.0, 0.0).x;
 }
 
 float SLOT_strokeShown(vec3 position)

@@ -243,7 +243,7 @@ TEST_F(PanoramaEdgePicture, WhatTheBorderCutsDoesNotShow)
     walled.height = [](double x, double y)
     {
         const double inside = std::min({x - WEST, EAST - x, y - SOUTH, NORTH - y});
-        return hills(x, y) + (inside < 200.0 ? 150.0 * std::sin(x / 300.0) : 0.0);
+        return hills(x, y) + (inside < 200.0 ? 600.0 * std::sin(x / 300.0) : 0.0);
     };
     // What the wall hides and shows of the land behind it in the south has gone, too.
     const osg::ref_ptr<osg::Image> other = draw(walled);
@@ -252,6 +252,63 @@ TEST_F(PanoramaEdgePicture, WhatTheBorderCutsDoesNotShow)
     const osg::ref_ptr<osg::Image> cut = draw(land);
     EXPECT_GT(countDifferent(*cut, *draw(walled), 12.0 / 255.0), WIDTH * HEIGHT / 100)
         << "the test would not see a wall";
+}
+
+TEST_F(PanoramaEdgePicture, ARidgeAtTheBaseRunsOutAsTheValleyBehindIt)
+{
+    Land land;
+    land.height = [](double x, double y)
+    {
+        const double away = (y - SOUTH - 1500.0 - 300.0 * std::sin(x / 1500.0)) / 400.0;
+        return 300.0 + 500.0 * std::exp(-away * away);
+    };
+    const osg::ref_ptr<osg::Image> image = draw(land);
+    map->setEdge(PanoramaMap::SEA);
+    const osg::ref_ptr<osg::Image> whole = draw(land);
+    // Blue tells best: the land has hardly any, paper nearly all.
+    const double paper = pixelOf(*image, WIDTH / 2, 1).blue;
+    double steepest = 0.0, most = 0.0;
+    int shown = 0;
+    for (int column = WIDTH / 4; column < 3 * WIDTH / 4; ++column)
+    {
+        double below = std::nan("");
+        for (int row = 0; row < HEIGHT / 2; ++row)
+        {
+            const Pixel painted = pixelOf(*whole, column, row), faded = pixelOf(*image, column, row);
+            const bool land_ = !painted.sea() && paper - painted.blue > 0.3;
+            const double gone = land_ ? (faded.blue - painted.blue) / (paper - painted.blue) : std::nan("");
+            if (land_) most = std::max(most, gone), ++shown;
+            if (gone < below) steepest = std::max(steepest, below - gone);
+            below = gone;
+        }
+    }
+    EXPECT_GT(shown, WIDTH * HEIGHT / 16);
+    EXPECT_GT(most, 0.8) << "nothing runs out";
+    EXPECT_LT(steepest, 0.3) << "a ridge stands white before a valley";
+}
+
+TEST_F(PanoramaEdgePicture, BeyondABaysBorderTheSeaIsThatBeforeIt)
+{
+    // A bay, whose shore is nearer to the border than the land takes to run out.
+    Land land;
+    land.shore = [](double, double y)
+    {
+        return SOUTH + 1500.0 - y;
+    };
+    land.height = [&](double x, double y)
+    {
+        return std::clamp(-0.3 * land.shore(x, y), 0.0, 900.0);
+    };
+    map->setEdge(PanoramaMap::SEA);
+    const osg::ref_ptr<osg::Image> sea = draw(land);
+    map->setEdge(PanoramaMap::AUTOMATIC);
+    const osg::ref_ptr<osg::Image> image = draw(land);
+    int different = 0;
+    for (int row = 0; row < HEIGHT / 8; ++row)
+        for (int column = WIDTH / 3; column < 2 * WIDTH / 3; ++column)
+            different += pixelOf(*image, column, row).off(pixelOf(*sea, column, row)) > 2.0 / 255.0 ? 1 : 0;
+    EXPECT_EQ(different, 0) << "paper over the sea";
+    EXPECT_GT(countSea(*image, WIDTH / 3, 2 * WIDTH / 3), WIDTH / 3 * HEIGHT / 10);
 }
 
 TEST_F(PanoramaEdgePicture, OfDatabasesOfOthersNoSeaIsClaimed)
