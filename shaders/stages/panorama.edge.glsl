@@ -15,8 +15,11 @@ const float GEOFX_EDGE_UNKNOWN = 2.0;  // no such picture: haze behind the land
 const float GEOFX_EDGE_LAND = 3.0;     // a perspective picture of land: haze behind it
 const float GEOFX_EDGE_ISLAND = 4.0;   // of an island: the sea behind it
 
-// The sea runs out over this share of the land's width.
-const float GEOFX_EDGE_SEA_WIDTH = 0.55;
+// The sea runs out over less than half the land's width, and has gone where land has: what geofx_edgeAmount is to be asked for.
+float geofx_edgeSeaReach(float reach, float width)
+{
+    return (reach - 0.16 * width) / 0.45 + 0.16 * width;
+}
 
 geofx_Edge geofx_edgeOf(vec4 eye, vec4 ways, vec4 kind)
 {
@@ -48,7 +51,7 @@ vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 
     float rise = scale.z * (place.z - here.b) / (scale.y * slope);
     rise = (1.0 - sea) * before * clamp(rise, -1.5 * width, 1.5 * width);
     float seen = textureLod(map, at + rise * ahead, 0.0).r;
-    width *= mix(1.0, GEOFX_EDGE_SEA_WIDTH, sea);
+    seen = mix(seen, geofx_edgeSeaReach(seen, width), sea);
     float cut = geofx_edgeAmount(reach, width, 0.0, 0.0);
     return vec2(max(geofx_edgeAmount(seen, width, noise, rough), geofx_ease(cut, 0.8, 1.0)), cut);
 }

@@ -72,7 +72,7 @@ vec2 SLOT_gone(float noise, float y, float wet, float shore)
     // A lake runs out as the land around it, and so does the shore.
     float sea = wet * (1.0 - geofx_ease(SLOT_place.z, 10.0, 30.0)) * geofx_ease(shore, 0.0, 0.2 * SLOT_edgeKind.z);
     return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, place, SLOT_scale, SLOT_curve, sea, noise,
-                          mix(0.3, 0.6, geofx_edgePaper(y)));
+                          mix(0.3, 0.2, geofx_edgePaper(y)));
 }
 
 vec4 SLOT_colour(vec4 colour)

@@ -62,7 +62,8 @@ float unknown(float s)
     if (kind != GEOFX_EDGE_MAPPED) return kind == GEOFX_EDGE_UNKNOWN || kind == GEOFX_EDGE_LAND ? 1.0 : 0.0;
     geofx_Edge edge = geofx_edgeOf(geofx_skyEdgeEye, geofx_skyEdgeWays, geofx_skyEdgeKind);
     vec2 at = geofx_edgePlace(edge, vec2(place.x * geofx_skyAxisX.w, s));
-    return geofx_edgeAmount(texture(geofx_skyEdge, at).g, GEOFX_EDGE_SEA_WIDTH * geofx_skyEdgeKind.z, 0.0, 0.0);
+    float width = geofx_skyEdgeKind.z;
+    return geofx_edgeAmount(geofx_edgeSeaReach(texture(geofx_skyEdge, at).g, width), width, 0.0, 0.0);
 }
 
 void main()
