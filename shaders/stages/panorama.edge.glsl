@@ -41,7 +41,7 @@ vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 
     float reach = here.r;
     rough *= 1.0 - sea;
     if (kind.w != GEOFX_EDGE_MAPPED) return vec2(geofx_edgeAmount(reach, width, noise, rough), 0.0);
-    if (reach > 2.5 * width) return vec2(0.0);
+    if (reach > 6.0 * width) return vec2(0.0);
     // Which part of the way to the end is the way back to the picture's base.
     float aside = max(0.35 * width, 1.0);
     vec2 ahead = (geofx_edgePlace(edge, place.xy + vec2(0.0, aside)) - at) / aside;
@@ -49,7 +49,7 @@ vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 
     float before = geofx_ease(grows / (2.0 * aside), 0.0, 0.5);
     float slope = clamp((curve.y - place.y) / max(curve.y - curve.x, 1e-3), 0.1, 1.0);
     float rise = scale.z * (place.z - here.b) / (scale.y * slope);
-    rise = (1.0 - sea) * before * clamp(rise, -1.5 * width, 1.5 * width);
+    rise = (1.0 - sea) * before * clamp(rise, -5.0 * width, 1.5 * width);
     float seen = textureLod(map, at + rise * ahead, 0.0).r;
     seen = mix(seen, geofx_edgeSeaReach(seen, width), sea);
     float cut = geofx_edgeAmount(reach, width, 0.0, 0.0);
