@@ -362,30 +362,11 @@ void HelpPage::hide()
 
 void HelpPage::update(osgViewer::View& view)
 {
-    const osg::Viewport* port = view.getCamera()->getViewport();
-    if (!port) return;
-    const bool made = !_overlay;
-    if (made)
-    {
-        // As OSG's own handlers; where there is none, null is OSG's coarse built-in font.
-        if (!_font) _font = osgText::readRefFontFile("fonts/arial.ttf");
-        _overlay = makeOverlay(0, 0);
-        // Over the lists of effects and mappings.
-        _overlay->setRenderOrder(osg::Camera::POST_RENDER, 11);
-        _overlay->setProjectionResizePolicy(osg::Camera::FIXED);
-        _overlay->setViewport(new osg::Viewport(*port));
-    }
-    osg::Viewport& own = *_overlay->getViewport();
-    if (made || own.x() != port->x() || own.y() != port->y() || own.width() != port->width() ||
-        own.height() != port->height())
-    {
-        own.setViewport(port->x(), port->y(), port->width(), port->height());
-        _drawn = false;
-    }
-    // OSG may have given the slave a projection for a window of another size.
-    _overlay->setProjectionMatrixAsOrtho2D(0.0, port->width(), 0.0, port->height());
-    if (made) attachOverlay(view, *_overlay);
-    _overlay->setNodeMask(~0u);
+    if (!view.getCamera()->getViewport()) return;
+    // As OSG's own handlers; where there is none, null is OSG's coarse built-in font.
+    if (!_overlay && !_font) _font = osgText::readRefFontFile("fonts/arial.ttf");
+    // Over the lists of effects and mappings.
+    if (showOverlay(view, _overlay, 11)) _drawn = false;
     if (_drawn) return;
     const Layout page = layout();
     arrange(page);

@@ -33,4 +33,26 @@ void attachOverlay(osgViewer::View& view, osg::Camera& overlay)
     if (threads) viewer->startThreading();
 }
 
+bool showOverlay(osgViewer::View& view, osg::ref_ptr<osg::Camera>& overlay, int order)
+{
+    const osg::Viewport& port = *view.getCamera()->getViewport();
+    const bool made = !overlay;
+    if (made)
+    {
+        overlay = makeOverlay(0, 0);
+        overlay->setRenderOrder(osg::Camera::POST_RENDER, order);
+        overlay->setProjectionResizePolicy(osg::Camera::FIXED);
+        overlay->setViewport(new osg::Viewport(port));
+    }
+    osg::Viewport& own = *overlay->getViewport();
+    const bool changed = made || own.x() != port.x() || own.y() != port.y() || own.width() != port.width() ||
+                         own.height() != port.height();
+    own.setViewport(port.x(), port.y(), port.width(), port.height());
+    // OSG may have given the slave a projection for a window of another size.
+    overlay->setProjectionMatrixAsOrtho2D(0.0, port.width(), 0.0, port.height());
+    if (made) attachOverlay(view, *overlay);
+    overlay->setNodeMask(~0u);
+    return changed;
+}
+
 } // namespace osgGeoFX

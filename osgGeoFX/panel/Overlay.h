@@ -20,4 +20,9 @@ OSGGEOFX_EXPORT osg::ref_ptr<osg::Camera> makeOverlay(int width, int height);
     while handlers change what is below it. */
 OSGGEOFX_EXPORT void attachOverlay(osgViewer::View& view, osg::Camera& overlay);
 
+/** Shows an overlay over the whole of a view's picture, whatever the window's size has become; makes and attaches it where it is null,
+    drawn after those of lower orders. Whether it is new or has another place or size than before. The view's camera needs a
+    viewport; for the rest as attachOverlay(). */
+OSGGEOFX_EXPORT bool showOverlay(osgViewer::View& view, osg::ref_ptr<osg::Camera>& overlay, int order);
+
 } // namespace osgGeoFX

@@ -162,30 +162,10 @@ PanelPicture::Layout PanelPicture::layout() const
 
 void PanelPicture::show(osgViewer::View& view, const PanelPage& page, const PanelWords& words)
 {
-    const osg::Camera& camera = *view.getCamera();
-    const osg::Viewport* port = camera.getViewport();
-    if (!port) return;
-    const bool made = !_overlay;
-    if (made)
-    {
-        // As OSG's own handlers; where there is none, null is OSG's coarse built-in font.
-        if (!_font) _font = osgText::readRefFontFile("fonts/arial.ttf");
-        _overlay = makeOverlay(0, 0);
-        _overlay->setRenderOrder(osg::Camera::POST_RENDER, 9);
-        _overlay->setProjectionResizePolicy(osg::Camera::FIXED);
-        _overlay->setViewport(new osg::Viewport(*port));
-    }
-    osg::Viewport& own = *_overlay->getViewport();
-    // The window may have another size, and OSG gives the slave a viewport of its own accord.
-    if (made || own.x() != port->x() || own.y() != port->y() || own.width() != port->width() ||
-        own.height() != port->height())
-    {
-        own.setViewport(port->x(), port->y(), port->width(), port->height());
-        _overlay->setProjectionMatrixAsOrtho2D(0.0, port->width(), 0.0, port->height());
-        _drawn = false;
-    }
-    if (made) attachOverlay(view, *_overlay);
-    _overlay->setNodeMask(~0u);
+    if (!view.getCamera()->getViewport()) return;
+    // As OSG's own handlers; where there is none, null is OSG's coarse built-in font.
+    if (!_overlay && !_font) _font = osgText::readRefFontFile("fonts/arial.ttf");
+    if (showOverlay(view, _overlay, 9)) _drawn = false;
     _visible = true;
     if (_drawn && page == _page) return;
     _page = page;
