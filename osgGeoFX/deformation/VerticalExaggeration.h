@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/deformation/Deformation.h>
+#include <osgGeoFX/deformation/NormalTurner.h>
 
 namespace osgGeoFX
 {
@@ -16,7 +17,7 @@ namespace osgGeoFX
     The result does not depend on the camera. Positions are exact within 1e-5 of the viewing distance, heights on the
     Earth's ellipsoid within 1 mm at 9 km, times the factor. In a scene with a bend it stands before it. For collision
     with the ground and for picking, see DeformedView. Not in the papers; users of globes ask for it. */
-class OSGGEOFX_EXPORT VerticalExaggeration : public Deformation
+class OSGGEOFX_EXPORT VerticalExaggeration : public Deformation, public NormalTurner
 {
 public:
     VerticalExaggeration() = default;
@@ -38,6 +39,7 @@ public:
     osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
     void changeGround(Ground& ground) const override;
     std::string vertexFile() const override { return "stages/exaggeration.glsl"; }
+    std::string normalFile() const override { return vertexFile(); }
 
 protected:
     ~VerticalExaggeration() override;

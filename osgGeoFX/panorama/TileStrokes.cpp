@@ -3,6 +3,7 @@
 #include <osgGeoFX/panorama/TileStrokes.h>
 
 #include <osgGeoFX/panorama/CoverSampler.h>
+#include <osgGeoFX/panorama/NormalSampler.h>
 #include <osgGeoFX/panorama/StrokeLattice.h>
 #include <osgGeoFX/panorama/StrokeScan.h>
 #include <osgGeoFX/scene/GlslFunctions.h>
@@ -78,7 +79,7 @@ public:
     Painter(const osg::Geometry& mesh, const StrokeScan& scan, const StrokeLattice& lattice,
             const StrokeParameters& parameters)
         : _mesh(mesh), _scan(scan), _lattice(lattice), _parameters(parameters),
-          _cover(mesh, parameters.coverUnit), _towns(townsOf(scan, lattice, parameters))
+          _cover(mesh, parameters.coverUnit), _normalMap(mesh), _towns(townsOf(scan, lattice, parameters))
     {
     }
 
@@ -99,6 +100,7 @@ private:
     const StrokeLattice& _lattice;
     const StrokeParameters& _parameters;
     const CoverSampler _cover;
+    const NormalSampler _normalMap;
     const std::optional<StrokeLines::Towns> _towns;
     osg::ref_ptr<osg::Vec3Array> _vertices = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec3sArray> _normals = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
@@ -121,6 +123,11 @@ std::optional<osg::Vec3d> Painter::between(const osg::Array* array, const Stroke
 
 osg::Vec3d Painter::normalAt(const StrokeSpot& spot) const
 {
+    if (_normalMap.valid())
+    {
+        if (const std::optional<osg::Vec3d> at = between(_mesh.getTexCoordArray(0), spot))
+            if (const std::optional<osg::Vec3d> normal = _normalMap.at(at->x(), at->y())) return *normal;
+    }
     std::optional<osg::Vec3d> normal = between(_mesh.getNormalArray(), spot);
     if (!normal || !(normal->length2() > 0.0))
     {

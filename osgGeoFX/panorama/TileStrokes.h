@@ -40,7 +40,8 @@ public:
         River
     };
 
-    /// Those of a geometry, from `maker`'s parameters: made of the mesh and its cover texture. `toWorld` is the
+    /// Those of a geometry, from `maker`'s parameters: made of the mesh and its textures of cover and
+    /// normals. `toWorld` is the
     /// way from the geometry's frame; `ellipsoid` null for projected terrain. For any thread, while the geometry does not change.
     static osg::ref_ptr<TileStrokes> make(const osg::Geometry& terrain, const osg::Matrixd& toWorld,
                                           const StrokeParameters& parameters,

@@ -3,6 +3,7 @@
 #include <osgGeoFX/scene/EffectProgram.h>
 
 #include <osgGeoFX/deformation/Deformation.h>
+#include <osgGeoFX/deformation/NormalTurner.h>
 #include <osgGeoFX/scene/ShaderLibrary.h>
 #include <osgGeoFX/scene/SurfaceEffect.h>
 
@@ -25,10 +26,17 @@ std::string replaced(std::string text, const std::string& word, const std::strin
     return text;
 }
 
+/// The file that turns the normals of fragments; empty where they stay as they are.
+std::string normalFile(const Deformation& deformation)
+{
+    const auto* turner = dynamic_cast<const NormalTurner*>(&deformation);
+    return turner ? turner->normalFile() : std::string();
+}
+
 /// What stands in the place of the words in capitals in stages/functions.*.
 struct Parts
 {
-    std::string imports, functions, locate, face, deform, normal, colour, move, finish;
+    std::string imports, functions, locate, face, deform, normal, turn, colour, move, finish;
 
     std::string fill(std::string text) const
     {
@@ -66,6 +74,9 @@ void addDeformation(Parts& parts, const Deformation& deformation, const std::str
     normal += prefix + "normal(position, normal);\n";
     normal += move;
     parts.normal += conditional("defined(" + define + ")", normal);
+    if (!normalFile(deformation).empty())
+        parts.turn += conditional("defined(" + define + ")",
+                                  "    normal = " + prefix + "normal(geofx_groundPlace, normal);\n");
     if (deformation.fragmentFile().empty()) return;
     parts.colour += conditional("defined(GEOFX_DEFORMATION) && defined(" + define + ")",
                                 "    result = " + prefix + "restyle(result, map, geofx_styleBlend);\n");
@@ -96,8 +107,11 @@ Parts partsOf(const std::vector<osg::ref_ptr<Effect>>& effects, const ShaderLibr
         {
             const std::string define = EffectProgram::define(i);
             parts.imports += "#pragma import_defines(" + define + ")\n";
-            const std::string file = vertex ? deformation->vertexFile() : deformation->fragmentFile();
-            if (!file.empty()) text = deformation->constants() + library.read(file);
+            for (const std::string& file :
+                 vertex ? std::vector{deformation->vertexFile()}
+                        : std::vector{normalFile(*deformation), deformation->fragmentFile()})
+                if (!file.empty())
+                    text += (text.empty() ? deformation->constants() : "") + library.read(file);
             addDeformation(parts, *deformation, prefix, define);
         }
         if (surface)
@@ -109,6 +123,7 @@ Parts partsOf(const std::vector<osg::ref_ptr<Effect>>& effects, const ShaderLibr
         }
         parts.functions += replaced(text, "SLOT_", prefix);
     }
+    if (!vertex) parts.normal = parts.turn;
     return parts;
 }
 
@@ -125,6 +140,7 @@ std::string joined(const ShaderLibrary& library, const std::vector<std::string>&
 struct Varying
 {
     std::string qualifiers, type, name;
+    std::string define = {}; ///< without which it is not there
 };
 
 std::vector<Varying> varyingsOf(const std::string& text)
@@ -142,6 +158,8 @@ std::vector<Varying> allVaryings(const Parts& vertexParts)
 {
     std::vector<Varying> all = varyingsOf(vertexParts.functions);
     all.push_back({"", "float", "geofx_styleBlend"});
+    all.push_back({"", "vec2", "geofx_normalPlace", "GEOFX_NORMAL_MAP"});
+    all.push_back({"", "vec3", "geofx_groundPlace", "GEOFX_NORMAL_MAP"});
     return all;
 }
 
@@ -210,14 +228,19 @@ std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary
     std::string declarations, copies;
     for (const Varying& each : allVaryings(parts))
     {
-        declarations +=
+        std::string declaration =
             each.qualifiers + "in " + each.type + " " + each.name + relay.from + relay.fromArray + ";\n";
-        declarations +=
+        declaration +=
             each.qualifiers + "out " + each.type + " " + each.name + relay.to + relay.toArray + ";\n";
-        copies += copyOf(each, relay) + " ";
+        const std::string copy = copyOf(each, relay) + "\n";
+        const std::string condition = "defined(" + each.define + ")";
+        declarations += each.define.empty() ? declaration : conditional(condition, declaration);
+        // A condition begins a line.
+        copies += each.define.empty() ? copy : "\n" + conditional(condition, copy);
     }
     std::string text = version + parts.imports;
     text += "#pragma import_defines(GEOFX_FOG, GEOFX_TWO_SIDED, GEOFX_COLOR_SUM, GEOFX_MAP)\n"
+            "#pragma import_defines(GEOFX_NORMAL_MAP)\n"
             "#pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)\n" +
             joined(library, files, prefix);
     text = replaced(text, "GEOFX_VARYINGS\n", declarations);
@@ -280,7 +303,8 @@ std::string EffectProgram::key(const Effects& effects)
     {
         const Deformation* deformation = effect->asDeformation();
         if (deformation)
-            key += deformation->vertexFile() + deformation->fragmentFile() + deformation->constants();
+            key += deformation->vertexFile() + normalFile(*deformation) + deformation->fragmentFile() +
+                   deformation->constants();
         if (const SurfaceEffect* surface = effect->asSurfaceEffect())
             key += surface->vertexFile() + surface->fragmentFile();
         key += ';';

@@ -14,6 +14,7 @@
 #include <osgGeoFX/scene/ShaderLibrary.h>
 #include <osgGeoFX/scene/SurfaceEffect.h>
 #include <osgGeoFX/scene/TextureUnits.h>
+#include <osgGeoFX/scene/TileNormals.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Notify>
@@ -127,6 +128,7 @@ CameraState createState(const EffectProgram::Effects& effects, int mapUnit,
     {
         state->addUniform(new osg::Uniform(("geofx_texture" + std::to_string(unit)).c_str(), unit));
     }
+    state->addUniform(new osg::Uniform("geofx_normals", static_cast<int>(TileNormals::unit)));
     state->addUniform(new osg::Uniform("geofx_map", std::max(mapUnit, 0)));
     state->setAttribute(new ContextWatch(effects));
     return created;

@@ -3,6 +3,7 @@
 #include <osgGeoFX/scene/FixedFunctionLook.h>
 
 #include <osgGeoFX/scene/OwnPrograms.h>
+#include <osgGeoFX/scene/TileNormals.h>
 
 #include <osg/Fog>
 #include <osg/Image>
@@ -428,6 +429,8 @@ FixedFunctionLook FixedFunctionState::look(int mapUnit) const
         look.texture[i] = environment(i, look.unsupported);
         if (look.texture[i] > 0) look.texGen[i] = texGen(i);
     }
+    const osg::Texture* normals = texture2D(_attributes[Image + 3 * TileNormals::unit]);
+    look.normalMap = normals && normals->getName() == TileNormals::texture;
     look.map = mapUnit >= 0 && mapUnit < FixedFunctionLook::units &&
                texture2D(_attributes[Image + 3 * static_cast<unsigned int>(mapUnit)]);
     return look;
@@ -437,7 +440,8 @@ FixedFunctionLook::Key FixedFunctionLook::key() const
 {
     Key key = {lights,
                (twoSided ? 1 : 0) | (localViewer ? 2 : 0) | (colorSum ? 4 : 0) | (normalize ? 8 : 0) |
-                   (rescale ? 16 : 0) | (map ? 32 : 0) | (pointSize ? 64 : 0) | (specular ? 128 : 0),
+                   (rescale ? 16 : 0) | (map ? 32 : 0) | (pointSize ? 64 : 0) | (specular ? 128 : 0) |
+                   (normalMap ? 256 : 0),
                colorMaterial, fog};
     std::copy(std::begin(texture), std::end(texture), key.begin() + 4);
     std::copy(std::begin(texGen), std::end(texGen), key.begin() + 4 + units);
@@ -469,6 +473,7 @@ osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* prog
     define("GEOFX_COLOR_MATERIAL", colorMaterial > 0, colorMaterial);
     define("GEOFX_FOG", fog > 0, fog);
     define("GEOFX_MAP", map, 1);
+    define("GEOFX_NORMAL_MAP", normalMap, 1);
     for (int i = 0; i < units; ++i)
     {
         const std::string unit = std::to_string(i);

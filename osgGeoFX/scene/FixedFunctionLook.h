@@ -32,6 +32,7 @@ struct FixedFunctionLook
     int fog = 0;              ///< 1 linear, 2 exp, 3 exp2; 4 more with the vertices' fog coordinates
     int texture[units] = {};  ///< the code of an environment, as stages/fixed.frag has it; 0 for none
     int texGen[units] = {};   ///< the code of generated coordinates, as stages/fixed.vert has it; 0 for none
+    bool normalMap = false;   ///< fragments have normals of their own (TileNormals)
     bool map = false;         ///< there is a texture on the map's unit
     bool unsupported = false; ///< something is in force that the shaders do not know
 

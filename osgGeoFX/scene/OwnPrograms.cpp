@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/OwnPrograms.h>
 
+#include <osgGeoFX/scene/TileNormals.h>
+
 #include <algorithm>
 #include <cctype>
 #include <iterator>
@@ -62,7 +64,7 @@ bool OwnPrograms::isOwn(const osg::StateAttribute* program)
 {
     if (!program) return false;
     const auto* known = dynamic_cast<const osg::Program*>(program);
-    return !known || !known->isFixedFunction();
+    return !known || !(known->isFixedFunction() || known->getName() == TileNormals::program);
 }
 
 bool OwnPrograms::calls(const std::string& source)

@@ -22,7 +22,7 @@ class OSGGEOFX_EXPORT OwnPrograms
 {
 public:
     /// Whether what has the type PROGRAM in a state set draws by itself; null and an osg::Program without shaders leave it to
-    /// OpenGL's fixed functions. Other engines have classes of their own for programs.
+    /// OpenGL's fixed functions, and that of a database's tiles (TileNormals) does what those would. Other engines have classes of their own for programs.
     static bool isOwn(const osg::StateAttribute* program);
     /// Whether a stage that places vertices calls geofx_vertex(). A class that is no osg::Program does not tell, and so does not.
     bool callsFunctions(const osg::StateAttribute& program);

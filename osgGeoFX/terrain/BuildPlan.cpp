@@ -278,7 +278,7 @@ void BuildPlan::chooseUnits()
 
     const double texels = std::pow(static_cast<double>(scheme.texels << tiers[0][0].depth), 2.0);
     const double posts = std::pow(static_cast<double>(options.tileSize << tiers[0][0].depth) + 3.0, 2.0);
-    const double unitMiB = (texels * 32.0 + posts * 28.0) / (1024.0 * 1024.0) + 64.0;
+    const double unitMiB = (texels * 32.0 + posts * 36.0) / (1024.0 * 1024.0) + 64.0;
     const int wanted = options.threads > 0 ? options.threads : coreCount();
     const int affordable = static_cast<int>(0.75 * options.memoryMiB / unitMiB);
     threads = std::clamp(wanted, 1, std::max(1, affordable));

@@ -4,6 +4,7 @@
 
 #include "AtomicFile.h"
 #include "BuildPlan.h"
+#include "NormalMap.h"
 #include "TileMesh.h"
 #include "TilePass.h"
 
@@ -157,6 +158,8 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
     material->setAmbient(osg::Material::FRONT_AND_BACK, osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f));
     material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f));
     root->getOrCreateStateSet()->setAttributeAndModes(material);
+    // Not at the root itself, below which applications put other things.
+    addTileProgram(*result.root->getOrCreateStateSet());
     root->addChild(result.root);
     return root;
 }

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "TileNode.h"
 
+#include "NormalMap.h"
+
 #include <osg/BoundingBox>
 #include <osg/Math>
 #include <osg/MatrixTransform>
@@ -60,7 +62,7 @@ TileNodeFactory::TileNodeFactory(const BuildPlan& plan) : _plan(plan)
     // would make a file's bytes depend on the order of the work.
     _sharedBuffer = new osg::VertexBufferObject;
     _white = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1);
-    _white->front().set(1.0f, 1.0f, 1.0f, 1.0f);
+    _white->front().set(1.0f, 1.0f, 1.0f, UNLIT_ALPHA);
     _white->setVertexBufferObject(_sharedBuffer);
 }
 
@@ -269,7 +271,8 @@ osg::ref_ptr<osg::Geometry> TileNodeFactory::createGeometry(const TileKey& key, 
     return geometry;
 }
 
-osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const LevelArrays& arrays, int x, int y) const
+osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const TileKey& key, const LevelArrays& arrays, int x,
+                                                         int y) const
 {
     const int m = _plan.scheme.textureIntervals(arrays.level);
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
@@ -304,6 +307,7 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const LevelArrays& arra
     cover->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
     cover->setResizeNonPowerOfTwoHint(false);
     state->setTextureAttribute(COVER_UNIT, cover);
+    addNormalMap(*state, _plan.scheme, key, arrays, x, y);
     return state;
 }
 
@@ -321,7 +325,7 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     if (!mesh.triangles.empty())
     {
         const osg::ref_ptr<osg::Geometry> geometry = createGeometry(key, arrays, x, y, mesh);
-        geometry->setStateSet(createState(arrays, x, y));
+        geometry->setStateSet(createState(key, arrays, x, y));
         transform->addChild(geometry);
         const auto& vertices = static_cast<const osg::Vec3Array&>(*geometry->getVertexArray());
         for (const auto& vertex : vertices)

@@ -22,6 +22,8 @@ struct LevelArrays
     HeightGrid heights{0, 0}; ///< as dense as the unit has them, whatever the level
     std::vector<float> slopeX,
         slopeY; ///< smoothed rise to the east and to the north at the level's posts, m in a metre
+    std::vector<float> texelSlopeX,
+        texelSlopeY; ///< the same where the texels of normals lie, TilingScheme::normalIntervals
     int texelColumns = 0;
     std::vector<unsigned char> colors;  ///< red, green, blue
     std::vector<unsigned char> classes; ///< empty without land cover
@@ -30,8 +32,8 @@ struct LevelArrays
         textureError; ///< by tile: size in metres of a texel that hides something, 0 if none does
 };
 
-/** Makes the scene graph of a tile: mesh with skirts, normals, base colour, land cover, what lies on the ground, and
-    level-of-detail ranges.
+/** Makes the scene graph of a tile: mesh with skirts, normals of vertices and of texels, base colour, land cover, what
+    lies on the ground, and level-of-detail ranges.
 
     A finest tile's vertices are all its posts, row by row from the south-west, then the skirt; a coarser one's are the
     posts that its relief needs, then the skirt. Not thread-safe. */
@@ -47,7 +49,8 @@ private:
     TileMesh createMesh(const TileKey& key, const LevelArrays& arrays, int x, int y) const;
     osg::ref_ptr<osg::Geometry> createGeometry(const TileKey& key, const LevelArrays& arrays, int x, int y,
                                                const TileMesh& mesh);
-    osg::ref_ptr<osg::StateSet> createState(const LevelArrays& arrays, int x, int y) const;
+    osg::ref_ptr<osg::StateSet> createState(const TileKey& key, const LevelArrays& arrays, int x,
+                                            int y) const;
 
     const BuildPlan& _plan;
     osg::ref_ptr<osg::VertexBufferObject> _sharedBuffer;

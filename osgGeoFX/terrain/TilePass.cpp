@@ -135,7 +135,7 @@ public:
 private:
     LevelArrays sampled(const Unit& unit);
     LevelArrays gathered(const Unit& unit);
-    /// The next coarser level; may take over the finer one's texels, which is then done with.
+    /// The next coarser level; may take over the finer one's texels and slopes, which is then done with.
     LevelArrays coarser(LevelArrays& fine) const;
     void slopes(const Unit& unit, const HeightGrid& withApron, LevelArrays& arrays) const;
     std::uint64_t writeGroups(const Unit& unit, const LevelArrays& arrays);
@@ -176,6 +176,8 @@ void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArr
     }
     extendBeyond(arrays.slopeX, arrays.heights.columns, arrays.heights.rows, 1, validColumns, validRows);
     extendBeyond(arrays.slopeY, arrays.heights.columns, arrays.heights.rows, 1, validColumns, validRows);
+    arrays.texelSlopeX = arrays.slopeX;
+    arrays.texelSlopeY = arrays.slopeY;
 }
 
 LevelArrays UnitBuilder::sampled(const Unit& unit)
@@ -242,6 +244,10 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
     arrays.heights = gatherRoots(_plan, unit);
     arrays.slopeX.resize(arrays.heights.values.size());
     arrays.slopeY.resize(arrays.heights.values.size());
+    const int normals = scheme.normalIntervals(unit.latticeLevel()), normalColumns = span * normals + 1;
+    arrays.texelSlopeX.resize(static_cast<std::size_t>(normalColumns) *
+                              static_cast<std::size_t>(normalColumns));
+    arrays.texelSlopeY.resize(arrays.texelSlopeX.size());
     arrays.texelColumns = texels;
     const std::size_t count = static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels);
     arrays.colors.assign(3 * count, 128);
@@ -258,6 +264,8 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
             reader.get<std::uint64_t>();
             const auto slopeX = reader.getVector<float>();
             const auto slopeY = reader.getVector<float>();
+            const auto texelSlopeX = reader.getVector<float>();
+            const auto texelSlopeY = reader.getVector<float>();
             const auto colors = reader.getVector<unsigned char>();
             const auto classes = reader.getVector<unsigned char>();
             const auto cover = reader.getVector<unsigned char>();
@@ -267,6 +275,8 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
                                  ": this work file is damaged; build again without --resume.");
             paste(slopeX, n + 1, 1, arrays.slopeX, posts, x * n, y * n);
             paste(slopeY, n + 1, 1, arrays.slopeY, posts, x * n, y * n);
+            paste(texelSlopeX, normals + 1, 1, arrays.texelSlopeX, normalColumns, x * normals, y * normals);
+            paste(texelSlopeY, normals + 1, 1, arrays.texelSlopeY, normalColumns, x * normals, y * normals);
             paste(colors, m + 1, 3, arrays.colors, texels, x * m, y * m);
             paste(classes, m + 1, 1, arrays.classes, texels, x * m, y * m);
             paste(cover, m + 1, 4, arrays.cover, texels, x * m, y * m);
@@ -283,6 +293,17 @@ LevelArrays UnitBuilder::coarser(LevelArrays& fine) const
     coarse.heights = std::move(fine.heights);
     coarse.slopeX = halved<float, float, 1>(fine.slopeX, posts, posts);
     coarse.slopeY = halved<float, float, 1>(fine.slopeY, posts, posts);
+    if (_plan.scheme.keepsNormals(coarse.level))
+    {
+        coarse.texelSlopeX = std::move(fine.texelSlopeX);
+        coarse.texelSlopeY = std::move(fine.texelSlopeY);
+    }
+    else
+    {
+        const int columns = fine.span * _plan.scheme.normalIntervals(fine.level) + 1;
+        coarse.texelSlopeX = halved<float, float, 1>(fine.texelSlopeX, columns, columns);
+        coarse.texelSlopeY = halved<float, float, 1>(fine.texelSlopeY, columns, columns);
+    }
     const int span = coarse.span;
     for (int y = 0; y < span; ++y)
         for (int x = 0; x < span; ++x)
@@ -360,6 +381,8 @@ std::uint64_t UnitBuilder::build(const Unit& unit)
     writer.put(tiles);
     writer.put(arrays.slopeX);
     writer.put(arrays.slopeY);
+    writer.put(arrays.texelSlopeX);
+    writer.put(arrays.texelSlopeY);
     writer.put(arrays.colors);
     writer.put(arrays.classes);
     writer.put(arrays.cover);

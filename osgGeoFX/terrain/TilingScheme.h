@@ -47,6 +47,11 @@ struct TilingScheme
     bool keepsTexels(int level) const { return level >= finestLevel - textureDepth; }
     int textureIntervals(int level) const { return texels << std::min(finestLevel - level, textureDepth); }
 
+    /// Normals are as dense as the posts of finest tiles, up to four for each cell of a tile.
+    bool keepsNormals(int level) const { return level >= finestLevel - normalDepth; }
+    int normalIntervals(int level) const { return intervals << std::min(finestLevel - level, normalDepth); }
+    static constexpr int normalDepth = 2; ///< levels above the finest that keep the finest normals
+
     /// The finest post at a tile's south-western corner.
     int firstColumn(const TileKey& key) const { return key.x * intervals * step(key.level); }
     int firstRow(const TileKey& key) const { return key.y * intervals * step(key.level); }
@@ -79,6 +84,10 @@ class TileFrame
 {
 public:
     TileFrame(const TilingScheme& scheme, const TileKey& key);
+
+    /// Its origin, in the grid's CRS.
+    double centerX() const { return _centerX; }
+    double centerY() const { return _centerY; }
 
     /// From the frame to the world.
     osg::Matrixd localToWorld() const;

@@ -3,12 +3,15 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // OpenGL's fixed fragment stage: texture environments, the separate specular colour and fog, OpenGL 2.1, Sections
-// 3.8 to 3.10, with the effects before the fog.
+// 3.8 to 3.10, with the effects before the fog; and the lighting where a texture has the normals.
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP, GEOFX_PAINTED)
+#pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_NORMAL_MAP)
+#pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE)
 
 // What is painted anew needs no light and no textures.
 #ifdef GEOFX_PAINTED
+#undef GEOFX_LIGHTS
 #undef GEOFX_COLOR_SUM
 #undef GEOFX_TEXTURE_0
 #undef GEOFX_TEXTURE_1
@@ -19,6 +22,14 @@
 #endif
 
 vec4 geofx_fragment(vec4 colour, vec4 map);
+
+#if defined(GEOFX_LIGHTS) && defined(GEOFX_NORMAL_MAP)
+#define GEOFX_LIT_HERE
+vec3 geofx_ground(); // the undeformed place in eye space
+float geofx_normalSize(); // a normal's length in eye space
+vec3 geofx_turnedNormal(); // what the effects make of the texture's normal, of length 1
+#include "stages/fixed.light.glsl"
+#endif
 
 // Where the terrain is seen from its edge, coordinates run through the whole texture and more within a pixel, and beyond a
 // triangle's border to infinity. The coarsest level is all that can be seen there; but Mesa's llvmpipe, when it filters
@@ -69,7 +80,27 @@ uniform sampler2D geofx_map;
 
 void main()
 {
-    vec4 colour = gl_Color;
+    vec4 primary = gl_Color;
+    vec4 secondary = gl_SecondaryColor;
+#ifdef GEOFX_LIT_HERE
+    vec3 normal = geofx_turnedNormal();
+#ifndef GEOFX_NORMALIZE
+    // OpenGL lights with the length that a normal has in eye space.
+    normal *= geofx_normalSize();
+#ifdef GEOFX_RESCALE
+    normal *= gl_NormalScale;
+#endif
+#endif
+#ifdef GEOFX_TWO_SIDED
+    if (gl_FrontFacing)
+        illuminate(geofx_ground(), normal, coloured(gl_FrontMaterial), primary, secondary);
+    else
+        illuminate(geofx_ground(), -normal, coloured(gl_BackMaterial), primary, secondary);
+#else
+    illuminate(geofx_ground(), normal, coloured(gl_FrontMaterial), primary, secondary);
+#endif
+#endif
+    vec4 colour = primary;
 #ifdef GEOFX_TEXTURE_0
     colour = environment(GEOFX_TEXTURE_0, colour, texture2DProj(geofx_texture0, tame(gl_TexCoord[0])), gl_TextureEnvColor[0]);
 #endif
@@ -83,10 +114,10 @@ void main()
     colour = environment(GEOFX_TEXTURE_3, colour, texture2DProj(geofx_texture3, tame(gl_TexCoord[3])), gl_TextureEnvColor[3]);
 #endif
 #ifdef GEOFX_COLOR_SUM
-    colour.rgb = clamp(colour.rgb + gl_SecondaryColor.rgb, 0.0, 1.0);
+    colour.rgb = clamp(colour.rgb + secondary.rgb, 0.0, 1.0);
 #endif
 #ifdef GEOFX_MAP
-    colour = geofx_fragment(colour, gl_Color * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
+    colour = geofx_fragment(colour, primary * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
 #else
     colour = geofx_fragment(colour, vec4(0.0));
 #endif

@@ -10,7 +10,7 @@
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE, GEOFX_FOG, GEOFX_POINT_SIZE)
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_TEXGEN_0, GEOFX_TEXGEN_1, GEOFX_TEXGEN_2, GEOFX_TEXGEN_3)
-#pragma import_defines(GEOFX_MAP, GEOFX_PAINTED)
+#pragma import_defines(GEOFX_MAP, GEOFX_PAINTED, GEOFX_NORMAL_MAP)
 
 // What is painted anew needs no light and no textures.
 #ifdef GEOFX_PAINTED
@@ -24,6 +24,11 @@
 #undef GEOFX_FOG
 #endif
 
+// Fragments that have normals of their own are lit by themselves.
+#ifdef GEOFX_NORMAL_MAP
+#undef GEOFX_LIGHTS
+#endif
+
 #if defined(GEOFX_TEXGEN_0) || defined(GEOFX_TEXGEN_1) || defined(GEOFX_TEXGEN_2) || defined(GEOFX_TEXGEN_3)
 #define GEOFX_GENERATES
 #endif
@@ -31,87 +36,7 @@
 vec4 geofx_vertex(vec4 eyePosition);
 vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);
 
-#ifdef GEOFX_LIGHTS
-struct Material
-{
-    vec4 emission;
-    vec4 ambient;
-    vec4 diffuse;
-    vec4 specular;
-    float shininess;
-};
-
-Material coloured(gl_MaterialParameters given)
-{
-    Material material = Material(given.emission, given.ambient, given.diffuse, given.specular, given.shininess);
-#ifdef GEOFX_COLOR_MATERIAL
-    if (GEOFX_COLOR_MATERIAL == 1 || GEOFX_COLOR_MATERIAL == 3) material.ambient = gl_Color;
-    if (GEOFX_COLOR_MATERIAL == 2 || GEOFX_COLOR_MATERIAL == 3) material.diffuse = gl_Color;
-    if (GEOFX_COLOR_MATERIAL == 4) material.specular = gl_Color;
-    if (GEOFX_COLOR_MATERIAL == 5) material.emission = gl_Color;
-#endif
-    return material;
-}
-
-// Adds what one lamp gives. `lamp` is a constant where it is called, so that no driver makes a loop of it.
-void shine(int lamp, vec3 position, vec3 normal, Material material, inout vec4 sum, inout vec4 glitter)
-{
-    vec3 direction = gl_LightSource[lamp].position.xyz;
-    float strength = 1.0;
-    if (gl_LightSource[lamp].position.w != 0.0)
-    {
-        direction = direction / gl_LightSource[lamp].position.w - position;
-        float distance = length(direction);
-        strength = 1.0 / (gl_LightSource[lamp].constantAttenuation +
-                          distance * (gl_LightSource[lamp].linearAttenuation +
-                                      distance * gl_LightSource[lamp].quadraticAttenuation));
-    }
-    direction = normalize(direction);
-    if (gl_LightSource[lamp].spotCutoff <= 90.0)
-    {
-        float spot = dot(-direction, normalize(gl_LightSource[lamp].spotDirection));
-        strength *= spot < gl_LightSource[lamp].spotCosCutoff ? 0.0 : pow(max(spot, 0.0), gl_LightSource[lamp].spotExponent);
-    }
-    float facing = max(dot(normal, direction), 0.0);
-    sum += strength * (gl_LightSource[lamp].ambient * material.ambient +
-                       facing * gl_LightSource[lamp].diffuse * material.diffuse);
-#ifdef GEOFX_SPECULAR
-    if (facing > 0.0)
-    {
-#ifdef GEOFX_LOCAL_VIEWER
-        vec3 viewer = -normalize(position);
-#else
-        vec3 viewer = vec3(0.0, 0.0, 1.0);
-#endif
-        float glance = max(dot(normal, normalize(direction + viewer)), 0.0);
-        float lobe = material.shininess > 0.0 ? pow(glance, material.shininess) : 1.0;
-        glitter += strength * lobe * gl_LightSource[lamp].specular * material.specular;
-    }
-#endif
-}
-
-// The light of all lamps on one side of the surface.
-void illuminate(vec3 position, vec3 normal, Material material, out vec4 primary, out vec4 secondary)
-{
-    vec4 sum = material.emission + gl_LightModel.ambient * material.ambient;
-    vec4 glitter = vec4(0.0);
-    if ((GEOFX_LIGHTS & 1) != 0) shine(0, position, normal, material, sum, glitter);
-    if ((GEOFX_LIGHTS & 2) != 0) shine(1, position, normal, material, sum, glitter);
-    if ((GEOFX_LIGHTS & 4) != 0) shine(2, position, normal, material, sum, glitter);
-    if ((GEOFX_LIGHTS & 8) != 0) shine(3, position, normal, material, sum, glitter);
-    if ((GEOFX_LIGHTS & 16) != 0) shine(4, position, normal, material, sum, glitter);
-    if ((GEOFX_LIGHTS & 32) != 0) shine(5, position, normal, material, sum, glitter);
-    if ((GEOFX_LIGHTS & 64) != 0) shine(6, position, normal, material, sum, glitter);
-    if ((GEOFX_LIGHTS & 128) != 0) shine(7, position, normal, material, sum, glitter);
-#ifdef GEOFX_COLOR_SUM
-    primary = vec4(clamp(sum.rgb, 0.0, 1.0), clamp(material.diffuse.a, 0.0, 1.0));
-    secondary = vec4(clamp(glitter.rgb, 0.0, 1.0), 0.0);
-#else
-    primary = vec4(clamp(sum.rgb + glitter.rgb, 0.0, 1.0), clamp(material.diffuse.a, 0.0, 1.0));
-    secondary = vec4(0.0);
-#endif
-}
-#endif
+#include "stages/fixed.light.glsl"
 
 #ifdef GEOFX_GENERATES
 // Generated texture coordinates, OpenGL 2.1, Section 2.11.4. `code` is 1 object linear, 2 eye linear, 3 sphere map, 4

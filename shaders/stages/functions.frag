@@ -8,9 +8,45 @@
 //
 // EffectScene puts the code of its effects in the place of the words in capitals.
 #pragma import_defines(GEOFX_DEFORMATION)
+#pragma import_defines(GEOFX_NORMAL_MAP)
 GEOFX_IMPORTED_EFFECTS
 in float geofx_styleBlend;
+#ifdef GEOFX_NORMAL_MAP
+// What lies on the ground is lit by the normals of a texture, in the frame of the geometry: scene/TileNormals.h.
+in vec2 geofx_normalPlace;
+in vec3 geofx_groundPlace;
+uniform sampler2D geofx_normals;
+
+vec3 geofx_eyeNormal()
+{
+    vec3 texel = texture(geofx_normals, geofx_normalPlace).rgb;
+    vec3 normal = (255.0 * texel - 128.0) / 127.0;
+    // Without a third channel; no byte is 0.
+    if (texel.b < 0.002) normal.z = sqrt(max(1.0 - dot(normal.xy, normal.xy), 0.0));
+    return gl_NormalMatrix * normalize(normal);
+}
+
+vec3 geofx_ground()
+{
+    return geofx_groundPlace;
+}
+
+float geofx_normalSize()
+{
+    return length(geofx_eyeNormal());
+}
+#endif
 GEOFX_EFFECT_FUNCTIONS
+#ifdef GEOFX_NORMAL_MAP
+vec3 geofx_turnedNormal()
+{
+    vec3 normal = normalize(geofx_eyeNormal());
+#ifdef GEOFX_DEFORMATION
+GEOFX_NORMAL_CALLS
+#endif
+    return normal;
+}
+#endif
 vec4 geofx_fragment(vec4 colour, vec4 map)
 {
     vec4 result = colour;

@@ -10,8 +10,13 @@
 // EffectScene puts the code of its effects in the place of the words in capitals.
 #pragma import_defines(GEOFX_DEFORMATION)
 #pragma import_defines(GEOFX_PLACED)
+#pragma import_defines(GEOFX_NORMAL_MAP)
 GEOFX_IMPORTED_EFFECTS
 out float geofx_styleBlend;
+#ifdef GEOFX_NORMAL_MAP
+out vec2 geofx_normalPlace;  // in the texture of normals
+out vec3 geofx_groundPlace; // undeformed, in eye space
+#endif
 #ifdef GEOFX_PLACED
 uniform mat4 geofx_unplaced; // of an object that was moved as a whole: back to where it stands
 #endif
@@ -19,6 +24,10 @@ GEOFX_EFFECT_FUNCTIONS
 vec4 geofx_vertex(vec4 eyePosition)
 {
     geofx_styleBlend = 0.0;
+#ifdef GEOFX_NORMAL_MAP
+    geofx_normalPlace = (gl_TextureMatrix[2] * gl_MultiTexCoord0).xy;
+    geofx_groundPlace = eyePosition.xyz / eyePosition.w;
+#endif
     vec3 located = eyePosition.xyz / eyePosition.w;
 #ifdef GEOFX_PLACED
     located = (geofx_unplaced * vec4(located, 1.0)).xyz;

@@ -3,7 +3,7 @@
 //
 // The painting of a panorama map's ground, after Sections 3.2, 3.4 and 3.5 of Brown and Samavati (2017). SLOT_ stands for the
 // effect's prefix.
-#pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR)
+#pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR, GEOFX_NORMAL_MAP)
 #include "stages/panorama.water.glsl"
 #include "stages/panorama.edge.glsl"
 
@@ -75,17 +75,32 @@ vec2 SLOT_gone(float noise, float y, float wet, float shore)
                           mix(0.3, 0.2, geofx_edgePaper(y)));
 }
 
+// As SLOT_face() has it.
+vec4 SLOT_facingHere()
+{
+#ifdef GEOFX_NORMAL_MAP
+    vec3 vertical = normalize(SLOT_facing.xyz);
+    vec3 normal = normalize(geofx_eyeNormal());
+    float upward = dot(normal, vertical);
+    float level = length(normal - upward * vertical);
+    return vec4(normalize(normal + (1.0 / SLOT_light.w - 1.0) * upward * vertical), level / max(abs(upward), 0.02));
+#else
+    return vec4(normalize(SLOT_facing.xyz), SLOT_facing.w);
+#endif
+}
+
 vec4 SLOT_colour(vec4 colour)
 {
 #ifndef GEOFX_PAINTED
     return colour;
 #else
+    vec4 facing = SLOT_facingHere();
     vec4 texel = texture(SLOT_cover, SLOT_texels.xy);
     geofx_Cover cover;
     if (geofx_coverKnown(texel))
         cover = geofx_coverOf(texel);
     else
-        cover = geofx_likelyCover(SLOT_place.z, SLOT_facing.w, SLOT_slopes.z);
+        cover = geofx_likelyCover(SLOT_place.z, facing.w, SLOT_slopes.z);
     float edge = max(fwidth(texel.a), 1e-4);
     // Half a pixel more than there is, so that rivers stay in sight.
     float wet = geofx_coverKnown(texel) ? clamp((texel.a - 128.0 / 255.0) / edge + 0.9, 0.0, 1.0)
@@ -95,9 +110,8 @@ vec4 SLOT_colour(vec4 colour)
     vec4 fine = texture(SLOT_brush, SLOT_texels.zw);
     vec4 coarse = texture(SLOT_brush, 0.5 * SLOT_texels.zw);
     vec4 brush = 2.0 * mix(fine, coarse, SLOT_hand.y) - 1.0;
-    vec3 normal = normalize(SLOT_facing.xyz);
     vec3 towards = SLOT_hand.w > 0.5 ? normalize(gl_LightSource[0].position.xyz) : SLOT_light.xyz;
-    vec3 turned = normalize(normal + SLOT_hand.x * (brush.x * normalize(SLOT_brushX.xyz) +
+    vec3 turned = normalize(facing.xyz + SLOT_hand.x * (brush.x * normalize(SLOT_brushX.xyz) +
                                                     brush.y * normalize(SLOT_brushY.xyz)));
     vec2 picture = (gl_FragCoord.xy - SLOT_window.xy) * SLOT_window.zw;
     float light = geofx_paintLight(dot(turned, towards), picture.y, SLOT_slopes.w);
@@ -107,7 +121,7 @@ vec4 SLOT_colour(vec4 colour)
     float far = clamp(SLOT_place.y / SLOT_curve.y, 0.0, 1.0);
     vec3 painted = vec3(0.0);
     if (wet < 1.0)
-        painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, SLOT_facing.w, brush.z, style), light);
+        painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, facing.w, brush.z, style), light);
     if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far), wet);
     painted = geofx_atmosphere(painted, geofx_airColour(), geofx_airAmount(far, SLOT_hand.z));
     vec2 gone = SLOT_gone(brush.z, picture.y, wet, cover.shore);

@@ -2,12 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // What the painting of a panorama map's ground needs of each vertex. SLOT_ stands for the effect's prefix.
+#pragma import_defines(GEOFX_NORMAL_MAP)
 uniform vec4 SLOT_light;  // towards the light, in eye space; by how much slopes are lit as steeper than they are
 uniform vec4 SLOT_brushX; // from eye space to the brush's picture
 uniform vec4 SLOT_brushY;
 
 out vec3 SLOT_place;  // of the map: x of the picture, s and height in metres
-out vec4 SLOT_facing; // the normal to light with, and the rise over run of the ground
+// The normal to light with, and the rise over run of the ground; the vertical where fragments have normals of their own.
+out vec4 SLOT_facing;
 out vec4 SLOT_texels; // in the cover's texture and in the brush's
 
 vec3 SLOT_vertical;
@@ -25,8 +27,10 @@ void SLOT_locate(vec3 position)
 
 void SLOT_face(vec3 normal)
 {
+#ifndef GEOFX_NORMAL_MAP
     float upward = dot(normal, SLOT_vertical);
     float level = length(normal - upward * SLOT_vertical);
     SLOT_facing = vec4(normalize(normal + (1.0 / SLOT_light.w - 1.0) * upward * SLOT_vertical),
                        level / max(abs(upward), 0.02));
+#endif
 }

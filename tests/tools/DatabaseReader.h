@@ -43,7 +43,7 @@ struct DatabaseTile
     osg::Vec3d world(unsigned int vertex) const { return local(vertex) * transform->getMatrix(); }
     /// Whether a triangle of the surface uses each vertex.
     std::vector<bool> used() const;
-    /// Image of a texture unit: 0 colour, 1 land cover, 7 what lies on the ground; null without.
+    /// Image of a texture unit: 0 colour, 1 land cover, 2 normals, 7 what lies on the ground; null without.
     const osg::Image* image(unsigned int unit) const;
 };
 

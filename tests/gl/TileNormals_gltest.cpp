@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+// A coarse mesh with a texture of normals is lit as the full mesh is: by plain OpenSceneGraph with the database's own program, and
+// below an EffectScene.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <tools/GlFixture.h>
+#include <tools/ImageComparison.h>
+#include <tools/TempDir.h>
+#include <tools/TestRasters.h>
+
+#include <osg/Fog>
+#include <osg/Geometry>
+#include <osg/LightSource>
+#include <osg/Material>
+#include <osg/Program>
+#include <osg/TexMat>
+#include <osg/Texture2D>
+#include <osgDB/ReadFile>
+#include <osgDB/WriteFile>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+using namespace osgGeoFX;
+
+namespace
+{
+
+constexpr int posts = 128;   ///< cells of the lattice along an edge
+constexpr double side = 8.0; ///< metres
+constexpr int on = osg::StateAttribute::ON;
+constexpr int off = osg::StateAttribute::OFF;
+constexpr int overriding = osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE;
+
+double place(int post)
+{
+    return side * post / posts - 0.5 * side;
+}
+
+/// Hills, and on them what a coarse mesh cannot have: ripples, steep and not high.
+double height(double x, double y)
+{
+    return 0.3 * std::sin(0.8 * x) * std::cos(0.7 * y) + 0.01 * std::sin(14.0 * x + 3.0 * y) +
+           0.01 * std::cos(13.0 * y - 2.0 * x);
+}
+
+osg::Vec3d normalAt(double x, double y)
+{
+    osg::Vec3d normal(-(0.24 * std::cos(0.8 * x) * std::cos(0.7 * y) + 0.14 * std::cos(14.0 * x + 3.0 * y) +
+                        0.02 * std::sin(13.0 * y - 2.0 * x)),
+                      -(-0.21 * std::sin(0.8 * x) * std::sin(0.7 * y) + 0.03 * std::cos(14.0 * x + 3.0 * y) -
+                        0.13 * std::sin(13.0 * y - 2.0 * x)),
+                      1.0);
+    normal.normalize();
+    return normal;
+}
+
+/// The ground of every `step`-th post, as a tile of a database has it but for the normals' texture.
+osg::ref_ptr<osg::Geometry> makeMesh(int step)
+{
+    osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec2Array> coordinates = new osg::Vec2Array;
+    osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
+    const int cells = posts / step;
+    for (int j = 0; j <= cells; ++j)
+        for (int i = 0; i <= cells; ++i)
+        {
+            const double x = place(i * step), y = place(j * step);
+            vertices->push_back(osg::Vec3(osg::Vec3d(x, y, height(x, y))));
+            normals->push_back(osg::Vec3(normalAt(x, y)));
+            coordinates->push_back(osg::Vec2((0.5f + static_cast<float>(i * step)) / (posts + 1.0f),
+                                             (0.5f + static_cast<float>(j * step)) / (posts + 1.0f)));
+            if (i == cells || j == cells) continue;
+            const auto a = static_cast<GLushort>(j * (cells + 1) + i);
+            const auto b = static_cast<GLushort>(a + cells + 1);
+            for (const int index : {+a, a + 1, b + 1, +a, b + 1, +b})
+                triangles->push_back(static_cast<GLushort>(index));
+        }
+    osg::ref_ptr<osg::Geometry> mesh = new osg::Geometry;
+    mesh->setUseDisplayList(false);
+    mesh->setUseVertexBufferObjects(false);
+    mesh->setVertexArray(vertices);
+    mesh->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec4Array> white = new osg::Vec4Array;
+    white->push_back({1.0f, 1.0f, 1.0f, 254.0f / 255.0f});
+    mesh->setColorArray(white, osg::Array::BIND_OVERALL);
+    mesh->setTexCoordArray(0, coordinates);
+    mesh->addPrimitiveSet(triangles);
+
+    osg::ref_ptr<osg::Image> colours = new osg::Image;
+    colours->allocateImage(posts + 1, posts + 1, 1, GL_RGB, GL_UNSIGNED_BYTE);
+    for (int row = 0; row <= posts; ++row)
+        for (int column = 0; column <= posts; ++column)
+        {
+            unsigned char* texel =
+                colours->data(static_cast<unsigned int>(column), static_cast<unsigned int>(row));
+            texel[0] = static_cast<unsigned char>(150 + 50 * std::sin(0.1 * column));
+            texel[1] = static_cast<unsigned char>(170 + 40 * std::cos(0.08 * row));
+            texel[2] = 140;
+        }
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(colours);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    texture->setResizeNonPowerOfTwoHint(false);
+    mesh->getOrCreateStateSet()->setTextureAttributeAndModes(0, texture);
+    return mesh;
+}
+
+/// Binds normals of every `step`-th post of the lattice; `channels` 2 or 3.
+void addNormals(osg::StateSet& state, int channels, int step)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    const int cells = posts / step;
+    image->allocateImage(cells + 1, cells + 1, 1, channels == 2 ? GL_RG : GL_RGB, GL_UNSIGNED_BYTE, 1);
+    image->setInternalTextureFormat(channels == 2 ? GL_RG8 : GL_RGB8);
+    unsigned char* byte = image->data();
+    for (int row = 0; row <= cells; ++row)
+        for (int column = 0; column <= cells; ++column)
+        {
+            const osg::Vec3d normal = normalAt(place(step * column), place(step * row));
+            for (int channel = 0; channel < channels; ++channel)
+                *byte++ = static_cast<unsigned char>(std::lround(127.0 * normal[channel]) + 128);
+        }
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
+    texture->setName("geofx normals");
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    texture->setResizeNonPowerOfTwoHint(false);
+    state.setTextureAttribute(2, texture);
+    if (step == 1) return;
+    // The coordinates of the lattice's colours, 0.5 / 129 to 128.5 / 129, become those of fewer texels.
+    const double scale = (cells / (cells + 1.0)) / (posts / (posts + 1.0));
+    const double offset = 0.5 / (cells + 1.0) - scale * 0.5 / (posts + 1.0);
+    state.setTextureAttribute(2, new osg::TexMat(osg::Matrix::scale(scale, scale, 1.0) *
+                                                 osg::Matrix::translate(offset, offset, 0.0)));
+}
+
+/// What a database has above its tiles.
+osg::ref_ptr<osg::StateSet> stateOfDatabase()
+{
+    const geofx::test::TempDir folder;
+    BuildOptions options;
+    options.dems = {geofx::test::writeRelief(folder / "dem.tif", 20, 20, 10.0, 50.0, 0.01)};
+    options.output = (folder / "db").string();
+    buildDatabase(options);
+    const osg::ref_ptr<osg::Node> root = osgDB::readRefNodeFile(options.output + "/terrain.osgb");
+    return root ? root->asGroup()->getChild(0)->getStateSet() : nullptr;
+}
+
+struct Difference
+{
+    double mean = 0.0, most = 0.0; ///< of 255; `most` of all but a thousandth of the channels
+    double onlyOne = 0.0;          ///< the share of pixels that only one of the two covers
+};
+
+bool covered(const unsigned char* pixel)
+{
+    return pixel[0] != 255 || pixel[1] != 0 || pixel[2] != 255;
+}
+
+/// Where both show ground: outlines are the geometry's matter.
+
+Difference differenceOf(const osg::Image& a, const osg::Image& b)
+{
+    std::vector<int> values;
+    double sum = 0.0;
+    double single = 0.0;
+    for (unsigned int i = 0; i < a.getTotalSizeInBytes(); ++i)
+    {
+        const unsigned int pixel = i / 4 * 4;
+        const bool first = covered(a.data() + pixel), second = covered(b.data() + pixel);
+        if (i % 4 == 3) single += first != second ? 1.0 : 0.0;
+        if (i % 4 == 3 || !first || !second) continue;
+        values.push_back(std::abs(a.data()[i] - b.data()[i]));
+        sum += values.back();
+    }
+    const std::size_t rank = values.size() - values.size() / 1000 - 1;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
+    return {sum / static_cast<double>(values.size()), static_cast<double>(values[rank]),
+            single / (a.getTotalSizeInBytes() / 4.0)};
+}
+
+} // namespace
+
+class TileLight : public geofx::test::GlFixture
+{
+protected:
+    enum Mesh
+    {
+        Full,          ///< with normals of vertices, drawn by fixed functions
+        CoarseBare,    ///< the same, of every eighth post
+        Coarse,        ///< with the texture, and the database's program above
+        CoarseOfThree, ///< channels
+        CoarseOfFew    ///< half as many texels along an edge as the colours have
+    };
+    /// Changes what stands above the tile.
+    using Host = std::function<void(osg::Group& above, osg::Group& scene)>;
+
+    TileLight() : GlFixture(240, 200) {}
+
+    void SetUp() override
+    {
+        GlFixture::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        osg::Camera& camera = *viewer().getCamera();
+        camera.setViewMatrixAsLookAt({0.5, -4.5, 5}, {0, -0.2, 0}, {0, 0, 1});
+        camera.setClearColor({1, 0, 1, 1});
+        camera.setProjectionMatrixAsPerspective(34, 1.2, 1, 100);
+        viewer().setLightingMode(osg::View::NO_LIGHT);
+        _stateOfDatabase = stateOfDatabase();
+        ASSERT_TRUE(_stateOfDatabase.valid());
+    }
+
+    osg::ref_ptr<osg::Image> draw(Mesh mesh, const Host& host,
+                                  const std::vector<osg::ref_ptr<Effect>>& effects = {}, bool scene = false)
+    {
+        const osg::ref_ptr<osg::Group> root = new osg::Group;
+        osg::ref_ptr<osg::Group> group = new osg::Group;
+        if (scene)
+        {
+            const osg::ref_ptr<EffectScene> effectScene = new EffectScene;
+            for (const auto& effect : effects)
+                effectScene->addEffect(effect);
+            group = effectScene;
+        }
+        root->addChild(group);
+        const osg::ref_ptr<osg::Group> terrain = new osg::Group;
+        osg::ref_ptr<osg::Material> material = new osg::Material;
+        material->setAmbient(osg::Material::FRONT_AND_BACK, {1.0f, 1.0f, 1.0f, 1.0f});
+        material->setDiffuse(osg::Material::FRONT_AND_BACK, {1.0f, 1.0f, 1.0f, 1.0f});
+        terrain->getOrCreateStateSet()->setAttributeAndModes(material);
+        group->addChild(terrain);
+        const osg::ref_ptr<osg::Group> tiles = new osg::Group;
+        terrain->addChild(tiles);
+        const osg::ref_ptr<osg::Geometry> geometry = makeMesh(mesh == Full ? 1 : 8);
+        tiles->addChild(geometry);
+        if (mesh != Full && mesh != CoarseBare)
+        {
+            tiles->setStateSet(_stateOfDatabase);
+            addNormals(*geometry->getOrCreateStateSet(), mesh == CoarseOfThree ? 3 : 2,
+                       mesh == CoarseOfFew ? 2 : 1);
+        }
+        host(*root, *group);
+        return render(root);
+    }
+
+    /// The bounds are those that the lit picture must keep: a mean of 1.5 of 255, and 24 for all but a thousandth.
+    static void expectAlike(const osg::Image& actual, const osg::Image& expected, const std::string& name)
+    {
+        const Difference difference = differenceOf(actual, expected);
+        EXPECT_LE(difference.mean, 1.5) << name;
+        EXPECT_LE(difference.most, 24.0) << name;
+        EXPECT_LE(difference.onlyOne, 0.01) << name;
+        osgDB::writeImageFile(actual, (geofx::test::testOutputFolder() / (name + ".png")).string());
+        osgDB::writeImageFile(expected, (geofx::test::testOutputFolder() / (name + " full.png")).string());
+    }
+
+    static void expectUnlike(const osg::Image& actual, const osg::Image& expected, const std::string& name)
+    {
+        EXPECT_GT(differenceOf(actual, expected).mean, 3.0) << name;
+    }
+
+    static osg::ref_ptr<osg::Light> addLamp(osg::Group& above, osg::Group& scene, int number,
+                                            const osg::Vec4& position)
+    {
+        osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+        osg::ref_ptr<osg::Light> light = new osg::Light(static_cast<unsigned int>(number));
+        light->setPosition(position);
+        light->setAmbient({0.05f, 0.05f, 0.08f, 1});
+        light->setDiffuse({0.6f, 0.55f, 0.5f, 1});
+        light->setSpecular({0.8f, 0.8f, 0.6f, 1});
+        source->setLight(light);
+        above.addChild(source);
+        scene.getOrCreateStateSet()->setMode(GL_LIGHTING, on);
+        scene.getOrCreateStateSet()->setMode(static_cast<GLenum>(GL_LIGHT0 + number), on);
+        return light;
+    }
+
+    static void sun(osg::Group& above, osg::Group& scene)
+    {
+        addLamp(above, scene, 0, {-0.8f, -0.3f, 0.6f, 0});
+    }
+
+    osg::ref_ptr<osg::StateSet> _stateOfDatabase;
+};
+
+TEST_F(TileLight, PlainOpenSceneGraph)
+{
+    const osg::ref_ptr<osg::Image> full = draw(Full, sun);
+    expectAlike(*draw(Coarse, sun), *full, "two channels");
+    expectAlike(*draw(CoarseOfThree, sun), *full, "three channels");
+    expectAlike(*draw(CoarseOfFew, sun), *full, "fewer texels");
+    expectUnlike(*draw(CoarseBare, sun), *full, "vertices alone");
+}
+
+TEST_F(TileLight, WhatTheDatabaseProgramSeesOfModes)
+{
+    const auto unlit = [](osg::Group& above, osg::Group& scene)
+    {
+        sun(above, scene);
+        scene.getOrCreateStateSet()->setMode(GL_LIGHTING, off | osg::StateAttribute::OVERRIDE);
+    };
+    // Nothing is left to differ but how two programs round.
+    EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, unlit), *draw(CoarseBare, unlit),
+                                         {1.1f / 255, 0.0, 1.1f / 255}, "unlit"));
+
+    const auto second = [](osg::Group& above, osg::Group& scene)
+    {
+        addLamp(above, scene, 1, {0.7f, -0.2f, 0.5f, 0});
+    };
+    // Also after lamp 0 has been on: OpenGL keeps its colours.
+    draw(Full, sun);
+    expectAlike(*draw(Coarse, second), *draw(Full, second), "lamp 1 alone");
+
+    const auto both = [&](osg::Group& above, osg::Group& scene)
+    {
+        sun(above, scene);
+        second(above, scene);
+    };
+    expectAlike(*draw(Coarse, both), *draw(Full, both), "two lamps");
+
+    const auto fog = [](osg::Fog::Mode mode)
+    {
+        return [mode](osg::Group& above, osg::Group& scene)
+        {
+            sun(above, scene);
+            const osg::ref_ptr<osg::Fog> haze = new osg::Fog;
+            haze->setMode(mode);
+            haze->setColor({0.7f, 0.75f, 0.8f, 1});
+            haze->setDensity(0.12f);
+            if (mode == osg::Fog::LINEAR) haze->setStart(3.0f);
+            if (mode == osg::Fog::LINEAR) haze->setEnd(12.0f);
+            scene.getOrCreateStateSet()->setAttributeAndModes(haze);
+        };
+    };
+    for (const osg::Fog::Mode mode : {osg::Fog::LINEAR, osg::Fog::EXP})
+    {
+        const osg::ref_ptr<osg::Image> full = draw(Full, fog(mode));
+        expectAlike(*draw(Coarse, fog(mode)), *full, mode == osg::Fog::EXP ? "fog exp" : "fog linear");
+        expectUnlike(*draw(Full, sun), *full, "fog shows");
+    }
+
+    // What it cannot do it leaves to the fixed functions, and so to the normals of vertices.
+    const auto bulb = [](osg::Group& above, osg::Group& scene)
+    {
+        addLamp(above, scene, 0, {1, -1, 2, 1});
+    };
+    EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, bulb), *draw(CoarseBare, bulb),
+                                         {1.1f / 255, 0.0, 1.1f / 255}, "a lamp with a place"));
+}
+
+TEST_F(TileLight, EffectSceneWithoutEffects)
+{
+    expectAlike(*draw(Coarse, sun, {}, true), *draw(Full, sun), "without effects");
+}
+
+TEST_F(TileLight, UnderEffects)
+{
+    const osg::ref_ptr<VerticalExaggeration> still = new VerticalExaggeration;
+    still->setFactor(1.0000001); // the kit's program, and nothing moves
+    const osg::ref_ptr<osg::Image> full = draw(Full, sun);
+    expectAlike(*draw(Coarse, sun, {still}, true), *full, "kit");
+    expectAlike(*draw(CoarseOfThree, sun, {still}, true), *full, "kit with three channels");
+    expectAlike(*draw(CoarseOfFew, sun, {still}, true), *full, "kit with fewer texels");
+    expectUnlike(*draw(CoarseBare, sun, {still}, true), *full, "kit with vertices alone");
+
+    // The exaggeration turns normals, and has its own in each fragment.
+    const osg::ref_ptr<VerticalExaggeration> steep = new VerticalExaggeration;
+    steep->setFactor(1.8);
+    const osg::ref_ptr<osg::Image> exaggerated = draw(Full, sun, {steep}, true);
+    expectUnlike(*exaggerated, *full, "exaggerated");
+    expectAlike(*draw(Coarse, sun, {steep}, true), *exaggerated, "exaggerated");
+    steep->setRelight(false);
+    const osg::ref_ptr<osg::Image> asBefore = draw(Full, sun, {steep}, true);
+    expectUnlike(*asBefore, *exaggerated, "not lit anew");
+    expectAlike(*draw(Coarse, sun, {steep}, true), *asBefore, "not lit anew");
+}
+
+TEST_F(TileLight, UnderEffectsModesAreKnown)
+{
+    const osg::ref_ptr<VerticalExaggeration> still = new VerticalExaggeration;
+    still->setFactor(1.0000001);
+    // A lamp with a place, and one that is off though it has colours: the kit sees what is in force.
+    const auto bulb = [](osg::Group& above, osg::Group& scene)
+    {
+        addLamp(above, scene, 1, {1, -1, 2, 1});
+        addLamp(above, scene, 0, {-0.8f, -0.3f, 0.6f, 0});
+        scene.getOrCreateStateSet()->setMode(GL_LIGHT0, off);
+    };
+    expectAlike(*draw(Coarse, bulb, {still}, true), *draw(Full, bulb, {still}, true), "a lamp with a place");
+    expectUnlike(*draw(CoarseBare, bulb, {still}, true), *draw(Full, bulb, {still}, true), "vertices alone");
+    const auto unlit = [](osg::Group& above, osg::Group& scene)
+    {
+        sun(above, scene);
+        scene.getOrCreateStateSet()->setMode(GL_LIGHTING, off | osg::StateAttribute::OVERRIDE);
+    };
+    EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, unlit, {still}, true),
+                                         *draw(CoarseBare, unlit, {still}, true), {}, "unlit"));
+}
+
+TEST_F(TileLight, BentAsTheFullMeshIs)
+{
+    const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+    const osg::ref_ptr<osg::Image> full = draw(Full, sun, {bend}, true);
+    EXPECT_GT(differenceOf(*full, *draw(Full, sun)).onlyOne, 0.02); // the bend shows
+    expectAlike(*draw(Coarse, sun, {bend}, true), *full, "bent");
+}
+
+TEST_F(TileLight, AHostsProgramHasTheNormalsOfVertices)
+{
+    const auto host = [](osg::Group& above, osg::Group& scene)
+    {
+        sun(above, scene);
+        const osg::ref_ptr<osg::Program> program = new osg::Program;
+        program->addShader(
+            new osg::Shader(osg::Shader::VERTEX,
+                            "#version 120\n"
+                            "varying vec3 shade;\n"
+                            "void main() { gl_Position = ftransform(); shade = 0.5 * gl_Normal + 0.5; }\n"));
+        program->addShader(new osg::Shader(osg::Shader::FRAGMENT,
+                                           "#version 120\n"
+                                           "varying vec3 shade;\n"
+                                           "void main() { gl_FragColor = vec4(shade, 1.0); }\n"));
+        above.getOrCreateStateSet()->setAttributeAndModes(program, overriding);
+        static_cast<void>(scene);
+    };
+    const osg::ref_ptr<osg::Image> bare = draw(CoarseBare, host);
+    EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, host), *bare, {}, "plain"));
+    EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, host, {}, true), *bare, {}, "scene"));
+    // An empty program that overrides brings the fixed functions back.
+    const auto fixed = [](osg::Group& above, osg::Group& scene)
+    {
+        sun(above, scene);
+        above.getOrCreateStateSet()->setAttributeAndModes(new osg::Program, overriding);
+    };
+    EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, fixed), *draw(CoarseBare, sun), {}, "fixed"));
+}
