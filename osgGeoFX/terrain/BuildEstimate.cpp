@@ -17,13 +17,13 @@ namespace
 namespace fs = std::filesystem;
 
 // Measured on Oahu (smooth, much sea) and on noise of the relief of the Himalaya, with textures by heights and by
-// land cover: bytes after compression, and seconds of one core.
-constexpr double BYTES_PER_POST = 12.0, BYTES_PER_TEXEL = 5.0;
+// land cover: bytes after compression, and seconds of one core. Normals: of the mean of Oahu and Fuji.
+constexpr double BYTES_PER_POST = 12.0, BYTES_PER_TEXEL = 5.0, BYTES_PER_NORMAL = 1.0;
 constexpr double SECONDS_PER_POST = 4e-7, SECONDS_PER_TEXEL = 2.5e-7;
 // What even a plain takes of that: less than this and the disk will be full before the end.
 constexpr double LEAST_SHARE = 0.25;
 // Work files, bytes: heights for each post and what units hand on; heights, covers and distances of the ground's raster.
-constexpr double WORK_PER_POST = 6.0, WORK_PER_GROUND_CELL = 10.0;
+constexpr double WORK_PER_POST = 8.0, WORK_PER_GROUND_CELL = 10.0;
 
 /// The nearest folder above that exists, where the system knows how much room there is.
 fs::path standingFolder(fs::path folder)
@@ -63,7 +63,8 @@ void BuildPlan::chooseEstimate()
         squares += std::pow(4.0, level);
     }
     const double workBytes = posts * WORK_PER_POST + WORK_PER_GROUND_CELL * cells.columns * cells.rows;
-    const double bytes = posts * BYTES_PER_POST + texels * BYTES_PER_TEXEL;
+    const double normals = posts * (std::min(scheme.finestLevel, TilingScheme::normalDepth) + 4.0 / 3.0);
+    const double bytes = posts * BYTES_PER_POST + texels * BYTES_PER_TEXEL + normals * BYTES_PER_NORMAL;
     estimate.samples = static_cast<std::uint64_t>(posts);
     estimate.tiles = static_cast<std::uint64_t>(tiles);
     estimate.levels = scheme.finestLevel + 1;

@@ -311,20 +311,14 @@ TEST_F(TileLight, WhatTheDatabaseProgramSeesOfModes)
     EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, unlit), *draw(CoarseBare, unlit),
                                          {1.1f / 255, 0.0, 1.1f / 255}, "unlit"));
 
-    const auto second = [](osg::Group& above, osg::Group& scene)
-    {
-        addLamp(above, scene, 1, {0.7f, -0.2f, 0.5f, 0});
-    };
-    // Also after lamp 0 has been on: OpenGL keeps its colours.
+    // A lamp that has been on keeps its colours in OpenGL.
     draw(Full, sun);
-    expectAlike(*draw(Coarse, second), *draw(Full, second), "lamp 1 alone");
-
-    const auto both = [&](osg::Group& above, osg::Group& scene)
+    const auto dark = [](osg::Group&, osg::Group& scene)
     {
-        sun(above, scene);
-        second(above, scene);
+        scene.getOrCreateStateSet()->setMode(GL_LIGHTING, on);
     };
-    expectAlike(*draw(Coarse, both), *draw(Full, both), "two lamps");
+    EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, dark), *draw(CoarseBare, dark),
+                                         {1.1f / 255, 0.0, 1.1f / 255}, "no lamp"));
 
     const auto fog = [](osg::Fog::Mode mode)
     {
@@ -346,8 +340,27 @@ TEST_F(TileLight, WhatTheDatabaseProgramSeesOfModes)
         expectAlike(*draw(Coarse, fog(mode)), *full, mode == osg::Fog::EXP ? "fog exp" : "fog linear");
         expectUnlike(*draw(Full, sun), *full, "fog shows");
     }
+}
 
-    // What it cannot do it leaves to the fixed functions, and so to the normals of vertices.
+// Of lamps beside lamp 0 it has what vertices have; and no lamp 0 where there is none.
+TEST_F(TileLight, OtherLampsInPlainOpenSceneGraph)
+{
+    const auto second = [](osg::Group& above, osg::Group& scene)
+    {
+        addLamp(above, scene, 1, {0.7f, -0.2f, 0.5f, 0})->setDiffuse({0.3f, 0.25f, 0.2f, 1});
+    };
+    EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, second), *draw(CoarseBare, second),
+                                         {1.1f / 255, 0.0, 1.1f / 255}, "lamp 1 alone"));
+    const auto both = [&](osg::Group& above, osg::Group& scene)
+    {
+        sun(above, scene);
+        second(above, scene);
+    };
+    const osg::ref_ptr<osg::Image> full = draw(Full, both);
+    const double bare = differenceOf(*draw(CoarseBare, both), *full).mean;
+    EXPECT_GT(bare, 3.0);
+    EXPECT_LT(differenceOf(*draw(Coarse, both), *full).mean, 0.8 * bare);
+    // A lamp with a place: nothing tells a fragment's.
     const auto bulb = [](osg::Group& above, osg::Group& scene)
     {
         addLamp(above, scene, 0, {1, -1, 2, 1});
