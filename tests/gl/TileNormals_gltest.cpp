@@ -4,8 +4,10 @@
 // below an EffectScene.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <tools/CloseUpStage.h>
 #include <tools/GlFixture.h>
 #include <tools/ImageComparison.h>
 #include <tools/TempDir.h>
@@ -15,6 +17,7 @@
 #include <osg/Geometry>
 #include <osg/LightSource>
 #include <osg/Material>
+#include <osg/MatrixTransform>
 #include <osg/Program>
 #include <osg/TexMat>
 #include <osg/Texture2D>
@@ -454,4 +457,89 @@ TEST_F(TileLight, AHostsProgramHasTheNormalsOfVertices)
         above.getOrCreateStateSet()->setAttributeAndModes(new osg::Program, overriding);
     };
     EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, fixed), *draw(CoarseBare, sun), {}, "fixed"));
+}
+
+namespace
+{
+
+/// The ground so many times as large, and at a level, metres; the coarse one with its texture and the database's program.
+osg::ref_ptr<osg::Node> makeLarge(double scale, double level, bool coarse, bool texture,
+                                  osg::StateSet* database)
+{
+    const osg::ref_ptr<osg::Geometry> mesh = makeMesh(coarse ? 8 : 1);
+    if (texture) addNormals(*mesh->getOrCreateStateSet(), 2, 1);
+    const osg::ref_ptr<osg::MatrixTransform> large = new osg::MatrixTransform(
+        osg::Matrixd::scale(scale, scale, scale) * osg::Matrixd::translate(0.0, 0.0, level));
+    large->addChild(mesh);
+    if (texture) large->setStateSet(osg::clone(database, osg::CopyOp::SHALLOW_COPY));
+    osg::ref_ptr<osg::Material> material = new osg::Material;
+    material->setAmbient(osg::Material::FRONT_AND_BACK, {1.0f, 1.0f, 1.0f, 1.0f});
+    material->setDiffuse(osg::Material::FRONT_AND_BACK, {1.0f, 1.0f, 1.0f, 1.0f});
+    large->getOrCreateStateSet()->setAttributeAndModes(material);
+    large->getOrCreateStateSet()->setMode(GL_NORMALIZE, on);
+    return large;
+}
+
+} // namespace
+
+/// The painting of a panorama map goes by the texture, too, light and slopes.
+TEST_F(TileLight, PaintedAsTheFullMeshIs)
+{
+    const auto paint = [&](bool coarse, bool texture)
+    {
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        scene->setTerrainFrame(EffectScene::PROJECTED);
+        const osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
+        map->setViewRadius(3000.0);
+        map->setStrokes(false);
+        map->setReflection(0.0);
+        scene->addEffect(map);
+        scene->addChild(makeLarge(1000.0, 500.0, coarse, texture, _stateOfDatabase));
+        viewer().getCamera()->setViewMatrixAsLookAt({0, -3900, 3000}, {0, 0, 0}, {0, 0, 1});
+        viewer().getCamera()->setProjectionMatrixAsPerspective(40, 1.2, 10, 1e5);
+        return render(scene);
+    };
+    const osg::ref_ptr<osg::Image> full = paint(false, false);
+    const osg::ref_ptr<osg::Image> lit = paint(true, true);
+    const osg::ref_ptr<osg::Image> bare = paint(true, false);
+    const double without = differenceOf(*bare, *full).mean;
+    EXPECT_GT(without, 2.0);
+    // Classes change abruptly with the slope, so single pixels may differ by much.
+    EXPECT_LT(differenceOf(*lit, *full).mean, 0.5 * without);
+    osgDB::writeImageFile(*lit, (geofx::test::testOutputFolder() / "painted.png").string());
+    osgDB::writeImageFile(*full, (geofx::test::testOutputFolder() / "painted full.png").string());
+}
+
+class TileCloseUps : public geofx::test::CloseUpStage
+{
+};
+
+/// Geometry stages, which close-ups have, hand on what fragments need for their light.
+TEST_F(TileCloseUps, AreLitAsTheFullMeshIs)
+{
+    const osg::ref_ptr<osg::StateSet> database = stateOfDatabase();
+    viewer().getCamera()->setClearColor({1, 0, 1, 1});
+    _closeUps->addCloseUp(makeCloseUp({0.0, 0.0}, 700.0, 250.0));
+    const auto show = [&](bool coarse, bool texture)
+    {
+        _scene->removeChildren(0, _scene->getNumChildren());
+        _scene->addChild(makeLarge(250.0, 0.0, coarse, texture, database));
+    };
+    show(false, false);
+    const auto full = drawBoth();
+    show(true, true);
+    const auto lit = drawBoth();
+    show(true, false);
+    const auto bare = drawBoth();
+    for (const bool single : {true, false})
+    {
+        const osg::Image& expected = single ? *full.first : *full.second;
+        const double without = differenceOf(single ? *bare.first : *bare.second, expected).mean;
+        const double with = differenceOf(single ? *lit.first : *lit.second, expected).mean;
+        EXPECT_GT(without, 3.0) << single;
+        // The outlines of the lifted ground, and of the ground behind it, are the geometry's.
+        EXPECT_LT(with, 0.4 * without) << single;
+    }
+    osgDB::writeImageFile(*lit.first, (geofx::test::testOutputFolder() / "single.png").string());
+    osgDB::writeImageFile(*full.first, (geofx::test::testOutputFolder() / "single full.png").string());
 }

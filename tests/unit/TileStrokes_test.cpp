@@ -591,6 +591,51 @@ TEST(StrokeMaker, FilesAndCopiesAreAsIfThereWereNone)
     }
 }
 
+/// A coarse mesh' vertices do not tell of the slopes between them; the tile's texture of normals does.
+TEST(TileStrokes, NormalsAreThoseOfTheTexture)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    const osg::ref_ptr<osg::MatrixTransform> tile = tiles.tile(0.0, 0.0, 2500.0, 2500.0);
+    osg::Geometry& geometry = StrokeTiles::geometryOf(*tile);
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(65, 65, 1, GL_RG, GL_UNSIGNED_BYTE, 1);
+    for (unsigned int row = 0; row < 65; ++row)
+        for (unsigned int column = 0; column < 65; ++column)
+        {
+            // Steep to the east in the eastern half.
+            image->data(column, row)[0] = column < 32 ? 128 : 128 - 102;
+            image->data(column, row)[1] = 128;
+        }
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
+    geometry.getOrCreateStateSet()->setTextureAttribute(2, texture);
+    const auto normals = [&](const char* name)
+    {
+        texture->setName(name);
+        const auto strokes = TileStrokes::make(geometry, tile->getMatrix(), {}, nullptr);
+        std::vector<std::pair<osg::Vec3d, osg::Vec3d>> result;
+        const auto& places = static_cast<const osg::Vec3Array&>(*strokes->points()->getVertexArray());
+        const auto& shorts = static_cast<const osg::Vec3sArray&>(*strokes->points()->getNormalArray());
+        for (std::size_t i = 0; i < places.size(); ++i)
+            result.emplace_back(places[i], osg::Vec3d(shorts[i].x(), shorts[i].y(), shorts[i].z()) / 32767.0);
+        return result;
+    };
+    int steep = 0, level = 0;
+    for (const auto& [place, normal] : normals("geofx normals"))
+    {
+        if (std::abs(place.x()) < 40.0) continue;
+        const osg::Vec3d expected =
+            place.x() < 0.0 ? osg::Vec3d(0, 0, 1) : osg::Vec3d(-102, 0, 75.66) / 127.0;
+        EXPECT_LT((normal - expected).length(), 0.01) << place.x();
+        ++(place.x() < 0.0 ? level : steep);
+    }
+    EXPECT_GT(steep, 1000);
+    EXPECT_GT(level, 1000);
+    // Another texture there is not one of normals.
+    for (const auto& [place, normal] : normals("another"))
+        EXPECT_LT((normal - osg::Vec3d(0, 0, 1)).length(), 0.01) << place.x();
+}
+
 TEST(StrokeMaker, StrokesGoWithTheirTile)
 {
     StrokeTiles tiles;
