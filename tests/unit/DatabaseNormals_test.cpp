@@ -203,38 +203,49 @@ TEST(DatabaseNormals, NoSeams)
     expectNoSeams(o.output, unit);
 }
 
-/// On levels with fewer texels than there are posts below, slopes are means of those around.
+/// On levels with fewer texels than there are posts below, slopes are means of those around; also where a unit of work hands them to
+/// the tier above, which it does for tiles of 8 cells.
 TEST(DatabaseNormals, CoarserLevelsAreSmooth)
 {
     const TempDir folder;
     const auto dem = writeRelief(folder / "dem.tif", 129, 129, 600000.0, 2400000.0, 60.0, "EPSG:32604");
-    const auto o = planeOptions(dem, folder / "db", 16);
-    buildDatabase(o);
-    const Ground ground(o.output);
-    ASSERT_EQ(DatabaseRoot(o.output).finestLevel(), 3);
-    int compared = 0;
-    readDatabase(o.output,
-                 [&](const DatabaseTile& tile)
-                 {
-                     if (tile.level > 0) return;
-                     const osg::Image* image = tile.image(unit);
-                     ASSERT_EQ(image->s(), 65);
-                     for (int row = 2; row < 63; ++row)
-                         for (int column = 2; column < 63; ++column)
-                         {
-                             osg::Vec3d sum;
-                             for (int y = -1; y <= 1; ++y)
-                                 for (int x = -1; x <= 1; ++x)
-                                 {
-                                     const osg::Vec3d each = *ground.normal(2 * column + x, 2 * row + y);
-                                     sum += each / each.z() * ((x ? 1.0 : 2.0) * (y ? 1.0 : 2.0));
-                                 }
-                             sum.normalize();
-                             EXPECT_LT(degreesBetween(decoded(*image, column, row), sum), 0.6);
-                             ++compared;
-                         }
-                 });
-    EXPECT_EQ(compared, 61 * 61);
+    for (const int tileSize : {16, 8})
+    {
+        SCOPED_TRACE(tileSize);
+        const auto o = planeOptions(dem, folder / std::to_string(tileSize), tileSize);
+        buildDatabase(o);
+        const Ground ground(o.output);
+        ASSERT_EQ(ground.finest.columns, 129);
+        int compared = 0;
+        readDatabase(o.output,
+                     [&](const DatabaseTile& tile)
+                     {
+                         if (tile.level > 0) return;
+                         const osg::Image* image = tile.image(unit);
+                         ASSERT_EQ(image->s(), 4 * tileSize + 1);
+                         const int step = 128 / (4 * tileSize), middle = 2 * tileSize;
+                         for (int row = 2; row < 4 * tileSize - 1; ++row)
+                             for (int column = 2; column < 4 * tileSize - 1; ++column)
+                             {
+                                 // A unit's border is smoothed along itself alone.
+                                 if (row == middle || column == middle) continue;
+                                 osg::Vec3d sum;
+                                 for (int y = 1 - step; y < step; ++y)
+                                     for (int x = 1 - step; x < step; ++x)
+                                     {
+                                         const osg::Vec3d each =
+                                             *ground.normal(step * column + x, step * row + y);
+                                         sum +=
+                                             each / each.z() * ((step - std::abs(x)) * (step - std::abs(y)));
+                                     }
+                                 sum.normalize();
+                                 EXPECT_LT(degreesBetween(decoded(*image, column, row), sum), 0.6)
+                                     << column << " " << row;
+                                 ++compared;
+                             }
+                     });
+        EXPECT_EQ(compared, (4 * tileSize - 4) * (4 * tileSize - 4));
+    }
 }
 
 /// At the posts of a finest tile the texels say what its vertices do, also where colours are denser than posts.
