@@ -106,6 +106,8 @@ osg::ref_ptr<osg::Group> bentBeforehand(const osg::Group& tiles, const osgGeoFX:
                                         const osg::Matrixd& view)
 {
     osg::ref_ptr<osg::Group> result = new osg::Group;
+    // The meshes of a tile have their vertices in common.
+    std::map<const osg::Array*, osg::ref_ptr<osg::Vec3Array>> known;
     for (unsigned int i = 0; i < tiles.getNumChildren(); ++i)
     {
         const auto* tile = dynamic_cast<const osg::MatrixTransform*>(tiles.getChild(i));
@@ -114,9 +116,13 @@ osg::ref_ptr<osg::Group> bentBeforehand(const osg::Group& tiles, const osgGeoFX:
         if (!vertices) continue;
         const osg::Matrixd modelView = tile->getMatrix() * view;
         const osg::Matrixd back = osg::Matrixd::inverse(modelView);
-        const osg::ref_ptr<osg::Vec3Array> moved = new osg::Vec3Array;
-        for (const osg::Vec3& vertex : *vertices)
-            moved->push_back(chain.deform(osg::Vec3d(vertex) * modelView) * back);
+        osg::ref_ptr<osg::Vec3Array>& moved = known[vertices];
+        if (!moved)
+        {
+            moved = new osg::Vec3Array;
+            for (const osg::Vec3& vertex : *vertices)
+                moved->push_back(chain.deform(osg::Vec3d(vertex) * modelView) * back);
+        }
         const osg::ref_ptr<osg::Geometry> bent = new osg::Geometry(*mesh, osg::CopyOp::SHALLOW_COPY);
         bent->setVertexArray(moved);
         const osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(tile->getMatrix());

@@ -52,8 +52,9 @@ public:
     void apply(osg::MatrixTransform& node) override
     {
         const std::optional<osgGeoFX::TileInfo> tile = osgGeoFX::TileInfo::read(node);
-        if (tile && node.getNumChildren() == 1 && node.getChild(0)->asGeometry())
-            add(*tile, node.getMatrix(), *node.getChild(0)->asGeometry());
+        const osg::ref_ptr<osg::Geometry> ground = tile ? osgGeoFX::TileInfo::ground(node) : nullptr;
+        if (ground)
+            add(*tile, node.getMatrix(), *ground);
         else
             traverse(node);
     }
@@ -71,19 +72,6 @@ const Array& as(const osg::Array* array)
             "A tile's arrays are not those that this version of osggeofx_build writes; build the "
             "database again.");
     return *typed;
-}
-
-/// Posts of a finest tile, a square grid before the skirt's posts.
-unsigned int postsOf(const osg::Vec2Array& coordinates)
-{
-    unsigned int columns = 0;
-    while (columns < coordinates.size() && coordinates[columns].y() == coordinates[0].y())
-        ++columns;
-    if (columns < 2 || columns * columns >= coordinates.size())
-        throw BenchError(
-            "A finest tile is not a grid with a skirt; build the database again with this version's "
-            "osggeofx_build.");
-    return columns * columns;
 }
 
 class Merger : public TileVisitor
@@ -164,7 +152,7 @@ private:
         const auto& vertices = as<osg::Vec3Array>(geometry.getVertexArray());
         const auto& normals = as<osg::Vec3sArray>(geometry.getNormalArray());
         const auto& coordinates = as<osg::Vec2Array>(geometry.getTexCoordArray(0));
-        const unsigned int posts = postsOf(coordinates);
+        const auto posts = static_cast<unsigned int>(tile.posts);
         const auto first = static_cast<GLuint>(_vertices->size());
         const double across = 1 << _finestLevel;
         for (unsigned int i = 0; i < posts; ++i)
@@ -185,8 +173,6 @@ private:
             for (unsigned int i = 0; i + 2 < set->getNumIndices(); i += 3)
             {
                 const unsigned int corners[] = {set->index(i), set->index(i + 1), set->index(i + 2)};
-                const bool ground = corners[0] < posts && corners[1] < posts && corners[2] < posts;
-                if (!ground) continue;
                 for (const unsigned int corner : corners)
                     _elements->push_back(first + corner);
             }

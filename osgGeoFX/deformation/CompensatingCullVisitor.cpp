@@ -235,6 +235,8 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
 void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task)
 {
     begin(outer, task);
+    for (DrawableCompanion* each : task.companions)
+        each->start();
     if (task.state) pushStateSet(task.state);
     if (task.passState) pushStateSet(task.passState);
     _top = _currentStateGraph;
@@ -591,17 +593,16 @@ bool CompensatingCullVisitor::witnessInSight(const osg::Drawable& drawable, EyeF
 
 bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
 {
-    // Its sphere is wide for a flat tile; the mesh that stands for it has a box.
+    // Its sphere is wide for a flat tile, which has a box.
     const osg::Transform* tile = _task.tileError > 0.0 ? TileInfo::coarseOf(node) : nullptr;
-    if (!tile || tile->getNumChildren() != 1) return false;
-    const osg::Drawable* mesh = tile->getChild(0)->asDrawable();
-    if (!mesh || !mesh->getBoundingBox().valid()) return false;
+    osg::BoundingBoxd tileBox;
+    if (!tile || !TileInfo::readBox(*tile, tileBox)) return false;
     osg::Matrixd matrix = *getModelViewMatrix();
     tile->computeLocalToWorldMatrix(matrix, this);
     const double range = static_cast<double>(node.getMaxRange(1));
     const double error =
         std::max(0.0, range - static_cast<double>(node.getBound().radius())) * _task.tileError;
-    osg::BoundingBox bounds = mesh->getBoundingBox();
+    osg::BoundingBox bounds(osg::Vec3(tileBox._min), osg::Vec3(tileBox._max));
     const osg::Vec3 more(osg::Vec3d(error, error, error));
     bounds._min -= more;
     bounds._max += more;

@@ -46,6 +46,8 @@ protected:
 class DrawableCompanion
 {
 public:
+    /// A traversal begins.
+    virtual void start() {}
     /// Null where there is nothing to be drawn with it.
     virtual osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) = 0;
     /// With which it is drawn, below the effects' uniforms; the drawable's own state does not count.

@@ -139,13 +139,28 @@ bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
 
 double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
 {
-    if (_tileEdge <= 0.0 || !TileInfo::coarseOf(node)) return HUGE_VAL;
+    if (_tileEdge <= 0.0 || _frames.empty()) return HUGE_VAL;
+    if (!TileInfo::coarseOf(node)) return blockLimit(node, ball);
     const double share = longestEdge(ball) / (_tileEdge * ball.radius);
     if (!(share < 1.0)) return HUGE_VAL;
     // An edge misses its curve by its square. So to a pager the finer tiles are as urgent as those of relief that is as many times
     // too coarse; a sea far too coarse for a bend that is new would else wait for relief that is nearly right.
     constexpr double least = 0.001, most = 0.999;
     return std::clamp(share * share, least, most) * static_cast<double>(node.getMaxRange(1));
+}
+
+/// Within it, the block's mesh has edges that are short enough.
+double DeformationChain::blockLimit(const osg::LOD& node, const Ball& ball) const
+{
+    const osg::Vec2Array* meshes = TileInfo::meshesOf(node);
+    if (!meshes) return HUGE_VAL;
+    const double longest = longestEdge(ball);
+    unsigned int child = node.getNumChildren();
+    while (child > 0 && static_cast<double>((*meshes)[child - 1].x()) > longest)
+        --child;
+    if (child == node.getNumChildren()) return HUGE_VAL;
+    constexpr double within = 0.999;
+    return within * static_cast<double>(node.getMaxRange(std::max(child, 1u) - 1));
 }
 
 double DeformationChain::longestEdge(const Ball& ball) const

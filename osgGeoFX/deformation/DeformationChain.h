@@ -53,7 +53,8 @@ public:
     /// what LOD ranges are compared with. `viewPoint` is in eye space.
     double lodDistance(const Ball& ball, const osg::Vec3d& viewPoint) const;
     /// What is to be taken in the place of distances that are larger, LOD scale included, for the levels of detail of a node with
-    /// this ball: where a tile's triangles are too large for the deformation, one at which finer ones are due, else infinite.
+    /// this ball: where the triangles of a tile, or of a mesh of one of its blocks, are too large for the deformation, one at
+    /// which finer ones are due, else infinite.
     double lodLimit(const osg::LOD& node, const Ball& ball) const;
     /// By how much lodDistance() asks for more detail than the distance to the deformed ball alone.
     double detail(const Ball& ball) const;
@@ -66,6 +67,8 @@ private:
 
     std::vector<osg::ref_ptr<const DeformationFrame>> _frames;
     double _tileEdge = 0.0;
+    double blockLimit(const osg::LOD& node, const Ball& ball) const;
+
     double _tileError = 0.0;
 };
 

@@ -28,7 +28,7 @@ struct FineTile
     TileInfo info;
     osg::Matrixd toWorld;
     osg::ref_ptr<const osg::Vec3Array>
-        vertices;           ///< its posts row by row from the south-west, then the skirt's
+        vertices;           ///< its posts row by row from the south-west, then lower ends of walls
     std::vector<bool> used; ///< by the triangles of the surface
     int cells = 0;          ///< along its edge
 };
@@ -55,45 +55,28 @@ public:
     void apply(osg::Transform& transform) override
     {
         const std::optional<TileInfo> info = TileInfo::read(transform);
-        const osg::Geometry* geometry =
-            info && transform.getNumChildren() > 0 ? transform.getChild(0)->asGeometry() : nullptr;
-        const auto* vertices =
-            geometry ? dynamic_cast<const osg::Vec3Array*>(geometry->getVertexArray()) : nullptr;
-        if (!vertices || vertices->size() < 4 || geometry->getNumPrimitiveSets() == 0)
+        const osg::ref_ptr<osg::Geometry> ground = info ? TileInfo::ground(transform) : nullptr;
+        const auto* vertices = ground ? dynamic_cast<const osg::Vec3Array*>(ground->getVertexArray()) : nullptr;
+        if (!vertices || vertices->size() < static_cast<std::size_t>(info->posts))
         {
-            traverse(transform);
+            if (!info) traverse(transform);
             return;
         }
         FineTile tile;
         tile.info = *info;
         tile.vertices = vertices;
         transform.computeLocalToWorldMatrix(tile.toWorld, nullptr);
-        // The skirt has fewer vertices than another row of posts on each side.
-        tile.cells = 1;
-        while (postsOf(2 * tile.cells) <= vertices->size())
-            tile.cells *= 2;
-        const auto posts = static_cast<unsigned int>(postsOf(tile.cells));
-        tile.used.resize(posts);
-        const osg::PrimitiveSet& triangles = *geometry->getPrimitiveSet(0);
-        for (unsigned int i = 0; i + 2 < triangles.getNumIndices(); i += 3)
-        {
-            const unsigned int corners[] = {triangles.index(i), triangles.index(i + 1),
-                                            triangles.index(i + 2)};
-            if (*std::max_element(std::begin(corners), std::end(corners)) >= posts) continue; // of the skirt
-            for (const unsigned int corner : corners)
-                tile.used[corner] = true;
-        }
+        tile.cells = static_cast<int>(std::lround(std::sqrt(info->posts))) - 1;
+        tile.used.resize(static_cast<std::size_t>(info->posts));
+        const osg::PrimitiveSet& triangles = *ground->getPrimitiveSet(0);
+        for (unsigned int i = 0; i < triangles.getNumIndices(); ++i)
+            tile.used[triangles.index(i)] = true;
         tiles.push_back(std::move(tile));
     }
 
     std::vector<FineTile> tiles;
     std::vector<std::string> files;
 
-private:
-    static std::size_t postsOf(int cells)
-    {
-        return static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1);
-    }
 };
 
 } // namespace

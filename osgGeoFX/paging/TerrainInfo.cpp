@@ -3,6 +3,7 @@
 #include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <osg/CoordinateSystemNode>
+#include <osg/Geometry>
 #include <osg/LOD>
 #include <osg/MatrixTransform>
 #include <osg/NodeVisitor>
@@ -39,6 +40,43 @@ public:
     }
 
     const osg::Node* found = nullptr;
+};
+
+/// Puts the finest meshes of a tile's blocks together, without walls.
+class FindGround : public osg::NodeVisitor
+{
+public:
+    FindGround() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
+
+    void apply(osg::LOD& block) override
+    {
+        const osg::Vec2Array* meshes = TileInfo::meshesOf(block);
+        if (!meshes || meshes->empty()) return;
+        // The nearest one comes first.
+        if (const osg::Geometry* mesh = block.getChild(0)->asGeometry())
+            add(*mesh, static_cast<unsigned int>(meshes->front().y()));
+        else
+            block.getChild(0)->accept(*this);
+    }
+
+    osg::ref_ptr<osg::Geometry> ground;
+
+private:
+    void add(const osg::Geometry& mesh, unsigned int indices)
+    {
+        if (!ground)
+        {
+            ground = new osg::Geometry(mesh, osg::CopyOp::SHALLOW_COPY);
+            ground->removePrimitiveSet(0, ground->getNumPrimitiveSets());
+            _elements = new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES);
+            ground->addPrimitiveSet(_elements);
+        }
+        const osg::PrimitiveSet& set = *mesh.getPrimitiveSet(0);
+        for (unsigned int i = 0; i < std::min(indices, set.getNumIndices()); ++i)
+            _elements->push_back(set.index(i));
+    }
+
+    osg::ref_ptr<osg::DrawElementsUInt> _elements;
 };
 
 } // namespace
@@ -124,7 +162,45 @@ std::optional<TileInfo> TileInfo::read(const osg::Node& node)
     {
         return std::nullopt;
     }
+    node.getUserValue("geofx.posts", info.posts);
     return info;
+}
+
+bool TileInfo::readBox(const osg::Transform& tile, osg::BoundingBoxd& box)
+{
+    const osg::UserDataContainer* data = tile.getUserDataContainer();
+    if (!data || data->getNumUserObjects() < 2) return false;
+    // The builder writes these two first.
+    const auto* low = dynamic_cast<const osg::Vec3dValueObject*>(data->getUserObject(0));
+    const auto* high = dynamic_cast<const osg::Vec3dValueObject*>(data->getUserObject(1));
+    if (!low || !high) return false;
+    box._min = low->getValue();
+    box._max = high->getValue();
+    return box.valid();
+}
+
+const osg::Vec2Array* TileInfo::meshesOf(const osg::LOD& block)
+{
+    const auto* meshes = dynamic_cast<const osg::Vec2Array*>(block.getUserData());
+    return meshes && meshes->size() == block.getNumChildren() ? meshes : nullptr;
+}
+
+const osg::Transform* TileInfo::tileOf(const osg::Geometry& mesh)
+{
+    const osg::LOD* block =
+        mesh.getNumParents() > 0 ? dynamic_cast<const osg::LOD*>(mesh.getParent(0)) : nullptr;
+    if (!block || !meshesOf(*block)) return nullptr;
+    for (const osg::Node* node = block; node; node = node->getNumParents() > 0 ? node->getParent(0) : nullptr)
+        if (isTile(*node)) return node->asTransform();
+    return nullptr;
+}
+
+osg::ref_ptr<osg::Geometry> TileInfo::ground(const osg::Transform& tile)
+{
+    FindGround finder;
+    for (unsigned int i = 0; i < tile.getNumChildren(); ++i)
+        const_cast<osg::Node*>(tile.getChild(i))->accept(finder);
+    return finder.ground;
 }
 
 float lodScaleFor(const TerrainInfo& info, double pixelsPerRadian)

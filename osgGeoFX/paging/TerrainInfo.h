@@ -5,6 +5,8 @@
 #include <osgGeoFX/Export.h>
 
 #include <osg/Array>
+#include <osg/BoundingBox>
+#include <osg/Geometry>
 #include <osg/LOD>
 #include <osg/Transform>
 #include <osg/Vec3d>
@@ -64,12 +66,24 @@ struct OSGGEOFX_EXPORT TileInfo
     int y = 0;
     osg::Vec3d boxMin; ///< in the tile's local frame
     osg::Vec3d boxMax;
+    int posts =
+        0; ///< its first vertices; the others are lower ends of walls. 0 where it has no ground of its own
 
     /// Whether the node is a tile's transform, by its name.
     static bool isTile(const osg::Node& node);
     /// The tile that a node shows from afar, where it has finer ones; else null.
     static const osg::Transform* coarseOf(const osg::LOD& node);
     static std::optional<TileInfo> read(const osg::Node& node);
+    /// The box of a tile's transform, without a look at its name; false where it has none.
+    static bool readBox(const osg::Transform& tile, osg::BoundingBoxd& box);
+    /// The tile that a mesh of a block belongs to; null for other geometries.
+    static const osg::Transform* tileOf(const osg::Geometry& mesh);
+    /// The ground of a tile as one geometry, with its finest meshes and without walls; it shares arrays and state with
+    /// them. Null where the tile has none. No other thread may change the tile meanwhile.
+    static osg::ref_ptr<osg::Geometry> ground(const osg::Transform& tile);
+    /// Of each child of a tile's block: how long the longest edge of its ground is, metres, and how many of its mesh's
+    /// indices are the ground's; walls follow. Both are 0 for finer blocks. Null where the node is not a block of a tile.
+    static const osg::Vec2Array* meshesOf(const osg::LOD& block);
 };
 
 /** The LOD scale at which a database keeps its error bound on a screen: never above 1, which would coarsen it.

@@ -50,7 +50,7 @@ enum class Cell : unsigned char
     WATER
 };
 
-/// The coarsest tile's geometry, and where it lies.
+/// The coarsest tile's ground, and where it lies.
 class FindTile : public osg::NodeVisitor
 {
 public:
@@ -58,28 +58,24 @@ public:
 
     void apply(osg::Transform& transform) override
     {
+        if (geometry) return;
         const std::optional<TileInfo> info = TileInfo::read(transform);
-        const bool coarsest = info && info->level == 0;
-        if (coarsest) transform.computeLocalToWorldMatrix(toWorld, this);
-        _inside = coarsest;
-        if (!geometry) traverse(transform);
-        _inside = false;
+        if (!info || info->level != 0)
+        {
+            traverse(transform);
+            return;
+        }
+        transform.computeLocalToWorldMatrix(toWorld, this);
+        geometry = TileInfo::ground(transform);
     }
     void apply(osg::LOD& node) override
     {
         // Finer tiles come later; they need not be looked at.
         if (!geometry && node.getNumChildren() > 0) node.getChild(0)->accept(*this);
     }
-    void apply(osg::Geometry& found) override
-    {
-        if (_inside && !geometry) geometry = &found;
-    }
 
     osg::ref_ptr<osg::Geometry> geometry;
     osg::Matrixd toWorld;
-
-private:
-    bool _inside = false;
 };
 
 struct Triangles

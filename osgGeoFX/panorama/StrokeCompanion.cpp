@@ -95,7 +95,8 @@ osg::Drawable* StrokeCompanion::companion(osg::Drawable& drawable, const osg::Ma
     if (!strokes) return nullptr;
     osg::observer_ptr<osg::Drawable>& known = _drawn[strokes];
     if (!known.valid()) known = strokes;
-    return strokes;
+    // The meshes of a tile have them in common.
+    return _given.insert(strokes).second ? strokes : nullptr;
 }
 
 void StrokeCompanion::forgetGone()

@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 
 namespace osgGeoFX
 {
@@ -24,6 +25,7 @@ public:
     /// For one frame. False where there is nothing to be drawn.
     bool begin(const ScenePass& pass, const PanoramaMap& map, StrokeMaker& maker);
 
+    void start() override { _given.clear(); }
     osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) override;
     osg::StateSet* state() override { return _state; }
     double reach() const override { return _reach; }
@@ -40,6 +42,7 @@ private:
     unsigned int _coverUnit = 0;
     double _reach = 0.0; ///< pixels from a stroke's foot to its end, at most
     std::map<const osg::Drawable*, osg::observer_ptr<osg::Drawable>> _drawn; ///< all strokes so far, and
+    std::set<const osg::Drawable*> _given;                                   ///< in the traversal under way
     std::size_t _remembered = 0; ///< how many lived when last looked
 };
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/StrokeMaker.h>
 
+#include <osgGeoFX/paging/TerrainInfo.h>
+
 #include <osg/MatrixTransform>
 #include <osg/NodeVisitor>
 #include <osg/UserDataContainer>
@@ -20,6 +22,13 @@ std::mutex& userDataMutex()
 {
     static std::mutex mutex;
     return mutex;
+}
+
+/// What the strokes of a geometry are kept with: the meshes of a terrain tile have them in common, with their vertices.
+osg::Object& keeperOf(osg::Geometry& terrain)
+{
+    if (terrain.getVertexArray() && TileInfo::tileOf(terrain)) return *terrain.getVertexArray();
+    return terrain;
 }
 
 /// A tile that stands in more places than these loses the strokes of the first ones.
@@ -50,7 +59,7 @@ public:
         _maker.strokes(geometry, _toWorld);
         if (!_ofPager) return;
         const std::lock_guard<std::mutex> lock(userDataMutex());
-        TileStrokes* made = _maker.known(geometry, _toWorld, _maker.getParameters());
+        TileStrokes* made = _maker.known(keeperOf(geometry), _toWorld, _maker.getParameters());
         if (made) made->_above = _above;
     }
 
@@ -84,10 +93,10 @@ StrokeParameters StrokeMaker::getParameters() const
 }
 
 /// Those of a place that are there already; they are this maker's, too, from now on. Under the lock of the user data.
-TileStrokes* StrokeMaker::known(const osg::Geometry& terrain, const osg::Matrixd& toWorld,
+TileStrokes* StrokeMaker::known(const osg::Object& keeper, const osg::Matrixd& toWorld,
                                 const StrokeParameters& parameters) const
 {
-    const osg::UserDataContainer* data = terrain.getUserDataContainer();
+    const osg::UserDataContainer* data = keeper.getUserDataContainer();
     for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
     {
         auto* strokes = const_cast<TileStrokes*>(dynamic_cast<const TileStrokes*>(data->getUserObject(i)));
@@ -104,10 +113,10 @@ TileStrokes* StrokeMaker::known(const osg::Geometry& terrain, const osg::Matrixd
     return nullptr;
 }
 
-/// Takes strokes into a geometry, and those away that no maker wants any more. Under the lock of the user data.
-void StrokeMaker::keep(osg::Geometry& terrain, TileStrokes& strokes) const
+/// Takes strokes to what keeps them, and those away that no maker wants any more. Under the lock of the user data.
+void StrokeMaker::keep(osg::Object& keeper, TileStrokes& strokes) const
 {
-    osg::UserDataContainer* data = terrain.getOrCreateUserDataContainer();
+    osg::UserDataContainer* data = keeper.getOrCreateUserDataContainer();
     int places = 1;
     for (unsigned int i = data->getNumUserObjects(); i-- > 0;)
     {
@@ -129,9 +138,9 @@ void StrokeMaker::keep(osg::Geometry& terrain, TileStrokes& strokes) const
 }
 
 /// Where the pager's strokes are of another place, there is a transform above its tiles. Under the lock of the user data.
-void StrokeMaker::learn(const osg::Geometry& terrain, const osg::Matrixd& toWorld) const
+void StrokeMaker::learn(const osg::Object& keeper, const osg::Matrixd& toWorld) const
 {
-    const osg::UserDataContainer* data = terrain.getUserDataContainer();
+    const osg::UserDataContainer* data = keeper.getUserDataContainer();
     for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
     {
         auto* strokes = const_cast<TileStrokes*>(dynamic_cast<const TileStrokes*>(data->getUserObject(i)));
@@ -175,16 +184,20 @@ void StrokeMaker::furnishBelow(osg::Node& tile, const osg::Matrixd& above, bool 
 osg::ref_ptr<osg::Geometry> StrokeMaker::strokes(osg::Geometry& terrain, const osg::Matrixd& toWorld) const
 {
     const StrokeParameters parameters = getParameters();
+    osg::Object& keeper = keeperOf(terrain);
     {
         const std::lock_guard<std::mutex> lock(userDataMutex());
-        if (const TileStrokes* strokes = known(terrain, toWorld, parameters)) return strokes->points();
+        if (const TileStrokes* strokes = known(keeper, toWorld, parameters)) return strokes->points();
     }
     // Not under the lock. Where two threads make the same ones, the first's are kept.
-    const osg::ref_ptr<TileStrokes> made = TileStrokes::make(terrain, toWorld, parameters, _ellipsoid.get());
+    const osg::Transform* tile = TileInfo::tileOf(terrain);
+    const osg::ref_ptr<osg::Geometry> ground = tile ? TileInfo::ground(*tile) : nullptr;
+    const osg::ref_ptr<TileStrokes> made =
+        TileStrokes::make(ground ? *ground : terrain, toWorld, parameters, _ellipsoid.get());
     const std::lock_guard<std::mutex> lock(userDataMutex());
-    if (const TileStrokes* strokes = known(terrain, toWorld, parameters)) return strokes->points();
-    learn(terrain, toWorld);
-    keep(terrain, *made);
+    if (const TileStrokes* strokes = known(keeper, toWorld, parameters)) return strokes->points();
+    learn(keeper, toWorld);
+    keep(keeper, *made);
     return made->points();
 }
 

@@ -43,7 +43,8 @@ public:
     /// Below transforms that strokes() has seen above the tiles.
     void tileRead(osg::Node& tile) override;
 
-    /// The strokes of one geometry, made where it has none yet or outdated ones. Null where nothing is to be drawn. `toWorld` is the
+    /// The strokes of one geometry, made where it has none yet or outdated ones; a mesh of a terrain tile has those of the whole
+    /// tile. Null where nothing is to be drawn. `toWorld` is the
     /// way from the geometry's frame. Threads that cull may ask for the same geometry at once.
     osg::ref_ptr<osg::Geometry> strokes(osg::Geometry& terrain, const osg::Matrixd& toWorld) const;
 
@@ -53,10 +54,10 @@ protected:
 private:
     class Furnisher;
 
-    TileStrokes* known(const osg::Geometry& terrain, const osg::Matrixd& toWorld,
+    TileStrokes* known(const osg::Object& keeper, const osg::Matrixd& toWorld,
                        const StrokeParameters& parameters) const;
-    void keep(osg::Geometry& terrain, TileStrokes& strokes) const;
-    void learn(const osg::Geometry& terrain, const osg::Matrixd& toWorld) const;
+    void keep(osg::Object& keeper, TileStrokes& strokes) const;
+    void learn(const osg::Object& keeper, const osg::Matrixd& toWorld) const;
     void furnishBelow(osg::Node& tile, const osg::Matrixd& above, bool ofPager);
 
     const osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;

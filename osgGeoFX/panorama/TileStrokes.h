@@ -17,7 +17,7 @@
 namespace osgGeoFX
 {
 
-/** The brush strokes of a tile's geometry, among the user objects of that geometry: points that
+/** The brush strokes of a geometry, among its user objects, or of a terrain tile, among those of its vertices: points that
     shaders/stages/panorama.strokes.* draw. Immutable once made.
 
     The points' arrays, in the frame of the tile's geometry:

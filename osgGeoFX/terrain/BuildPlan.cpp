@@ -349,11 +349,21 @@ const TileFacts& BuildPlan::fact(const TileKey& key) const
 
 double BuildPlan::tolerance(int level) const
 {
-    // Where a tile is due, its edge then is two pixels long for each pixel of error, so that relief and texture ask
-    // for finer tiles at about the same distance. Finest tiles have all their posts, which is costly: what stands
-    // above them is twice as good, and they stay away twice as long.
-    const int factor = std::min(2, scheme.finestLevel - level);
-    return factor * options.pixelError * scheme.tileMetres(level) / options.pixelsPerRadian;
+    // Where its children are due, a tile's edge then is two pixels long for each pixel of error, so that relief and
+    // texture ask for them at about the same distance.
+    return 2.0 * options.pixelError * scheme.tileMetres(level) / options.pixelsPerRadian;
+}
+
+double BuildPlan::finestError(int level) const
+{
+    // Errors of edges and of those that they are split into add up, but hardly ever to more.
+    return level == scheme.finestLevel ? 0.0 : 1.5 * tolerance(level);
+}
+
+double BuildPlan::largestError(int level) const
+{
+    // From twice as far as where the parent takes over a tile needs no coarser meshes.
+    return 4.0 * tolerance(level);
 }
 
 double BuildPlan::skirt(const TileKey& key, int side) const
@@ -381,9 +391,13 @@ double BuildPlan::skirt(const TileKey& key, int side) const
         const bool towardsEnd = dx + dy > 0;
         if (self.level == 0 || (!seam && (place % 2 == 1) != towardsEnd)) break;
     }
+    return other + leastSkirt(key.level);
+}
+
+double BuildPlan::leastSkirt(int level) const
+{
     // Rounding alone opens hair lines between meshes of different density, even in a plain.
-    const double least = 0.5 + 0.02 * scheme.tileMetres(key.level) / scheme.intervals;
-    return static_cast<double>(fact(key).error) + other + least;
+    return 0.5 + 0.02 * scheme.tileMetres(level) / scheme.intervals;
 }
 
 int BuildPlan::validColumns(const Unit& unit) const

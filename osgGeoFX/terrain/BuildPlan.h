@@ -24,9 +24,11 @@ struct TileFacts
     float minHeight = 0.0f, maxHeight = 0.0f; ///< of the finest posts below it, metres
     float latticeError =
         0.0f; ///< what the lattice that its mesh is made from misses of the finest heights, metres
-    float rootError = 0.0f;  ///< of a unit's root: what its own posts miss of the finest heights, metres
-    float error = 0.0f;      ///< bound of the vertical distance between its mesh and the finest one, metres
-    float skirtBelow = 0.0f; ///< the deepest skirt of the tile and all below it, metres
+    float rootError = 0.0f; ///< of a unit's root: what its own posts miss of the finest heights, metres
+    float error =
+        0.0f; ///< bound of the vertical distance between its finest mesh and the finest of all, metres
+    float skirtBelow =
+        0.0f; ///< the deepest wall of the tile and all below it, below the lowest ground, metres
     std::int32_t voids =
         0; ///< of a unit's root: its posts lack heights within a raster's rectangle (VoidState)
     std::int32_t any = 0; ///< it has at least one post with data
@@ -79,11 +81,18 @@ public:
     std::vector<std::vector<TileFacts>> facts;
     TileFacts& fact(const TileKey& key);
     const TileFacts& fact(const TileKey& key) const;
-    /// Depth of the skirt on a tile's side (0 south, 1 east, 2 north, 3 west), metres.
+    /// How far below a mesh's own error the walls on a tile's side (0 south, 1 east, 2 north, 3 west) reach at least, metres:
+    /// to the finest meshes of all tiles that can stand there, while finer ones are on their way. 0 where none can.
     double skirt(const TileKey& key, int side) const;
+    double leastSkirt(int level) const; ///< where all is even, metres
 
-    /// The vertical error that a level's meshes are made with, metres; 0 on the finest.
+    /// The vertical error that the finest meshes of a level are made with, metres; the finest level's have all posts
+    /// instead.
     double tolerance(int level) const;
+    /// Bounds of the vertical error of a level's finest meshes and of all of them, metres, from the heights that they are
+    /// made of.
+    double finestError(int level) const;
+    double largestError(int level) const;
 
     /// Points of a unit's lattice that lie on the extent; those beyond repeat the last of them.
     int validColumns(const Unit& unit) const;

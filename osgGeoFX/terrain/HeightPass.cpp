@@ -98,7 +98,7 @@ TileFacts gatheredFacts(const BuildPlan& plan, const Unit& unit, const TileKey& 
         const bool root = unit.tier > 0 && key.level == unit.latticeLevel() - 1;
         facts.latticeError = std::max(facts.latticeError, root ? child.rootError : child.latticeError);
     }
-    facts.error = facts.latticeError + static_cast<float>(plan.tolerance(key.level));
+    facts.error = facts.latticeError + static_cast<float>(plan.finestError(key.level));
     return facts;
 }
 
@@ -295,8 +295,14 @@ void runHeightPass(BuildPlan& plan)
                 const TileKey key{level, x, y};
                 TileFacts& facts = plan.fact(key);
                 if (!facts.any) continue;
+                // Where the walls of its coarsest meshes reach to.
+                facts.skirtBelow =
+                    static_cast<float>(2.0 * plan.largestError(level) + plan.leastSkirt(level)) +
+                    facts.latticeError;
                 for (int side = 0; side < 4; ++side)
-                    facts.skirtBelow = std::max(facts.skirtBelow, static_cast<float>(plan.skirt(key, side)));
+                    facts.skirtBelow =
+                        std::max(facts.skirtBelow,
+                                 static_cast<float>(plan.largestError(level) + plan.skirt(key, side)));
                 if (level < plan.scheme.finestLevel)
                     for (int c = 0; c < 4; ++c)
                         facts.skirtBelow =

@@ -13,18 +13,22 @@
 namespace osgGeoFX
 {
 
-/// Which posts of a square lattice a tile's mesh takes, and its triangles.
-struct TileMesh
+/// A square part of a tile's lattice: `size` cells from a south-western post on. Its place is a multiple of its size,
+/// which is a power of two.
+struct TileBlock
+{
+    int column = 0, row = 0, size = 0;
+};
+
+/// Triangles over a block.
+struct BlockMesh
 {
     struct Post
     {
-        int column = 0, row = 0;
+        int column = 0, row = 0; ///< of the tile's lattice
     };
-    std::vector<Post> posts;
-    std::vector<std::uint32_t> triangles; ///< three indices of posts each, anticlockwise seen from above
-    std::vector<std::uint32_t>
-        edge; ///< posts along the border, anticlockwise from the south-west, the first one repeated
-    double deviation = 0.0; ///< largest distance of a lattice point from its place on the mesh, metres
+    std::vector<Post> corners; ///< three for each triangle, anticlockwise seen from above
+    double deviation = 0.0;    ///< largest distance of a lattice point from its place on the mesh, metres
 };
 
 /// A tile's part of the lattices from which its mesh is made.
@@ -59,40 +63,51 @@ struct TileLattice
     }
 };
 
-/// Slopes (metres in a metre) on a coarser lattice over the same tile.
-struct TileSlopes
-{
-    const std::vector<float>&x, &y;
-    int stride = 0;          ///< columns of the lattice
-    int column = 0, row = 0; ///< the tile's south-western post
-    int intervals = 0;       ///< a power of two, at most the heights'
-
-    float slopeX(int c, int r) const { return x[index(c, r)]; }
-    float slopeY(int c, int r) const { return y[index(c, r)]; }
-
-private:
-    std::size_t index(int c, int r) const
-    {
-        return static_cast<std::size_t>(row + r) * static_cast<std::size_t>(stride) +
-               static_cast<std::size_t>(column + c);
-    }
-};
-
-/// Every post of the lattice, row by row from the south-west, and two triangles for each cell that has data.
-TileMesh createFullMesh(const TileLattice& lattice);
-
-/// The number of cells that an adaptive mesh has along a tile's edge at least, so that a plain may be bent.
+/// The number of cells that a bent mesh has along a tile's edge at least.
 inline int leastCells(int intervals)
 {
     return std::min(intervals, 16);
 }
 
-/** A right-triangulated irregular network: large triangles where the ground is even, small ones where it is not.
+/** A right-triangulated irregular network over a tile's lattice: large triangles where the ground is even, small ones
+    where it is not.
 
-    No lattice point is farther than `tolerance` metres above or below it, and where the slope changes visibly
-    triangles are as small as the slopes' lattice, so that light and shade stay as they are on a full mesh. Nowhere are they
-    larger than a cell of leastCells(). Borders of holes in the data are followed post by post. (Evans, Kirkpatrick, Townsend: Right-triangulated irregular
-    networks, 2001.) */
-TileMesh createAdaptiveMesh(const TileLattice& lattice, const TileSlopes& slopes, double tolerance);
+    A post's error is how far the ground's straight line between its neighbours misses it, or any post that depends on
+    it. Meshes of one tolerance fit together, whichever blocks of the tile they cover. Borders of holes in the data are
+    followed post by post. (Evans, Kirkpatrick, Townsend: Right-triangulated irregular networks, 2001.) */
+class TileNetwork
+{
+public:
+    /// The lattice must outlive the network.
+    explicit TileNetwork(const TileLattice& lattice);
+
+    /** The least mesh over a block that has all posts whose error is greater than `tolerance` (metres; all posts where
+        it is negative), and no edge along an axis longer than `longest` cells. */
+    BlockMesh triangulate(const TileBlock& block, double tolerance, int longest) const;
+
+    /// The errors of the posts in a block that are greater than a tolerance, the largest first, metres; those that
+    /// every mesh has, as at holes, are left out.
+    std::vector<float> errors(const TileBlock& block, double tolerance) const;
+
+    const TileLattice& lattice() const { return _lattice; }
+
+private:
+    struct Splitter;
+    using Post = BlockMesh::Post;
+
+    float& error(int c, int r) { return _errors[index(c, r)]; }
+    float error(int c, int r) const { return _errors[index(c, r)]; }
+    std::size_t index(int c, int r) const
+    {
+        return static_cast<std::size_t>(r) * static_cast<std::size_t>(_lattice.intervals + 1) +
+               static_cast<std::size_t>(c);
+    }
+    float edgeError(int c, int r, int dc, int dr) const;
+    void gatherErrors();
+    double deviation(Post a, Post b, Post c) const;
+
+    const TileLattice& _lattice;
+    std::vector<float> _errors;
+};
 
 } // namespace osgGeoFX

@@ -32,11 +32,12 @@ struct LevelArrays
         textureError; ///< by tile: size in metres of a texel that hides something, 0 if none does
 };
 
-/** Makes the scene graph of a tile: mesh with skirts, normals of vertices and of texels, base colour, land cover, what
-    lies on the ground, and level-of-detail ranges.
+/** Makes the scene graph of a tile: a tree of levels of detail of its blocks (TileBlocks), each mesh an osg::Geometry over
+    the tile's vertices, with normals of vertices and of texels, base colour, land cover, and what lies on the ground.
 
-    A finest tile's vertices are all its posts, row by row from the south-west, then the skirt; a coarser one's are the
-    posts that its relief needs, then the skirt. Not thread-safe. */
+    A finest tile's vertices are all its posts, row by row from the south-west, then the lower ends of walls; a coarser one's
+    are the posts that its relief needs, then those. The transform's user value "geofx.posts" tells how many posts there are.
+    An osg::LOD of a block has as its user data an osg::Vec2Array, which TileInfo::meshesOf() explains. Not thread-safe. */
 class TileNodeFactory
 {
 public:
@@ -46,17 +47,13 @@ public:
     osg::ref_ptr<osg::Node> create(const TileKey& key, const LevelArrays& arrays, int x, int y);
 
 private:
-    TileMesh createMesh(const TileKey& key, const LevelArrays& arrays, int x, int y) const;
-    osg::ref_ptr<osg::Geometry> createGeometry(const TileKey& key, const LevelArrays& arrays, int x, int y,
-                                               const TileMesh& mesh);
+    TileLattice createLattice(const TileKey& key, const LevelArrays& arrays, int x, int y) const;
     osg::ref_ptr<osg::StateSet> createState(const TileKey& key, const LevelArrays& arrays, int x,
                                             int y) const;
 
     const BuildPlan& _plan;
     osg::ref_ptr<osg::VertexBufferObject> _sharedBuffer;
     osg::ref_ptr<osg::Vec4Array> _white;
-    osg::ref_ptr<osg::Vec2Array> _wholeTexCoords; ///< of finest tiles without holes
-    osg::ref_ptr<osg::PrimitiveSet> _wholePrimitives;
 };
 
 } // namespace osgGeoFX

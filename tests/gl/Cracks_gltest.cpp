@@ -290,12 +290,15 @@ TEST_F(Cracks, ManyWithoutSkirts)
     LoadedDatabase bare(true);
     for (auto& [key, tile] : bare.tiles)
     {
-        osg::ref_ptr<osg::DrawElementsUInt> elements =
-            new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES);
-        for (const auto& triangle : tile.surface)
-            elements->insert(elements->end(), triangle.begin(), triangle.end());
-        elements->setElementBufferObject(new osg::ElementBufferObject);
-        tile.geometry->setPrimitiveSet(0, elements);
+        for (const auto& mesh : tile.meshes)
+        {
+            osg::ref_ptr<osg::DrawElementsUInt> elements =
+                new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES);
+            for (const auto& triangle : mesh.ground)
+                elements->insert(elements->end(), triangle.begin(), triangle.end());
+            elements->setElementBufferObject(new osg::ElementBufferObject);
+            mesh.geometry->setPrimitiveSet(0, elements);
+        }
     }
     EXPECT_GE(picturesWithCracks(
                   bare, "bare", pictures(),

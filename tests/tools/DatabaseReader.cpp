@@ -49,47 +49,149 @@ public:
             throw std::runtime_error("a tile has the name \"" + transform.getName() + "\"");
         tile.transform = &transform;
         tile.lod = _lod;
-        if (transform.getNumChildren() > 0) tile.geometry = transform.getChild(0)->asGeometry();
-        if (tile.geometry) sort(tile);
+        _tile = &tile;
+        traverse(transform);
+        _tile = nullptr;
+        for (const DatabaseTile::Mesh& mesh : tile.meshes)
+        {
+            // A mesh that no camera is near enough for is there for deformations alone.
+            if (!mesh.smallest || mesh.to < 0.01 || (mesh.from > 0.01)) continue;
+            tile.surface.insert(tile.surface.end(), mesh.ground.begin(), mesh.ground.end());
+            tile.skirt.insert(tile.skirt.end(), mesh.walls.begin(), mesh.walls.end());
+        }
         tiles.push_back(tile);
+    }
+
+    void apply(osg::LOD& block) override
+    {
+        if (!_tile) throw std::runtime_error("a block is in no tile");
+        const auto* meshes = dynamic_cast<const osg::Vec2Array*>(block.getUserData());
+        if (!meshes || meshes->size() != block.getNumChildren())
+            throw std::runtime_error(_tile->transform->getName() +
+                                     " has a block that does not tell of its meshes");
+        const bool smallest = block.getChild(0)->asGeometry() != nullptr;
+        for (unsigned int i = 0; i < block.getNumChildren(); ++i)
+        {
+            osg::Geometry* geometry = block.getChild(i)->asGeometry();
+            if (!geometry)
+            {
+                block.getChild(i)->accept(*this);
+                continue;
+            }
+            DatabaseTile::Mesh mesh;
+            mesh.block = &block;
+            mesh.geometry = geometry;
+            mesh.from = static_cast<double>(block.getMinRange(i));
+            mesh.to = static_cast<double>(block.getMaxRange(i));
+            mesh.smallest = smallest;
+            sort(mesh, static_cast<unsigned int>((*meshes)[i].y()));
+            if (!_tile->geometry) _tile->geometry = geometry;
+            _tile->meshes.push_back(mesh);
+        }
     }
 
     std::vector<DatabaseTile> tiles;
 
 private:
-    /// A skirt's triangles stand upright: two of their vertices, the lower one added later, have the same
-    /// texture coordinates.
-    static void sort(DatabaseTile& tile)
+    void sort(DatabaseTile::Mesh& mesh, unsigned int ground) const
     {
-        const auto& coordinates = dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0));
-        const osg::PrimitiveSet& primitives = *tile.geometry->getPrimitiveSet(0);
-        if (!dynamic_cast<const osg::Vec3Array*>(tile.geometry->getVertexArray()) ||
-            coordinates.size() != tile.vertices().size() || primitives.getMode() != GL_TRIANGLES)
-            throw std::runtime_error(tile.transform->getName() + " is not a mesh");
-        std::map<unsigned int, unsigned int> below;
-        std::vector<std::array<unsigned int, 2>> tops;
-        for (unsigned int i = 0; i + 2 < primitives.getNumIndices(); i += 3)
+        const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh.geometry->getVertexArray());
+        const auto* coordinates = dynamic_cast<const osg::Vec2Array*>(mesh.geometry->getTexCoordArray(0));
+        const osg::PrimitiveSet& primitives = *mesh.geometry->getPrimitiveSet(0);
+        if (!vertices || !coordinates || coordinates->size() != vertices->size() ||
+            primitives.getMode() != GL_TRIANGLES || ground % 3 != 0 || ground > primitives.getNumIndices())
+            throw std::runtime_error(_tile->transform->getName() + " has a mesh that is none");
+        int posts = 0;
+        if (!_tile->transform->getUserValue("geofx.posts", posts))
+            throw std::runtime_error(_tile->transform->getName() + " does not tell how many posts it has");
+        const auto triangle = [&](unsigned int i)
         {
-            const std::array<unsigned int, 3> t{primitives.index(i), primitives.index(i + 1),
-                                                primitives.index(i + 2)};
-            bool upright = false;
-            for (const auto& [a, b, c] :
-                 {std::tuple(t[0], t[1], t[2]), std::tuple(t[1], t[2], t[0]), std::tuple(t[2], t[0], t[1])})
+            return DatabaseTile::Triangle{primitives.index(i), primitives.index(i + 1),
+                                          primitives.index(i + 2)};
+        };
+        osg::Vec2 low(2.0f, 2.0f), high(-1.0f, -1.0f);
+        for (unsigned int i = 0; i < ground; i += 3)
+        {
+            mesh.ground.push_back(triangle(i));
+            for (const unsigned int vertex : mesh.ground.back())
             {
-                if (coordinates[a] != coordinates[b]) continue;
-                upright = true;
-                const unsigned int top = std::min(a, b), other = c;
-                below[top] = std::max(a, b);
-                if (coordinates[other] != coordinates[top]) tops.push_back({top, other});
+                const osg::Vec2& at = (*coordinates)[vertex];
+                low.set(std::min(low.x(), at.x()), std::min(low.y(), at.y()));
+                high.set(std::max(high.x(), at.x()), std::max(high.y(), at.y()));
             }
-            if (!upright) tile.surface.push_back(t);
         }
-        for (const auto& [a, b] : tops)
-            // The other triangle of a wall names the lower vertex, and is the same wall.
-            if (below.count(a) && below.count(b)) tile.skirt.push_back({{a, b}, {below[a], below[b]}});
+        // The lower ends of the walls on each side, by their place along it: texture coordinates are exact.
+        std::array<std::map<float, double>, 4> lowerEnds;
+        const auto onSide = [&](unsigned int vertex, unsigned int side)
+        {
+            const osg::Vec2& at = (*coordinates)[vertex];
+            const float lines[] = {low.y(), high.x(), high.y(), low.x()};
+            return (side % 2 == 0 ? at.y() : at.x()) == lines[side];
+        };
+        const auto along = [&](unsigned int vertex, unsigned int side)
+        {
+            return (*coordinates)[vertex][side % 2 == 0 ? 0 : 1];
+        };
+        for (unsigned int i = ground; i + 2 < primitives.getNumIndices(); i += 3)
+        {
+            const DatabaseTile::Triangle corners = triangle(i);
+            unsigned int side = 0;
+            while (side < 4 && !std::all_of(corners.begin(), corners.end(),
+                                            [&](unsigned int vertex) { return onSide(vertex, side); }))
+                ++side;
+            if (side == 4)
+                throw std::runtime_error(_tile->transform->getName() + " has a wall that is on no side");
+            for (const unsigned int vertex : corners)
+            {
+                if (vertex < static_cast<unsigned int>(posts)) continue;
+                const auto z = static_cast<double>((*vertices)[vertex].z());
+                const auto [entry, isNew] = lowerEnds[side].emplace(along(vertex, side), z);
+                if (!isNew) entry->second = std::max(entry->second, z);
+            }
+        }
+        // The tile's own border.
+        osg::Vec2 first = (*coordinates)[0], last = first;
+        for (const osg::Vec2& at : *coordinates)
+        {
+            first.set(std::min(first.x(), at.x()), std::min(first.y(), at.y()));
+            last.set(std::max(last.x(), at.x()), std::max(last.y(), at.y()));
+        }
+        const bool border[] = {low.y() == first.y(), high.x() == last.x(), high.y() == last.y(),
+                               low.x() == first.x()};
+        for (const DatabaseTile::Triangle& each : mesh.ground)
+            for (std::size_t k = 0; k < 3; ++k)
+                for (unsigned int side = 0; side < 4; ++side)
+                {
+                    const unsigned int ends[] = {each[k], each[(k + 1) % 3]};
+                    if (!onSide(ends[0], side) || !onSide(ends[1], side)) continue;
+                    DatabaseTile::Wall wall;
+                    wall.border = border[side];
+                    bool whole = true;
+                    for (const std::size_t end : {0u, 1u})
+                    {
+                        wall.top[end] = wall.bottom[end] = (*vertices)[ends[end]];
+                        whole =
+                            whole && heightAt(lowerEnds[side], along(ends[end], side), wall.bottom[end].z());
+                    }
+                    if (whole) mesh.walls.push_back(wall);
+                }
+    }
+
+    /// Between the lower ends on both sides of a place; false beyond the last of them.
+    static bool heightAt(const std::map<float, double>& lowerEnds, float place, double& height)
+    {
+        const auto after = lowerEnds.lower_bound(place);
+        if (after == lowerEnds.end() || (after == lowerEnds.begin() && after->first != place)) return false;
+        height = after->second;
+        if (after->first == place) return true;
+        const auto before = std::prev(after);
+        const auto share = static_cast<double>((place - before->first) / (after->first - before->first));
+        height = before->second + share * (after->second - before->second);
+        return true;
     }
 
     osg::PagedLOD* _lod = nullptr;
+    DatabaseTile* _tile = nullptr;
 };
 
 } // namespace

@@ -4,6 +4,7 @@
 
 #include <osg/Geometry>
 #include <osg/Image>
+#include <osg/LOD>
 #include <osg/MatrixTransform>
 #include <osg/PagedLOD>
 #include <osg/ValueObject>
@@ -20,19 +21,35 @@ namespace geofx::test
 /// One tile of a built database as plain osgDB reads it.
 struct DatabaseTile
 {
-    /// A piece of the skirt: indices of two vertices of the surface's border and of those below them.
+    using Triangle = std::array<unsigned int, 3>;
+
+    /// A piece of a wall, below one edge of the ground's border, in the tile's frame.
     struct Wall
     {
-        std::array<unsigned int, 2> top, bottom;
+        std::array<osg::Vec3d, 2> top, bottom;
+        bool border = false; ///< along the tile's border, not between two of its blocks
+    };
+
+    /// A mesh of one of its blocks.
+    struct Mesh
+    {
+        osg::ref_ptr<osg::LOD> block;
+        osg::ref_ptr<osg::Geometry> geometry;
+        double from = 0.0, to = 0.0; ///< metres from the block's centre
+        bool smallest = false;       ///< of a block that no finer ones stand in for
+        std::vector<Triangle> ground;
+        std::vector<Wall> walls;
     };
 
     int level = 0, x = 0, y = 0; ///< from the transform's name "tile level/x/y"
     std::string file;            ///< that it was read from
     osg::ref_ptr<osg::MatrixTransform> transform;
-    osg::ref_ptr<osg::PagedLOD> lod;                  ///< null on the finest level
-    osg::ref_ptr<osg::Geometry> geometry;             ///< null where a tile has ground on finer levels only
-    std::vector<std::array<unsigned int, 3>> surface; ///< triangles, without the skirt's
-    std::vector<Wall> skirt;
+    osg::ref_ptr<osg::PagedLOD> lod; ///< null on the finest level
+    osg::ref_ptr<osg::Geometry>
+        geometry; ///< one of its meshes; null where a tile has ground on finer levels only
+    std::vector<Mesh> meshes;
+    std::vector<Triangle> surface; ///< its finest meshes together, without walls
+    std::vector<Wall> skirt;       ///< theirs
 
     const osg::Vec3Array& vertices() const
     {
@@ -41,6 +58,7 @@ struct DatabaseTile
     osg::Vec3d local(unsigned int vertex) const { return vertices()[vertex]; }
     /// In the world, multiplied in double.
     osg::Vec3d world(unsigned int vertex) const { return local(vertex) * transform->getMatrix(); }
+    osg::Vec3d world(const osg::Vec3d& place) const { return place * transform->getMatrix(); }
     /// Whether a triangle of the surface uses each vertex.
     std::vector<bool> used() const;
     /// Image of a texture unit: 0 colour, 1 land cover, 2 normals, 7 what lies on the ground; null without.

@@ -300,6 +300,8 @@ TEST(DatabaseLevels, SkirtsReachEveryNeighbourThatCanStandBeside)
 
     struct Edge
     {
+        std::string tile;
+        bool border; ///< of that tile, not between two of its blocks
         int level;
         double start, end, top[2], bottom[2];
 
@@ -313,30 +315,35 @@ TEST(DatabaseLevels, SkirtsReachEveryNeighbourThatCanStandBeside)
     readDatabase(folder / "db",
                  [&](const DatabaseTile& tile)
                  {
-                     for (const auto& wall : tile.skirt)
-                     {
-                         osg::Vec3d a = tile.world(wall.top[0]), b = tile.world(wall.top[1]);
-                         osg::Vec3d lowA = tile.world(wall.bottom[0]), lowB = tile.world(wall.bottom[1]);
-                         const bool alongX = std::abs(b.x() - a.x()) > std::abs(b.y() - a.y());
-                         if (alongX ? b.x() < a.x() : b.y() < a.y())
+                     for (const auto& mesh : tile.meshes)
+                         for (const auto& wall : mesh.walls)
                          {
-                             std::swap(a, b);
-                             std::swap(lowA, lowB);
+                             osg::Vec3d a = tile.world(wall.top[0]), b = tile.world(wall.top[1]);
+                             osg::Vec3d lowA = tile.world(wall.bottom[0]), lowB = tile.world(wall.bottom[1]);
+                             const bool alongX = std::abs(b.x() - a.x()) > std::abs(b.y() - a.y());
+                             if (alongX ? b.x() < a.x() : b.y() < a.y())
+                             {
+                                 std::swap(a, b);
+                                 std::swap(lowA, lowB);
+                             }
+                             const long line = std::lround(alongX ? (a.y() - finest.y0) / finest.dy
+                                                                  : (a.x() - finest.x0) / finest.dx);
+                             lines[{alongX, line}].push_back({tile.transform->getName(),
+                                                              wall.border,
+                                                              tile.level,
+                                                              alongX ? a.x() : a.y(),
+                                                              alongX ? b.x() : b.y(),
+                                                              {a.z(), b.z()},
+                                                              {lowA.z(), lowB.z()}});
                          }
-                         const long line = std::lround(alongX ? (a.y() - finest.y0) / finest.dy
-                                                              : (a.x() - finest.x0) / finest.dx);
-                         lines[{alongX, line}].push_back({tile.level,
-                                                          alongX ? a.x() : a.y(),
-                                                          alongX ? b.x() : b.y(),
-                                                          {a.z(), b.z()},
-                                                          {lowA.z(), lowB.z()}});
-                     }
                  });
     int compared = 0;
     for (const auto& [line, edges] : lines)
         for (const auto& edge : edges)
             for (const auto& other : edges)
             {
+                // What lies within a tile never stands beside another one.
+                if (edge.border != other.border || (!edge.border && edge.tile != other.tile)) continue;
                 const double start = std::max(edge.start, other.start), end = std::min(edge.end, other.end);
                 if (end - start < 1.0) continue;
                 for (const double place : {start, end})
@@ -366,7 +373,8 @@ TEST(DatabaseLevels, SkirtsHaveNoGaps)
                      double length = 0.0;
                      for (const auto& wall : tile.skirt)
                      {
-                         osg::Vec3d along = tile.local(wall.top[1]) - tile.local(wall.top[0]);
+                         if (!wall.border) continue;
+                         osg::Vec3d along = wall.top[1] - wall.top[0];
                          along.z() = 0.0;
                          length += along.length();
                      }
