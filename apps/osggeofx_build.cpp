@@ -72,7 +72,8 @@ int main(int argc, char** argv)
     app.add_option("--tile-size", options.tileSize, "Grid intervals along a tile's edge, at most")
         ->capture_default_str();
     app.add_option("--texture-size", options.textureSize,
-                   "Texture intervals along a tile's edge, at most; 0 for four times the tile size")
+                   "Texture intervals along a tile's edge, at most; 0 for four times the tile size in finest "
+                   "tiles, twice in others")
         ->capture_default_str();
     app.add_option("--pixel-error", options.pixelError, "Largest error of the relief on the screen, pixels")
         ->capture_default_str();

@@ -98,6 +98,12 @@ std::optional<TerrainInfo> TerrainInfo::read(const osg::Node* node, std::string&
                 ", which is newer than this program; use a newer osgGeoFX.";
         return std::nullopt;
     }
+    if (info.format >= 1 && info.format < newestFormat)
+    {
+        error = "The terrain database is of format " + std::to_string(info.format) +
+                ", which older versions of osgGeoFX built; build it again with osggeofx_build.";
+        return std::nullopt;
+    }
     const bool complete =
         info.format >= 1 && root.getUserValue("geofx.kind", kind) &&
         root.getUserValue("geofx.west", info.west) && root.getUserValue("geofx.south", info.south) &&

@@ -50,11 +50,11 @@ struct OSGGEOFX_EXPORT TerrainInfo
     /// The share of filled posts, 0…1, of the mask's cell at a place in the extent's coordinates; 0 outside.
     double filledAt(double x, double y) const;
 
-    /// The newest format that this library understands.
-    static constexpr int newestFormat = 1;
+    /// The format that this library reads and builds.
+    static constexpr int newestFormat = 2;
 
     /// Of the first terrain root at or below `node`. Nothing where there is none; nothing, with a sentence in
-    /// `error`, where it is of a newer format or incomplete.
+    /// `error`, where it is of another format or incomplete.
     static std::optional<TerrainInfo> read(const osg::Node* node, std::string& error);
 };
 

@@ -5,6 +5,7 @@
 #include "BuilderCode.h"
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,6 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr int FORMAT_VERSION = 1;
 constexpr int MAX_LEVEL = 20;
 // How far beyond its area of use a CRS may serve, degrees: a neighbouring zone, and some more.
 constexpr double CRS_MARGIN = 10.0;
@@ -225,9 +225,9 @@ void BuildPlan::chooseGrid()
     while ((scheme.intervals << scheme.finestLevel) < std::max(scheme.lastColumn, scheme.lastRow))
         ++scheme.finestLevel;
 
-    // Finest tiles have as many texels as the colours' source has pixels; tiles above them keep these texels until
-    // a texture reaches its limit of, by default, four for each mesh interval. So a mesh is never finer than
-    // its relief asks for only because its texture would be too coarse.
+    // Finest tiles have as many texels as the colours' source has pixels, by default up to four for each interval;
+    // tiles above them keep these texels until there are, by default, two for each interval: where a tile's relief asks for
+    // finer ones, its texels do, too.
     const int limit = options.textureSize > 0 ? options.textureSize : 4 * options.tileSize;
     for (;; ++scheme.finestLevel, scheme.lastColumn *= 2, scheme.lastRow *= 2)
     {
@@ -242,8 +242,9 @@ void BuildPlan::chooseGrid()
         scheme.texels = std::max(2, static_cast<int>(std::ceil(texels - 1e-3)));
         if (scheme.texels <= limit) break;
     }
+    const int kept = options.textureSize > 0 ? options.textureSize : 2 * options.tileSize;
     scheme.textureDepth = 0;
-    while (scheme.textureDepth < scheme.finestLevel && (scheme.texels << (scheme.textureDepth + 1)) <= limit)
+    while (scheme.textureDepth < scheme.finestLevel && (scheme.texels << (scheme.textureDepth + 1)) <= kept)
         ++scheme.textureDepth;
 }
 
@@ -288,8 +289,8 @@ void BuildPlan::chooseFingerprint()
 {
     std::ostringstream text;
     text.precision(17);
-    text << "osgGeoFX terrain database, format " << FORMAT_VERSION << ", content " << DATABASE_CONTENT
-         << "\nbuilder " << builderCode() << "\n";
+    text << "osgGeoFX terrain database, format " << TerrainInfo::newestFormat << ", content "
+         << DATABASE_CONTENT << "\nbuilder " << builderCode() << "\n";
     const auto source = [&](const char* kind, const std::string& file)
     {
         std::error_code code;

@@ -8,6 +8,8 @@
 #include "TileMesh.h"
 #include "TilePass.h"
 
+#include <osgGeoFX/paging/TerrainInfo.h>
+
 #include <osg/CoordinateSystemNode>
 #include <osg/Material>
 #include <osg/ValueObject>
@@ -125,7 +127,7 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
 
     const double unit = plan.scheme.crs.geographic ? 1.0 : plan.scheme.crs.metresPerUnit;
     const char* vertical[] = {"none", "ellipsoid", "egm96"};
-    root->setUserValue("geofx.format", 1);
+    root->setUserValue("geofx.format", TerrainInfo::newestFormat);
     root->setUserValue("geofx.kind", std::string(plan.scheme.crs.geographic ? "geocentric" : "projected"));
     root->setUserValue("geofx.west", plan.scheme.west * unit);
     root->setUserValue("geofx.south", plan.scheme.south * unit);

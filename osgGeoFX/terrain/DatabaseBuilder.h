@@ -15,7 +15,7 @@ namespace osgGeoFX
 {
 
 /// Counts what builders put into databases of one format: older ones are still read, but have less in them.
-constexpr int DATABASE_CONTENT = 5;
+constexpr int DATABASE_CONTENT = 6;
 
 /// How the heights of a DEM are to be understood.
 enum class VerticalDatum
@@ -55,7 +55,8 @@ struct BuildOptions
     /// Least area of level ground that counts as a lake where no land cover tells, square metres, 0 or more.
     double lakeArea = 2e5;
     int tileSize = 128; ///< largest number of grid intervals along a tile's edge, 8…240
-    /// Largest number of texture intervals along a tile's edge, 16…4096; 0 for 4 × tileSize.
+    /// Largest number of texture intervals along a tile's edge, 16…4096; 0 for 4 × tileSize on the finest level and, where
+    /// that has fewer, 2 × tileSize above.
     int textureSize = 0;
     double pixelError = 1.0; ///< bound of the geometric error on the screen, pixels
     double texelError = 2.0; ///< largest size of a texel on the screen where it would show, pixels

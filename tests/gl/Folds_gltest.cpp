@@ -4,6 +4,7 @@
 // What is taller than the bend's radius folds over. A database that tells its heights gets a zone that is wide enough; of
 // anything else the scene says so, once, in one sentence whose advice helps.
 #include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
 #include <tools/BentGround.h>
 
 #include <osg/CoordinateSystemNode>
@@ -43,7 +44,7 @@ protected:
     {
         osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
         root->setName("osgGeoFX terrain");
-        root->setUserValue("geofx.format", 1);
+        root->setUserValue("geofx.format", osgGeoFX::TerrainInfo::newestFormat);
         root->setUserValue("geofx.kind", std::string("projected"));
         for (const char* name : {"geofx.west", "geofx.south", "geofx.east", "geofx.north",
                                  "geofx.pixelsPerRadian", "geofx.pixelError"})

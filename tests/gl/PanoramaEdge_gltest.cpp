@@ -3,6 +3,7 @@
 //
 // Where a terrain ends: a panorama map claims a sea only where the data's own border is sea; land runs out into haze and paper, and no
 // cliff shows.
+#include <osgGeoFX/paging/TerrainInfo.h>
 #include <tools/GlFixture.h>
 #include <tools/StrokeTiles.h>
 
@@ -70,7 +71,7 @@ osg::ref_ptr<osg::Group> terrainOf(const Land& land, bool ours)
     root->addChild(tile);
     if (!ours) return root;
     root->setName("osgGeoFX terrain");
-    root->setUserValue("geofx.format", 1);
+    root->setUserValue("geofx.format", osgGeoFX::TerrainInfo::newestFormat);
     root->setUserValue("geofx.kind", std::string("projected"));
     root->setUserValue("geofx.west", WEST);
     root->setUserValue("geofx.south", SOUTH);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/paging/TerrainInfo.h>
 #include <tools/PagedScene.h>
 
 #include <osg/CoordinateSystemNode>
@@ -111,7 +112,7 @@ void writeBelow(const Tile& parent, const std::filesystem::path& folder, const o
 void describe(osg::CoordinateSystemNode& root)
 {
     root.setName("osgGeoFX terrain");
-    root.setUserValue("geofx.format", 1);
+    root.setUserValue("geofx.format", osgGeoFX::TerrainInfo::newestFormat);
     root.setUserValue("geofx.kind", std::string("geocentric"));
     root.setUserValue("geofx.west", -157.82);
     root.setUserValue("geofx.south", 21.38);

@@ -8,6 +8,7 @@
 #include <osg/Node>
 #include <osg/ValueObject>
 #include <osgDB/Registry>
+#include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <filesystem>
 #include <string>
@@ -31,7 +32,7 @@ inline void describeTerrain(osg::Node& root, bool geocentric, double west, doubl
                             double north)
 {
     root.setName("osgGeoFX terrain");
-    root.setUserValue("geofx.format", 1);
+    root.setUserValue("geofx.format", osgGeoFX::TerrainInfo::newestFormat);
     root.setUserValue("geofx.kind", std::string(geocentric ? "geocentric" : "projected"));
     root.setUserValue("geofx.west", west);
     root.setUserValue("geofx.south", south);

@@ -150,7 +150,11 @@ TEST(TerrainInfo, IsReadBackFromAFile)
     node->setUserValue("geofx.format", TerrainInfo::newestFormat + 1);
     EXPECT_FALSE(TerrainInfo::read(above, error));
     EXPECT_NE(error.find("newer"), std::string::npos) << error;
-    node->setUserValue("geofx.format", 1);
+    node->setUserValue("geofx.format", TerrainInfo::newestFormat - 1);
+    error.clear();
+    EXPECT_FALSE(TerrainInfo::read(above, error));
+    EXPECT_NE(error.find("build it again"), std::string::npos) << error;
+    node->setUserValue("geofx.format", TerrainInfo::newestFormat);
     node->setUserValue("geofx.kind", std::string("round"));
     error.clear();
     EXPECT_FALSE(TerrainInfo::read(above, error));

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // What an EffectScene finds out of the ground below it, and how much of the graph it looks at for that: by counting, not by time.
+#include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectScene.h>
 
 #include <gtest/gtest.h>
@@ -68,7 +69,7 @@ osg::ref_ptr<osg::CoordinateSystemNode> makeTerrainRoot(double highest)
 {
     osg::ref_ptr<osg::CoordinateSystemNode> root = makeSystem(6.4e6);
     root->setName("osgGeoFX terrain");
-    root->setUserValue("geofx.format", 1);
+    root->setUserValue("geofx.format", osgGeoFX::TerrainInfo::newestFormat);
     root->setUserValue("geofx.kind", std::string("geocentric"));
     for (const char* name : {"west", "south", "east", "north", "minHeight", "pixelsPerRadian", "pixelError"})
         root->setUserValue(std::string("geofx.") + name, 1.0);

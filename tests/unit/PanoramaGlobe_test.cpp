@@ -5,6 +5,7 @@
 // what culling trusts holds there, too. And where a terrain's edge lies in the picture, by geodesics of a library.
 #include <osgGeoFX/deformation/DeformationChain.h>
 #include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/panorama/PanoramaEdge.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
@@ -185,7 +186,7 @@ osg::ref_ptr<osg::CoordinateSystemNode> rootOf(bool globe, double west, double s
     const osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
     if (globe) root->setEllipsoidModel(tiles.ellipsoid);
     root->setName("osgGeoFX terrain");
-    root->setUserValue("geofx.format", 1);
+    root->setUserValue("geofx.format", osgGeoFX::TerrainInfo::newestFormat);
     root->setUserValue("geofx.kind", std::string(globe ? "geocentric" : "projected"));
     root->setUserValue("geofx.west", west);
     root->setUserValue("geofx.south", south);
