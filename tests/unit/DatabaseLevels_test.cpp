@@ -54,7 +54,9 @@ struct Deviation
     double lateral = 0.0;  ///< from a post that it does not cover to the nearest that it does
 };
 
-Deviation deviation(const DatabaseTile& tile, const DatabaseRoot& root, const FinestLevel& finest)
+/// Of some triangles of a tile; where they are not `whole`, posts that they do not cover do not count.
+Deviation deviation(const DatabaseTile& tile, const std::vector<DatabaseTile::Triangle>& surface, bool whole,
+                    const DatabaseRoot& root, const FinestLevel& finest)
 {
     const int span = finest.tileIntervals << (root.finestLevel() - tile.level);
     const int column0 = tile.x * span, row0 = tile.y * span;
@@ -63,7 +65,7 @@ Deviation deviation(const DatabaseTile& tile, const DatabaseRoot& root, const Fi
     std::vector<double> distance(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
                                  NO_DISTANCE);
     const osg::Matrixd inverse = osg::Matrixd::inverse(tile.transform->getMatrix());
-    for (const auto& triangle : tile.surface)
+    for (const auto& triangle : surface)
     {
         osg::Vec3d local[3], lattice[3];
         for (std::size_t k = 0; k < 3; ++k)
@@ -119,6 +121,7 @@ Deviation deviation(const DatabaseTile& tile, const DatabaseRoot& root, const Fi
                     std::max(result.vertical, distance[static_cast<std::size_t>(j * columns + i)]);
                 continue;
             }
+            if (!whole) continue;
             int reach = 1;
             const auto found = [&]
             {
@@ -153,7 +156,7 @@ std::map<int, double> largestShareOfBound(const std::string& database)
                      EXPECT_EQ(tile.lod->getMinRange(0), tile.lod->getMaxRange(1));
                      const double admitted =
                          (range - radiusOf(tile, center) + CENTER_ROUNDING) * pixelError / perRadian + 1e-3;
-                     const Deviation found = deviation(tile, root, finest);
+                     const Deviation found = deviation(tile, tile.surface, true, root, finest);
                      // Borders of holes may run a finest cell otherwise, as the diagonals do.
                      const double lateral = found.lateral <= 1.001 * finest.dx ? 0.0 : found.lateral;
                      shares[tile.level] =
@@ -180,6 +183,76 @@ TEST(DatabaseLevels, RangesKeepThePixelError)
         // And not by loading everything much too early.
         EXPECT_GE(shares.rbegin()->second, 0.9) << "EPSG " << epsg;
     }
+}
+
+/// A mesh stands at its distance on: no place of it may be nearer then than that less the ball around it. Vertices whose own
+/// errors are within the pixel error may lie off by as much as 1.4 of it, as errors of edges add up.
+TEST(DatabaseLevels, MeshesKeepThePixelErrorFromTheirDistanceOn)
+{
+    const TempDir folder;
+    const auto utm = writeRelief(folder / "dem.tif", 260, 200, 600000.0, 2400000.0, 30.0, "EPSG:32604");
+    auto o = options({utm}, folder / "db", 32604);
+    o.tileSize = 64; // with blocks of two sizes
+    o.pixelError = 2.0;
+    buildDatabase(o);
+    const DatabaseRoot root(o.output);
+    const double perRadian = root.value<double>("geofx.pixelsPerRadian");
+    const FinestLevel finest(o.output);
+    int compared = 0;
+    double largest = 0.0;
+    readDatabase(
+        o.output,
+        [&](const DatabaseTile& tile)
+        {
+            for (const auto& mesh : tile.meshes)
+            {
+                // The finest ones are the tile's range's.
+                if (mesh.from < 0.01) continue;
+                double radius = 0.0;
+                for (const auto& triangle : mesh.ground)
+                    for (const unsigned int vertex : triangle)
+                        radius = std::max(
+                            radius, (tile.local(vertex) - osg::Vec3d(mesh.block->getCenter())).length());
+                const double admitted = 1.4 * (mesh.from - radius) * 2.0 / perRadian + 1e-3;
+                const double share = deviation(tile, mesh.ground, false, root, finest).vertical / admitted;
+                EXPECT_LE(share, 1.0) << tile.transform->getName() << " from " << mesh.from << " m";
+                largest = std::max(largest, share);
+                ++compared;
+            }
+        });
+    EXPECT_GT(compared, 200);
+    EXPECT_GT(largest, 0.7) << "meshes are much finer than they need to be";
+}
+
+/// Each mesh of a block takes over where the one before it ends, and has clearly fewer triangles.
+TEST(DatabaseLevels, MeshesFartherAwayHaveFewerTriangles)
+{
+    const TempDir folder;
+    const auto utm = writeRelief(folder / "dem.tif", 260, 200, 600000.0, 2400000.0, 30.0, "EPSG:32604");
+    auto o = options({utm}, folder / "db", 32604);
+    o.tileSize = 64;
+    buildDatabase(o);
+    int blocks = 0;
+    readDatabase(o.output,
+                 [&](const DatabaseTile& tile)
+                 {
+                     const DatabaseTile::Mesh* former = nullptr;
+                     for (const auto& mesh : tile.meshes)
+                     {
+                         const bool same = former && former->block == mesh.block;
+                         if (same && former->to > 0.01)
+                         {
+                             ++blocks;
+                             EXPECT_EQ(former->to, mesh.from)
+                                 << "between them the block is not drawn, or twice";
+                             EXPECT_LT(mesh.ground.size(), 0.86 * static_cast<double>(former->ground.size()));
+                         }
+                         if (!same) EXPECT_TRUE(mesh.from < 0.01 || !mesh.smallest);
+                         former = &mesh;
+                     }
+                     if (former) EXPECT_GT(former->to, 1e30);
+                 });
+    EXPECT_GT(blocks, 100);
 }
 
 TEST(DatabaseLevels, RangesKeepThePixelErrorAroundHoles)

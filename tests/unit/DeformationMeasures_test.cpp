@@ -9,6 +9,7 @@
 #include <tools/RandomViews.h>
 
 #include <gtest/gtest.h>
+#include <osg/Geometry>
 #include <osg/LOD>
 #include <osg/MatrixTransform>
 
@@ -202,6 +203,58 @@ TEST(DeformationMeasures, TheHeightsOfTheGroundAreThoseOfExaggeratedPoints)
                    EXPECT_NEAR(ground.minHeight, lowest, 0.1);
                    EXPECT_NEAR(ground.maxHeight, highest, 0.1);
                });
+}
+
+/// A block of a tile: meshes for four distances, by the lengths of their longest edges, metres.
+osg::ref_ptr<osg::LOD> blockOf(const std::vector<double>& edges)
+{
+    const osg::ref_ptr<osg::LOD> block = new osg::LOD;
+    const osg::ref_ptr<osg::Vec2Array> meshes = new osg::Vec2Array;
+    for (const double edge : edges)
+    {
+        const auto child = static_cast<float>(meshes->size());
+        block->addChild(new osg::Geometry, 100.0f * child, 100.0f * (child + 1.0f));
+        meshes->push_back(osg::Vec2(static_cast<float>(edge), 0.0f));
+    }
+    block->setUserData(meshes);
+    return block;
+}
+
+TEST(DeformationMeasures, BlocksTakeTheCoarsestMeshWhoseEdgesAreShortEnough)
+{
+    int limited = 0;
+    forSamples(
+        200,
+        [&](Random& random)
+        {
+            const osgGeoFX::ViewGeometry view = randomView(random);
+            const Fold fold(random, view);
+            ASSERT_TRUE(fold.frame);
+            constexpr double tolerance = 1e-3;
+            const osg::ref_ptr<DeformationChain> chain = new DeformationChain;
+            chain->add(fold.frame);
+            chain->setTiles(0.125, tolerance);
+            const Ball ball{fold.bend.point(0.5 * fold.bend.size, 0.0, 0.0), 0.05 * fold.bend.size};
+            const double longest = fold.frame->longestEdge(ball, tolerance);
+            if (!(longest > 1e-3 && longest < 1e6)) return;
+            ++limited;
+            const auto limit = [&](double a, double b, double c, double d)
+            {
+                return chain->lodLimit(*blockOf({a * longest, b * longest, c * longest, d * longest}), ball);
+            };
+            const double third = limit(0.5, 0.9, 0.99, 1.01);
+            EXPECT_GT(third, 200.0);
+            EXPECT_LT(third, 300.0);
+            const double first = limit(0.9, 1.1, 2.0, 3.0);
+            EXPECT_GT(first, 0.0);
+            EXPECT_LT(first, 100.0);
+            EXPECT_LT(limit(2.0, 3.0, 4.0, 5.0), 100.0) << "the finest is the best that there is";
+            EXPECT_EQ(limit(0.0, 0.1, 0.2, 0.99), HUGE_VAL) << "all of them are short enough";
+        });
+    EXPECT_GT(limited, 50);
+    const osg::ref_ptr<DeformationChain> nothing = new DeformationChain;
+    nothing->setTiles(0.125, 1e-3);
+    EXPECT_EQ(nothing->lodLimit(*blockOf({1e3, 1e4}), {osg::Vec3d(0.0, 0.0, -10.0), 1.0}), HUGE_VAL);
 }
 
 TEST(DeformationMeasures, EdgesThatAreShortEnoughMissTheirImagesByTheTolerance)
