@@ -21,6 +21,8 @@ constexpr double FINER_WITHIN = 12.0;
 constexpr double STEP = 0.65;
 /// Below this gain a coarser mesh is not worth its bytes.
 constexpr double LEAST_GAIN = 0.85;
+/// A mesh that would be shown from one distance to hardly more than that is left out.
+constexpr double LEAST_STEP = 1.1;
 /// The errors of an edge and of those that it is split into add up: posts may lie so many times the tolerance off.
 constexpr double ACCUMULATION = 1.4;
 /// Cells along the smallest blocks of a finest tile, and how many times its tile's edge has that of a coarser one.
@@ -188,9 +190,14 @@ void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
         const double error = std::max(coarser, mesh.deviation / ACCUMULATION) +
                              static_cast<double>(_plan.fact(_key).latticeError);
         const double distance = result.radius + error * perMetre;
-        // Where the nearer one would never be seen, this one takes its place.
-        if (distance <= from.back())
+        // Where the nearer one would hardly ever be seen, this one takes its place; the nearest one goes only where it never
+        // would.
+        const bool replaces = distance <= (meshes.size() > 1 ? LEAST_STEP : 1.0) * from.back();
+        if (replaces)
+        {
             meshes.back() = std::move(mesh);
+            from.back() = std::max(from.back(), distance);
+        }
         else
         {
             meshes.push_back(std::move(mesh));
