@@ -59,6 +59,12 @@ public:
             block.getChild(0)->accept(*this);
     }
 
+    void apply(osg::Geometry& mesh) override
+    {
+        // A tile that is one mesh.
+        if (!ground) ground = &mesh;
+    }
+
     osg::ref_ptr<osg::Geometry> ground;
 
 private:

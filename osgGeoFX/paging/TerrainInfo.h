@@ -79,7 +79,7 @@ struct OSGGEOFX_EXPORT TileInfo
     /// The tile that a mesh of a block belongs to; null for other geometries.
     static const osg::Transform* tileOf(const osg::Geometry& mesh);
     /// The ground of a tile as one geometry, with its finest meshes and without walls; it shares arrays and state with
-    /// them. Null where the tile has none. No other thread may change the tile meanwhile.
+    /// them. Of a tile that is made of a single geometry that one. Null where the tile has none. No other thread may change the tile meanwhile.
     static osg::ref_ptr<osg::Geometry> ground(const osg::Transform& tile);
     /// Of each child of a tile's block: how long the longest edge of its ground is, metres, and how many of its mesh's
     /// indices are the ground's; walls follow. Both are 0 for finer blocks. Null where the node is not a block of a tile.

@@ -167,7 +167,8 @@ void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
     if (!smallest || !finest)
         tolerance = std::max(_plan.tolerance(_key.level), (result.finerWithin - result.radius) / perMetre);
     // What the finest meshes may be off by is part of what neighbours' walls reach down to.
-    const double most = smallest ? _plan.finestError(_key.level) : _plan.largestError(_key.level);
+    const double most = smallest ? _plan.finestError(_key.level)
+                                 : std::min(_plan.largestError(_key.level), ACCUMULATION * tolerance);
     const int all = block.size;
     std::vector<BlockMesh> meshes{_network.triangulate(block, tolerance, all)};
     while (tolerance > 0.0 && meshes.front().deviation > most)
@@ -250,11 +251,15 @@ void TileBlocks::addWalls(const TileBlock& block, const BlockMesh& mesh, double 
 {
     // Rounding alone opens hair lines between meshes of different density, even in a plain.
     const double inner = depth + _plan.leastSkirt(_key.level);
-    const int lines[4] = {block.row, block.column + block.size, block.row + block.size, block.column};
+    // Beyond the end of the ground there is nothing.
+    const int east = _lattice.eastColumn(), north = _lattice.northRow();
+    const int lines[4] = {block.row, std::min(block.column + block.size, east),
+                          std::min(block.row + block.size, north), block.column};
+    const int borders[4] = {0, east, north, 0};
     for (int number = 0; number < 4; ++number)
     {
         Side side{number, lines[number], inner, false};
-        side.border = side.line == (number == 0 || number == 3 ? 0 : _lattice.intervals);
+        side.border = side.line == borders[number];
         const double neighbours = _skirts[static_cast<std::size_t>(number)];
         if (side.border) side.depth = neighbours > 0.0 ? std::max(inner, mesh.deviation + neighbours) : 0.0;
         if (side.depth <= 0.0) continue;

@@ -123,7 +123,8 @@ private:
         else
             elements = new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES, mesh.triangles.begin(),
                                                  mesh.triangles.end());
-        elements->setElementBufferObject(_elements);
+        // Of its own: what is added to a buffer that is being drawn from makes drivers wait.
+        elements->setElementBufferObject(new osg::ElementBufferObject);
         geometry->addPrimitiveSet(elements);
         geometry->setStateSet(_state);
         return geometry;
@@ -135,7 +136,6 @@ private:
     const TileVertices& _vertices;
     const osg::ref_ptr<osg::Array> _color;
     const osg::ref_ptr<osg::StateSet> _state;
-    const osg::ref_ptr<osg::ElementBufferObject> _elements = new osg::ElementBufferObject;
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <tools/DatabaseReader.h>
 
 #include <gtest/gtest.h>
+#include <osg/TexMat>
 
 #include <algorithm>
 #include <array>
@@ -72,8 +73,15 @@ inline void expectNoSeams(const std::string& folder, unsigned int unit)
                 }
             // Texel centres lie on the tile's edges.
             float low = 1.0f, high = 0.0f;
-            for (const auto& t : dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0)))
+            // The unit's coordinates are those of the colours, or follow from them by a matrix.
+            const auto* matrix = dynamic_cast<const osg::TexMat*>(
+                tile.geometry->getStateSet()->getTextureAttribute(unit, osg::StateAttribute::TEXMAT));
+            for (const auto& color : dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0)))
             {
+                const osg::Vec3d place(color, 0.0);
+                const osg::Vec2 t(
+                    matrix ? osg::Vec2d((place * matrix->getMatrix()).x(), (place * matrix->getMatrix()).y())
+                           : osg::Vec2d(color));
                 low = std::min({low, t.x(), t.y()});
                 high = std::max({high, t.x(), t.y()});
             }
