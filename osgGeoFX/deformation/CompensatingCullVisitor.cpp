@@ -461,7 +461,11 @@ void CompensatingCullVisitor::apply(osg::Transform& node)
 
 void CompensatingCullVisitor::apply(osg::LOD& node)
 {
+    // A part of a tile is never left out for being small: a deformation may squeeze many of them into a few pixels.
+    const bool cullSmall = _cullSmall;
+    if (cullSmall && TileInfo::meshesOf(node)) _cullSmall = false;
     const Scope scope(*this, node);
+    _cullSmall = cullSmall;
     if (scope.skip()) return;
     if (!_mode.ours || !_task.compensate)
     {
@@ -600,10 +604,11 @@ bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
     osg::Matrixd matrix = *getModelViewMatrix();
     tile->computeLocalToWorldMatrix(matrix, this);
     const double range = static_cast<double>(node.getMaxRange(1));
-    const double error =
-        std::max(0.0, range - static_cast<double>(node.getBound().radius())) * _task.tileError;
+    const auto radius = static_cast<double>(node.getBound().radius());
+    // Finer tiles stand out of its box by its error, and their walls reach as far below as its sphere has room for.
+    const double error = std::max((range - radius) * _task.tileError, radius - tileBox.radius());
     osg::BoundingBox bounds(osg::Vec3(tileBox._min), osg::Vec3(tileBox._max));
-    const osg::Vec3 more(osg::Vec3d(error, error, error));
+    const osg::Vec3 more(osg::Vec3d(1.0, 1.0, 1.0) * std::max(0.0, error));
     bounds._min -= more;
     bounds._max += more;
     const EyeBox box = EyeBox::of(bounds, matrix);

@@ -152,7 +152,11 @@ TileBlocks::Block TileBlocks::make(const TileBlock& block)
             _blocks.push_back(std::move(finer));
             result.finer.push_back(_blocks.size() - 1);
         }
-        if (!result.finer.empty()) result.finerWithin = FINER_WITHIN * result.radius;
+        // Not before its own error is small enough, where it is smaller than others: at the end of the ground.
+        const double perMetre = _plan.options.pixelsPerRadian / _plan.options.pixelError;
+        if (!result.finer.empty())
+            result.finerWithin = std::max(FINER_WITHIN * result.radius,
+                                          result.radius + _plan.tolerance(_key.level) * perMetre);
     }
     makeMeshes(block, result);
     return result;

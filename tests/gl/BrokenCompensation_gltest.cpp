@@ -8,6 +8,7 @@
 #include <tools/OahuScene.h>
 
 #include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/NormalTurner.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 
 using namespace osgGeoFX;
@@ -64,7 +65,7 @@ private:
 };
 
 /// An effect whose frames lie.
-class LyingEffect : public Deformation
+class LyingEffect : public Deformation, public NormalTurner
 {
 public:
     LyingEffect() = default;
@@ -89,6 +90,11 @@ public:
     std::string vertexFile() const override { return _honest->vertexFile(); }
     std::string fragmentFile() const override { return _honest->fragmentFile(); }
     std::string constants() const override { return _honest->constants(); }
+    std::string normalFile() const override
+    {
+        const auto* turner = dynamic_cast<const NormalTurner*>(_honest.get());
+        return turner ? turner->normalFile() : std::string();
+    }
 
 protected:
     ~LyingEffect() override = default;

@@ -121,7 +121,7 @@ private:
             }
         }
         // The lower ends of the walls on each side, by their place along it: texture coordinates are exact.
-        std::array<std::map<float, double>, 4> lowerEnds;
+        std::array<std::map<float, osg::Vec3d>, 4> lowerEnds;
         const auto onSide = [&](unsigned int vertex, unsigned int side)
         {
             const osg::Vec2& at = (*coordinates)[vertex];
@@ -144,9 +144,10 @@ private:
             for (const unsigned int vertex : corners)
             {
                 if (vertex < static_cast<unsigned int>(posts)) continue;
-                const auto z = static_cast<double>((*vertices)[vertex].z());
-                const auto [entry, isNew] = lowerEnds[side].emplace(along(vertex, side), z);
-                if (!isNew) entry->second = std::max(entry->second, z);
+                // The higher one, where two walls meet.
+                const osg::Vec3d place = (*vertices)[vertex];
+                const auto [entry, isNew] = lowerEnds[side].emplace(along(vertex, side), place);
+                if (!isNew && entry->second.z() < place.z()) entry->second = place;
             }
         }
         // The tile's own border.
@@ -169,24 +170,23 @@ private:
                     bool whole = true;
                     for (const std::size_t end : {0u, 1u})
                     {
-                        wall.top[end] = wall.bottom[end] = (*vertices)[ends[end]];
-                        whole =
-                            whole && heightAt(lowerEnds[side], along(ends[end], side), wall.bottom[end].z());
+                        wall.top[end] = (*vertices)[ends[end]];
+                        whole = whole && lowerEnd(lowerEnds[side], along(ends[end], side), wall.bottom[end]);
                     }
                     if (whole) mesh.walls.push_back(wall);
                 }
     }
 
     /// Between the lower ends on both sides of a place; false beyond the last of them.
-    static bool heightAt(const std::map<float, double>& lowerEnds, float place, double& height)
+    static bool lowerEnd(const std::map<float, osg::Vec3d>& lowerEnds, float place, osg::Vec3d& result)
     {
         const auto after = lowerEnds.lower_bound(place);
         if (after == lowerEnds.end() || (after == lowerEnds.begin() && after->first != place)) return false;
-        height = after->second;
+        result = after->second;
         if (after->first == place) return true;
         const auto before = std::prev(after);
         const auto share = static_cast<double>((place - before->first) / (after->first - before->first));
-        height = before->second + share * (after->second - before->second);
+        result = before->second + (after->second - before->second) * share;
         return true;
     }
 
