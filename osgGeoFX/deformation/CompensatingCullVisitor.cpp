@@ -605,10 +605,9 @@ bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
     tile->computeLocalToWorldMatrix(matrix, this);
     const double range = static_cast<double>(node.getMaxRange(1));
     const auto radius = static_cast<double>(node.getBound().radius());
-    // Finer tiles stand out of its box by its error, and their walls reach as far below as its sphere has room for.
-    const double error = std::max((range - radius) * _task.tileError, radius - tileBox.radius());
+    const double error = std::max(0.0, range - radius) * _task.tileError;
     osg::BoundingBox bounds(osg::Vec3(tileBox._min), osg::Vec3(tileBox._max));
-    const osg::Vec3 more(osg::Vec3d(1.0, 1.0, 1.0) * std::max(0.0, error));
+    const osg::Vec3 more(osg::Vec3d(error, error, error));
     bounds._min -= more;
     bounds._max += more;
     const EyeBox box = EyeBox::of(bounds, matrix);

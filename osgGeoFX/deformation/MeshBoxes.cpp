@@ -3,6 +3,7 @@
 #include <osgGeoFX/deformation/MeshBoxes.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGeoFX
 {
@@ -10,7 +11,7 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr int cellsOnSide = 6;
+constexpr int mostOnSide = 6;
 
 /// Sorts triangles into the cells of a grid over the two longer sides of a box.
 struct Sorter
@@ -19,24 +20,23 @@ struct Sorter
     {
         const osg::Vec3 middle = (a + b + c) / 3.0f;
         osg::BoundingBox& box =
-            boxes[static_cast<std::size_t>(cell(middle, first) * cellsOnSide + cell(middle, second))];
+            boxes[static_cast<std::size_t>(cell(middle, first) * onSide + cell(middle, second))];
         box.expandBy(a);
         box.expandBy(b);
         box.expandBy(c);
-        ++triangles;
     }
     int cell(const osg::Vec3& point, int axis) const
     {
         const float size = bounds._max[axis] - bounds._min[axis];
         const float share = size > 0.0f ? (point[axis] - bounds._min[axis]) / size : 0.0f;
-        return std::clamp(static_cast<int>(share * static_cast<float>(cellsOnSide)), 0, cellsOnSide - 1);
+        return std::clamp(static_cast<int>(share * static_cast<float>(onSide)), 0, onSide - 1);
     }
 
     osg::BoundingBox bounds;
     int first = 0;
     int second = 1;
-    std::size_t triangles = 0;
-    MeshBoxes::Boxes boxes = MeshBoxes::Boxes(static_cast<std::size_t>(cellsOnSide * cellsOnSide));
+    int onSide = 1;
+    MeshBoxes::Boxes boxes;
 };
 
 /// Whether what was found out of a drawable still holds. One that is no geometry has no boxes, whatever becomes of it.
@@ -62,7 +62,13 @@ MeshBoxes::Entry& MeshBoxes::of(const osg::Drawable& drawable)
     // Where it may draw what its vertices do not tell, the whole box is all that is known.
     const DrawableTriangles mesh(drawable);
     if (!mesh.tellAll()) return entry;
+    // For a handful of triangles the whole box is as good.
+    constexpr double trianglesInCell = 2.0;
+    const double triangles = static_cast<double>(mesh.corners().size()) / 3.0;
     Sorter sorter;
+    sorter.onSide = std::min(mostOnSide, static_cast<int>(std::sqrt(triangles / trianglesInCell)));
+    if (sorter.onSide < 2) return entry;
+    sorter.boxes.resize(static_cast<std::size_t>(sorter.onSide * sorter.onSide));
     sorter.bounds = drawable.getBoundingBox();
     const osg::Vec3 size = sorter.bounds._max - sorter.bounds._min;
     const int shortest = size.x() < size.y() ? (size.x() < size.z() ? 0 : 2) : (size.y() < size.z() ? 1 : 2);
@@ -74,8 +80,6 @@ MeshBoxes::Entry& MeshBoxes::of(const osg::Drawable& drawable)
     };
     for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
         sorter.add(at(i), at(i + 1), at(i + 2));
-    // For a handful of triangles the whole box is as good.
-    if (sorter.triangles < 2 * sorter.boxes.size()) return entry;
     std::copy_if(sorter.boxes.begin(), sorter.boxes.end(), std::back_inserter(entry.boxes),
                  [](const osg::BoundingBox& box) { return box.valid(); });
     return entry;

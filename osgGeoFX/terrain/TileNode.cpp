@@ -251,7 +251,6 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
             box.expandBy(osg::Vec3d(vertex));
         for (const auto& vertex : *vertices.vertices)
             radius = std::max(radius, (osg::Vec3d(vertex) - box.center()).length());
-        transform->setUserValue("geofx.posts", static_cast<int>(vertices.posts()));
     }
     else
     {
@@ -267,6 +266,7 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     }
     transform->setUserValue("geofx.boxMin", osg::Vec3d(box._min));
     transform->setUserValue("geofx.boxMax", osg::Vec3d(box._max));
+    transform->setUserValue("geofx.posts", static_cast<int>(vertices.posts()));
     if (key.level == scheme.finestLevel) return transform;
 
     // Seen from d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R away, so
