@@ -56,7 +56,8 @@ public:
     {
         const std::optional<TileInfo> info = TileInfo::read(transform);
         const osg::ref_ptr<osg::Geometry> ground = info ? TileInfo::ground(transform) : nullptr;
-        const auto* vertices = ground ? dynamic_cast<const osg::Vec3Array*>(ground->getVertexArray()) : nullptr;
+        const auto* vertices =
+            ground ? dynamic_cast<const osg::Vec3Array*>(ground->getVertexArray()) : nullptr;
         if (!vertices || vertices->size() < static_cast<std::size_t>(info->posts))
         {
             if (!info) traverse(transform);
@@ -76,7 +77,6 @@ public:
 
     std::vector<FineTile> tiles;
     std::vector<std::string> files;
-
 };
 
 } // namespace
