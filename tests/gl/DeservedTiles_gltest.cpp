@@ -86,10 +86,11 @@ Wishes addEffects(EffectScene& scene, Random& random)
 struct Tile
 {
     const osg::PagedLOD* group = nullptr;
-    const osg::Geometry* mesh = nullptr;
+    const osg::Transform* node = nullptr;
+    osg::ref_ptr<osg::Geometry> mesh; ///< its ground
     osg::Matrixd toWorld;
     double error = 0.0; ///< the length that a pixel may cover, times pixels per radian
-    std::vector<const osg::Drawable*> above;
+    std::vector<const osg::Transform*> above;
     bool finerHere = false;
 };
 
@@ -108,7 +109,8 @@ public:
             return;
         }
         Tile tile;
-        tile.mesh = node.getChild(0)->asGeometry();
+        tile.node = &node;
+        tile.mesh = TileInfo::ground(node);
         if (!tile.mesh) return;
         tile.toWorld = osg::computeLocalToWorld(getNodePath());
         tile.above = _above;
@@ -125,14 +127,14 @@ public:
             tile.error = std::max(0.0, static_cast<double>(group->getMaxRange(1)) - radius);
         }
         found.push_back(tile);
-        if (group) _pending = tile.mesh;
+        if (group) _pending = tile.node;
     }
     void apply(osg::PagedLOD& node) override
     {
         _pending = nullptr;
         if (node.getNumChildren() == 0) return;
         node.getChild(0)->accept(*this);
-        const osg::Drawable* own = _pending;
+        const osg::Transform* own = _pending;
         if (own) _above.push_back(own);
         for (unsigned int i = 1; i < node.getNumChildren(); ++i)
             node.getChild(i)->accept(*this);
@@ -142,8 +144,8 @@ public:
     std::vector<Tile> found;
 
 private:
-    std::vector<const osg::Drawable*> _above;
-    const osg::Drawable* _pending = nullptr;
+    std::vector<const osg::Transform*> _above;
+    const osg::Transform* _pending = nullptr;
 };
 
 /// By how much a point's neighbourhood is stretched, in some directions at least.
@@ -218,7 +220,9 @@ TEST_P(DeservedTiles, NoTileIsMissingAndNoneIsCoarserThanItsErrorAllows)
         for (int step = random.integer(1, 3); step > 0; --step)
             CullHarness::load(harness.frame(true, false).requests, random, 0.6);
         const Culled culled = harness.frame(true, false);
-        const std::set<const osg::Drawable*> drawn = culled.drawables();
+        std::set<const osg::Transform*> drawn;
+        for (const osg::Drawable* drawable : culled.drawables())
+            if (const osg::Geometry* mesh = drawable->asGeometry()) drawn.insert(TileInfo::tileOf(*mesh));
         const std::set<const osg::PagedLOD*> requesting = culled.requesting();
         const osg::ref_ptr<const DeformationChain> chain = scene.deformation(view, projection);
         const osg::Vec3d up = ViewGeometry(view, projection, scene.ground()).up;
@@ -233,12 +237,12 @@ TEST_P(DeservedTiles, NoTileIsMissingAndNoneIsCoarserThanItsErrorAllows)
             {
                 ++inSight;
                 const bool covered =
-                    drawn.count(tile.mesh) ||
+                    drawn.count(tile.node) ||
                     std::any_of(tile.above.begin(), tile.above.end(),
-                                [&](const osg::Drawable* each) { return drawn.count(each) > 0; });
+                                [&](const osg::Transform* each) { return drawn.count(each) > 0; });
                 EXPECT_TRUE(covered) << "nothing is drawn in the place of a tile in sight";
             }
-            if (!tile.group || !drawn.count(tile.mesh)) continue;
+            if (!tile.group || !drawn.count(tile.node)) continue;
             // Drawn though finer ones are due: only while they are on their way.
             const bool asks = requesting.count(tile.group) > 0;
             if (need.due > 1.001 * scale)
