@@ -58,7 +58,7 @@ public:
         const osg::ref_ptr<osg::Geometry> ground = info ? TileInfo::ground(transform) : nullptr;
         const auto* vertices =
             ground ? dynamic_cast<const osg::Vec3Array*>(ground->getVertexArray()) : nullptr;
-        if (!vertices || vertices->size() < static_cast<std::size_t>(info->posts))
+        if (!vertices || vertices->size() < std::max<std::size_t>(4, static_cast<std::size_t>(info->posts)))
         {
             if (!info) traverse(transform);
             return;
@@ -67,16 +67,33 @@ public:
         tile.info = *info;
         tile.vertices = vertices;
         transform.computeLocalToWorldMatrix(tile.toWorld, nullptr);
-        tile.cells = static_cast<int>(std::lround(std::sqrt(info->posts))) - 1;
-        tile.used.resize(static_cast<std::size_t>(info->posts));
+        // A power of two; what is left of the vertices are lower ends of walls.
+        const std::size_t known = info->posts > 0 ? static_cast<std::size_t>(info->posts) : vertices->size();
+        tile.cells = 1;
+        while (postsOf(2 * tile.cells) <= known)
+            tile.cells *= 2;
+        const std::size_t posts = postsOf(tile.cells);
+        tile.used.resize(posts);
         const osg::PrimitiveSet& triangles = *ground->getPrimitiveSet(0);
-        for (unsigned int i = 0; i < triangles.getNumIndices(); ++i)
-            tile.used[triangles.index(i)] = true;
+        for (unsigned int i = 0; i + 2 < triangles.getNumIndices(); i += 3)
+        {
+            const unsigned int corners[] = {triangles.index(i), triangles.index(i + 1),
+                                            triangles.index(i + 2)};
+            if (*std::max_element(std::begin(corners), std::end(corners)) >= posts) continue;
+            for (const unsigned int corner : corners)
+                tile.used[corner] = true;
+        }
         tiles.push_back(std::move(tile));
     }
 
     std::vector<FineTile> tiles;
     std::vector<std::string> files;
+
+private:
+    static std::size_t postsOf(int cells)
+    {
+        return static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1);
+    }
 };
 
 } // namespace
