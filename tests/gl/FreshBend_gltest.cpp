@@ -51,7 +51,7 @@ TEST_F(FreshBend, RefinesFirstWhatIsTooCoarseForItMost)
     }
     const osg::ref_ptr<PedestrianView> bend = new PedestrianView;
     bend->setFocusDistance(20000.0);
-    bend->setZoneWidth(5000.0);
+    bend->setZoneWidth(1500.0);
     bend->setBendAngle(1.2);
     oahu->effects->addEffect(bend);
     const osg::ref_ptr<const DeformationChain> chain = oahu->effects->deformation(view, projection);
