@@ -7,6 +7,7 @@
 #include <tools/GlFixture.h>
 #include <tools/OahuScene.h>
 
+#include <osg/Geometry>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/DeformedView.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
@@ -191,7 +192,8 @@ TEST_P(Picking, WhatIsPickedIsDrawnWhateverTheLodScale)
             ++hits;
             EXPECT_TRUE(drawn.count(hit->drawable))
                 << "what is picked at LOD scale " << lodScale << " is not drawn";
-            const osg::Node* tile = hit->drawable->getNumParents() ? hit->drawable->getParent(0) : nullptr;
+            const osg::Geometry* mesh = hit->drawable->asGeometry();
+            const osg::Node* tile = mesh ? TileInfo::tileOf(*mesh) : nullptr;
             const std::optional<TileInfo> info = tile ? TileInfo::read(*tile) : std::nullopt;
             if (info) levels.insert(info->level);
         }
@@ -209,7 +211,7 @@ TEST_P(Picking, WithoutEffectsItIsOsgsOwnIntersector)
     off->setEnabled(false);
     oahu->effects->addEffect(off);
     int hits = 0;
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 100; ++i)
     {
         const osg::Matrixd view = randomOahuView(random, *oahu->reference);
         const osg::Matrixd projection = osg::Matrixd::perspective(40.0, 1.0, 1.0, 2e5);
@@ -227,7 +229,8 @@ TEST_P(Picking, WithoutEffectsItIsOsgsOwnIntersector)
         osgUtil::IntersectionVisitor visitor(segment);
         oahu->effects->accept(visitor);
         ASSERT_EQ(hit.has_value(), segment->containsIntersections()) << i;
-        if (!hit) continue;
+        // OSG's visitor takes the finest meshes in memory, the kit's those that are drawn.
+        if (!hit || hit->drawable != segment->getFirstIntersection().drawable.get()) continue;
         ++hits;
         EXPECT_LT((hit->world - segment->getFirstIntersection().getWorldIntersectPoint()).length(),
                   1e-6 * (start - hit->world).length() + 0.01);
