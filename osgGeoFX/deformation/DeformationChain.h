@@ -63,12 +63,11 @@ protected:
     ~DeformationChain() override;
 
 private:
+    double blockLimit(const osg::LOD& node, const Ball& ball) const;
     double longestEdge(const Ball& ball) const;
 
     std::vector<osg::ref_ptr<const DeformationFrame>> _frames;
     double _tileEdge = 0.0;
-    double blockLimit(const osg::LOD& node, const Ball& ball) const;
-
     double _tileError = 0.0;
 };
 

@@ -133,7 +133,7 @@ std::string OwnPrograms::describe(const osg::StateAttribute& program, const osg:
     }
     else
     {
-        names = std::string(program.libraryName()) + "::" + program.className();
+        names = program.getCompoundClassName();
     }
     const auto named = std::find_if(path.rbegin(), path.rend(),
                                     [](const osg::Node* node) { return !node->getName().empty(); });
@@ -141,8 +141,7 @@ std::string OwnPrograms::describe(const osg::StateAttribute& program, const osg:
     if (named != path.rend())
         text += ", at the node \"" + (*named)->getName() + "\",";
     else if (!path.empty())
-        text += std::string(", at a node of the class ") + path.back()->libraryName() +
-                "::" + path.back()->className() + ",";
+        text += ", at a node of the class " + path.back()->getCompoundClassName() + ",";
     return text;
 }
 
