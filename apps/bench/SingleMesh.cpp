@@ -150,15 +150,14 @@ private:
                  const osg::Geometry& geometry, int texels)
     {
         const auto& vertices = as<osg::Vec3Array>(geometry.getVertexArray());
-        const auto& normals = as<osg::Vec3sArray>(geometry.getNormalArray());
+        const auto& normals = as<osg::Vec3bArray>(geometry.getNormalArray());
         const auto& coordinates = as<osg::Vec2Array>(geometry.getTexCoordArray(0));
-        const auto posts = static_cast<unsigned int>(tile.posts);
         const auto first = static_cast<GLuint>(_vertices->size());
         const double across = 1 << _finestLevel;
-        for (unsigned int i = 0; i < posts; ++i)
+        for (std::size_t i = 0; i < vertices.size(); ++i)
         {
             _vertices->push_back(osg::Vec3(osg::Vec3d(vertices[i]) * localToWorld - _origin));
-            const osg::Vec3s& n = normals[i];
+            const osg::Vec3b& n = normals[i];
             osg::Vec3d normal = osg::Matrixd::transform3x3(osg::Vec3d(n.x(), n.y(), n.z()), localToWorld);
             normal.normalize();
             normal *= 32767.0;

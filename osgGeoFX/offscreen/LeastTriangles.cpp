@@ -7,11 +7,14 @@
 #include <osg/Geometry>
 #include <osg/NodeVisitor>
 #include <osg/PagedLOD>
+#include <osg/Texture>
 #include <osg/Transform>
+#include <osg/Vec2i>
 #include <osgDB/FileNameUtils>
 #include <osgDB/ReadFile>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -27,11 +30,37 @@ struct FineTile
 {
     TileInfo info;
     osg::Matrixd toWorld;
-    osg::ref_ptr<const osg::Vec3Array>
-        vertices;           ///< its posts row by row from the south-west, then lower ends of walls
-    std::vector<bool> used; ///< by the triangles of the surface
-    int cells = 0;          ///< along its edge
+    /// The ground at its posts, row by row from the south-west, in the tile's frame; NaN where there is none.
+    std::vector<osg::Vec3d> posts;
 };
+
+constexpr double NOWHERE = std::numeric_limits<double>::quiet_NaN();
+
+std::size_t postsOf(int cells)
+{
+    return static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1);
+}
+
+/// The posts under a triangle whose corners lie on posts; those between them lie on it.
+void addPosts(const std::array<osg::Vec2i, 3>& at, const std::array<osg::Vec3d, 3>& corner, FineTile& tile)
+{
+    const osg::Vec2i u = at[1] - at[0], v = at[2] - at[0];
+    const int area = u.x() * v.y() - u.y() * v.x();
+    if (area == 0) return;
+    const auto [west, east] = std::minmax({at[0].x(), at[1].x(), at[2].x()});
+    const auto [south, north] = std::minmax({at[0].y(), at[1].y(), at[2].y()});
+    for (int row = south; row <= north; ++row)
+        for (int column = west; column <= east; ++column)
+        {
+            const osg::Vec2i p = osg::Vec2i(column, row) - at[0];
+            const double s = static_cast<double>(p.x() * v.y() - p.y() * v.x()) / area;
+            const double t = static_cast<double>(u.x() * p.y() - u.y() * p.x()) / area;
+            if (s < 0.0 || t < 0.0 || s + t > 1.0) continue;
+            tile.posts[static_cast<std::size_t>(row) * static_cast<std::size_t>(tile.info.cells + 1) +
+                       static_cast<std::size_t>(column)] =
+                corner[0] * (1.0 - s - t) + corner[1] * s + corner[2] * t;
+        }
+}
 
 /// Collects the finest tiles of a file, and the names of the files below it.
 class TileCollector : public osg::NodeVisitor
@@ -55,45 +84,52 @@ public:
     void apply(osg::Transform& transform) override
     {
         const std::optional<TileInfo> info = TileInfo::read(transform);
-        const osg::ref_ptr<osg::Geometry> ground = info ? TileInfo::ground(transform) : nullptr;
-        const auto* vertices =
-            ground ? dynamic_cast<const osg::Vec3Array*>(ground->getVertexArray()) : nullptr;
-        if (!vertices || vertices->size() < std::max<std::size_t>(4, static_cast<std::size_t>(info->posts)))
+        if (!info)
         {
-            if (!info) traverse(transform);
+            traverse(transform);
             return;
         }
+        const osg::ref_ptr<osg::Geometry> ground = TileInfo::ground(transform);
+        const auto* vertices =
+            ground ? dynamic_cast<const osg::Vec3Array*>(ground->getVertexArray()) : nullptr;
+        const auto* places =
+            ground ? dynamic_cast<const osg::Vec2Array*>(ground->getTexCoordArray(0)) : nullptr;
+        const auto* texture =
+            ground && ground->getStateSet()
+                ? dynamic_cast<const osg::Texture*>(
+                      ground->getStateSet()->getTextureAttribute(0, osg::StateAttribute::TEXTURE))
+                : nullptr;
+        const osg::Image* image = texture ? texture->getImage(0) : nullptr;
+        if (info->cells < 1 || !vertices || !places || places->size() != vertices->size() || !image) return;
         FineTile tile;
         tile.info = *info;
-        tile.vertices = vertices;
         transform.computeLocalToWorldMatrix(tile.toWorld, nullptr);
-        // A power of two; what is left of the vertices are lower ends of walls.
-        const std::size_t known = info->posts > 0 ? static_cast<std::size_t>(info->posts) : vertices->size();
-        tile.cells = 1;
-        while (postsOf(2 * tile.cells) <= known)
-            tile.cells *= 2;
-        const std::size_t posts = postsOf(tile.cells);
-        tile.used.resize(posts);
+        tile.posts.assign(postsOf(info->cells), osg::Vec3d(NOWHERE, NOWHERE, NOWHERE));
+        // The outermost texels' middles lie on the tile's border.
+        const double texels = image->s() - 1;
+        const auto post = [&](float coordinate)
+        {
+            const double share = (static_cast<double>(coordinate) * (texels + 1.0) - 0.5) / texels;
+            return std::clamp(static_cast<int>(std::lround(share * info->cells)), 0, info->cells);
+        };
         const osg::PrimitiveSet& triangles = *ground->getPrimitiveSet(0);
         for (unsigned int i = 0; i + 2 < triangles.getNumIndices(); i += 3)
         {
-            const unsigned int corners[] = {triangles.index(i), triangles.index(i + 1),
-                                            triangles.index(i + 2)};
-            if (*std::max_element(std::begin(corners), std::end(corners)) >= posts) continue;
-            for (const unsigned int corner : corners)
-                tile.used[corner] = true;
+            std::array<osg::Vec2i, 3> at;
+            std::array<osg::Vec3d, 3> corner;
+            for (unsigned int k = 0; k < 3; ++k)
+            {
+                const osg::Vec2& place = (*places)[triangles.index(i + k)];
+                at[k].set(post(place.x()), post(place.y()));
+                corner[k] = (*vertices)[triangles.index(i + k)];
+            }
+            addPosts(at, corner, tile);
         }
         tiles.push_back(std::move(tile));
     }
 
     std::vector<FineTile> tiles;
     std::vector<std::string> files;
-
-private:
-    static std::size_t postsOf(int cells)
-    {
-        return static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1);
-    }
 };
 
 } // namespace
@@ -122,7 +158,7 @@ std::unique_ptr<LeastTriangles> LeastTriangles::read(const osg::Node& root, std:
         {
             if (cells == 0)
             {
-                cells = tile.cells;
+                cells = tile.info.cells;
                 level = tile.info.level;
                 result->_origin = tile.toWorld.getTrans();
                 result->_side = (cells << level) + 1;
@@ -130,7 +166,7 @@ std::unique_ptr<LeastTriangles> LeastTriangles::read(const osg::Node& root, std:
                                               static_cast<std::size_t>(result->_side),
                                           osg::Vec3f(nowhere, nowhere, nowhere));
             }
-            if (tile.cells != cells || tile.info.level != level)
+            if (tile.info.cells != cells || tile.info.level != level)
             {
                 error = "The terrain database has finest tiles of several sizes, so the least number of "
                         "triangles "
@@ -140,9 +176,11 @@ std::unique_ptr<LeastTriangles> LeastTriangles::read(const osg::Node& root, std:
             for (int row = 0; row <= cells; ++row)
                 for (int column = 0; column <= cells; ++column)
                 {
-                    const auto post = static_cast<unsigned int>(row * (cells + 1) + column);
-                    if (!tile.used[post]) continue;
-                    const osg::Vec3d world = osg::Vec3d((*tile.vertices)[post]) * tile.toWorld;
+                    const osg::Vec3d& local =
+                        tile.posts[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells + 1) +
+                                   static_cast<std::size_t>(column)];
+                    if (std::isnan(local.x())) continue;
+                    const osg::Vec3d world = local * tile.toWorld;
                     result
                         ->_positions[result->place(tile.info.x * cells + column, tile.info.y * cells + row)] =
                         world - result->_origin;

@@ -12,6 +12,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -42,7 +46,36 @@ public:
     const osg::Node* found = nullptr;
 };
 
-/// Puts the finest meshes of a tile's blocks together, without walls.
+/// A vertex of a mesh.
+struct Vertex
+{
+    const osg::Geometry* mesh;
+    unsigned int index;
+};
+
+/// The values that vertices have in one of their meshes' arrays, which `of` finds.
+template<typename Of>
+osg::ref_ptr<osg::Array> gathered(const std::vector<Vertex>& vertices, const Of& of)
+{
+    const osg::Array* first = of(*vertices.front().mesh);
+    if (!first || first->getBinding() == osg::Array::BIND_OVERALL) return const_cast<osg::Array*>(first);
+    osg::ref_ptr<osg::Array> result = static_cast<osg::Array*>(first->cloneType());
+    result->setBinding(first->getBinding());
+    result->setNormalize(first->getNormalize());
+    result->resizeArray(static_cast<unsigned int>(vertices.size()));
+    const std::size_t size = first->getElementSize();
+    auto* to = static_cast<unsigned char*>(const_cast<GLvoid*>(result->getDataPointer()));
+    for (const Vertex& vertex : vertices)
+    {
+        const osg::Array* source = of(*vertex.mesh);
+        if (source && source->getType() == first->getType() && vertex.index < source->getNumElements())
+            std::memcpy(to, source->getDataPointer(vertex.index), size);
+        to += size;
+    }
+    return result;
+}
+
+/// The finest meshes of a tile's blocks.
 class FindGround : public osg::NodeVisitor
 {
 public:
@@ -54,7 +87,7 @@ public:
         if (!meshes || meshes->empty()) return;
         // The nearest one comes first.
         if (const osg::Geometry* mesh = block.getChild(0)->asGeometry())
-            add(*mesh, static_cast<unsigned int>(meshes->front().y()));
+            _meshes.emplace_back(mesh, static_cast<unsigned int>(meshes->front().y()));
         else
             block.getChild(0)->accept(*this);
     }
@@ -62,27 +95,47 @@ public:
     void apply(osg::Geometry& mesh) override
     {
         // A tile that is one mesh.
-        if (!ground) ground = &mesh;
+        if (!_single) _single = &mesh;
     }
 
-    osg::ref_ptr<osg::Geometry> ground;
+    osg::ref_ptr<osg::Geometry> ground() const
+    {
+        if (_meshes.empty()) return _single;
+        std::vector<Vertex> vertices;
+        std::unordered_map<const osg::Array*, std::unordered_map<unsigned int, unsigned int>> newIndices;
+        osg::ref_ptr<osg::DrawElementsUInt> all = new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES);
+        for (const auto& [mesh, indices] : _meshes)
+        {
+            auto& newIndex = newIndices[mesh->getVertexArray()];
+            const osg::PrimitiveSet& set = *mesh->getPrimitiveSet(0);
+            for (unsigned int i = 0; i < std::min(indices, set.getNumIndices()); ++i)
+            {
+                const auto [entry, isNew] =
+                    newIndex.try_emplace(set.index(i), static_cast<unsigned int>(vertices.size()));
+                if (isNew) vertices.push_back({mesh, set.index(i)});
+                all->push_back(entry->second);
+            }
+        }
+        osg::ref_ptr<osg::Geometry> result = new osg::Geometry;
+        result->setUseDisplayList(false);
+        result->setUseVertexBufferObjects(true);
+        result->setStateSet(const_cast<osg::StateSet*>(_meshes.front().first->getStateSet()));
+        result->addPrimitiveSet(all);
+        if (vertices.empty()) return result;
+        using Mesh = const osg::Geometry&;
+        result->setVertexArray(gathered(vertices, [](Mesh mesh) { return mesh.getVertexArray(); }));
+        result->setNormalArray(gathered(vertices, [](Mesh mesh) { return mesh.getNormalArray(); }));
+        result->setColorArray(gathered(vertices, [](Mesh mesh) { return mesh.getColorArray(); }));
+        for (unsigned int unit = 0; unit < _meshes.front().first->getNumTexCoordArrays(); ++unit)
+            result->setTexCoordArray(
+                unit, gathered(vertices, [unit](Mesh mesh) { return mesh.getTexCoordArray(unit); }));
+        return result;
+    }
 
 private:
-    void add(const osg::Geometry& mesh, unsigned int indices)
-    {
-        if (!ground)
-        {
-            ground = new osg::Geometry(mesh, osg::CopyOp::SHALLOW_COPY);
-            ground->removePrimitiveSet(0, ground->getNumPrimitiveSets());
-            _elements = new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES);
-            ground->addPrimitiveSet(_elements);
-        }
-        const osg::PrimitiveSet& set = *mesh.getPrimitiveSet(0);
-        for (unsigned int i = 0; i < std::min(indices, set.getNumIndices()); ++i)
-            _elements->push_back(set.index(i));
-    }
-
-    osg::ref_ptr<osg::DrawElementsUInt> _elements;
+    std::vector<std::pair<const osg::Geometry*, unsigned int>>
+        _meshes; ///< and how many indices the ground has
+    osg::ref_ptr<osg::Geometry> _single;
 };
 
 } // namespace
@@ -174,7 +227,7 @@ std::optional<TileInfo> TileInfo::read(const osg::Node& node)
     {
         return std::nullopt;
     }
-    node.getUserValue("geofx.posts", info.posts);
+    node.getUserValue("geofx.cells", info.cells);
     return info;
 }
 
@@ -212,7 +265,21 @@ osg::ref_ptr<osg::Geometry> TileInfo::ground(const osg::Transform& tile)
     FindGround finder;
     for (unsigned int i = 0; i < tile.getNumChildren(); ++i)
         const_cast<osg::Node*>(tile.getChild(i))->accept(finder);
-    return finder.ground;
+    return finder.ground();
+}
+
+const osg::Geometry* TileInfo::firstMesh(const osg::Transform& tile)
+{
+    const osg::Node* node = &tile;
+    while (node && !node->asGeometry())
+    {
+        const osg::Group* group = node->asGroup();
+        const auto* block = dynamic_cast<const osg::LOD*>(group);
+        if (!group || group->getNumChildren() == 0) return nullptr;
+        // The last one of a block is a mesh of its own.
+        node = group->getChild(block ? group->getNumChildren() - 1 : 0);
+    }
+    return node ? node->asGeometry() : nullptr;
 }
 
 float lodScaleFor(const TerrainInfo& info, double pixelsPerRadian)

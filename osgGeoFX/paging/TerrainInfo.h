@@ -66,8 +66,7 @@ struct OSGGEOFX_EXPORT TileInfo
     int y = 0;
     osg::Vec3d boxMin; ///< in the tile's local frame
     osg::Vec3d boxMax;
-    int posts =
-        0; ///< its first vertices; the others are lower ends of walls. 0 where it has no ground of its own
+    int cells = 0; ///< along an edge of the lattice that its meshes are made of; 0 where it does not tell
 
     /// Whether the node is a tile's transform, by its name.
     static bool isTile(const osg::Node& node);
@@ -78,9 +77,12 @@ struct OSGGEOFX_EXPORT TileInfo
     static bool readBox(const osg::Transform& tile, osg::BoundingBoxd& box);
     /// The tile that a mesh of a block belongs to; null for other geometries.
     static const osg::Transform* tileOf(const osg::Geometry& mesh);
-    /// The ground of a tile as one geometry, with its finest meshes and without walls; it shares arrays and state with
-    /// them. Of a tile that is made of a single geometry that one. Null where the tile has none. No other thread may change the tile meanwhile.
+    /// The ground of a tile as one geometry with one list of triangles: its finest meshes without walls, with copies of
+    /// their vertices and with their state. Of a tile that is made of a single geometry that one. Null where the tile has
+    /// none. No other thread may change the tile meanwhile.
     static osg::ref_ptr<osg::Geometry> ground(const osg::Transform& tile);
+    /// The first mesh of a tile, which stands for all of them; null where it has none.
+    static const osg::Geometry* firstMesh(const osg::Transform& tile);
     /// Of each child of a tile's block: how long the longest edge of its ground is, metres, and how many of its mesh's
     /// indices are the ground's; walls follow. Both are 0 for finer blocks. Null where the node is not a block of a tile.
     static const osg::Vec2Array* meshesOf(const osg::LOD& block);

@@ -24,11 +24,13 @@ std::mutex& userDataMutex()
     return mutex;
 }
 
-/// What the strokes of a geometry are kept with: the meshes of a terrain tile have them in common, with their vertices.
+/// What the strokes of a geometry are kept with: the meshes of a terrain tile have them in common.
 osg::Object& keeperOf(osg::Geometry& terrain)
 {
-    if (terrain.getVertexArray() && TileInfo::tileOf(terrain)) return *terrain.getVertexArray();
-    return terrain;
+    const osg::Transform* tile = TileInfo::tileOf(terrain);
+    const osg::Geometry* mesh = tile ? TileInfo::firstMesh(*tile) : nullptr;
+    // Not with the tile, whose user data others read without a lock.
+    return mesh ? const_cast<osg::Geometry&>(*mesh) : terrain;
 }
 
 /// A tile that stands in more places than these loses the strokes of the first ones.

@@ -86,8 +86,8 @@ public:
     double skirt(const TileKey& key, int side) const;
     double leastSkirt(int level) const; ///< where all is even, metres
 
-    /// The vertical error that the finest meshes of a level are made with, metres; the finest level's have all posts
-    /// instead.
+    /// The vertical error that the finest meshes of a level are made with, metres; the finest level's have
+    /// all posts instead, but for those of plains.
     double tolerance(int level) const;
     /// Bounds of the vertical error of a level's finest meshes and of all of them, metres, from the heights that they are
     /// made of.

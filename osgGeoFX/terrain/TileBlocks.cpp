@@ -16,7 +16,7 @@ namespace
 
 /// Four finer blocks take a block's place within so many of its radii. With more, blocks fit their distance better, and
 /// there are more of them to draw; the architecture page has what was measured.
-constexpr double FINER_WITHIN = 12.0;
+constexpr double FINER_WITHIN = 20.0;
 /// A mesh has at most this share of the posts of the one before it that could be left out.
 constexpr double STEP = 0.65;
 /// Below this gain a coarser mesh is not worth its bytes.
@@ -28,6 +28,11 @@ constexpr double ACCUMULATION = 1.4;
 /// Cells along the smallest blocks of a finest tile, and how many times its tile's edge has that of a coarser one.
 constexpr int FINEST_CELLS = 16;
 constexpr int COARSE_SHARE = 4;
+/// A finest tile leaves posts out whose errors are below this share of a cell, and below a millimetre: no camera comes near
+/// enough to see them.
+constexpr double NEGLIGIBLE = 1.0 / 32768.0, NEGLIGIBLE_METRES = 1e-3;
+/// What bends a plain finds edges of so many cells on a finest tile.
+constexpr int PLAIN_CELLS = 2;
 /// A wall leans outwards a little, so that it also closes hair lines when one looks straight down.
 constexpr double LEAN = 0.1;
 
@@ -52,6 +57,7 @@ struct TileBlocks::Side
     int line = 0;        ///< the row or the column that it lies on
     double depth = 0.0;  ///< metres that its wall reaches below the ground at least
     bool border = false; ///< of the tile
+    std::size_t vertices = 0;
 
     bool alongColumns() const { return number % 2 == 0; }
     /// Grows along the side with the block's inside on the left.
@@ -73,15 +79,16 @@ struct TileBlocks::Side
 };
 
 TileBlocks::TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetwork& network,
-                       TileVertices& vertices)
-    : _plan(plan), _key(key), _network(network), _lattice(network.lattice()), _vertices(vertices)
+                       const LevelArrays& arrays, int x, int y)
+    : _plan(plan), _key(key), _network(network), _lattice(network.lattice()), _arrays(arrays), _x(x), _y(y)
 {
+    addVertices({0, 0, _lattice.intervals});
     for (int side = 0; side < 4; ++side)
         _skirts[static_cast<std::size_t>(side)] = plan.skirt(key, side);
-    // Whole tiles are far enough away for one block on the coarsest level alone.
-    const int intervals = _lattice.intervals;
-    const bool whole = key.level == 0 || smallestBlock(plan.scheme, key.level, intervals) == intervals;
-    const int size = whole ? intervals : intervals / 2;
+    // Whole tiles are far enough away for one block on the coarsest level alone; halves of a finest one hardly ever are.
+    const int intervals = _lattice.intervals, smallest = smallestBlock(plan.scheme, key.level, intervals);
+    const int parts = key.level == 0 ? 1 : key.level == plan.scheme.finestLevel ? 4 : 2;
+    const int size = std::max(smallest, intervals / parts);
     std::vector<Block> roots;
     for (int row = 0; row < intervals; row += size)
         for (int column = 0; column < intervals; column += size)
@@ -101,11 +108,18 @@ TileBlocks::TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetw
         for (std::size_t& each : roots[i].finer)
             each += _roots;
     _blocks = std::move(roots);
-    std::vector<std::vector<std::uint32_t>*> lists;
+    std::vector<std::vector<std::vector<std::uint32_t>*>> lists(_vertices.size());
     for (Block& block : _blocks)
         for (Mesh& mesh : block.meshes)
-            lists.push_back(&mesh.triangles);
-    _vertices.finish(lists);
+            lists[block.vertices].push_back(&mesh.triangles);
+    for (std::size_t i = 0; i < lists.size(); ++i)
+        _vertices[i]->finish(lists[i]);
+}
+
+std::size_t TileBlocks::addVertices(const TileBlock& block)
+{
+    _vertices.push_back(std::make_unique<TileVertices>(_plan, _key, _arrays, _x, _y, block));
+    return _vertices.size() - 1;
 }
 
 double TileBlocks::metres() const
@@ -133,7 +147,7 @@ TileBlocks::Block TileBlocks::make(const TileBlock& block)
         for (int column = 0; column <= block.size; column += step)
         {
             const Post post{block.column + column, block.row + row};
-            const osg::Vec3d ground = _vertices.ground(post), up = _vertices.up(post);
+            const osg::Vec3d ground = _vertices.front()->ground(post), up = _vertices.front()->up(post);
             box.expandBy(ground + up * static_cast<double>(low));
             box.expandBy(ground + up * static_cast<double>(high));
         }
@@ -167,12 +181,24 @@ void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
     const double perMetre = _plan.options.pixelsPerRadian / _plan.options.pixelError;
     const bool smallest = block.size == smallestBlock(_plan.scheme, _key.level, _lattice.intervals);
     const bool finest = _key.level == _plan.scheme.finestLevel;
+    const bool own = smallest && finest;
     double tolerance = -1.0;
-    if (!smallest || !finest)
+    bool dense = false;
+    if (own)
+    {
+        // Where hardly a post can be left out, all are there.
+        const double negligible = std::min(NEGLIGIBLE * metres(), NEGLIGIBLE_METRES);
+        const auto posts =
+            static_cast<std::size_t>(block.size + 1) * static_cast<std::size_t>(block.size + 1);
+        dense = 2 * _network.errors(block, negligible).size() > posts;
+        if (!dense) tolerance = negligible;
+    }
+    else
         tolerance = std::max(_plan.tolerance(_key.level), (result.finerWithin - result.radius) / perMetre);
     // What the finest meshes may be off by is part of what neighbours' walls reach down to.
-    const double most = smallest ? _plan.finestError(_key.level)
-                                 : std::min(_plan.largestError(_key.level), ACCUMULATION * tolerance);
+    const double most = own        ? HUGE_VAL
+                        : smallest ? _plan.finestError(_key.level)
+                                   : std::min(_plan.largestError(_key.level), ACCUMULATION * tolerance);
     const int all = block.size;
     std::vector<BlockMesh> meshes{_network.triangulate(block, tolerance, all)};
     while (tolerance > 0.0 && meshes.front().deviation > most)
@@ -182,6 +208,8 @@ void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
     if (tolerance < 0.0) meshes.front().deviation = 0.0;
     std::vector<double> from{result.finerWithin};
 
+    // Of these vertices, and of those of the finest level.
+    const double rounding = 2.0 * _vertices.front()->rounding();
     const std::vector<float> errors = _network.errors(block, tolerance);
     for (auto count = errors.size(); count > 0;)
     {
@@ -193,7 +221,7 @@ void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
             LEAST_GAIN * static_cast<double>(meshes.back().corners.size()))
             continue;
         const double error = std::max(coarser, mesh.deviation / ACCUMULATION) +
-                             static_cast<double>(_plan.fact(_key).latticeError);
+                             static_cast<double>(_plan.fact(_key).latticeError) + rounding;
         const double distance = result.radius + error * perMetre;
         // Where the nearer one would hardly ever be seen, this one takes its place; the nearest one goes only where it never
         // would.
@@ -209,30 +237,35 @@ void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
             from.push_back(distance);
         }
     }
-    if (smallest) _error = std::max(_error, meshes.front().deviation);
+    // A plain is off by rounding alone, which is no reason to load finer tiles.
+    if (smallest && meshes.front().deviation > NEGLIGIBLE_METRES)
+        _error = std::max(_error, meshes.front().deviation + rounding);
 
     // What bends a plain asks for edges that are short, wherever it is.
-    const int longest = _lattice.intervals / leastCells(_plan.scheme.intervals);
-    if (smallest && !finest && longestEdge(meshes.front()) > 1.5 * longest)
+    const int longest = finest ? PLAIN_CELLS : _lattice.intervals / leastCells(_plan.scheme.intervals);
+    if (smallest && longestEdge(meshes.front()) > 1.5 * longest)
     {
         meshes.insert(meshes.begin(), _network.triangulate(block, tolerance, longest));
         from.insert(from.begin(), 0.0);
         from[1] = std::max(from[1], NEARER_THAN_ANY_CAMERA);
     }
+    if (own) result.vertices = addVertices(block);
+    TileVertices& vertices = *_vertices[result.vertices];
+    if (dense) vertices.addAll();
     for (std::size_t i = 0; i < meshes.size(); ++i)
     {
         Mesh made;
         made.from = from[i];
         made.longestEdge = longestEdge(meshes[i]) * metres();
         for (const Post& corner : meshes[i].corners)
-            made.triangles.push_back(_vertices.post(corner));
+            made.triangles.push_back(vertices.post(corner));
         made.ground = made.triangles.size();
         // A neighbour of the same tile, or of its level, is hardly farther away than the farthest place where this mesh
         // is drawn; twice that, since deformations stretch distances.
         double other = _plan.largestError(_key.level);
         if (i + 1 < meshes.size()) other = std::min(other, 2.0 * (from[i + 1] + result.radius) / perMetre);
         other += static_cast<double>(_plan.fact(_key).latticeError);
-        addWalls(block, meshes[i], meshes[i].deviation + other, made.triangles);
+        addWalls(block, result.vertices, meshes[i], meshes[i].deviation + other, made.triangles);
         result.meshes.push_back(std::move(made));
     }
 }
@@ -250,11 +283,12 @@ double TileBlocks::longestEdge(const BlockMesh& mesh)
     return std::sqrt(squared);
 }
 
-void TileBlocks::addWalls(const TileBlock& block, const BlockMesh& mesh, double depth,
+void TileBlocks::addWalls(const TileBlock& block, std::size_t vertices, const BlockMesh& mesh, double depth,
                           std::vector<std::uint32_t>& triangles)
 {
     // Rounding alone opens hair lines between meshes of different density, even in a plain.
-    const double inner = depth + _plan.leastSkirt(_key.level);
+    // Meshes of about the same depth share a wall's lower end.
+    const double inner = std::exp2(std::ceil(std::log2(depth + _plan.leastSkirt(_key.level))));
     // Beyond the end of the ground there is nothing.
     const int east = _lattice.eastColumn(), north = _lattice.northRow();
     const int lines[4] = {block.row, std::min(block.column + block.size, east),
@@ -262,7 +296,7 @@ void TileBlocks::addWalls(const TileBlock& block, const BlockMesh& mesh, double 
     const int borders[4] = {0, east, north, 0};
     for (int number = 0; number < 4; ++number)
     {
-        Side side{number, lines[number], inner, false};
+        Side side{number, lines[number], inner, false, vertices};
         side.border = side.line == borders[number];
         const double neighbours = _skirts[static_cast<std::size_t>(number)];
         if (side.border) side.depth = neighbours > 0.0 ? std::max(inner, mesh.deviation + neighbours) : 0.0;
@@ -301,6 +335,7 @@ bool TileBlocks::ends(const Post& post) const
 void TileBlocks::addWall(const Side& side, const std::vector<Post>& top,
                          std::vector<std::uint32_t>& triangles)
 {
+    TileVertices& vertices = *_vertices[side.vertices];
     const Post first = top.front(), last = top.back();
     if (!_lattice.places.empty() || ends(first) || ends(last))
     {
@@ -313,7 +348,7 @@ void TileBlocks::addWall(const Side& side, const std::vector<Post>& top,
         return static_cast<double>(_lattice.height(post.column, post.row));
     };
     const auto [entry, isNew] =
-        _lines.try_emplace(std::make_tuple(side.number, side.line, start, end, side.depth));
+        _lines.try_emplace(std::make_tuple(side.vertices, side.number, side.line, start, end, side.depth));
     Line& line = entry->second;
     if (isNew)
     {
@@ -330,8 +365,8 @@ void TileBlocks::addWall(const Side& side, const std::vector<Post>& top,
         const bool chord = std::min(a, b) - sag >= lowest - 0.01;
         line.depths = {side.depth + (chord ? sag : a - lowest), side.depth + (chord ? sag : b - lowest)};
         const osg::Vec2d out = side.out() * (LEAN * side.depth);
-        line.ends = {_vertices.below(first, line.depths[0], out.x(), out.y()),
-                     _vertices.below(last, line.depths[1], out.x(), out.y())};
+        line.ends = {vertices.below(first, line.depths[0], out.x(), out.y()),
+                     vertices.below(last, line.depths[1], out.x(), out.y())};
     }
     // The polygon between the border and the line, cut into triangles ear by ear.
     struct Corner
@@ -352,17 +387,18 @@ void TileBlocks::addWall(const Side& side, const std::vector<Post>& top,
         open.push_back(next);
     };
     for (const Post& post : top)
-        add({osg::Vec2d(side.place(post), height(post)), _vertices.post(post)});
+        add({osg::Vec2d(side.place(post), height(post)), vertices.post(post)});
     add({osg::Vec2d(end, height(last) - line.depths[1]), line.ends[1]});
 }
 
 void TileBlocks::addStrip(const Side& side, const std::vector<Post>& top,
                           std::vector<std::uint32_t>& triangles)
 {
+    TileVertices& vertices = *_vertices[side.vertices];
     const auto low = [&](const Post& post)
     {
-        const auto [entry, isNew] =
-            _strips.try_emplace(std::make_tuple(side.number, post.column, post.row, side.depth), 0u);
+        const auto [entry, isNew] = _strips.try_emplace(
+            std::make_tuple(side.vertices, side.number, post.column, post.row, side.depth), 0u);
         if (isNew)
         {
             // At the terrain's border it may still stand above the first posts of a finer neighbour, by its own error;
@@ -371,13 +407,13 @@ void TileBlocks::addStrip(const Side& side, const std::vector<Post>& top,
             const double depth =
                 end ? std::min(side.depth, 1.5 * _plan.largestError(_key.level) / 4.0) : side.depth;
             const osg::Vec2d out = side.out() * (end ? 0.0 : LEAN * depth);
-            entry->second = _vertices.below(post, depth, out.x(), out.y());
+            entry->second = vertices.below(post, depth, out.x(), out.y());
         }
         return entry->second;
     };
     for (std::size_t i = 0; i + 1 < top.size(); ++i)
     {
-        const std::uint32_t a = _vertices.post(top[i]), b = _vertices.post(top[i + 1]);
+        const std::uint32_t a = vertices.post(top[i]), b = vertices.post(top[i + 1]);
         const std::uint32_t lowA = low(top[i]), lowB = low(top[i + 1]);
         triangles.insert(triangles.end(), {a, lowA, b, b, lowA, lowB});
     }

@@ -49,15 +49,17 @@ osg::ref_ptr<osg::Image> cutImage(const std::vector<unsigned char>& texels, int 
 class BlockNodes
 {
 public:
-    BlockNodes(const TileBlocks& blocks, const TileVertices& vertices, osg::Array* color,
-               osg::StateSet* state)
-        : _blocks(blocks), _vertices(vertices), _color(color), _state(state)
+    BlockNodes(const TileBlocks& blocks, osg::Array* color, osg::StateSet* state)
+        : _blocks(blocks), _color(color), _state(state)
     {
-        // Each array has the tile's own buffer, whatever geometry takes it first.
-        osg::ref_ptr<osg::VertexBufferObject> buffer = new osg::VertexBufferObject;
-        vertices.vertices->setVertexBufferObject(buffer);
-        vertices.normals->setVertexBufferObject(buffer);
-        vertices.texCoords->setVertexBufferObject(buffer);
+        // A buffer of their own, whatever geometry takes them first. Not one for all: drivers count how often one is written.
+        for (const auto& vertices : blocks.vertices())
+        {
+            osg::ref_ptr<osg::VertexBufferObject> buffer = new osg::VertexBufferObject;
+            vertices->vertices->setVertexBufferObject(buffer);
+            vertices->normals->setVertexBufferObject(buffer);
+            vertices->texCoords->setVertexBufferObject(buffer);
+        }
     }
 
     osg::ref_ptr<osg::Node> all() const
@@ -72,6 +74,7 @@ public:
 private:
     osg::ref_ptr<osg::Node> node(const TileBlocks::Block& block) const
     {
+        const TileVertices& vertices = *_blocks.vertices()[block.vertices];
         osg::ref_ptr<osg::LOD> lod = new osg::LOD;
         osg::ref_ptr<osg::Vec2Array> meshes = new osg::Vec2Array;
         lod->setRangeMode(osg::LOD::DISTANCE_FROM_EYE_POINT);
@@ -97,9 +100,9 @@ private:
         {
             const TileBlocks::Mesh& mesh = block.meshes[i];
             for (const std::uint32_t index : mesh.triangles)
-                radius = std::max(radius, (osg::Vec3d((*_vertices.vertices)[index]) - block.middle).length());
+                radius = std::max(radius, (osg::Vec3d((*vertices.vertices)[index]) - block.middle).length());
             const double to = i + 1 < block.meshes.size() ? block.meshes[i + 1].from : NO_LIMIT;
-            lod->addChild(geometry(mesh), static_cast<float>(mesh.from), static_cast<float>(to));
+            lod->addChild(geometry(mesh, vertices), static_cast<float>(mesh.from), static_cast<float>(to));
             meshes->push_back(osg::Vec2(osg::Vec2d(mesh.longestEdge, static_cast<double>(mesh.ground))));
         }
         lod->setRadius(static_cast<float>(radius));
@@ -107,17 +110,17 @@ private:
         return lod;
     }
 
-    osg::ref_ptr<osg::Geometry> geometry(const TileBlocks::Mesh& mesh) const
+    osg::ref_ptr<osg::Geometry> geometry(const TileBlocks::Mesh& mesh, const TileVertices& vertices) const
     {
         osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
         geometry->setUseDisplayList(false);
         geometry->setUseVertexBufferObjects(true);
-        geometry->setVertexArray(_vertices.vertices);
-        geometry->setNormalArray(_vertices.normals);
-        geometry->setTexCoordArray(COLOR_UNIT, _vertices.texCoords);
+        geometry->setVertexArray(vertices.vertices);
+        geometry->setNormalArray(vertices.normals);
+        geometry->setTexCoordArray(COLOR_UNIT, vertices.texCoords);
         geometry->setColorArray(_color);
         osg::ref_ptr<osg::DrawElements> elements;
-        if (_vertices.vertices->size() <= 65536)
+        if (vertices.vertices->size() <= 65536)
             elements = new osg::DrawElementsUShort(osg::PrimitiveSet::TRIANGLES, mesh.triangles.begin(),
                                                    mesh.triangles.end());
         else
@@ -133,7 +136,6 @@ private:
     static constexpr double NO_LIMIT = std::numeric_limits<float>::max();
 
     const TileBlocks& _blocks;
-    const TileVertices& _vertices;
     const osg::ref_ptr<osg::Array> _color;
     const osg::ref_ptr<osg::StateSet> _state;
 };
@@ -240,17 +242,18 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
 
     const TileLattice lattice = createLattice(key, arrays, x, y);
     const TileNetwork network(lattice);
-    TileVertices vertices(_plan, key, arrays, x, y);
-    const TileBlocks blocks(_plan, key, network, vertices);
+    const TileBlocks blocks(_plan, key, network, arrays, x, y);
     osg::BoundingBoxd box;
     double radius = 0.0;
     if (!blocks.empty())
     {
-        transform->addChild(BlockNodes(blocks, vertices, _white, createState(key, arrays, x, y)).all());
-        for (const auto& vertex : *vertices.vertices)
-            box.expandBy(osg::Vec3d(vertex));
-        for (const auto& vertex : *vertices.vertices)
-            radius = std::max(radius, (osg::Vec3d(vertex) - box.center()).length());
+        transform->addChild(BlockNodes(blocks, _white, createState(key, arrays, x, y)).all());
+        for (const auto& vertices : blocks.vertices())
+            for (const auto& vertex : *vertices->vertices)
+                box.expandBy(osg::Vec3d(vertex));
+        for (const auto& vertices : blocks.vertices())
+            for (const auto& vertex : *vertices->vertices)
+                radius = std::max(radius, (osg::Vec3d(vertex) - box.center()).length());
     }
     else
     {
@@ -266,7 +269,7 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     }
     transform->setUserValue("geofx.boxMin", osg::Vec3d(box._min));
     transform->setUserValue("geofx.boxMax", osg::Vec3d(box._max));
-    transform->setUserValue("geofx.posts", static_cast<int>(vertices.posts()));
+    transform->setUserValue("geofx.cells", lattice.intervals);
     if (key.level == scheme.finestLevel) return transform;
 
     // Seen from d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R away, so

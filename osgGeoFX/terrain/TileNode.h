@@ -33,11 +33,12 @@ struct LevelArrays
 };
 
 /** Makes the scene graph of a tile: a tree of levels of detail of its blocks (TileBlocks), each mesh an osg::Geometry over
-    the tile's vertices, with normals of vertices and of texels, base colour, land cover, and what lies on the ground.
+    vertices that it shares with others, with normals of vertices and of texels, base colour, land cover, and what lies on
+    the ground.
 
-    A finest tile's vertices are all its posts, row by row from the south-west, then the lower ends of walls; a coarser one's
-    are the posts that its relief needs, then those. The transform's user value "geofx.posts" tells how many posts there are.
-    An osg::LOD of a block has as its user data an osg::Vec2Array, which TileInfo::meshesOf() explains. Not thread-safe. */
+    A smallest block of a finest tile has vertices of its own; all other meshes of a tile have theirs in common. The
+    transform's user value "geofx.cells" tells how many cells the tile's lattice has along an edge. An osg::LOD of a block has
+    as its user data an osg::Vec2Array, which TileInfo::meshesOf() explains. Not thread-safe. */
 class TileNodeFactory
 {
 public:

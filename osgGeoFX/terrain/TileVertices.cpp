@@ -15,19 +15,35 @@ namespace
 constexpr std::uint32_t STAND_IN = 0x80000000u;
 constexpr std::uint32_t NONE = 0xffffffffu;
 
+/// Vertices lie on a grid of so many metres, or of this share of the way from post to post, whichever is less.
+constexpr double QUANTUM = 1.0 / 32.0;
+constexpr double SHARE_OF_CELL = 1.0 / 1024.0;
+
+/// A power of two, and not less than what floats tell apart on a tile.
+double quantum(double tileMetres, int intervals)
+{
+    const double wanted = std::min(QUANTUM, SHARE_OF_CELL * tileMetres / intervals);
+    return std::exp2(std::floor(std::log2(std::max(wanted, 0x1p-23 * tileMetres))));
+}
+
 } // namespace
 
-TileVertices::TileVertices(const BuildPlan& plan, const TileKey& key, const LevelArrays& arrays, int x, int y)
+TileVertices::TileVertices(const BuildPlan& plan, const TileKey& key, const LevelArrays& arrays, int x, int y,
+                           const TileBlock& block)
     : _plan(plan), _key(key), _arrays(arrays), _frame(plan.scheme, key), _x(x), _y(y),
-      _intervals((arrays.heights.columns - 1) / arrays.span),
+      _intervals((arrays.heights.columns - 1) / arrays.span), _block(block),
       _finestPosts(static_cast<double>(plan.scheme.intervals) * plan.scheme.step(key.level) / _intervals),
-      _indices(static_cast<std::size_t>(_intervals + 1) * static_cast<std::size_t>(_intervals + 1), NONE)
+      _quantum(quantum(plan.scheme.tileMetres(key.level), _intervals)),
+      _indices(static_cast<std::size_t>(block.size + 1) * static_cast<std::size_t>(block.size + 1), NONE)
 {
     normals->setNormalize(true);
-    if (key.level != plan.scheme.finestLevel) return;
-    for (int row = 0; row <= _intervals; ++row)
-        for (int column = 0; column <= _intervals; ++column)
-            post({column, row});
+}
+
+void TileVertices::addAll()
+{
+    for (int row = 0; row <= _block.size; ++row)
+        for (int column = 0; column <= _block.size; ++column)
+            post({_block.column + column, _block.row + row});
 }
 
 double TileVertices::gridX(int column) const
@@ -80,8 +96,8 @@ double TileVertices::slope(const std::vector<float>& values, const Post& post) c
 std::uint32_t TileVertices::post(const Post& post)
 {
     std::uint32_t& index =
-        _indices[static_cast<std::size_t>(post.row) * static_cast<std::size_t>(_intervals + 1) +
-                 static_cast<std::size_t>(post.column)];
+        _indices[static_cast<std::size_t>(post.row - _block.row) * static_cast<std::size_t>(_block.size + 1) +
+                 static_cast<std::size_t>(post.column - _block.column)];
     if (index == NONE)
     {
         index = static_cast<std::uint32_t>(_posts.size());
@@ -90,18 +106,34 @@ std::uint32_t TileVertices::post(const Post& post)
     return index;
 }
 
+double TileVertices::rounding() const
+{
+    return 0.5 * std::sqrt(3.0) * _quantum;
+}
+
+osg::Vec3 TileVertices::rounded(const osg::Vec3d& place) const
+{
+    const auto round = [&](double value)
+    {
+        return static_cast<float>(std::round(value / _quantum) * _quantum);
+    };
+    return {round(place.x()), round(place.y()), round(place.z())};
+}
+
 void TileVertices::add(const Post& post)
 {
     const TilingScheme& scheme = _plan.scheme;
     _posts.push_back(post);
-    vertices->push_back(osg::Vec3(position(post)));
+    vertices->push_back(rounded(position(post)));
     osg::Vec3d east, north, up;
     _frame.axes(gridX(post.column), gridY(post.row), east, north, up);
     osg::Vec3d normal = up - east * slope(_arrays.slopeX, post) - north * slope(_arrays.slopeY, post);
     normal.normalize();
-    normals->push_back(osg::Vec3s(static_cast<GLshort>(std::lround(normal.x() * 32767.0)),
-                                  static_cast<GLshort>(std::lround(normal.y() * 32767.0)),
-                                  static_cast<GLshort>(std::lround(normal.z() * 32767.0))));
+    const auto byte = [](double share)
+    {
+        return static_cast<GLbyte>(std::lround(share * 127.0));
+    };
+    normals->push_back(osg::Vec3b(byte(normal.x()), byte(normal.y()), byte(normal.z())));
     // Texels lie on the tile's border, so that neighbours of a level meet without a seam.
     const double texels = scheme.textureIntervals(_key.level);
     const auto coordinate = [&](int index, int last)
@@ -118,7 +150,7 @@ std::uint32_t TileVertices::below(const Post& post, double depth, double outX, d
     osg::Vec3d east, north, up;
     _frame.axes(gridX(post.column), gridY(post.row), east, north, up);
     const std::uint32_t top = this->post(post);
-    _low.push_back({(*vertices)[top] + osg::Vec3(east * outX + north * outY - up * depth), top});
+    _low.push_back({rounded(osg::Vec3d((*vertices)[top]) + east * outX + north * outY - up * depth), top});
     return STAND_IN + static_cast<std::uint32_t>(_low.size() - 1);
 }
 
@@ -128,7 +160,7 @@ void TileVertices::finish(std::vector<std::vector<std::uint32_t>*>& indices)
     for (const Low& low : _low)
     {
         vertices->push_back(low.vertex);
-        normals->push_back(osg::Vec3s((*normals)[low.post]));
+        normals->push_back(osg::Vec3b((*normals)[low.post]));
         texCoords->push_back(osg::Vec2((*texCoords)[low.post]));
     }
     for (auto* list : indices)

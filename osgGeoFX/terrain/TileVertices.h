@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include "TileMesh.h"
 #include "TileNode.h"
 
 #include <osg/Array>
@@ -12,18 +13,23 @@
 namespace osgGeoFX
 {
 
-/** A tile's vertices, which all its meshes share: posts first, then what lies below them as the walls' lower ends.
+/** Vertices that the meshes of a tile, or of one of its blocks, share: posts first, then what lies below them as the
+    walls' lower ends.
 
-    Not thread-safe. */
+    Places are rounded to a grid of at most 1/32 m, and of at most 1/1024 of the way from post to post: all else is noise,
+    which no compressor can shrink. Not thread-safe. */
 class TileVertices
 {
 public:
     using Post = BlockMesh::Post;
 
-    /// A finest tile has all its posts, row by row from the south-west, whether a mesh uses them or not; another one
-    /// those that are asked for, in the order in which they are.
-    TileVertices(const BuildPlan& plan, const TileKey& key, const LevelArrays& arrays, int x, int y);
+    /// Posts may be those of `block` alone; they are there in the order in which they are asked for.
+    TileVertices(const BuildPlan& plan, const TileKey& key, const LevelArrays& arrays, int x, int y,
+                 const TileBlock& block);
 
+    /// All posts of the block, row by row from the south-west. Where all blocks number theirs in one way, their index
+    /// lists look alike, which compressors use.
+    void addAll();
     /// The index of a post.
     std::uint32_t post(const Post& post);
     /// The index of a new vertex below a post, `outX` and `outY` metres to the east and to the north of it. Final indices
@@ -32,6 +38,9 @@ public:
     /// Puts what lies below behind the posts, and turns stand-ins into indices.
     void finish(std::vector<std::vector<std::uint32_t>*>& indices);
 
+    /// How far a vertex may lie from its place, metres.
+    double rounding() const;
+
     /// In the tile's frame.
     osg::Vec3d position(const Post& post) const;
     /// Where a post's height is counted from, in the tile's frame.
@@ -39,9 +48,8 @@ public:
     /// Upwards at a post, in the tile's frame.
     osg::Vec3d up(const Post& post) const;
 
-    std::size_t posts() const { return _posts.size(); }
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
-    osg::ref_ptr<osg::Vec3sArray> normals = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec3bArray> normals = new osg::Vec3bArray(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec2Array> texCoords = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
 
 private:
@@ -54,6 +62,7 @@ private:
     double gridX(int column) const;
     double gridY(int row) const;
     double slope(const std::vector<float>& values, const Post& post) const;
+    osg::Vec3 rounded(const osg::Vec3d& place) const;
     void add(const Post& post);
 
     const BuildPlan& _plan;
@@ -61,8 +70,10 @@ private:
     const LevelArrays& _arrays;
     const TileFrame _frame;
     const int _x, _y, _intervals;
+    const TileBlock _block;
     const double _finestPosts;           ///< from one of the tile's posts to the next
-    std::vector<std::uint32_t> _indices; ///< of the tile's posts, row by row
+    const double _quantum;               ///< metres, a power of two
+    std::vector<std::uint32_t> _indices; ///< of the block's posts, row by row
     std::vector<Post> _posts;
     std::vector<Low> _low;
 };

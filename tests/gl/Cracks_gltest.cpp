@@ -294,8 +294,8 @@ TEST_F(Cracks, ManyWithoutSkirts)
         {
             osg::ref_ptr<osg::DrawElementsUInt> elements =
                 new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES);
-            for (const auto& triangle : mesh.ground)
-                elements->insert(elements->end(), triangle.begin(), triangle.end());
+            for (unsigned int i = 0; i < 3 * mesh.ground.size(); ++i)
+                elements->push_back(mesh.geometry->getPrimitiveSet(0)->index(i));
             elements->setElementBufferObject(new osg::ElementBufferObject);
             mesh.geometry->setPrimitiveSet(0, elements);
         }

@@ -94,6 +94,25 @@ struct Tile
     bool finerHere = false;
 };
 
+/// All vertices of a tile, those of its walls among them.
+class Vertices : public osg::NodeVisitor
+{
+public:
+    Vertices() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+
+    void apply(osg::Geometry& mesh) override
+    {
+        if (!_seen.insert(mesh.getVertexArray()).second) return;
+        const auto& vertices = dynamic_cast<const osg::Vec3Array&>(*mesh.getVertexArray());
+        all.insert(all.end(), vertices.begin(), vertices.end());
+    }
+
+    std::vector<osg::Vec3> all;
+
+private:
+    std::set<const osg::Array*> _seen;
+};
+
 /// Takes down all tiles that are in memory, drawn or not.
 class Tiles : public osg::NodeVisitor
 {
@@ -122,7 +141,9 @@ public:
             // The radius is that of the mesh about its box's middle, as the builder has it.
             const osg::Vec3d middle = (info->boxMin + info->boxMax) * 0.5;
             double radius = 0.0;
-            for (const osg::Vec3& vertex : dynamic_cast<const osg::Vec3Array&>(*tile.mesh->getVertexArray()))
+            Vertices vertices;
+            node.traverse(vertices);
+            for (const osg::Vec3& vertex : vertices.all)
                 radius = std::max(radius, (osg::Vec3d(vertex) - middle).length());
             tile.error = std::max(0.0, static_cast<double>(group->getMaxRange(1)) - radius);
         }

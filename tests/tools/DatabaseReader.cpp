@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace geofx::test
@@ -52,8 +53,20 @@ public:
         _tile = &tile;
         traverse(transform);
         _tile = nullptr;
-        for (const DatabaseTile::Mesh& mesh : tile.meshes)
+        _firstVertices.clear();
+        // The tile's own border, as far as there is ground.
+        osg::Vec2 first(1.0f, 1.0f), last(0.0f, 0.0f);
+        for (const osg::Vec2& at : tile.places)
         {
+            first.set(std::min(first.x(), at.x()), std::min(first.y(), at.y()));
+            last.set(std::max(last.x(), at.x()), std::max(last.y(), at.y()));
+        }
+        for (DatabaseTile::Mesh& mesh : tile.meshes)
+        {
+            const bool border[] = {mesh.low.y() == first.y(), mesh.high.x() == last.x(),
+                                   mesh.high.y() == last.y(), mesh.low.x() == first.x()};
+            for (DatabaseTile::Wall& wall : mesh.walls)
+                wall.border = border[wall.side];
             // A mesh that no camera is near enough for is there for deformations alone.
             if (!mesh.smallest || mesh.to < 0.01 || (mesh.from > 0.01)) continue;
             tile.surface.insert(tile.surface.end(), mesh.ground.begin(), mesh.ground.end());
@@ -84,7 +97,7 @@ public:
             mesh.from = static_cast<double>(block.getMinRange(i));
             mesh.to = static_cast<double>(block.getMaxRange(i));
             mesh.smallest = smallest;
-            sort(mesh, static_cast<unsigned int>((*meshes)[i].y()));
+            sort(mesh, firstVertex(*geometry), static_cast<unsigned int>((*meshes)[i].y()));
             if (!_tile->geometry) _tile->geometry = geometry;
             _tile->meshes.push_back(mesh);
         }
@@ -93,29 +106,44 @@ public:
     std::vector<DatabaseTile> tiles;
 
 private:
-    void sort(DatabaseTile::Mesh& mesh, unsigned int ground) const
+    /// Where a mesh's vertices begin among the tile's.
+    unsigned int firstVertex(const osg::Geometry& mesh)
     {
-        const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh.geometry->getVertexArray());
-        const auto* coordinates = dynamic_cast<const osg::Vec2Array*>(mesh.geometry->getTexCoordArray(0));
+        const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray());
+        const auto* places = dynamic_cast<const osg::Vec2Array*>(mesh.getTexCoordArray(0));
+        if (!vertices || !places || places->size() != vertices->size())
+            throw std::runtime_error(_tile->transform->getName() + " has a mesh without vertices or places");
+        const auto [entry, isNew] =
+            _firstVertices.try_emplace(vertices, static_cast<unsigned int>(_tile->vertices.size()));
+        if (isNew)
+        {
+            _tile->vertices.insert(_tile->vertices.end(), vertices->begin(), vertices->end());
+            _tile->places.insert(_tile->places.end(), places->begin(), places->end());
+        }
+        return entry->second;
+    }
+
+    void sort(DatabaseTile::Mesh& mesh, unsigned int first, unsigned int ground) const
+    {
+        const std::vector<osg::Vec3>& vertices = _tile->vertices;
+        const std::vector<osg::Vec2>& coordinates = _tile->places;
         const osg::PrimitiveSet& primitives = *mesh.geometry->getPrimitiveSet(0);
-        if (!vertices || !coordinates || coordinates->size() != vertices->size() ||
-            primitives.getMode() != GL_TRIANGLES || ground % 3 != 0 || ground > primitives.getNumIndices())
+        if (primitives.getMode() != GL_TRIANGLES || ground % 3 != 0 || ground > primitives.getNumIndices())
             throw std::runtime_error(_tile->transform->getName() + " has a mesh that is none");
-        int posts = 0;
-        if (!_tile->transform->getUserValue("geofx.posts", posts))
-            throw std::runtime_error(_tile->transform->getName() + " does not tell how many posts it has");
         const auto triangle = [&](unsigned int i)
         {
-            return DatabaseTile::Triangle{primitives.index(i), primitives.index(i + 1),
-                                          primitives.index(i + 2)};
+            return DatabaseTile::Triangle{first + primitives.index(i), first + primitives.index(i + 1),
+                                          first + primitives.index(i + 2)};
         };
+        std::set<unsigned int> posts;
         osg::Vec2 low(2.0f, 2.0f), high(-1.0f, -1.0f);
         for (unsigned int i = 0; i < ground; i += 3)
         {
             mesh.ground.push_back(triangle(i));
             for (const unsigned int vertex : mesh.ground.back())
             {
-                const osg::Vec2& at = (*coordinates)[vertex];
+                posts.insert(vertex);
+                const osg::Vec2& at = coordinates[vertex];
                 low.set(std::min(low.x(), at.x()), std::min(low.y(), at.y()));
                 high.set(std::max(high.x(), at.x()), std::max(high.y(), at.y()));
             }
@@ -124,13 +152,13 @@ private:
         std::array<std::map<float, osg::Vec3d>, 4> lowerEnds;
         const auto onSide = [&](unsigned int vertex, unsigned int side)
         {
-            const osg::Vec2& at = (*coordinates)[vertex];
+            const osg::Vec2& at = coordinates[vertex];
             const float lines[] = {low.y(), high.x(), high.y(), low.x()};
             return (side % 2 == 0 ? at.y() : at.x()) == lines[side];
         };
         const auto along = [&](unsigned int vertex, unsigned int side)
         {
-            return (*coordinates)[vertex][side % 2 == 0 ? 0 : 1];
+            return coordinates[vertex][side % 2 == 0 ? 0 : 1];
         };
         for (unsigned int i = ground; i + 2 < primitives.getNumIndices(); i += 3)
         {
@@ -143,22 +171,15 @@ private:
                 throw std::runtime_error(_tile->transform->getName() + " has a wall that is on no side");
             for (const unsigned int vertex : corners)
             {
-                if (vertex < static_cast<unsigned int>(posts)) continue;
+                if (posts.count(vertex) != 0) continue;
                 // The higher one, where two walls meet.
-                const osg::Vec3d place = (*vertices)[vertex];
+                const osg::Vec3d place = vertices[vertex];
                 const auto [entry, isNew] = lowerEnds[side].emplace(along(vertex, side), place);
                 if (!isNew && entry->second.z() < place.z()) entry->second = place;
             }
         }
-        // The tile's own border.
-        osg::Vec2 first = (*coordinates)[0], last = first;
-        for (const osg::Vec2& at : *coordinates)
-        {
-            first.set(std::min(first.x(), at.x()), std::min(first.y(), at.y()));
-            last.set(std::max(last.x(), at.x()), std::max(last.y(), at.y()));
-        }
-        const bool border[] = {low.y() == first.y(), high.x() == last.x(), high.y() == last.y(),
-                               low.x() == first.x()};
+        mesh.low = low;
+        mesh.high = high;
         for (const DatabaseTile::Triangle& each : mesh.ground)
             for (std::size_t k = 0; k < 3; ++k)
                 for (unsigned int side = 0; side < 4; ++side)
@@ -166,11 +187,11 @@ private:
                     const unsigned int ends[] = {each[k], each[(k + 1) % 3]};
                     if (!onSide(ends[0], side) || !onSide(ends[1], side)) continue;
                     DatabaseTile::Wall wall;
-                    wall.border = border[side];
+                    wall.side = side;
                     bool whole = true;
                     for (const std::size_t end : {0u, 1u})
                     {
-                        wall.top[end] = (*vertices)[ends[end]];
+                        wall.top[end] = vertices[ends[end]];
                         whole = whole && lowerEnd(lowerEnds[side], along(ends[end], side), wall.bottom[end]);
                     }
                     if (whole) mesh.walls.push_back(wall);
@@ -192,17 +213,18 @@ private:
 
     osg::PagedLOD* _lod = nullptr;
     DatabaseTile* _tile = nullptr;
+    std::map<const osg::Array*, unsigned int> _firstVertices; ///< of the tile's arrays
 };
 
 } // namespace
 
-std::vector<bool> DatabaseTile::used() const
+osg::Vec2d DatabaseTile::share(const osg::Vec2& place) const
 {
-    std::vector<bool> result(vertices().size(), false);
-    for (const auto& triangle : surface)
-        for (const unsigned int vertex : triangle)
-            result[vertex] = true;
-    return result;
+    const osg::Image* colors = image(0);
+    if (!colors) throw std::runtime_error(transform->getName() + " has no texture");
+    // The outermost texels' middles lie on the border.
+    const double texels = colors->s() - 1;
+    return (osg::Vec2d(place) * (texels + 1.0) - osg::Vec2d(0.5, 0.5)) / texels;
 }
 
 const osg::Image* DatabaseTile::image(unsigned int unit) const
@@ -277,34 +299,47 @@ FinestLevel::FinestLevel(const std::string& folder)
             if (tile.level != level || !tile.geometry) return;
             if (all.empty())
             {
-                // Posts lie row by row, and a row has one texture coordinate t; the skirt's vertices follow.
-                const auto& t = static_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0));
-                while (t[static_cast<std::size_t>(tileIntervals)].y() == t[0].y())
-                    ++tileIntervals;
-                --tileIntervals;
-                if (tile.vertices().size() <
-                    static_cast<std::size_t>((tileIntervals + 1) * (tileIntervals + 1)))
-                    throw std::runtime_error(tile.transform->getName() + " is not a full grid");
+                if (!tile.transform->getUserValue("geofx.cells", tileIntervals))
+                    throw std::runtime_error(tile.transform->getName() +
+                                             " does not tell how many cells it has");
                 across = (tileIntervals << level) + 1;
                 const auto posts = static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
                 all.resize(posts);
                 sizes.resize(posts);
                 drawn.resize(posts);
             }
-            const std::vector<bool> inTile = tile.used();
-            for (int row = 0; row <= tileIntervals; ++row)
-                for (int column = 0; column <= tileIntervals; ++column)
-                {
-                    const auto vertex = static_cast<unsigned int>(row * (tileIntervals + 1) + column);
-                    if (!inTile[vertex]) continue;
-                    const auto i = static_cast<std::size_t>(tile.y * tileIntervals + row) *
-                                       static_cast<std::size_t>(across) +
-                                   static_cast<std::size_t>(tile.x * tileIntervals + column);
-                    const osg::Vec3d local = tile.local(vertex);
-                    all[i] = tile.world(vertex);
-                    sizes[i] = std::max({std::abs(local.x()), std::abs(local.y()), std::abs(local.z())});
-                    drawn[i] = true;
-                }
+            const auto post = [&](unsigned int vertex)
+            {
+                const osg::Vec2d place = tile.share(tile.places[vertex]) * tileIntervals;
+                return std::array<int, 2>{static_cast<int>(std::lround(place.x())),
+                                          static_cast<int>(std::lround(place.y()))};
+            };
+            const auto put = [&](int column, int row, const osg::Vec3d& local)
+            {
+                const auto i = static_cast<std::size_t>(tile.y * tileIntervals + row) *
+                                   static_cast<std::size_t>(across) +
+                               static_cast<std::size_t>(tile.x * tileIntervals + column);
+                all[i] = tile.world(local);
+                sizes[i] = std::max({std::abs(local.x()), std::abs(local.y()), std::abs(local.z())});
+                drawn[i] = true;
+            };
+            // Posts that were left out lie on the triangles, as near as nobody can see.
+            for (const auto& triangle : tile.surface)
+            {
+                const auto a = post(triangle[0]), b = post(triangle[1]), c = post(triangle[2]);
+                const osg::Vec3d at = tile.local(triangle[0]), toB = tile.local(triangle[1]) - at,
+                                 toC = tile.local(triangle[2]) - at;
+                const int bx = b[0] - a[0], by = b[1] - a[1], cx = c[0] - a[0], cy = c[1] - a[1];
+                const double area = bx * cy - by * cx;
+                for (int row = std::min({a[1], b[1], c[1]}); row <= std::max({a[1], b[1], c[1]}); ++row)
+                    for (int column = std::min({a[0], b[0], c[0]}); column <= std::max({a[0], b[0], c[0]});
+                         ++column)
+                    {
+                        const int x = column - a[0], y = row - a[1];
+                        const double s = (x * cy - y * cx) / area, t = (bx * y - by * x) / area;
+                        if (s >= 0.0 && t >= 0.0 && s + t <= 1.0) put(column, row, at + toB * s + toC * t);
+                    }
+            }
         });
     if (all.empty()) throw std::runtime_error("no tile of the finest level has a mesh");
 
@@ -341,13 +376,16 @@ FinestLevel::FinestLevel(const std::string& folder)
     dy = (root.north() - y0) / (rows - 1);
     if (columns > across || rows > across)
         throw std::runtime_error("the finest level does not fill its extent");
+    // Vertices lie on a grid of at most 1/32 m, and of at most a 1,024th of a cell; floats may be coarser.
+    const double metres = (root.geocentric() ? 111320.0 : 1.0) * std::max(dx, dy);
+    const double grid = std::min(1.0 / 32.0, metres / 1024.0);
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column)
         {
             const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(across) +
                            static_cast<std::size_t>(column);
             world.push_back(all[i]);
-            localSize.push_back(sizes[i]);
+            rounding.push_back(std::max(0.5 * grid, sizes[i] * 0x1p-24) * std::sqrt(3.0));
             used.push_back(drawn[i]);
         }
 }

@@ -27,7 +27,8 @@ struct DatabaseTile
     struct Wall
     {
         std::array<osg::Vec3d, 2> top, bottom;
-        bool border = false; ///< along the tile's border, not between two of its blocks
+        unsigned int side = 0; ///< of its block: 0 south, 1 east, 2 north, 3 west
+        bool border = false;   ///< along the tile's border, not between two of its blocks
     };
 
     /// A mesh of one of its blocks.
@@ -39,6 +40,7 @@ struct DatabaseTile
         bool smallest = false;       ///< of a block that no finer ones stand in for
         std::vector<Triangle> ground;
         std::vector<Wall> walls;
+        osg::Vec2 low, high; ///< texture coordinates of its ground's corners
     };
 
     int level = 0, x = 0, y = 0; ///< from the transform's name "tile level/x/y"
@@ -48,19 +50,17 @@ struct DatabaseTile
     osg::ref_ptr<osg::Geometry>
         geometry; ///< one of its meshes; null where a tile has ground on finer levels only
     std::vector<Mesh> meshes;
-    std::vector<Triangle> surface; ///< its finest meshes together, without walls
-    std::vector<Wall> skirt;       ///< theirs
+    std::vector<Triangle> surface;   ///< its finest meshes together, without walls
+    std::vector<Wall> skirt;         ///< theirs
+    std::vector<osg::Vec3> vertices; ///< of all its arrays, one after the other: triangles count in these
+    std::vector<osg::Vec2> places;   ///< their texture coordinates
 
-    const osg::Vec3Array& vertices() const
-    {
-        return static_cast<const osg::Vec3Array&>(*geometry->getVertexArray());
-    }
-    osg::Vec3d local(unsigned int vertex) const { return vertices()[vertex]; }
+    osg::Vec3d local(unsigned int vertex) const { return vertices[vertex]; }
     /// In the world, multiplied in double.
     osg::Vec3d world(unsigned int vertex) const { return local(vertex) * transform->getMatrix(); }
     osg::Vec3d world(const osg::Vec3d& place) const { return place * transform->getMatrix(); }
-    /// Whether a triangle of the surface uses each vertex.
-    std::vector<bool> used() const;
+    /// Where a texture coordinate lies on the tile, 0 to 1 from its south-west; nothing without a texture.
+    osg::Vec2d share(const osg::Vec2& place) const;
     /// Image of a texture unit: 0 colour, 1 land cover, 2 normals, 7 what lies on the ground; null without.
     const osg::Image* image(unsigned int unit) const;
 };
@@ -109,8 +109,9 @@ struct FinestLevel
     int tileIntervals = 0;                         ///< of a finest tile
     int columns = 0, rows = 0;                     ///< posts
     double x0 = 0.0, y0 = 0.0, dx = 0.0, dy = 0.0; ///< as DatabaseRoot::fromWorld has it
+    /// On the triangles; those of a plain leave posts out.
     std::vector<osg::Vec3d> world;
-    std::vector<double> localSize; ///< largest coordinate in the tile's frame, for how floats are rounded
+    std::vector<double> rounding; ///< by how much the place may be rounded, metres
     std::vector<bool> used;
 
     std::size_t index(int column, int row) const

@@ -76,7 +76,7 @@ inline void expectNoSeams(const std::string& folder, unsigned int unit)
             // The unit's coordinates are those of the colours, or follow from them by a matrix.
             const auto* matrix = dynamic_cast<const osg::TexMat*>(
                 tile.geometry->getStateSet()->getTextureAttribute(unit, osg::StateAttribute::TEXMAT));
-            for (const auto& color : dynamic_cast<const osg::Vec2Array&>(*tile.geometry->getTexCoordArray(0)))
+            for (const osg::Vec2& color : tile.places)
             {
                 const osg::Vec3d place(color, 0.0);
                 const osg::Vec2 t(

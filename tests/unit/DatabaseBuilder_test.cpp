@@ -34,7 +34,7 @@ BuildOptions options(const std::vector<std::string>& dems, const std::filesystem
 }
 
 /// Every post of the finest level: its height against GDAL's bilinear sample to 0.05 m, its position against
-/// GeographicLib's to 1 mm and what a float rounds in the tile's frame.
+/// GeographicLib's to 1 mm and what is rounded in the tile's frame.
 void expectAsGdalSays(const std::vector<std::string>& dems, const std::string& database,
                       const std::string& crs, std::size_t leastPosts)
 {
@@ -65,8 +65,8 @@ void expectAsGdalSays(const std::vector<std::string>& dems, const std::string& d
             worstHeight = std::max(worstHeight, std::abs(height - static_cast<double>(expected[index])));
             const osg::Vec3d place =
                 root.toWorld({level.x0 + column * level.dx, level.y0 + row * level.dy, height});
-            const double rounding = level.localSize[index] * 0x1p-24 * std::sqrt(3.0);
-            worstPosition = std::max(worstPosition, (place - level.world[index]).length() - rounding);
+            worstPosition =
+                std::max(worstPosition, (place - level.world[index]).length() - level.rounding[index]);
         }
     EXPECT_LE(worstHeight, 0.05);
     EXPECT_LE(worstPosition, 0.001);
