@@ -39,18 +39,24 @@ vec3 light(vec3 normal, vec3 vertexNormal, vec3 fixedLight)
     return out0 ? fixedLight : clamp((alone ? none : fixedLight - there) + here, 0.0, 1.0);
 }
 
+// As in stages/fixed.frag: where a tile is seen from its edge, llvmpipe would visit every texel between neighbours.
+vec2 tame(vec2 place)
+{
+    return all(lessThan(fwidth(place), vec2(4.0))) ? place : clamp(place, 0.0, 1.0);
+}
+
 void main()
 {
     vec4 colour = gl_Color;
     bool lit = abs(colour.a * 255.0 - 254.0) > 0.25;
-    vec3 texel = texture2D(geofx_tileNormals, (gl_TextureMatrix[2] * gl_TexCoord[0]).xy).rgb;
+    vec3 texel = texture2D(geofx_tileNormals, tame((gl_TextureMatrix[2] * gl_TexCoord[0]).xy)).rgb;
     vec3 normal = (255.0 * texel - 128.0) / 127.0;
     // A byte is 0 only in a channel that the texture does not have; the first is where there is no texture.
     if (texel.b < 0.002) normal.z = sqrt(max(1.0 - dot(normal.xy, normal.xy), 0.0));
     vec3 relit = light(normalize(gl_NormalMatrix * normal), gl_TexCoord[6].xyz, colour.rgb);
     if (lit && texel.r > 0.002) colour.rgb = relit;
     if (!lit) colour.a = 1.0;
-    colour *= texture2D(geofx_tileColours, gl_TexCoord[0].xy);
+    colour *= texture2D(geofx_tileColours, tame(gl_TexCoord[0].xy));
     bool linear = gl_Fog.start != 0.0 || gl_Fog.end != 1.0;
     if (linear || gl_Fog.density != 1.0 || gl_Fog.color != vec4(0.0))
     {

@@ -188,6 +188,23 @@ Difference differenceOf(const osg::Image& a, const osg::Image& b)
             single / (a.getTotalSizeInBytes() / 4.0)};
 }
 
+/// Makes coordinates that run through the texture a thousand times within a pixel.
+class RunAway : public osg::NodeVisitor
+{
+public:
+    RunAway() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+
+    void apply(osg::Geometry& mesh) override
+    {
+        for (osg::Vec2& place : dynamic_cast<osg::Vec2Array&>(*mesh.getTexCoordArray(0)))
+            place *= 1e6f;
+        auto& texture = dynamic_cast<osg::Texture2D&>(
+            *mesh.getStateSet()->getTextureAttribute(0, osg::StateAttribute::TEXTURE));
+        texture.setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
+        texture.setMaxAnisotropy(4.0f);
+    }
+};
+
 } // namespace
 
 class TileLight : public geofx::test::GlFixture
@@ -308,6 +325,23 @@ TEST_F(TileLight, PlainOpenSceneGraph)
     expectAlike(*draw(CoarseOfThree, sun), *full, "three channels");
     expectAlike(*draw(CoarseOfPart, sun), *full, "part of a texture");
     expectUnlike(*draw(CoarseBare, sun), *full, "vertices alone");
+}
+
+/// Where ground is seen from its edge, coordinates run through a texture many times within a pixel. Mesa's llvmpipe, filtering
+/// anisotropically, would visit every texel between neighbours: this picture would take hours.
+TEST_F(TileLight, CoordinatesMayRunAway)
+{
+    const auto away = [&](osg::Group& above, osg::Group& scene)
+    {
+        sun(above, scene);
+        RunAway runAway;
+        scene.accept(runAway);
+    };
+    const osg::ref_ptr<osg::Image> picture = draw(Coarse, away);
+    std::size_t ground = 0;
+    for (unsigned int i = 0; i < picture->getTotalSizeInBytes(); i += 4)
+        ground += covered(picture->data() + i);
+    EXPECT_GT(ground, picture->getTotalSizeInBytes() / 4 / 4);
 }
 
 TEST_F(TileLight, WhatTheDatabaseProgramSeesOfModes)
