@@ -5,6 +5,7 @@
 #include "AtomicFile.h"
 #include "BuildPlan.h"
 #include "NormalMap.h"
+#include "TileFile.h"
 #include "TileMesh.h"
 #include "TilePass.h"
 

@@ -15,7 +15,7 @@ namespace osgGeoFX
 {
 
 /// Counts what builders put into databases of one format: older ones are still read, but have less in them.
-constexpr int DATABASE_CONTENT = 7;
+constexpr int DATABASE_CONTENT = 8;
 
 /// How the heights of a DEM are to be understood.
 enum class VerticalDatum

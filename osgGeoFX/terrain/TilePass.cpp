@@ -3,6 +3,7 @@
 #include "TilePass.h"
 
 #include "AtomicFile.h"
+#include "TileFile.h"
 #include "TileNode.h"
 #include "WorkQueue.h"
 
@@ -16,7 +17,6 @@
 #include <atomic>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 namespace osgGeoFX
 {
@@ -392,22 +392,6 @@ std::uint64_t UnitBuilder::build(const Unit& unit)
 }
 
 } // namespace
-
-void writeNodeAtomically(const osg::Node& node, const std::string& path)
-{
-    osgDB::ReaderWriter* writer = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
-    if (!writer)
-        throw BuildError(
-            path + ": OpenSceneGraph's plugin osgdb_osg cannot be found; install openscenegraph's plugins, "
-                   "or name their folder in OSG_LIBRARY_PATH.");
-    osg::ref_ptr<osgDB::Options> options = new osgDB::Options("Compressor=zlib WriteImageHint=IncludeData");
-    std::ostringstream stream(std::ios::binary);
-    const auto result = writer->writeNode(node, stream, options);
-    if (!result.success())
-        throw BuildError(path + ": OpenSceneGraph cannot write the tile (" + result.statusMessage() + ").");
-    const std::string bytes = stream.str();
-    writeFileAtomically(path, bytes.data(), bytes.size());
-}
 
 TilePassResult runTilePass(BuildPlan& plan)
 {

@@ -21,7 +21,4 @@ struct TilePassResult
 /// Pass 2: writes the tiles' files; needs what pass 1 has found.
 TilePassResult runTilePass(BuildPlan& plan);
 
-/// Writes a node as a compressed .osgb that plain OpenSceneGraph reads. Throws BuildError.
-void writeNodeAtomically(const osg::Node& node, const std::string& path);
-
 } // namespace osgGeoFX

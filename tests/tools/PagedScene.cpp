@@ -5,14 +5,17 @@
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Geometry>
+#include <osg/Image>
 #include <osg/Math>
 #include <osg/MatrixTransform>
 #include <osg/PagedLOD>
+#include <osg/Texture2D>
 #include <osg/ValueObject>
 #include <osgDB/Options>
 #include <osgDB/WriteFile>
 
 #include <cfloat>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -43,11 +46,18 @@ osg::ref_ptr<osg::MatrixTransform> makeGeometry(const Tile& tile, const osg::Mat
     const auto half = static_cast<float>(tile.size() / 2.0);
     osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec2Array> coordinates = new osg::Vec2Array;
     for (const auto& corner :
          {osg::Vec2(-half, -half), osg::Vec2(half, -half), osg::Vec2(half, half), osg::Vec2(-half, half)})
     {
         vertices->push_back(osg::Vec3(corner, 0.0f));
+        // Of two texels, whose middles lie on the border.
+        coordinates->push_back(
+            osg::Vec2(corner.x() < 0.0f ? 0.25f : 0.75f, corner.y() < 0.0f ? 0.25f : 0.75f));
     }
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(2, 2, 1, GL_RGB, GL_UNSIGNED_BYTE);
+    std::memset(image->data(), 255, image->getTotalSizeInBytes());
     osg::ref_ptr<osg::Vec4Array> color = new osg::Vec4Array(osg::Array::BIND_OVERALL);
     color->push_back(colors[tile.level]);
     osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
@@ -55,8 +65,10 @@ osg::ref_ptr<osg::MatrixTransform> makeGeometry(const Tile& tile, const osg::Mat
         triangles->push_back(index);
     geometry->setVertexArray(vertices);
     geometry->setColorArray(color);
+    geometry->setTexCoordArray(0, coordinates);
     geometry->addPrimitiveSet(triangles);
     geometry->setUseVertexBufferObjects(true);
+    geometry->getOrCreateStateSet()->setTextureAttribute(0, new osg::Texture2D(image));
     geometry->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
 
     osg::ref_ptr<osg::MatrixTransform> transform =
@@ -65,6 +77,7 @@ osg::ref_ptr<osg::MatrixTransform> makeGeometry(const Tile& tile, const osg::Mat
                        std::to_string(tile.y));
     transform->setUserValue("geofx.boxMin", osg::Vec3d(-tile.size() / 2.0, -tile.size() / 2.0, 0.0));
     transform->setUserValue("geofx.boxMax", osg::Vec3d(tile.size() / 2.0, tile.size() / 2.0, 0.0));
+    transform->setUserValue("geofx.cells", 1);
     transform->addChild(geometry);
     return transform;
 }
@@ -90,7 +103,7 @@ osg::ref_ptr<osg::Node> makeNode(const Tile& tile, const osg::Matrixd& placement
 
 void writeFile(const osg::Node& node, const std::filesystem::path& file)
 {
-    osg::ref_ptr<osgDB::Options> options = new osgDB::Options("Compressor=zlib");
+    osg::ref_ptr<osgDB::Options> options = new osgDB::Options("Compressor=zlib WriteImageHint=IncludeData");
     if (!osgDB::writeNodeFile(node, file.string(), options.get()))
     {
         throw std::runtime_error("cannot write " + file.string());

@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -210,4 +212,23 @@ TEST(DatabaseBytes, TheGroundOfATileIsAllOfItsFinestMeshes)
                      EXPECT_GE(info.cells, 64);
                      EXPECT_NE(TileInfo::firstMesh(*tile.transform), nullptr);
                  });
+}
+
+/// Behind OSG's header, as OSG would have written it: others than our own readers must take it.
+TEST(DatabaseBytes, FilesAreCompressed)
+{
+    const TempDir folder;
+    buildDatabase(options(raster(folder / "dem.tif", 129, noise), folder / "db"));
+    int files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "db"))
+    {
+        if (entry.path().extension() != ".osgb") continue;
+        ++files;
+        std::ifstream stream(entry.path(), std::ios::binary);
+        const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+        ASSERT_GT(bytes.size(), 100u);
+        EXPECT_EQ(bytes.substr(24, 4), "zlib") << entry.path();
+        EXPECT_EQ(bytes.substr(28, 2), "\x1f\x8b") << entry.path();
+    }
+    EXPECT_GE(files, 2);
 }
