@@ -77,6 +77,9 @@ int main(int argc, char** argv)
         ->capture_default_str();
     app.add_option("--pixel-error", options.pixelError, "Largest error of the relief on the screen, pixels")
         ->capture_default_str();
+    app.add_option("--anisotropy", options.anisotropy,
+                   "Anisotropic filtering of the colours, 1 to 16; 0 for 4 with imagery and 1 without")
+        ->capture_default_str();
     app.add_option("--texel-error", options.texelError, "Largest texel on the screen where it shows, pixels")
         ->capture_default_str();
     app.add_option("--pixels-per-radian", options.pixelsPerRadian,

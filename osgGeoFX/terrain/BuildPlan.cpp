@@ -120,6 +120,8 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
                 ").");
     require(options.pixelError > 0.0 && options.texelError > 0.0 && options.pixelsPerRadian > 0.0,
             "The pixel error, the texel error and the pixels per radian must be greater than 0.");
+    require(options.anisotropy == 0.0 || (options.anisotropy >= 1.0 && options.anisotropy <= 16.0),
+            "The anisotropy must be 1 to 16, or 0 for a default by what the colours are.");
     require(options.memoryMiB >= 128,
             "At least 128 MiB of memory are needed (--memory is " + std::to_string(options.memoryMiB) + ").");
     require(options.landCover.empty() || !options.landCoverTable.empty(),
@@ -326,8 +328,8 @@ void BuildPlan::chooseFingerprint()
          << (options.epsg ? "EPSG:" + std::to_string(options.epsg) : std::string("geocentric WGS 84"))
          << "\nvertical datum " << static_cast<int>(options.vertical) << "\ntile size " << options.tileSize
          << "\ntexture size " << options.textureSize << "\npixel error " << options.pixelError
-         << "\ntexel error " << options.texelError << "\npixels per radian " << options.pixelsPerRadian
-         << "\n";
+         << "\ntexel error " << options.texelError << "\nanisotropy " << options.anisotropy
+         << "\npixels per radian " << options.pixelsPerRadian << "\n";
     fingerprint = text.str();
 }
 

@@ -204,7 +204,10 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const TileKey& key, con
     color->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
     color->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
     color->setResizeNonPowerOfTwoHint(false);
-    color->setMaxAnisotropy(4.0f);
+    const double wanted = _plan.options.anisotropy;
+    color->setMaxAnisotropy(wanted > 0.0                    ? static_cast<float>(wanted)
+                            : _plan.options.imagery.empty() ? 1.0f
+                                                            : 4.0f);
     state->setTextureAttributeAndModes(COLOR_UNIT, color);
     if (!arrays.classes.empty())
     {

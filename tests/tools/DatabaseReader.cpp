@@ -376,9 +376,9 @@ FinestLevel::FinestLevel(const std::string& folder)
     dy = (root.north() - y0) / (rows - 1);
     if (columns > across || rows > across)
         throw std::runtime_error("the finest level does not fill its extent");
-    // Vertices lie on a grid of at most 1/32 m, and of at most a 1,024th of a cell; floats may be coarser.
+    // Vertices lie on a grid of a power of two, at most 1/32 m and at most a 1,024th of a cell; floats may be coarser.
     const double metres = (root.geocentric() ? 111320.0 : 1.0) * std::max(dx, dy);
-    const double grid = std::min(1.0 / 32.0, metres / 1024.0);
+    const double grid = std::exp2(std::floor(std::log2(std::min(1.0 / 32.0, 1.01 * metres / 1024.0))));
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column)
         {

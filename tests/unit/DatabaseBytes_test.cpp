@@ -114,6 +114,14 @@ TEST(DatabaseBytes, BlocksWithAllPostsAreNumberedAlike)
                       const unsigned int vertices = first.geometry->getVertexArray()->getNumElements();
                       EXPECT_GE(vertices, 289u);
                       EXPECT_LE(vertices, 289u + 64u);
+                      // Row by row.
+                      const auto& places =
+                          dynamic_cast<const osg::Vec2Array&>(*first.geometry->getTexCoordArray(0));
+                      for (unsigned int i = 0; i < 289; ++i)
+                      {
+                          EXPECT_TRUE(i % 17 == 0 || places[i].x() > places[i - 1].x()) << i;
+                          EXPECT_TRUE(i < 17 || places[i].y() > places[i - 17].y()) << i;
+                      }
                   });
     EXPECT_EQ(blocks, 64);
     // One for each way in which diagonals alternate.

@@ -2,16 +2,20 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // The textures of a built database: colours and classes at known places, and no seams between tiles.
+#include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <tools/DatabaseTexels.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
+
+#include <osg/Texture>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -174,6 +178,40 @@ TEST(DatabaseSurface, LandCover)
                      EXPECT_EQ(tile.geometry->getStateSet()->getTextureMode(1, GL_TEXTURE_2D),
                                static_cast<GLuint>(osg::StateAttribute::INHERIT));
                  });
+}
+
+/// Colours of heights are smooth; those of pictures have detail that is seen from its edge.
+TEST(DatabaseSurface, AnisotropyFollowsTheColours)
+{
+    const TempDir folder;
+    const auto dem = writeRelief(folder / "dem.tif", 40, 40, 10.0, 50.0, 0.001);
+    const auto image = TestRaster(40, 40, 3, GDT_Byte)
+                           .placed(10.0, 50.0, 0.001, 0.001)
+                           .crs("EPSG:4326")
+                           .fill([](int column, int, int) { return column; })
+                           .write(folder / "image.tif");
+    const auto anisotropy = [&](bool imagery, double wanted)
+    {
+        auto o = options(dem, folder / "db");
+        if (imagery) o.imagery = {image};
+        o.anisotropy = wanted;
+        buildDatabase(o);
+        std::set<float> found;
+        readDatabase(
+            o.output,
+            [&](const DatabaseTile& tile)
+            {
+                const auto& texture = dynamic_cast<const osg::Texture&>(
+                    *tile.geometry->getStateSet()->getTextureAttribute(0, osg::StateAttribute::TEXTURE));
+                found.insert(texture.getMaxAnisotropy());
+            });
+        return found;
+    };
+    EXPECT_EQ(anisotropy(false, 0.0), std::set<float>{1.0f});
+    EXPECT_EQ(anisotropy(true, 0.0), std::set<float>{4.0f});
+    EXPECT_EQ(anisotropy(false, 8.0), std::set<float>{8.0f});
+    for (const double wrong : {0.5, -1.0, 17.0, std::nan("")})
+        EXPECT_THROW(anisotropy(false, wrong), BuildError) << wrong;
 }
 
 TEST(DatabaseSurface, ReliefIsTintedByHeight)
