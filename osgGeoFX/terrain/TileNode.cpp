@@ -133,7 +133,7 @@ private:
         return geometry;
     }
 
-    static constexpr double NO_LIMIT = std::numeric_limits<float>::max();
+    static constexpr auto NO_LIMIT = static_cast<double>(std::numeric_limits<float>::max());
 
     const TileBlocks& _blocks;
     const osg::ref_ptr<osg::Array> _color;
