@@ -32,7 +32,6 @@ double median(std::vector<double> values)
 
 constexpr int PARTS = 4;
 
-/// For a database, and a part of the cameras.
 /// What the drawables belong to: tiles, or they are things of their own.
 std::set<const osg::Object*> tilesOf(const std::set<const osg::Drawable*>& drawables)
 {
@@ -46,6 +45,7 @@ std::set<const osg::Object*> tilesOf(const std::set<const osg::Drawable*>& drawa
     return result;
 }
 
+/// For a database, and a part of the cameras.
 class Compensation : public GlFixture, public ::testing::WithParamInterface<std::tuple<OahuCase, int>>
 {
 protected:

@@ -123,7 +123,8 @@ class DrawnTriangles : public GlFixture
 protected:
     static int views() { return fullTest() ? 100 : 8; }
 
-    void check(const BuildOptions& options, const std::function<double(double x, double y)>& height)
+    void check(const BuildOptions& options, double most,
+               const std::function<double(double x, double y)>& height)
     {
         const Shares shares = sharesOf(options.output, views(), height);
         ASSERT_GE(shares.sorted.size(), static_cast<std::size_t>(views() / 2));
@@ -131,8 +132,7 @@ protected:
         RecordProperty("worst", std::to_string(shares.worst()));
         std::cout << "drawn over least: median " << shares.median() << ", worst " << shares.worst() << " of "
                   << shares.sorted.size() << " views\n";
-        // Twice is what is wanted; Mount Fuji's are there, these rough mountains' are not yet.
-        EXPECT_LE(shares.median(), 3.0);
+        EXPECT_LE(shares.median(), most);
     }
 
     static BuildOptions options(const std::string& dem, const std::string& output)
@@ -165,7 +165,9 @@ TEST_F(DrawnTriangles, OfMountainsAreNotManyMoreThanTheLeast)
                                            .write(folder / "dem.tif"),
                                        folder / "db");
     buildDatabase(built);
-    check(built,
+    // Twice is what is asked, and the full test demands it; these rough mountains are not there yet. What the short one demands
+    // keeps them from getting worse.
+    check(built, fullTest() ? 2.0 : 3.0,
           [&](double x, double y)
           {
               const auto place = [&](double metres)
@@ -174,6 +176,14 @@ TEST_F(DrawnTriangles, OfMountainsAreNotManyMoreThanTheLeast)
               };
               return at(place(x - 500000.0), place(2400000.0 - y));
           });
+}
+
+TEST_F(DrawnTriangles, OfAnIslandAreHardlyMoreThanTwiceTheLeast)
+{
+    const BuildOptions built = options(GEOFX_SOURCE_DIR "/data/oahu/elevation.tif", folder / "db");
+    buildDatabase(built);
+    // Never below its highest mountain.
+    check(built, 2.0, [](double, double) { return 1200.0; });
 }
 
 } // namespace
