@@ -80,6 +80,9 @@ int main(int argc, char** argv)
     app.add_option("--anisotropy", options.anisotropy,
                    "Anisotropic filtering of the colours, 1 to 16; 0 for 4 with imagery and 1 without")
         ->capture_default_str();
+    app.add_flag("--compress-textures", options.compressTextures,
+                 "Colours in BC1 and normals in BC5: a fraction of the memory on the GPU; sizes and errors "
+                 "are printed");
     app.add_option("--texel-error", options.texelError, "Largest texel on the screen where it shows, pixels")
         ->capture_default_str();
     app.add_option("--pixels-per-radian", options.pixelsPerRadian,
@@ -130,6 +133,7 @@ int main(int argc, char** argv)
                 static_cast<unsigned long long>(summary.tilesReused), summary.levels,
                 static_cast<double>(summary.samples) * 1e-6, static_cast<double>(summary.bytes) * 1e-6,
                 summary.seconds, static_cast<double>(summary.peakMemoryBytes) / (1024.0 * 1024.0));
+            if (options.compressTextures) std::printf("%s", summary.textures.text().c_str());
             if (summary.filledShare > 0.0)
                 std::printf("Voids: %.3g %% of the heights are filled from those around them.\n",
                             100.0 * summary.filledShare);

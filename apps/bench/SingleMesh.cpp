@@ -87,6 +87,9 @@ public:
         if (!texture || !texture->getImage())
             throw BenchError("A tile has no texture; build the database again.");
         const osg::Image& image = *texture->getImage();
+        if (image.isCompressed())
+            throw BenchError("The database's textures are compressed, and cannot be joined; build it without "
+                             "--compress-textures.");
         if (((image.s() - 1) << tile.level) <= TEXTURE_LIMIT) addTexture(tile, image);
         if (tile.level == _finestLevel) addMesh(tile, localToWorld, geometry, image.s());
     }

@@ -16,6 +16,12 @@ if(GEOFX_BUILD_DATA)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(GeographicLib REQUIRED IMPORTED_TARGET geographiclib)
   pkg_check_modules(Deflate REQUIRED IMPORTED_TARGET libdeflate)
+  # Not by pkg-config: the file of Debian's package names folders that are not there.
+  find_library(GEOFX_SQUISH_LIBRARY squish REQUIRED)
+  find_path(GEOFX_SQUISH_INCLUDE squish.h REQUIRED)
+  add_library(geofx_squish INTERFACE IMPORTED)
+  set_target_properties(geofx_squish PROPERTIES INTERFACE_LINK_LIBRARIES "${GEOFX_SQUISH_LIBRARY}"
+                        INTERFACE_INCLUDE_DIRECTORIES "${GEOFX_SQUISH_INCLUDE}")
 endif()
 if(GEOFX_BUILD_APPS)
   find_package(CLI11 CONFIG REQUIRED)

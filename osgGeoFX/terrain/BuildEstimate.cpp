@@ -126,6 +126,27 @@ std::string BuildEstimate::text() const
         time.c_str());
 }
 
+std::string TextureSummary::text() const
+{
+    std::string result = "Textures: " + sizeInWords(static_cast<double>(bytes)) + " with their mipmaps, " +
+                         sizeInWords(static_cast<double>(uncompressedBytes)) +
+                         " if nothing were compressed.\n";
+    const auto line =
+        [&](const char* kind, const char* const* names, const TextureError* errors, std::size_t count)
+    {
+        result += kind;
+        for (std::size_t i = 0; i < count; ++i)
+            result += CPLSPrintf("%s %s %.2f (at most %d)", i == 0 ? "" : ",", names[i],
+                                 errors[i].rootMeanSquare, errors[i].largest);
+        result += ".\n";
+    };
+    const char* const channels[] = {"red", "green", "blue"};
+    const char* const axes[] = {"x", "y"};
+    line("Root mean square errors of colours, of 255:", channels, colors.data(), colors.size());
+    line("The same of normals:", axes, normals.data(), normals.size());
+    return result;
+}
+
 BuildEstimate estimateBuild(const BuildOptions& options)
 {
     return BuildPlan(options).estimate;

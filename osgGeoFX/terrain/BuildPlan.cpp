@@ -3,6 +3,7 @@
 #include "BuildPlan.h"
 
 #include "BuilderCode.h"
+#include "TileTextures.h"
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
@@ -218,6 +219,7 @@ void BuildPlan::chooseGrid()
     const double columns = count(scheme.east - scheme.west, stepX),
                  rows = count(scheme.north - scheme.south, stepY);
     scheme.intervals = options.tileSize;
+    if (options.compressTextures) scheme.texelBlock = TileTextures::BLOCK;
     require(std::max(columns, rows) <= static_cast<double>(scheme.intervals << MAX_LEVEL),
             options.dems.front() + ": at its resolution the terrain would need more than " +
                 std::to_string(MAX_LEVEL) + " levels; give coarser rasters or a smaller region.");
@@ -329,7 +331,8 @@ void BuildPlan::chooseFingerprint()
          << "\nvertical datum " << static_cast<int>(options.vertical) << "\ntile size " << options.tileSize
          << "\ntexture size " << options.textureSize << "\npixel error " << options.pixelError
          << "\ntexel error " << options.texelError << "\nanisotropy " << options.anisotropy
-         << "\npixels per radian " << options.pixelsPerRadian << "\n";
+         << "\npixels per radian " << options.pixelsPerRadian << "\n"
+         << (options.compressTextures ? "textures compressed\n" : "");
     fingerprint = text.str();
 }
 

@@ -117,6 +117,41 @@ double openShare(const BuildPlan& plan)
            ((plan.scheme.lastColumn + 1.0) * (plan.scheme.lastRow + 1.0));
 }
 
+/// For a build that is resumed when all is done; and programs may want to know.
+void writeTextures(osg::Object& root, const TextureSummary& textures)
+{
+    root.setUserValue("geofx.textureBytes", static_cast<double>(textures.bytes));
+    root.setUserValue("geofx.textureBytesUncompressed", static_cast<double>(textures.uncompressedBytes));
+    const auto& [red, green, blue] = textures.colors;
+    const auto& [x, y] = textures.normals;
+    root.setUserValue("geofx.colorError",
+                      osg::Vec3d(red.rootMeanSquare, green.rootMeanSquare, blue.rootMeanSquare));
+    root.setUserValue("geofx.colorErrorLargest", osg::Vec3d(red.largest, green.largest, blue.largest));
+    root.setUserValue("geofx.normalError", osg::Vec2d(x.rootMeanSquare, y.rootMeanSquare));
+    root.setUserValue("geofx.normalErrorLargest", osg::Vec2d(x.largest, y.largest));
+}
+
+TextureSummary readTextures(const osg::Object& root)
+{
+    TextureSummary result;
+    double bytes = 0.0, uncompressed = 0.0;
+    root.getUserValue("geofx.textureBytes", bytes);
+    root.getUserValue("geofx.textureBytesUncompressed", uncompressed);
+    result.bytes = static_cast<std::uint64_t>(bytes);
+    result.uncompressedBytes = static_cast<std::uint64_t>(uncompressed);
+    osg::Vec3d color, colorLargest;
+    osg::Vec2d normal, normalLargest;
+    root.getUserValue("geofx.colorError", color);
+    root.getUserValue("geofx.colorErrorLargest", colorLargest);
+    root.getUserValue("geofx.normalError", normal);
+    root.getUserValue("geofx.normalErrorLargest", normalLargest);
+    for (unsigned int i = 0; i < 3; ++i)
+        result.colors[i] = {color[i], static_cast<int>(colorLargest[i])};
+    for (unsigned int i = 0; i < 2; ++i)
+        result.normals[i] = {normal[i], static_cast<int>(normalLargest[i])};
+    return result;
+}
+
 osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const TilePassResult& result)
 {
     char* wkt = nullptr;
@@ -153,6 +188,7 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
         root->getOrCreateUserDataContainer()->addUserObject(mask);
         root->setUserValue("geofx.filledMaskColumns", plan.voids->maskColumns());
     }
+    writeTextures(*root, result.textures.summary());
     root->setUserValue("geofx.vertical", std::string(vertical[static_cast<int>(plan.options.vertical)]));
     if (!plan.options.landCoverTable.empty())
         root->setUserValue("geofx.landCoverTable", landCoverTableText(plan.options.landCoverTable));
@@ -191,6 +227,7 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
         summary.tiles = summary.tilesReused = static_cast<std::uint64_t>(tiles);
         root->getUserValue("geofx.filledShare", summary.filledShare);
         root->getUserValue("geofx.openShare", summary.openShare);
+        summary.textures = readTextures(*root);
     }
     else
     {
@@ -200,6 +237,7 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
         writeNodeAtomically(*createRoot(plan, result), summary.file);
         summary.tiles = result.tiles;
         summary.tilesReused = result.tilesReused;
+        summary.textures = result.textures.summary();
         summary.filledShare = filledShare(plan);
         summary.openShare = openShare(plan);
     }

@@ -115,10 +115,13 @@ osg::ref_ptr<osg::Image> normalImage(const TilingScheme& scheme, const TileKey& 
 
 } // namespace
 
-void addNormalMap(osg::StateSet& state, const TilingScheme& scheme, const TileKey& key,
-                  const LevelArrays& arrays, int x, int y)
+void addNormalMap(osg::StateSet& state, TileTextures& textures, const TilingScheme& scheme,
+                  const TileKey& key, const LevelArrays& arrays, int x, int y)
 {
-    osg::ref_ptr<osg::Texture2D> normals = new osg::Texture2D(normalImage(scheme, key, arrays, x, y));
+    const osg::ref_ptr<osg::Image> image = normalImage(scheme, key, arrays, x, y);
+    // Three channels stay as they are: BC1, which is all there is for them, is off by up to a third of what there can be.
+    osg::ref_ptr<osg::Texture2D> normals = new osg::Texture2D(
+        image->getPixelFormat() == GL_RG ? textures.picture(image) : textures.data(image, true));
     normals->setName(TileNormals::texture);
     normals->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
     normals->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
@@ -128,10 +131,11 @@ void addNormalMap(osg::StateSet& state, const TilingScheme& scheme, const TileKe
     state.setTextureAttribute(TileNormals::unit, normals);
 
     // Coordinates put the first and the last texel's centres on the borders, which depends on how many there are.
-    const double colors = scheme.textureIntervals(key.level), n = scheme.normalIntervals(key.level);
+    const int colors = scheme.textureIntervals(key.level), n = scheme.normalIntervals(key.level);
     if (colors == n) return;
-    const double scale = n / (n + 1.0) * (colors + 1.0) / colors;
-    const double offset = 0.5 / (n + 1.0) * (1.0 - n / colors);
+    const double each = static_cast<double>(n) / colors, size = scheme.textureSize(n);
+    const double scale = each * scheme.textureSize(colors) / size;
+    const double offset = 0.5 / size * (1.0 - each);
     state.setTextureAttribute(
         TileNormals::unit,
         new osg::TexMat(osg::Matrix::scale(scale, scale, 1.0) * osg::Matrix::translate(offset, offset, 0.0)));

@@ -142,7 +142,8 @@ private:
 
 } // namespace
 
-TileNodeFactory::TileNodeFactory(const BuildPlan& plan) : _plan(plan)
+TileNodeFactory::TileNodeFactory(const BuildPlan& plan)
+    : _plan(plan), _textures(plan.options.compressTextures)
 {
     // With a buffer object of their own, shared arrays do not join that of the first geometry that takes them, which
     // would make a file's bytes depend on the order of the work.
@@ -193,12 +194,12 @@ TileLattice TileNodeFactory::createLattice(const TileKey& key, const LevelArrays
 }
 
 osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const TileKey& key, const LevelArrays& arrays, int x,
-                                                         int y) const
+                                                         int y)
 {
     const int m = _plan.scheme.textureIntervals(arrays.level);
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
-    osg::ref_ptr<osg::Texture2D> color =
-        new osg::Texture2D(cutImage(arrays.colors, arrays.texelColumns, x * m, y * m, m + 1, 3));
+    osg::ref_ptr<osg::Texture2D> color = new osg::Texture2D(
+        _textures.picture(cutImage(arrays.colors, arrays.texelColumns, x * m, y * m, m + 1, 3)));
     color->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
     color->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
     color->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
@@ -212,8 +213,8 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const TileKey& key, con
     if (!arrays.classes.empty())
     {
         // Bound for shaders that want it, but not enabled: the fixed pipeline must not draw it.
-        osg::ref_ptr<osg::Texture2D> classes =
-            new osg::Texture2D(cutImage(arrays.classes, arrays.texelColumns, x * m, y * m, m + 1, 1));
+        osg::ref_ptr<osg::Texture2D> classes = new osg::Texture2D(
+            _textures.data(cutImage(arrays.classes, arrays.texelColumns, x * m, y * m, m + 1, 1), false));
         classes->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
         classes->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
         classes->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
@@ -221,8 +222,8 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const TileKey& key, con
         classes->setResizeNonPowerOfTwoHint(false);
         state->setTextureAttribute(LAND_COVER_UNIT, classes);
     }
-    osg::ref_ptr<osg::Texture2D> cover =
-        new osg::Texture2D(cutImage(arrays.cover, arrays.texelColumns, x * m, y * m, m + 1, 4));
+    osg::ref_ptr<osg::Texture2D> cover = new osg::Texture2D(
+        _textures.data(cutImage(arrays.cover, arrays.texelColumns, x * m, y * m, m + 1, 4), true));
     cover->setName("geofx cover");
     cover->setInternalFormat(GL_RGBA8);
     cover->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
@@ -231,7 +232,7 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const TileKey& key, con
     cover->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
     cover->setResizeNonPowerOfTwoHint(false);
     state->setTextureAttribute(COVER_UNIT, cover);
-    addNormalMap(*state, _plan.scheme, key, arrays, x, y);
+    addNormalMap(*state, _textures, _plan.scheme, key, arrays, x, y);
     return state;
 }
 

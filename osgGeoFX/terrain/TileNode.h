@@ -4,6 +4,7 @@
 
 #include "BuildPlan.h"
 #include "TileMesh.h"
+#include "TileTextures.h"
 
 #include <osg/Array>
 #include <osg/Geometry>
@@ -47,12 +48,15 @@ public:
     /// The tile, x and y counted from the arrays' south-west corner; it must have data.
     osg::ref_ptr<osg::Node> create(const TileKey& key, const LevelArrays& arrays, int x, int y);
 
+    /// The textures of all tiles since it was made, or since they were forgotten.
+    TileTextures& textures() { return _textures; }
+
 private:
     TileLattice createLattice(const TileKey& key, const LevelArrays& arrays, int x, int y) const;
-    osg::ref_ptr<osg::StateSet> createState(const TileKey& key, const LevelArrays& arrays, int x,
-                                            int y) const;
+    osg::ref_ptr<osg::StateSet> createState(const TileKey& key, const LevelArrays& arrays, int x, int y);
 
     const BuildPlan& _plan;
+    TileTextures _textures;
     osg::ref_ptr<osg::VertexBufferObject> _sharedBuffer;
     osg::ref_ptr<osg::Vec4Array> _white;
 };

@@ -14,9 +14,9 @@
 #include <osgDB/Registry>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <fstream>
+#include <mutex>
 
 namespace osgGeoFX
 {
@@ -124,13 +124,20 @@ bool losesDetail(const LevelArrays& fine, const LevelArrays& coarse, int x, int 
     return false;
 }
 
+/// What a unit's last work file tells first.
+struct UnitFigures
+{
+    std::uint64_t tiles = 0;
+    TextureFigures textures;
+};
+
 class UnitBuilder
 {
 public:
     explicit UnitBuilder(BuildPlan& plan) : _plan(plan), _factory(plan) {}
 
     /// Writes the files of all groups of four tiles in the unit, and its root where the next tier finds it.
-    std::uint64_t build(const Unit& unit);
+    UnitFigures build(const Unit& unit);
 
 private:
     LevelArrays sampled(const Unit& unit);
@@ -261,7 +268,7 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
             below.root = {arrays.level, unit.root.x * span + x, unit.root.y * span + y};
             if (!_plan.fact(below.root).any) continue;
             ByteReader reader(_plan.workFile("tiles", below));
-            reader.get<std::uint64_t>();
+            reader.get<UnitFigures>();
             const auto slopeX = reader.getVector<float>();
             const auto slopeY = reader.getVector<float>();
             const auto texelSlopeX = reader.getVector<float>();
@@ -366,8 +373,9 @@ std::uint64_t UnitBuilder::writeGroups(const Unit& unit, const LevelArrays& arra
     return tiles;
 }
 
-std::uint64_t UnitBuilder::build(const Unit& unit)
+UnitFigures UnitBuilder::build(const Unit& unit)
 {
+    _factory.textures().forget();
     LevelArrays arrays = unit.tier == 0 ? sampled(unit) : gathered(unit);
     std::uint64_t tiles = 0;
     for (int level = unit.latticeLevel(); level > unit.root.level; --level)
@@ -376,9 +384,9 @@ std::uint64_t UnitBuilder::build(const Unit& unit)
         arrays = coarser(arrays);
     }
     writeNodeAtomically(*_factory.create(unit.root, arrays, 0, 0), rootTileFile(_plan, unit.root));
-    ++tiles;
+    const UnitFigures figures{tiles + 1, _factory.textures().figures()};
     ByteWriter writer;
-    writer.put(tiles);
+    writer.put(figures);
     writer.put(arrays.slopeX);
     writer.put(arrays.slopeY);
     writer.put(arrays.texelSlopeX);
@@ -388,7 +396,7 @@ std::uint64_t UnitBuilder::build(const Unit& unit)
     writer.put(arrays.cover);
     writer.put(arrays.textureError.front());
     writeFileAtomically(_plan.workFile("tiles", unit), writer.bytes().data(), writer.bytes().size());
-    return tiles;
+    return figures;
 }
 
 } // namespace
@@ -396,7 +404,15 @@ std::uint64_t UnitBuilder::build(const Unit& unit)
 TilePassResult runTilePass(BuildPlan& plan)
 {
     std::vector<std::unique_ptr<UnitBuilder>> builders(static_cast<std::size_t>(plan.threads));
-    std::atomic<std::uint64_t> tiles{0}, reused{0};
+    std::mutex mutex;
+    TilePassResult result;
+    const auto count = [&](const UnitFigures& figures, bool reused)
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        result.tiles += figures.tiles;
+        result.tilesReused += reused ? figures.tiles : 0;
+        result.textures.add(figures.textures);
+    };
     for (const auto& units : plan.tiers)
         runOnWorkers(plan.threads, units.size(),
                      [&](int worker, std::size_t index)
@@ -408,22 +424,17 @@ TilePassResult runTilePass(BuildPlan& plan)
                                                                    : std::string());
                              if (reader.good())
                              {
-                                 const auto before = reader.get<std::uint64_t>();
-                                 tiles += before;
-                                 reused += before;
+                                 count(reader.get<UnitFigures>(), true);
                              }
                              else
                              {
                                  auto& builder = builders[static_cast<std::size_t>(worker)];
                                  if (!builder) builder = std::make_unique<UnitBuilder>(plan);
-                                 tiles += builder->build(unit);
+                                 count(builder->build(unit), false);
                              }
                          }
                          plan.advance("tiles");
                      });
-    TilePassResult result;
-    result.tiles = tiles;
-    result.tilesReused = reused;
     result.root = readRootTile(plan, {0, 0, 0});
     return result;
 }

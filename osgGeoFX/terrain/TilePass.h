@@ -3,6 +3,7 @@
 #pragma once
 
 #include "BuildPlan.h"
+#include "TileTextures.h"
 
 #include <osg/Node>
 
@@ -15,7 +16,8 @@ struct TilePassResult
 {
     std::uint64_t tiles = 0;
     std::uint64_t tilesReused = 0; ///< taken over from an interrupted build
-    osg::ref_ptr<osg::Node> root;  ///< the root tile, for terrain.osgb
+    TextureFigures textures;
+    osg::ref_ptr<osg::Node> root; ///< the root tile, for terrain.osgb
 };
 
 /// Pass 2: writes the tiles' files; needs what pass 1 has found.

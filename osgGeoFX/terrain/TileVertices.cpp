@@ -135,11 +135,11 @@ void TileVertices::add(const Post& post)
     };
     normals->push_back(osg::Vec3b(byte(normal.x()), byte(normal.y()), byte(normal.z())));
     // Texels lie on the tile's border, so that neighbours of a level meet without a seam.
-    const double texels = scheme.textureIntervals(_key.level);
+    const int texels = scheme.textureIntervals(_key.level), size = scheme.textureSize(texels);
     const auto coordinate = [&](int index, int last)
     {
         const double share = std::min<double>(index * _finestPosts, last) / (_finestPosts * _intervals);
-        return static_cast<float>((0.5 + texels * share) / (texels + 1.0));
+        return static_cast<float>((0.5 + texels * share) / size);
     };
     texCoords->push_back(osg::Vec2(coordinate(post.column, scheme.lastColumn - scheme.firstColumn(_key)),
                                    coordinate(post.row, scheme.lastRow - scheme.firstRow(_key))));

@@ -33,6 +33,7 @@ struct TilingScheme
     int intervals = 0;    ///< cells along a tile's edges
     int texels = 0;       ///< texture intervals along a finest tile's edges; texels lie on both ends
     int textureDepth = 0; ///< levels above the finest that keep the finest texels
+    int texelBlock = 1;   ///< texels along a texture's edges are a multiple of it
 
     /// All around the globe: the last column of posts lies on the first.
     bool wholeCircle() const { return crs.geographic && east - west > 360.0 - 1e-9; }
@@ -46,6 +47,12 @@ struct TilingScheme
     /// Texels of a level are as dense as those of finest tiles, until a texture would grow beyond its limit.
     bool keepsTexels(int level) const { return level >= finestLevel - textureDepth; }
     int textureIntervals(int level) const { return texels << std::min(finestLevel - level, textureDepth); }
+
+    /// Texels along the edges of a texture: on both ends of its intervals, and what makes whole blocks of them.
+    int textureSize(int textureIntervals) const
+    {
+        return (textureIntervals + texelBlock) / texelBlock * texelBlock;
+    }
 
     /// Normals are as dense as the posts of finest tiles, up to four for each cell of a tile.
     bool keepsNormals(int level) const { return level >= finestLevel - normalDepth; }
