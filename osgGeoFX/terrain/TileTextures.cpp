@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
@@ -70,6 +71,31 @@ std::vector<float> halved(const std::vector<float>& texels, int size)
             halveLine(narrow.data() + column * 4 + channel, result.data() + column * 4 + channel, size,
                       half * 4);
     return result;
+}
+
+/// An image's blocks. squish::CompressImage would do so with threads of its own for each image (OpenMP), which wait for the next
+/// one without rest: our workers have all cores already.
+void encode(const std::vector<float>& texels, int size, int flags, unsigned char* blocks)
+{
+    const int bytes = squish::GetStorageRequirements(BLOCK, BLOCK, flags);
+    for (int y = 0; y < size; y += BLOCK)
+        for (int x = 0; x < size; x += BLOCK, blocks += bytes)
+        {
+            std::array<unsigned char, BLOCK_RGBA> rgba{};
+            int within = 0; // a bit for each of the block's texels that there is
+            for (int row = y; row < std::min(y + BLOCK, size); ++row)
+                for (int column = x; column < std::min(x + BLOCK, size); ++column)
+                {
+                    const int texel = (row - y) * BLOCK + column - x;
+                    within |= 1 << texel;
+                    std::transform(
+                        texels.begin() + 4 * (static_cast<std::ptrdiff_t>(row) * size + column),
+                        texels.begin() + 4 * (static_cast<std::ptrdiff_t>(row) * size + column + 1),
+                        rgba.begin() + static_cast<std::ptrdiff_t>(4) * texel,
+                        [](float value) { return static_cast<unsigned char>(std::lround(value)); });
+                }
+            squish::CompressMasked(rgba.data(), within, blocks, flags);
+        }
 }
 
 /// What a block says, as a GPU reads it.
@@ -170,7 +196,6 @@ osg::ref_ptr<osg::Image> TileTextures::picture(const osg::ref_ptr<osg::Image>& i
     std::vector<float> texels(4 * count, 255.0f);
     for (std::size_t i = 0; i < count; ++i)
         std::copy_n(source->data() + i * channels, channels, texels.data() + 4 * i);
-    std::vector<unsigned char> rgba(4 * count);
     auto* const blocks = new unsigned char[bytes];
     osg::ref_ptr<osg::Image> result = new osg::Image;
     result->setImage(size, size, 1, static_cast<GLint>(format), format, GL_UNSIGNED_BYTE, blocks,
@@ -179,9 +204,7 @@ osg::ref_ptr<osg::Image> TileTextures::picture(const osg::ref_ptr<osg::Image>& i
     unsigned int offset = 0;
     for (int level = size;; level /= 2)
     {
-        std::transform(texels.begin(), texels.end(), rgba.begin(),
-                       [](float value) { return static_cast<unsigned char>(std::lround(value)); });
-        squish::CompressImage(rgba.data(), level, level, blocks + offset, flags);
+        encode(texels, level, flags, blocks + offset);
         if (level == 1) break;
         offset += osg::Image::computeImageSizeInBytes(level, level, 1, format, GL_UNSIGNED_BYTE, 1);
         offsets.push_back(offset);

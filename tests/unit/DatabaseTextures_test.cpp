@@ -342,7 +342,8 @@ TEST_F(DatabaseTextures, MipmapsAreMeans)
                                 for (int i = 0; i < probes * probes; ++i)
                                 {
                                     const double x = (column + (i % probes + 0.5) / probes) * width;
-                                    const double y = (row + (i / probes + 0.5) / probes) * width;
+                                    const int line = i / probes;
+                                    const double y = (row + (line + 0.5) / probes) * width;
                                     mean += at(was, std::min(static_cast<int>(x), was.s() - 1),
                                                std::min(static_cast<int>(y), was.t() - 1))[channel];
                                 }
@@ -378,11 +379,12 @@ TEST_F(DatabaseTextures, TheProcessorReadsCompressedNormals)
             tile.geometry->getStateSet()->getTextureAttribute(normals, osg::StateAttribute::TEXMAT));
         for (const osg::Vec2& place : tile.places)
         {
-            osg::Vec3d at3(place, 0.0);
-            if (matrix) at3 = at3 * matrix->getMatrix();
-            const double x = at3.x() * image->s() - 0.5, y = at3.y() * image->t() - 0.5;
+            const osg::Vec2d coordinates(place);
+            osg::Vec3d within(coordinates.x(), coordinates.y(), 0.0);
+            if (matrix) within = within * matrix->getMatrix();
+            const double x = within.x() * image->s() - 0.5, y = within.y() * image->t() - 0.5;
             const int column = static_cast<int>(x + 1e-6), row = static_cast<int>(y + 1e-6);
-            const auto normal = sampler.at(place.x(), place.y());
+            const auto normal = sampler.at(coordinates.x(), coordinates.y());
             ASSERT_TRUE(normal);
             for (unsigned int i = 0; i < 2; ++i)
             {
