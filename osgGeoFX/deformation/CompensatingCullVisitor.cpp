@@ -14,6 +14,7 @@
 #include <cfloat>
 #include <cmath>
 #include <mutex>
+#include <typeinfo>
 
 namespace osgGeoFX
 {
@@ -53,6 +54,21 @@ bool holdsGeometryOnly(const osg::Transform& node)
         if (!child->asGeometry() || child->getCullCallback()) return false;
     }
     return true;
+}
+
+/// A block of a tile with nothing that OSG's own traversal would have to look at: with many of them in a view, what
+/// a visitor does for any node is most of the time.
+bool isPlain(const osg::LOD& block)
+{
+    return TileInfo::meshesOf(block) && block.isCullingActive() && !block.getStateSet() &&
+           !block.getCullCallback() && block.getRangeMode() == osg::LOD::DISTANCE_FROM_EYE_POINT;
+}
+
+/// A group that does nothing but hold its children.
+bool isPlain(const osg::Node& node)
+{
+    return typeid(node) == typeid(osg::Group) && node.isCullingActive() && !node.getStateSet() &&
+           !node.getCullCallback();
 }
 
 /// Tiles that came make the bounds above them unknown, and OSG computes bounds when they are asked for. Below a group
@@ -459,9 +475,48 @@ void CompensatingCullVisitor::apply(osg::Transform& node)
     popCurrentMask();
 }
 
+void CompensatingCullVisitor::applyBlock(osg::LOD& block)
+{
+    const EyeFrustum::Mask formerPlanes = _mode.planes;
+    const Ball ball = eyeBall(block.getBound());
+    const Ball deformed = _mode.chain->bound(ball);
+    // Never left out for being small: a deformation may squeeze many of them into a few pixels.
+    const bool out = formerPlanes && (_mode.chain->hides(ball, _room) ||
+                                      _frustum.side(deformed, _mode.planes) == EyeFrustum::Side::Outside);
+    if (!out || partsInSight(block, ball))
+    {
+        computeBounds(block);
+        const double distance = _mode.chain->lodDistance(ball, getReferenceViewPoint(), &deformed);
+        const auto told = static_cast<float>(
+            std::min(distance * static_cast<double>(getLODScale()), _mode.chain->lodLimit(block, ball)));
+        for (unsigned int i = 0; i < block.getNumChildren(); ++i)
+        {
+            if (block.getMinRange(i) <= told && told < block.getMaxRange(i)) applyPart(*block.getChild(i));
+        }
+    }
+    _mode.planes = formerPlanes;
+}
+
+void CompensatingCullVisitor::applyPart(osg::Node& part)
+{
+    if (!isPlain(part))
+    {
+        part.accept(*this);
+        return;
+    }
+    if (!validNodeMask(part)) return;
+    pushOntoNodePath(&part);
+    part.traverse(*this);
+    popFromNodePath();
+}
+
 void CompensatingCullVisitor::apply(osg::LOD& node)
 {
-    // A part of a tile is never left out for being small: a deformation may squeeze many of them into a few pixels.
+    if (_mode.ours && _task.compensate && !_task.filter && isPlain(node))
+    {
+        applyBlock(node);
+        return;
+    }
     const bool cullSmall = _cullSmall;
     if (cullSmall && TileInfo::meshesOf(node)) _cullSmall = false;
     const Scope scope(*this, node);
@@ -626,11 +681,19 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
     const osg::BoundingBox& bounds = drawable.getBoundingBox();
     depth = 0.0;
     if (!bounds.valid()) return true;
+    const bool test = drawable.isCullingActive();
+    // Most are in the middle of the picture, and of what is near and far in it: their spheres say so.
+    if (!(test && (_mode.planes || (_mode.tile && _cullSmall))) && !_mode.chain->looksAtBoxes() &&
+        !_task.debugBounds)
+    {
+        const Ball roughly = _mode.chain->bound(eyeBall(drawable.getBound()));
+        depth = -roughly.centre.z();
+        if (_outerNearFar == DO_NOT_COMPUTE_NEAR_FAR || _depths.covers(roughly)) return true;
+    }
     const EyeBox box = EyeBox::of(bounds, *getModelViewMatrix());
     const Ball ball = box.ball();
     const Ball deformed = _mode.chain->bound(ball);
     depth = -deformed.centre.z();
-    const bool test = drawable.isCullingActive();
     if (test && _outerCullingMode != NO_CULLING && _mode.chain->hides(box, _room)) return false;
     if (test && _mode.tile && _cullSmall &&
         planeDistance(_pixelSize, deformed.centre) * _smallPixels > deformed.radius)
@@ -655,15 +718,22 @@ bool CompensatingCullVisitor::drawableInSight(const osg::Drawable& drawable, dou
 osg::StateSet* CompensatingCullVisitor::lookFor(const osg::Drawable& drawable)
 {
     if (!_task.program) return nullptr;
-    if (_currentStateGraph != _stateGraph)
+    const bool otherGraph = _currentStateGraph != _stateGraph;
+    if (otherGraph)
     {
         _stateGraph = _currentStateGraph;
         _state = FixedFunctionState();
         _state.meetAll(*_currentStateGraph);
     }
-    FixedFunctionState state = _state;
-    if (drawable.getStateSet()) state.meet(*drawable.getStateSet());
-    return lookOf(state.look(_task.mapUnit));
+    // The meshes of a tile share theirs.
+    if (otherGraph || drawable.getStateSet() != _ownState)
+    {
+        _ownState = drawable.getStateSet();
+        FixedFunctionState state = _state;
+        if (_ownState) state.meet(*_ownState);
+        _ownLook = lookOf(state.look(_task.mapUnit));
+    }
+    return _ownLook;
 }
 
 osg::StateSet* CompensatingCullVisitor::lookOf(const FixedFunctionLook& look)

@@ -228,6 +228,9 @@ private:
     bool tileOutOfSight(const osg::LOD& node);
     /// A transform with nothing but geometry below it.
     void applyTile(osg::Transform& node);
+    /// A block of a tile, and what is below it.
+    void applyBlock(osg::LOD& block);
+    void applyPart(osg::Node& part);
     /// Culls a drawable by its box. False where it is out of sight; `depth` of its middle otherwise.
     bool drawableInSight(const osg::Drawable& drawable, double& depth);
     osg::StateSet* lookFor(const osg::Drawable& drawable);
@@ -275,6 +278,8 @@ private:
         _following;                                   ///< by programs, of this run
     const osgUtil::StateGraph* _stateGraph = nullptr; ///< whose state is gathered
     FixedFunctionState _state;
+    const osg::StateSet* _ownState = nullptr; ///< of the drawable that was looked for last
+    osg::StateSet* _ownLook = nullptr;
     bool _warnedOfLook = false;
     /// Deformed boxes to show: lines in eye space, by whether they are in the transition zone.
     struct Bounds

@@ -108,6 +108,8 @@ public:
     virtual bool hides(const Ball&, const osg::Vec2d&) const { return false; }
     /// The same of a box; to be overridden where a box tells more.
     virtual bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const { return hides(box.ball(), room); }
+    /// Whether hides() or complaint() can ever say anything. False spares culling many boxes, and they are not asked.
+    virtual bool looksAtBoxes() const { return true; }
     /// A sentence where something in this box cannot be drawn well; said once by the scene.
     virtual std::string complaint(const EyeBox&) const { return {}; }
 

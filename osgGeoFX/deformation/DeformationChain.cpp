@@ -114,6 +114,7 @@ bool DeformationChain::leavesAlone(const Ball& ball) const
 
 bool DeformationChain::hides(const Ball& ball, const osg::Vec2d& room) const
 {
+    if (!_looksAtBoxes) return false;
     Ball current = ball;
     for (std::size_t i = 0; i < _frames.size(); ++i)
     {
@@ -125,7 +126,7 @@ bool DeformationChain::hides(const Ball& ball, const osg::Vec2d& room) const
 
 bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
 {
-    if (_frames.empty()) return false;
+    if (!_looksAtBoxes) return false;
     if (_frames.front()->hidesBox(box, room)) return true;
     if (_frames.size() == 1) return false;
     Ball current = box.ball();
@@ -168,11 +169,14 @@ double DeformationChain::longestEdge(const Ball& ball) const
     Ball current = ball;
     double longest = HUGE_VAL;
     double growth = 1.0;
-    for (const auto& frame : _frames)
+    for (std::size_t i = 0; i < _frames.size(); ++i)
     {
-        longest = std::min(longest, frame->longestEdge(current, _tileError) / growth);
-        growth *= frame->lipschitz(current);
-        current = frame->bound(current);
+        if (i > 0)
+        {
+            growth *= _frames[i - 1]->lipschitz(current);
+            current = _frames[i - 1]->bound(current);
+        }
+        longest = std::min(longest, _frames[i]->longestEdge(current, _tileError) / growth);
     }
     return longest;
 }
@@ -213,7 +217,7 @@ double DeformationChain::detail(const Ball& ball) const
     return detail;
 }
 
-double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoint) const
+double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoint, const Ball* bound) const
 {
     Ball current = ball;
     double detail = 1.0;
@@ -223,7 +227,7 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
         if (const std::optional<double> distance = frame->viewDistance(current))
             return ball.radius + *distance / (detail * frame->detail(current));
         detail *= frame->detail(current) * frame->lipschitz(current);
-        current = frame->bound(current);
+        current = bound && _frames.size() == 1 ? *bound : frame->bound(current);
     }
     const double distance = (current.centre - viewPoint).length();
     if (detail == 1.0 && current.radius == ball.radius) return distance;

@@ -19,7 +19,11 @@ namespace osgGeoFX
 class OSGGEOFX_EXPORT DeformationChain : public osg::Referenced
 {
 public:
-    void add(osg::ref_ptr<const DeformationFrame> frame) { _frames.push_back(std::move(frame)); }
+    void add(osg::ref_ptr<const DeformationFrame> frame)
+    {
+        _looksAtBoxes = _looksAtBoxes || frame->looksAtBoxes();
+        _frames.push_back(std::move(frame));
+    }
     /// Ground::tileEdge and Ground::tileError.
     void setTiles(double edge, double error)
     {
@@ -43,6 +47,8 @@ public:
     /// Whether nothing of a ball is to be drawn.
     bool hides(const Ball& ball, const osg::Vec2d& room) const;
     bool hides(const EyeBox& box, const osg::Vec2d& room) const;
+    /// Whether hides() or a frame's complaint() can ever say anything.
+    bool looksAtBoxes() const { return _looksAtBoxes; }
     /// A ball around what becomes of a ball.
     Ball bound(const Ball& ball) const;
     /// A hull around what becomes of a box. `hull` is reused for speed. Its margin is to be no larger than `fineness`,
@@ -50,8 +56,9 @@ public:
     void bound(const EyeBox& box, Hull& hull, double fineness = 0.02) const;
 
     /// The distance, metres, at which an undeformed ball would deserve the level of detail that the deformed one does:
-    /// what LOD ranges are compared with. `viewPoint` is in eye space.
-    double lodDistance(const Ball& ball, const osg::Vec3d& viewPoint) const;
+    /// what LOD ranges are compared with. `viewPoint` is in eye space. `bound`: what bound() gives for the ball, by those who
+    /// have it.
+    double lodDistance(const Ball& ball, const osg::Vec3d& viewPoint, const Ball* bound = nullptr) const;
     /// What is to be taken in the place of distances that are larger, LOD scale included, for the levels of detail of a node with
     /// this ball: where the triangles of a tile, or of a mesh of one of its blocks, are too large for the deformation, one at
     /// which finer ones are due, else infinite.
@@ -67,6 +74,7 @@ private:
     double longestEdge(const Ball& ball) const;
 
     std::vector<osg::ref_ptr<const DeformationFrame>> _frames;
+    bool _looksAtBoxes = false;
     double _tileEdge = 0.0;
     double _tileError = 0.0;
 };

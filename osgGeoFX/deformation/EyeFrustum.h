@@ -59,6 +59,11 @@ public:
     void include(double nearest, double farthest);
     /// A box, which becomes something within a ball. The chain must live until settle().
     void add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain);
+    /// Whether a ball lies between what is certain so far, and need not be added.
+    bool covers(const Ball& ball) const
+    {
+        return -ball.centre.z() - ball.radius >= _nearest && -ball.centre.z() + ball.radius <= _farthest;
+    }
     void settle();
 
     double nearest() const { return _nearest; }

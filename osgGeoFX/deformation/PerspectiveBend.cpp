@@ -134,6 +134,7 @@ public:
         if (s + ball.radius <= 0.0) return 1.0;
         return s - ball.radius >= _view.bend.size ? _look.contextDetail : _look.transitionDetail;
     }
+    bool looksAtBoxes() const override { return _look.foldPossible; }
     std::string complaint(const EyeBox& box) const override
     {
         if (!_look.foldPossible || reach(box.ball()) != Reach::Curved) return {};

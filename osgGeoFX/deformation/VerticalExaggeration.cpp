@@ -31,6 +31,7 @@ public:
     {
         return toOsg(glsl::geofx_exaggerationNormal(_view, toGlm(position), toGlm(normal)));
     }
+    bool looksAtBoxes() const override { return false; }
     Reach reach(const Ball&) const override { return _view.curvature > 0.0 ? Reach::Curved : Reach::Affine; }
     double lipschitz(const Ball& ball) const override
     {
