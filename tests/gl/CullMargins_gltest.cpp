@@ -226,6 +226,32 @@ std::vector<osg::Vec2d> tipsOf(const BentGrid& bent, const osg::Matrixd& project
     return tips;
 }
 
+TEST_F(CullMargins, NearAndFarReachTheEndsOfWhatLiesBetween)
+{
+    // Two small squares tell near and far for sure; a long one has its middle between them, and its ends beyond.
+    const osg::ref_ptr<osg::Group> ground = new osg::Group;
+    ground->addChild(makeSquare(osg::Vec3d(0.0, 800.0, 0.0), 1.0));
+    ground->addChild(makeSquare(osg::Vec3d(0.0, 1200.0, 0.0), 1.0));
+    ground->addChild(makeSquare(osg::Vec3d(0.0, 1000.0, 0.0), 300.0));
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    const osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+    exaggeration->setFactor(1.5);
+    scene->addEffect(exaggeration);
+    scene->addChild(ground);
+    CullHarness harness(context(), scene, WIDTH, HEIGHT);
+    harness.camera().setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
+    const osg::Vec3d eye(0.0, 0.0, 20.0);
+    harness.setCamera(osg::Matrixd::lookAt(eye, eye + osg::Vec3d(0.0, 1.0, 0.0), osg::Vec3d(0.0, 0.0, 1.0)),
+                      osg::Matrixd::perspective(100.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 1e5));
+    const Culled culled = harness.frame(true);
+    ASSERT_EQ(culled.leaves.size(), 3u);
+    double left = 0.0, right = 0.0, bottom = 0.0, top = 0.0, near = 0.0, far = 0.0;
+    ASSERT_TRUE(culled.projection.getFrustum(left, right, bottom, top, near, far));
+    EXPECT_LE(near, 700.0);
+    EXPECT_GE(far, 1300.0);
+    EXPECT_LE(far, 2000.0); // they are computed at all
+}
+
 } // namespace
 
 TEST_F(CullMargins, ACompanionIsDrawnAsFarBesideThePictureAsItReaches)
