@@ -46,6 +46,8 @@ OutlineDifference compareOutlines(const osg::Image& a, const osg::Image& b)
         {
             if (covered(a, x, y) == covered(b, x, y)) continue;
             ++difference.pixels;
+            // It cannot grow any more where one of the pictures shows nothing.
+            if (difference.distance >= std::max(a.s(), a.t())) continue;
             difference.distance =
                 std::max({difference.distance, distanceToOtherKind(a, x, y), distanceToOtherKind(b, x, y)});
         }

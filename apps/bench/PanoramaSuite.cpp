@@ -128,7 +128,7 @@ private:
         Figure figure{std::string("speed-") + view.name,
                       std::string("frames a second of the paged map over those of all its finest tiles: ") +
                           view.what,
-                      "", view.whole ? Bound::AtLeast : Bound::None, view.whole ? 8.0 : 0.0};
+                      "", view.whole ? Bound::AtLeast : Bound::None, view.whole ? 15.0 : 0.0};
         figure.measured = all / paged;
         char remark[300];
         std::snprintf(

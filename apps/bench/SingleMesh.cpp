@@ -13,10 +13,14 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/ReadFile>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace geofx::bench
 {
@@ -149,34 +153,97 @@ private:
         }
     }
 
+    /// All posts of a tile's lattice, those that its finest mesh leaves out on plains, too.
     void addMesh(const osgGeoFX::TileInfo& tile, const osg::Matrixd& localToWorld,
                  const osg::Geometry& geometry, int texels)
     {
         const auto& vertices = as<osg::Vec3Array>(geometry.getVertexArray());
         const auto& normals = as<osg::Vec3bArray>(geometry.getNormalArray());
         const auto& coordinates = as<osg::Vec2Array>(geometry.getTexCoordArray(0));
-        const auto first = static_cast<GLuint>(_vertices->size());
-        const double across = 1 << _finestLevel;
-        for (std::size_t i = 0; i < vertices.size(); ++i)
+        const int cells = tile.cells, posts = cells + 1;
+        // Of the posts, none where there is no ground.
+        std::vector<std::optional<GLuint>> indices(static_cast<std::size_t>(posts) *
+                                                   static_cast<std::size_t>(posts));
+        const auto indexAt = [&](int column, int row) -> std::optional<GLuint>&
         {
-            _vertices->push_back(osg::Vec3(osg::Vec3d(vertices[i]) * localToWorld - _origin));
-            const osg::Vec3b& n = normals[i];
-            osg::Vec3d normal = osg::Matrixd::transform3x3(osg::Vec3d(n.x(), n.y(), n.z()), localToWorld);
+            return indices[static_cast<std::size_t>(row) * static_cast<std::size_t>(posts) +
+                           static_cast<std::size_t>(column)];
+        };
+        const double across = 1 << _finestLevel;
+        const auto addPost = [&](int column, int row, const osg::Vec3d& place, osg::Vec3d normal)
+        {
+            indexAt(column, row) = static_cast<GLuint>(_vertices->size());
+            if (column == 0 || row == 0 || column == cells || row == cells)
+            {
+                // Neighbours round theirs in frames of their own; here are no walls behind the gaps.
+                const auto [entry, isNew] = _borders.try_emplace(
+                    {tile.x * cells + column, tile.y * cells + row}, *indexAt(column, row));
+                indexAt(column, row) = entry->second;
+                if (!isNew) return;
+            }
+            _vertices->push_back(osg::Vec3(place * localToWorld - _origin));
+            normal = osg::Matrixd::transform3x3(normal, localToWorld);
             normal.normalize();
             normal *= 32767.0;
             _normals->push_back(osg::Vec3s(static_cast<GLshort>(normal.x()), static_cast<GLshort>(normal.y()),
                                            static_cast<GLshort>(normal.z())));
-            const osg::Vec2d inTile =
-                (osg::Vec2d(coordinates[i]) * texels - osg::Vec2d(0.5, 0.5)) / (texels - 1.0);
-            _coordinates->push_back((osg::Vec2d(tile.x, tile.y) + inTile) / across);
-        }
+            _coordinates->push_back((osg::Vec2d(tile.x, tile.y) + osg::Vec2d(column, row) / cells) / across);
+        };
+        const auto latticePlace = [&](unsigned int vertex)
+        {
+            return (osg::Vec2d(coordinates[vertex]) * texels - osg::Vec2d(0.5, 0.5)) * cells / (texels - 1.0);
+        };
         for (const auto& set : geometry.getPrimitiveSetList())
         {
             for (unsigned int i = 0; i + 2 < set->getNumIndices(); i += 3)
             {
                 const unsigned int corners[] = {set->index(i), set->index(i + 1), set->index(i + 2)};
-                for (const unsigned int corner : corners)
-                    _elements->push_back(first + corner);
+                const osg::Vec2d a = latticePlace(corners[0]);
+                const osg::Vec2d ab = latticePlace(corners[1]) - a, ac = latticePlace(corners[2]) - a;
+                const double area = ab.x() * ac.y() - ab.y() * ac.x();
+                if (std::abs(area) < 0.5) continue;
+                constexpr double hair = 1e-3;
+                const auto first = [&](double from, double b, double c)
+                {
+                    return std::max(0, static_cast<int>(std::ceil(from + std::min({0.0, b, c}) - hair)));
+                };
+                const auto last = [&](double from, double b, double c)
+                {
+                    return std::min(cells, static_cast<int>(std::floor(from + std::max({0.0, b, c}) + hair)));
+                };
+                for (int row = first(a.y(), ab.y(), ac.y()); row <= last(a.y(), ab.y(), ac.y()); ++row)
+                {
+                    for (int column = first(a.x(), ab.x(), ac.x()); column <= last(a.x(), ab.x(), ac.x());
+                         ++column)
+                    {
+                        if (indexAt(column, row)) continue;
+                        const osg::Vec2d from = osg::Vec2d(column, row) - a;
+                        const double b = (from.x() * ac.y() - from.y() * ac.x()) / area;
+                        const double c = (ab.x() * from.y() - ab.y() * from.x()) / area;
+                        if (b < -hair || c < -hair || b + c > 1.0 + hair) continue;
+                        const auto mixed = [&](const auto& array)
+                        {
+                            const auto at = [&](int corner)
+                            {
+                                const auto& value = array[corners[corner]];
+                                return osg::Vec3d(value.x(), value.y(), value.z());
+                            };
+                            return at(0) * (1.0 - b - c) + at(1) * b + at(2) * c;
+                        };
+                        addPost(column, row, mixed(vertices), mixed(normals));
+                    }
+                }
+            }
+        }
+        for (int row = 0; row < cells; ++row)
+        {
+            for (int column = 0; column < cells; ++column)
+            {
+                const std::optional<GLuint> a = indexAt(column, row), b = indexAt(column + 1, row),
+                                            c = indexAt(column + 1, row + 1), d = indexAt(column, row + 1);
+                if (!a || !b || !c || !d) continue;
+                for (const GLuint corner : {*a, *b, *c, *a, *c, *d})
+                    _elements->push_back(corner);
             }
         }
     }
@@ -188,6 +255,8 @@ private:
     osg::ref_ptr<osg::Vec2Array> _coordinates = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::DrawElementsUInt> _elements = new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES);
     std::map<int, osg::ref_ptr<osg::Image>> _images; ///< by level
+    std::map<std::pair<int, int>, GLuint>
+        _borders; ///< posts on tiles' borders, by their places in the whole lattice
 };
 
 } // namespace
