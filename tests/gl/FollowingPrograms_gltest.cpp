@@ -62,7 +62,8 @@ struct Meeting
     std::mutex mutex;
     std::condition_variable moved;
     // Under the lock.
-    bool armed = false, drawing = false, changed = false, culled = false;
+    bool drawing = false, changed = false, culled = false;
+    int drawn = 0, awaited = -1; ///< frames that have been drawn; the one in which the thread waits
     int changes = -1; ///< of what is drawn with; -1 before it is known
 
     bool wait(bool Meeting::*what)
@@ -87,7 +88,7 @@ public:
         bool waits = false;
         {
             const std::lock_guard<std::mutex> lock(_meeting.mutex);
-            std::swap(waits, _meeting.armed);
+            waits = ++_meeting.drawn == _meeting.awaited;
         }
         if (waits)
         {
@@ -154,7 +155,11 @@ TEST_F(FollowingProgramsTest, NothingThatIsBeingDrawnChanges)
             views.add(root, *viewer().getCamera());
             views.realize();
             views.pictures();
-            meeting.tell(&Meeting::armed);
+            {
+                // Not in an earlier frame that is still to be drawn: the second one after it is not culled before its end.
+                const std::lock_guard<std::mutex> lock(meeting.mutex);
+                meeting.awaited = views.frames() + 1;
+            }
             views.frame();
             ASSERT_TRUE(meeting.wait(&Meeting::drawing));
             scene->addEffect(makeLift());

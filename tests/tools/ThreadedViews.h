@@ -64,7 +64,9 @@ public:
             _viewer->getView(i)->getSceneData()->resizeGLObjectBuffers(32);
         _viewer->realize();
     }
-    void frame() { _viewer->frame(++_time / 1000.0); }
+    void frame() { _viewer->frame(++_frames / 1000.0); }
+    /// So far.
+    int frames() const { return _frames; }
     /// Of the next frame; the frames on their way may be of an older state.
     std::vector<osg::ref_ptr<osg::Image>> pictures()
     {
@@ -84,7 +86,7 @@ private:
     osg::ref_ptr<osgViewer::CompositeViewer> _viewer;
     std::vector<osg::ref_ptr<osgGeoFX::EglGraphicsContext>> _contexts;
     std::vector<osg::ref_ptr<osgGeoFX::ImageCapture>> _captures;
-    int _time = 0;
+    int _frames = 0;
 };
 
 } // namespace geofx::test
