@@ -517,6 +517,7 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
         applyBlock(node);
         return;
     }
+    // As in applyBlock(): a part of a tile is never left out for being small.
     const bool cullSmall = _cullSmall;
     if (cullSmall && TileInfo::meshesOf(node)) _cullSmall = false;
     const Scope scope(*this, node);

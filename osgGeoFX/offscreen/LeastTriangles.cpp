@@ -3,13 +3,11 @@
 #include <osgGeoFX/offscreen/LeastTriangles.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/paging/TilePosts.h>
 
-#include <osg/Geometry>
 #include <osg/NodeVisitor>
 #include <osg/PagedLOD>
-#include <osg/Texture>
 #include <osg/Transform>
-#include <osg/Vec2i>
 #include <osgDB/FileNameUtils>
 #include <osgDB/ReadFile>
 
@@ -30,37 +28,8 @@ struct FineTile
 {
     TileInfo info;
     osg::Matrixd toWorld;
-    /// The ground at its posts, row by row from the south-west, in the tile's frame; NaN where there is none.
-    std::vector<osg::Vec3d> posts;
+    TilePosts posts;
 };
-
-constexpr double NOWHERE = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t postsOf(int cells)
-{
-    return static_cast<std::size_t>(cells + 1) * static_cast<std::size_t>(cells + 1);
-}
-
-/// The posts under a triangle whose corners lie on posts; those between them lie on it.
-void addPosts(const std::array<osg::Vec2i, 3>& at, const std::array<osg::Vec3d, 3>& corner, FineTile& tile)
-{
-    const osg::Vec2i u = at[1] - at[0], v = at[2] - at[0];
-    const int area = u.x() * v.y() - u.y() * v.x();
-    if (area == 0) return;
-    const auto [west, east] = std::minmax({at[0].x(), at[1].x(), at[2].x()});
-    const auto [south, north] = std::minmax({at[0].y(), at[1].y(), at[2].y()});
-    for (int row = south; row <= north; ++row)
-        for (int column = west; column <= east; ++column)
-        {
-            const osg::Vec2i p = osg::Vec2i(column, row) - at[0];
-            const double s = static_cast<double>(p.x() * v.y() - p.y() * v.x()) / area;
-            const double t = static_cast<double>(u.x() * p.y() - u.y() * p.x()) / area;
-            if (s < 0.0 || t < 0.0 || s + t > 1.0) continue;
-            tile.posts[static_cast<std::size_t>(row) * static_cast<std::size_t>(tile.info.cells + 1) +
-                       static_cast<std::size_t>(column)] =
-                corner[0] * (1.0 - s - t) + corner[1] * s + corner[2] * t;
-        }
-}
 
 /// Collects the finest tiles of a file, and the names of the files below it.
 class TileCollector : public osg::NodeVisitor
@@ -89,43 +58,11 @@ public:
             traverse(transform);
             return;
         }
-        const osg::ref_ptr<osg::Geometry> ground = TileInfo::ground(transform);
-        const auto* vertices =
-            ground ? dynamic_cast<const osg::Vec3Array*>(ground->getVertexArray()) : nullptr;
-        const auto* places =
-            ground ? dynamic_cast<const osg::Vec2Array*>(ground->getTexCoordArray(0)) : nullptr;
-        const auto* texture =
-            ground && ground->getStateSet()
-                ? dynamic_cast<const osg::Texture*>(
-                      ground->getStateSet()->getTextureAttribute(0, osg::StateAttribute::TEXTURE))
-                : nullptr;
-        const osg::Image* image = texture ? texture->getImage(0) : nullptr;
-        if (info->cells < 1 || !vertices || !places || places->size() != vertices->size() || !image) return;
-        FineTile tile;
-        tile.info = *info;
-        transform.computeLocalToWorldMatrix(tile.toWorld, nullptr);
-        tile.posts.assign(postsOf(info->cells), osg::Vec3d(NOWHERE, NOWHERE, NOWHERE));
-        // The outermost texels' middles lie on the tile's border.
-        const double texels = image->s() - 1;
-        const auto post = [&](float coordinate)
-        {
-            const double share = (static_cast<double>(coordinate) * (texels + 1.0) - 0.5) / texels;
-            return std::clamp(static_cast<int>(std::lround(share * info->cells)), 0, info->cells);
-        };
-        const osg::PrimitiveSet& triangles = *ground->getPrimitiveSet(0);
-        for (unsigned int i = 0; i + 2 < triangles.getNumIndices(); i += 3)
-        {
-            std::array<osg::Vec2i, 3> at;
-            std::array<osg::Vec3d, 3> corner;
-            for (unsigned int k = 0; k < 3; ++k)
-            {
-                const osg::Vec2& place = (*places)[triangles.index(i + k)];
-                at[k].set(post(place.x()), post(place.y()));
-                corner[k] = (*vertices)[triangles.index(i + k)];
-            }
-            addPosts(at, corner, tile);
-        }
-        tiles.push_back(std::move(tile));
+        const std::optional<TilePosts> posts = TilePosts::read(transform);
+        if (!posts) return;
+        osg::Matrixd toWorld;
+        transform.computeLocalToWorldMatrix(toWorld, nullptr);
+        tiles.push_back({*info, toWorld, *posts});
     }
 
     std::vector<FineTile> tiles;
@@ -176,9 +113,7 @@ std::unique_ptr<LeastTriangles> LeastTriangles::read(const osg::Node& root, std:
             for (int row = 0; row <= cells; ++row)
                 for (int column = 0; column <= cells; ++column)
                 {
-                    const osg::Vec3d& local =
-                        tile.posts[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells + 1) +
-                                   static_cast<std::size_t>(column)];
+                    const osg::Vec3d& local = tile.posts.at(column, row);
                     if (std::isnan(local.x())) continue;
                     const osg::Vec3d world = local * tile.toWorld;
                     result

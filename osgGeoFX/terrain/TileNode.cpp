@@ -274,6 +274,8 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     transform->setUserValue("geofx.boxMin", osg::Vec3d(box._min));
     transform->setUserValue("geofx.boxMax", osg::Vec3d(box._max));
     transform->setUserValue("geofx.cells", lattice.intervals);
+    const int texels = scheme.textureIntervals(key.level);
+    if (scheme.textureSize(texels) != texels + 1) transform->setUserValue("geofx.texels", texels);
     if (key.level == scheme.finestLevel) return transform;
 
     // Seen from d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R away, so

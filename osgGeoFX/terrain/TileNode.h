@@ -38,8 +38,9 @@ struct LevelArrays
     the ground.
 
     A smallest block of a finest tile has vertices of its own; all other meshes of a tile have theirs in common. The
-    transform's user value "geofx.cells" tells how many cells the tile's lattice has along an edge. An osg::LOD of a block has
-    as its user data an osg::Vec2Array, which TileInfo::meshesOf() explains. Not thread-safe. */
+    transform's user value "geofx.cells" tells how many cells the tile's lattice has along an edge. Where the texture of colours
+    is wider than the colours, "geofx.texels" tells how many intervals between texels those have along an edge. An osg::LOD of a
+    block has as its user data an osg::Vec2Array, which TileInfo::meshesOf() explains. Not thread-safe. */
 class TileNodeFactory
 {
 public:

@@ -222,9 +222,10 @@ osg::Vec2d DatabaseTile::share(const osg::Vec2& place) const
 {
     const osg::Image* colors = image(0);
     if (!colors) throw std::runtime_error(transform->getName() + " has no texture");
-    // The outermost texels' middles lie on the border.
-    const double texels = colors->s() - 1;
-    return (osg::Vec2d(place) * (texels + 1.0) - osg::Vec2d(0.5, 0.5)) / texels;
+    // The outermost texels' middles lie on the border, but for those that fill a compressed texture up.
+    int texels = colors->s() - 1;
+    transform->getUserValue("geofx.texels", texels);
+    return (osg::Vec2d(place) * colors->s() - osg::Vec2d(0.5, 0.5)) / texels;
 }
 
 const osg::Image* DatabaseTile::image(unsigned int unit) const

@@ -17,7 +17,7 @@ namespace geofx::test
 class Mountains
 {
 public:
-    /// UTM zone 4 north; the upper left post.
+    /// UTM zone 4 north; the corner of the north-western post's pixel, in whose middle it lies.
     static constexpr double WEST = 500000.0, NORTH = 2400000.0;
 
     /// `side`: posts along each side, a power of two and one; `post`: metres from one to the next.

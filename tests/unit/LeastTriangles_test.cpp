@@ -31,7 +31,8 @@ constexpr double EYE = 1e6; // metres up: distances differ by less than what the
 class Built
 {
 public:
-    Built(int across, int up, const std::function<double(int, int)>& height) : columns(across), rows(up)
+    Built(int across, int up, const std::function<double(int, int)>& height, bool compressed = false)
+        : columns(across), rows(up)
     {
         TestRaster raster(across, up);
         raster.placed(500000.0, 2400000.0, POST, POST).crs("EPSG:32604");
@@ -40,6 +41,7 @@ public:
         options.dems = {raster.write(_folder / "dem.tif")};
         options.epsg = 32604;
         options.tileSize = 16;
+        options.compressTextures = compressed;
         options.output = (_folder / "database").string();
         buildDatabase(options);
         root = osgDB::readRefNodeFile((_folder / "database" / "terrain.osgb").string());
@@ -183,6 +185,21 @@ TEST(LeastTriangles, NeedADatabaseOfOurs)
     std::string error;
     EXPECT_FALSE(LeastTriangles::read(*new osg::Group, error));
     EXPECT_NE(error.find("--least-triangles"), std::string::npos) << error;
+}
+
+TEST(LeastTriangles, CompressedTexturesChangeNothing)
+{
+    // Their textures have texels beyond the tile's border.
+    const auto height = [](int column, int row)
+    {
+        return 40.0 * std::sin(0.3 * column) * std::cos(0.2 * row) + 3.0 * std::sin(1.7 * column + 0.9 * row);
+    };
+    const Built plain(65, 65, height), compressed(65, 65, height, true);
+    for (const double metres : {0.5, 2.0, 8.0})
+    {
+        EXPECT_GT(plain.count(metres), 2u);
+        EXPECT_EQ(compressed.count(metres), plain.count(metres)) << metres;
+    }
 }
 
 } // namespace
