@@ -3,6 +3,7 @@
 //
 // The same bytes for any number of threads, any memory, and through any number of kills.
 #include <osgGeoFX/terrain/BuilderCode.h>
+#include <tools/FolderContents.h>
 #include <tools/RandomSamples.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
@@ -21,20 +22,6 @@ namespace fs = std::filesystem;
 
 namespace
 {
-
-/// All files below a folder.
-std::map<std::string, std::string> contents(const fs::path& folder)
-{
-    std::map<std::string, std::string> result;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-    {
-        if (!entry.is_regular_file()) continue;
-        std::ostringstream text;
-        text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-        result[fs::relative(entry.path(), folder).string()] = text.str();
-    }
-    return result;
-}
 
 ::testing::AssertionResult sameFiles(const fs::path& a, const fs::path& b)
 {

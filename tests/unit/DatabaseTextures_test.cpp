@@ -7,6 +7,7 @@
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <tools/BlockDecoder.h>
 #include <tools/DatabaseReader.h>
+#include <tools/FolderContents.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
@@ -37,19 +38,6 @@ constexpr unsigned int colors = 0, classes = 1, normals = 2, cover = 7;
 double height(int column, int row, int)
 {
     return 0.1 * relief(column, row) + (column < 10 && row > 46 ? 900.0 : 0.0);
-}
-
-std::map<std::string, std::string> contents(const fs::path& folder)
-{
-    std::map<std::string, std::string> result;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-    {
-        if (!entry.is_regular_file()) continue;
-        std::ostringstream text;
-        text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-        result[fs::relative(entry.path(), folder).string()] = text.str();
-    }
-    return result;
 }
 
 const unsigned char* at(const osg::Image& image, int column, int row)

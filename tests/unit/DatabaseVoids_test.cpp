@@ -6,6 +6,7 @@
 #include <osgGeoFX/scene/GlslFunctions.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <tools/DatabaseTexels.h>
+#include <tools/FolderContents.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
@@ -474,19 +475,6 @@ TEST_F(DatabaseVoids, AcrossTheAntimeridianOfAWholeGlobe)
     }
     // From both sides, so it is the plane again.
     EXPECT_NEAR(root.fromWorld(level.world[level.index(0, 35)]).z(), 2000.0 + 5.0 * 36, 40.0);
-}
-
-std::map<std::string, std::string> contents(const fs::path& folder)
-{
-    std::map<std::string, std::string> result;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-    {
-        if (!entry.is_regular_file()) continue;
-        std::ostringstream text;
-        text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-        result[fs::relative(entry.path(), folder).string()] = text.str();
-    }
-    return result;
 }
 
 /// The posts are the same however the work is cut, so the heights must be, too: a window shows what the whole would.
