@@ -5,6 +5,7 @@
 #include "BenchError.h"
 
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/paging/TilePosts.h>
 
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
@@ -13,7 +14,6 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/ReadFile>
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -56,27 +56,17 @@ public:
     void apply(osg::MatrixTransform& node) override
     {
         const std::optional<osgGeoFX::TileInfo> tile = osgGeoFX::TileInfo::read(node);
-        const osg::ref_ptr<osg::Geometry> ground = tile ? osgGeoFX::TileInfo::ground(node) : nullptr;
-        if (ground)
-            add(*tile, node.getMatrix(), *ground);
+        const std::optional<osgGeoFX::TilePosts> posts = osgGeoFX::TilePosts::read(node);
+        const osg::Geometry* mesh = osgGeoFX::TileInfo::firstMesh(node);
+        if (tile && posts && mesh)
+            add(*tile, node.getMatrix(), *posts, *mesh->getStateSet());
         else
             traverse(node);
     }
 
     virtual void add(const osgGeoFX::TileInfo& tile, const osg::Matrixd& localToWorld,
-                     osg::Geometry& geometry) = 0;
+                     const osgGeoFX::TilePosts& posts, const osg::StateSet& state) = 0;
 };
-
-template<class Array>
-const Array& as(const osg::Array* array)
-{
-    const auto* typed = dynamic_cast<const Array*>(array);
-    if (!typed)
-        throw BenchError(
-            "A tile's arrays are not those that this version of osggeofx_build writes; build the "
-            "database again.");
-    return *typed;
-}
 
 class Merger : public TileVisitor
 {
@@ -84,10 +74,10 @@ public:
     Merger(int finestLevel, const osg::Vec3d& origin) : _finestLevel(finestLevel), _origin(origin) {}
 
     void add(const osgGeoFX::TileInfo& tile, const osg::Matrixd& localToWorld,
-             osg::Geometry& geometry) override
+             const osgGeoFX::TilePosts& posts, const osg::StateSet& state) override
     {
-        const auto* texture = dynamic_cast<const osg::Texture2D*>(
-            geometry.getOrCreateStateSet()->getTextureAttribute(0, osg::StateAttribute::TEXTURE));
+        const auto* texture =
+            dynamic_cast<const osg::Texture2D*>(state.getTextureAttribute(0, osg::StateAttribute::TEXTURE));
         if (!texture || !texture->getImage())
             throw BenchError("A tile has no texture; build the database again.");
         const osg::Image& image = *texture->getImage();
@@ -95,7 +85,7 @@ public:
             throw BenchError("The database's textures are compressed, and cannot be joined; build it without "
                              "--compress-textures.");
         if (((image.s() - 1) << tile.level) <= TEXTURE_LIMIT) addTexture(tile, image);
-        if (tile.level == _finestLevel) addMesh(tile, localToWorld, geometry, image.s());
+        if (tile.level == _finestLevel) addMesh(tile, localToWorld, posts);
     }
 
     osg::ref_ptr<osg::Node> result() const
@@ -153,96 +143,66 @@ private:
         }
     }
 
-    /// All posts of a tile's lattice, those that its finest mesh leaves out on plains, too.
     void addMesh(const osgGeoFX::TileInfo& tile, const osg::Matrixd& localToWorld,
-                 const osg::Geometry& geometry, int texels)
+                 const osgGeoFX::TilePosts& posts)
     {
-        const auto& vertices = as<osg::Vec3Array>(geometry.getVertexArray());
-        const auto& normals = as<osg::Vec3bArray>(geometry.getNormalArray());
-        const auto& coordinates = as<osg::Vec2Array>(geometry.getTexCoordArray(0));
-        const int cells = tile.cells, posts = cells + 1;
-        // Of the posts, none where there is no ground.
-        std::vector<std::optional<GLuint>> indices(static_cast<std::size_t>(posts) *
-                                                   static_cast<std::size_t>(posts));
-        const auto indexAt = [&](int column, int row) -> std::optional<GLuint>&
+        const int cells = posts.cells();
+        const auto there = [&](int column, int row)
         {
-            return indices[static_cast<std::size_t>(row) * static_cast<std::size_t>(posts) +
+            return column >= 0 && row >= 0 && column <= cells && row <= cells &&
+                   !std::isnan(posts.at(column, row).x());
+        };
+        // Across a post, between its neighbours.
+        const auto way = [&](int column, int row, int dc, int dr)
+        {
+            const bool before = there(column - dc, row - dr), after = there(column + dc, row + dr);
+            return posts.at(column + (after ? dc : 0), row + (after ? dr : 0)) -
+                   posts.at(column - (before ? dc : 0), row - (before ? dr : 0));
+        };
+        std::vector<GLuint> indices(static_cast<std::size_t>(cells + 1) *
+                                    static_cast<std::size_t>(cells + 1));
+        const auto indexAt = [&](int column, int row) -> GLuint&
+        {
+            return indices[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells + 1) +
                            static_cast<std::size_t>(column)];
         };
         const double across = 1 << _finestLevel;
-        const auto addPost = [&](int column, int row, const osg::Vec3d& place, osg::Vec3d normal)
+        for (int row = 0; row <= cells; ++row)
         {
-            indexAt(column, row) = static_cast<GLuint>(_vertices->size());
-            if (column == 0 || row == 0 || column == cells || row == cells)
+            for (int column = 0; column <= cells; ++column)
             {
-                // Neighbours round theirs in frames of their own; here are no walls behind the gaps.
-                const auto [entry, isNew] = _borders.try_emplace(
-                    {tile.x * cells + column, tile.y * cells + row}, *indexAt(column, row));
-                indexAt(column, row) = entry->second;
-                if (!isNew) return;
-            }
-            _vertices->push_back(osg::Vec3(place * localToWorld - _origin));
-            normal = osg::Matrixd::transform3x3(normal, localToWorld);
-            normal.normalize();
-            normal *= 32767.0;
-            _normals->push_back(osg::Vec3s(static_cast<GLshort>(normal.x()), static_cast<GLshort>(normal.y()),
-                                           static_cast<GLshort>(normal.z())));
-            _coordinates->push_back((osg::Vec2d(tile.x, tile.y) + osg::Vec2d(column, row) / cells) / across);
-        };
-        const auto latticePlace = [&](unsigned int vertex)
-        {
-            return (osg::Vec2d(coordinates[vertex]) * texels - osg::Vec2d(0.5, 0.5)) * cells / (texels - 1.0);
-        };
-        for (const auto& set : geometry.getPrimitiveSetList())
-        {
-            for (unsigned int i = 0; i + 2 < set->getNumIndices(); i += 3)
-            {
-                const unsigned int corners[] = {set->index(i), set->index(i + 1), set->index(i + 2)};
-                const osg::Vec2d a = latticePlace(corners[0]);
-                const osg::Vec2d ab = latticePlace(corners[1]) - a, ac = latticePlace(corners[2]) - a;
-                const double area = ab.x() * ac.y() - ab.y() * ac.x();
-                if (std::abs(area) < 0.5) continue;
-                constexpr double hair = 1e-3;
-                const auto first = [&](double from, double b, double c)
+                if (!there(column, row)) continue;
+                const auto next = static_cast<GLuint>(_vertices->size());
+                indexAt(column, row) = next;
+                if (column == 0 || row == 0 || column == cells || row == cells)
                 {
-                    return std::max(0, static_cast<int>(std::ceil(from + std::min({0.0, b, c}) - hair)));
-                };
-                const auto last = [&](double from, double b, double c)
-                {
-                    return std::min(cells, static_cast<int>(std::floor(from + std::max({0.0, b, c}) + hair)));
-                };
-                for (int row = first(a.y(), ab.y(), ac.y()); row <= last(a.y(), ab.y(), ac.y()); ++row)
-                {
-                    for (int column = first(a.x(), ab.x(), ac.x()); column <= last(a.x(), ab.x(), ac.x());
-                         ++column)
-                    {
-                        if (indexAt(column, row)) continue;
-                        const osg::Vec2d from = osg::Vec2d(column, row) - a;
-                        const double b = (from.x() * ac.y() - from.y() * ac.x()) / area;
-                        const double c = (ab.x() * from.y() - ab.y() * from.x()) / area;
-                        if (b < -hair || c < -hair || b + c > 1.0 + hair) continue;
-                        const auto mixed = [&](const auto& array)
-                        {
-                            const auto at = [&](int corner)
-                            {
-                                const auto& value = array[corners[corner]];
-                                return osg::Vec3d(value.x(), value.y(), value.z());
-                            };
-                            return at(0) * (1.0 - b - c) + at(1) * b + at(2) * c;
-                        };
-                        addPost(column, row, mixed(vertices), mixed(normals));
-                    }
+                    // Neighbours round theirs in frames of their own; here are no walls behind the gaps.
+                    const auto [entry, isNew] =
+                        _borders.try_emplace({tile.x * cells + column, tile.y * cells + row}, next);
+                    indexAt(column, row) = entry->second;
+                    if (!isNew) continue;
                 }
+                _vertices->push_back(osg::Vec3(posts.at(column, row) * localToWorld - _origin));
+                osg::Vec3d normal =
+                    osg::Matrixd::transform3x3(way(column, row, 1, 0) ^ way(column, row, 0, 1), localToWorld);
+                normal.normalize();
+                normal *= 32767.0;
+                _normals->push_back(osg::Vec3s(static_cast<GLshort>(normal.x()),
+                                               static_cast<GLshort>(normal.y()),
+                                               static_cast<GLshort>(normal.z())));
+                _coordinates->push_back((osg::Vec2d(tile.x, tile.y) + osg::Vec2d(column, row) / cells) /
+                                        across);
             }
         }
         for (int row = 0; row < cells; ++row)
         {
             for (int column = 0; column < cells; ++column)
             {
-                const std::optional<GLuint> a = indexAt(column, row), b = indexAt(column + 1, row),
-                                            c = indexAt(column + 1, row + 1), d = indexAt(column, row + 1);
-                if (!a || !b || !c || !d) continue;
-                for (const GLuint corner : {*a, *b, *c, *a, *c, *d})
+                if (!there(column, row) || !there(column + 1, row) || !there(column, row + 1) ||
+                    !there(column + 1, row + 1))
+                    continue;
+                const GLuint a = indexAt(column, row), c = indexAt(column + 1, row + 1);
+                for (const GLuint corner : {a, indexAt(column + 1, row), c, a, c, indexAt(column, row + 1)})
                     _elements->push_back(corner);
             }
         }

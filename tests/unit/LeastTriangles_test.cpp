@@ -24,7 +24,6 @@ namespace
 {
 
 constexpr double POST = 10.0; // metres
-constexpr int PICTURE = 1000; // pixels, along both sides
 constexpr double EYE = 1e6; // metres up: distances differ by less than what the heights below leave room for
 
 /// A database of square posts over a plane. `height` is that of a post: columns from the west, rows from the south.
