@@ -25,7 +25,7 @@ constexpr double LEAST_GAIN = 0.85;
 constexpr double LEAST_STEP = 1.1;
 /// The errors of an edge and of those that it is split into add up: posts may lie so many times the tolerance off. In the corners of
 /// a wide picture that is one and a half pixels, since an angle takes more of them there than in the middle.
-constexpr double ACCUMULATION = 1.25;
+constexpr double ACCUMULATION = 1.2;
 /// Cells along the smallest blocks of a finest tile, and how many times its tile's edge has that of a coarser one.
 constexpr int FINEST_CELLS = 16;
 constexpr int COARSE_SHARE = 4;
