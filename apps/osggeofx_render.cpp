@@ -5,9 +5,9 @@
 #include "osggeofx_render_output.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
-#include <osgGeoFX/paging/CameraPath.h>
-#include <osgGeoFX/paging/Scene.h>
-#include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/viewer/CameraPath.h>
+#include <osgGeoFX/viewer/EffectKinds.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <CLI/CLI.hpp>
 #include <osg/Math>

@@ -4,8 +4,8 @@
 // osggeofx_viewer: osgviewer, made for terrain.
 #include "viewer/ViewerSetup.h"
 
-#include <osgGeoFX/paging/Scene.h>
-#include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/viewer/EffectKinds.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/ArgumentParser>
 #include <osg/GraphicsContext>

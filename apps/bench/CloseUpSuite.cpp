@@ -7,9 +7,9 @@
 #include "OffscreenView.h"
 
 #include <osgGeoFX/closeup/CloseUps.h>
-#include <osgGeoFX/paging/Scene.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/Geometry>
 #include <osg/Math>

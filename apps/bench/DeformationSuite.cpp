@@ -9,9 +9,9 @@
 #include "TerrainSuite.h"
 #include "WorkFolder.h"
 
-#include <osgGeoFX/deformation/DeformedView.h>
-#include <osgGeoFX/paging/Scene.h>
-#include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/viewer/EffectKinds.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/Geometry>
 #include <osg/Math>

@@ -6,9 +6,9 @@
 #include "OahuTerrain.h"
 #include "OffscreenView.h"
 
-#include <osgGeoFX/paging/Scene.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/Math>
 #include <osgDB/WriteFile>

@@ -7,7 +7,7 @@
 #include "SingleMesh.h"
 #include "TerrainSuite.h"
 
-#include <osgGeoFX/paging/Scene.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/Math>
 #include <osg/Program>

@@ -6,8 +6,8 @@
 #include "figure3/Figures.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
-#include <osgGeoFX/panel/Overlay.h>
-#include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/viewer/EffectKinds.h>
+#include <osgGeoFX/viewer/Overlay.h>
 
 #include <CLI/CLI.hpp>
 #include <osg/Group>

@@ -3,13 +3,13 @@
 #include "ViewerSetup.h"
 
 #include <osgGeoFX/closeup/CloseUpHandler.h>
-#include <osgGeoFX/deformation/ClickAndFly.h>
-#include <osgGeoFX/mapping/MappingPanel.h>
-#include <osgGeoFX/paging/ViewerHandlers.h>
-#include <osgGeoFX/panel/EffectPanel.h>
-#include <osgGeoFX/panel/HelpPage.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
-#include <osgGeoFX/scene/EffectKeys.h>
+#include <osgGeoFX/viewer/ClickAndFly.h>
+#include <osgGeoFX/viewer/EffectKeys.h>
+#include <osgGeoFX/viewer/EffectPanel.h>
+#include <osgGeoFX/viewer/HelpPage.h>
+#include <osgGeoFX/viewer/MappingPanel.h>
+#include <osgGeoFX/viewer/ViewerHandlers.h>
 
 #include <osg/Math>
 #include <osgDB/FileUtils>

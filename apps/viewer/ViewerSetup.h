@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/paging/Scene.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/ArgumentParser>
 #include <osgGA/KeySwitchMatrixManipulator>

@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/closeup/Anchor.h>
 #include <osgGeoFX/closeup/RegionOfInterest.h>
-#include <osgGeoFX/mapping/ColorTable.h>
+#include <osgGeoFX/raster/ColorTable.h>
 
 #include <osg/ref_ptr>
 

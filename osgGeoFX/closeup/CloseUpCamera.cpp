@@ -4,8 +4,8 @@
 
 #include <osgGeoFX/closeup/CloseUpExtent.h>
 #include <osgGeoFX/closeup/LiftFrame.h>
-#include <osgGeoFX/scene/GlobeFrame.h>
-#include <osgGeoFX/scene/ShaderLibrary.h>
+#include <osgGeoFX/effect/GlobeFrame.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
 
 #include <osg/BlendFunc>
 #include <osg/GLExtensions>

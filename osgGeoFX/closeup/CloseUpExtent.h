@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/closeup/CloseUpItem.h>
 #include <osgGeoFX/closeup/CloseUpLayers.h>
-#include <osgGeoFX/scene/PassEffect.h>
+#include <osgGeoFX/effect/PassEffect.h>
 
 #include <optional>
 

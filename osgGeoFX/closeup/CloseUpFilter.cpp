@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/CloseUpFilter.h>
 
-#include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/effect/DeformationChain.h>
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <osgGeoFX/closeup/CloseUpItem.h>
 #include <osgGeoFX/closeup/ContourFence.h>
 #include <osgGeoFX/closeup/TriangleCopies.h>
-#include <osgGeoFX/deformation/CompensatingCullVisitor.h>
+#include <osgGeoFX/scene/CompensatingCullVisitor.h>
 
 #include <functional>
 #include <limits>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <osgGeoFX/closeup/CloseUp.h>
-#include <osgGeoFX/deformation/DeformationChain.h>
-#include <osgGeoFX/scene/ViewGeometry.h>
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/ViewGeometry.h>
 
 #include <osg/Vec4d>
 

@@ -3,8 +3,8 @@
 #include <osgGeoFX/closeup/CloseUpPicking.h>
 
 #include <osgGeoFX/closeup/LiftFrame.h>
-#include <osgGeoFX/deformation/DeformedView.h>
-#include <osgGeoFX/deformation/DrawableTriangles.h>
+#include <osgGeoFX/effect/DrawableTriangles.h>
+#include <osgGeoFX/scene/DeformedView.h>
 
 #include <osg/LOD>
 

@@ -3,7 +3,7 @@
 #include <osgGeoFX/closeup/CloseUps.h>
 
 #include <osgGeoFX/closeup/CloseUpCamera.h>
-#include <osgGeoFX/scene/PerCamera.h>
+#include <osgGeoFX/effect/PerCamera.h>
 
 #include <osg/GLExtensions>
 #include <osg/Notify>

@@ -4,8 +4,8 @@
 
 #include <osgGeoFX/closeup/CloseUp.h>
 #include <osgGeoFX/closeup/SurfaceData.h>
-#include <osgGeoFX/scene/PassEffect.h>
-#include <osgGeoFX/scene/TextureUnits.h>
+#include <osgGeoFX/effect/PassEffect.h>
+#include <osgGeoFX/effect/TextureUnits.h>
 
 #include <memory>
 #include <vector>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/closeup/RegionOfInterest.h>
-#include <osgGeoFX/deformation/DrawableTriangles.h>
+#include <osgGeoFX/effect/DrawableTriangles.h>
 
 #include <osg/Geometry>
 #include <osg/observer_ptr>

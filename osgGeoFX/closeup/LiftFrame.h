@@ -3,7 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/closeup/CloseUpItem.h>
-#include <osgGeoFX/deformation/Deformation.h>
+#include <osgGeoFX/effect/Deformation.h>
 
 namespace osgGeoFX
 {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/RegionMask.h>
 
-#include <osgGeoFX/mapping/LayerPixels.h>
+#include <osgGeoFX/raster/LayerPixels.h>
 
 #include <algorithm>
 #include <cmath>

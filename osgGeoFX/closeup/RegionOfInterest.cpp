@@ -3,7 +3,7 @@
 #include <osgGeoFX/closeup/RegionOfInterest.h>
 
 #include <osgGeoFX/closeup/RegionMask.h>
-#include <osgGeoFX/scene/GlslFunctions.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
 
 #include <osg/Math>
 #include <osg/Notify>

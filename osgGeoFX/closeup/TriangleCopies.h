@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/deformation/DrawableTriangles.h>
+#include <osgGeoFX/effect/DrawableTriangles.h>
 
 #include <osg/Geometry>
 #include <osg/Matrixd>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/PedestrianView.h>
 
-#include <osgGeoFX/scene/GlslFunctions.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
 
 #include <algorithm>
 #include <cmath>

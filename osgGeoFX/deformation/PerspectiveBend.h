@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/deformation/Deformation.h>
+#include <osgGeoFX/effect/Deformation.h>
 
 #include <optional>
 

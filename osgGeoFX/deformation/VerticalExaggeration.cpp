@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 
-#include <osgGeoFX/deformation/EyeVector.h>
-#include <osgGeoFX/scene/GlobeFrame.h>
+#include <osgGeoFX/effect/EyeVector.h>
+#include <osgGeoFX/effect/GlobeFrame.h>
 
 #include <algorithm>
 #include <cmath>

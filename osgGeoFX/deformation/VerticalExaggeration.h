@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/deformation/Deformation.h>
-#include <osgGeoFX/deformation/NormalTurner.h>
+#include <osgGeoFX/effect/Deformation.h>
+#include <osgGeoFX/effect/NormalTurner.h>
 
 namespace osgGeoFX
 {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/scene/PropertyHolder.h>
+#include <osgGeoFX/effect/PropertyHolder.h>
 
 #include <osg/Image>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <osgGeoFX/mapping/LayerAtlas.h>
-#include <osgGeoFX/mapping/LayerPixels.h>
 #include <osgGeoFX/mapping/TexelArena.h>
+#include <osgGeoFX/raster/LayerPixels.h>
 
 #include <osg/Referenced>
 #include <osg/State>

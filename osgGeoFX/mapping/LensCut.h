@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/mapping/LayerPixels.h>
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
+#include <osgGeoFX/raster/LayerPixels.h>
 
 namespace osgGeoFX
 {

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/mapping/LayerPixels.h>
 #include <osgGeoFX/mapping/MappingPool.h>
+#include <osgGeoFX/raster/LayerPixels.h>
 
 #include <osg/NodeCallback>
 #include <osg/Vec4>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/PointerPlace.h>
 
-#include <osgGeoFX/deformation/DeformedView.h>
+#include <osgGeoFX/scene/DeformedView.h>
 
 namespace osgGeoFX
 {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/mapping/ColorTable.h>
 #include <osgGeoFX/mapping/ColorTransfer.h>
 #include <osgGeoFX/mapping/DataLayer.h>
 #include <osgGeoFX/mapping/Footprint.h>
+#include <osgGeoFX/raster/ColorTable.h>
 
 #include <glm/mat3x3.hpp>
 #include <osg/Vec2d>

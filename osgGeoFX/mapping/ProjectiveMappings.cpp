@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 
-#include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/GlobeFrame.h>
+#include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/mapping/MappingDrawing.h>
-#include <osgGeoFX/scene/GlobeFrame.h>
-#include <osgGeoFX/scene/PerCamera.h>
 
 #include <glm/glm.hpp>
 #include <osg/Math>

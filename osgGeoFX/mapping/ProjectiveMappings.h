@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/SurfaceEffect.h>
+#include <osgGeoFX/effect/TextureUnits.h>
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
-#include <osgGeoFX/scene/SurfaceEffect.h>
-#include <osgGeoFX/scene/TextureUnits.h>
 
 #include <osg/CoordinateSystemNode>
 

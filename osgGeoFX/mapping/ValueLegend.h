@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/mapping/ColorTable.h>
+#include <osgGeoFX/raster/ColorTable.h>
 
 #include <osg/Group>
 #include <osg/Vec2d>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/mapping/LayerPixels.h>
+#include <osgGeoFX/raster/LayerPixels.h>
 
 #include <osg/Vec2d>
 

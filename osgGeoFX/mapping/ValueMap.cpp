@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/ValueMap.h>
 
-#include <osgGeoFX/mapping/LayerPixels.h>
 #include <osgGeoFX/mapping/ValueLines.h>
+#include <osgGeoFX/raster/LayerPixels.h>
 
 #include <osg/Notify>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
-#include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/effect/DeformationChain.h>
 
 #include <osg/Matrixd>
 #include <osg/Node>

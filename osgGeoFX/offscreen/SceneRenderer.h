@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/Export.h>
 #include <osgGeoFX/offscreen/ImageCapture.h>
-#include <osgGeoFX/paging/Scene.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/GraphicsContext>
 #include <osg/Image>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
-#include <osgGeoFX/scene/GlslFunctions.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
 
 #include <osg/Geometry>
 #include <osg/Image>

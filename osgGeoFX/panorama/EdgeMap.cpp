@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/EdgeMap.h>
 
+#include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/panorama/CoverSampler.h>
 #include <osgGeoFX/panorama/EdgeDistances.h>
-#include <osgGeoFX/scene/GlslFunctions.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Geometry>

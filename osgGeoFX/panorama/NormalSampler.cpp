@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/NormalSampler.h>
 
-#include <osgGeoFX/scene/TileNormals.h>
+#include <osgGeoFX/effect/TileNormals.h>
 
 #include <osg/TexMat>
 #include <osg/Texture2D>

@@ -13,7 +13,7 @@
 namespace osgGeoFX
 {
 
-/// Reads on the CPU what a tile's texture of normals says (scene/TileNormals.h), as a GPU would without mipmaps.
+/// Reads on the CPU what a tile's texture of normals says (effect/TileNormals.h), as a GPU would without mipmaps.
 class OSGGEOFX_EXPORT NormalSampler
 {
 public:

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/scene/GlslFunctions.h>
-#include <osgGeoFX/scene/ViewGeometry.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
+#include <osgGeoFX/effect/ViewGeometry.h>
 
 #include <osg/Texture2D>
 #include <osg/Vec4d>

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 
-#include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/effect/EyeVector.h>
+#include <osgGeoFX/effect/GlobeFrame.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
-#include <osgGeoFX/scene/GlobeFrame.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaGround.h>
 
-#include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/effect/EyeVector.h>
 #include <osgGeoFX/panorama/PanoramaEdge.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaTextures.h>

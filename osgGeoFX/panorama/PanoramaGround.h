@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/SurfaceEffect.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
-#include <osgGeoFX/scene/SurfaceEffect.h>
 
 namespace osgGeoFX
 {

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/deformation/Deformation.h>
-#include <osgGeoFX/scene/TextureUnits.h>
+#include <osgGeoFX/effect/Deformation.h>
+#include <osgGeoFX/effect/TextureUnits.h>
 
 #include <osg/Image>
 #include <osg/Math>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaPalette.h>
 
-#include <osgGeoFX/scene/GlslFunctions.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
 
 #include <osgDB/FileUtils>
 #include <osgDB/ReadFile>

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaPose.h>
 
-#include <osgGeoFX/deformation/DeformedView.h>
-#include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/effect/EyeVector.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
+#include <osgGeoFX/scene/DeformedView.h>
 
 #include <algorithm>
 #include <cmath>

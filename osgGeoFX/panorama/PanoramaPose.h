@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
-#include <osgGeoFX/scene/GlslFunctions.h>
 
 #include <osg/Camera>
 #include <osg/Vec2d>

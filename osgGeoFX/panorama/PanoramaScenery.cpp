@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaScenery.h>
 
-#include <osgGeoFX/deformation/CompensatingCullVisitor.h>
-#include <osgGeoFX/deformation/EyeVector.h>
+#include <osgGeoFX/effect/EyeVector.h>
+#include <osgGeoFX/effect/PerCamera.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/panorama/PanoramaEdge.h>
 #include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaTextures.h>
 #include <osgGeoFX/panorama/StrokeCompanion.h>
-#include <osgGeoFX/scene/PerCamera.h>
-#include <osgGeoFX/scene/ShaderLibrary.h>
+#include <osgGeoFX/scene/CompensatingCullVisitor.h>
 
 #include <osg/ColorMask>
 #include <osg/Depth>

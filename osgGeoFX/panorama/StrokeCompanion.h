@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/deformation/CompensatingCullVisitor.h>
+#include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeMaker.h>
-#include <osgGeoFX/scene/PassEffect.h>
+#include <osgGeoFX/scene/CompensatingCullVisitor.h>
 
 #include <osg/Texture2D>
 #include <osg/observer_ptr>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/StrokeScan.h>
 
-#include <osgGeoFX/deformation/DrawableTriangles.h>
+#include <osgGeoFX/effect/DrawableTriangles.h>
 
 #include <algorithm>
 #include <cfloat>

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/TileStrokes.h>
 
+#include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/panorama/CoverSampler.h>
 #include <osgGeoFX/panorama/NormalSampler.h>
 #include <osgGeoFX/panorama/StrokeLattice.h>
 #include <osgGeoFX/panorama/StrokeScan.h>
-#include <osgGeoFX/scene/GlslFunctions.h>
 
 #include <algorithm>
 #include <cmath>

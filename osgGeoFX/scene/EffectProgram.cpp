@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/EffectProgram.h>
 
-#include <osgGeoFX/deformation/Deformation.h>
-#include <osgGeoFX/deformation/NormalTurner.h>
-#include <osgGeoFX/scene/ShaderLibrary.h>
-#include <osgGeoFX/scene/SurfaceEffect.h>
+#include <osgGeoFX/effect/Deformation.h>
+#include <osgGeoFX/effect/NormalTurner.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/SurfaceEffect.h>
 
 #include <osg/Notify>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
-#include <osgGeoFX/scene/Effect.h>
-#include <osgGeoFX/scene/PassEffect.h>
+#include <osgGeoFX/effect/Effect.h>
+#include <osgGeoFX/effect/PassEffect.h>
 
 #include <osg/Program>
 

@@ -2,19 +2,19 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/EffectScene.h>
 
-#include <osgGeoFX/deformation/CompensatingCullVisitor.h>
+#include <osgGeoFX/effect/ContextWatch.h>
+#include <osgGeoFX/effect/NodeFinder.h>
+#include <osgGeoFX/effect/PassEffect.h>
+#include <osgGeoFX/effect/PerCamera.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/SurfaceEffect.h>
+#include <osgGeoFX/effect/TextureUnits.h>
+#include <osgGeoFX/effect/TileNormals.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>
-#include <osgGeoFX/scene/ContextWatch.h>
+#include <osgGeoFX/scene/CompensatingCullVisitor.h>
 #include <osgGeoFX/scene/EffectProgram.h>
 #include <osgGeoFX/scene/FollowingPrograms.h>
-#include <osgGeoFX/scene/NodeFinder.h>
-#include <osgGeoFX/scene/PassEffect.h>
-#include <osgGeoFX/scene/PerCamera.h>
-#include <osgGeoFX/scene/ShaderLibrary.h>
-#include <osgGeoFX/scene/SurfaceEffect.h>
-#include <osgGeoFX/scene/TextureUnits.h>
-#include <osgGeoFX/scene/TileNormals.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Notify>

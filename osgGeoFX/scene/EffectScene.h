@@ -3,9 +3,9 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
-#include <osgGeoFX/deformation/DeformationChain.h>
-#include <osgGeoFX/scene/Effect.h>
-#include <osgGeoFX/scene/ViewGeometry.h>
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/Effect.h>
+#include <osgGeoFX/effect/ViewGeometry.h>
 
 #include <osg/Group>
 #include <osg/Program>

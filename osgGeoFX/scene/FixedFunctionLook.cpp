@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/FixedFunctionLook.h>
 
+#include <osgGeoFX/effect/TileNormals.h>
 #include <osgGeoFX/scene/OwnPrograms.h>
-#include <osgGeoFX/scene/TileNormals.h>
 
 #include <osg/Fog>
 #include <osg/Image>

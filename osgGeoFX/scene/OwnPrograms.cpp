@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/OwnPrograms.h>
 
-#include <osgGeoFX/scene/TileNormals.h>
+#include <osgGeoFX/effect/TileNormals.h>
 
 #include <algorithm>
 #include <cctype>

@@ -6,7 +6,7 @@
 #include "WaterFinder.h"
 #include "WorkQueue.h"
 
-#include <osgGeoFX/scene/GlslFunctions.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
 
 #include <osg/Math>
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "NormalMap.h"
 
-#include <osgGeoFX/scene/ShaderLibrary.h>
-#include <osgGeoFX/scene/TileNormals.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/TileNormals.h>
 
 #include <osg/Image>
 #include <osg/Math>

@@ -9,7 +9,7 @@
 namespace osgGeoFX
 {
 
-/** Binds a tile's texture of normals (scene/TileNormals.h), made of the slopes in `arrays`; x and y count tiles from
+/** Binds a tile's texture of normals (effect/TileNormals.h), made of the slopes in `arrays`; x and y count tiles from
     the arrays' south-west corner. Texels lie on posts, those of the tile's borders included, so tiles of a level meet without
     a seam. Those of two channels can be compressed. */
 void addNormalMap(osg::StateSet& state, TileTextures& textures, const TilingScheme& scheme,

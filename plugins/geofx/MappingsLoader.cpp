@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsLoader.h"
 
-#include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/viewer/EffectKinds.h>
 
 #include <osg/Math>
 

@@ -6,7 +6,7 @@
 #include "MappingsReader.h"
 #include "SceneXml.h"
 
-#include <osgGeoFX/scene/EffectKinds.h>
+#include <osgGeoFX/viewer/EffectKinds.h>
 
 #include <cstring>
 #include <filesystem>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "SceneLoading.h"
 
-#include <osgGeoFX/mapping/ColorRampFile.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/raster/ColorRampFile.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/ImageStream>

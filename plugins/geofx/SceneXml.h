@@ -5,7 +5,7 @@
 #include "SceneFile.h"
 #include "SceneValidator.h"
 
-#include <osgGeoFX/scene/PropertyHolder.h>
+#include <osgGeoFX/effect/PropertyHolder.h>
 
 #include <array>
 #include <string>

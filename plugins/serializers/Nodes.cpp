@@ -4,8 +4,8 @@
 // Wrappers of the nodes.
 #include "PropertySerializers.h"
 
-#include <osgGeoFX/deformation/RigidReference.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/RigidReference.h>
 
 #include <osg/Notify>
 #include <osgDB/InputStream>

@@ -5,7 +5,7 @@
 // promises.
 #include <geofx/SceneFile.h>
 #include <geofx/SceneReach.h>
-#include <osgGeoFX/scene/Effect.h>
+#include <osgGeoFX/effect/Effect.h>
 
 #include <cmath>
 #include <cstdint>

@@ -8,7 +8,7 @@
 #include <osg/Image>
 #include <osg/Node>
 #include <osg/PagedLOD>
-#include <osgGeoFX/deformation/DeformationChain.h>
+#include <osgGeoFX/effect/DeformationChain.h>
 #include <osgUtil/SceneView>
 
 #include <set>

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/mapping/LayerPixels.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
-#include <osgGeoFX/scene/GlslFunctions.h>
+#include <osgGeoFX/raster/LayerPixels.h>
 
 #include <map>
 #include <vector>

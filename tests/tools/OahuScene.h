@@ -5,7 +5,7 @@
 #include <tools/RandomSamples.h>
 
 #include <osg/Matrixd>
-#include <osgGeoFX/paging/Scene.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <optional>
 #include <ostream>

@@ -3,8 +3,8 @@
 #include <tools/RandomViews.h>
 
 #include <osgGeoFX/deformation/PerspectiveBend.h>
-#include <osgGeoFX/scene/EffectKinds.h>
-#include <osgGeoFX/scene/GlslFunctions.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
+#include <osgGeoFX/viewer/EffectKinds.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/deformation/Deformation.h>
-#include <osgGeoFX/deformation/DeformationChain.h>
-#include <osgGeoFX/scene/ViewGeometry.h>
+#include <osgGeoFX/effect/Deformation.h>
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/ViewGeometry.h>
 #include <tools/RandomSamples.h>
 
 #include <osg/Matrixd>

@@ -6,7 +6,7 @@
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
 #include <osg/Texture2D>
-#include <osgGeoFX/scene/GlslFunctions.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
 
 #include <functional>
 

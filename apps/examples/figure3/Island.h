@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/geodata/MappingRaster.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
-#include <osgGeoFX/paging/Scene.h>
+#include <osgGeoFX/viewer/Scene.h>
 
 #include <cstddef>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/scene/GlslFunctions.h>
-#include <osgGeoFX/scene/ShaderLibrary.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
 
 #include <iostream>
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/Effect.h>
+
+#include <osg/StateAttribute>
+#include <osg/observer_ptr>
+
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** Part of the state that a scene draws with: when a graphics context closes that it has been applied in, the effects release what
+    they have there, wherever they are by then.
+
+    When a context closes, OSG tells the scene graphs of its cameras. An effect that has been taken out of its scene hears nothing
+    of it, and would go on with programs and frame buffers whose names the next context has given to others. */
+class ContextWatch : public osg::StateAttribute
+{
+public:
+    /// OSG tells attributes apart by such numbers; its own are small.
+    static constexpr Type watchType = static_cast<Type>(0x67656f46);
+
+    ContextWatch() = default;
+    explicit ContextWatch(const std::vector<osg::ref_ptr<Effect>>& effects);
+    ContextWatch(const ContextWatch& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
+    META_StateAttribute(osgGeoFX, ContextWatch, watchType);
+
+    int compare(const osg::StateAttribute& other) const override;
+    void apply(osg::State& state) const override;
+
+protected:
+    ~ContextWatch() override;
+
+private:
+    std::vector<osg::observer_ptr<Effect>> _effects;
+};
+
+} // namespace osgGeoFX

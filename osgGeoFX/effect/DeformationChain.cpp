@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/effect/DeformationChain.h>
+
+#include <osgGeoFX/paging/TerrainInfo.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// A box with the axes of another one around a hull.
+EyeBox around(const Hull& hull, const EyeBox& former)
+{
+    EyeBox box;
+    osg::Vec3d axes[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        axes[axis] = former.half[axis];
+        // An axis without a length gets the direction that the others leave.
+        if (axes[axis].normalize() == 0.0) axes[axis] = axes[(axis + 1) % 3] ^ axes[(axis + 2) % 3];
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        double low = HUGE_VAL;
+        double high = -HUGE_VAL;
+        for (const osg::Vec3d& point : hull.points)
+        {
+            const double along = (point - hull.points[0]) * axes[axis];
+            low = std::min(low, along);
+            high = std::max(high, along);
+        }
+        box.half[axis] = axes[axis] * ((high - low) / 2.0 + hull.margin);
+        box.centre += axes[axis] * ((high + low) / 2.0);
+    }
+    box.centre += hull.points[0];
+    return box;
+}
+
+} // namespace
+
+DeformationChain::~DeformationChain() = default;
+
+osg::Vec3d DeformationChain::deform(const osg::Vec3d& position) const
+{
+    osg::Vec3d result = position;
+    for (const auto& frame : _frames)
+        result = frame->deform(result);
+    return result;
+}
+
+osg::Vec3d DeformationChain::roughly(const osg::Vec3d& position) const
+{
+    osg::Vec3d result = position;
+    for (const auto& frame : _frames)
+        result = frame->roughly(result);
+    return result;
+}
+
+osg::Vec3d DeformationChain::undeform(const osg::Vec3d& position) const
+{
+    osg::Vec3d result = position;
+    for (auto frame = _frames.rbegin(); frame != _frames.rend(); ++frame)
+        result = (*frame)->undeform(result);
+    return result;
+}
+
+osg::Vec3d DeformationChain::deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const
+{
+    osg::Vec3d at = position;
+    osg::Vec3d result = normal;
+    for (const auto& frame : _frames)
+    {
+        result = frame->deformNormal(at, result);
+        at = frame->deform(at);
+    }
+    return result;
+}
+
+double DeformationChain::style(const osg::Vec3d& position) const
+{
+    osg::Vec3d at = position;
+    double style = 0.0;
+    for (const auto& frame : _frames)
+    {
+        style = std::max(style, frame->style(at));
+        at = frame->deform(at);
+    }
+    return style;
+}
+
+osg::Matrixd DeformationChain::placement(const osg::Vec3d& reference) const
+{
+    osg::Vec3d at = reference;
+    osg::Matrixd turn;
+    for (const auto& frame : _frames)
+    {
+        turn.postMult(frame->turn(at));
+        at = frame->deform(at);
+    }
+    return osg::Matrixd::translate(-reference) * turn * osg::Matrixd::translate(at);
+}
+
+bool DeformationChain::leavesAlone(const Ball& ball) const
+{
+    return std::all_of(_frames.begin(), _frames.end(),
+                       [&](const auto& frame)
+                       { return frame->reach(ball) == DeformationFrame::Reach::Identity; });
+}
+
+bool DeformationChain::hides(const Ball& ball, const osg::Vec2d& room) const
+{
+    if (!_looksAtBoxes) return false;
+    Ball current = ball;
+    for (std::size_t i = 0; i < _frames.size(); ++i)
+    {
+        if (i > 0) current = _frames[i - 1]->bound(current);
+        if (_frames[i]->hides(current, room)) return true;
+    }
+    return false;
+}
+
+bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
+{
+    if (!_looksAtBoxes) return false;
+    if (_frames.front()->hidesBox(box, room)) return true;
+    if (_frames.size() == 1) return false;
+    Ball current = box.ball();
+    for (std::size_t i = 1; i < _frames.size(); ++i)
+    {
+        current = _frames[i - 1]->bound(current);
+        if (_frames[i]->hides(current, room)) return true;
+    }
+    return false;
+}
+
+double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
+{
+    if (_tileEdge <= 0.0 || _frames.empty()) return HUGE_VAL;
+    if (!TileInfo::coarseOf(node)) return blockLimit(node, ball);
+    const double share = longestEdge(ball) / (_tileEdge * ball.radius);
+    if (!(share < 1.0)) return HUGE_VAL;
+    // An edge misses its curve by its square. So to a pager the finer tiles are as urgent as those of relief that is as many times
+    // too coarse; a sea far too coarse for a bend that is new would else wait for relief that is nearly right.
+    constexpr double least = 0.001, most = 0.999;
+    return std::clamp(share * share, least, most) * static_cast<double>(node.getMaxRange(1));
+}
+
+/// Within it, the block's mesh has edges that are short enough.
+double DeformationChain::blockLimit(const osg::LOD& node, const Ball& ball) const
+{
+    const osg::Vec2Array* meshes = TileInfo::meshesOf(node);
+    if (!meshes) return HUGE_VAL;
+    const double longest = longestEdge(ball);
+    unsigned int child = node.getNumChildren();
+    while (child > 0 && static_cast<double>((*meshes)[child - 1].x()) > longest)
+        --child;
+    if (child == node.getNumChildren()) return HUGE_VAL;
+    constexpr double within = 0.999;
+    return within * static_cast<double>(node.getMaxRange(std::max(child, 1u) - 1));
+}
+
+double DeformationChain::longestEdge(const Ball& ball) const
+{
+    Ball current = ball;
+    double longest = HUGE_VAL;
+    double growth = 1.0;
+    for (std::size_t i = 0; i < _frames.size(); ++i)
+    {
+        if (i > 0)
+        {
+            growth *= _frames[i - 1]->lipschitz(current);
+            current = _frames[i - 1]->bound(current);
+        }
+        longest = std::min(longest, _frames[i]->longestEdge(current, _tileError) / growth);
+    }
+    return longest;
+}
+
+Ball DeformationChain::bound(const Ball& ball) const
+{
+    Ball result = ball;
+    for (const auto& frame : _frames)
+        result = frame->bound(result);
+    return result;
+}
+
+void DeformationChain::bound(const EyeBox& box, Hull& hull, double fineness) const
+{
+    if (_frames.empty())
+    {
+        hull.margin = 0.0;
+        box.corners(hull.points);
+        return;
+    }
+    EyeBox current = box;
+    for (std::size_t i = 0; i < _frames.size(); ++i)
+    {
+        if (i > 0) current = around(hull, current);
+        _frames[i]->boundBox(current, hull, fineness);
+    }
+}
+
+double DeformationChain::detail(const Ball& ball) const
+{
+    Ball current = ball;
+    double detail = 1.0;
+    for (const auto& frame : _frames)
+    {
+        detail *= frame->detail(current) * frame->lipschitz(current);
+        current = frame->bound(current);
+    }
+    return detail;
+}
+
+double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoint, const Ball* bound) const
+{
+    Ball current = ball;
+    double detail = 1.0;
+    for (const auto& frame : _frames)
+    {
+        if (frame->reach(current) == DeformationFrame::Reach::Identity) continue;
+        if (const std::optional<double> distance = frame->viewDistance(current))
+            return ball.radius + *distance / (detail * frame->detail(current));
+        detail *= frame->detail(current) * frame->lipschitz(current);
+        current = bound && _frames.size() == 1 ? *bound : frame->bound(current);
+    }
+    const double distance = (current.centre - viewPoint).length();
+    if (detail == 1.0 && current.radius == ball.radius) return distance;
+    // A range is the ball's radius and what must lie between it and the eye. What lies between is divided.
+    const double gap = distance - current.radius;
+    return gap > 0.0 ? ball.radius + gap / detail : distance * ball.radius / std::max(current.radius, 1e-30);
+}
+
+void DeformationSwitch::meet(const osg::StateSet* state)
+{
+    if (!state) return;
+    const osg::StateSet::RefAttributePair* attribute =
+        state->getAttributeList().empty() ? nullptr : state->getAttributePair(osg::StateAttribute::PROGRAM);
+    if (attribute && (!programOverridden || (attribute->second & osg::StateAttribute::PROTECTED)))
+    {
+        program = attribute->first;
+        programOverridden = (attribute->second & osg::StateAttribute::OVERRIDE) != 0;
+    }
+    if (state->getDefineList().empty()) return;
+    const osg::StateSet::DefinePair* define = state->getDefinePair("GEOFX_DEFORMATION");
+    if (!define || (overridden && !(define->second & osg::StateAttribute::PROTECTED))) return;
+    on = (define->second & osg::StateAttribute::ON) != 0;
+    overridden = (define->second & osg::StateAttribute::OVERRIDE) != 0;
+}
+
+double largestScale(const osg::Matrixd& matrix)
+{
+    osg::Vec3d rows[3];
+    for (int row = 0; row < 3; ++row)
+        rows[row].set(matrix(row, 0), matrix(row, 1), matrix(row, 2));
+    // The root of the largest eigenvalue of the matrix times its transpose, which is symmetric.
+    const double diagonal[3] = {rows[0].length2(), rows[1].length2(), rows[2].length2()};
+    const double beside[3] = {rows[1] * rows[2], rows[2] * rows[0], rows[0] * rows[1]};
+    const double largest = std::max({diagonal[0], diagonal[1], diagonal[2]});
+    const double square = beside[0] * beside[0] + beside[1] * beside[1] + beside[2] * beside[2];
+    double eigenvalue = largest;
+    // Most are turns and equal scales, whose rows stand upright on each other.
+    if (square > 1e-18 * largest * largest)
+    {
+        // In closed form; Smith, Eigenvalues of a symmetric 3 × 3 matrix, 1961.
+        const double mean = (diagonal[0] + diagonal[1] + diagonal[2]) / 3.0;
+        const double x = diagonal[0] - mean;
+        const double y = diagonal[1] - mean;
+        const double z = diagonal[2] - mean;
+        const double spread = std::sqrt((x * x + y * y + z * z + 2.0 * square) / 6.0);
+        const double determinant = x * (y * z - beside[0] * beside[0]) -
+                                   beside[2] * (beside[2] * z - beside[0] * beside[1]) +
+                                   beside[1] * (beside[2] * beside[0] - y * beside[1]);
+        const double share = std::clamp(determinant / (2.0 * spread * spread * spread), -1.0, 1.0);
+        eigenvalue = std::max(largest, mean + 2.0 * spread * std::cos(std::acos(share) / 3.0));
+    }
+    return std::sqrt(eigenvalue) * (1.0 + 1e-6);
+}
+
+osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn)
+{
+    return turn ? chain.placement(reference) : osg::Matrixd::translate(chain.deform(reference) - reference);
+}
+
+osg::Matrixd billboardModelView(const DeformationChain& chain, const osg::Billboard& billboard,
+                                unsigned int drawable, const osg::Matrixd& modelView)
+{
+    // Children that were added as to any group have none.
+    const bool placed = drawable < billboard.getPositionList().size();
+    const osg::Vec3 position = placed ? billboard.getPosition(drawable) : osg::Vec3();
+    const osg::Vec3d place = osg::Vec3d(position) * modelView;
+    const bool moved = !chain.leavesAlone({place, 0.0});
+    const osg::Matrixd placement = moved ? chain.placement(place) : osg::Matrixd();
+    osg::Matrixd turned = moved ? modelView * placement : modelView;
+    const osg::Vec3 eye(osg::Matrixd::inverse(turned).getTrans());
+    billboard.computeMatrix(turned, eye, position);
+    if (moved) turned.postMult(osg::Matrixd::inverse(placement));
+    return turned;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/effect/PassEffect.h>
+
+#include <osgGeoFX/paging/TileGuard.h>
+
+namespace osgGeoFX
+{
+
+ScenePass::~ScenePass() = default;
+
+PassEffect::~PassEffect() = default;
+
+osg::ref_ptr<TileListener> PassEffect::tileListener(const Ground&)
+{
+    return nullptr;
+}
+
+} // namespace osgGeoFX

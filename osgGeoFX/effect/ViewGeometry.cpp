@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/effect/ViewGeometry.h>
+
+#include <osg/Vec2d>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// The normal of the ellipsoid below a place, and the height above it. Bowring's formula without the angles: every camera
+/// asks in every frame.
+osg::Vec3d normalBelow(const osg::EllipsoidModel& ellipsoid, const osg::Vec3d& place, double& height)
+{
+    const double a = ellipsoid.getRadiusEquator();
+    const double b = ellipsoid.getRadiusPolar();
+    const double share = 1.0 - b * b / (a * a); // e²
+    const double across = std::sqrt(place.x() * place.x() + place.y() * place.y());
+    // The parametric latitude, then the geodetic one.
+    osg::Vec2d parametric(across * b, place.z() * a);
+    if (parametric.normalize() == 0.0) parametric.set(0.0, 1.0);
+    const double cosine = parametric.x();
+    const double sine = parametric.y();
+    osg::Vec2d geodetic(std::max(0.0, across - share * a * cosine * cosine * cosine),
+                        place.z() + (a * a / b - b) * sine * sine * sine);
+    if (geodetic.normalize() == 0.0) geodetic.set(0.0, 1.0);
+    height = across * geodetic.x() + place.z() * geodetic.y() -
+             a * std::sqrt(1.0 - share * geodetic.y() * geodetic.y());
+    const double outward = across > 0.0 ? geodetic.x() / across : 0.0;
+    return {place.x() * outward, place.y() * outward, geodetic.y()};
+}
+
+} // namespace
+
+ViewGeometry::ViewGeometry(const osg::Matrixd& modelView, const osg::Matrixd& projectionMatrix,
+                           const Ground& theGround)
+    : ground(theGround), projection(projectionMatrix)
+{
+    inverseProjection.invert(projection);
+    osg::Matrixd toWorld;
+    toWorld.invert(modelView);
+    const osg::Vec3d eye = toWorld.getTrans();
+    osg::Vec3d normal(0.0, 0.0, 1.0);
+    eyeHeight = eye.z();
+    if (ground.ellipsoid) normal = normalBelow(*ground.ellipsoid, eye, eyeHeight);
+    up = osg::Matrixd::transform3x3(normal, modelView);
+    up.normalize();
+    polarAxis = up;
+    if (ground.ellipsoid)
+    {
+        polarAxis = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, 1.0), modelView);
+        polarAxis.normalize();
+    }
+}
+
+void ViewGeometry::ray(double x, double y, osg::Vec3d& origin, osg::Vec3d& direction) const
+{
+    origin = osg::Vec3d(x, y, -1.0) * inverseProjection;
+    direction = osg::Vec3d(x, y, 1.0) * inverseProjection - origin;
+}
+
+} // namespace osgGeoFX

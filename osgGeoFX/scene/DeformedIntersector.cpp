@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/DeformedIntersector.h>
+
+#include <osgGeoFX/effect/DrawableTriangles.h>
+#include <osgGeoFX/scene/RigidReference.h>
+#include <osgGeoFX/scene/UndeformedParts.h>
+
+#include <osg/PagedLOD>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Distance along a ray to a triangle, in units of the direction; negative where it misses. Möller and Trumbore, from
+/// both sides.
+double meet(const osg::Vec3d& origin, const osg::Vec3d& direction, const osg::Vec3d& a, const osg::Vec3d& b,
+            const osg::Vec3d& c)
+{
+    const osg::Vec3d ab = b - a;
+    const osg::Vec3d ac = c - a;
+    const osg::Vec3d p = direction ^ ac;
+    const double determinant = ab * p;
+    // Where a deformation gathers ground in one point of the picture, triangles are lines of sight, and nothing but rounding.
+    if (std::abs(determinant) <= 1e-10 * ab.length() * p.length()) return -1.0;
+    const osg::Vec3d from = origin - a;
+    const double u = (from * p) / determinant;
+    const osg::Vec3d q = from ^ ab;
+    const double v = (direction * q) / determinant;
+    // Neighbours share their edges: a ray between them must not slip through.
+    constexpr double tolerance = 1e-9;
+    if (u < -tolerance || v < -tolerance || u + v > 1.0 + tolerance) return -1.0;
+    return (ac * q) / determinant;
+}
+
+} // namespace
+
+DeformedLineIntersector::DeformedLineIntersector(const osg::Vec3d& origin, const osg::Vec3d& direction)
+    : osgUtil::Intersector(osgUtil::Intersector::MODEL), _origin(origin), _direction(direction),
+      _chain(new DeformationChain)
+{
+    _direction.normalize();
+}
+
+DeformedLineIntersector::~DeformedLineIntersector() = default;
+
+const std::vector<DeformedLineIntersector::Intersection>& DeformedLineIntersector::intersections() const
+{
+    auto* self = const_cast<DeformedLineIntersector*>(this)->root();
+    if (!self->_sorted) std::sort(self->_found.begin(), self->_found.end());
+    self->_sorted = true;
+    return self->_found;
+}
+
+void DeformedLineIntersector::reset()
+{
+    osgUtil::Intersector::reset();
+    _found.clear();
+    _sorted = true;
+}
+
+osgUtil::Intersector* DeformedLineIntersector::clone(osgUtil::IntersectionVisitor& visitor)
+{
+    auto* result = new DeformedLineIntersector(_origin, _direction);
+    result->_root = root();
+    if (auto* ours = dynamic_cast<DeformedIntersectionVisitor*>(&visitor))
+    {
+        result->_chain = &ours->chain();
+        result->_programs = &ours->_programs;
+        result->_modelView = ours->modelView();
+        result->_scale = largestScale(result->_modelView);
+    }
+    return result;
+}
+
+bool DeformedLineIntersector::meets(const Ball& ball) const
+{
+    const osg::Vec3d toCentre = ball.centre - _origin;
+    const double along = toCentre * _direction;
+    const double radius = ball.radius * (1.0 + 1e-9) + 1e-6;
+    if (along < 0.0) return toCentre.length2() <= radius * radius;
+    return (toCentre - _direction * along).length2() <= radius * radius;
+}
+
+bool DeformedLineIntersector::missesBox(const osg::BoundingBox& box) const
+{
+    Hull hull;
+    _chain->bound(EyeBox::of(box, _modelView), hull);
+    // Along the ray the hull is a flat figure, and the ray a point: has it a side with nothing of the figure?
+    osg::Vec3d across = _direction ^ osg::Vec3d(0.0, 1.0, 0.0);
+    if (across.length2() < 0.01) across = _direction ^ osg::Vec3d(1.0, 0.0, 0.0);
+    across.normalize();
+    const osg::Vec3d up = across ^ _direction;
+    constexpr int sides = 16;
+    for (int side = 0; side < sides; ++side)
+    {
+        const double angle = 2.0 * osg::PI * side / sides;
+        const osg::Vec3d outward = across * std::cos(angle) + up * std::sin(angle);
+        const double margin = hull.margin + 1e-6;
+        if (std::all_of(hull.points.begin(), hull.points.end(),
+                        [&](const osg::Vec3d& point)
+                        { return (point - _origin) * outward > margin + 1e-9 * point.length(); }))
+            return true;
+    }
+    return false;
+}
+
+bool DeformedLineIntersector::enter(const osg::Node& node)
+{
+    if (!node.isCullingActive()) return true;
+    const osg::BoundingSphere& sphere = node.getBound();
+    if (!sphere.valid()) return false;
+    const Ball undeformed = {osg::Vec3d(sphere.center()) * _modelView,
+                             static_cast<double>(sphere.radius()) * _scale};
+    if (meets(_chain->bound(undeformed))) return true;
+    // What stays where it is while the rest is deformed, as in culling.
+    return _programs && !_chain->empty() && meets(undeformed) && UndeformedParts::search(node, *_programs);
+}
+
+void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, osg::Drawable* drawable)
+{
+    if (root()->reachedLimit()) return;
+    const osg::BoundingBox& bounds = drawable->getBoundingBox();
+    if (!bounds.valid() || !meets(_chain->bound(EyeBox::of(bounds, _modelView).ball()))) return;
+    if (missesBox(bounds)) return;
+    const DrawableTriangles mesh(*drawable);
+    std::vector<osg::Vec3d> deformed;
+    deformed.reserve(mesh.positions().size());
+    for (const osg::Vec3d& position : mesh.positions())
+        deformed.push_back(_chain->deform(position * _modelView));
+
+    for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
+    {
+        const unsigned int* corner = &mesh.corners()[i];
+        const double distance =
+            meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]);
+        if (!(distance >= 0.0)) continue;
+        Intersection hit;
+        hit.distance = distance;
+        hit.deformed = _origin + _direction * distance;
+        hit.drawable = drawable;
+        hit.triangle = static_cast<unsigned int>(i / 3);
+        hit.path = visitor.getNodePath();
+        const osg::RefMatrix* toWorld = visitor.getModelMatrix();
+        const osg::Matrixd model = toWorld ? osg::Matrixd(*toWorld) : osg::Matrixd();
+        osg::Matrixd toLocal;
+        toLocal.invert(_modelView);
+        hit.world = _chain->undeform(hit.deformed) * toLocal * model;
+        const osg::Vec3d* first = mesh.positions().data();
+        hit.normal = (first[corner[1]] - first[corner[0]]) ^ (first[corner[2]] - first[corner[0]]);
+        hit.normal = osg::Matrixd::transform3x3(hit.normal, model);
+        hit.normal.normalize();
+        root()->_found.push_back(hit);
+        root()->_sorted = false;
+    }
+}
+
+/// Keeps what is in force above a node.
+class DeformedIntersectionVisitor::Scope
+{
+public:
+    Scope(DeformedIntersectionVisitor& visitor, const osg::Node& node)
+        : _visitor(visitor), _chain(visitor._chain), _radius(visitor._lodRadius), _limit(visitor._lodLimit),
+          _deformation(visitor._deformation)
+    {
+        visitor._deformation.meet(node.getStateSet());
+        visitor.choose();
+        if (visitor._chain == _chain) return;
+        visitor.push_clone();
+        _cloned = true;
+    }
+    ~Scope()
+    {
+        if (_cloned) _visitor.pop_clone();
+        _visitor._chain = _chain;
+        _visitor._lodRadius = _radius;
+        _visitor._lodLimit = _limit;
+        _visitor._deformation = _deformation;
+    }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+private:
+    DeformedIntersectionVisitor& _visitor;
+    osg::ref_ptr<const DeformationChain> _chain;
+    double _radius;
+    double _limit;
+    DeformationSwitch _deformation;
+    bool _cloned = false;
+};
+
+DeformedIntersectionVisitor::DeformedIntersectionVisitor(osgUtil::Intersector* intersector,
+                                                         const DeformationChain& chain,
+                                                         const osg::Matrixd& modelView, double lodScale)
+    : osgUtil::IntersectionVisitor(intersector), _chain(&chain), _whole(&chain),
+      _nothing(new DeformationChain), _view(modelView), _lodScale(lodScale), _lodLimit(HUGE_VAL)
+{
+    // The first one collects; from the second one on they know where they are.
+    push_clone();
+}
+
+DeformedIntersectionVisitor::~DeformedIntersectionVisitor() = default;
+
+osg::Matrixd DeformedIntersectionVisitor::modelView() const
+{
+    const osg::RefMatrix* model = getModelMatrix();
+    return model ? osg::Matrixd(*model) * _view : _view;
+}
+
+void DeformedIntersectionVisitor::choose()
+{
+    _chain = _programs.isStranger(_deformation.program) ? _nothing.get() : &definedChain();
+}
+
+void DeformedIntersectionVisitor::apply(osg::Node& node)
+{
+    const Scope scope(*this, node);
+    IntersectionVisitor::apply(node);
+}
+
+void DeformedIntersectionVisitor::apply(osg::Geode& node)
+{
+    const Scope scope(*this, node);
+    IntersectionVisitor::apply(node);
+}
+
+void DeformedIntersectionVisitor::apply(osg::Group& node)
+{
+    if (auto* rigid = dynamic_cast<RigidReference*>(&node))
+    {
+        applyRigid(*rigid);
+        return;
+    }
+    const Scope scope(*this, node);
+    IntersectionVisitor::apply(node);
+}
+
+void DeformedIntersectionVisitor::applyRigid(RigidReference& node)
+{
+    const Scope scope(*this, node);
+    const osg::Matrixd view = _view;
+    const osg::Matrixd here = modelView();
+    const osg::Matrixd placement =
+        rigidPlacement(definedChain(), node.referencePoint() * here, node.getTurn());
+    // Places on it are told as it stands, undeformed: only the view is moved.
+    _view = _view * placement;
+    _chain = _nothing;
+    _deformation.on = false;
+    _deformation.overridden = true;
+    push_clone();
+    IntersectionVisitor::apply(node);
+    pop_clone();
+    _view = view;
+}
+
+void DeformedIntersectionVisitor::apply(osg::Transform& node)
+{
+    const Scope scope(*this, node);
+    IntersectionVisitor::apply(node);
+}
+
+void DeformedIntersectionVisitor::apply(osg::Billboard& node)
+{
+    const Scope scope(*this, node);
+    if (!enter(node)) return;
+    const osg::Matrixd fromEye = osg::Matrixd::inverse(_view);
+    for (unsigned int i = 0; i < node.getNumDrawables(); ++i)
+    {
+        osg::Drawable* drawable = node.getDrawable(i);
+        if (!drawable) continue;
+        pushModelMatrix(new osg::RefMatrix(billboardModelView(*_chain, node, i, modelView()) * fromEye));
+        push_clone();
+        drawable->accept(*this);
+        pop_clone();
+        popModelMatrix();
+    }
+    leave();
+}
+
+void DeformedIntersectionVisitor::apply(osg::LOD& node)
+{
+    const Scope scope(*this, node);
+    const osg::Matrixd here = modelView();
+    _lodRadius = static_cast<double>(node.getBound().radius()) * largestScale(here);
+    _lodLimit = _chain->lodLimit(node, {osg::Vec3d(node.getBound().center()) * here, _lodRadius});
+    IntersectionVisitor::apply(static_cast<osg::Group&>(node));
+}
+
+void DeformedIntersectionVisitor::apply(osg::PagedLOD& node)
+{
+    apply(static_cast<osg::LOD&>(node));
+}
+
+void DeformedIntersectionVisitor::apply(osg::Drawable& drawable)
+{
+    const Scope scope(*this, drawable);
+    IntersectionVisitor::apply(drawable);
+}
+
+float DeformedIntersectionVisitor::getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const
+{
+    const double distance =
+        _chain->lodDistance({osg::Vec3d(position) * modelView(), _lodRadius}, osg::Vec3d());
+    return static_cast<float>(std::min(withLodScale ? distance * _lodScale : distance, _lodLimit));
+}
+
+} // namespace osgGeoFX

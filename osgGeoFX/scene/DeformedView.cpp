@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/DeformedView.h>
+
+#include <osg/Transform>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// What stands between the world of the viewer and the scene.
+osg::NodePath pathTo(EffectScene& scene)
+{
+    const osg::NodePathList paths = scene.getParentalNodePaths();
+    return paths.empty() ? osg::NodePath() : paths.front();
+}
+
+osg::Matrixd frameOf(const osg::NodePath& path)
+{
+    osg::NodePath nodes = path;
+    // A viewer's camera stands above its scene data; its view is told apart.
+    while (!nodes.empty() && nodes.front()->asCamera() && nodes.front()->getNumParents() == 0)
+        nodes.erase(nodes.begin());
+    return osg::computeLocalToWorld(nodes);
+}
+
+} // namespace
+
+DeformedView::DeformedView(EffectScene& scene, const osg::Camera& camera)
+    : DeformedView(scene, camera.getViewMatrix(), camera.getProjectionMatrix(),
+                   camera.getViewport() ? camera.getViewport()->width() : 1.0,
+                   camera.getViewport() ? camera.getViewport()->height() : 1.0,
+                   static_cast<double>(camera.getLODScale()))
+{
+}
+
+DeformedView::DeformedView(EffectScene& scene, const osg::Matrixd& view, const osg::Matrixd& projection,
+                           double width, double height, double lodScale)
+    : _scene(&scene), _projection(projection), _width(width), _height(height), _lodScale(lodScale)
+{
+    const osg::NodePath path = pathTo(scene);
+    _modelView = frameOf(path) * view;
+    _toWorld.invert(_modelView);
+    _chain = scene.deformation(_modelView, projection, path);
+}
+
+bool DeformedView::project(const osg::Vec3d& world, osg::Vec2d& pixel) const
+{
+    const osg::Vec3d eye = _chain->deform(world * _modelView);
+    const osg::Vec4d clip = osg::Vec4d(eye, 1.0) * _projection;
+    if (clip.w() <= 0.0) return false;
+    pixel.set((clip.x() / clip.w() + 1.0) / 2.0 * _width, (clip.y() / clip.w() + 1.0) / 2.0 * _height);
+    return true;
+}
+
+bool DeformedView::project(double longitude, double latitude, double height, const Georeference& reference,
+                           osg::Vec2d& pixel) const
+{
+    osg::Vec3d world;
+    return reference.toWorld(longitude, latitude, height, world) && project(world, pixel);
+}
+
+std::optional<DeformedLineIntersector::Intersection> DeformedView::pick(double x, double y,
+                                                                        osg::Node::NodeMask mask) const
+{
+    osg::Matrixd inverse;
+    inverse.invert(_projection);
+    const double ndcX = 2.0 * x / _width - 1.0;
+    const double ndcY = 2.0 * y / _height - 1.0;
+    const osg::Vec3d onNear = osg::Vec3d(ndcX, ndcY, -1.0) * inverse;
+    const osg::Vec3d onFar = osg::Vec3d(ndcX, ndcY, 1.0) * inverse;
+    // From the eye, not from the near plane: a viewer moves that plane with what it draws.
+    const bool perspective = _projection(3, 3) == 0.0;
+    const osg::Vec3d origin = perspective ? osg::Vec3d() : onNear;
+    const osg::ref_ptr<DeformedLineIntersector> ray = new DeformedLineIntersector(origin, onFar - onNear);
+    const osg::ref_ptr<DeformedIntersectionVisitor> visitor =
+        new DeformedIntersectionVisitor(ray, *_chain, _modelView, _lodScale);
+    visitor->setTraversalMask(mask);
+    for (unsigned int i = 0; i < _scene->getNumChildren(); ++i)
+        _scene->getChild(i)->accept(*visitor);
+    if (ray->intersections().empty()) return std::nullopt;
+    return ray->intersections().front();
+}
+
+bool DeformedView::unproject(double x, double y, const Georeference& reference, double& longitude,
+                             double& latitude, double& height) const
+{
+    const auto hit = pick(x, y);
+    return hit && reference.toGeodetic(hit->world, longitude, latitude, height);
+}
+
+osg::Vec3d DeformedView::deform(const osg::Vec3d& world) const
+{
+    return _chain->deform(world * _modelView) * _toWorld;
+}
+
+osg::Vec3d DeformedView::undeform(const osg::Vec3d& world) const
+{
+    return _chain->undeform(world * _modelView) * _toWorld;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/DeformationChain.h>
+
+#include <osg/Matrixd>
+#include <osg/Polytope>
+#include <osg/Vec2d>
+#include <osg/Vec4d>
+
+#include <cfloat>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// A camera's frustum in eye space, and what misses it. For one thread at a time.
+class EyeFrustum
+{
+public:
+    /// A bit for each plane that something may still cross.
+    using Mask = unsigned int;
+    enum class Side
+    {
+        Outside,
+        Crossing,
+        Inside
+    };
+
+    /// No `planes`: nothing misses it. `sides`: whether the picture's border culls.
+    void set(const osg::Polytope* planes, const osg::Matrixd& projection, bool sides);
+    Mask all() const { return (1u << _planes.size()) - 1u; }
+
+    /// Takes the planes that the ball is wholly inside of out of the mask.
+    Side side(const Ball& ball, Mask& mask) const;
+    bool holds(const osg::Vec3d& point, Mask mask) const;
+    /// Whether a hull lies beyond a plane of the mask, or misses the picture.
+    bool misses(const Hull& hull, Mask mask);
+
+private:
+    bool missesPicture(const Hull& hull);
+
+    std::vector<osg::Vec4d> _planes; ///< inside positive
+    osg::Matrixd _projection;
+    bool _sides = false;
+    std::vector<osg::Vec2d> _points;
+};
+
+/** The depths between near and far, of all that is drawn in one traversal.
+
+    What a box really takes up is found out only for those that the answer depends on, a few in a frame. */
+class DepthRange
+{
+public:
+    void clear();
+    /// Depths that are certain.
+    void include(const Ball& ball);
+    void include(double nearest, double farthest);
+    /// A box, which becomes something within a ball. The chain must live until settle().
+    void add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain);
+    /// Whether a ball lies between what is certain so far, and need not be added.
+    bool covers(const Ball& ball) const
+    {
+        return -ball.centre.z() - ball.radius >= _nearest && -ball.centre.z() + ball.radius <= _farthest;
+    }
+    void settle();
+
+    double nearest() const { return _nearest; }
+    double farthest() const { return _farthest; }
+
+private:
+    struct Candidate
+    {
+        EyeBox box;
+        const DeformationChain* chain;
+        double nearest, farthest; ///< of the ball
+    };
+    void measure(Candidate& candidate);
+
+    std::vector<Candidate> _candidates;
+    Hull _hull;
+    double _nearest = DBL_MAX;
+    double _farthest = -DBL_MAX;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+// What culling trusts: nothing that deformations make of a ball or a box lies outside of its bound.
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/panorama/PanoramaFrame.h>
+#include <tools/RandomViews.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+using namespace geofx::test;
+using osg::Vec3d;
+using osgGeoFX::Ball;
+using osgGeoFX::DeformationChain;
+using osgGeoFX::DeformationFrame;
+using osgGeoFX::EyeBox;
+using osgGeoFX::Hull;
+
+namespace
+{
+
+/// Up to three deformations before one camera.
+struct Case
+{
+    CameraPose pose;
+    osgGeoFX::ViewGeometry view;
+    osg::ref_ptr<DeformationChain> chain;
+    std::string text;
+};
+
+Case randomCase(Random& random, int most)
+{
+    for (;;)
+    {
+        const CameraPose pose = randomPose(random);
+        Case found{pose, pose.view(), new DeformationChain, {}};
+        std::ostringstream text;
+        for (int i = random.integer(1, most); i > 0; --i)
+        {
+            const auto effect = randomDeformation(random);
+            const auto frame = effect->frame(found.view);
+            if (!frame) continue;
+            found.chain->add(frame);
+            text << describe(*effect) << "; ";
+            BendNumbers bend;
+            if (bendNumbers(*frame, bend))
+                text << "start " << bend.start << ", size " << bend.size << ", angle " << bend.angle << "; ";
+        }
+        if (found.chain->empty()) continue;
+        text << pose;
+        found.text = text.str();
+        return found;
+    }
+}
+
+Vec3d randomPointIn(const Ball& ball, Random& random)
+{
+    // Most often on its surface, where bounds fail first.
+    const double share = random.integer(0, 2) ? 1.0 : std::cbrt(random.uniform(0.0, 1.0));
+    return ball.centre + randomDirection(random) * (ball.radius * share);
+}
+
+/// Of any size, most often across or near the first frame's zone.
+Ball randomBall(const Case& found, Random& random)
+{
+    return {randomPointFor(*found.chain->frames()[0], found.view, random), random.logarithmic(0.1, 1e5)};
+}
+
+/// A tile most often: wide, flat and level; else any box in any orientation.
+EyeBox randomBox(const Case& found, Random& random)
+{
+    EyeBox box;
+    box.centre = randomPointFor(*found.chain->frames()[0], found.view, random);
+    const double size = random.logarithmic(1.0, 3e4);
+    const bool tile = random.integer(0, 3) != 0;
+    Vec3d up = tile ? found.view.up : randomDirection(random);
+    if (tile && found.view.ground.ellipsoid)
+    {
+        // A tile lies level where it is, not where the eye is.
+        up = up + (box.centre + up * found.view.eyeHeight) / 6.37e6;
+        up.normalize();
+    }
+    Vec3d east = up ^ randomDirection(random);
+    east.normalize();
+    box.half[0] = east * size;
+    box.half[1] = (up ^ east) * (size * random.uniform(0.3, 1.0));
+    box.half[2] =
+        up * (tile ? std::min(random.uniform(0.0, 0.3) * size, 2000.0) : size * random.uniform(0.0, 1.0));
+    return box;
+}
+
+Vec3d randomPointIn(const EyeBox& box, Random& random)
+{
+    Vec3d point = box.centre;
+    for (const Vec3d& half : box.half)
+    {
+        // Corners, edges and faces more often than the inside.
+        const double any = random.uniform(-1.0, 1.0);
+        point += half * (random.integer(0, 1) ? any : random.sign());
+    }
+    return point;
+}
+
+/// How far a set of points reaches in a direction.
+double support(const std::vector<Vec3d>& points, const Vec3d& direction)
+{
+    double most = -HUGE_VAL;
+    for (const Vec3d& point : points)
+        most = std::max(most, point * direction);
+    return most;
+}
+
+double scaleOf(const Case& found, const Vec3d& point)
+{
+    return point.length() + found.chain->deform(point).length() + std::abs(found.view.eyeHeight) + 1e6;
+}
+
+template<class Check>
+void forRandomCases(int samples, int most, const Check& check)
+{
+    for (int sample = 0; sample < samples; ++sample)
+    {
+        Random random(static_cast<std::uint64_t>(sample));
+        const Case found = randomCase(random, most);
+        SCOPED_TRACE(std::to_string(sample) + ": " + found.text);
+        check(found, random);
+        if (::testing::Test::HasFailure()) return;
+    }
+}
+
+double median(std::vector<double> values)
+{
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
+void expectBallsHold(int most)
+{
+    forRandomCases(sampleCount(), most,
+                   [](const Case& found, Random& random)
+                   {
+                       const Ball ball = randomBall(found, random);
+                       const Ball bound = found.chain->bound(ball);
+                       for (int i = 0; i < 10; ++i)
+                       {
+                           const Vec3d point = randomPointIn(ball, random);
+                           EXPECT_LE((found.chain->deform(point) - bound.centre).length(),
+                                     bound.radius * (1.0 + 1e-9) + 1e-12 * scaleOf(found, point))
+                               << "radius " << ball.radius;
+                       }
+                   });
+}
+
+void expectBoxesHold(int most)
+{
+    Hull hull;
+    forRandomCases(sampleCount(), most,
+                   [&](const Case& found, Random& random)
+                   {
+                       const EyeBox box = randomBox(found, random);
+                       found.chain->bound(box, hull);
+                       std::vector<Vec3d> deformed;
+                       for (int i = 0; i < 30; ++i)
+                           deformed.push_back(found.chain->deform(randomPointIn(box, random)));
+                       const double allowed = hull.margin * (1.0 + 1e-9) + 1e-12 * scaleOf(found, box.centre);
+                       for (int i = 0; i < 20; ++i)
+                       {
+                           // Any direction, and the box's own, in which it is thin.
+                           Vec3d direction = randomDirection(random);
+                           if (i < 6) direction = box.half[i / 2] * (i % 2 ? 1.0 : -1.0);
+                           if (direction.normalize() == 0.0) continue;
+                           EXPECT_LE(support(deformed, direction), support(hull.points, direction) + allowed)
+                               << "size " << box.half[0].length() << ", margin " << hull.margin;
+                       }
+                   });
+}
+
+} // namespace
+
+TEST(DeformationBounds, BallsHoldWhatOneDeformationMakesOfThem)
+{
+    expectBallsHold(1);
+}
+
+TEST(DeformationBounds, BallsHoldWhatAChainMakesOfThem)
+{
+    expectBallsHold(3);
+}
+
+TEST(DeformationBounds, HullsHoldWhatOneDeformationMakesOfABox)
+{
+    expectBoxesHold(1);
+}
+
+TEST(DeformationBounds, HullsHoldWhatAChainMakesOfABox)
+{
+    expectBoxesHold(3);
+}
+
+TEST(DeformationBounds, ReachIsWhatItSays)
+{
+    int counts[3] = {};
+    forRandomCases(sampleCount(), 1,
+                   [&](const Case& found, Random& random)
+                   {
+                       const DeformationFrame& frame = *found.chain->frames()[0];
+                       const Ball ball = randomBall(found, random);
+                       const DeformationFrame::Reach reach = frame.reach(ball);
+                       ++counts[static_cast<int>(reach)];
+                       const Vec3d a = randomPointIn(ball, random);
+                       const Vec3d b = randomPointIn(ball, random);
+                       const Vec3d middle = (a + b) * 0.5;
+                       if (reach == DeformationFrame::Reach::Identity)
+                       {
+                           EXPECT_EQ(frame.deform(a), a);
+                           EXPECT_TRUE(found.chain->leavesAlone(ball));
+                           EXPECT_EQ(frame.lipschitz(ball), 1.0);
+                       }
+                       else if (reach == DeformationFrame::Reach::Affine)
+                       {
+                           const double error =
+                               (frame.deform(middle) - (frame.deform(a) + frame.deform(b)) * 0.5).length();
+                           EXPECT_LT(error, 1e-9 * scaleOf(found, a));
+                       }
+                       else
+                       {
+                           EXPECT_FALSE(found.chain->leavesAlone(ball));
+                       }
+                   });
+    for (const int count : counts)
+        EXPECT_GT(count, sampleCount() / 50);
+}
+
+TEST(DeformationBounds, NoPairOfPointsDriftsApartByMoreThanLipschitzSays)
+{
+    forRandomCases(sampleCount(), 1,
+                   [](const Case& found, Random& random)
+                   {
+                       const DeformationFrame& frame = *found.chain->frames()[0];
+                       const Ball ball = randomBall(found, random);
+                       const double factor = frame.lipschitz(ball);
+                       const Vec3d a = randomPointIn(ball, random);
+                       const Vec3d b = a + (randomPointIn(ball, random) - a) * random.logarithmic(1e-3, 1.0);
+                       EXPECT_LE((frame.deform(b) - frame.deform(a)).length(),
+                                 factor * (b - a).length() * (1.0 + 1e-9) + 1e-12 * scaleOf(found, a));
+                   });
+}
+
+TEST(DeformationBounds, TheLevelOfDetailFollowsTheDeformedDistance)
+{
+    forRandomCases(sampleCount(), 2,
+                   [](const Case& found, Random& random)
+                   {
+                       const Ball ball = randomBall(found, random);
+                       const Vec3d eye = randomDirection(random) * random.logarithmic(0.1, 1000.0);
+                       const osg::ref_ptr<DeformationChain> none = new DeformationChain;
+                       EXPECT_EQ(none->lodDistance(ball, eye), (ball.centre - eye).length());
+                       EXPECT_EQ(none->detail(ball), 1.0);
+                       const double distance = found.chain->lodDistance(ball, eye);
+                       EXPECT_TRUE(std::isfinite(distance));
+                       EXPECT_GE(distance, 0.0);
+                       if (found.chain->leavesAlone(ball))
+                       {
+                           EXPECT_EQ(distance, (ball.centre - eye).length());
+                       }
+                       const bool told = std::any_of(
+                           found.chain->frames().begin(), found.chain->frames().end(),
+                           [&](const auto& frame) { return frame->viewDistance(ball).has_value(); });
+                       if (told)
+                       {
+                           EXPECT_GT(distance, ball.radius);
+                           return;
+                       }
+                       // Outside of the deformed ball, what lies between is divided by the detail.
+                       const Ball bound = found.chain->bound(ball);
+                       const double gap = (bound.centre - eye).length() - bound.radius;
+                       if (gap > 0.0 && (found.chain->detail(ball) != 1.0 || bound.radius != ball.radius))
+                       {
+                           EXPECT_NEAR(distance, ball.radius + gap / found.chain->detail(ball),
+                                       1e-9 * (distance + bound.centre.length()));
+                       }
+                   });
+}
+
+TEST(DeformationBounds, HullsAreTight)
+{
+    // Tiles as a terrain has them, and the bound's extent over that of what is in it, in random directions.
+    std::vector<double> ratios;
+    std::vector<double> curved;
+    Hull hull;
+    forRandomCases(sampleCount() / 5, 1,
+                   [&](const Case& found, Random& random)
+                   {
+                       EyeBox box = randomBox(found, random);
+                       const DeformationFrame::Reach reach = found.chain->frames()[0]->reach(box.ball());
+                       if (reach == DeformationFrame::Reach::Identity) return;
+                       // A panorama map hides what its hulls would be wide for: tiles beside and behind its picture.
+                       if (dynamic_cast<const osgGeoFX::PanoramaFrame*>(found.chain->frames()[0].get()))
+                           return;
+                       found.chain->bound(box, hull);
+                       std::vector<Vec3d> deformed;
+                       for (int i = 0; i < 500; ++i)
+                           deformed.push_back(found.chain->deform(randomPointIn(box, random)));
+                       for (int i = 0; i < 5; ++i)
+                       {
+                           const Vec3d direction = randomDirection(random);
+                           const double given = support(hull.points, direction) +
+                                                support(hull.points, -direction) + 2.0 * hull.margin;
+                           const double needed = support(deformed, direction) + support(deformed, -direction);
+                           const double ratio = given / needed;
+                           ratios.push_back(ratio);
+                           if (reach == DeformationFrame::Reach::Curved) curved.push_back(ratio);
+                       }
+                   });
+    ASSERT_GT(curved.size(), 100u);
+    std::sort(curved.begin(), curved.end());
+    RecordProperty("median", std::to_string(median(ratios)));
+    RecordProperty("median_in_the_zone", std::to_string(median(curved)));
+    RecordProperty("95_percent_in_the_zone", std::to_string(curved[curved.size() * 95 / 100]));
+    EXPECT_LT(median(ratios), 1.01);
+    EXPECT_LT(median(curved), 1.02);
+    EXPECT_LT(curved[curved.size() * 95 / 100], 1.2);
+}

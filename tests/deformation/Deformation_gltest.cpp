@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+// The deformations on the GPU, in the very shaders and with the very uniforms of a frame, against the CPU's double.
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/scene/EffectProgram.h>
+#include <tools/GlFixture.h>
+#include <tools/RandomViews.h>
+
+#include <osg/Geometry>
+#include <osg/Program>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <sstream>
+#include <vector>
+
+using namespace geofx::test;
+using osg::Vec3d;
+using osgGeoFX::DeformationChain;
+using osgGeoFX::EffectProgram;
+
+namespace
+{
+
+constexpr int columns = 256;
+
+/// Effects before one camera, and the points that they get: one row of the picture.
+struct Row
+{
+    EffectProgram::Effects effects;
+    std::vector<osg::ref_ptr<const osgGeoFX::DeformationFrame>> frames; ///< null where an effect does nothing
+    osg::ref_ptr<DeformationChain> chain;
+    std::vector<osg::Vec3f> points;
+    std::vector<osg::Vec3f> normals;
+    double least = 0.0; ///< the least viewing distance, metres: of an orthographic camera, its picture's size
+    std::string text;
+};
+
+struct Result
+{
+    Vec3d place;
+    Vec3d normal;
+    double style;
+};
+
+Row randomRow(int number)
+{
+    for (std::uint64_t attempt = 0;; ++attempt)
+    {
+        Random random(static_cast<std::uint64_t>(number) + (attempt << 32));
+        const CameraPose pose = randomPose(random);
+        const osgGeoFX::ViewGeometry view = pose.view();
+        Row row;
+        row.chain = new DeformationChain;
+        std::ostringstream text;
+        for (int i = random.integer(1, 2); i > 0; --i)
+        {
+            const auto effect = randomDeformation(random);
+            row.effects.emplace_back(effect);
+            row.frames.push_back(effect->frame(view));
+            if (row.frames.back()) row.chain->add(row.frames.back());
+            text << describe(*effect) << "; ";
+        }
+        if (row.chain->empty()) continue;
+        text << pose;
+        row.text = text.str();
+        if (pose.lens == CameraPose::ORTHOGRAPHIC) row.least = pose.pictureSize;
+        for (int i = 0; i < columns; ++i)
+        {
+            const Vec3d point = randomPointFor(*row.chain->frames()[0], view, random);
+            row.points.emplace_back(point);
+            row.normals.emplace_back(randomDirection(random));
+        }
+        return row;
+    }
+}
+
+/// By how much a chain stretches about a point.
+double stretchAt(const DeformationChain& chain, Vec3d point)
+{
+    double stretch = 1.0;
+    for (const auto& frame : chain.frames())
+    {
+        stretch *= frame->lipschitz({point, 0.0});
+        point = frame->deform(point);
+    }
+    return stretch;
+}
+
+/// What is lost beside 1e-5 of the distance: where the eye itself is in a wide zone, the place along the zone is
+/// rounded as a share of its width, however near a point is.
+double behindTheEye(const DeformationChain& chain)
+{
+    double lost = 0.0;
+    for (const auto& frame : chain.frames())
+    {
+        BendNumbers bend;
+        if (bendNumbers(*frame, bend) && bend.start < 0.0) lost += 2e-7 * bend.size;
+    }
+    return lost;
+}
+
+/// Style and normal of a point.
+void expectSameLook(const Row& row, std::size_t i, const Result& gpu)
+{
+    Vec3d point = row.points[i];
+    Vec3d normal = row.normals[i];
+    double style = 0.0;
+    double allowed = 1e-5;
+    const double start = point.length();
+    for (std::size_t k = 0; k < row.frames.size(); ++k)
+    {
+        const osgGeoFX::DeformationFrame* frame = row.frames[k];
+        if (!frame) continue;
+        style = std::max(style, frame->style(point));
+        BendNumbers bend;
+        if (bendNumbers(*frame, bend))
+        {
+            // The ground is lit as it lies. A style is a place along the zone, as a share of its width.
+            const double scale = std::abs(bend.start) + bend.size + start + point.length();
+            allowed += 1e-6 * scale / std::max(bend.size, 1e-3);
+        }
+        else if (row.effects[k]->getProperty("relight") != 0.0)
+        {
+            normal = frame->deformNormal(point, normal);
+        }
+        point = frame->deform(point);
+    }
+    EXPECT_NEAR(gpu.style, style, allowed * stretchAt(*row.chain, row.points[i]));
+    EXPECT_LT((gpu.normal - normal).length(), 1e-4);
+}
+
+osg::ref_ptr<osg::Image> makeFloatImage(int rows)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(columns, rows, 1, GL_RGBA, GL_FLOAT);
+    image->setInternalTextureFormat(GL_RGBA32F_ARB);
+    std::memset(image->data(), 0, image->getTotalSizeInBytes());
+    return image;
+}
+
+const char* const vertexShader = R"(#version 330 compatibility
+vec4 geofx_vertex(vec4 eyePosition);
+vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);
+flat out vec4 place;
+flat out vec3 normal;
+void main()
+{
+    place = geofx_vertex(gl_Vertex);
+    normal = geofx_normal(gl_Vertex, gl_Normal);
+    gl_Position = vec4(gl_MultiTexCoord0.xy, 0.0, 1.0);
+}
+)";
+
+const char* const fragmentShader = R"(#version 330 compatibility
+flat in vec4 place;
+flat in vec3 normal;
+in float geofx_styleBlend;
+layout(location = 0) out vec4 places;
+layout(location = 1) out vec4 normals;
+void main()
+{
+    places = vec4(place.xyz / place.w, geofx_styleBlend);
+    normals = vec4(normal, 1.0);
+}
+)";
+
+} // namespace
+
+class DeformationOnGpu : public GlFixture
+{
+protected:
+    DeformationOnGpu() : GlFixture(16, 16) {}
+
+    /// Draws each point as one pixel into float textures.
+    std::vector<std::vector<Result>> run(const std::vector<Row>& rows)
+    {
+        const int height = static_cast<int>(rows.size());
+        const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+        camera->setRenderOrder(osg::Camera::PRE_RENDER);
+        camera->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT, osg::Camera::FRAME_BUFFER);
+        camera->setViewport(0, 0, columns, height);
+        camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+        camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        camera->setCullingMode(osg::CullSettings::NO_CULLING);
+        std::vector<osg::ref_ptr<osg::Image>> images;
+        for (int i = 0; i < 2; ++i)
+        {
+            images.push_back(makeFloatImage(height));
+            camera->attach(static_cast<osg::Camera::BufferComponent>(osg::Camera::COLOR_BUFFER0 + i),
+                           images.back());
+        }
+        for (int i = 0; i < height; ++i)
+            camera->addChild(drawingOf(rows[static_cast<std::size_t>(i)], i, height));
+        render(camera);
+
+        std::vector<std::vector<Result>> results;
+        const auto* places = reinterpret_cast<const float*>(images[0]->data());
+        const auto* normals = reinterpret_cast<const float*>(images[1]->data());
+        for (std::size_t row = 0; row < rows.size(); ++row)
+        {
+            results.emplace_back();
+            for (int i = 0; i < columns; ++i, places += 4, normals += 4)
+            {
+                EXPECT_EQ(normals[3], 1.0f) << "nothing was drawn";
+                results.back().push_back({osg::Vec3f(places[0], places[1], places[2]),
+                                          osg::Vec3f(normals[0], normals[1], normals[2]),
+                                          static_cast<double>(places[3])});
+            }
+        }
+        return results;
+    }
+
+private:
+    osg::ref_ptr<osg::Geometry> drawingOf(const Row& row, int number, int height)
+    {
+        osg::ref_ptr<osg::Geometry> drawing = new osg::Geometry;
+        const osg::ref_ptr<osg::Vec2Array> pixels = new osg::Vec2Array;
+        for (int i = 0; i < columns; ++i)
+            pixels->push_back(
+                {(2.0f * static_cast<float>(i) + 1.0f) / columns - 1.0f,
+                 (2.0f * static_cast<float>(number) + 1.0f) / static_cast<float>(height) - 1.0f});
+        drawing->setVertexArray(new osg::Vec3Array(row.points.begin(), row.points.end()));
+        drawing->setNormalArray(new osg::Vec3Array(row.normals.begin(), row.normals.end()),
+                                osg::Array::BIND_PER_VERTEX);
+        drawing->setTexCoordArray(0, pixels, osg::Array::BIND_PER_VERTEX);
+        drawing->addPrimitiveSet(new osg::DrawArrays(GL_POINTS, 0, columns));
+        drawing->setUseDisplayList(false);
+        drawing->setUseVertexBufferObjects(true);
+        osg::StateSet* state = drawing->getOrCreateStateSet();
+        state->setAttributeAndModes(programOf(row.effects));
+        state->setDefine("GEOFX_DEFORMATION");
+        for (std::size_t i = 0; i < row.effects.size(); ++i)
+        {
+            if (!row.frames[i]) continue;
+            state->setDefine(EffectProgram::define(i));
+            for (const auto& [name, value] : row.frames[i]->uniforms())
+            {
+                const std::string full = EffectProgram::prefix(i) + name;
+                state->addUniform(new osg::Uniform(full.c_str(), osg::Vec4f(value)));
+            }
+        }
+        return drawing;
+    }
+
+    osg::Program* programOf(const EffectProgram::Effects& effects)
+    {
+        osg::ref_ptr<osg::Program>& program = _programs[EffectProgram::key(effects)];
+        if (!program)
+        {
+            program = new osg::Program;
+            program->addShader(new osg::Shader(osg::Shader::VERTEX, vertexShader));
+            program->addShader(
+                new osg::Shader(osg::Shader::VERTEX, EffectProgram::functions(effects, osg::Shader::VERTEX)));
+            program->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragmentShader));
+        }
+        return program;
+    }
+
+    std::map<std::string, osg::ref_ptr<osg::Program>> _programs;
+};
+
+TEST_F(DeformationOnGpu, GpuResultIsCpuResult)
+{
+    std::vector<Row> rows;
+    for (int i = 0; i < (fullTest() ? 1000 : 100); ++i)
+        rows.push_back(randomRow(i));
+    const std::vector<std::vector<Result>> results = run(rows);
+    double worst = 0.0;
+    std::string where;
+    int stretched = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+    {
+        for (std::size_t i = 0; i < columns; ++i)
+        {
+            const Vec3d point = rows[row].points[i];
+            const Vec3d expected = rows[row].chain->deform(point);
+            const Result& gpu = results[row][i];
+            const double distance = std::max({point.length(), expected.length(), rows[row].least});
+            const double error = (gpu.place - expected).length() / distance;
+            // What stands kilometres high in a zone of a few metres is stretched a thousandfold, and so is the rounding
+            // of its position to floats.
+            const double stretch = std::max(1.0, stretchAt(*rows[row].chain, point) / 10.0);
+            if (stretch > 1.0) ++stretched;
+            if (error > worst && stretch == 1.0 && behindTheEye(*rows[row].chain) == 0.0)
+            {
+                worst = error;
+                where = rows[row].text;
+            }
+            SCOPED_TRACE(::testing::Message()
+                         << "row " << row << ", point " << i << ", distance " << point.length() << ", then "
+                         << expected.length() << ", off by " << error * distance << " m: " << rows[row].text);
+            EXPECT_LT(error * distance, (1e-5 * distance + behindTheEye(*rows[row].chain)) * stretch);
+            expectSameLook(rows[row], i, gpu);
+            if (HasFailure()) return;
+        }
+    }
+    RecordProperty("worst_share_of_distance", std::to_string(worst * 1e6) + "e-6");
+    RecordProperty("worst_at", where);
+    EXPECT_LT(stretched, static_cast<int>(rows.size()) * columns / 4);
+}

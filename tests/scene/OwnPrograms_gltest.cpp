@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Programs that do not call the effects' functions: one warning tells of each, and what they draw is culled, picked and lifted as
+// what it is, which is not deformed.
+#include <tools/BentGround.h>
+#include <tools/CullHarness.h>
+#include <tools/RandomSamples.h>
+
+#include <osg/Geode>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/scene/OwnPrograms.h>
+#include <osgGeoFX/scene/RigidReference.h>
+
+#include <cstring>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+osg::ref_ptr<osg::Program> makeStranger(const std::string& name = "")
+{
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->setName(name);
+    program->addShader(new osg::Shader(
+        osg::Shader::VERTEX, "#version 120\n"
+                             "// geofx_vertex(eye) is not called here\n"
+                             "void main() { gl_Position = ftransform(); gl_FrontColor = gl_Color; }\n"));
+    program->addShader(
+        new osg::Shader(osg::Shader::FRAGMENT, "#version 120\nvoid main() { gl_FragColor = gl_Color; }\n"));
+    return program;
+}
+
+/// Another engine's class for programs, which is no osg::Program.
+class ForeignProgram : public osg::StateAttribute
+{
+public:
+    ForeignProgram() : _program(makeStranger()) {}
+    ForeignProgram(const ForeignProgram& other, const osg::CopyOp& copy)
+        : osg::StateAttribute(other, copy), _program(other._program)
+    {
+    }
+    META_StateAttribute(foreign, ForeignProgram,
+                        PROGRAM) int compare(const osg::StateAttribute& other) const override
+    {
+        return this < &other ? -1 : this > &other;
+    }
+    void apply(osg::State& state) const override { _program->apply(state); }
+
+protected:
+    ~ForeignProgram() override = default;
+
+private:
+    osg::ref_ptr<osg::Program> _program;
+};
+
+class OwnProgramsTest : public BentGround
+{
+protected:
+    /// The messages that drawing makes, twice.
+    std::vector<std::string> saidOf(osg::Node* scene, osg::ref_ptr<osg::Image>* image = nullptr)
+    {
+        return watch().messagesOf(
+            [&]
+            {
+                render(scene);
+                const osg::ref_ptr<osg::Image> second = render(scene);
+                if (image) *image = second;
+            });
+    }
+};
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST(OwnPrograms, CallsAreFound)
+{
+    EXPECT_TRUE(OwnPrograms::calls("void main() { gl_Position = p * geofx_vertex(eye); }"));
+    EXPECT_TRUE(
+        OwnPrograms::calls("vec4 geofx_vertex(vec4 e);\nvoid main() { vec4 at = geofx_vertex (e); }"));
+    EXPECT_TRUE(OwnPrograms::calls("#define DEFORM geofx_vertex\nvoid main() {}"));
+    EXPECT_TRUE(OwnPrograms::calls("/* vec4 */geofx_vertex(e)"));
+    EXPECT_FALSE(OwnPrograms::calls(""));
+    EXPECT_FALSE(OwnPrograms::calls("vec4 geofx_vertex(vec4 e);\nvoid main() {}"));
+    EXPECT_FALSE(OwnPrograms::calls("vec4\n  geofx_vertex(vec4 e) { return e; }"));
+    EXPECT_FALSE(OwnPrograms::calls("// geofx_vertex(e)\nvoid main() {} /* geofx_vertex(e) */"));
+    EXPECT_FALSE(OwnPrograms::calls("void main() { my_geofx_vertex(e); geofx_vertexes(e); }"));
+}
+
+TEST(OwnPrograms, AreLookedAtAgain)
+{
+    OwnPrograms programs;
+    EXPECT_FALSE(OwnPrograms::isOwn(nullptr));
+    const osg::ref_ptr<osg::Program> program = new osg::Program;
+    EXPECT_FALSE(OwnPrograms::isOwn(program));
+    const osg::ref_ptr<osg::Shader> shader = new osg::Shader(osg::Shader::VERTEX, "void main() {}");
+    program->addShader(shader);
+    EXPECT_TRUE(programs.isStranger(program));
+    shader->setShaderSource("void main() { geofx_vertex(e); }");
+    programs.startFrame();
+    EXPECT_FALSE(programs.isStranger(program));
+    // A fragment shader moves nothing.
+    const osg::ref_ptr<osg::Program> other = new osg::Program;
+    other->addShader(new osg::Shader(osg::Shader::FRAGMENT, "void main() { geofx_vertex(e); }"));
+    EXPECT_TRUE(programs.isStranger(other));
+    EXPECT_TRUE(programs.isStranger(osg::ref_ptr<ForeignProgram>(new ForeignProgram)));
+}
+
+TEST_F(OwnProgramsTest, OneWarningForEach)
+{
+    const osg::ref_ptr<osg::Geometry> ground = makeGround();
+    const osg::ref_ptr<EffectScene> scene = makeScene({ground});
+    EXPECT_TRUE(saidOf(scene).empty());
+    ground->getOrCreateStateSet()->setAttribute(makeStranger("the glow"));
+    std::vector<std::string> said = saidOf(scene);
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_TRUE(contains(said[0], "\"the glow\"")) << said[0];
+    EXPECT_TRUE(contains(said[0], "addFunctions")) << said[0];
+    EXPECT_TRUE(contains(said[0], "RigidReference")) << said[0];
+
+    // Two that are called alike are two, and so are two without a name.
+    const osg::ref_ptr<osg::Group> more = new osg::Group;
+    more->setName("more of it");
+    for (const char* name : {"the glow", "", ""})
+    {
+        const osg::ref_ptr<osg::MatrixTransform> box = makeBox(5, {10, -90, 0});
+        box->getOrCreateStateSet()->setAttribute(makeStranger(name));
+        more->addChild(box);
+    }
+    scene->addChild(more);
+    said = saidOf(scene);
+    ASSERT_EQ(said.size(), 3u) << ::testing::PrintToString(said);
+    EXPECT_TRUE(contains(said[1], "\"more of it\"")) << said[1];
+    // Of all that they have been told.
+    EXPECT_TRUE(saidOf(scene).empty());
+}
+
+TEST_F(OwnProgramsTest, NoWarningWhereNothingIsAmiss)
+{
+    // Left out, rigid, without a bend, or with the functions.
+    const osg::ref_ptr<osg::MatrixTransform> left = makeBox(5, {10, -90, 0});
+    left->getOrCreateStateSet()->setAttribute(makeStranger());
+    left->getStateSet()->setDefine("GEOFX_DEFORMATION", osg::StateAttribute::OFF);
+    const osg::ref_ptr<osg::MatrixTransform> rigid =
+        new osg::MatrixTransform(osg::Matrix::translate(0, 100, 0));
+    const osg::ref_ptr<RigidReference> reference = new RigidReference;
+    reference->addChild(makeBox(12));
+    rigid->addChild(reference);
+    const osg::ref_ptr<osg::Image> expected = render(makeScene({rigid}));
+    EXPECT_GT(covered(*expected), 100);
+    reference->getOrCreateStateSet()->setAttribute(makeStranger());
+    EXPECT_TRUE(saidOf(makeScene({left, rigid})).empty());
+    // It stands where it stood with the kit's shader.
+    EXPECT_LT(differing(*render(makeScene({rigid})), *expected), 5);
+
+    const osg::ref_ptr<osg::Geometry> ground = makeGround();
+    ground->getOrCreateStateSet()->setAttribute(makeStranger());
+    const osg::ref_ptr<EffectScene> level = makeScene({ground});
+    level->getEffect(0)->setEnabled(false);
+    EXPECT_TRUE(saidOf(level).empty());
+}
+
+TEST_F(OwnProgramsTest, OtherClassesArePrograms)
+{
+    const osg::ref_ptr<osg::Geometry> ground = makeGround();
+    const osg::ref_ptr<osg::Image> expected = render(makePlain({makeGround()}));
+    ground->getOrCreateStateSet()->setAttribute(new ForeignProgram);
+    osg::ref_ptr<osg::Image> drawn;
+    const std::vector<std::string> said = saidOf(makeScene({ground}), &drawn);
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_TRUE(contains(said[0], "foreign::ForeignProgram")) << said[0];
+    EXPECT_LT(differing(*drawn, *expected), 20);
+}
+
+// Posts with the kit's shader, and posts with a program that does not call the functions, at all places in the graph: drawn, and
+// picked, as if each kind were alone.
+TEST_F(OwnProgramsTest, AreCulledAsWhatTheyAre)
+{
+    osg::Camera& camera = *viewer().getCamera();
+    const osg::Matrixd view = camera.getViewMatrix();
+    const osg::ref_ptr<PedestrianView> walk = new PedestrianView;
+    walk->setFocusDistance(80);
+    walk->setBendAngle(1.5);
+    walk->setTallest(50);
+    const osg::ref_ptr<osg::Program> program = makeStranger("the post");
+    const osg::ref_ptr<EffectScene> scene = makeScene({});
+    const osg::ref_ptr<EffectScene> deformed = makeScene({});
+    scene->addEffect(walk);
+    deformed->addEffect(walk);
+    int undeformedOnly = 0;
+    int hits = 0;
+    const int count = fullTest() ? 200 : 24;
+    std::vector<std::string> said;
+    for (int i = 0; i < count; ++i)
+    {
+        SCOPED_TRACE("sample " + std::to_string(i));
+        Random random(static_cast<std::uint64_t>(i));
+        walk->setZoneWidth(random.uniform(20, 80));
+        for (EffectScene* each : {scene.get(), deformed.get()})
+        {
+            each->removeChildren(0, each->getNumChildren());
+            each->getEffect(0)->setEnabled(i % 2 == 0);
+            each->getEffect(1)->setEnabled(i % 2 == 1);
+        }
+        const osg::ref_ptr<osg::Group> plain = new osg::Group;
+        for (int post = 0; post < 8; ++post)
+        {
+            const osg::Vec3d place(random.uniform(-60, 60), random.uniform(-60, 140), random.uniform(0, 20));
+            const auto size = static_cast<float>(random.uniform(2, 12));
+            const bool own = post % 2 == 0;
+            const osg::ref_ptr<osg::MatrixTransform> box = makeBox(size, place);
+            const osg::ref_ptr<osg::Node> mesh = box->getChild(0);
+            if (post % 3 == 0)
+            {
+                // A Geode in between.
+                const osg::ref_ptr<osg::Geode> geode = new osg::Geode;
+                geode->addChild(mesh);
+                box->setChild(0, geode);
+            }
+            const osg::ref_ptr<osg::Group> outer = makePlain({makePlain({box})});
+            if (own)
+            {
+                osg::Node* const places[] = {mesh.get(), box.get(), outer->getChild(0), outer.get()};
+                places[post / 2]->getOrCreateStateSet()->setAttribute(program);
+            }
+            scene->addChild(outer);
+            (own ? plain.get() : static_cast<osg::Group*>(deformed.get()))->addChild(makeBox(size, place));
+        }
+        const double shift = random.uniform(-0.6, 0.6);
+        camera.setViewMatrix(view * osg::Matrix::rotate(shift, osg::Vec3d(0, 1, 0)));
+        plain->getOrCreateStateSet()->setAttribute(program);
+        const osg::ref_ptr<osg::Image> expected = render(makePlain({deformed, plain}));
+        osg::ref_ptr<osg::Image> drawn;
+        for (const std::string& each : watch().messagesOf([&] { drawn = render(scene); }))
+            said.push_back(each);
+        EXPECT_TRUE(same(*drawn, *expected, "sample " + std::to_string(i)));
+        undeformedOnly += covered(*render(makePlain({plain}))) > 0 ? 1 : 0;
+
+        // What the picture shows can be picked, and nothing else.
+        const DeformedView picture(*scene, camera);
+        constexpr unsigned char background[] = {26, 51, 77};
+        for (int pixel = 0; pixel < 60; ++pixel)
+        {
+            const int x = random.integer(1, WIDTH - 2);
+            const int y = random.integer(1, HEIGHT - 2);
+            // Not where the pixel is on an edge.
+            bool clear = true;
+            const bool covers = std::memcmp(drawn->data(x, y), background, 3) != 0;
+            for (const auto& [dx, dy] :
+                 {std::pair(-1, 0), std::pair(1, 0), std::pair(0, -1), std::pair(0, 1)})
+                clear = clear && (std::memcmp(drawn->data(x + dx, y + dy), background, 3) != 0) == covers;
+            if (!clear) continue;
+            EXPECT_EQ(picture.pick(x + 0.5, y + 0.5).has_value(), covers) << x << ' ' << y;
+            hits += covers ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_GT(undeformedOnly, count / 3);
+    EXPECT_GT(hits, count / 2);
+}
