@@ -7,7 +7,7 @@
 namespace geofx::bench
 {
 
-/// Why nothing can be measured, as a whole sentence with the mend.
+/// Why nothing can be measured, as a whole sentence with the remedy.
 class BenchError : public std::runtime_error
 {
 public:

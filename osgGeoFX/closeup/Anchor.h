@@ -12,8 +12,10 @@ namespace osgGeoFX
 /** The fence between a region on the ground and its close-up, in the close-up's colour (paper: interactive close-ups,
     Section II.D).
 
-    It is transparent by a table over the normalised height: 0 at the ground, 1 at the close-up. Changed by the thread of
-    the frame loop between frames; reading is thread-safe. */
+    A table gives its opacity at each normalised height: 0 at the ground, 1 at the close-up. The thread of the frame
+    loop changes an anchor, between frames. Reading is thread-safe. Setters refuse values out of range: they return
+    false, warn once and keep the former value.
+    @ingroup closeup */
 class OSGGEOFX_EXPORT Anchor : public PropertyHolder
 {
 public:
@@ -24,40 +26,43 @@ public:
     enum Kind
     {
         NONE,
-        STRETCHED, ///< the terrain's triangles between ground and close-up (the paper); it needs many vertices
-        CONTOUR    ///< a wall along the region's border, which needs none
+        STRETCHED, ///< the terrain's triangles, stretched up to the close-up (the paper); needs many vertices
+        CONTOUR    ///< a wall along the region's border; needs no vertices of the terrain
     };
-    /// CONTOUR by default.
+    /// Default: CONTOUR.
     bool setKind(Kind kind) { return assign("kind", kind); }
     Kind getKind() const { return static_cast<Kind>(_kind); }
 
-    /// The ready tables: the paper's Figure 4 and more.
+    /// The ready tables of opacities: those of the paper's Figure 4 and more.
     enum Style
     {
-        SOLID,   ///< 1 everywhere
-        VEIL,    ///< 0.35 everywhere
-        RISING,  ///< clear at the ground, solid at the close-up
-        FALLING, ///< solid at the ground, clear at the close-up
-        ENDS,    ///< solid at both ends, clear between
-        MIDDLE,  ///< clear at both ends
+        SOLID,   ///< opaque everywhere
+        VEIL,    ///< an opacity of 0.35 everywhere
+        RISING,  ///< transparent at the ground, opaque at the close-up
+        FALLING, ///< opaque at the ground, transparent at the close-up
+        ENDS,    ///< opaque at both ends, transparent between them
+        MIDDLE,  ///< transparent at both ends, opaque between them
         RINGS,   ///< eight bands
-        TABLE    ///< what setTable() was given
+        TABLE    ///< the table of setTable()
     };
-    /// FALLING by default.
+    /// Default: FALLING.
     bool setStyle(Style style) { return assign("style", style); }
     Style getStyle() const { return static_cast<Style>(_style); }
-    /// Opacities at even steps from the ground to the close-up, 2…256 values of 0…1; sets the style to TABLE.
+    /// Opacities at equal steps from the ground to the close-up, 2…256 values of 0…1. The setter sets the style to
+    /// TABLE.
     bool setTable(const std::vector<float>& opacities);
     const std::vector<float>& getTable() const { return _table; }
 
-    /// Of all of it, 0…1; 0.8 by default.
+    /// The opacity of the whole anchor, 0…1. Default: 0.8.
     bool setOpacity(double opacity) { return assign("opacity", opacity); }
     double getOpacity() const { return _opacity; }
-    /// Width of the line around the region on the ground and around the close-up, pixels, 0…64; 0 for none. 2 by default.
+    /// The width of the lines around the region on the ground and around the close-up, pixels, 0…64. 0 means no lines.
+    /// Default: 2.
     bool setLineWidth(double pixels) { return assign("lineWidth", pixels); }
     double getLineWidth() const { return _lineWidth; }
 
-    /// The opacity at a normalised height, 0…1, with `opacity` in it: linear between the table's values.
+    /// The opacity at a normalised height of 0…1, times the anchor's `opacity`. It is linear between the table's
+    /// values.
     double opacityAt(double height) const;
 
     const Properties& properties() const override;

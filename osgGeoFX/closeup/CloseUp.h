@@ -13,23 +13,26 @@
 namespace osgGeoFX
 {
 
-/** A region of the ground, lifted out, scaled, turned and drawn in a style of its own (paper: interactive close-ups,
+/** A region of the ground that is lifted, scaled, rotated and drawn in its own style (paper: interactive close-ups,
     Section II.B).
 
-    **Geometry.** In the region's frame (x right, y to the front, z up, metres about its centre at its base), a point v of the
-    ground goes to `offset + R · S · v`: S scales by (scaleX, scaleY, scaleHeight), R turns. The paper's M multiplies the
-    other way round and does not say about which point; its axes are x, height, y. A height scale of 0 makes a flat map.
+    **Geometry.** In the region's frame (x right, y to the front, z up, metres, origin at the region's centre and base)
+    a point v of the ground moves to `offset + R · S · v`. S scales by (scaleX, scaleY, scaleHeight) and R rotates. The
+    paper's matrix M multiplies in the opposite order and names no centre. The paper's axes are x, height, y. A height
+    scale of 0 makes a flat map.
 
-    **Orientation.** SCENE: R is `turn` about the vertical, counter-clockwise from above, then `tilt` about the x axis, in the
-    region's frame, so the close-up is seen as everything else in the scene. FIXED: the same in a frame that goes with the
-    camera: without a tilt, the map is seen from straight above with its y axis up in the picture. BILLBOARD: as FIXED, and
-    without perspective.
+    **Orientation.** With SCENE, R rotates by `turn` about the vertical (counter-clockwise from above), then by `tilt`
+    about the x axis, in the region's frame. The viewer then sees the close-up in the same perspective as the scene.
+    With FIXED, the same rotation acts in a frame that moves with the camera: without a tilt, the viewer looks straight
+    down at the map, and its y axis points up on the screen. BILLBOARD is FIXED without perspective, unless the camera
+    is very near.
 
-    **With a bend** the offset starts at the region's centre as the bend has moved it, and turns with the ground there; the
+    **With a bend**, the offset starts at the region's centre after the bend and rotates with the ground there. The
     close-up itself is not bent.
 
-    Setters refuse what makes no sense: they return false, warn once and leave the last good state. Changed by the thread
-    of the frame loop between frames. */
+    Setters refuse values out of range: they return false, warn once and keep the former state. The thread of the frame
+    loop changes a close-up, between frames.
+    @ingroup closeup */
 class OSGGEOFX_EXPORT CloseUp : public PropertyHolder, private PropertyListener
 {
 public:
@@ -37,26 +40,27 @@ public:
     CloseUp(const CloseUp& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, CloseUp);
 
-    /// Never null; null is refused. May be shared with other close-ups.
+    /// The region is never null. A null pointer is refused with a warning. Several close-ups may share a region.
     bool setRegion(RegionOfInterest* region);
     RegionOfInterest* getRegion() { return _region.get(); }
     const RegionOfInterest* getRegion() const { return _region.get(); }
-    /// Never null; null is refused. May be shared.
+    /// The anchor is never null. A null pointer is refused with a warning. Several close-ups may share an anchor.
     bool setAnchor(Anchor* anchor);
     Anchor* getAnchor() { return _anchor.get(); }
     const Anchor* getAnchor() const { return _anchor.get(); }
 
-    /// Whether it is drawn at all. True by default.
+    /// Whether the close-up is drawn. Default: true.
     bool setEnabled(bool enabled) { return assign("enabled", enabled ? 1.0 : 0.0); }
     bool getEnabled() const { return _enabled; }
 
-    /// From the region's centre, metres: east and north as the region's axes, and up; ±1e7. (0, 0, 2000) by default.
+    /// The offset from the region's centre along the region's axes x, y and up, metres, ±1e7. Default: (0, 0, 2000).
     bool setOffset(const osg::Vec3d& offset)
     {
         return assign({{"offsetX", offset.x()}, {"offsetY", offset.y()}, {"offsetHeight", offset.z()}});
     }
     osg::Vec3d getOffset() const { return {_offsetX, _offsetY, _offsetHeight}; }
-    /// 0.001…1000 in the plane; 0…1000 for heights, where 0 is a flat map. All 1.5 by default.
+    /// The scales in the plane, 0.001…1000, and of heights, 0…1000. A height scale of 0 makes a flat map. Default: 1.5
+    /// for all.
     bool setScale(double x, double y, double height)
     {
         return assign({{"scaleX", x}, {"scaleY", y}, {"scaleHeight", height}});
@@ -70,58 +74,61 @@ public:
         FIXED,
         BILLBOARD
     };
-    /// SCENE by default.
+    /// Default: SCENE.
     bool setOrientation(Orientation orientation) { return assign("orientation", orientation); }
     Orientation getOrientation() const { return static_cast<Orientation>(_orientation); }
-    /// The paper's α and β: about the x axis, the far side rising, and about the vertical; radians, −2π…2π. 0 by default.
+    /// The paper's α: the rotation about the x axis, which lifts the far side, radians, −2π…2π. Default: 0.
     bool setTilt(double tilt) { return assign("tilt", tilt); }
     double getTilt() const { return _tilt; }
+    /// The paper's β: the rotation about the vertical, radians, −2π…2π. Default: 0.
     bool setTurn(double turn) { return assign("turn", turn); }
     double getTurn() const { return _turn; }
 
     enum Edge
     {
-        FRAGMENTS, ///< cut along the mask's border, sharp at any size
-        PRIMITIVES ///< the triangles that lie in the mask wholly (the paper)
+        FRAGMENTS, ///< cuts fragments along the mask's border, sharp at any size
+        PRIMITIVES ///< keeps the triangles that lie wholly in the mask (the paper)
     };
-    /// FRAGMENTS by default.
+    /// How the border of the close-up is cut. Default: FRAGMENTS.
     bool setEdge(Edge edge) { return assign("edge", edge); }
     Edge getEdge() const { return static_cast<Edge>(_edge); }
 
-    /// How far vertices that tessellation adds (CloseUps::setTessellation) leave the flat triangles for the curved surface that
-    /// the normals tell of, 0…1; so magnified ground is round. 0, flat, by default; ¾ is usual.
+    /// How far the vertices that tessellation adds (CloseUps::setTessellation) move from the flat triangles to the
+    /// curved surface that the normals describe, 0…1. Magnified ground then looks round. A usual value is ¾. The
+    /// default, 0, is flat.
     bool setRoundness(double share) { return assign("roundness", share); }
     double getRoundness() const { return _roundness; }
 
-    /// The colour of anchor and lines, which ties the close-up to its region (paper: P2). Orange by default.
+    /// The colour of the anchor and the lines, rgb, 0…1 each. It ties the close-up to its region (paper: P2). Default:
+    /// orange.
     bool setColor(const osg::Vec3d& color)
     {
         return assign({{"red", color.x()}, {"green", color.y()}, {"blue", color.z()}});
     }
     osg::Vec3d getColor() const { return {_red, _green, _blue}; }
 
-    /// The layer of CloseUps' SurfaceData that it shows in the place of the scene's colours; "" for none, which is the default,
-    /// as is any name that the data has not. Values need a table.
+    /// The name of the layer of CloseUps' SurfaceData that replaces the scene's colours. "", the default, and unknown
+    /// names mean no layer. A layer of values uses a color table.
     void setSurface(const std::string& layer);
     const std::string& getSurface() const { return _surface; }
-    /// How much of the layer shows over the scene's colours, 0…1. 1 by default.
+    /// The share of the layer in the colour, 0…1. The scene's colours are the rest. Default: 1.
     bool setSurfaceOpacity(double opacity) { return assign("surfaceOpacity", opacity); }
     double getSurfaceOpacity() const { return _surfaceOpacity; }
-    /// Colours for the layer's values, over the table's own range. Null, the default, takes a ready one.
+    /// The colours for the layer's values, over the table's own range. With null, the default, a ready table is used.
     bool setTable(ColorTable* table);
     ColorTable* getTable() { return _table.get(); }
     const ColorTable* getTable() const { return _table.get(); }
     enum Lighting
     {
-        AS_SCENE, ///< the scene's colours with their light; layers get none
-        UNLIT,    ///< the layer as it is
-        SUN       ///< by the data's NORMAL layer and a sun of the close-up's own
+        AS_SCENE, ///< the scene's colours with their light; a layer has no light
+        UNLIT,    ///< the layer without light
+        SUN       ///< light from the data's NORMAL layer and a sun of the close-up's own
     };
-    /// AS_SCENE by default.
+    /// Default: AS_SCENE.
     bool setLighting(Lighting lighting) { return assign("lighting", lighting); }
     Lighting getLighting() const { return static_cast<Lighting>(_lighting); }
-    /// Where SUN stands: azimuth clockwise from the region's y axis, radians −2π…2π, and elevation 0…π/2. 315° and 45° by
-    /// default, as on maps.
+    /// The direction of the sun for SUN: azimuth clockwise from the region's y axis, radians, −2π…2π, and elevation,
+    /// radians, 0…π/2. Default: 315° and 45°, as on maps.
     bool setSun(double azimuth, double elevation)
     {
         return assign({{"sunAzimuth", azimuth}, {"sunElevation", elevation}});
@@ -129,36 +136,41 @@ public:
     double getSunAzimuth() const { return _sunAzimuth; }
     double getSunElevation() const { return _sunElevation; }
 
-    /// Styles: saturation and contrast 0…4, 1 leaves colours alone; brightness −1…1 is added; opacity 0…1.
+    /// The saturation of the colours, 0…4. Default: 1, unchanged.
     bool setSaturation(double saturation) { return assign("saturation", saturation); }
     double getSaturation() const { return _saturation; }
+    /// The contrast of the colours, 0…4. Default: 1, unchanged.
     bool setContrast(double contrast) { return assign("contrast", contrast); }
     double getContrast() const { return _contrast; }
+    /// A brightness that is added, −1…1. Default: 0.
     bool setBrightness(double brightness) { return assign("brightness", brightness); }
     double getBrightness() const { return _brightness; }
+    /// The opacity of the close-up, 0…1. Default: 1.
     bool setOpacity(double opacity) { return assign("opacity", opacity); }
     double getOpacity() const { return _opacity; }
-    /// Bits 0…255: the projective mappings that it shows, by their channels; so a close-up has a set of its own. 255, all,
-    /// by default. The overview shows those of channel 1 where a program gives it the define GEOFX_MAPPING_CHANNELS 1.
+    /// The channels of the projective mappings that the close-up shows, as 8 bits, 0…255. A close-up can thus have its
+    /// own set of mappings. Default: 255, all. To show only mappings of channel 1 in the overview, a program gives it
+    /// the define GEOFX_MAPPING_CHANNELS 1.
     bool setMappingChannels(int channels) { return assign("mappingChannels", channels); }
     int getMappingChannels() const { return _mappingChannels; }
 
     enum Activity
     {
-        ACTIVE,
-        REGION_ONLY, ///< the line around the region (paper: Figure 5.a)
-        NO_ANCHOR,   ///< (5.b)
-        DESATURATED  ///< (5.c)
+        ACTIVE,      ///< the whole close-up with anchor and lines
+        REGION_ONLY, ///< only the line around the region (paper: Figure 5.a)
+        NO_ANCHOR,   ///< the close-up and the line around its region, without the anchor (Figure 5.b)
+        DESATURATED  ///< the whole close-up, nearly grey (Figure 5.c)
     };
-    /// ACTIVE by default.
+    /// Default: ACTIVE.
     bool setActivity(Activity activity) { return assign("activity", activity); }
     Activity getActivity() const { return static_cast<Activity>(_activity); }
 
-    /// How fast `turn` grows by itself, radians a second of the simulation time, −10…10; 0 by default. (Paper: III.B)
+    /// The growth of `turn`, radians per second of simulation time, −10…10 (paper: Section III.B). Default: 0.
     bool setTurnRate(double rate) { return assign("turnRate", rate); }
     double getTurnRate() const { return _turnRate; }
 
-    /// `offset + R · S · v` in the region's frame for a simulation time, seconds; of SCENE, else without the camera's part.
+    /// The matrix of `offset + R · S · v` in the region's frame at a simulation time, seconds. It omits the camera's
+    /// part of FIXED and BILLBOARD.
     osg::Matrixd shape(double time) const;
 
     const Properties& properties() const override;

@@ -16,39 +16,41 @@
 namespace osgGeoFX
 {
 
-/** Close-ups by hand (paper: interactive close-ups, Section III.B).
+/** Handles close-ups with the mouse (paper: interactive close-ups, Section III.B).
 
-    A click on a close-up or on its region, or the pointer over them, chooses it: it becomes active, and the others take an
-    inactive look. A click beside all of them chooses none: then each looks as it did before. The key `u` cycles through the
-    modes CLICK, HOVER and OFF. Shift and the left button drag a close-up in the plane parallel to the picture, in all modes.
+    A click on a close-up or on its region chooses it. In the mode HOVER the pointer chooses it, too. The chosen
+    close-up becomes active and all others get an inactive look. A click elsewhere chooses none, and each close-up gets
+    back its former look. The key `u` cycles through the modes CLICK, HOVER and OFF. Shift and the left button drag a
+    close-up parallel to the image plane, in all modes.
 
-    What the program itself does to CloseUp::setActivity() while one is chosen is lost. Serves one view, in its event
-    traversal. */
+    Changes that the program makes with CloseUp::setActivity() while a close-up is chosen are lost. A handler serves
+    one view and works in its event traversal.
+    @ingroup closeup */
 class OSGGEOFX_EXPORT CloseUpHandler : public osgGA::GUIEventHandler
 {
 public:
-    /// `closeUps` is an effect of the scene.
+    /// `closeUps` must be an effect of `scene`.
     CloseUpHandler(EffectScene& scene, CloseUps& closeUps);
 
     enum Mode
     {
         OFF,
         CLICK,
-        HOVER ///< clicks as well
+        HOVER ///< the pointer and clicks choose
     };
-    /// CLICK by default. OFF chooses none.
+    /// Default: CLICK. OFF chooses none.
     void setMode(Mode mode);
     Mode getMode() const { return _mode; }
-    /// The key that goes on to the next mode, of osgGA::GUIEventAdapter; `u` by default, 0 for none.
+    /// The key that switches to the next mode, as in osgGA::GUIEventAdapter. 0 means none. Default: `u`.
     void setModeKey(int key) { _modeKey = key; }
     int getModeKey() const { return _modeKey; }
-    /// What those look like that are not chosen; ACTIVE is refused. DESATURATED by default.
+    /// The look of close-ups that are not chosen. ACTIVE is refused with false and a warning. Default: DESATURATED.
     bool setInactiveLook(CloseUp::Activity look);
     CloseUp::Activity getInactiveLook() const { return _inactiveLook; }
 
-    /// One of the effect's; null for none.
+    /// Chooses a close-up of the effect. A null pointer chooses none.
     void choose(CloseUp* closeUp);
-    /// Null where none is.
+    /// The chosen close-up. Null if none is chosen.
     CloseUp* chosen() const;
 
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/CloseUpPicking.h>
 
-#include <osgGeoFX/closeup/LiftFrame.h>
-#include <osgGeoFX/effect/DrawableTriangles.h>
+#include <osgGeoFX/closeup/detail/LiftFrame.h>
+#include <osgGeoFX/effect/detail/DrawableTriangles.h>
 #include <osgGeoFX/scene/DeformedView.h>
 
 #include <osg/LOD>

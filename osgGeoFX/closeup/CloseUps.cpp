@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/CloseUps.h>
 
-#include <osgGeoFX/closeup/CloseUpCamera.h>
+#include <osgGeoFX/closeup/detail/CloseUpCamera.h>
 #include <osgGeoFX/effect/PerCamera.h>
 
 #include <osg/GLExtensions>
@@ -178,17 +178,17 @@ void CloseUps::cull(const ScenePass& pass)
                 " samples along a pixel's side in the place of " + std::to_string(_supersampling) +
                 ", for the picture would have more than the " + std::to_string(limit) +
                 " texels of this GPU; make the picture smaller or lower supersampling.";
-    const CloseUpCamera::Task task = {drawn,
-                                      _surfaceData,
-                                      _drawing->textures.update(drawn, _surfaceData),
-                                      getPipeline(),
-                                      _tessellation,
-                                      _opacity,
-                                      samples,
-                                      _depthTest,
-                                      _maxLayers,
-                                      {pass.units[0], pass.units[1], pass.units[2]},
-                                      static_cast<unsigned int>(_blockBinding)};
+    const CloseUpTask task = {drawn,
+                              _surfaceData,
+                              _drawing->textures.update(drawn, _surfaceData),
+                              getPipeline(),
+                              _tessellation,
+                              _opacity,
+                              samples,
+                              _depthTest,
+                              _maxLayers,
+                              {pass.units[0], pass.units[1], pass.units[2]},
+                              static_cast<unsigned int>(_blockBinding)};
     CloseUpCamera& camera = _drawing->cameras.of(pass.outer, pass.scene);
     const std::string sentence = camera.cull(pass, task);
     _drawing->saw(camera.statistics(), sentence);

@@ -13,9 +13,9 @@
 namespace osgGeoFX
 {
 
-/** Detail and overview in one picture: regions of everything below the EffectScene, lifted out, scaled and re-styled
-    above the overview, each tied to its place by an anchor. The system of Trapp and others, "Interactive close-ups for
-    digital terrain models".
+/** Shows detail and overview together: regions of everything below the EffectScene are lifted, scaled and restyled
+    above the overview, and an anchor ties each to its place. This is the system of Trapp and others, "Interactive
+    close-ups for digital terrain models".
 
     @code
     osg::ref_ptr<osgGeoFX::CloseUps> closeUps = new osgGeoFX::CloseUps;
@@ -27,24 +27,27 @@ namespace osgGeoFX
     scene->addEffect(closeUps);
     @endcode
 
-    **What it draws.** The overview stays as it is. Each close-up and each anchor is drawn into a layer of a texture array,
-    from the parts of the scene that its region touches, and the layers are put over the overview: nearer ones over farther ones,
-    hidden by what stands in front of them, or, where depthTest is off, in the close-ups' order. Effects that stand in the scene before and after it
-    are in the close-ups, too: mappings show in them, bends move them as wholes.
+    **What it draws.** The overview stays unchanged. Each close-up and each anchor is drawn into its own layer of a
+    texture array, from the parts of the scene that its region touches. The layers are then drawn over the overview.
+    Nearer layers cover farther ones, and objects in front of a layer hide it. If depthTest is off, the close-ups'
+    order counts instead. Other effects of the scene, before or after this one, also appear in the close-ups: mappings
+    show in them, and bends move them as rigid pieces.
 
-    **Pipelines.** SINGLE_PASS draws what lies in a region once, as detailed as in the overview, and a geometry shader copies each
-    triangle into the layers of those regions that it touches (paper: Section IV.A, SPFR). MULTI_PASS draws each close-up by itself,
-    as detailed as its size in the picture asks for (MPFR). Both draw the same picture of the same geometry. AUTOMATIC takes
-    SINGLE_PASS where regions share most of what lies over them and no close-up could be more detailed than the overview, and
-    MULTI_PASS otherwise: it goes by the camera's last frame. What is not made of triangles or has shaders of its own needs
-    MULTI_PASS, which then draws all of it.
+    **Pipelines.** SINGLE_PASS draws the objects in a region once, at the overview's level of detail. A geometry shader
+    copies each triangle into the layers of the regions that it touches (paper: Section IV.A, SPFR). MULTI_PASS draws
+    each close-up separately, at the level of detail that its size in the image needs (MPFR). Both draw the same image
+    of the same geometry. AUTOMATIC uses SINGLE_PASS if the regions share most of the objects over them and no close-up
+    could be more detailed than the overview, and MULTI_PASS otherwise. It decides by the camera's last frame. Objects
+    that are not made of triangles, or that have their own shaders, need MULTI_PASS, which then draws everything.
 
-    **Frames.** As EffectScene has them. Near and far planes come to contain the close-ups.
+    **Frames.** World coordinates are those of EffectScene. Near and far planes are extended to contain the close-ups.
 
-    **Limits.** Any number of close-ups; each takes some of the GPU's memory as large as it is in the picture. Where the GPU
-    has too few layers for SINGLE_PASS, MULTI_PASS draws, and one warning says so.
+    **Limits.** The number of close-ups is unlimited. Each takes GPU memory in proportion to its size in the image. If
+    the GPU has too few layers for SINGLE_PASS, MULTI_PASS draws, and one warning says so.
 
-    **Threads.** Changed between frames; any number of cameras, views and contexts draws it, in all threading models. */
+    **Threads.** A program changes a CloseUps between frames. Any number of cameras, views and contexts may draw it, in
+    all threading models. Setters refuse values out of range: they return false, warn once and keep the former value.
+    @ingroup closeup */
 class OSGGEOFX_EXPORT CloseUps : public PassEffect, public TextureUser
 {
 public:
@@ -52,15 +55,17 @@ public:
     CloseUps(const CloseUps& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, CloseUps);
 
-    /// Null and one that is there already are refused. Without the depth test it is drawn over those before it.
+    /// Adds a close-up. A null pointer and a close-up that was added before are refused with a warning. Without the
+    /// depth test, the new close-up is drawn over all earlier ones.
     bool addCloseUp(CloseUp* closeUp);
+    /// Returns false if the close-up is not in the list.
     bool removeCloseUp(CloseUp* closeUp);
     void removeCloseUps();
     unsigned int getNumCloseUps() const { return static_cast<unsigned int>(_closeUps.size()); }
     CloseUp* getCloseUp(unsigned int i) { return _closeUps[i].get(); }
     const CloseUp* getCloseUp(unsigned int i) const { return _closeUps[i].get(); }
 
-    /// What the close-ups' surface layers are taken from; null for none.
+    /// The source of the close-ups' surface layers. Null for none.
     bool setSurfaceData(SurfaceData* data);
     SurfaceData* getSurfaceData() { return _surfaceData.get(); }
     const SurfaceData* getSurfaceData() const { return _surfaceData.get(); }
@@ -71,28 +76,29 @@ public:
         SINGLE_PASS,
         MULTI_PASS
     };
-    /// AUTOMATIC by default.
+    /// Default: AUTOMATIC.
     bool setPipeline(Pipeline pipeline) { return assign("pipeline", pipeline); }
     Pipeline getPipeline() const { return static_cast<Pipeline>(_pipeline); }
-    /// Parts of a triangle's edge at most, 1…64, where a mask changes or round ground is magnified and the GPU has OpenGL 4: so
-    /// stretched anchors and borders of triangles are as fine as the mask. 1 for none; 16 by default.
+    /// The largest number of parts of a triangle's edge, 1…64. Tessellation acts where a mask changes or magnified
+    /// ground is round, if the GPU has OpenGL 4. Stretched anchors and the borders of triangles are then as fine as
+    /// the mask. 1 turns it off. Default: 16.
     bool setTessellation(int parts) { return assign("tessellation", parts); }
     int getTessellation() const { return _tessellation; }
-    /// Of all close-ups together, 0…1; what keys turn. 1 by default.
+    /// The opacity of all close-ups together, 0…1. Keys change it in a viewer. Default: 1.
     bool setOpacity(double opacity) { return assign("opacity", opacity); }
     double getOpacity() const { return _opacity; }
-    /// Samples along each side of a pixel in the layers, 1…4; smooth edges cost their square. 1 by default. Fewer, after a
-    /// warning, where the picture would be larger than the GPU's textures.
+    /// The number of samples along each side of a pixel in the layers, 1…4. The cost of smooth edges grows with its
+    /// square. If the image would exceed the GPU's texture size, fewer samples are taken after a warning. Default: 1.
     bool setSupersampling(int samples) { return assign("supersampling", samples); }
     int getSupersampling() const { return _supersampling; }
-    /// Whether what stands in front hides close-ups and anchors. True by default; the paper draws them over everything.
+    /// Whether objects in front hide close-ups and anchors. The paper draws them over everything. Default: true.
     bool setDepthTest(bool test) { return assign("depthTest", test ? 1.0 : 0.0); }
     bool getDepthTest() const { return _depthTest; }
-    /// Layers of a texture array at most, 2…2048: less where the GPU has less. 2048 by default.
+    /// The largest number of layers of a texture array, 2…2048. The GPU may allow fewer. Default: 2048.
     bool setMaxLayers(int layers) { return assign("maxLayers", layers); }
     int getMaxLayers() const { return _maxLayers; }
-    /// Texture units of masks, tables and surface layers while the layers are drawn, 4…31, all different. −1, the default,
-    /// leaves one to the scene, which gives 11, 12 and 13 where they are free.
+    /// The texture units of the masks, tables and surface layers while the layers are drawn, 4…31, all different. With
+    /// the default, −1, the scene chooses a unit: 11, 12 and 13 if they are free.
     bool setUnits(int masks, int tables, int surface)
     {
         return assign({{"maskUnit", masks}, {"tableUnit", tables}, {"surfaceUnit", surface}});
@@ -100,19 +106,19 @@ public:
     int getMaskUnit() const { return _maskUnit; }
     int getTableUnit() const { return _tableUnit; }
     int getSurfaceUnit() const { return _surfaceUnit; }
-    /// Binding point of the uniform block, 0…35. 7 by default.
+    /// The binding point of the uniform block, 0…35. Default: 7.
     bool setBlockBinding(int binding) { return assign("blockBinding", binding); }
     int getBlockBinding() const { return _blockBinding; }
 
-    /// What the last frame of some camera came to.
+    /// Numbers about the last frame that a camera drew.
     struct Statistics
     {
-        Pipeline pipeline = AUTOMATIC; ///< the one that drew
-        int closeUps = 0;              ///< in sight
-        int layers = 0;
-        int width = 0, height = 0; ///< of a layer, texels
-        int drawables = 0;         ///< handed to the GPU for all layers together
-        bool tessellated = false;
+        Pipeline pipeline = AUTOMATIC; ///< the pipeline that drew
+        int closeUps = 0;              ///< number of close-ups in sight
+        int layers = 0;                ///< layers of the texture array
+        int width = 0, height = 0;     ///< size of a layer, texels
+        int drawables = 0;             ///< drawables that the GPU got for all layers together
+        bool tessellated = false;      ///< whether tessellation was on
     };
     Statistics statistics() const;
 

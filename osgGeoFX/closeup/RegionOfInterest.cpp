@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/RegionOfInterest.h>
 
-#include <osgGeoFX/closeup/RegionMask.h>
+#include <osgGeoFX/closeup/detail/RegionMask.h>
 #include <osgGeoFX/effect/GlslFunctions.h>
 
 #include <osg/Math>

@@ -16,20 +16,21 @@
 namespace osgGeoFX
 {
 
-/** Several pictures of one part of the ground, all of one size and place: the layers of one texture array (paper:
-    interactive close-ups, Section IV.B.2, "surface data"). A close-up names the one that it shows.
+/** Several images of one part of the ground, with one size and one place: the layers of one texture array (paper:
+    interactive close-ups, Section IV.B.2, "surface data"). A close-up names the layer that it shows.
 
-    **Frame.** As ProjectiveMappings has it: on a projected terrain its coordinates less the origin; on a globe x east and
-    y north about the origin, of a place's foot on the ellipsoid (PROJ's `+proj=ortho` there). The pictures cover the
-    rectangle from `low` to `high` in it, metres; row 0 is the southernmost.
+    **Frame.** It is the frame of ProjectiveMappings. On a projected terrain its coordinates are positions minus the
+    origin. On a globe x points east and y north about the origin, of a point's foot on the ellipsoid (PROJ's
+    `+proj=ortho` there). The images cover the rectangle from `low` to `high`, metres. Row 0 is the southernmost.
 
-    **Layers.** Floats, four for each texel: colours 0…1 with alpha; of values the first is the value and the fourth 1
-    where there is one; of NORMAL the first three are the unit normal, x east, y north, z up; of ASPECT the second and the
-    third are its sine and cosine, which may be interpolated where angles may not. Texels without data are 0 in all four
-    (only colours may stand under an alpha of 0): values and normals that were interpolated between texels are to be divided by
-    the fourth. Classes are never interpolated.
+    **Layers.** A texel has four floats. Colours are 0…1 with alpha. For values the first float is the value, and the
+    fourth is 1 where there is a value. For NORMAL the first three are the unit normal: x east, y north, z up. For
+    ASPECT the second and third are the sine and cosine of the angle, which may be interpolated although angles may
+    not. Texels without data are 0 in all four floats (only colours may have rgb under an alpha of 0). A reader divides
+    values and normals that it interpolated between texels by the fourth float. Classes are never interpolated.
 
-    Changed by the thread of the frame loop between frames; reading is thread-safe. */
+    The thread of the frame loop changes the data, between frames. Reading is thread-safe.
+    @ingroup closeup */
 class OSGGEOFX_EXPORT SurfaceData : public PropertyHolder
 {
 public:
@@ -39,40 +40,43 @@ public:
 
     enum Kind
     {
-        COLOR,     ///< a picture
-        HEIGHT,    ///< metres
+        COLOR,     ///< colours with alpha
+        HEIGHT,    ///< heights, metres
         NORMAL,    ///< unit normals
         SLOPE,     ///< 0…π/2, radians from the horizontal
-        ASPECT,    ///< 0…2π, radians clockwise from north, of the way down; none where it is level
-        OCCLUSION, ///< 0…1, the share of the sky that is seen
-        CLASS,     ///< numbers that name something, such as land cover
+        ASPECT,    ///< downhill direction, 0…2π, radians clockwise from north; no data on level ground
+        OCCLUSION, ///< 0…1, the visible share of the sky
+        CLASS,     ///< numbers that stand for something, such as land cover
         VALUE      ///< any other numbers
     };
 
-    /// The frame's origin on a projected terrain, metres. (0, 0) by default.
+    /// The frame's origin on a projected terrain, metres, ±5e7. Default: (0, 0).
     bool setOrigin(const osg::Vec2d& origin)
     {
         return assign({{"originX", origin.x()}, {"originY", origin.y()}});
     }
     osg::Vec2d getOrigin() const { return {_originX, _originY}; }
-    /// The frame's origin on a globe, radians. (0, 0) by default.
+    /// The frame's origin on a globe, radians. Default: (0, 0).
     bool setGeodeticOrigin(double longitude, double latitude)
     {
         return assign({{"longitude", longitude}, {"latitude", latitude}});
     }
     double getLongitude() const { return _longitude; }
     double getLatitude() const { return _latitude; }
-    /// The rectangle that the pictures cover, metres in the frame. low must be less than high. ±1000 by default.
+    /// The rectangle that the images cover, metres in the frame. `low` must be less than `high` in x and in y.
+    /// Default: ±1000.
     bool setRectangle(const osg::Vec2d& low, const osg::Vec2d& high);
     osg::Vec2d getLow() const { return {_lowX, _lowY}; }
     osg::Vec2d getHigh() const { return {_highX, _highY}; }
 
-    /// One more layer. Refused: null, a name that is there already or empty, a size other than the first one's, any format but
-    /// GL_RGBA and GL_FLOAT, rows that are not close together or not from below, more than 16384 texels on a side.
+    /// Adds a layer. It is refused with false and a warning if the image is null, if the name is empty or in use, if
+    /// the size differs from the first layer's or exceeds 16384 texels on a side, if the format is not GL_RGBA and
+    /// GL_FLOAT, or if the rows have gaps or run from the top.
     bool addLayer(const std::string& name, Kind kind, osg::Image* image);
-    /// One more layer: what follows from the first HEIGHT layer, as derive() tells. Refused where there is none.
+    /// Adds a layer that is derived from the first HEIGHT layer; see derive(). It is refused if there is no such
+    /// layer.
     bool addDerived(const std::string& name, Kind kind, double radius = 2000.0);
-    /// False where there is none of that name.
+    /// Returns false if no layer has this name.
     bool removeLayer(const std::string& name);
     int getNumLayers() const { return static_cast<int>(_layers.size()); }
     const std::string& getLayerName(int layer) const { return _layers[static_cast<std::size_t>(layer)].name; }
@@ -81,30 +85,32 @@ public:
     {
         return _layers[static_cast<std::size_t>(layer)].image;
     }
-    /// −1 where there is none of that name.
+    /// The index of the layer, or −1 if no layer has this name.
     int findLayer(const std::string& name) const;
-    /// Texels along x and y; both 0 without layers.
+    /// The number of texels along x and y. Both are 0 without layers.
     int getWidth() const { return _layers.empty() ? 0 : _layers.front().image->s(); }
     int getHeight() const { return _layers.empty() ? 0 : _layers.front().image->t(); }
-    /// From texel to texel, metres along x and y; 0 without layers.
+    /// The distance from texel to texel along x and y, metres. 0 without layers.
     osg::Vec2d getSpacing() const;
 
-    /** Colours from an image of GL_RGB, RGBA, BGR, BGRA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, ALPHA (white), RED or RG,
-        of bytes, shorts, ints (signed or not) or floats; what lies beyond 0…1 is cut. Row 0 is the lowest also of an image
-        whose origin is TOP_LEFT. Resampled to a size where one is given: averaged where it shrinks and linear where it
-        grows, weighted with alpha. Null, with a warning, for any other image or size. */
+    /** Makes a layer of colours from an image of GL_RGB, RGBA, BGR, BGRA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, ALPHA
+        (white), RED or RG, with bytes, shorts, ints (signed or not) or floats. Values beyond 0…1 are clamped. Row 0 is
+        the lowest, also for an image whose origin is TOP_LEFT. If a size is given, the image is resampled, weighted
+        with alpha: averaged where it shrinks, linear where it grows. Any other image or size gives null, with a
+        warning. */
     static osg::ref_ptr<osg::Image> toLayer(const osg::Image& image, int width = 0, int height = 0);
 
-    /** What follows from heights: NORMAL, SLOPE, ASPECT and OCCLUSION, of a HEIGHT layer whose texels are `spacing` apart,
-        metres. Slopes by central differences (Horn's weights); texels beside holes and at the borders use what there is.
-        OCCLUSION is the share of the sky, weighted by the cosine to the vertical, above the horizon in 16 directions, made by
-        all that stands within `radius` metres, to a texel; holes and what lies beyond the borders hide nothing. Null, with a
-        warning, where the kind is none of these, the image no layer, a spacing not positive or the radius negative.
-        OCCLUSION takes a second or two for a million texels, whatever the radius. Thread-safe. */
+    /** Derives NORMAL, SLOPE, ASPECT or OCCLUSION from a HEIGHT layer whose texels are `spacing` apart, metres. Slopes
+        are central differences (Horn's weights). Texels beside holes and at the borders use the heights that exist.
+        OCCLUSION is the share of the sky above the horizon in 16 directions, weighted by the cosine to the vertical,
+        for obstacles within `radius` metres, accurate to a texel. Holes and the area beyond the borders hide nothing.
+        The result is null, with a warning, for another kind, for an image that is no layer, and if a spacing is not
+        positive or the radius negative. OCCLUSION takes a second or two for a million texels, whatever the radius.
+        Thread-safe. */
     static osg::ref_ptr<osg::Image> derive(Kind kind, const osg::Image& heights, const osg::Vec2d& spacing,
                                            double radius = 2000.0);
 
-    /// From the frame to world coordinates: with the ellipsoid on a globe, null on a projected terrain.
+    /// The matrix from the frame to world coordinates. `ellipsoid` is null on a projected terrain.
     osg::Matrixd frameToWorld(const osg::EllipsoidModel* ellipsoid) const;
 
     const Properties& properties() const override;

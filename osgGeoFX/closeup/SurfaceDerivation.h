@@ -13,20 +13,23 @@
 namespace osgGeoFX
 {
 
-/** Heights in rows from the south, metres, with NaN where there is none; and what SurfaceData derives from them.
-    Thread-safe. */
+/** The heights of a layer in rows from the south, metres, with NaN where there is none, and the layers that
+    SurfaceData derives from them. Thread-safe.
+    @ingroup closeup */
 class OSGGEOFX_EXPORT SurfaceDerivation
 {
 public:
-    /// From a layer of SurfaceData; `spacing` in metres, both positive.
+    /// `heights` is a layer of SurfaceData. `spacing` is in metres, both positive.
     SurfaceDerivation(const osg::Image& heights, const osg::Vec2d& spacing);
 
+    /// The derived layers of these kinds. SurfaceData::derive() describes them.
     osg::ref_ptr<osg::Image> normals() const;
     osg::ref_ptr<osg::Image> slopes() const;
     osg::ref_ptr<osg::Image> aspects() const;
+    /// `radius` is in metres.
     osg::ref_ptr<osg::Image> occlusion(double radius) const;
 
-    /// An image of a layer's format, all 0.
+    /// An image with the format of a layer, all 0.
     static osg::ref_ptr<osg::Image> emptyLayer(int width, int height);
 
 private:

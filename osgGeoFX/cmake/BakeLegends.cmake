@@ -1,6 +1,6 @@
 # Writes the legends NAMES of FOLDER as C++ string literals to OUTPUT.
 set(text "// Made by osgGeoFX/cmake/BakeLegends.cmake from data/legends; not to be edited.\n")
-string(APPEND text "#include <osgGeoFX/geodata/BakedLegends.h>\n\nnamespace\n{\n")
+string(APPEND text "#include <osgGeoFX/geodata/detail/BakedLegends.h>\n\nnamespace\n{\n")
 foreach(name ${NAMES})
   # Hexadecimal, because CMake's lists mangle brackets and semicolons.
   file(READ ${FOLDER}/${name}.csv hex HEX)

@@ -1,4 +1,13 @@
 include(${CMAKE_CURRENT_LIST_DIR}/OpenSceneGraphTarget.cmake)
+if(geofx_missing_osg)
+  message(FATAL_ERROR "${geofx_missing_osg}")
+endif()
+# For contexts without a window alone.
+find_package(OpenGL QUIET COMPONENTS EGL)
+option(GEOFX_BUILD_OFFSCREEN "Build offscreen/ and the programs that stand on it (needs EGL)" ${OpenGL_EGL_FOUND})
+if(GEOFX_BUILD_OFFSCREEN AND NOT OpenGL_EGL_FOUND)
+  message(FATAL_ERROR "EGL was not found; on Debian install libegl-dev, or set GEOFX_BUILD_OFFSCREEN=OFF to build without.")
+endif()
 set(GEOFX_OSG_PLUGIN_DIR osgPlugins-${OPENSCENEGRAPH_VERSION}
     CACHE INTERNAL "Folder in which osgDB looks for plugins, relative to the library folder")
 

@@ -9,20 +9,21 @@ set(geofx_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/osgGeoFX)
 install(TARGETS ${geofx_targets} EXPORT osgGeoFXTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_COMPONENT Development)
 set_target_properties(${geofx_targets} PROPERTIES INSTALL_RPATH "$ORIGIN")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/osgGeoFX DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.h" PATTERN "cmake" EXCLUDE PATTERN "terrain" EXCLUDE PATTERN "geodata" EXCLUDE)
+# What lies in a folder's detail/ is between the library's own files.
+set(geofx_installed_folders ${geofx_folders})
 if(GEOFX_BUILD_DATA)
-  # Those that export something; the others are between the library's own files and include GDAL.
-  foreach(folder terrain geodata)
-    file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/osgGeoFX/${folder}/*.h)
-    foreach(header ${headers})
-      file(STRINGS ${header} exported REGEX OSGGEOFXDATA_EXPORT)
-      if(exported)
-        install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/osgGeoFX/${folder})
-      endif()
-    endforeach()
-  endforeach()
+  list(APPEND geofx_installed_folders ${geofx_data_folders})
 endif()
+foreach(folder ${geofx_installed_folders})
+  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/osgGeoFX/${folder}/*.h)
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/osgGeoFX/${folder})
+endforeach()
+set(geofx_top_headers Export.h osgGeoFX.h)
+if(GEOFX_BUILD_DATA)
+  list(APPEND geofx_top_headers osgGeoFXData.h)
+endif()
+list(TRANSFORM geofx_top_headers PREPEND ${PROJECT_SOURCE_DIR}/osgGeoFX/)
+install(FILES ${geofx_top_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/osgGeoFX)
 install(EXPORT osgGeoFXTargets NAMESPACE osgGeoFX:: DESTINATION ${geofx_config_dir})
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/osgGeoFXConfig.cmake.in

@@ -7,17 +7,23 @@
 namespace osgGeoFX
 {
 
-/** The bird's-eye view: a map below, and the skyline above it in the same picture (paper, Section 3.1).
+/** The bird's-eye view shows a map below and the skyline above it in one picture (paper, Section 3.1).
 
-    The ground up to `focusLine` (b_i in the paper) is drawn as ever. Behind it the ground bends down until it lies along
-    the ray of `horizonLine` (r_i), so that the horizon stays on that line of the picture, whatever the camera does.
-    Lines are fractions of the picture's height from its bottom. With a rolled camera the line runs through the
-    middle of horizonLine to the vanishing point of the level direction across the view, as a real horizon does.
+    The ground up to `focusLine` (b_i in the paper) stays as it is. Behind that line the ground bends down until it
+    lies along the ray of `horizonLine` (r_i). The horizon therefore stays at that line of the viewport, however the
+    camera moves. Both lines are fractions of the viewport's height, measured from its bottom. If the camera rolls, the
+    horizon runs through the middle of horizonLine to the vanishing point of the horizontal direction across the view,
+    as a natural horizon does.
 
-    The view is there where the rays of both lines meet the reference plane; where they do not (the eye is below it, or the
-    natural horizon is below horizonLine) nothing is deformed, and the bend fades out before. It bends by 90° at most, and
-    fades where the horizon's ray points backwards by up to 15°, or the focus line's by more than 75°; so a camera may
-    look straight down and beyond. Any projection: off axis, orthographic (fading below a pitch of 3°), stereo. */
+    The bend exists only if the rays of both lines meet the reference plane. They miss it if the eye is below the plane
+    or if the natural horizon is below horizonLine. In these cases nothing is deformed. The bend fades out before such
+    a case is reached.
+
+    The bend angle is at most 90°. A camera may look straight down and beyond: the bend fades out as the ray of
+    horizonLine turns from straight down to 15° backwards, or as the ray of focusLine turns from 75° backwards to the
+    horizontal. Every projection works: off-axis, stereo and orthographic. With an orthographic projection the bend
+    fades out as the view direction comes within 3° of the horizontal.
+    @ingroup deformation */
 class OSGGEOFX_EXPORT BirdsEyeView : public PerspectiveBend
 {
 public:
@@ -25,14 +31,15 @@ public:
     BirdsEyeView(const BirdsEyeView& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, BirdsEyeView);
 
-    /// Where the transition zone begins, 0…1 and below horizonLine; 0.4 by default.
+    /// The line where the transition zone begins, 0…1. It must be less than horizonLine. Default: 0.4.
     bool setFocusLine(double fraction) { return assign("focusLine", fraction); }
     double getFocusLine() const { return _focusLine; }
-    /// Where the horizon lies, 0…1; 0.85 by default.
+    /// The line at which the horizon lies, 0…1. It must be more than focusLine. Default: 0.85.
     bool setHorizonLine(double fraction) { return assign("horizonLine", fraction); }
     double getHorizonLine() const { return _horizonLine; }
-    /// Moves the axis nearer, from 0 (the paper's; the context is seen from its edge) to 0.9, so that the context lies
-    /// lower and some of its ground shows; the horizon stays. 0 by default.
+    /// Moves the axis of the bend towards the camera, as a share from 0 to 0.9. With 0, the paper's value, the viewer
+    /// sees the context from its edge. A larger value lowers the context and shows more of its ground. The horizon
+    /// stays. Default: 0.
     bool setContextTilt(double share) { return assign("contextTilt", share); }
     double getContextTilt() const { return _contextTilt; }
 

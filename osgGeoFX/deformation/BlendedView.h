@@ -8,15 +8,17 @@
 namespace osgGeoFX
 {
 
-/** A bird's-eye view from high up, a pedestrian's view near the ground, and one bend between them on the way.
+/** Changes from a pedestrian's view near the ground to a bird's-eye view high up, with a smooth transition.
 
-    Below `lowHeight` of the eye the pedestrian's view is in force as it is, above `highHeight` the bird's-eye view.
-    On the way up between them the first one's bend unfolds until, halfway, the ground lies as it is, and then the
-    second one's bends it down; both smoothly, and each with its own start, width and reference plane. Where one of the
-    views has no bend, as a bird's eye that sees the natural horizon, its part of the way is plain.
+    Below an eye height of `lowHeight` the pedestrian's view applies unchanged. Above `highHeight` the bird's-eye view
+    does. Between the two heights the pedestrian's bend first flattens until, halfway, the ground is undeformed. Then
+    the bird's-eye bend grows. Each view uses its own start, width and reference plane. If one of the views has no
+    bend, for instance a bird's-eye view that sees the natural horizon, the ground is undeformed in its half of the
+    transition.
 
-    Curve, styles and details are this effect's own; the two views add what is their own: lines, distances, angles,
-    reference planes, `tallest`. Their `enabled` is left out of account. */
+    The curve, the styles and the levels of detail are set on this effect. The lines, distances, angles, reference
+    planes and `tallest` are set on the two views. The `enabled` flags of the two views are ignored.
+    @ingroup deformation */
 class OSGGEOFX_EXPORT BlendedView : public PerspectiveBend
 {
 public:
@@ -24,17 +26,21 @@ public:
     BlendedView(const BlendedView& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, BlendedView);
 
-    /// Height of the eye above the ellipsoid or map zero, metres; 300 and below highHeight.
+    /// Height of the eye above the ellipsoid or above map zero, metres, −12 000…1e7. It must be less than highHeight.
+    /// Default: 300.
     bool setLowHeight(double metres) { return assign("lowHeight", metres); }
     double getLowHeight() const { return _lowHeight; }
-    /// The same; 1500 by default.
+    /// Height of the eye above the ellipsoid or above map zero, metres, −12 000…1e7. It must be more than lowHeight.
+    /// Default: 1500.
     bool setHighHeight(double metres) { return assign("highHeight", metres); }
     double getHighHeight() const { return _highHeight; }
 
-    /// Never null; null is refused.
+    /// The view is never null. A null pointer is refused with a warning: the setter returns false and keeps the former
+    /// view.
     bool setBirdsEyeView(BirdsEyeView* view);
     BirdsEyeView* getBirdsEyeView() { return _birdsEye.get(); }
     const BirdsEyeView* getBirdsEyeView() const { return _birdsEye.get(); }
+    /// The view is never null. A null pointer is refused in the same way.
     bool setPedestrianView(PedestrianView* view);
     PedestrianView* getPedestrianView() { return _pedestrian.get(); }
     const PedestrianView* getPedestrianView() const { return _pedestrian.get(); }

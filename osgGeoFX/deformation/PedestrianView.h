@@ -7,10 +7,12 @@
 namespace osgGeoFX
 {
 
-/** The pedestrian's view: the surroundings as they are, and the ground ahead folded up like a map (paper, Section 3.2).
+/** The pedestrian's view keeps the surroundings as they are and folds up the ground ahead like a map (paper, Section
+    3.2).
 
-    The bend keeps its distance from the camera and its angle in the world, so looking up shows more of the map. It lies
-    across the camera's heading, whatever the pitch. */
+    The bend keeps its distance from the camera and its angle in the world. A camera that looks up therefore sees more
+    of the map. The axis of the bend is perpendicular to the camera's heading, whatever the pitch.
+    @ingroup deformation */
 class OSGGEOFX_EXPORT PedestrianView : public PerspectiveBend
 {
 public:
@@ -18,13 +20,14 @@ public:
     PedestrianView(const PedestrianView& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, PedestrianView);
 
-    /// β, by which the context is folded up, radians, 0…π/2; 60° by default.
+    /// The angle β by which the context is folded up, radians, 0…π/2. Default: π/3 (60°).
     bool setBendAngle(double angle) { return assign("bendAngle", angle); }
     double getBendAngle() const { return _bendAngle; }
-    /// d_b, from the camera's foot to the line b, metres, −1e7…1e7; 300 by default.
+    /// The distance d_b from the point below the camera to the line b, metres, −1e7…1e7. Default: 300.
     bool setFocusDistance(double metres) { return assign("focusDistance", metres); }
     double getFocusDistance() const { return _focusDistance; }
-    /// d_s, the width of the transition zone, metres, 0…1e7; 500 by default. It is wider where `tallest` needs it.
+    /// The width d_s of the transition zone, metres, 0…1e7. The zone becomes wider if `tallest` requires it. Default:
+    /// 500.
     bool setZoneWidth(double metres) { return assign("zoneWidth", metres); }
     double getZoneWidth() const { return _zoneWidth; }
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/PerspectiveBend.h>
 
-#include <osgGeoFX/effect/EyeVector.h>
+#include <osgGeoFX/effect/detail/EyeVector.h>
 
 #include <algorithm>
 #include <array>

@@ -9,28 +9,34 @@
 namespace osgGeoFX
 {
 
-/// Where a bend lies before one camera, metres and radians; lengths in the reference plane T from the eye's foot.
+/// The position of a bend for one camera, metres and radians. Lengths are measured in the reference plane T, from the
+/// point of T below the eye.
+/// @ingroup deformation
 struct OSGGEOFX_EXPORT BendPlacement
 {
-    double planeHeight = 0.0; ///< of the eye above T
-    double start = 0.0;       ///< s_b, the line b
-    double size = 0.0;        ///< d, the width of the transition zone
-    double angle = 0.0;       ///< β, positive upwards
+    double planeHeight = 0.0; ///< height of the eye above T
+    double start = 0.0;       ///< s_b: the line b, where the transition zone begins
+    double size = 0.0;        ///< d: the width of the transition zone
+    double angle = 0.0;       ///< β: positive if the ground bends up
 };
 
-/** What the multi-perspective views have in common: the terrain bends along a straight line across the view.
+/** Base class of the multi-perspective views. The terrain bends along a straight line across the view.
 
-    Lorenz, Trapp, Döllner, Jobst: "Interactive Multi-Perspective Views of Virtual 3D Landscape and City Models" (2008),
-    Section 4. The reference plane T is horizontal (on a globe it touches the ellipsoid below the eye). Before the line b
-    lies the focus, where nothing moves. Behind the transition zone lies the context, which moves as one rigid piece.
+    Lorenz, Trapp, Döllner, Jobst: "Interactive Multi-Perspective Views of Virtual 3D Landscape and City Models"
+    (2008), Section 4. The reference plane T is horizontal. On a globe it is parallel to the tangent plane of the
+    ellipsoid below the eye. The focus lies in front of the line b, and nothing moves there. The transition zone lies
+    behind b. The context lies behind the zone and moves as one rigid piece.
 
-    The curve of the zone: "bezier" (the paper's, parameter t = s/d), "arcLength" (the same curve, along which equal
-    ground takes equal length; the default), or "circularArc" (which keeps lengths on T). Light and shadows are those
-    of the terrain as it is. Things that stand on the inner side of the curve must be lower than its radius, or they would
-    fold over: the zone is widened as far as `tallest` needs.
+    The zone has one of three curves: "bezier" is the paper's, with the parameter t = s/d. "arcLength", the default, is
+    the same curve, but equal lengths of ground have equal lengths on it. "circularArc" preserves lengths on T.
 
-    Styles: a fragment has a value q, 0 in the focus and 1 in the context; the context's saturation and brightness
-    apply by q, and so does a map from texture unit `mapUnit` in the place of the ground's own colours. */
+    An object on the inner side of the curve folds over if its height above T (below T, where the ground bends down)
+    reaches the curve's radius. `tallest` prevents this: PedestrianView widens the zone, and BirdsEyeView reduces the
+    bend angle. Light and shadows are computed on the undeformed terrain.
+
+    Each fragment has a style value q, from 0 in the focus to 1 in the context. The context's saturation and brightness
+    are blended in by q. So is the map of texture unit `mapUnit`, which replaces the ground's own colours.
+    @ingroup deformation */
 class OSGGEOFX_EXPORT PerspectiveBend : public Deformation
 {
 public:
@@ -43,48 +49,51 @@ public:
     enum PlaneReference
     {
         GROUND, ///< planeElevation is the height of T above the ellipsoid or map zero
-        EYE     ///< planeElevation is the height of T above the eye, so negative
+        EYE     ///< planeElevation is the height of T above the eye, so it is negative
     };
 
+    /// The curve of the transition zone. Default: ARC_LENGTH.
     bool setCurve(Curve curve) { return assign("curve", curve); }
     Curve getCurve() const { return static_cast<Curve>(_curve); }
-    /// The raised reference plane (paper, Section 3), metres, −12 000…1e7; 0 by default.
+    /// Raises the reference plane (paper, Section 3), metres, −12 000…1e7. Default: 0.
     bool setPlaneElevation(double metres) { return assign("planeElevation", metres); }
     double getPlaneElevation() const { return _planeElevation; }
+    /// The level from which planeElevation is measured. Default: GROUND.
     bool setPlaneReference(PlaneReference reference) { return assign("planeReference", reference); }
     PlaneReference getPlaneReference() const { return static_cast<PlaneReference>(_planeReference); }
-    /// Height above T of the tallest thing in the zone, metres; −1, the default, takes it from the database.
+    /// Largest distance from T, metres, of an object on the inner side of the bend: above T where the ground bends up,
+    /// below T where it bends down. −1…1e6. The default, −1, takes the distance from the database.
     bool setTallest(double metres) { return assign("tallest", metres); }
     double getTallest() const { return _tallest; }
 
-    /// How much finer the level of detail is in the transition zone (paper, Section 4); 1…16, 2 by default.
+    /// Factor by which the level of detail is finer in the transition zone (paper, Section 4), 1…16. Default: 2.
     bool setTransitionDetail(double factor) { return assign("transitionDetail", factor); }
     double getTransitionDetail() const { return _transitionDetail; }
-    /// The same for the context; 0.1…16, 1 by default. Less than 1 spares the disk.
+    /// The same factor for the context, 0.1…16. A value below 1 loads less from the disk. Default: 1.
     bool setContextDetail(double factor) { return assign("contextDetail", factor); }
     double getContextDetail() const { return _contextDetail; }
 
-    /// 0 grey, 1 (the default) as it is, up to 2.
+    /// Saturation of the context, 0…2: 0 is grey and 1, the default, leaves it unchanged.
     bool setContextSaturation(double factor) { return assign("contextSaturation", factor); }
     double getContextSaturation() const { return _contextSaturation; }
-    /// 0 black, 1 (the default) as it is, up to 2.
+    /// Brightness of the context, 0…2: 0 is black and 1, the default, leaves it unchanged.
     bool setContextBrightness(double factor) { return assign("contextBrightness", factor); }
     double getContextBrightness() const { return _contextBrightness; }
-    /// Texture unit of a map that the context shows, 0…3; −1, the default, for none.
+    /// Texture unit of a map that the context shows, 0…3. The default, −1, means no map.
     bool setMapUnit(int unit) { return assign("mapUnit", unit); }
     int getMapUnit() const { return _mapUnit; }
 
-    /// Where the bend lies for this camera; nothing where there is none.
+    /// The placement of the bend for this camera. Empty if there is no bend.
     std::optional<BendPlacement> placement(const ViewGeometry& view) const
     {
         return placementOf(getCurve(), view);
     }
-    /// The same with a curve that need not be its own.
+    /// The same for a given curve, which may differ from this view's own curve.
     virtual std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const = 0;
 
     osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
     std::string vertexFile() const override { return "stages/bendview.glsl"; }
-    /// None where the context looks like the focus.
+    /// Empty if the context has the same style as the focus.
     std::string fragmentFile() const override;
     std::string constants() const override;
     int mapUnit() const override { return _mapUnit; }
@@ -95,13 +104,15 @@ protected:
     ~PerspectiveBend() override;
 
     static Properties bendProperties();
-    /// Height of the eye above T.
+    /// The height of the eye above T, metres.
     double planeHeight(const ViewGeometry& view) const;
-    /// T's height above the ground's zero.
+    /// The height of T above the ellipsoid or map zero, metres.
     double planeLevel(const ViewGeometry& view) const;
-    /// The largest curvature that a bend of this kind may have above or below T, 1/metre.
+    /// The largest curvature, 1/metre, at which nothing folds over in a bend with the sign of `angle`. `reach` is a
+    /// distance on T from the eye, metres: on a globe the ground falls away below T within it.
     double mostCurvature(const ViewGeometry& view, double angle, double reach) const;
-    /// Direction D: across the view, in T; its length falls from 1 to 0 where the camera's roll nears 90°.
+    /// The direction D of the view in T, in eye space. Its length falls from 1 to 0 as the camera's roll approaches
+    /// 90°.
     static osg::Vec3d heading(const ViewGeometry& view);
 
 private:

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 
-#include <osgGeoFX/effect/EyeVector.h>
-#include <osgGeoFX/effect/GlobeFrame.h>
+#include <osgGeoFX/effect/detail/EyeVector.h>
+#include <osgGeoFX/effect/detail/GlobeFrame.h>
 
 #include <algorithm>
 #include <cmath>

@@ -8,15 +8,17 @@
 namespace osgGeoFX
 {
 
-/** Vertical exaggeration at run time, on projected terrains and on globes.
+/** Exaggerates heights at run time, on projected terrains and on globes.
 
-    Every point moves along the vertical through it: its height above the ellipsoid (above z = 0 on a projected
-    terrain) becomes base + factor · (height − base). On a globe the vertical is each point's own. Lighting follows the
-    exaggerated surface unless `relight` is off.
+    Every point moves along its vertical. Its height above the ellipsoid (above z = 0 on a projected terrain) becomes
+    base + factor · (height − base). On a globe each point has its own vertical. Lighting follows the exaggerated
+    surface unless `relight` is off.
 
-    The result does not depend on the camera. Positions are exact within 1e-5 of the viewing distance, heights on the
-    Earth's ellipsoid within 1 mm at 9 km, times the factor. In a scene with a bend it stands before it. For collision
-    with the ground and for picking, see DeformedView. Not in the papers; users of globes ask for it. */
+    The result does not depend on the camera. Positions are exact within 1e-5 of the viewing distance. Heights on the
+    Earth's ellipsoid are exact within 1 mm at 9 km, times the factor. If a scene also has a bend, the program adds the
+    exaggeration before the bend. Use DeformedView for picking and for collision with the ground. This effect is not in
+    the papers. Users of globes ask for it.
+    @ingroup deformation */
 class OSGGEOFX_EXPORT VerticalExaggeration : public Deformation, public NormalTurner
 {
 public:
@@ -25,13 +27,13 @@ public:
                          const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, VerticalExaggeration);
 
-    /// 0.01…100; 1, the default, changes nothing.
+    /// The factor, 0.01…100. The default, 1, changes nothing.
     bool setFactor(double factor) { return assign("factor", factor); }
     double getFactor() const { return _factor; }
-    /// The height that stays as it is, metres; 0 by default.
+    /// The height that stays unchanged, metres, −12 000…12 000. Default: 0.
     bool setBase(double height) { return assign("base", height); }
     double getBase() const { return _base; }
-    /// Whether slopes are lit as steep as they look; true by default.
+    /// Whether the lighting uses the exaggerated slopes. Default: true.
     bool setRelight(bool relight) { return assign("relight", relight ? 1.0 : 0.0); }
     bool getRelight() const { return _relight; }
 

@@ -21,99 +21,115 @@
 namespace osgGeoFX
 {
 
-/// A ball in eye space, metres.
+/// A bounding sphere in eye space, metres.
+/// @ingroup effect
 struct Ball
 {
     osg::Vec3d centre;
     double radius = 0.0;
 };
 
-/// A box in eye space, metres: any parallelepiped.
+/// An oriented bounding box in eye space, metres. It may be any parallelepiped.
+/// @ingroup effect
 struct OSGGEOFX_EXPORT EyeBox
 {
     osg::Vec3d centre;
-    osg::Vec3d half[3]; ///< from the centre to the middle of three faces
+    osg::Vec3d half[3]; ///< half axes: from the centre to the centres of three faces
 
+    /// A box in eye space. `modelView`: from the frame of `box` to eye space.
     static EyeBox of(const osg::BoundingBox& box, const osg::Matrixd& modelView);
-    /// A ball around it.
+    /// A bounding sphere of the box.
     Ball ball() const;
-    /// Puts its eight corners in the place of what was in there.
+    /// Replaces the content of `points` with the eight corners.
     void corners(std::vector<osg::Vec3d>& points) const;
 };
 
-/// What a deformed box lies within: the convex hull of points, and a margin around it, metres.
+/// The bound of a deformed box: the convex hull of points in eye space, enlarged by a margin, metres.
+/// @ingroup effect
 struct Hull
 {
     std::vector<osg::Vec3d> points;
     double margin = 0.0;
 };
 
-/** A deformation as one camera has it in one frame: a function of eye space, and what culling must know of it.
+/** A deformation for one camera and one frame: a function of eye space, and the bounds that culling needs.
 
-    Immutable, so every thread may use it. All positions are in eye space, metres. */
+    An object is immutable, so every thread may use it. All positions are in eye space, metres.
+
+    @ingroup effect */
 class OSGGEOFX_EXPORT DeformationFrame : public osg::Referenced
 {
 public:
+    /// The deformed place of a position.
     virtual osg::Vec3d deform(const osg::Vec3d& position) const = 0;
-    /// The same for bounds, faster, and off by roughness() at most within a ball.
+    /// A faster approximation of deform(), for bounds. Its error within a sphere is at most roughness(), metres.
     virtual osg::Vec3d roughly(const osg::Vec3d& position) const { return deform(position); }
     virtual double roughness(const Ball&) const { return 0.0; }
     /// The inverse of deform().
     virtual osg::Vec3d undeform(const osg::Vec3d& position) const = 0;
-    /// What becomes of the unit normal of a surface at a position that has not been deformed.
+    /// The deformed normal of a surface. `position` and the unit normal `normal` are those before the deformation.
     virtual osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const = 0;
-    /// The turn of what stands at a position and keeps its shape; a pure rotation.
+    /// The rotation of a rigid object that stands at a position: a pure rotation, by default the identity.
     virtual osg::Matrixd turn(const osg::Vec3d& position) const;
-    /// 0 in the focus, 1 in the context.
+    /// The style of a position: 0 in the focus, 1 in the context; 0 by default.
     virtual double style(const osg::Vec3d&) const { return 0.0; }
 
-    /// What the function does to a ball at most.
+    /// The strongest effect that the function can have within a sphere.
     enum class Reach
     {
-        Identity, ///< nothing
-        Affine,   ///< the same affine map everywhere in it
+        Identity, ///< no position changes
+        Affine,   ///< one affine map applies to the whole sphere
         Curved
     };
     virtual Reach reach(const Ball& ball) const = 0;
-    /// By how much distances within a ball grow at most; at least 1.
+    /// The largest factor by which a distance within a sphere grows (a Lipschitz constant); at least 1.
     virtual double lipschitz(const Ball& ball) const = 0;
-    /// A ball around what becomes of a ball: what follows from the four above. To be overridden for speed alone.
+    /// A bounding sphere of a deformed sphere. The default follows from roughly(), roughness(), reach() and
+    /// lipschitz(). Override it only for speed.
     virtual Ball bound(const Ball& ball) const;
-    /// A hull around what becomes of a box: what follows from the four above and sag(). To be overridden for speed and a
-    /// tighter hull. `hull` is reused for speed; `fineness` is DeformationChain::bound()'s.
+    /// A hull around a deformed box. The default follows from the same four functions and from sag(). Override it for
+    /// speed or for a tighter hull. `hull` receives the result; callers reuse it for speed. `fineness` is that of
+    /// DeformationChain::bound().
     virtual void boundBox(const EyeBox& box, Hull& hull, double fineness) const;
 
-    /// How far from straight the image of a straight edge within a ball is: a bound of the second derivative along
-    /// it, and of the jump of the first, both for the whole edge. Between the ends of an edge, straight
-    /// interpolation is off by `curve / 8 + kink / 4` at most.
+    /// How far the image of a straight edge departs from a straight line. Both derivatives are with respect to a
+    /// parameter that runs from 0 to 1 along the edge. Linear interpolation between the deformed ends of the edge has
+    /// an error of at most `curve / 8 + kink / 4`.
     struct Sag
     {
-        double curve = 0.0; ///< metres
-        double kink = 0.0;  ///< metres
-        double most = 1e30; ///< metres that it can be off in any case
+        double curve = 0.0; ///< bound of the second derivative, metres
+        double kink = 0.0;  ///< bound of the jump of the first derivative, metres
+        double most = 1e30; ///< bound of the error in any case, metres
     };
-    /// What follows from lipschitz() unless it is overridden.
+    /// The sag of an edge within a sphere. `edge` is the vector between its ends. The default follows from lipschitz().
     virtual Sag sag(const Ball& ball, const osg::Vec3d& edge) const;
 
-    /// How much more detail a ball deserves, beside what follows from lipschitz(): 1 as much as ever, 2 twice.
+    /// A factor for the level of detail of a sphere, beside the one that follows from lipschitz(): 1 (the default)
+    /// keeps the detail, 2 doubles it.
     virtual double detail(const Ball&) const { return 1.0; }
-    /// Where the picture is not as large as distances in eye space tell: the distance, metres, from which a plain view would
-    /// show what is in a ball as large; levels of detail go by it. Nothing where they tell it.
+    /// The distance, metres, that levels of detail use where distances in eye space do not tell how large things
+    /// appear. A plain view shows the content of the sphere equally large at this distance. Empty, the default, where
+    /// distances in eye space are right.
     virtual std::optional<double> viewDistance(const Ball&) const { return std::nullopt; }
-    /// How long an edge of a flat mesh in a ball may be, metres: as only its ends are moved, it then misses its curved image by
-    /// `tolerance` at most, a share of the distance from the eye.
+    /// The longest edge, metres, that a flat mesh within a sphere may have; HUGE_VAL, the default, for no limit. Only
+    /// the ends of an edge are deformed, so the edge misses its curved image. The error must not exceed the second
+    /// parameter, a share of the distance from the eye.
     virtual double longestEdge(const Ball&, double) const { return HUGE_VAL; }
-    /// Whether nothing in a ball is to be drawn, though it may lie in the picture. What is drawn may reach beyond the ball by
-    /// `room`, in the picture's x and y (−1…1).
+    /// Whether nothing within a sphere needs to be drawn, although it may lie in the view frustum. What is drawn may
+    /// extend beyond the sphere by the second parameter, in normalised device coordinates (x and y, −1…1). False by
+    /// default.
     virtual bool hides(const Ball&, const osg::Vec2d&) const { return false; }
-    /// The same of a box; to be overridden where a box tells more.
+    /// The same for a box. Override it where a box allows a better answer than its bounding sphere.
     virtual bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const { return hides(box.ball(), room); }
-    /// Whether hides() or complaint() can ever say anything. False spares culling many boxes, and they are not asked.
+    /// Whether hides() or complaint() can ever give an answer. Where this is false, culling need not ask them and tests
+    /// fewer boxes. True by default.
     virtual bool looksAtBoxes() const { return true; }
-    /// A sentence where something in this box cannot be drawn well; said once by the scene.
+    /// A sentence that tells why something in this box cannot be drawn well; empty where it can. The scene prints it
+    /// once, as a warning.
     virtual std::string complaint(const EyeBox&) const { return {}; }
 
-    /// The uniforms of the deformation's shader code, by their names without the prefix. All finite.
+    /// The uniforms of the deformation's shader code. Their names have no prefix. All values must be finite; otherwise
+    /// the scene leaves the deformation out for this camera and frame.
     using Uniforms = std::vector<std::pair<std::string, osg::Vec4d>>;
     virtual Uniforms uniforms() const = 0;
 
@@ -121,36 +137,42 @@ protected:
     ~DeformationFrame() override;
 };
 
-/** An effect that moves the geometry below its scene, on the GPU, as a continuous function of eye space.
+/** An effect that moves the geometry below its scene on the GPU. The movement is a continuous function of eye space.
 
-    To write a new one:
-    - put the function into shaders/lib, where the GPU, the culling and the tests run the same text, and list it in
-      shaders/CMakeLists.txt;
-    - derive a DeformationFrame, which calls that text in double and bounds it;
-    - derive a Deformation, which makes the frame for a camera, lists its properties, and names the shader file with
-      `vec3 SLOT_deform(vec3)`, `vec3 SLOT_normal(vec3 position, vec3 normal)` and `float SLOT_style(vec3)`.
-    Culling, level of detail, near and far planes, picking, serializers, scene files and the tests of all of them then
-    work by themselves. VerticalExaggeration is an example.
+    To write a new deformation:
+    - Put the function into a file in shaders/lib, and list the file in shaders/CMakeLists.txt and
+      effect/GlslFunctions.h. The GPU, culling and the tests then run the same text.
+    - Derive a class from DeformationFrame. It calls this text in double precision and computes bounds.
+    - Derive a class from Deformation. It makes the frame for a camera, lists its properties, and names the shader
+      file with `vec3 SLOT_deform(vec3)`, `vec3 SLOT_normal(vec3 position, vec3 normal)` and
+      `float SLOT_style(vec3)`.
+    - Add a line to viewer/EffectKinds.cpp.
 
-    Several deformations in one scene act one after the other, in the order in which the scene has them. */
+    Culling, level of detail, near and far planes, picking, serializers, scene files and the tests of all of them
+    then work without further code. VerticalExaggeration is an example.
+
+    Several deformations of one scene act one after the other, in the order in which the scene has them.
+
+    @ingroup effect */
 class OSGGEOFX_EXPORT Deformation : public Effect
 {
 public:
     const Deformation* asDeformation() const override { return this; }
 
-    /// What it does for this camera; null where it does nothing.
+    /// The deformation for this camera; null where it does nothing.
     virtual osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const = 0;
 
-    /// What the ground is like after this deformation, for those that follow it in the scene.
+    /// Changes the ground to what it is after this deformation, for the deformations that follow in the scene.
     virtual void changeGround(Ground&) const {}
 
-    /// The shader file in which `SLOT_` stands for the prefix of its names.
+    /// The vertex shader file. `SLOT_` in it stands for the prefix of its names.
     virtual std::string vertexFile() const = 0;
-    /// The file with `vec4 SLOT_restyle(vec4 colour, vec4 map, float style)`; empty where it has none.
+    /// The fragment shader file with `vec4 SLOT_restyle(vec4 colour, vec4 map, float style)`; empty, the default, for
+    /// none.
     virtual std::string fragmentFile() const { return {}; }
-    /// Text that goes before the files: constants that are worth compiling in.
+    /// Text that is put before the files, such as constants that are worth compiling in.
     virtual std::string constants() const { return {}; }
-    /// Texture unit of a map that the context shows in place of its colours; −1 for none.
+    /// The texture unit of a map that the context shows instead of its colours; −1, the default, for none.
     virtual int mapUnit() const { return -1; }
 
 protected:

@@ -13,18 +13,22 @@
 namespace osgGeoFX
 {
 
-/** All deformations of one camera and frame, one after the other. Immutable; every thread may use it.
+/** All deformations of one camera and frame, applied one after the other. Positions are in eye space, metres.
 
-    The bounds are safe: nothing that the deformations make of a ball or a box lies outside of them. */
+    A chain does not change once it is filled, so every thread may use it. The bounds are conservative: nothing that
+    a sphere or a box becomes lies outside its bound.
+
+    @ingroup effect */
 class OSGGEOFX_EXPORT DeformationChain : public osg::Referenced
 {
 public:
+    /// Adds a deformation at the end of the chain.
     void add(osg::ref_ptr<const DeformationFrame> frame)
     {
         _looksAtBoxes = _looksAtBoxes || frame->looksAtBoxes();
         _frames.push_back(std::move(frame));
     }
-    /// Ground::tileEdge and Ground::tileError.
+    /// Sets the values of Ground::tileEdge and Ground::tileError, which lodLimit() needs.
     void setTiles(double edge, double error)
     {
         _tileEdge = edge;
@@ -34,36 +38,39 @@ public:
     const std::vector<osg::ref_ptr<const DeformationFrame>>& frames() const { return _frames; }
 
     osg::Vec3d deform(const osg::Vec3d& position) const;
-    /// The middle of bound(): near deform(), and faster.
+    /// A faster approximation of deform(): the centre of bound() for a sphere at this position.
     osg::Vec3d roughly(const osg::Vec3d& position) const;
     osg::Vec3d undeform(const osg::Vec3d& position) const;
     osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const;
+    /// The largest style of the deformations: 0 in the focus, 1 in the context.
     double style(const osg::Vec3d& position) const;
-    /// What takes an object that keeps its shape to its deformed place: eye space to eye space.
+    /// The matrix that moves a rigid object to its deformed place, from eye space to eye space. `reference` is the
+    /// object's reference point.
     osg::Matrixd placement(const osg::Vec3d& reference) const;
 
-    /// Whether nothing happens to any point of a ball.
+    /// Whether no point of a sphere moves.
     bool leavesAlone(const Ball& ball) const;
-    /// Whether nothing of a ball is to be drawn.
+    /// Whether nothing within a sphere or box needs to be drawn. `room` is that of DeformationFrame::hides().
     bool hides(const Ball& ball, const osg::Vec2d& room) const;
     bool hides(const EyeBox& box, const osg::Vec2d& room) const;
-    /// Whether hides() or a frame's complaint() can ever say anything.
+    /// Whether hides() or a frame's complaint() can ever give an answer.
     bool looksAtBoxes() const { return _looksAtBoxes; }
-    /// A ball around what becomes of a ball.
+    /// A bounding sphere of a deformed sphere.
     Ball bound(const Ball& ball) const;
-    /// A hull around what becomes of a box. `hull` is reused for speed. Its margin is to be no larger than `fineness`,
-    /// a share of the box's radius, for each of the box's axes, as far as some tens of points allow.
+    /// A hull around a deformed box. `hull` receives the result; callers reuse it for speed. `fineness` is the largest
+    /// margin wanted for each of the box's axes, as a share of the radius of the box's bounding sphere. The margin is
+    /// larger where it would need too many points (by default, more than 8 cells along an axis).
     void bound(const EyeBox& box, Hull& hull, double fineness = 0.02) const;
 
-    /// The distance, metres, at which an undeformed ball would deserve the level of detail that the deformed one does:
-    /// what LOD ranges are compared with. `viewPoint` is in eye space. `bound`: what bound() gives for the ball, by those who
-    /// have it.
+    /// The distance, metres, that LOD ranges are compared with. At this distance the undeformed sphere would need the
+    /// level of detail that the deformed one needs. `viewPoint` is in eye space. `bound` is the result of bound() for
+    /// this sphere, if the caller has it.
     double lodDistance(const Ball& ball, const osg::Vec3d& viewPoint, const Ball* bound = nullptr) const;
-    /// What is to be taken in the place of distances that are larger, LOD scale included, for the levels of detail of a node with
-    /// this ball: where the triangles of a tile, or of a mesh of one of its blocks, are too large for the deformation, one at
-    /// which finer ones are due, else infinite.
+    /// An upper limit of the distance, LOD scale included, that is compared with the ranges of a node with this
+    /// bounding sphere. The limit makes finer triangles due where those of a tile, or of a mesh of one of its blocks,
+    /// are too large for the deformation; elsewhere it is infinite.
     double lodLimit(const osg::LOD& node, const Ball& ball) const;
-    /// By how much lodDistance() asks for more detail than the distance to the deformed ball alone.
+    /// The factor by which lodDistance() asks for more detail than the distance to the deformed sphere alone.
     double detail(const Ball& ball) const;
 
 protected:
@@ -79,26 +86,29 @@ private:
     double _tileError = 0.0;
 };
 
-/// Whether a subgraph is deformed: the define GEOFX_DEFORMATION of the state sets down to it, and the program, by OSG's rules of
-/// inheritance, which are the GPU's.
+/// Whether a subgraph is deformed. This depends on the define GEOFX_DEFORMATION and on the program, in the state sets
+/// from the root down to the subgraph. OSG's rules of inheritance apply, as on the GPU.
+/// @ingroup effect
 struct OSGGEOFX_EXPORT DeformationSwitch
 {
     bool on = true;
     bool overridden = false;
-    const osg::StateAttribute* program = nullptr; ///< the one in force, of whatever class
+    const osg::StateAttribute* program = nullptr; ///< the program in force, of any class
     bool programOverridden = false;
-    /// Goes down into a state set; null is nothing.
+    /// Inherits from a state set on the way down; null changes nothing.
     void meet(const osg::StateSet* state);
 };
 
-/// By how much a matrix lengthens any vector at most (its spectral norm), rounded up, so that bounds do not shrink.
+/// The largest factor by which a matrix lengthens a vector (its spectral norm), rounded up so that bounds do not
+/// shrink.
 OSGGEOFX_EXPORT double largestScale(const osg::Matrixd& matrix);
 
-/// Where an object that keeps its shape goes: eye space to eye space; upright where it does not `turn`.
+/// The matrix that moves a rigid object to its deformed place, from eye space to eye space. The object is rotated only
+/// if `turn` is true.
 osg::Matrixd rigidPlacement(const DeformationChain& chain, const osg::Vec3d& reference, bool turn);
 
-/// The modelview matrix of one of a billboard's drawables, from that of the billboard: it turns to where the eye is as seen from its
-/// deformed place. It is still to be deformed itself.
+/// The modelview matrix of one of a billboard's drawables. `modelView` is that of the billboard. The drawable faces the
+/// eye as seen from its deformed place. The result does not include the deformation itself.
 osg::Matrixd billboardModelView(const DeformationChain& chain, const osg::Billboard& billboard,
                                 unsigned int drawable, const osg::Matrixd& modelView);
 

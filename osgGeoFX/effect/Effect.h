@@ -13,24 +13,27 @@ class Deformation;
 class PassEffect;
 class SurfaceEffect;
 
-/** What an EffectScene hosts: something that changes how everything below the scene is drawn.
+/** An effect of an EffectScene: it changes how everything below the scene is drawn.
 
-    An effect is a set of parameters. What follows from them for one camera and frame is computed while culling and
-    kept with that camera, so one effect may be hosted by several scenes and drawn by several cameras at once. */
+    An effect is a set of parameters. Culling computes what follows from them for each camera and frame, and keeps it
+    with that camera. So several scenes may host one effect, and several cameras may draw it at once.
+
+    @ingroup effect */
 class OSGGEOFX_EXPORT Effect : public PropertyHolder
 {
 public:
-    /// Whether it is in force. Switching changes defines and uploads nothing; the first time that a combination of
-    /// effects is in force, its variant of the shaders is compiled. The first of its class's properties.
+    /// Switches the effect on or off; on by default. Switching changes defines and uploads nothing. A combination of
+    /// effects compiles its variant of the shaders when it is first drawn. A class with this switch lists
+    /// enabledProperty() as the first of its properties; without it, this setter refuses.
     bool setEnabled(bool enabled) { return assign("enabled", enabled ? 1.0 : 0.0); }
     bool getEnabled() const { return _enabled; }
 
-    /// The effect as a deformation, null where it is none.
+    /// The effect as a deformation; null if it is none.
     virtual const Deformation* asDeformation() const { return nullptr; }
-    /// The effect as one that colours surfaces, null where it is none.
+    /// The effect as one that colours surfaces; null if it is none.
     virtual SurfaceEffect* asSurfaceEffect() { return nullptr; }
     const SurfaceEffect* asSurfaceEffect() const { return const_cast<Effect*>(this)->asSurfaceEffect(); }
-    /// The effect as one that draws the scene again, null where it is none.
+    /// The effect as one that draws the scene again; null if it is none.
     virtual PassEffect* asPassEffect() { return nullptr; }
     const PassEffect* asPassEffect() const { return const_cast<Effect*>(this)->asPassEffect(); }
 
@@ -42,6 +45,7 @@ protected:
     }
     ~Effect() override;
 
+    /// The property "enabled", for the table of a class.
     static Property enabledProperty();
 
 private:

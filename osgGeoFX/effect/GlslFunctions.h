@@ -4,15 +4,16 @@
 
 #include <glm/glm.hpp>
 
-/** The functions of shaders/lib as C++, from the very text that the GPU runs: in double as `osgGeoFX::glsl`,
-    and in float, to see what a GPU loses, as `osgGeoFX::glslf`. Units and ranges are told in each file.
+/** The functions of shaders/lib as C++, from the same text that the GPU runs. `osgGeoFX::glsl` has them in double
+    precision; `osgGeoFX::glslf` has them in float, to show what a GPU loses. Each file tells its units and ranges.
 
-    A file of shaders/lib is written in what GLSL 3.30 and C++ with GLM have in common:
-    - pure functions, marked GEOFX_INLINE, and constants and structures; names begin with geofx_ or GEOFX_;
-    - the types below instead of float and vec2, and Number(0.5) instead of 0.5, which would be a double;
-      integers may stand in the arithmetic of scalars, not of vectors and not as arguments;
-    - no swizzles of several components, uniforms, samplers, gl_... or main; `out` parameters need a macro;
-    - what it includes stands in #ifndef __cplusplus, since this header includes it all, in order, twice. */
+    A file of shaders/lib uses only what GLSL 3.30 and C++ with GLM have in common:
+    - It has pure functions, marked GEOFX_INLINE, and constants and structures. All names begin with geofx_ or
+      GEOFX_.
+    - It uses the types below instead of float and vec2, and Number(0.5) instead of 0.5, which would be a double.
+      Integers may stand in arithmetic with scalars, but not with vectors and not as arguments.
+    - It has no swizzles of several components, uniforms, samplers, gl_... or main. `out` parameters need a macro.
+    - Its includes stand in #ifndef __cplusplus, because this header includes all files, in order, twice. */
 #define GEOFX_INLINE inline
 
 namespace osgGeoFX

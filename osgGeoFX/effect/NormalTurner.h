@@ -7,12 +7,14 @@
 namespace osgGeoFX
 {
 
-/// What a Deformation is, too, whose SLOT_normal changes normals: those that fragments have for themselves (effect/TileNormals.h).
+/// A second base class of a Deformation whose SLOT_normal changes normals. It also turns the normals that fragments
+/// take from a database's texture.
+/// @ingroup effect
 class NormalTurner
 {
 public:
-    /// The shader file with `vec3 SLOT_normal(vec3 position, vec3 normal)` for fragments, without inputs and outputs. The position
-    /// is that before all deformations.
+    /// The shader file with `vec3 SLOT_normal(vec3 position, vec3 normal)` for the fragment stage. It has no inputs and
+    /// outputs. `position` is in eye space, before all deformations.
     virtual std::string normalFile() const = 0;
 
 protected:

@@ -7,8 +7,6 @@
 namespace osgGeoFX
 {
 
-ScenePass::~ScenePass() = default;
-
 PassEffect::~PassEffect() = default;
 
 osg::ref_ptr<TileListener> PassEffect::tileListener(const Ground&)

@@ -16,14 +16,18 @@
 namespace osgGeoFX
 {
 
-/** What an effect keeps for each camera: for each cull visitor of OSG, and so for one thread at a time and for one of the frames
-    that are on their way, and for each scene that hosts the effect. Or, with another Owner, for each object that stands for
-    as much, such as a camera's state set. What belongs to owners that are gone goes as soon as another one asks. */
+/** Data that an effect keeps for each camera, and for each scene that hosts the effect.
+
+    A camera is known by its cull visitor of OSG. So one thread at a time uses the data, for one of the frames that
+    are in flight. Another Owner may take the place of the cull visitor, for example a camera's state set. Data of an
+    owner that no longer exists is deleted when any owner asks next.
+
+    @ingroup effect */
 template<class Data, class Owner = osgUtil::CullVisitor>
 class PerCamera
 {
 public:
-    /// The camera's own; other threads may ask for theirs at the same time.
+    /// The data of an owner, made at the first call. Other threads may ask for theirs at the same time.
     Data& of(Owner& owner, const osg::Group* scene = nullptr)
     {
         // Let go of when the lock is, since it may take others.

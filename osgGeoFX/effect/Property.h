@@ -12,32 +12,34 @@
 namespace osgGeoFX
 {
 
-/** A property of one of the kit's classes: what serializers, scene files, programs and tests need to know of it.
+/** Describes a property of one of the kit's classes, for serializers, scene files, programs and tests.
 
-    Values travel as doubles: metres and radians, a flag as 0 or 1, a choice as its place in `choices`. */
+    Values are doubles: metres, radians, 0 or 1 for a flag, the index in `choices` for a choice.
+
+    @ingroup effect */
 struct OSGGEOFX_EXPORT Property
 {
     enum class Kind
     {
         Number,
         Integer,
-        Angle, ///< radians; people type degrees
+        Angle, ///< radians; degrees in its text form
         Flag,
         Choice
     };
 
-    std::string name; ///< as in the setter, with a small first letter
+    std::string name; ///< that of the setter, with a small first letter: "enabled" for setEnabled()
     Kind kind = Kind::Number;
     double defaultValue = 0.0;
-    double minimum = 0.0; ///< the smallest value that is taken
-    double maximum = 0.0;
+    double minimum = 0.0;             ///< the smallest value allowed
+    double maximum = 0.0;             ///< the largest value allowed
     std::string unit;                 ///< "m", "rad" or nothing
-    std::vector<std::string> choices; ///< of a choice, as a person types them
-    /// What one press of a key adds or, where keyScales is set, multiplies by; 0: keys leave the property alone.
+    std::vector<std::string> choices; ///< the text forms of a choice's values
+    /// What one press of a key adds or, if keyScales is true, multiplies by. 0: keys do not change the property.
     double keyStep = 0.0;
     bool keyScales = false;
     double (*get)(const osg::Object&) = nullptr;
-    void (*put)(osg::Object&, double) = nullptr; ///< without any check
+    void (*put)(osg::Object&, double) = nullptr; ///< sets the value without any check
 
     static Property number(std::string name, double value, double minimum, double maximum,
                            std::string unit = {});
@@ -46,23 +48,23 @@ struct OSGGEOFX_EXPORT Property
     static Property flag(std::string name, bool value);
     static Property choice(std::string name, int value, std::vector<std::string> choices);
 
-    /// Binds a member: `Property::number(...).of<&Class::_member>()`.
+    /// Binds a member variable: `Property::number(...).of<&Class::_member>()`.
     template<auto Member>
     Property of() &&;
-    /// Makes it what keys turn (EffectKeys) of its effect: `Property::number(...).of<...>().turnedBy(0.02)`.
+    /// Lets keys (EffectKeys) change the property by a step: `Property::number(...).of<...>().turnedBy(0.02)`.
     Property turnedBy(double step) &&;
-    /// The same for what grows by a factor.
+    /// The same with a factor in place of a step.
     Property turnedByFactor(double factor) &&;
-    /// What a value becomes by some presses of a key, less than 0 for the other way; it stays in the range.
+    /// The value after a number of key presses, clamped to the range. A negative number is for the opposite direction.
     double turned(double value, double presses) const;
 
-    /// The name for a person's text: degrees are said in it ("bendAngleDegrees").
+    /// The name in text form. That of an angle tells the unit: "bendAngleDegrees".
     std::string textName() const;
-    /// A value as a person types it: degrees, true or false, the name of a choice.
+    /// The text form of a value: an angle in degrees, a flag as true or false, a choice by its name.
     std::string text(double value) const;
-    /// The reverse. False, with a sentence in `error`, where the text is no such value or out of range.
+    /// Reads the text form of a value. False, with a sentence in `error`, if the text is no such value or out of range.
     bool parse(const std::string& text, double& value, std::string& error) const;
-    /// A sentence where the value is out of range or not a number; nothing where it is fine.
+    /// A sentence if the value is out of range, not a number, or not whole where it must be; empty if it is allowed.
     std::string refusal(double value) const;
 };
 

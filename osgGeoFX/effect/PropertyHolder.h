@@ -17,52 +17,62 @@ namespace osgGeoFX
 
 class PropertyHolder;
 
-/// Who wants to know of an object's changes.
+/// Is told of the changes of a PropertyHolder.
+/// @ingroup effect
 class PropertyListener
 {
 public:
+    /// Called after each change, by the thread that makes it.
     virtual void propertyChanged(PropertyHolder& holder) = 0;
 
 protected:
     ~PropertyListener() = default;
 };
 
-/** An object whose parameters stand in a table of properties, from which serializers, scene files, options and tests
-    follow.
+/** An object whose parameters stand in a table of properties. Serializers, scene files, options and tests use this
+    table.
 
-    Setters refuse what makes no sense: they return false, say why in one warning of OSG, and leave the last good
-    state. setProperty() is the same with the sentence at hand. As everything in a scene graph, such objects are changed
-    by the thread of the frame loop between frames (in the update or event traversal). */
+    A setter refuses an invalid value: it returns false, tells the reason in one warning of OSG, and keeps the last
+    valid state. setProperty() does the same and returns the reason as a sentence. The thread of the frame loop
+    changes such objects between frames (in the update or event traversal), as everything in a scene graph.
+
+    @ingroup effect */
 class OSGGEOFX_EXPORT PropertyHolder : public osg::Object
 {
 public:
     /// All properties of the object's class.
     virtual const Properties& properties() const = 0;
+    /// The property of a name; null if there is none.
     const Property* property(const std::string& name) const;
-    /// The same as the typed setter and getter. False, with a sentence in `error`, where the value is refused.
+    /// Sets a property as the typed setter does. False, with a sentence in `error`, if the value is refused.
     bool setProperty(const std::string& name, double value, std::string& error);
+    /// The value of a property; 0 if there is none of this name.
     double getProperty(const std::string& name) const;
-    /// Several at once, by name: they need to fit each other in the end only, not on the way. Where some are refused,
-    /// these keep their former values and the others are taken; then it is false, with a sentence for each in `error`.
+    /// Sets several properties by name. Only the final values need to fit each other, not the steps between. If some
+    /// are refused, they keep their former values and the others are set. The result is then false, with a sentence for
+    /// each in `error`.
     bool setProperties(const std::map<std::string, double>& values, std::string& error);
-    /// From the texts that a person types: "bendAngleDegrees", "30"; of a part, "birdsEyeView.focusLine".
+    /// Sets a property from text: "bendAngleDegrees", "30". The name of a property of a part is
+    /// "birdsEyeView.focusLine".
     bool setPropertyText(const std::string& name, const std::string& value, std::string& error);
-    /// Several at once, in any order; of a name that comes twice the last counts. False at the first mistake, with a
-    /// sentence in `error`.
+    /// Sets several properties from text, in any order. If a name occurs twice, the last value counts. False at the
+    /// first mistake, with a sentence in `error`.
     using Texts = std::vector<std::pair<std::string, std::string>>;
     bool setPropertyTexts(const Texts& texts, std::string& error);
 
-    /// Objects that this one is made of, by their names in text; most have none.
+    /// An object that this one consists of, with its name in text.
     struct Part
     {
         const char* name;
         PropertyHolder* object;
     };
+    /// The parts of this object; none by default.
     virtual std::vector<Part> parts() { return {}; }
 
     /// Grows with each change.
     unsigned int revision() const { return _revision; }
-    /// Who is told of each change, by the thread that makes it; until removed. Copies of the object do not tell them.
+    /// Tells a listener of each change until it is removed, on the thread that makes the change. Copies of the object
+    /// do not tell it.
     void addListener(PropertyListener& listener) { _listeners.push_back(&listener); }
     void removeListener(PropertyListener& listener);
 
@@ -71,12 +81,13 @@ protected:
     PropertyHolder(const PropertyHolder& other, const osg::CopyOp& copy) : osg::Object(other, copy) {}
     ~PropertyHolder() override;
 
-    /// For typed setters: setProperty() with a warning in the place of `error`.
+    /// For typed setters: setProperty() with a warning instead of `error`.
     bool assign(const char* name, double value);
-    /// The same for several, all of them or none; they need to fit each other in the end only.
+    /// The same for several properties: sets all of them or none. Only the final values need to fit each other.
     bool assign(const std::map<std::string, double>& values);
-    /// A sentence where the properties do not fit each other; then the last change is taken back.
+    /// A sentence if the properties do not fit each other; the last change is then undone. Empty if they fit.
     virtual std::string inconsistency() const { return {}; }
+    /// Notes a change: revision() grows, and the listeners are told.
     void touch();
 
 private:

@@ -4,10 +4,15 @@
 
 #include <BakedShaders.h>
 
+#include <osg/Notify>
+
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <regex>
 #include <sstream>
 
@@ -21,6 +26,41 @@ std::filesystem::path folderFromEnvironment()
 {
     const char* folder = std::getenv("OSGGEOFX_SHADER_PATH");
     return folder ? folder : "";
+}
+
+/// The files that applications have added.
+class AddedFiles
+{
+public:
+    void add(const std::string& name, const std::string& text)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        _texts[name] = text;
+    }
+    std::optional<std::string> find(const std::string& name)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        const auto found = _texts.find(name);
+        return found == _texts.end() ? std::nullopt : std::optional<std::string>(found->second);
+    }
+
+private:
+    std::mutex _mutex;
+    std::map<std::string, std::string> _texts;
+};
+
+AddedFiles& addedFiles()
+{
+    static AddedFiles files;
+    return files;
+}
+
+const BakedShader* bakedFile(const std::string& name)
+{
+    const BakedShader* end = bakedShaders + bakedShaderCount;
+    const BakedShader* found =
+        std::find_if(bakedShaders, end, [&](const BakedShader& each) { return each.name == name; });
+    return found == end ? nullptr : found;
 }
 
 /// One assembled text in the making.
@@ -113,6 +153,13 @@ std::vector<std::string> ShaderLibrary::files()
     return names;
 }
 
+bool ShaderLibrary::add(const std::string& name, const std::string& text)
+{
+    if (bakedFile(name)) return false;
+    addedFiles().add(name, text);
+    return true;
+}
+
 std::string ShaderLibrary::read(const std::string& name) const
 {
     const std::filesystem::path diskFile = _overrideFolder / name;
@@ -122,15 +169,16 @@ std::string ShaderLibrary::read(const std::string& name) const
         text << std::ifstream(diskFile, std::ios::binary).rdbuf();
         return text.str();
     }
-    const auto* end = bakedShaders + bakedShaderCount;
-    const auto* shader =
-        std::find_if(bakedShaders, end, [&](const BakedShader& candidate) { return candidate.name == name; });
-    if (shader == end)
+    if (const std::optional<std::string> added = addedFiles().find(name)) return *added;
+    const BakedShader* shader = bakedFile(name);
+    if (!shader)
     {
         const std::string orFolder =
             _overrideFolder.empty() ? "" : " and not in the folder " + _overrideFolder.string();
-        throw ShaderError("there is no shader file \"" + name + "\" in the library" + orFolder +
-                          "; correct the name, or add the file to the list in shaders/CMakeLists.txt.");
+        throw ShaderError(
+            "there is no shader file \"" + name + "\" in the library" + orFolder +
+            "; correct the name, or add the file: to the list in shaders/CMakeLists.txt, or with "
+            "ShaderLibrary::add().");
     }
     return shader->text;
 }
@@ -152,6 +200,26 @@ osg::ref_ptr<osg::Shader> ShaderLibrary::createShader(osg::Shader::Type type, co
     osg::ref_ptr<osg::Shader> shader = new osg::Shader(type, source(name));
     shader->setName(name);
     return shader;
+}
+
+osg::ref_ptr<osg::Program> ShaderLibrary::createProgram(const std::string& name,
+                                                        const std::string& vertexFile,
+                                                        const std::string& fragmentFile)
+{
+    try
+    {
+        const ShaderLibrary library;
+        osg::ref_ptr<osg::Program> program = new osg::Program;
+        program->setName(name);
+        program->addShader(library.createShader(osg::Shader::VERTEX, vertexFile));
+        program->addShader(library.createShader(osg::Shader::FRAGMENT, fragmentFile));
+        return program;
+    }
+    catch (const ShaderError& error)
+    {
+        OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
+        return nullptr;
+    }
 }
 
 } // namespace osgGeoFX

@@ -13,42 +13,52 @@
 namespace osgGeoFX
 {
 
-/// One camera's look at the scene while it culls.
+/// What a SurfaceEffect needs to know of one camera while it culls.
+/// @ingroup effect
 struct SurfaceView
 {
     const ViewGeometry& geometry;
     const osg::Matrixd& modelView; ///< from the frame of the EffectScene's children to eye space
-    double viewportX;              ///< pixels
+    double viewportX;              ///< the viewport, pixels
     double viewportY;
     double viewportWidth;
     double viewportHeight;
-    double time;                   ///< of the simulation, seconds
-    const std::vector<int>& units; ///< texture units that the effect has here (TextureUser)
+    double time;                   ///< simulation time, seconds
+    const std::vector<int>& units; ///< the effect's texture units (TextureUser)
 };
 
-/** An effect that colours what is drawn, fragment by fragment, in the geometry's undeformed place.
+/** An effect that colours the geometry, fragment by fragment. It goes by the geometry's undeformed place.
 
-    To write a new one: derive from this, name the shader file with `void SLOT_locate(vec3 eyePosition)`, which writes the
-    effect's own varyings for an undeformed position in eye space, and the one with `vec4 SLOT_colour(vec4 colour)`, and
-    fill the state of a camera. The effects of a scene colour in their order, bends' styles among them. */
+    To write a new surface effect, derive a class from this one:
+    - Name a vertex shader file with `void SLOT_locate(vec3 eyePosition)`. This function writes the effect's own
+      varyings for an undeformed position in eye space.
+    - Name a fragment shader file with `vec4 SLOT_colour(vec4 colour)`.
+    - Fill the state of a camera in fill().
+
+    The effects of a scene colour in their order. The styles of bends take part in this order.
+    apps/examples/Contours.h is an example.
+
+    @ingroup effect */
 class OSGGEOFX_EXPORT SurfaceEffect : public Effect
 {
 public:
     using Effect::asSurfaceEffect;
     SurfaceEffect* asSurfaceEffect() override { return this; }
 
-    /// The shader files in which `SLOT_` stands for the prefix of names.
+    /// The shader files. `SLOT_` in them stands for the prefix of names.
     virtual std::string vertexFile() const = 0;
     virtual std::string fragmentFile() const = 0;
-    /// Whether the vertex file has `void SLOT_face(vec3 eyeNormal)`, which gets the undeformed normal of length 1.
+    /// Whether the vertex file has `void SLOT_face(vec3 eyeNormal)`. This function gets the undeformed normal of length
+    /// 1. False by default.
     virtual bool looksAtNormals() const { return false; }
-    /// Whether the colour that comes in does not matter, so that neither lights nor textures need to be worked out. Below a
-    /// state set with `setDefine("GEOFX_PAINTED", OFF)` it does, and SLOT_colour() should hand it on.
+    /// Whether SLOT_colour() ignores the colour that comes in, so that neither lights nor textures need to be computed.
+    /// Below a state set with `setDefine("GEOFX_PAINTED", OFF)` they are computed, and SLOT_colour() should return the
+    /// colour that comes in. False by default.
     virtual bool repaints() const { return false; }
 
-    /** Puts what the shaders need into a camera's state: uniforms with the prefix, and textures on the view's units. False
-        where there is nothing to draw. Several cameras' threads may call it at once; the state is the caller's own, and the
-        same one until the scene's effects or their units change. */
+    /** Puts everything that the shaders need into a camera's state: uniforms with the prefix, and textures on the
+        view's units. False if there is nothing to draw. Several cameras' threads may call it at once. Each call gets
+        the camera's own state, which stays the same one until the scene's effects or their units change. */
     virtual bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) = 0;
 
 protected:

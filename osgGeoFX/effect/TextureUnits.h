@@ -13,23 +13,27 @@
 namespace osgGeoFX
 {
 
-/// A texture unit that an effect needs.
+/// A request of an effect for one texture unit.
+/// @ingroup effect
 struct TextureUnitWish
 {
-    const char* property = ""; ///< that a person sets it with
-    int unit = -1;             ///< the one that was set; −1 where the scene is to give one
-    int preferred = 4;         ///< which one to give, if it is free
-    /// Whether it is in force for all that the scene draws, or in the effect's own passes alone.
+    const char* property = ""; ///< the name of the property that sets it
+    int unit = -1;             ///< the unit that the property sets; −1 lets the scene choose one
+    int preferred = 4;         ///< the unit to choose if it is free
+    /// Whether the unit is used wherever the scene draws, or only in the effect's own passes.
     bool everywhere = true;
-    /// Whether the terrain itself has its texture there, so that no other unit would do.
+    /// Whether the terrain itself has its texture on this unit, so that no other unit would do.
     bool ofTerrain = false;
 };
 
-/** What an effect is that has textures. Its EffectScene gives units to all its effects, so that none takes another's;
-    what it gave comes with SurfaceView and ScenePass, in the order of the wishes. */
+/** The second base class of an effect that uses textures. Its EffectScene assigns units to all its effects, so that
+    no effect takes another's. SurfaceView and ScenePass hold the assigned units in the order of the requests.
+
+    @ingroup effect */
 class OSGGEOFX_EXPORT TextureUser
 {
 public:
+    /// The requests of this effect.
     virtual std::vector<TextureUnitWish> textureUnits() const = 0;
 
 protected:
@@ -41,10 +45,13 @@ protected:
 
 /** The texture units of a scene's effects.
 
-    Units 0 to 3 are the geometry's, and unit 7 is the one on which tiles of terrain databases say what lies on the ground;
-    neither is given to an effect that does not ask for it. Units that were set come first, enabled effects before those that
-    are switched off, then the others in the same order: each gets the one that it prefers or the lowest that is
-    free. */
+    Units 0 to 3 belong to the geometry. On unit 7, tiles of terrain databases have the texture that tells what lies
+    on the ground. The scene gives none of them to an effect that does not ask for it.
+
+    Requests for a certain unit come first. Enabled effects come before those that are switched off. Then all other
+    requests follow in the same order: each gets the unit that it prefers, or else the lowest free unit.
+
+    @ingroup effect */
 struct OSGGEOFX_EXPORT TextureUnits
 {
     static constexpr int first = 4, last = 31;
@@ -53,14 +60,15 @@ struct OSGGEOFX_EXPORT TextureUnits
     using Effects = std::vector<osg::ref_ptr<Effect>>;
     using Units = std::vector<int>;
 
-    std::vector<Units> ofEffects;       ///< for each effect, in the order of its wishes
-    std::vector<bool> complete;         ///< whether each effect has all that it needs
-    std::vector<std::string> sentences; ///< of what could not be had, by effects that are enabled
+    std::vector<Units> ofEffects;       ///< for each effect, in the order of its requests
+    std::vector<bool> complete;         ///< whether each effect has all units that it needs
+    std::vector<std::string> sentences; ///< the requests of enabled effects that could not be met
 
+    /// Assigns units to the effects of a scene.
     static TextureUnits of(const Effects& effects);
-    /// A property for one: −1, the default, for the scene's choice.
+    /// A property for a unit; −1, the default, is for the scene's choice.
     static Property property(const std::string& name);
-    /// A sentence where an effect's own wishes do not fit each other, or where one is for a unit of the geometry.
+    /// A sentence if an effect's own requests do not fit each other, or if one is for a unit of the geometry.
     static std::string inconsistency(const std::vector<TextureUnitWish>& wishes);
 };
 

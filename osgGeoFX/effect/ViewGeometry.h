@@ -13,38 +13,45 @@
 namespace osgGeoFX
 {
 
-/// What a deformation has to know of the ground, in the frame of the EffectScene's children.
+/// What a deformation needs to know of the ground, in the frame of the EffectScene's children.
+/// @ingroup effect
 struct OSGGEOFX_EXPORT Ground
 {
-    osg::ref_ptr<const osg::EllipsoidModel> ellipsoid; ///< null: heights are z of a projected terrain
-    double minHeight = 0.0;                            ///< metres; of the terrain where known, else both 0
+    osg::ref_ptr<const osg::EllipsoidModel> ellipsoid; ///< null on a projected terrain, whose heights are z
+    double minHeight = 0.0; ///< heights of the terrain, metres; both are 0 if unknown
     double maxHeight = 0.0;
-    /// Of the kit's databases: by how much finer tiles can stick out of a coarser one's box, for each metre that the
-    /// coarser one's LOD range is longer than its radius; 0 for other databases.
+    /// How far finer tiles can stick out of a coarser tile's box, for each metre by which the coarser tile's LOD range
+    /// exceeds its radius. 0 if the database is not one of the kit.
     double tileError = 0.0;
-    /// Of the kit's databases: the longest edge of a tile's mesh, as a share of its radius; 0 for other databases.
+    /// The longest edge of a tile's mesh, as a share of the tile's radius. 0 if the database is not one of the kit.
     double tileEdge = 0.0;
     bool heightsKnown = false; ///< whether the database tells its heights
-    /// Radians; of the database's middle where it is known, else 45° north. For what depends on the climate.
+    /// The latitude of the middle of a geocentric database of the kit, radians; otherwise 45° north. Effects that
+    /// depend on the climate use it.
     double latitude = 0.25 * osg::PI;
     osg::observer_ptr<const osg::Node> terrain; ///< the root of the kit's database; null for other databases
 };
 
-/** One camera over a terrain, in double and in eye space (x right, y up, −z forward, metres).
+/** One camera over a terrain, in double precision and in eye space (x right, y up, −z forward, metres).
 
-    Nothing in eye space is as large as the world. A modelview matrix that scales is not supported. */
+    Coordinates in eye space are small compared with those of a geocentric world. A modelview matrix that scales is
+    not supported.
+
+    @ingroup effect */
 struct OSGGEOFX_EXPORT ViewGeometry
 {
+    /// `modelView`: from the frame of the EffectScene's children to eye space.
     ViewGeometry(const osg::Matrixd& modelView, const osg::Matrixd& projection, const Ground& ground);
 
     Ground ground;
     osg::Matrixd projection;
     osg::Matrixd inverseProjection;
-    osg::Vec3d up;          ///< unit normal of the ground below the eye
-    osg::Vec3d polarAxis;   ///< unit vector along the ellipsoid's axis; `up` on a projected terrain
-    double eyeHeight = 0.0; ///< of the eye above the ellipsoid or above z = 0
+    osg::Vec3d up;          ///< the unit normal of the ground below the eye
+    osg::Vec3d polarAxis;   ///< a unit vector along the ellipsoid's axis; equals `up` on a projected terrain
+    double eyeHeight = 0.0; ///< height of the eye above the ellipsoid or above z = 0, metres
 
-    /// The ray of the picture's point x, y (−1…1): from the near plane, not normalised. On any projection.
+    /// The ray through a point of the viewport, x and y from −1 to 1. It begins on the near plane; the direction is not
+    /// normalised. It works with any projection.
     void ray(double x, double y, osg::Vec3d& origin, osg::Vec3d& direction) const;
 };
 

@@ -9,7 +9,9 @@
 namespace osgGeoFX
 {
 
-/// Thrown for input that cannot be used or output that cannot be written: a sentence that names the file and the mend.
+/// Thrown for input that cannot be used or output that cannot be written. The message is a sentence that names the
+/// file, if there is one, and the remedy.
+/// @ingroup geodata
 class OSGGEOFXDATA_EXPORT BuildError : public std::runtime_error
 {
 public:

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/FileSources.h>
 
-#include "GdalSupport.h"
+#include <osgGeoFX/geodata/detail/GdalSupport.h>
 
 #include <cpl_minixml.h>
 #include <cpl_string.h>

@@ -10,18 +10,19 @@
 namespace osgGeoFX
 {
 
-/** Where a raster or vector file takes its data from, as far as GDAL tells without reading them: the files that a virtual raster
-    names, an image's world file, the layers of a shapefile; or a service, which the file only describes. Nothing is fetched
-    from a network to find out. Thread-safe. */
+/** The files and services from which a raster or vector file takes its data, as far as GDAL can tell without reading
+    the data. Examples are the files that a virtual raster names, an image's world file, the parts of a shapefile, or a
+    service that the file describes. Nothing is fetched from a network. Thread-safe.
+    @ingroup geodata */
 struct OSGGEOFXDATA_EXPORT FileSources
 {
-    /// Complete paths where they are paths; GDAL's own names (`/vsi…`, `PG:…`, addresses) as they stand. Sources of sources are not
-    /// among them.
+    /// Paths are complete; GDAL's own names (`/vsi…`, `PG:…`, network addresses) are unchanged. Sources of these
+    /// sources are not listed.
     std::vector<std::string> files;
-    /// The format's name, where the data lie in a network or a data base: "WMS", "PostGISRaster", …
+    /// The format's short name if the data are in a network or a database: "WMS", "PostGISRaster", …
     std::string service;
 
-    /// Both are empty for a file that GDAL does not know.
+    /// Both members are empty for a file that GDAL does not know.
     static FileSources of(const std::string& file);
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include "LandCoverTable.h"
+#include <osgGeoFX/geodata/LandCoverTable.h>
 
-#include "BakedLegends.h"
-#include "GdalSupport.h"
+#include <osgGeoFX/geodata/detail/BakedLegends.h>
+#include <osgGeoFX/geodata/detail/GdalSupport.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
 

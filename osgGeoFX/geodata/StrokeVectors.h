@@ -12,18 +12,20 @@
 namespace osgGeoFX
 {
 
-/// Roads, rivers and towns of a panorama map from any vector data that GDAL opens.
+/// Reads roads, rivers and towns of a panorama map (StrokeLines) from any vector data that GDAL opens.
+/// @ingroup geodata
 struct OSGGEOFXDATA_EXPORT StrokeVectors
 {
-    /** Appends the lines of a file as ROAD or RIVER, or its areas as TOWN: of one layer, or of all where `layer` is empty.
-        They are brought into degrees where the frame is a globe, else into its `wkt`, in metres; its origin does not
-        count. Lines that only continue each other become one. What has no place there is left out.
+    /** Appends the lines of a file as ROAD or RIVER, or its areas as TOWN. It reads one layer, or all layers if
+        `layer` is empty. If the frame is a globe, the points become degrees; else they become metres in the frame's
+        `wkt`. The frame's origin has no effect. Lines that merely continue each other are joined. Parts without a
+        valid position are left out.
 
-        On failure `lines` stay as they are, and a sentence in `error` names file and mend; so too where nothing
-        of the kind is in the file. Thread-safe. */
+        If it fails, or if the file has nothing of that kind, `lines` stays unchanged and a sentence in `error` names
+        file and remedy. Thread-safe. */
     static bool read(const std::string& file, const std::string& layer, StrokeLines::Kind kind,
                      const MappingFrame& frame, std::vector<StrokeLines::Line>& lines, std::string& error);
-    /// Of the lines that read() appends for a frame.
+    /// The units of the lines that read() appends for a frame.
     static StrokeLines::Units unitsOf(const MappingFrame& frame)
     {
         return frame.globe ? StrokeLines::DEGREES : StrokeLines::METRES;

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 
-#include "FrameRaster.h"
+#include <osgGeoFX/geodata/detail/FrameRaster.h>
 
 #include <osgGeoFX/closeup/SurfaceDerivation.h>
 #include <osgGeoFX/geodata/BuildError.h>

@@ -11,13 +11,16 @@
 namespace osgGeoFX
 {
 
-/** How a mapping's raster becomes colour, and how the colour meets the scene's: CM = (f_BS, f_BD, f_CS, f_CD, M_C, f_α)
-    of the paper's Section 3.3. The destination f_CD is the scene's colour with the mappings below.
+/** Turns a mapping's raster into colours and blends them with the scene's colours: CM = (f_BS, f_BD, f_CS, f_CD, M_C,
+    f_α) of the paper's Section 3.3. The destination f_CD is the scene's colour with all lower mappings on it.
 
-    The source's colour comes from the layer, from the color table at the layer's value, from the scene itself, or is
-    constant. The color matrix then changes its rgb, and f_α says its alpha. Blending gives rgb from 0 to 1; the scene's
-    alpha stays. Opacity, fades and soft edges of the mapping mix the result with the scene's colour, whatever the
-    blend functions are. Where the layer has no data, the scene stays as it is. */
+    The source colour comes from the layer, from the color table at the layer's value, from the scene itself, or it is
+    a constant. The color matrix M_C then changes its rgb, and f_α gives its alpha. The blended rgb lies within 0…1,
+    and the scene's alpha stays unchanged. The mapping's opacity, fades and soft edges mix the blended colour with the
+    scene's colour, whatever the blend functions are. Where the layer has no data, the scene stays unchanged.
+
+    Setters refuse values out of range: they return false, warn once and keep the former value.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT ColorTransfer : public PropertyHolder
 {
 public:
@@ -27,19 +30,19 @@ public:
 
     enum Source
     {
-        LAYER,   ///< the layer's colour; of values a grey from lowValue to highValue
-        TABLE,   ///< the color table at the layer's value, or at its grey from 0 to 1
-        SCENE,   ///< the scene's own colour, for the color matrix to change
-        CONSTANT ///< its alpha is for blend functions; FROM_SOURCE it is the layer's, or 1
+        LAYER,   ///< the layer's colour; a layer of values gives a grey from lowValue to highValue
+        TABLE,   ///< the color table's colour at the layer's value, or at its grey from 0 to 1
+        SCENE,   ///< the scene's own colour, which the color matrix then changes
+        CONSTANT ///< constant rgb; its alpha only serves blend functions, FROM_SOURCE is the layer's or 1
     };
     enum Alpha
     {
-        OPAQUE,      ///< 1: the mapping's opacity alone
-        FROM_SOURCE, ///< of the layer or of the color table; 1 for SCENE and for values
+        OPAQUE,      ///< alpha is 1, so that only the mapping's opacity counts
+        FROM_SOURCE, ///< the alpha of the layer or color table; 1 for SCENE and for values as greys
         FROM_MASK,   ///< the grey of the mask layer, between rampLow and rampHigh
         FROM_RAMP    ///< the layer's value or grey, between rampLow and rampHigh
     };
-    /// OpenGL's blend functions.
+    /// The blend functions of OpenGL.
     enum Factor
     {
         ZERO,
@@ -58,8 +61,9 @@ public:
         ONE_MINUS_CONSTANT_ALPHA,
         SOURCE_ALPHA_SATURATE
     };
-    /// OpenGL's blend equations, and three more, whose share is the source's alpha. DISCARD takes away what is covered by
-    /// an alpha of at least a half, fragment and all, so that another geometry can stand in its place.
+    /// The first five are OpenGL's blend equations. MULTIPLY, SCREEN and OVERLAY use the source's alpha as their
+    /// weight. DISCARD discards a fragment if the source's alpha, times the mapping's opacity and fades, is at least
+    /// 0.5. Another geometry can then show in its place.
     enum Equation
     {
         ADD,
@@ -73,53 +77,57 @@ public:
         DISCARD
     };
 
+    /// The origin of the source colour. Default: LAYER.
     bool setSource(Source source) { return assign("source", source); }
     Source getSource() const { return static_cast<Source>(_source); }
-    /// FROM_SOURCE by default.
+    /// The origin of the source's alpha. Default: FROM_SOURCE.
     bool setAlpha(Alpha alpha) { return assign("alpha", alpha); }
     Alpha getAlpha() const { return static_cast<Alpha>(_alpha); }
-    /// SOURCE_ALPHA and ONE_MINUS_SOURCE_ALPHA by default. MINIMUM, MAXIMUM and those behind do not use them.
+    /// Default: SOURCE_ALPHA and ONE_MINUS_SOURCE_ALPHA. Only ADD, SUBTRACT and REVERSE_SUBTRACT use the two
+    /// functions.
     bool setBlendFunction(Factor source, Factor destination)
     {
         return assign({{"sourceFactor", source}, {"destinationFactor", destination}});
     }
     Factor getSourceFactor() const { return static_cast<Factor>(_sourceFactor); }
     Factor getDestinationFactor() const { return static_cast<Factor>(_destinationFactor); }
+    /// The blend equation. Default: ADD.
     bool setEquation(Equation equation) { return assign("equation", equation); }
     Equation getEquation() const { return static_cast<Equation>(_equation); }
 
-    /// The values of the layer at the color table's ends, in the layer's unit; the first is the lower one. 0 and 1 by
-    /// default.
+    /// The layer's values at the two ends of the color table, in the layer's unit, ±9e7. `low` must be less than
+    /// `high`. Default: 0 and 1.
     bool setValueRange(double low, double high) { return assign({{"lowValue", low}, {"highValue", high}}); }
     double getLowValue() const { return _lowValue; }
     double getHighValue() const { return _highValue; }
-    /// The values or greys that alpha is 0 and 1 at; the second may be the lower one. 0 and 1 by default.
+    /// The values or greys at which alpha is 0 and 1, ±9e7. `high` may be less than `low`. Default: 0 and 1.
     bool setRamp(double low, double high) { return assign({{"rampLow", low}, {"rampHigh", high}}); }
     double getRampLow() const { return _rampLow; }
     double getRampHigh() const { return _rampHigh; }
-    /// The constant colour, of the source and of the blend functions, 0…1 each.
+    /// The constant colour of the source and of the blend functions, 0…1 each. Default: opaque white.
     bool setConstant(const osg::Vec4d& rgba);
     osg::Vec4d getConstant() const { return {_red, _green, _blue, _constantAlpha}; }
 
-    /// 0…4, 1 by default; 0 is black.
+    /// 0…4, where 0 is black. Default: 1.
     bool setBrightness(double factor) { return assign("brightness", factor); }
     double getBrightness() const { return _brightness; }
-    /// 0…4 about a middle grey; 1 by default.
+    /// 0…4, about a middle grey. Default: 1.
     bool setContrast(double factor) { return assign("contrast", factor); }
     double getContrast() const { return _contrast; }
-    /// 0, which is grey, …4; 1 by default.
+    /// 0…4, where 0 is grey. Default: 1.
     bool setSaturation(double factor) { return assign("saturation", factor); }
     double getSaturation() const { return _saturation; }
-    /// Turn of the hue, radians, −π…π; 0 by default. Greys and their brightness stay.
+    /// Rotation of the hue, radians, −π…π. Greys and luminance stay unchanged. Default: 0.
     bool setHue(double radians) { return assign("hue", radians); }
     double getHue() const { return _hue; }
 
-    /// Rows of red, green and blue: factors of r, g and b, and what is added.
+    /// The rows give red, green and blue. Each row holds the factors of r, g and b and a constant that is added.
     using Matrix = std::array<osg::Vec4d, 3>;
-    /// A matrix of one's own; it acts first, before hue, saturation, contrast and brightness. Components −100…100.
+    /// The program's own matrix. It acts before hue, saturation, contrast and brightness. Components −100…100.
+    /// Default: identity.
     bool setColorMatrix(const Matrix& matrix);
     Matrix getColorMatrix() const;
-    /// All of these in one: M_C.
+    /// M_C: the product of the color matrix, hue, saturation, contrast and brightness.
     Matrix effectiveMatrix() const;
 
     const Properties& properties() const override;

@@ -9,12 +9,13 @@
 namespace osgGeoFX
 {
 
-/** A raster that mappings show: colours, values, or classes. Any number of mappings may share it.
+/** A raster of colours, values or classes that mappings show. Any number of mappings may share it.
 
-    The picture is an osg::Image of any uncompressed 2D format; rows count from the bottom, as OSG has them. It may be
-    exchanged, and an image that changes (osg::Image::dirty(), an osg::ImageStream that plays) is uploaded anew.
-    The picture may be read from while it is drawn: change it between frames. Pictures larger than
-    ProjectiveMappings' page are reduced, with a warning. */
+    The image is an osg::Image of any uncompressed 2D format. Rows count from the bottom, as in OSG. A program may
+    replace the image. An image that changes (osg::Image::dirty(), or an osg::ImageStream that plays) is uploaded
+    again. The drawing may read the image at any time during a frame, so a program changes it only between frames. An
+    image larger than a page of ProjectiveMappings is reduced, with a warning.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT DataLayer : public PropertyHolder
 {
 public:
@@ -26,29 +27,31 @@ public:
     enum Kind
     {
         COLOR,
-        VALUE, ///< the first channel's numbers as they are; averaged when seen from afar
-        CLASS  ///< numbers that name something; the most frequent one is seen from afar
+        VALUE, ///< the numbers of the first channel, averaged at a distance
+        CLASS  ///< numbers that stand for something; at a distance the most frequent one is shown
     };
+    /// The kind of data. Default: COLOR.
     bool setKind(Kind kind) { return assign("kind", kind); }
     Kind getKind() const { return static_cast<Kind>(_kind); }
 
-    /// Null shows nothing.
+    /// The raster. With a null pointer the layer shows nothing.
     void setImage(osg::Image* image);
     osg::Image* getImage() { return _image.get(); }
     const osg::Image* getImage() const { return _image.get(); }
 
-    /// Between texels: smooth, or the nearest one. Smooth by default, of classes never.
+    /// Whether colours and values are interpolated between texels. Otherwise the nearest texel counts. Classes are
+    /// never interpolated. Default: true.
     bool setSmooth(bool smooth) { return assign("smooth", smooth ? 1.0 : 0.0); }
     bool getSmooth() const { return _smooth; }
-    /// Whether colours are coded as sRGB, which is how their averages are taken. True by default.
+    /// Whether colours are sRGB-coded. If so, they are averaged in linear light. Default: true.
     bool setSRgb(bool coded) { return assign("sRgb", coded ? 1.0 : 0.0); }
     bool getSRgb() const { return _sRgb; }
-    /// The value that means no data, beside NaN, which always does. None by default.
+    /// The value that means "no data", besides NaN and infinite numbers, which always do. Default: none.
     bool setNoData(double value) { return assign({{"noData", value}, {"hasNoData", 1.0}}); }
     bool clearNoData() { return assign("hasNoData", 0.0); }
     bool getHasNoData() const { return _hasNoData; }
     double getNoData() const { return _noData; }
-    /// 0…1: which layers stay where there is no room for all of them; ½ by default.
+    /// The layers of higher importance, 0…1, stay if the GPU has no room for all layers. Default: 0.5.
     bool setImportance(double importance) { return assign("importance", importance); }
     double getImportance() const { return _importance; }
 

@@ -11,13 +11,13 @@
 namespace osgGeoFX
 {
 
-/// A square of the plane, from `origin` on towards larger x and y; metres.
+/// An axis-aligned square of the plane, metres. `origin` is its corner of smallest x and y.
 struct PlaneSquare
 {
     osg::Vec2d origin;
     double size = 0.0;
 
-    /// One of its 8 x 8 cells, counted along x first.
+    /// One of its 8 x 8 cells. The index counts along x first.
     PlaneSquare cell(unsigned int index) const
     {
         const double side = size / 8;
@@ -26,22 +26,24 @@ struct PlaneSquare
     }
 };
 
-/// Where a mapping lies on the plane: the four corners of a convex quadrilateral, one after the other in either
-/// direction; metres.
+/// The outline of a mapping on the plane, metres: the four corners of a convex quadrilateral, in either direction of
+/// rotation.
+/// @ingroup mapping
 struct OSGGEOFX_EXPORT PlaneFootprint
 {
     std::array<osg::Vec2d, 4> corners;
 
-    /// A rectangle along the axes, for instance around something round.
+    /// An axis-aligned rectangle, for instance the bounding box of a round shape.
     static PlaneFootprint box(const osg::Vec2d& low, const osg::Vec2d& high);
 
-    /// Half the sum of the corners' cross products, so it has the sign of their direction.
+    /// The area, metres². It is positive if the corners run counter-clockwise.
     double signedArea() const;
-    /// Whether it is finite, within 10^15 m, convex, and has an area.
+    /// Whether the quadrilateral is convex, has an area, and lies within 10^15 m of the origin along both axes.
     bool valid() const;
 };
 
-/// A valid footprint made ready to be compared with many squares.
+/// A valid footprint that is prepared for comparison with many squares.
+/// @ingroup mapping
 class OSGGEOFX_EXPORT FootprintShape
 {
 public:
@@ -49,16 +51,16 @@ public:
 
     const osg::Vec2d& low() const { return _low; }
     const osg::Vec2d& high() const { return _high; }
-    /// The side of a square with the same area.
+    /// The side of a square with the same area, metres.
     double width() const { return _width; }
 
-    /// False only when it stays away from a square by more than the margin.
+    /// False only if the footprint is farther from the square than the margin. It may be true for other squares, too.
     bool overlaps(const PlaneSquare& square, double margin) const;
-    /// True only when the square is inside by the margin or more.
+    /// True only if the square lies inside the footprint, at least the margin away from its border.
     bool covers(const PlaneSquare& square, double margin) const;
 
 private:
-    /// The half-plane that the footprint is in: normal * place <= limit.
+    /// The half-plane normal * place <= limit, which contains the footprint.
     struct Edge
     {
         osg::Vec2d normal; ///< of length 1, outwards

@@ -9,27 +9,31 @@
 namespace osgGeoFX
 {
 
-/** Lets two geometries share one place: within a mask the one is seen and outside of it the other, pixel by pixel
-    (Trapp and Döllner 2009, Section 5 and Figure 3.D), for instance a city and its generalisation.
+/** Lets two geometries share one place: one is visible inside a mask, the other outside, pixel by pixel (Trapp and
+    Döllner 2009, Section 5 and Figure 3.D). An example is a city and its generalisation.
 
-    Both nodes are below the mappings' EffectScene. Each gets the define GEOFX_MAPPING_CHANNELS in its state, 1 the inner one
-    and 2 the outer one, so that mappings for both (the default) are drawn on both; the rest of the scene gets 252, with all
-    other channels, in the state of `rest`, its root. Mappings that discard lie on top: two with the mask, and four that take
-    the inner geometry away around it. The destructor takes all of it back, but for defines that were changed since. */
+    Both nodes must be below the mappings' EffectScene. The define GEOFX_MAPPING_CHANNELS is set in the state of each
+    node: 1 for the inner node, 2 for the outer node, and 252, all other channels, for `rest`, the root of the
+    remaining scene. Mappings of all channels, which is their default, are therefore drawn on all three. Discarding
+    mappings of order 1000 lie on top: two use the mask, and four remove the inner geometry up to 1000 km around it.
+    The destructor removes the mappings and the defines, except defines that the program has changed since.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT GeometrySwap : public osg::Referenced
 {
 public:
-    /// The mask's grey, half and more is inside, over a rectangle of the mappings' frame: centre and half size, metres.
+    /// A grey of 0.5 or more in the mask counts as inside. The mask covers a rectangle of the mappings' frame with the
+    /// given centre and half size, metres.
     GeometrySwap(osg::Node& inside, osg::Node& outside, osg::Node& rest, ProjectiveMappings& mappings,
                  DataLayer* mask, const osg::Vec2d& centre, double halfWidth, double halfHeight);
 
-    /// Null is refused.
+    /// Returns false and keeps the former mask, with a warning, if `mask` is null.
     bool setMask(DataLayer* mask);
-    /// As the constructor's; refused where it spans no area.
+    /// Moves the mask, as in the constructor. Returns false if the rectangle has no area.
     bool setPlace(const osg::Vec2d& centre, double halfWidth, double halfHeight);
-    /// False shows both geometries everywhere.
+    /// While disabled, both geometries are visible everywhere. Default: enabled.
     void setEnabled(bool enabled);
 
+    /// The two mappings that use the mask: the first discards the inner geometry, the second the outer one.
     const MappingPool& mappings() const { return _masked; }
 
 protected:
@@ -41,7 +45,7 @@ private:
     MappingPool _around;
 };
 
-/// The same in one call.
+/// Makes a GeometrySwap in one call.
 OSGGEOFX_EXPORT osg::ref_ptr<GeometrySwap> swapGeometries(osg::Node& inside, osg::Node& outside,
                                                           osg::Node& rest, ProjectiveMappings& mappings,
                                                           DataLayer* mask, const osg::Vec2d& centre,

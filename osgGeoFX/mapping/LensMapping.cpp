@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/LensMapping.h>
 
-#include <osgGeoFX/mapping/LensCut.h>
 #include <osgGeoFX/mapping/MarkImages.h>
+#include <osgGeoFX/mapping/detail/LensCut.h>
 
 #include <osg/Notify>
 

@@ -14,55 +14,64 @@ namespace osgGeoFX
 
 class EffectScene;
 
-/** A lens that moves over the terrain (Trapp and Döllner 2009, Section 5, focus and context): within a soft outline with a
-    rim it shows what another mapping would, or the scene in other colours.
+/** A lens that moves over the terrain (Trapp and Döllner 2009, Section 5, focus and context). Inside a soft outline
+    with a rim it shows another mapping, or the scene in other colours.
 
-    What the lens shows is a mapping of its own that the program places but does not add: its layer, table, transfer
-    and place count. Its picture is cut out below the lens at each move (`side`² texels, which are uploaded); one
-    without a layer (the scene's own colours through a matrix) costs nothing to move. Of lenses that overlap, the one with
-    the higher order lies on top, of equal ones the later one.
+    The content of the lens is a mapping that the program places but does not add to the ProjectiveMappings. The lens
+    uses its layer, table, transfer, opacity and place. At each move the lens copies the part of the content's image
+    below it and uploads it (`side`² texels). Content without a layer, for instance the scene's own colours through a
+    color matrix, needs no upload. If lenses overlap, the lens of higher order lies on top. Of equal orders the later
+    lens does.
 
-    Places are those of the mappings' frame, metres. Changed between frames by the thread of the frame loop; the destructor
-    takes all away. Setters that get what makes no sense return false, warn once and change nothing. */
+    Places are in the mappings' frame, metres. The thread of the frame loop changes a lens, between frames. The
+    destructor removes the lens's mappings. Setters refuse values out of range: they return false, warn once and change
+    nothing.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT LensMapping : public osg::Referenced
 {
 public:
+    /// `order` is −1000…1000.
     explicit LensMapping(ProjectiveMappings& mappings, int order = 100);
 
-    /// The layer's mapping: of the projector PLANE, with any transform. Of colours their alpha counts; values and
-    /// classes are opaque. Null: only the rim is drawn.
+    /// The content: a mapping of the projector PLANE, with any transform. The alpha of its colours counts. Values and
+    /// classes are opaque. With a null pointer only the rim is drawn.
     void setContent(ProjectiveMapping* content);
     ProjectiveMapping* getContent() { return _content.get(); }
-    /// To be called after the content or its layer's picture changed.
+    /// A program calls this after it has changed the content or the image of the content's layer.
     void refresh();
 
+    /// The centre of the lens, metres, ±5e7. Default: (0, 0).
     bool setCentre(const osg::Vec2d& place);
     osg::Vec2d getCentre() const { return _centre; }
-    /// Half of the width and height, metres, and where the upper edge points, radians clockwise from the frame's y axis.
+    /// Half the width and half the height, metres, 0.001…1e7 (default: 500), and the direction of the upper edge,
+    /// radians clockwise from the frame's y axis (default: 0).
     bool setSize(double halfWidth, double halfHeight, double heading = 0.0);
+    /// A round or square lens: half the width and half the height are equal, metres.
     bool setRadius(double metres) { return setSize(metres, metres); }
     double getHalfWidth() const { return _halfWidth; }
     double getHalfHeight() const { return _halfHeight; }
     double getHeading() const { return _heading; }
-    /// All at once, so that the picture is cut out once.
+    /// Sets centre, size and heading together, so that the image is copied only once.
     bool place(const osg::Vec2d& centre, double halfWidth, double halfHeight, double heading = 0.0);
 
+    /// The look of the lens. Shares of the radius are shares of half the width and half the height.
     struct Style
     {
-        bool round = true;     ///< or a rectangle
+        bool round = true;     ///< an ellipse; if false, a rectangle
         double softness = 0.0; ///< share of the radius over which the content fades out, 0…1
         double rim = 0.02;     ///< width of the rim line as a share of the radius, 0…½
         osg::Vec4 rimColor = {1.0f, 1.0f, 1.0f, 0.95f};
-        double shade = 0.06; ///< of a soft dark edge outside of the rim, 0…½
+        double shade = 0.06; ///< width of a soft dark edge outside the rim, as a share of the radius, 0…½
         double opacity = 1.0;
-        int side = 256; ///< of the picture that is cut out, texels, 16…2048
+        int side = 256; ///< side of the copied image, texels, 16…2048
     };
     bool setStyle(const Style& style);
     const Style& getStyle() const { return _style; }
+    /// −1000…1000. Default: the constructor's.
     bool setOrder(int order);
     bool setEnabled(bool enabled);
 
-    /// The two mappings of the lens: what it shows, and the rim above.
+    /// The two mappings of the lens: the content, and the rim above it.
     ProjectiveMapping& inside() const { return *_inside; }
     ProjectiveMapping& rim() const { return *_rim; }
 
@@ -83,12 +92,14 @@ private:
     std::optional<LayerPixels> _pixels; ///< of the content's layer
 };
 
-/** Leads a lens along under the mouse pointer, wherever the effects bend the ground; Ctrl and the wheel change its size.
-    Serves one view. */
+/** An event handler that moves a lens along with the mouse pointer, over the ground as the effects deform it. Ctrl and
+    the mouse wheel change the lens's size. One handler serves one view.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT LensFollowsPointer : public osgGA::GUIEventHandler
 {
 public:
-    /// The lens' mappings must be an effect of this scene. Sizes are kept within these limits, metres.
+    /// `mappings` hosts the lens and must be an effect of `scene`. Half the width of the lens stays within the two
+    /// limits, metres.
     LensFollowsPointer(EffectScene& scene, ProjectiveMappings& mappings, LensMapping& lens,
                        double smallest = 50.0, double largest = 20000.0);
 
@@ -105,7 +116,9 @@ private:
     double _smallest, _largest;
 };
 
-/** An update callback that keeps a lens over the node it is on, for instance a vehicle below the scene. */
+/** An update callback that keeps a lens at the centre of the bounding sphere of its node, for instance a vehicle in
+    the scene.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT LensFollowsNode : public osg::NodeCallback
 {
 public:

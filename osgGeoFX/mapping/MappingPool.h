@@ -10,32 +10,37 @@
 namespace osgGeoFX
 {
 
-/** The mappings that a maker keeps in a ProjectiveMappings, one role to a pool: they are used over again, so that a small
-    change of what is made uploads little. Takes them all away in the end.
+/** A pool of mappings that one maker, for instance a RouteMapping, keeps in a ProjectiveMappings. The pool reuses its
+    mappings, so that a small change uploads little. The destructor removes all of them.
 
     @code
     pool.rewind();
     for (const Piece& piece : pieces)
         pool.next().setRectangle(...);
-    pool.trim(); // those that were not needed this time
+    pool.trim(); // removes the mappings that were not needed this time
     @endcode
-    As all scene data, by the thread of the frame loop between frames. */
+    The thread of the frame loop uses a pool, between frames, as all scene data.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT MappingPool
 {
 public:
     using Prepare = std::function<void(ProjectiveMapping&)>;
 
-    /// `prepare` is done once to each new mapping, before it is added.
+    /// `prepare` is called once for each new mapping, before the mapping is added.
     MappingPool(ProjectiveMappings& host, Prepare prepare);
     ~MappingPool();
     MappingPool(const MappingPool&) = delete;
     MappingPool& operator=(const MappingPool&) = delete;
 
+    /// Starts again: next() returns the pool's first mapping.
     void rewind() { _used = 0; }
+    /// The next mapping of the pool, or a new one if all are in use.
     ProjectiveMapping& next();
+    /// Removes the mappings that next() has not returned since rewind().
     void trim();
+    /// Removes all mappings.
     void clear();
-    /// Does something to all, and to those that are yet to come; in the place of the former `prepare`.
+    /// Calls `prepare` for all mappings of the pool, and later for each new one in place of the former `prepare`.
     void prepareAll(Prepare prepare);
 
     std::size_t size() const { return _mappings.size(); }
@@ -49,8 +54,8 @@ private:
     std::size_t _used = 0;
 };
 
-/// Four mappings of the pool around the rectangle low…high, out to `reach` metres from it, which meet it and each other
-/// without a seam. The pool is rewound and trimmed.
+/// Places four mappings of the pool around the rectangle low…high. They reach `reach` metres beyond the rectangle.
+/// They meet the rectangle and each other without a seam. The function rewinds and trims the pool.
 OSGGEOFX_EXPORT void surround(MappingPool& pool, const osg::Vec2d& low, const osg::Vec2d& high, double reach);
 
 } // namespace osgGeoFX

@@ -16,46 +16,48 @@ class EffectScene;
 
 /** Paints soft round strokes into a mask on the terrain (Trapp and Döllner 2009, Section 5: masks drawn by the user).
 
-    The mask lies where the given mapping does, in its raster coordinates; it is grey, 0…255. A stroke is a line with a soft
-    edge along all of its places, no stronger where it crosses itself, and one step for undo(). Only what is under the brush is
-    computed, and the mask's image is dirtied once for each place.
+    The mask lies at the place of the given mapping, in its raster coordinates. It is grey, 0…255. A stroke is a line
+    with a soft edge along all its places. It is not stronger where it crosses itself. undo() removes a whole stroke.
+    Only the texels under the brush are computed, and each place of a stroke uploads the mask's image once.
 
-    Places are those of the mappings' frame, metres. By the thread of the frame loop, between frames. */
+    Places are in the mappings' frame, metres. The thread of the frame loop calls the functions, between frames.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT MaskPainter : public osg::Referenced
 {
 public:
-    /// Gives the mapping a new, empty mask of this size, texels, and alpha FROM_MASK.
+    /// Gives the mapping a new, empty mask of this size, texels (limited to 1…16384), and sets its transfer's alpha to
+    /// FROM_MASK.
     MaskPainter(ProjectiveMapping& mapping, int width, int height);
 
     struct Brush
     {
-        double radius = 100.0; ///< metres
-        double hardness = 0.5; ///< 0…1: the share of the radius that is at full strength
+        double radius = 100.0; ///< metres, 0.001…1e7
+        double hardness = 0.5; ///< 0…1: the share of the radius that has the full strength
         double strength = 1.0; ///< 0…1
         bool erase = false;
     };
-    /// Refused where out of range.
+    /// Returns false and keeps the former brush, with a warning, if a value is out of range.
     bool setBrush(const Brush& brush);
     const Brush& getBrush() const { return _brush; }
 
-    /// A stroke: from a first place, along any number more.
+    /// A stroke begins at one place, runs through any number of further places, and ends with end().
     void begin(const osg::Vec2d& place);
     void moveTo(const osg::Vec2d& place);
     void end();
     bool painting() const { return _last.has_value(); }
 
-    /// Takes the last stroke back; false where there is none.
+    /// Removes the last stroke. Returns false if there is none.
     bool undo();
-    /// Whether there is something to take back.
+    /// Whether undo() has a stroke to remove.
     bool canUndo() const { return !_strokes.empty(); }
-    /// Strokes that are kept for undo(), at most; 50 by default.
+    /// The largest number of strokes that undo() can remove. Default: 50.
     void setHistory(std::size_t strokes);
-    /// All to one grey, 0…1; a step for undo().
+    /// Fills the whole mask with one grey, 0…1. undo() can remove this, too.
     void fill(double grey);
 
     osg::Image& image() const { return *_image; }
     ProjectiveMapping& mapping() const { return *_mapping; }
-    /// The mask at a place, 0…1; 0 outside.
+    /// The mask's value at a place, 0…1. It is 0 outside the mask.
     double at(const osg::Vec2d& place) const;
 
 protected:
@@ -89,12 +91,14 @@ private:
     std::size_t _history = 50;
 };
 
-/** Paints with the mouse: Shift and the left button paint, with Ctrl as well they erase; Shift and the wheel change the brush'
-    size, Ctrl and Z take a stroke back. On the ground as the effects show it. Serves one view. */
+/** An event handler that paints a mask with the mouse. Shift and the left button paint. Ctrl, Shift and the left
+    button erase. Shift and the mouse wheel change the brush's size. Ctrl and Z remove the last stroke. The strokes lie
+    on the ground as the effects deform it. One handler serves one view.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT MaskPaintHandler : public osgGA::GUIEventHandler
 {
 public:
-    /// The mappings must be an effect of the scene.
+    /// `mappings` hosts the painter's mapping and must be an effect of `scene`.
     MaskPaintHandler(EffectScene& scene, ProjectiveMappings& mappings, MaskPainter& painter);
 
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;

@@ -14,8 +14,9 @@ namespace osgGeoFX
 
 class EffectScene;
 
-/// The place in the mappings' frame that the picture shows under the mouse pointer, whatever the effects do to the ground;
-/// nothing for the sky. For event handlers.
+/// The place in the mappings' frame (x, y and height, metres) that is visible under the mouse pointer, on the ground
+/// as the effects deform it. Empty if the pointer is over the sky. Event handlers call this function.
+/// @ingroup mapping
 OSGGEOFX_EXPORT std::optional<osg::Vec3d> placeUnderPointer(EffectScene& scene,
                                                             const ProjectiveMappings& mappings,
                                                             const osg::Camera& camera,

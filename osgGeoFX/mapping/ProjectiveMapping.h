@@ -16,16 +16,19 @@
 namespace osgGeoFX
 {
 
-/** One raster thrown onto the scene: PM = (O, U, V, M_T, L, C, CM) of the paper's Section 3.2.
+/** One raster that is projected onto the scene: PM = (O, U, V, M_T, L, C, CM) of the paper's Section 3.2.
 
-    Places are those of the hosting ProjectiveMappings' frame, metres: x and y on its reference plane, heights above it.
-    The raster spans the parallelogram O ± U ± V; its left edge lies at −U, its lower one at −V. M_T then moves
-    it within, in raster coordinates of 0…1. What a transform makes of the edges is the raster's outline.
+    Places are in the frame of the hosting ProjectiveMappings, metres: x and y on its reference plane, and heights
+    above the plane. The raster covers the parallelogram O ± U ± V. Its left edge lies at −U and its lower edge at −V.
+    The transform M_T then changes the raster coordinates 0…1. The transformed edges are the raster's outline.
 
-    A mapping draws where its layer's picture (or its color transfer's constant or scene colour) is, on everything
-    below the EffectScene, along the reference plane's normal; a pinhole mapping along the rays of a camera.
+    A mapping draws the layer's image, a constant colour or the changed scene colour, as its color transfer says. It
+    draws on everything below the EffectScene. The projector PLANE projects along the normal of the reference plane,
+    the projector PINHOLE along the rays of a camera.
 
-    The layer, mask, table and transfer may be shared by several mappings. Changes count in the next frame. */
+    Several mappings may share a layer, mask, table or transfer. A change takes effect in the next frame. Setters
+    refuse values out of range: they return false, warn once and keep the former value.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT ProjectiveMapping : public PropertyHolder, private PropertyListener
 {
 public:
@@ -33,49 +36,51 @@ public:
     ProjectiveMapping(const ProjectiveMapping& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, ProjectiveMapping);
 
+    /// Whether the mapping is drawn. Default: true.
     bool setEnabled(bool enabled) { return assign("enabled", enabled ? 1.0 : 0.0); }
     bool getEnabled() const { return _enabled; }
-    /// Of two mappings the one with the higher order lies on top, of equal ones the one that was added later. −1000…1000.
-    /// (The paper draws its mapping 0 last.)
+    /// The mapping of higher order lies on top, −1000…1000. Of equal orders the mapping that was added later lies on
+    /// top. (The paper draws its mapping 0 last.) Default: 0.
     bool setOrder(int order) { return assign("order", order); }
     int getOrder() const { return _order; }
-    /// 0…1.
+    /// 0…1. Default: 1.
     bool setOpacity(double opacity) { return assign("opacity", opacity); }
     double getOpacity() const { return _opacity; }
-    /// 0…1: which mappings stay where the GPU cannot take all; ½ by default.
+    /// The mappings of higher importance, 0…1, stay if the GPU has no room for all mappings. Default: 0.5.
     bool setImportance(double importance) { return assign("importance", importance); }
     double getImportance() const { return _importance; }
-    /// Bits 0…255: the geometries it is for. A subgraph with the define GEOFX_MAPPING_CHANNELS takes mappings of these
-    /// channels only; others take all. 255 by default.
+    /// The geometries that show the mapping, as 8 bits, 0…255. A subgraph with the define GEOFX_MAPPING_CHANNELS shows
+    /// only the mappings that share a bit with the define. All other geometry shows all mappings. Default: 255.
     bool setChannels(int bits) { return assign("channels", bits); }
     int getChannels() const { return _channels; }
 
-    /// O, metres.
+    /// O, metres, ±5e7. Default: (0, 0).
     bool setCentre(const osg::Vec2d& place)
     {
         return assign({{"centreX", place.x()}, {"centreY", place.y()}});
     }
     osg::Vec2d getCentre() const { return {_centreX, _centreY}; }
-    /// The centre's height, metres, where fades and sizes on the screen are measured; 0 by default. What is drawn does not
-    /// depend on it otherwise.
+    /// The height of the centre, metres, −12 000…1e7. Fades and sizes on the screen are measured there, and it is the
+    /// height of a pinhole camera. Nothing else depends on it. Default: 0.
     bool setHeight(double metres) { return assign("height", metres); }
     double getHeight() const { return _height; }
-    /// U and V: from the centre to the middles of the right and of the upper edge, metres. They need not be square to each
-    /// other, but span an area.
+    /// U and V: from the centre to the middle of the right edge and to the middle of the upper edge, metres. They need
+    /// not be perpendicular, but must span an area. Default: (100, 0) and (0, 100).
     bool setAxes(const osg::Vec2d& u, const osg::Vec2d& v);
     osg::Vec2d getU() const { return {_uX, _uY}; }
     osg::Vec2d getV() const { return {_vX, _vY}; }
-    /// A rectangle: half its width and height, metres, and where its upper edge points, radians clockwise from the
-    /// frame's y axis.
+    /// A rectangle with half the width and half the height, metres. `heading` is the direction of the upper edge,
+    /// radians clockwise from the frame's y axis.
     bool setRectangle(const osg::Vec2d& centre, double halfWidth, double halfHeight, double heading = 0.0);
-    /// M_T in raster coordinates, projective in general: (u, v, 1) becomes M (u, v, 1). It must have an inverse, and the
-    /// outline must not reach infinity.
+    /// M_T in raster coordinates, in general projective: (u, v, 1) becomes M (u, v, 1). It must have an inverse, and
+    /// the outline must not reach infinity. Default: identity.
     bool setTransform(const glm::dmat3& m);
     glm::dmat3 getTransform() const;
-    /// The raster's corners (lower left, lower right, upper right, upper left), metres; any convex quadrilateral.
+    /// Sets O, U, V and M_T from the raster's corners, metres: lower left, lower right, upper right, upper left. They
+    /// may form any convex quadrilateral.
     bool setQuad(const osg::Vec2d (&corners)[4]);
 
-    /// The heights that are covered, metres; everything by default.
+    /// The range of heights that shows the mapping, metres, ±1e6. Default: all heights.
     bool setHeights(double lowest, double highest)
     {
         return assign({{"lowest", lowest}, {"highest", highest}});
@@ -83,7 +88,8 @@ public:
     double getLowest() const { return _lowest; }
     double getHighest() const { return _highest; }
 
-    /// Shows from `nearest` to `farthest` metres off the eye, and fades out within the share `softness` (0…1) beyond.
+    /// The mapping shows at distances of `nearest`…`farthest` metres from the eye, 0…5e7. It fades out beyond both
+    /// limits, within the share `softness` (0…1) of each. Default: all distances.
     bool setDistances(double nearest, double farthest, double softness = 0.2)
     {
         return assign({{"nearest", nearest}, {"farthest", farthest}, {"softness", softness}});
@@ -91,38 +97,43 @@ public:
     double getNearest() const { return _nearest; }
     double getFarthest() const { return _farthest; }
     double getSoftness() const { return _softness; }
-    /// Shows in full from `full` pixels on and not at all below `none`: ρ of the paper's Section 4.3, here twice the root
-    /// of |U||V| as the eye sees it, pixels. 0 and 0 by default: always.
+    /// The mapping shows fully if its size on the screen is at least `full` pixels, and not at all below `none`. The
+    /// size is ρ of the paper's Section 4.3, here twice the root of |U||V| as the eye sees it, or, for a PINHOLE, twice its range. Default: 0 and 0, so
+    /// that it always shows.
     bool setPixels(double none, double full) { return assign({{"pixelsNone", none}, {"pixelsFull", full}}); }
     double getPixelsNone() const { return _pixelsNone; }
     double getPixelsFull() const { return _pixelsFull; }
-    /// Shows in full up to the slope `full` and not at all above `none`, radians from the horizontal; π/2 both by default.
+    /// The mapping shows fully up to the slope `full` and not at all above `none`, radians from the horizontal, 0…π/2.
+    /// Default: π/2 for both, all slopes.
     bool setSlopes(double full, double none) { return assign({{"slopeFull", full}, {"slopeNone", none}}); }
     double getSlopeFull() const { return _slopeFull; }
     double getSlopeNone() const { return _slopeNone; }
-    /// Whether edges are smooth; true by default. Off for tiles that must meet without a seam.
+    /// Whether edges are smooth. A program turns it off for tiles that must meet without a seam. Default: true.
     bool setSoftEdges(bool soft) { return assign("softEdges", soft ? 1.0 : 0.0); }
     bool getSoftEdges() const { return _softEdges; }
 
-    /// For symbols: the size on the screen, pixels; O ± U ± V is the largest that it gets. 0: metres count alone.
+    /// For symbols: the size on the screen, pixels, measured as in setPixels(). The symbol never becomes larger than O
+    /// ± U ± V. The default, 0, means that the size is in metres.
     bool setSizeInPixels(double pixels) { return assign("sizeInPixels", pixels); }
     double getSizeInPixels() const { return _sizeInPixels; }
-    /// For symbols: the upper edge points away from the eye, whatever the heading. False by default.
+    /// For symbols: whether the upper edge points away from the eye, whatever the heading. Default: false.
     bool setTurned(bool turned) { return assign("turned", turned ? 1.0 : 0.0); }
     bool getTurned() const { return _turned; }
 
-    /// PLANE: along the reference plane's normal. PINHOLE: along the rays of a camera at O and `height`; of U and V
-    /// only the footprint that is never left counts.
+    /// PLANE projects along the normal of the reference plane. PINHOLE projects along the rays of a camera at O and
+    /// `height`. U and V then do not place the raster.
     enum Projector
     {
         PLANE,
         PINHOLE
     };
+    /// Default: PLANE.
     bool setProjector(Projector projector) { return assign("projector", projector); }
     Projector getProjector() const { return static_cast<Projector>(_projector); }
 
-    /// Of a pinhole: place in the frame, metres; where it looks, radians: heading clockwise from the frame's y axis,
-    /// pitch up, roll to the right; full angle of view across, radians, and width over height of the picture.
+    /// A pinhole camera: its place in the frame, metres, and its direction, radians. The heading is clockwise from the
+    /// frame's y axis (±2π), the pitch is upwards (±π/2) and the roll is to the right (±π). fieldOfView is the full
+    /// horizontal angle of view, 0.001…3 radians. aspectRatio is the image's width over its height, 0.01…100.
     struct Camera
     {
         osg::Vec3d eye;
@@ -131,24 +142,27 @@ public:
         double roll = 0.0;
         double fieldOfView = 1.0;
         double aspectRatio = 4.0 / 3.0;
-        double k1 = 0.0, k2 = 0.0, k3 = 0.0; ///< radial distortion after Brown, tangents
-        double p1 = 0.0, p2 = 0.0;           ///< tangential distortion
-        double range = 5000.0;               ///< how far its picture reaches, metres
+        double k1 = 0.0, k2 = 0.0, k3 = 0.0; ///< radial distortion after Brown, in tangents, ±10
+        double p1 = 0.0, p2 = 0.0;           ///< tangential distortion, ±1
+        double range = 5000.0; ///< distance from the camera to which its image reaches, metres, 0.1…1e6
     };
+    /// Sets the camera and the projector PINHOLE.
     bool setCamera(const Camera& camera);
     Camera getCamera() const;
 
+    /// The raster. Null for none.
     bool setLayer(DataLayer* layer);
     DataLayer* getLayer() { return _layer.get(); }
     const DataLayer* getLayer() const { return _layer.get(); }
-    /// The mask of ColorTransfer::FROM_MASK, in the same coordinates as the layer.
+    /// The mask for ColorTransfer::FROM_MASK, in the same coordinates as the layer. Null for none.
     bool setMask(DataLayer* mask);
     DataLayer* getMask() { return _mask.get(); }
     const DataLayer* getMask() const { return _mask.get(); }
+    /// The color table for ColorTransfer::TABLE. Null for none.
     bool setTable(ColorTable* table);
     ColorTable* getTable() { return _table.get(); }
     const ColorTable* getTable() const { return _table.get(); }
-    /// Never null; null is refused.
+    /// The transfer is never null. A null pointer is refused with a warning: the setter returns false.
     bool setTransfer(ColorTransfer* transfer);
     ColorTransfer* getTransfer() { return _transfer.get(); }
     const ColorTransfer* getTransfer() const { return _transfer.get(); }
@@ -156,11 +170,12 @@ public:
     std::vector<Part> parts() override { return {{"transfer", _transfer.get()}}; }
     const Properties& properties() const override;
 
-    /// The corners of the raster's outline; nothing where M_T takes it to infinity.
+    /// The corners of the raster's outline. Empty if M_T takes it to infinity.
     std::optional<PlaneFootprint> outline() const;
-    /// Where it can show at all: the outline, for symbols and cameras what they can reach.
+    /// The area that the mapping can cover: the outline, or for symbols and pinhole cameras a square around everything
+    /// they reach.
     PlaneFootprint footprint() const;
-    /// From places to raster coordinates, homogeneous: (x, y, 1) becomes (u, v, 1).
+    /// The matrix from places to homogeneous raster coordinates: (x, y, 1) becomes (u, v, 1).
     glm::dmat3 placeToRaster() const;
 
 protected:

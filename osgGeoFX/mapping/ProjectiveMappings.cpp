@@ -3,9 +3,9 @@
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 
 #include <osgGeoFX/effect/DeformationChain.h>
-#include <osgGeoFX/effect/GlobeFrame.h>
 #include <osgGeoFX/effect/PerCamera.h>
-#include <osgGeoFX/mapping/MappingDrawing.h>
+#include <osgGeoFX/effect/detail/GlobeFrame.h>
+#include <osgGeoFX/mapping/detail/GpuMappings.h>
 
 #include <glm/glm.hpp>
 #include <osg/Math>
@@ -34,38 +34,38 @@ public:
         ~Camera() { show(nullptr); }
 
         /// In the place of the former ones.
-        void show(const std::shared_ptr<MappingDrawing>& others)
+        void show(const std::shared_ptr<GpuMappings>& others)
         {
-            if (drawing == others) return;
-            if (drawing) drawing->release(list);
-            drawing = others;
+            if (gpu == others) return;
+            if (gpu) gpu->release(list);
+            gpu = others;
         }
 
-        std::shared_ptr<MappingDrawing> drawing;
+        std::shared_ptr<GpuMappings> gpu;
         /// Two of each, in turn: OSG does not apply anew what it has applied last.
         std::array<std::array<osg::ref_ptr<StoreTexture>, 3>, 2> textures;
         osg::ref_ptr<GpuStore> store;
         std::size_t turn = 0;
-        MappingDrawing::CameraList list;
+        CameraList list;
     };
 
     /// The mappings as they lie on a ground. One for each ground that some camera sees them on, and for the last one in any
     /// case.
-    std::shared_ptr<MappingDrawing> on(const osg::EllipsoidModel* ellipsoid, const Mappings& mappings)
+    std::shared_ptr<GpuMappings> on(const osg::EllipsoidModel* ellipsoid, const Mappings& mappings)
     {
         // By what they say: scenes have ellipsoids of their own that say the same.
         const osg::Vec2d radii =
             ellipsoid ? osg::Vec2d(ellipsoid->getRadiusEquator(), ellipsoid->getRadiusPolar()) : osg::Vec2d();
         const std::lock_guard<std::mutex> lock(_mutex);
         _grounds.erase(std::remove_if(_grounds.begin(), _grounds.end(),
-                                      [](const Ground& ground) { return ground.drawing.expired(); }),
+                                      [](const Ground& ground) { return ground.gpu.expired(); }),
                        _grounds.end());
         for (const Ground& ground : _grounds)
         {
-            if (ground.radii == radii) _last = ground.drawing.lock();
+            if (ground.radii == radii) _last = ground.gpu.lock();
             if (ground.radii == radii) return _last;
         }
-        _last = std::make_shared<MappingDrawing>();
+        _last = std::make_shared<GpuMappings>();
         for (const osg::ref_ptr<ProjectiveMapping>& mapping : mappings)
             _last->add(*mapping);
         _grounds.push_back({radii, _last});
@@ -79,14 +79,14 @@ public:
         const std::lock_guard<std::mutex> lock(_mutex);
         for (const Ground& ground : _grounds)
         {
-            if (const std::shared_ptr<MappingDrawing> drawing = ground.drawing.lock()) action(*drawing);
+            if (const std::shared_ptr<GpuMappings> gpu = ground.gpu.lock()) action(*gpu);
         }
     }
 
     Capacity capacity() const
     {
         std::uint64_t uploaded = 0;
-        each([&](const MappingDrawing& drawing) { uploaded += drawing.capacity().uploadedBytes; });
+        each([&](const GpuMappings& gpu) { uploaded += gpu.capacity().uploadedBytes; });
         const std::lock_guard<std::mutex> lock(_mutex);
         Capacity result = _last ? _last->capacity() : Capacity();
         result.uploadedBytes = uploaded;
@@ -100,11 +100,11 @@ private:
     struct Ground
     {
         osg::Vec2d radii; ///< of the ellipsoid, metres; 0 without one
-        std::weak_ptr<MappingDrawing> drawing;
+        std::weak_ptr<GpuMappings> gpu;
     };
     mutable std::mutex _mutex;
     std::vector<Ground> _grounds;
-    std::shared_ptr<MappingDrawing> _last;
+    std::shared_ptr<GpuMappings> _last;
 };
 
 namespace
@@ -235,7 +235,7 @@ bool ProjectiveMappings::addMapping(ProjectiveMapping* mapping)
     _mappings.emplace_back(mapping);
     mapping->addListener(*this);
     _drawing->all.insert(mapping);
-    _drawing->each([&](MappingDrawing& drawing) { drawing.add(*mapping); });
+    _drawing->each([&](GpuMappings& gpu) { gpu.add(*mapping); });
     touch();
     return true;
 }
@@ -246,7 +246,7 @@ bool ProjectiveMappings::removeMapping(ProjectiveMapping* mapping)
     if (found == _mappings.end()) return false;
     mapping->removeListener(*this);
     _drawing->all.erase(mapping);
-    _drawing->each([&](MappingDrawing& drawing) { drawing.remove(*mapping); });
+    _drawing->each([&](GpuMappings& gpu) { gpu.remove(*mapping); });
     _mappings.erase(found);
     touch();
     return true;
@@ -257,15 +257,14 @@ void ProjectiveMappings::removeMappings()
     for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
         mapping->removeListener(*this);
     _drawing->all.clear();
-    _drawing->each([](MappingDrawing& drawing) { drawing.clear(); });
+    _drawing->each([](GpuMappings& gpu) { gpu.clear(); });
     _mappings.clear();
     touch();
 }
 
 void ProjectiveMappings::propertyChanged(PropertyHolder& mapping)
 {
-    _drawing->each([&](MappingDrawing& drawing)
-                   { drawing.change(static_cast<ProjectiveMapping&>(mapping)); });
+    _drawing->each([&](GpuMappings& gpu) { gpu.change(static_cast<ProjectiveMapping&>(mapping)); });
 }
 
 std::vector<ProjectiveMapping*> ProjectiveMappings::mappingsAt(const osg::Vec2d& place) const
@@ -308,7 +307,7 @@ MappingSettings ProjectiveMappings::settings(const osg::EllipsoidModel* ellipsoi
 
 void ProjectiveMappings::update(const osg::EllipsoidModel* ellipsoid)
 {
-    MappingDrawing::CameraList none;
+    CameraList none;
     _drawing->on(ellipsoid, _mappings)
         ->commit(
             settings(ellipsoid), [&](const osg::Vec3d& place) { return positionOf(place, ellipsoid); }, none,
@@ -345,11 +344,10 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
         // A little more than what the shader draws.
         return size / metres > 0.99 * mapping.getPixelsNone();
     };
-    const MappingDrawing::Frame frame =
-        camera.drawing->commit(settings(ellipsoid), position, camera.list,
-                               _wholeList ? MappingDrawing::Wanted(largeEnough) : nullptr);
+    const GpuMappings::Frame frame = camera.gpu->commit(
+        settings(ellipsoid), position, camera.list, _wholeList ? GpuMappings::Wanted(largeEnough) : nullptr);
     const MappingIndex::Root& root = frame.root;
-    const auto start = static_cast<int>(camera.list.offset);
+    const auto start = static_cast<int>(camera.list.offset());
     if (root.block == 0 || (_wholeList && start == 0)) return false;
 
     if (camera.store != frame.store)
@@ -405,7 +403,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
 
 void ProjectiveMappings::releaseGLObjects(osg::State* state) const
 {
-    _drawing->each([&](MappingDrawing& drawing) { drawing.releaseGLObjects(state); });
+    _drawing->each([&](GpuMappings& gpu) { gpu.releaseGLObjects(state); });
 }
 
 } // namespace osgGeoFX

@@ -16,8 +16,8 @@ namespace osgGeoFX
 
 struct MappingSettings;
 
-/** Throws any number of georeferenced rasters onto everything below its EffectScene, in one pass and at run time: the
-    system of Trapp and Döllner (2009).
+/** Projects any number of georeferenced rasters onto everything below its EffectScene, in one pass and at run time.
+    This is the system of Trapp and Döllner (2009).
 
     @code
     osg::ref_ptr<osgGeoFX::ProjectiveMappings> mappings = new osgGeoFX::ProjectiveMappings;
@@ -29,24 +29,29 @@ struct MappingSettings;
     scene->addEffect(mappings);
     @endcode
 
-    **Frame.** On a projected terrain, places are its coordinates less the origin. On a globe, the frame stands on the
-    ellipsoid at the origin's longitude and latitude, x east, y north, z up; the reference plane is the tangent plane,
-    and a place's x and y are those of its foot on the ellipsoid: PROJ's `+proj=ortho` at that origin. So rasters warped
-    to that projection lie exactly, hundreds of kilometres around; the other side of the globe is out of reach.
+    **Frame.** On a projected terrain, a place is a position minus the origin. On a globe, the frame stands on the
+    ellipsoid at the origin's longitude and latitude: x points east, y north, z up. The reference plane is the tangent
+    plane there. A place's x and y are those of the point's foot on the ellipsoid: PROJ's `+proj=ortho` at that origin.
+    Rasters in that projection therefore lie exactly, for hundreds of kilometres around. The other side of the globe
+    cannot be reached.
 
-    **What it costs.** A fragment walks a grid to the few mappings over its place (MappingIndex); thousands elsewhere cost
-    it nothing. With `wholeList` each fragment goes through all that are not too small instead, as in the paper; the picture
-    is the same. Between frames only what changed is uploaded. Three textures in all, on units that the scene gives them or
-    of one's choice.
+    **Cost.** Each fragment uses a grid (MappingIndex) to find the few mappings at its place. Mappings elsewhere, even
+    thousands, cost it nothing. With `wholeList` each fragment instead tests all mappings that are not too small, as in
+    the paper, with the same result. Between frames only changes are uploaded. The effect uses three textures, on units
+    that the scene or the program chooses.
 
-    **Limits.** There is no limit of its own. What the GPU cannot hold is left out, the least important first
-    (`importance`, then the smaller ones), one warning says which limit it is, and capacity() tells how much that is.
+    **Limits.** The class itself has no limit. If the GPU cannot hold everything, the least important layers and
+    mappings are left out (lowest `importance` first, then the smaller mappings). One warning names the limit, and
+    capacity() counts what was left out.
 
-    **With other effects.** Mappings lie on the undeformed ground and bend with it. They colour in the scene's order of
-    effects, and any number of sets may stand there. A subgraph keeps clear of all with the define GEOFX_MAPPING_CHANNELS 0, and takes some with their bits.
+    **With other effects.** Mappings lie on the undeformed ground and bend with it. They colour the ground in the
+    scene's order of effects. A scene may have several ProjectiveMappings. A subgraph with the define
+    GEOFX_MAPPING_CHANNELS 0 shows no mappings. With other bits it shows only mappings of these channels.
 
-    **Threads.** Mappings, layers, tables and transfers are changed between frames; the next frame has it, in all
-    threading models. Any number of cameras, views and contexts draws them. May be hosted by several scenes. */
+    **Threads.** A program changes mappings, layers, tables and transfers between frames. The next frame shows the
+    change, in all threading models. Any number of cameras, views and contexts may draw them. Several scenes may share
+    one ProjectiveMappings.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT ProjectiveMappings : public SurfaceEffect, public TextureUser, private PropertyListener
 {
 public:
@@ -54,50 +59,55 @@ public:
     ProjectiveMappings(const ProjectiveMappings& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, ProjectiveMappings);
 
-    /// The frame's origin on a projected terrain, metres. (0, 0) by default.
+    /// The frame's origin on a projected terrain, metres, ±5e7. Default: (0, 0).
     bool setOrigin(const osg::Vec2d& origin)
     {
         return assign({{"originX", origin.x()}, {"originY", origin.y()}});
     }
     osg::Vec2d getOrigin() const { return {_originX, _originY}; }
-    /// The frame's origin on a globe, radians. (0, 0) by default.
+    /// The frame's origin on a globe, radians. Default: (0, 0).
     bool setGeodeticOrigin(double longitude, double latitude)
     {
         return assign({{"longitude", longitude}, {"latitude", latitude}});
     }
     double getLongitude() const { return _longitude; }
     double getLatitude() const { return _latitude; }
-    /// From the frame to world coordinates: with the ellipsoid on a globe, null on a projected terrain.
+    /// The matrix from the frame to world coordinates. `ellipsoid` is null on a projected terrain.
     osg::Matrixd frameToWorld(const osg::EllipsoidModel* ellipsoid) const;
-    /// The place of a world position: x and y on the plane, and the height, metres.
+    /// The place of a world position: x and y on the plane and the height, metres.
     osg::Vec3d placeOf(const osg::Vec3d& world, const osg::EllipsoidModel* ellipsoid) const;
-    /// The position in the frame of a place; the reverse of what the shader does.
+    /// The position of a place, in the frame, metres. It is the inverse of the shader's computation.
     osg::Vec3d positionOf(const osg::Vec3d& place, const osg::EllipsoidModel* ellipsoid) const;
 
-    /// Null and a mapping that is there already are refused. On top of those of its order.
+    /// Adds a mapping on top of all mappings of its order. A null pointer and a mapping that was added before are
+    /// refused with a warning.
     bool addMapping(ProjectiveMapping* mapping);
+    /// Returns false if the mapping is not in the list.
     bool removeMapping(ProjectiveMapping* mapping);
     void removeMappings();
     unsigned int getNumMappings() const { return static_cast<unsigned int>(_mappings.size()); }
     ProjectiveMapping* getMapping(unsigned int i) { return _mappings[i].get(); }
     const ProjectiveMapping* getMapping(unsigned int i) const { return _mappings[i].get(); }
-    /// All enabled mappings with this place in their outlines, the topmost first; fades are left out of account.
+    /// All enabled mappings of the projector PLANE whose rasters contain this place, the topmost first. Fades are
+    /// ignored, and so are sizes in pixels and turned symbols.
     std::vector<ProjectiveMapping*> mappingsAt(const osg::Vec2d& place) const;
 
-    /// Of all mappings together, 0…1; what keys turn. 1 by default.
+    /// The opacity of all mappings together, 0…1. Keys change it in a viewer. Default: 1.
     bool setOpacity(double opacity) { return assign("opacity", opacity); }
     double getOpacity() const { return _opacity; }
-    /// Whether fragments go through all mappings but those too small to see, instead of the grid. For comparison; false by default.
+    /// Whether each fragment tests all mappings except those too small to see, instead of using the grid. This serves
+    /// comparisons. Default: false.
     bool setWholeList(bool on) { return assign("wholeList", on ? 1.0 : 0.0); }
     bool getWholeList() const { return _wholeList; }
-    /// Probes along the longer side of a pixel's footprint at most, 1…16; 8 by default.
+    /// The largest number of texture probes along the longer side of a pixel's footprint, 1…16. Default: 8.
     bool setAnisotropy(int probes) { return assign("anisotropy", probes); }
     int getAnisotropy() const { return _anisotropy; }
-    /// For scenes that are lit in linear light: colours are taken as sRGB and made linear before blending. False by default.
+    /// For scenes that are lit in linear light: colours are taken as sRGB and made linear before blending. Default:
+    /// false.
     bool setLinear(bool linear) { return assign("linear", linear ? 1.0 : 0.0); }
     bool getLinear() const { return _linear; }
-    /// Texture units of the data, the layers and the tables, 4…31, all different. −1, the default, leaves one to the scene,
-    /// which gives 8, 9 and 10 where they are free.
+    /// The texture units of the data, the layers and the tables, 4…31, all different. With the default, −1, the scene
+    /// chooses a unit: 8, 9 and 10 if they are free.
     bool setUnits(int data, int layers, int tables)
     {
         return assign({{"dataUnit", data}, {"layerUnit", layers}, {"tableUnit", tables}});
@@ -105,30 +115,31 @@ public:
     int getDataUnit() const { return _dataUnit; }
     int getLayerUnit() const { return _layerUnit; }
     int getTableUnit() const { return _tableUnit; }
-    /// Side of the pages that layers share, texels, a power of two 64…16384; larger layers are reduced. 2048 by default. A
-    /// change uploads everything anew.
+    /// The side of the pages that layers share, texels, a power of two, 64…16384. Larger layers are reduced. A change
+    /// uploads everything again. Default: 2048.
     bool setPageSide(int texels) { return assign("pageSide", texels); }
     int getPageSide() const { return _pageSide; }
-    /// Pages at most, 1…2048: less where the GPU has less. 64 by default, which are 1.4 GB.
+    /// The largest number of pages, 1…2048. The GPU may allow fewer. Default: 64, which are 1.4 GB.
     bool setMaxPages(int pages) { return assign("maxPages", pages); }
     int getMaxPages() const { return _maxPages; }
-    /// Memory for the parameters of the mappings and their grid at most, MiB, 0.001…32000: less where the GPU has less.
-    /// 2048 by default.
+    /// The largest memory for the parameters of the mappings and for their grid, MiB, 0.001…32000. The GPU may allow
+    /// less. Default: 2048.
     bool setMaxDataSize(double megabytes) { return assign("maxDataSize", megabytes); }
     double getMaxDataSize() const { return _maxDataSize; }
 
-    /// What there is room for, what is in use, and what was left out in the last frame.
+    /// The room on the GPU, the part of it in use, and the numbers of mappings and layers that the last frame left
+    /// out.
     struct Capacity
     {
-        int pages = 0, pagesUsed = 0;   ///< of pageSide² texels with their mip levels
-        int texels = 0, texelsUsed = 0; ///< of the texture buffer, 16 bytes each
+        int pages = 0, pagesUsed = 0;   ///< pages of pageSide² texels with their mip levels
+        int texels = 0, texelsUsed = 0; ///< texels of the texture buffer, 16 bytes each
         int mappingsLeftOut = 0, layersLeftOut = 0;
-        std::uint64_t uploadedBytes = 0; ///< since the beginning, all contexts together
+        std::uint64_t uploadedBytes = 0; ///< since the beginning, in all contexts together
     };
     Capacity capacity() const;
 
-    /// Works in now what has changed, for the next frame, which does so by itself otherwise. With the terrain's
-    /// ellipsoid, null on a projected terrain.
+    /// Processes all changes now. Otherwise the next frame does. `ellipsoid` is the terrain's, or null on a projected
+    /// terrain.
     void update(const osg::EllipsoidModel* ellipsoid);
 
     const Properties& properties() const override;

@@ -12,69 +12,77 @@
 namespace osgGeoFX
 {
 
-/** A route over the terrain (Trapp and Döllner 2009, Section 5 and Figure 3.B): a line along the way points with an outline,
-    round joins and a mark at each way point, while everything away from the route loses brightness and saturation.
+/** Shows a route over the terrain (Trapp and Döllner 2009, Section 5 and Figure 3.B): a line with an outline and round
+    joins along the way points, and a mark at each way point. Everything away from the route loses brightness and
+    saturation.
 
-    Each leg is a strip and each way point a disc, mappings of their own; a dashed leg has one for each dash. The context is
-    a mapping of the scene's own colours, whose mask holds the distance to the route, metres; so its edges are smooth
-    and cost nothing to move. Four more carry it on to `contextReach`. All orders from the one given to 5 above are used.
+    Each leg is a strip and each way point a disc. Both are mappings. A dashed leg has a mapping for each dash. The
+    context is a mapping of the scene's own colours. Its mask holds the distance to the route, metres, so its edges are
+    smooth. Four more mappings extend the context to `contextReach`. The mappings use the orders from `order` to
+    `order` + 5.
 
-    Places are those of the mappings' frame, metres. Everything may be changed between frames, by the thread of the frame
-    loop; mappings that stay the same are not uploaded anew. The destructor takes all away. Setters that get what makes no
-    sense return false, warn once and change nothing. */
+    Places are in the mappings' frame, metres. The thread of the frame loop may change everything, between frames.
+    Unchanged mappings are not uploaded again. The destructor removes all mappings. Setters refuse values out of range:
+    they return false, warn once and change nothing.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT RouteMapping : public osg::Referenced
 {
 public:
     explicit RouteMapping(ProjectiveMappings& mappings, int order = 0);
 
-    /// Way points with no way between them count once. One alone is a mark without a line.
+    /// The way points, metres, ±5e7. Neighbours at the same place (within 1 mm) count once. A single way point is a
+    /// mark without a line.
     bool setWayPoints(const std::vector<osg::Vec2d>& places);
     const std::vector<osg::Vec2d>& getWayPoints() const { return _points; }
+    /// The number of legs.
     std::size_t legs() const { return _points.empty() ? 0 : _points.size() - 1; }
-    /// Along the ground plane, metres.
+    /// The length of the route on the reference plane, metres.
     double length() const;
 
-    /// Colours are sRGB-coded; what is see-through shows its joins.
+    /// The look of a route. Colours are sRGB-coded, 0…1. A translucent colour shows where strips and discs overlap.
     struct Style
     {
-        double halfWidth = 12.0; ///< of the line, metres; 0: no line
-        double casing = 5.0;     ///< width of the outline on each side, metres; 0: none
+        double halfWidth = 12.0; ///< half the width of the line, metres, 0…1e7; 0: no line
+        double casing = 5.0;     ///< width of the outline on each side, metres, 0…1e7; 0: none
         osg::Vec4 color = {0.13f, 0.45f, 0.95f, 1.0f};
         osg::Vec4 casingColor = {1.0f, 1.0f, 1.0f, 1.0f};
         osg::Vec4 highlightColor = {1.0f, 0.55f, 0.0f, 1.0f};
-        double dash = 0.0; ///< length of dashes and of the gaps between them, metres, over the casing;
-        double gap = 0.0;  ///< 0: a line without gaps
-        double pointRadius = 35.0; ///< of the marks, metres; 0: none
-        double pointPixels = 0.0;  ///< the marks' size on the screen instead; `pointRadius` then is the most
+        double dash = 0.0;         ///< length of a dash, metres, 0…1e7; dashes lie on a continuous outline
+        double gap = 0.0;          ///< length of a gap, metres, 0…1e7; dash or gap 0: no gaps
+        double pointRadius = 35.0; ///< radius of the marks, metres, 0…1e7; 0: no marks
+        double pointPixels = 0.0; ///< 0…1e4: size of marks in pixels, limited by `pointRadius`; 0: in metres
 
-        bool context = true;
-        double surroundings = 250.0; ///< so far from the route everything is as it was, metres,
-        double softness = 250.0;     ///< and over so many more it goes over to
-        double brightness = 0.6;     ///< these, 0…4; see ColorTransfer
-        double saturation = 0.15;
-        double contextReach = 3e5; ///< metres around the route
+        bool context = true;         ///< whether the surroundings lose brightness and saturation
+        double surroundings = 250.0; ///< up to this distance from the route nothing changes, metres, 0…1e7
+        double softness = 250.0;     ///< width of the transition beyond `surroundings`, metres, 0…1e7
+        double brightness = 0.6;     ///< brightness beyond the transition, 0…4; see ColorTransfer
+        double saturation = 0.15;    ///< saturation beyond the transition, 0…4
+        double contextReach = 3e5;   ///< how far the context reaches around the route, metres, 0…1e7
     };
     bool setStyle(const Style& style);
     const Style& getStyle() const { return _style; }
 
-    /// A symbol for the marks in the place of the round ones, which null brings back.
+    /// A symbol in place of the round marks. It turns towards the eye. A null pointer brings the round marks back.
     void setPointLayer(DataLayer* layer);
-    /// Shows one leg, from 0 on, in the other colour and above the rest; none for those that are not there.
+    /// Shows one leg (counted from 0) in the highlight colour and above the rest. An index that does not exist
+    /// highlights nothing.
     void highlight(std::optional<std::size_t> leg);
     std::optional<std::size_t> highlighted() const { return _highlighted; }
-    /// The leg whose line, with its casing, is at a place; for clicks.
+    /// The leg whose line or outline contains a place. Programs use it for clicks.
     std::optional<std::size_t> legAt(const osg::Vec2d& place) const;
 
-    /// The mappings of each role; a program may change what the route does not set itself: fades, heights, channels.
+    /// The role of a mapping. A program may change properties that the route does not set itself: fades, heights,
+    /// channels.
     enum Role
     {
-        CONTEXT_MASKED, ///< around the route
-        CONTEXT_BEYOND,
+        CONTEXT_MASKED, ///< the context around the route
+        CONTEXT_BEYOND, ///< the four mappings beyond it, out to `contextReach`
         CASING,
         LINE,
         LINE_HIGHLIGHTED,
         POINTS
     };
+    /// The mappings of one role.
     const MappingPool& mappings(Role role) const { return _pools[role]; }
 
 protected:

@@ -13,59 +13,66 @@
 namespace osgGeoFX
 {
 
-/** Map symbols that lie on the terrain (Trapp and Döllner 2009, Section 5 and Figure 3.E): any number of them, in metres or
-    in pixels, fixed on the map or turned to the eye, and more abstract ones for those further off.
+/** Draws map symbols that lie on the terrain (Trapp and Döllner 2009, Section 5 and Figure 3.E). Any number of symbols
+    is possible. Their size is in metres or in pixels. They are fixed on the map or turned towards the eye. Distant
+    symbols may have a more abstract image.
 
     @code
     const std::optional<int> peak = symbols->addLook({{{detailed, 8000.0}, {plain, 60000.0}}, 300.0});
     const std::optional<int> symbol = symbols->add(*peak, {x, y, height});
     @endcode
-    A look is shared by its symbols, and so are the layers of its images. The images of a look follow each other with
-    distance; the one fades in as the other fades out, so that together they are always as strong as one. A symbol is a
-    mapping for each of its look's images.
 
-    Places are those of the mappings' frame, metres. Symbols come and go between frames, by the thread of the frame loop; the
-    destructor takes all away. */
+    All symbols of a look share it and the layers of its images. The images of a look follow each other with distance.
+    One image fades in while the former one fades out, so that their sum stays constant. A symbol has one mapping for
+    each image of its look.
+
+    Places are in the mappings' frame, metres. The thread of the frame loop adds and removes symbols, between frames.
+    The destructor removes all of them.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT SymbolMapping : public osg::Referenced
 {
 public:
     explicit SymbolMapping(ProjectiveMappings& mappings);
 
-    /// One image, out to so many metres from the eye.
+    /// One image, and the distance from the eye up to which it shows, metres, at most 5e7.
     struct Level
     {
         osg::ref_ptr<DataLayer> layer;
         double farthest = 5e7;
     };
-    /// The middle of the image lies at the symbol's place; a pin has its tip there.
+    /// The appearance of symbols. The middle of the image lies at the symbol's place. The image of a pin therefore has
+    /// the pin's tip in its middle.
     struct Look
     {
-        std::vector<Level> levels; ///< the nearest first
-        double width = 100.0;      ///< metres; of one in pixels the largest
-        double pixels = 0.0;       ///< width on the screen; 0: metres count
-        double stretch = 1.0;      ///< height over width; above 1 against the foreshortening of low views
-        bool turned = false;       ///< upright to the eye, whatever the heading
-        double nearest = 0.0;      ///< metres from the eye where the first image begins
-        double softness = 0.2;     ///< share of a distance over which images go over, 0…1
-        double opacity = 1.0;      ///< 0…1
-        int order = 0;
+        std::vector<Level> levels; ///< images, the nearest first
+        double width = 100.0;      ///< metres, 0.001…1e7; with `pixels` the largest width
+        double pixels = 0.0;       ///< width on the screen, 0…1e5; 0: the width is in metres
+        double stretch = 1.0;  ///< height over width, 0.01…100; above 1 offsets low views' foreshortening
+        bool turned = false;   ///< upright towards the eye, whatever the heading
+        double nearest = 0.0;  ///< distance from the eye where the first image begins, metres
+        double softness = 0.2; ///< share of a distance over which one image replaces another, 0…1
+        double opacity = 1.0;  ///< 0…1
+        int order = 0;         ///< −1000…1000
     };
-    /// The number of the look, for add(). Nothing, with a warning, where a level has no image or the next one would be gone
-    /// before this one has faded out, and where numbers are out of range.
+    /// Returns the number of the look, for add(). The result is empty, with a warning, if a level has no image, if a
+    /// level ends before the former level has faded out, or if a number is out of range.
     std::optional<int> addLook(const Look& look);
 
-    /// The number of the symbol; it is never used again. `place` with its height; heading in radians clockwise from the
-    /// frame's y axis. Nothing, with a warning, where there is no such look or the place is out of range.
+    /// Returns the number of the symbol, which is never used again. `place` includes the height, metres. `heading` is
+    /// in radians clockwise from the frame's y axis. The result is empty, with a warning, if the look does not exist
+    /// or if the place is out of range (x and y ±5e7, height −12 000…1e7).
     std::optional<int> add(int look, const osg::Vec3d& place, double heading = 0.0);
-    /// False where there is no such symbol; so below.
+    /// Returns false if the symbol does not exist or if the place is out of range.
     bool move(int symbol, const osg::Vec3d& place, double heading = 0.0);
+    /// Returns false if the symbol does not exist.
     bool setEnabled(int symbol, bool enabled);
+    /// Returns false if the symbol does not exist.
     bool remove(int symbol);
     void clear();
     std::size_t size() const { return _symbols.size(); }
-    /// The symbol that a mapping belongs to, for ProjectiveMappings::mappingsAt(); nothing where it is none.
+    /// The symbol to which a mapping belongs. Use it with ProjectiveMappings::mappingsAt(). Empty for other mappings.
     std::optional<int> symbolOf(const ProjectiveMapping& mapping) const;
-    /// A symbol's mappings, one for each level of its look; none where there is no such symbol.
+    /// The mappings of a symbol, one for each level of its look. Empty if the symbol does not exist.
     std::vector<ProjectiveMapping*> mappings(int symbol) const;
 
 protected:

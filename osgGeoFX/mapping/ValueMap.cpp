@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/ValueMap.h>
 
-#include <osgGeoFX/mapping/ValueLines.h>
+#include <osgGeoFX/mapping/detail/ValueLines.h>
 #include <osgGeoFX/raster/LayerPixels.h>
 
 #include <osg/Notify>

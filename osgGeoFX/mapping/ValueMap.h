@@ -8,8 +8,8 @@
 namespace osgGeoFX
 {
 
-/** Numbers as colours over the terrain: noise, concentrations, heights, classes; with lines at round values where wanted, and
-    a legend in the same colours (Trapp and Döllner 2009, Section 5 and Figure 3.A).
+/** Shows numbers as colours on the terrain: noise, concentrations, heights, classes. Lines of equal value and a legend
+    in the same colours are optional (Trapp and Döllner 2009, Section 5 and Figure 3.A).
 
     @code
     osg::ref_ptr<osgGeoFX::ValueMap> map = new osgGeoFX::ValueMap(mappings, noise, colors);
@@ -18,32 +18,37 @@ namespace osgGeoFX
     map->setLines(5.0, 30.0);
     hud->addChild(map->legend({"Noise", "dB(A)"}));
     @endcode
-    Place, opacity, fades and order are those of its mapping; the lines follow it. Changed between frames by the thread of the frame loop; the
-    destructor takes it away. */
+
+    A program sets place, opacity, fades and order on mapping(). The lines follow these settings. The thread of the
+    frame loop changes a map, between frames. The destructor removes it. Setters refuse values that they cannot use:
+    they return false, warn and change nothing.
+    @ingroup mapping */
 class OSGGEOFX_EXPORT ValueMap : public osg::Referenced, private PropertyListener
 {
 public:
-    /// A layer of values or classes, and a table that is shared and may be changed: refresh() then. Values below the
-    /// range take the colour of its lower end, those above that of the upper one. The range is the table's at first.
+    /// `values` is a layer of values or classes. The table may be shared and changed; refresh() then applies the
+    /// change. Values below the range have the colour of its lower end, values above it the colour of the upper end.
+    /// With a table of the mode EXACT they are transparent. The range at first is the table's.
     ValueMap(ProjectiveMappings& mappings, DataLayer* values, ColorTable* colors, int order = 0);
 
     ProjectiveMapping& mapping() { return *_mapping; }
-    /// Null is refused.
+    /// A null pointer is refused.
     bool setColors(ColorTable* colors);
     ColorTable& colors() { return *_colors; }
-    /// The values at the ends of the colours, in the layer's unit; the first is the lower one.
+    /// The values at the two ends of the colours, in the layer's unit. `low` must be less than `high`.
     bool setRange(double low, double high);
     double getLow() const { return _low; }
     double getHigh() const { return _high; }
-    /// Lines of equal value at the multiples of `step` within the range, in the layer's unit; 0 for none. Their width is
-    /// in metres. They are a mapping of their own that lies where the map does. Values only; classes have none.
+    /// Lines of equal value at the multiples of `step` within the range, in the layer's unit. 0 means no lines.
+    /// `width` is in metres, up to 1e6. The lines are a mapping of their own at the map's place. Only a layer of
+    /// values has lines. If there would be more than 1000 lines, none is drawn.
     bool setLines(double step, double width = 40.0, const osg::Vec4& color = {0.0f, 0.0f, 0.0f, 0.6f});
-    /// To be called after the table or the layer's picture changed.
+    /// A program calls this after it has changed the table or the layer's image.
     void refresh();
 
-    /// Null without lines.
+    /// The mapping of the lines, or null without lines.
     const ProjectiveMapping* lines() const { return _lines.get(); }
-    /// A legend with the colours of the map as they are now. Null where it makes no sense; see makeLegend().
+    /// A legend with the present colours of the map. Null if makeLegend() cannot make it.
     osg::ref_ptr<osg::Group> legend(const LegendStyle& style) const;
 
 protected:

@@ -13,18 +13,19 @@
 namespace osgGeoFX
 {
 
-/** An off-screen OpenGL context over EGL that osgViewer uses like any other; it needs no X server.
+/** An off-screen OpenGL context over EGL that osgViewer uses like any other context. It needs no X server.
 
-    It draws into a pbuffer of the traits' size, which stays fixed, with the traits' colour, depth and stencil
-    bits. `traits->samples` asks for multisampling; where the driver has no such configuration the next
-    smaller count is taken, and the traits then tell the count in use. Without a version in the traits (OSG's
-    default "1.0") the context is the newest desktop compatibility profile of the driver. A `sharedContext` must
-    itself be an EglGraphicsContext; the new one then lives on the same display.
+    It draws into a pbuffer of the traits' size, which is fixed, with the traits' colour, depth and stencil bits.
+    `traits->samples` requests multisampling; if the driver has no such configuration, the count is halved until one
+    fits, and the traits are set to the count in use. If the traits name no version (OSG's default "1.0"), the context
+    is the driver's newest desktop compatibility profile. A `sharedContext` must be a valid EglGraphicsContext; the new
+    context then uses the same EGL display.
 
-    `Platform::Auto` tries each hardware device that EGL enumerates (NVIDIA, Mesa), then Mesa's surfaceless
-    platform, then software devices. `valid()` is false, and `error()` says why, where no context could be made.
+    `Platform::Auto` tries each hardware device that EGL lists (NVIDIA, Mesa), then Mesa's surfaceless platform, then
+    the software devices. If no context can be made, `valid()` is false and `error()` says why.
 
-    Threads: like any osg::GraphicsContext, current in one thread at a time; any of OSG's threading models. */
+    Threads: like any osg::GraphicsContext, it is current in one thread at a time. All threading models of OSG work.
+    @ingroup offscreen */
 class OSGGEOFX_EXPORT EglGraphicsContext : public osg::GraphicsContext
 {
 public:
@@ -49,19 +50,20 @@ public:
     struct Options
     {
         Platform platform = Platform::Auto;
-        /// Index among EGL's devices, as eglQueryDevicesEXT gives them; −1 takes the first that works.
+        /// Index of the EGL device in the order of eglQueryDevicesEXT; −1 takes the first device that works.
         int device = -1;
-        /// Makes a debug context that reports each message, synchronously, in the thread that draws.
+        /// If set, the context is a debug context (OpenGL 4.3) that calls it for each message, at once, in the drawing
+        /// thread.
         DebugCallback debugCallback;
     };
 
     explicit EglGraphicsContext(Traits* traits);
     EglGraphicsContext(Traits* traits, const Options& options);
 
-    /// Why the context is not valid, as one sentence; empty if it is.
+    /// Why the context is not valid, as one sentence; empty if it is valid.
     const std::string& error() const { return _error; }
 
-    /// Where the context lives, for people: "device 0" or "surfaceless".
+    /// The platform in use, as text for people: "device 0" or "surfaceless".
     const std::string& platformName() const { return _platformName; }
 
     bool valid() const override;
@@ -72,9 +74,9 @@ public:
     bool makeContextCurrentImplementation(osg::GraphicsContext* readContext) override;
     bool releaseContextImplementation() override;
     void swapBuffersImplementation() override;
-    /// EGL binds no pbuffer to a desktop OpenGL texture; says so.
+    /// Only warns: EGL cannot bind a pbuffer to a texture of desktop OpenGL.
     void bindPBufferToTextureImplementation(GLenum buffer) override;
-    /// The size is fixed; a change is refused with a warning.
+    /// Refuses any change of size, with a warning.
     void resizedImplementation(int x, int y, int width, int height) override;
 
     const char* libraryName() const override { return "osgGeoFX"; }

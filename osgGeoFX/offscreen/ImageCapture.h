@@ -15,13 +15,14 @@ namespace osgGeoFX
 
 /** Reads a camera's finished frame from its graphics context into an image.
 
-    It hangs on the camera's chain of final draw callbacks, before the buffers are swapped, and never replaces
-    another one's callback. The camera must draw to the context's own frame buffer (a camera that draws to a
-    frame buffer object attaches an image instead). The image is the camera's viewport, its first row the
-    lowest, as OpenGL and OSG have it; multisampled frames are resolved. Depth is window depth, 0…1.
+    It is one of the camera's final draw callbacks, which run before the buffers are swapped, and it replaces no other
+    callback. The camera must draw into the context's own framebuffer. (A camera that draws into a framebuffer object
+    attaches an image instead.) The image covers the camera's viewport. Its first row is the lowest, as in OpenGL and
+    OSG. Colours of multisampled frames are resolved. Depth is window depth, 0…1.
 
-    Threads: all methods may be called from any thread; the reading itself happens in the one that draws. One
-    capture serves one camera. */
+    Threads: any thread may call all methods. The reading happens in the drawing thread. One capture serves one
+    camera.
+    @ingroup offscreen */
 class OSGGEOFX_EXPORT ImageCapture : public osg::Camera::DrawCallback
 {
 public:
@@ -29,7 +30,7 @@ public:
     {
         Rgb,       ///< 8 bits per channel
         Rgba,      ///< 8 bits per channel
-        DepthFloat ///< one float
+        DepthFloat ///< one float, 0…1
     };
 
     /// Makes a capture and appends it to the camera's final draw callbacks.
@@ -37,13 +38,13 @@ public:
 
     explicit ImageCapture(Format format = Format::Rgb);
 
-    /// Takes it off the camera's chain again; not while a frame is drawn.
+    /// Removes this capture from the camera's callbacks. Do not call it while a frame is drawn.
     void detach(osg::Camera* camera);
 
-    /// Asks for the next frame that is drawn; without that a frame costs nothing.
+    /// Requests the next frame that is drawn. Frames without a request cost nothing.
     void request();
 
-    /// The requested image, once it has been drawn; null after `seconds` without one. Each request gives one image.
+    /// Waits for the requested image, at most `seconds`; null if none was drawn by then. Each request gives one image.
     osg::ref_ptr<osg::Image> take(double seconds = 60.0);
 
     using osg::Camera::DrawCallback::operator();

@@ -17,23 +17,28 @@
 namespace osgGeoFX
 {
 
-/** How few triangles would do for a view of a terrain database: what the triangles that are drawn can be compared with.
+/** Counts the least number of triangles that would suffice for a view of a terrain database, as a measure for the
+    triangles that are drawn.
 
-    The measure is a right-triangulated irregular network over all samples of the database, made for this one view. A vertex
-    belongs to it if its hierarchical error, the largest vertical error of all that its split brings with it, covers more than the
-    pixel error at the vertex' distance. Each vertex in the view counts for two triangles. (Evans, Kirkpatrick, Townsend:
-    Right-triangulated irregular networks, 2001.) Skirts and what lies behind the terrain's own hills are not considered.
+    The measure is a right-triangulated irregular network over all samples of the database, made for one view. A vertex
+    belongs to the network if its hierarchical error covers more pixels than the pixel error at the vertex's distance.
+    The hierarchical error is the largest vertical error of all vertices that its split requires. Each vertex in the
+    view counts as two triangles (Evans, Kirkpatrick, Townsend: Right-triangulated irregular networks, 2001). The count
+    ignores skirts and occlusion by the terrain's own hills.
 
-    Immutable; every thread may use it. It holds 16 bytes for each sample of the database. */
+    Immutable, so all threads may use it. It holds 16 bytes for each sample of the square quadtree around the database.
+    @ingroup offscreen */
 class OSGGEOFX_EXPORT LeastTriangles
 {
 public:
-    /** Reads all finest tiles of the database at or below a node; the node itself stays as it is. This takes as long as reading the
-        whole database does. Null, and a sentence in `error`, where there is no database of osggeofx_build or a tile is missing. */
+    /** Reads all finest tiles of the database at or below a node, which stays unchanged. This takes as long as reading
+        the whole database. Returns null, with a sentence in `error`, if there is no database of osggeofx_build, it has
+        no ground, its finest tiles differ in size, or a tile cannot be read. */
     static std::unique_ptr<LeastTriangles> read(const osg::Node& root, std::string& error);
 
-    /** The count for one view. `view` is from the world to eye space, `projection` from there to clip space. `pixelsPerRadian` is that of
-        the picture, `pixelError` the allowed error in pixels. With deformations, their places and distances count. */
+    /** The count for one view. `view` is from the world to eye space, `projection` from eye space to clip space.
+        `pixelsPerRadian` is that of the viewport, `pixelError` the allowed error in pixels. With deformations, the
+        deformed positions and distances count. */
     std::uint64_t count(const osg::Matrixd& view, const osg::Matrixd& projection, double pixelsPerRadian,
                         double pixelError, const DeformationChain& chain) const;
 
@@ -50,10 +55,10 @@ private:
     void findEnd();
     void gatherErrors();
 
-    osg::Vec3d _origin; ///< of the positions, in the world
+    osg::Vec3d _origin; ///< of the positions, world coordinates
     bool _geocentric = false;
     int _side = 0;                      ///< samples along the quadtree's border, a power of two and one
-    int _lastColumn = 0, _lastRow = 0;  ///< the terrain ends there
+    int _lastColumn = 0, _lastRow = 0;  ///< the terrain's end
     std::vector<osg::Vec3f> _positions; ///< row by row from the south; NaN where there is no ground
     std::vector<float> _errors;         ///< hierarchical, metres
 };

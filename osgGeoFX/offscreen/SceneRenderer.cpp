@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 
-#include <osgGeoFX/offscreen/DrawnLeaves.h>
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
 #include <osgGeoFX/offscreen/LeastTriangles.h>
+#include <osgGeoFX/offscreen/detail/DrawnLeaves.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
 
 #include <osg/Group>

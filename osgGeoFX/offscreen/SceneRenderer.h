@@ -17,26 +17,29 @@
 namespace osgGeoFX
 {
 
-/// What one finished picture took. Drawing includes reading the picture back, so all of it has been drawn.
+/// Times and counts of one finished image. Drawing includes reading the image back, so all of it has been drawn.
+/// @ingroup offscreen
 struct FrameStatistics
 {
     double cullMilliseconds = 0.0;
     double drawMilliseconds = 0.0;
     double totalMilliseconds = 0.0;
     std::uint64_t triangles = 0;      ///< handed to OpenGL, after culling
-    std::uint64_t leastTriangles = 0; ///< that would do for the terrain (LeastTriangles); 0 unless asked for
+    std::uint64_t leastTriangles = 0; ///< that the terrain needs (LeastTriangles); 0 unless requested
     std::uint64_t drawables = 0;
-    std::uint64_t tilesDrawn = 0;  ///< terrain tiles among them
-    std::uint64_t tilesLoaded = 0; ///< since the picture before
+    std::uint64_t tilesDrawn = 0;  ///< drawn terrain tiles
+    std::uint64_t tilesLoaded = 0; ///< since the previous image
     std::uint64_t bytesRead = 0;
 };
 
-/** Renders pictures of a scene off-screen, one after the other, and waits for its tiles.
+/** Renders images of a scene off-screen, one after the other, and waits for the tiles of each image.
 
-    The same calls give the same bytes, whatever the pager's threads do: a picture is taken from a frame that
-    asked for nothing more, opaque things are drawn in the order of the scene graph, and time stands still within a
-    picture. Without tiles to wait for a picture is one frame. The LOD scale follows the terrain's pixel-error
-    bound. One object is used by one thread at a time; several may live side by side, each with a scene of its own. */
+    The same calls give the same bytes, whatever the pager's threads do: an image is taken from a frame that requested
+    no more tiles, opaque objects are drawn in the order of the scene graph, and time stands still within an image. An
+    image takes one frame if it has no tiles to wait for, or if waitForTiles is false. The LOD scale follows the
+    terrain's pixel-error bound. One thread at a time uses one renderer. Several renderers may exist at once, each with
+    its own scene.
+    @ingroup offscreen */
 class OSGGEOFX_EXPORT SceneRenderer
 {
 public:
@@ -51,25 +54,25 @@ public:
         int width = 1600;
         int height = 900;
         double fieldOfView = 30.0; ///< vertical, degrees
-        unsigned int samples = 0;  ///< multisampling
+        unsigned int samples = 0;  ///< multisampling; 0 is off
         bool cull = true;          ///< false: neither frustum nor small-feature culling
         bool waitForTiles = true;
-        double timeout = 600.0;      ///< seconds for each picture
-        bool countTriangles = false; ///< fill the counts of FrameStatistics, which costs a little
-        bool leastTriangles = false; ///< fill the least count, too, which reads the whole database first
+        double timeout = 600.0;      ///< seconds for each image
+        bool countTriangles = false; ///< fill triangles, drawables and tilesDrawn; costs a little
+        bool leastTriangles = false; ///< fill leastTriangles; reads the whole database first
         ImageCapture::Format format = ImageCapture::Format::Rgb;
         Platform platform = Platform::Egl;
     };
 
-    /// Null, and a sentence in `error`, where there is no context, or where the least count is asked for and not to be had.
+    /// Returns null, with a sentence in `error`, if no context can be made or the least count cannot be had.
     static std::unique_ptr<SceneRenderer> create(const Scene& scene, const Options& options,
                                                  std::string& error);
     ~SceneRenderer();
     SceneRenderer(const SceneRenderer&) = delete;
     SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-    /// A picture from a view matrix (world to eye) at a time, seconds. Null, and a sentence in `error`, where the
-    /// tiles did not come in time.
+    /// Renders an image from a view matrix (world to eye space) at a time, seconds. Returns null, with a sentence in
+    /// `error`, if the tiles did not arrive in time or the frame could not be read back.
     osg::ref_ptr<osg::Image> render(const osg::Matrixd& view, double time, FrameStatistics& statistics,
                                     std::string& error);
 

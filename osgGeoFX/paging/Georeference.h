@@ -14,28 +14,33 @@
 namespace osgGeoFX
 {
 
-/** Relates a database's world coordinates to longitude, latitude and height on WGS 84.
+/** Converts between a database's world coordinates and longitude, latitude and height on WGS 84.
 
-    Geocentric databases are served here; projected ones by the plugin `osgdb_geofxdata`, which has the
-    projections, so that a program that draws needs no GDAL. Angles are radians, lengths metres; heights are
-    above the database's zero height. Thread-safe: all methods may be called from any thread. */
+    This class handles geocentric databases itself. The plugin `osgdb_geofxdata` handles projected ones, because it
+    has the projections. So a program that only draws needs no GDAL. Angles are radians, lengths metres; heights are
+    above the database's zero height. Thread-safe: all methods may be called from any thread.
+
+    @ingroup paging */
 class OSGGEOFX_EXPORT Georeference : public osg::Object
 {
 public:
-    /// The georeference of a database's root, or of the first CoordinateSystemNode below `node`.
-    /// Null, with the reason in `error`, where there is none or where the plugin cannot be found.
+    /// The georeference of the first CoordinateSystemNode at or below `node`. Null, with the reason in `error`, if
+    /// there is none, if its coordinate system cannot be used, or if the plugin cannot be found.
     static osg::ref_ptr<Georeference> create(const osg::Node* node, std::string& error);
 
+    /// Whether world coordinates are geocentric; otherwise they are projected with z up.
     virtual bool isGeocentric() const = 0;
 
-    /// World position of a longitude and latitude (radians) and height (metres); false outside the projection.
+    /// The world position of a longitude and latitude (radians) and a height (metres). False outside the projection.
     virtual bool toWorld(double longitude, double latitude, double height, osg::Vec3d& world) const = 0;
 
-    /// Longitude (−π…π), latitude (radians) and height (metres) of a world position.
+    /// The longitude (−π…π) and latitude (radians) and the height (metres) of a world position. False outside the
+    /// projection.
     virtual bool toGeodetic(const osg::Vec3d& world, double& longitude, double& latitude,
                             double& height) const = 0;
 
-    /// Frame at a place: x east, y north (true north), z up; from the frame to the world. False outside the projection.
+    /// The local frame at a place: x east, y north (true north), z up. `frame` is the matrix from this frame to the
+    /// world. False outside the projection.
     virtual bool localToWorld(double longitude, double latitude, double height,
                               osg::Matrixd& frame) const = 0;
 

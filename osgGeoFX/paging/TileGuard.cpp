@@ -236,10 +236,9 @@ void TileGuard::tell(osg::Node& tile, const std::string& file)
         catch (...)
         {
         }
-        warnOnce(
-            file,
-            "osgGeoFX: a TileListener fails on the tile \"" + file + "\" (" + reason +
-                "); the tile is drawn, without what the listener would have made of it. Mend the listener.");
+        warnOnce(file, "osgGeoFX: a TileListener fails on the tile \"" + file + "\" (" + reason +
+                           "); the tile is drawn, without what the listener would have made of it. Repair "
+                           "the listener.");
     }
 }
 

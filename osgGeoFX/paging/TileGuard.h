@@ -20,12 +20,13 @@
 namespace osgGeoFX
 {
 
-/// Is told of the tiles that a pager brings; TileGuard::addListener().
+/// Is told of the tiles that a pager reads; see TileGuard::addListener().
+/// @ingroup paging
 class OSGGEOFX_EXPORT TileListener : public osg::Referenced
 {
 public:
-    /// A tile was read. Called on the thread that reads, before any other sees the tile; several pagers' threads may call
-    /// it at once.
+    /// Called when a tile was read, on the thread that reads it and before any other thread sees the tile. The threads
+    /// of several pagers may call it at once.
     virtual void tileRead(osg::Node& tile) = 0;
 
 protected:
@@ -33,21 +34,24 @@ protected:
     ~TileListener() override;
 };
 
-/** Makes a missing or damaged tile of a paged scene harmless: its parent stays on screen, one warning names the
-    file and the reason, and the pager does not ask for it again and again.
+/** Makes a missing or damaged tile of a paged scene harmless. The parent of the tile stays on screen, one warning
+    names the file and the reason, and the pager does not ask for the tile again and again.
 
-    It stands in the database options of the scene's PagedLODs (those loaded later included), in front of any
-    ReadFileCallback that is there. In place of a tile that cannot be read it hands the pager a node that draws
-    what the parent draws. Before OSG reads an .osgb tile its header is checked; the content of one written
-    with `Compressor=zlib`, as ours are, is protected by its own checksum. Other formats are passed to OSG as
-    they are, and only what throws is caught.
+    The guard stands in the database options of the scene's PagedLODs, including those that are loaded later. It acts
+    before any ReadFileCallback that is there already. Instead of a tile that cannot be read, it gives the pager a
+    node that draws the same as the parent. It checks the header of an .osgb tile before OSG reads the tile. A
+    checksum of zlib protects the content of a tile that was written with `Compressor=zlib`, as those of
+    osggeofx_build are. The guard passes other formats to OSG as they are and only catches exceptions.
 
-    Once failed, a file is not tried again with the same options, in the lifetime of these. PagedLODs with options of their
-    own may use one file name for tiles that differ, as loaders do that find in the options what to read. Thread-safe, in
-    all of OSG's threading models and for any number of pager threads. */
+    A file that failed is not tried again with the same options, as long as these exist. PagedLODs with options of
+    their own may use one file name for different tiles. Some loaders do so and find in the options what to read.
+    Thread-safe, in all of OSG's threading models and for any number of pager threads.
+
+    @ingroup paging */
 class OSGGEOFX_EXPORT TileGuard : public osg::Referenced
 {
 public:
+    /// Totals of the tiles that the guard has handled.
     struct Counts
     {
         std::uint64_t tilesRead = 0;
@@ -55,25 +59,27 @@ public:
         std::uint64_t tilesFailed = 0;
     };
 
-    /// Guards all PagedLODs at and below the node; call it before the scene is drawn, or in the update phase.
-    /// Returns the guard that is already there, if any (a .geofx scene brings its own).
+    /// Guards all PagedLODs at and below the node. Call it before the scene is drawn, or in the update phase. Returns
+    /// the guard that is already there, if any (a .geofx scene brings its own).
     static osg::ref_ptr<TileGuard> install(osg::Node* node);
 
-    /// Why OSG should not be handed a file: it is missing or, if an .osgb, has a bad header. Empty if nothing is found.
-    /// `path` is empty for a file that was not found.
+    /// The reason why OSG should not read a file: it is missing or, if it is an .osgb, has a bad header. Empty if no
+    /// fault is found. `path` is empty for a file that was not found.
     static std::string faultOf(const std::string& path);
 
     TileGuard();
 
-    /// Tells a listener of each tile that is read from now on. What it throws is a warning, once for each tile's file, and the tile
-    /// is drawn nonetheless. It is held weakly: who adds it keeps it. Null and one that is there
-    /// already are ignored. Tiles that OSG takes from its cache of objects, and those that failed, are not told of.
+    /// Tells a listener of each tile that is read from now on. If the listener throws, there is one warning for each
+    /// tile's file, and the tile is drawn nonetheless. The guard does not keep the listener alive; the caller must.
+    /// Null, and a listener that was added before, are ignored. Listeners are not told of tiles that OSG takes from its
+    /// object cache, nor of those that failed.
     void addListener(TileListener* listener);
-    /// It may still be told of a tile that is just being read.
+    /// Removes a listener. It may still be told of a tile that is being read at this moment.
     void removeListener(TileListener* listener);
 
     /// Totals since the guard was made.
     Counts counts() const;
+    /// The names of all files that failed.
     std::set<std::string> failedFiles() const;
 
 protected:
@@ -99,8 +105,9 @@ private:
     {
         osg::observer_ptr<osgDB::Options> original, guarded;
     };
-    /// From original options, which only their PagedLODs keep, to guarded ones, which hold the guard, so it must not hold
-    /// them. An entry of options that are gone is removed when there are `_purgeSize`.
+    /// From original options to guarded ones. Only the PagedLODs keep the original options. The guarded ones hold the
+    /// guard, so the guard must not hold them. Entries of options that no longer exist are removed when there are
+    /// `_purgeSize` entries.
     std::map<const osgDB::Options*, Guarded> _options;
     std::size_t _purgeSize = 64;
 };

@@ -14,18 +14,20 @@
 namespace osgGeoFX
 {
 
-/** The ground of a tile at all posts of its lattice. Its finest meshes leave posts out where the ground is even; those lie on the
-    triangles. Thread-safe for tiles that nobody changes meanwhile. */
+/** The ground of a tile at all posts of its lattice. The tile's finest meshes leave out posts where the ground is
+    even. Such posts are interpolated on the triangles. Thread-safe for tiles that nobody changes meanwhile.
+
+    @ingroup paging */
 class OSGGEOFX_EXPORT TilePosts
 {
 public:
-    /// Nothing where the node is not a tile of the kit's databases, or one that does not tell its lattice.
+    /// Reads a tile. Empty if the node is not a tile of the kit's databases, or if the tile does not tell its lattice.
     static std::optional<TilePosts> read(const osg::Transform& tile);
 
-    /// Along an edge.
+    /// The number of cells along an edge.
     int cells() const { return _cells; }
-    /// A post, by columns from the west and rows from the south, 0 … cells(): metres, in the tile's frame. Not a number (all three
-    /// coordinates) where there is no ground.
+    /// The position of a post, metres, in the tile's frame. Columns count from the west and rows from the south, 0 …
+    /// cells(). All three coordinates are not a number if there is no ground.
     const osg::Vec3d& at(int column, int row) const { return _places[index(column, row)]; }
 
 private:

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaBrush.h>
 
-#include <osgGeoFX/panorama/PaintNoise.h>
+#include <osgGeoFX/panorama/detail/PaintNoise.h>
 
 #include <algorithm>
 #include <vector>

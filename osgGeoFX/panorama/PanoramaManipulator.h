@@ -11,21 +11,22 @@
 namespace osgGeoFX
 {
 
-/** Moves the camera of a panorama map by hand, as users of Brown and Samavati's maps do: the ground that the pointer has
-    taken hold of stays under it, wherever in the picture it is and however high.
+/** Moves the camera of a panorama map with mouse and keyboard. The ground under the pointer stays under the pointer
+    while it is dragged, anywhere in the picture and at any height.
 
-    Left button: drags the ground. Wheel, or right button up and down: zooms about the pointer. Middle button, or Left and
-    Right: turns about the middle of the picture; Up and Down go on and back. Space: home. With Ctrl, Alt or Shift
-    buttons are for other handlers. Wheel and keys glide.
+    The left button drags the ground. The wheel or the right button zooms about the pointer. The middle button or the
+    keys Left and Right turn about the middle of the picture. The keys Up and Down zoom about it. Space returns home.
+    Buttons with Ctrl, Alt or Shift are left to other handlers. Wheel and keys move the camera smoothly.
 
-    The eye stands above the middle of the picture's base, heading is clockwise from north (on a projected terrain, from
-    the grid's), and a zoom raises and lowers the eye, from 100 m to 5000 km above the map's base; where the map's
-    width does not follow from that (viewRadius is set, or the camera is orthographic), a zoom sets viewRadius. The
-    camera's pitch, which only shows while the map is off, stays as home or the last manipulator had it; there is no
-    roll. While the map is off it moves as if it were on.
+    The eye stands above the middle of the picture's base. The heading is clockwise from north (from the grid's north
+    on a projected terrain). A zoom changes the eye's height, from 100 m to 5000 km above the map's base. If the eye's
+    height does not set the map's width (viewRadius is set, or the camera is orthographic), a zoom changes viewRadius
+    instead, from 25 m to 2000 km. There is no roll. The pitch shows only while the map is off; setPitch(), home and
+    another manipulator's matrix change it. The manipulator works in the same way while the map is off.
 
-    The scene and its terrain, geocentric or projected, have no transform above them. Serves one view, in its event
-    traversal. */
+    The scene and its terrain, geocentric or projected, must have no transform above them. One manipulator serves one
+    view, in its event traversal.
+    @ingroup panorama */
 class OSGGEOFX_EXPORT PanoramaManipulator : public osgGA::CameraManipulator
 {
 public:
@@ -33,20 +34,20 @@ public:
     const char* libraryName() const override { return "osgGeoFX"; }
     const char* className() const override { return "PanoramaManipulator"; }
 
-    /// The place of the ground, in the scene's world, in the middle of the picture, or of its ground where that is sky.
-    /// False where it cannot be brought there.
+    /// Moves the camera until this place of the ground (world coordinates) appears in the middle of the picture. If
+    /// the middle shows sky, it appears at 70 % of the horizon's height. Returns false if that is impossible.
     bool setCentre(const osg::Vec3d& world);
     osg::Vec3d getCentre() const;
-    /// The width of the ground shown at the picture's base, metres, kept within the limits above. The centre stays.
+    /// The width of the ground shown at the picture's base, metres, clamped to the limits above. The centre stays.
     void setWidth(double metres);
     double getWidth() const { return 2.0 * _pose.radius(); }
-    /// Radians clockwise from north; turns about the centre.
+    /// Radians clockwise from north. The camera turns about the centre.
     void setHeading(double radians);
     double getHeading() const { return _pose.heading(); }
-    /// Radians, 0 level, less looks down; −85°…0, −35° by default.
+    /// Radians; 0 is level, negative looks down. −85°…0, −35° by default.
     void setPitch(double radians) { _pose.setPitch(radians); }
     double getPitch() const { return _pose.pitch(); }
-    /// The projection for which widths are meant, until the first event brings the camera's.
+    /// The projection matrix that widths refer to until the first event supplies the camera's own.
     void setCameraProjection(const osg::Matrixd& projection) { _pose.setProjection(projection); }
 
     void setByMatrix(const osg::Matrixd& matrix) override;
@@ -61,7 +62,7 @@ public:
     void init(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
     void getUsage(osg::ApplicationUsage& usage) const override;
-    /// Whether it still glides.
+    /// Whether a smooth movement is still in progress.
     bool gliding() const { return _glide.has_value(); }
 
 protected:
@@ -73,7 +74,7 @@ private:
         PanoramaHold hold;
         double radius;
         double heading;
-        double time; ///< of the last step
+        double time; ///< of the last step, seconds
     };
 
     void rest();
@@ -88,12 +89,12 @@ private:
 
     const osg::ref_ptr<EffectScene> _scene;
     const osg::ref_ptr<PanoramaMap> _map;
-    const double _homeRadius; ///< the map's own
+    const double _homeRadius; ///< viewRadius of the map when the manipulator was made
     PanoramaPose _pose;
     std::optional<PanoramaHold> _hold; ///< while a button is down
     int _button = 0;
-    osg::Vec2d _pointer; ///< of the last event with a button down, in the picture
-    osg::Vec2d _offset;  ///< from the pointer to where its hold is kept
+    osg::Vec2d _pointer; ///< at the last event with a button down, in the picture
+    osg::Vec2d _offset;  ///< from the pointer to the point where the hold is kept
     std::optional<Glide> _glide;
 };
 

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
-#include <osgGeoFX/panorama/PanoramaFrame.h>
-#include <osgGeoFX/panorama/PanoramaGround.h>
-#include <osgGeoFX/panorama/PanoramaScenery.h>
-#include <osgGeoFX/panorama/PanoramaTextures.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
+#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaGround.h>
+#include <osgGeoFX/panorama/detail/PanoramaScenery.h>
+#include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 
 #include <algorithm>
 #include <cmath>

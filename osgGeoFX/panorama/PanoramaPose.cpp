@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaPose.h>
 
-#include <osgGeoFX/effect/EyeVector.h>
-#include <osgGeoFX/panorama/PanoramaFrame.h>
+#include <osgGeoFX/effect/detail/EyeVector.h>
+#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
 #include <osgGeoFX/scene/DeformedView.h>
 
 #include <algorithm>

@@ -14,47 +14,51 @@
 namespace osgGeoFX
 {
 
-/// A place of the world, as it is before a panorama map deforms it, and the point of the picture where it appears, −1…1.
+/// A place of the world before a panorama map deforms it, and the point of the picture where it appears (x, y: −1…1).
+/// @ingroup panorama
 struct PanoramaHold
 {
     osg::Vec3d world;
     osg::Vec2d picture;
 };
 
-/** Where the camera of a panorama map stands, as PanoramaManipulator moves it: the eye, a heading and a pitch, and the
-    projection by which the map is as wide as it is. World and limits are those of PanoramaManipulator. */
+/** The pose of a panorama map's camera, as PanoramaManipulator moves it: the eye, a heading and a pitch, and the
+    projection that sets the map's width. World coordinates and limits are those of PanoramaManipulator.
+    @ingroup panorama */
 class OSGGEOFX_EXPORT PanoramaPose
 {
 public:
     PanoramaPose(EffectScene& scene, PanoramaMap& map);
 
-    /// Takes over what the scene's terrain may have become.
+    /// Updates the terrain's frame and heights from the scene.
     void follow() { _ground = _scene->ground(); }
     void setProjection(const osg::Matrixd& projection) { _projection = projection; }
 
-    /// From eye space to the world. A roll is lost, and what is beyond the limits.
+    /// From eye space to the world. setMatrix() drops the roll and clamps pitch and height to the limits.
     osg::Matrixd matrix() const;
     void setMatrix(const osg::Matrixd& matrix);
 
-    /// Radians; about the eye's foot.
+    /// Radians. The camera turns about the point below the eye.
     double heading() const { return _heading; }
     void setHeading(double radians) { _heading = radians; }
     double pitch() const { return _pitch; }
     void setPitch(double radians);
-    /// Half the width of the ground at the picture's base, metres; about the eye's foot.
+    /// Half the width of the ground at the picture's base, metres. The point below the eye stays.
     double radius() const;
     void setRadius(double metres);
 
-    /// The picture's middle or, where that is sky, the middle of what is not.
+    /// The middle of the picture, or the point at 70 % of the horizon's height if the middle is higher than that.
     osg::Vec2d middle() const;
-    /// Ground at the map's base height that appears there; below the horizon where that is sky.
+    /// The ground at the map's base height that appears at a point of the picture; below the horizon if the point is
+    /// sky.
     PanoramaHold holdOnBase(const osg::Vec2d& picture) const;
-    /// What a camera, whose pose this is, shows there, such as a summit; ground at the base height where it shows none.
+    /// The place that a camera with this pose shows there, such as a summit; ground at the base height if it shows
+    /// none.
     PanoramaHold holdSeen(const osg::Vec2d& picture, const osg::Camera& camera) const;
-    /// Moves the eye at its height, with its heading, until what is held appears where it is held. Where that cannot be, it stays,
-    /// and this is false.
+    /// Moves the eye, at its height and heading, until the held place appears at its point of the picture. Returns
+    /// false if that is impossible; the eye then stays.
     bool keep(const PanoramaHold& hold);
-    /// The same for a place that may be anywhere, in the picture's middle.
+    /// The same for any place, and the middle of the picture.
     bool setCentre(const osg::Vec3d& world);
 
 private:

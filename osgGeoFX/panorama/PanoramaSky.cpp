@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/PanoramaSky.h>
 
-#include <osgGeoFX/panorama/PaintNoise.h>
-#include <osgGeoFX/panorama/SkyCanvas.h>
+#include <osgGeoFX/panorama/detail/PaintNoise.h>
+#include <osgGeoFX/panorama/detail/SkyCanvas.h>
 
 #include <array>
 #include <cmath>

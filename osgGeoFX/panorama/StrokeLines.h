@@ -14,14 +14,15 @@
 namespace osgGeoFX
 {
 
-/** Roads, rivers and towns from vector data, for the brush strokes of a panorama map; the future work of Brown and Samavati
-    (2017).
+/** Roads, rivers and towns from vector data for the brush strokes of a panorama map. Brown and Samavati (2017) name
+    them as future work.
 
-    Lines are painted as strokes one behind the other, at marks that a line has at all multiples of a step from its first point,
-    and one at its end: they follow from the line alone, and so every tile has the same. A mark has a level, the power of two
-    in its multiple, so that coarser tiles and smaller pictures do with fewer.
+    A line is painted as a row of strokes at marks. A line has a mark at each multiple of a step from its first point,
+    and one at its end. The marks depend on the line alone, so all tiles have the same marks. Each mark has a level,
+    the power of two in its multiple. Coarser tiles and smaller pictures use only the higher levels.
 
-    Filled once, before a map or a thread has it; all else is thread-safe. */
+    Fill the object once, before a map or another thread has it. All other methods are thread-safe.
+    @ingroup panorama */
 class OSGGEOFX_EXPORT StrokeLines : public osg::Object
 {
 public:
@@ -39,41 +40,42 @@ public:
     struct Line
     {
         Kind kind = ROAD;
-        /// Two at least. Of a town the ring around it; holes follow, each ring closed and followed by the first point.
+        /// At least two points. A town starts with its outer ring; holes follow. Each ring is closed and followed by
+        /// the town's first point.
         std::vector<osg::Vec2d> points;
     };
-    /// Where a stroke stands.
+    /// The place of one stroke.
     struct Mark
     {
-        osg::Vec2d place;       ///< of the map, in its units
-        osg::Vec2d along;       ///< the way on from there, of any length, in its units
+        osg::Vec2d place;       ///< in the units of the lines
+        osg::Vec2d along;       ///< the line's direction there, of any length, in the same units
         std::int64_t index = 0; ///< the multiple of the step; −1 at the line's end
-        int level = 0;          ///< of the step, 0 at least
-        std::uint32_t line = 0; ///< its number
+        int level = 0;          ///< the power of two in the multiple, 0 or more
+        std::uint32_t line = 0; ///< the line's index in getLines()
     };
 
     StrokeLines() = default;
     StrokeLines(const StrokeLines& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, StrokeLines);
 
-    /// Takes the place of what there is. False, with no change, where a line has less than two points, or one that is no
-    /// place: not finite, or latitudes beyond ±90.
+    /// Replaces the lines. Returns false, and changes nothing, if a line has fewer than two points, a point is not
+    /// finite, or a latitude lies beyond ±90.
     bool set(Units units, std::vector<Line> lines);
     Units getUnits() const { return _units; }
-    /// As given, but for longitudes: of each two points that follow each other they differ by half a turn at most.
+    /// The lines as given, except that longitudes of consecutive points differ by at most 180°.
     const std::vector<Line>& getLines() const { return _lines; }
 
-    /// The marks of roads and rivers in a box of the map, of a level and above, in an order that follows from the box. `step` is in
-    /// metres, > 0.
+    /// The marks of roads and rivers in a box of the map, of a level and above. The same box gives the same order.
+    /// `step` is in metres, > 0.
     std::vector<Mark> marks(const osg::Vec2d& low, const osg::Vec2d& high, double step, int level) const;
 
-    /// Tells which places of a box lie in a town. The lines must outlive it.
+    /// Tells which places of a box lie in a town. The lines must outlive this object.
     class OSGGEOFX_EXPORT Towns
     {
     public:
         Towns(const StrokeLines& lines, const osg::Vec2d& low, const osg::Vec2d& high);
         bool empty() const { return _rows.empty(); }
-        /// Of places in the box; elsewhere the answer means nothing.
+        /// Only for places in the box; elsewhere the result is undefined.
         bool contain(const osg::Vec2d& place) const;
 
     private:

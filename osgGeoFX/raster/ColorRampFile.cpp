@@ -77,7 +77,7 @@ std::optional<double> number(const std::string& word)
     return value;
 }
 
-/// Thrown within this file only: why a line cannot be used, and the mend.
+/// Thrown within this file only: why a line cannot be used, and the remedy.
 struct Refusal
 {
     std::string sentence;

@@ -12,26 +12,35 @@
 namespace osgGeoFX
 {
 
-/** Color tables as text files: those of `gdaldem color-relief`, and GMT's .cpt.
+/** Reads and writes color tables as text files, in the formats of `gdaldem color-relief` and GMT (.cpt).
+    Thread-safe.
 
-    A line of the first is `value red green blue [alpha]` or `value name [alpha]`, apart by spaces, tabs, commas or
-    colons; parts of colours are 0…255; a value may be a percentage of the data's range; `nv` is no-data's; what follows
-    # is a comment. Of two lines with one value, the colour jumps. A file is taken as .cpt by its name or by a comment with
-    COLOR_MODEL, which must be RGB; its lines are `z0 colour z1 colour` with colours as R G B or R/G/B. Its colours
-    B and F begin 1/512 of the table's range outside it, so that a row of 1024 texels has them. Thread-safe. */
+    A line of the gdaldem format is `value red green blue [alpha]` or `value name [alpha]`.
+    - Spaces, tabs, commas or colons separate the words.
+    - Parts of colours are 0…255.
+    - A value may be a percentage of the range of the data.
+    - `nv` stands for the no-data value.
+    - A comment begins with #.
+    - If two lines have the same value, the colour jumps there.
+
+    A file is read as .cpt if its name ends so, or if a comment contains COLOR_MODEL, which must be RGB. Its lines
+    are `z0 colour z1 colour` with colours as R G B or R/G/B. Its colours B (below) and F (above) begin 1/512 of the
+    table's range outside the range, so that a row of 1024 texels contains them. N is the no-data colour.
+
+    @ingroup raster */
 class OSGGEOFX_EXPORT ColorRampFile
 {
 public:
     /// Lowest and highest value.
     using Range = std::pair<double, double>;
 
-    /// The mode is LINEAR: the files do not tell. Null, with a sentence that names file, line and mend in `error`, for
-    /// what cannot be read, and for percentages where the data's range is not given.
+    /// Reads a table. Its mode is LINEAR, because the files do not tell the mode. Null, with a sentence in `error` that
+    /// names file, line and remedy, if the file cannot be read, or if it has percentages and `rangeOfData` is empty.
     static osg::ref_ptr<ColorTable> read(const std::string& path, const std::optional<Range>& rangeOfData,
                                          std::string& error);
 
-    /// Text for gdaldem, with colours rounded to 1/255. STEPS are written as jumps; for NEAREST and EXACT a comment names
-    /// gdaldem's option. False, with a sentence in `error`, for a table without stops and where writing fails.
+    /// Writes text for gdaldem, with colours rounded to 1/255. STEPS become jumps. For NEAREST and EXACT, a comment
+    /// names the option of gdaldem. False, with a sentence in `error`, if the table has no stops or if writing fails.
     static bool write(const ColorTable& table, const std::string& path, std::string& error);
 };
 

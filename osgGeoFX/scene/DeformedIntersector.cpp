@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/DeformedIntersector.h>
 
-#include <osgGeoFX/effect/DrawableTriangles.h>
+#include <osgGeoFX/effect/detail/DrawableTriangles.h>
 #include <osgGeoFX/scene/RigidReference.h>
-#include <osgGeoFX/scene/UndeformedParts.h>
+#include <osgGeoFX/scene/detail/UndeformedParts.h>
 
 #include <osg/PagedLOD>
 
@@ -71,7 +71,7 @@ osgUtil::Intersector* DeformedLineIntersector::clone(osgUtil::IntersectionVisito
     if (auto* ours = dynamic_cast<DeformedIntersectionVisitor*>(&visitor))
     {
         result->_chain = &ours->chain();
-        result->_programs = &ours->_programs;
+        result->_programs = ours->_programs.get();
         result->_modelView = ours->modelView();
         result->_scale = largestScale(result->_modelView);
     }
@@ -198,7 +198,8 @@ DeformedIntersectionVisitor::DeformedIntersectionVisitor(osgUtil::Intersector* i
                                                          const DeformationChain& chain,
                                                          const osg::Matrixd& modelView, double lodScale)
     : osgUtil::IntersectionVisitor(intersector), _chain(&chain), _whole(&chain),
-      _nothing(new DeformationChain), _view(modelView), _lodScale(lodScale), _lodLimit(HUGE_VAL)
+      _nothing(new DeformationChain), _programs(std::make_unique<OwnPrograms>()), _view(modelView),
+      _lodScale(lodScale), _lodLimit(HUGE_VAL)
 {
     // The first one collects; from the second one on they know where they are.
     push_clone();
@@ -214,7 +215,7 @@ osg::Matrixd DeformedIntersectionVisitor::modelView() const
 
 void DeformedIntersectionVisitor::choose()
 {
-    _chain = _programs.isStranger(_deformation.program) ? _nothing.get() : &definedChain();
+    _chain = _programs->isStranger(_deformation.program) ? _nothing.get() : &definedChain();
 }
 
 void DeformedIntersectionVisitor::apply(osg::Node& node)

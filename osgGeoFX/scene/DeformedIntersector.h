@@ -3,40 +3,44 @@
 #pragma once
 
 #include <osgGeoFX/effect/DeformationChain.h>
-#include <osgGeoFX/scene/OwnPrograms.h>
 
 #include <osg/Geode>
 #include <osgUtil/IntersectionVisitor>
 
+#include <memory>
 #include <vector>
 
 namespace osgGeoFX
 {
 
+class OwnPrograms;
 class RigidReference;
 
-/** A ray through the picture, against the terrain as the deformation shows it.
+/** Intersects a ray through the image with the terrain as the deformation shows it.
 
-    The ray is straight in eye space. Where it meets a deformed triangle, which the GPU draws straight between its
-    deformed corners, is the point that the pixel shows; the place on the ground follows from it by the inverse of the
-    deformation. To be used with a DeformedIntersectionVisitor, on a thread that may read the scene graph. */
+    The ray is straight in eye space. The GPU draws a deformed triangle straight between its deformed corners, so the
+    point where the ray meets this triangle is the point that the pixel shows. The inverse of the deformation gives
+    the place on the ground. Use it with a DeformedIntersectionVisitor, on a thread that may read the scene graph.
+
+    @ingroup scene */
 class OSGGEOFX_EXPORT DeformedLineIntersector : public osgUtil::Intersector
 {
 public:
+    /// A point where the ray meets a triangle.
     struct Intersection
     {
-        double distance = 0.0; ///< from the ray's origin, metres
-        osg::Vec3d deformed;   ///< eye space, as drawn
-        osg::Vec3d world;      ///< the frame of the scene's children, as the ground lies
-        osg::Vec3d normal;     ///< of the undeformed triangle, unit length, in the world
-        osg::NodePath path;    ///< from the scene's child to the drawable
+        double distance = 0.0; ///< distance from the ray's origin, metres
+        osg::Vec3d deformed;   ///< the point as drawn, eye space, metres
+        osg::Vec3d world;      ///< the place on the undeformed ground, in the frame of the scene's children
+        osg::Vec3d normal;     ///< normal of the undeformed triangle, unit length, same frame as `world`
+        osg::NodePath path;    ///< path from the scene's child to the drawable
         osg::Drawable* drawable = nullptr;
-        unsigned int triangle = 0; ///< its number in the drawable
+        unsigned int triangle = 0; ///< index of the triangle in the drawable
 
         bool operator<(const Intersection& other) const { return distance < other.distance; }
     };
 
-    /// A ray in eye space, metres; the direction need not be of unit length.
+    /// A ray in eye space, metres. The direction need not have unit length.
     DeformedLineIntersector(const osg::Vec3d& origin, const osg::Vec3d& direction);
 
     /// All intersections, the nearest first.
@@ -55,7 +59,7 @@ protected:
 private:
     DeformedLineIntersector* root() { return _root ? _root : this; }
     bool meets(const Ball& ball) const;
-    /// Whether the ray certainly misses what becomes of a box.
+    /// Whether the ray certainly misses the deformed box.
     bool missesBox(const osg::BoundingBox& box) const;
 
     osg::Vec3d _origin;
@@ -70,19 +74,23 @@ private:
     bool _sorted = true;
 };
 
-/** Visits the terrain as one camera draws it: with its deformation, at the levels of detail that it chose.
+/** Visits the terrain as one camera draws it: with its deformation, and at the levels of detail that the camera
+    chose.
 
-    Nothing is loaded: tiles that are not there yet are represented by those that are drawn in their place. Cameras and
-    projections in the scene are left out, since they have pictures of their own. */
+    It loads nothing. Where a tile is not loaded yet, it visits the tile that is drawn instead. It leaves out cameras
+    and projections in the scene, because they have images of their own.
+
+    @ingroup scene */
 class OSGGEOFX_EXPORT DeformedIntersectionVisitor : public osgUtil::IntersectionVisitor
 {
 public:
-    /// `modelView` from the frame of the visited node to eye space; `lodScale` is the camera's.
+    /// `modelView`: from the frame of the visited node to eye space. `lodScale`: the camera's LOD scale.
     DeformedIntersectionVisitor(osgUtil::Intersector* intersector, const DeformationChain& chain,
                                 const osg::Matrixd& modelView, double lodScale);
 
-    /// What is in force where the visitor is.
+    /// The deformation at the node that is visited; empty where nothing is deformed.
     const DeformationChain& chain() const { return *_chain; }
+    /// The matrix from the frame of the node that is visited to eye space.
     osg::Matrixd modelView() const;
 
     using osgUtil::IntersectionVisitor::apply;
@@ -106,14 +114,14 @@ private:
     class Scope;
     void applyRigid(RigidReference& node);
     const DeformationChain& definedChain() const { return _deformation.on ? *_whole : *_nothing; }
-    /// The chain that the state so far asks for.
+    /// Selects the chain that the state sets so far ask for.
     void choose();
 
     osg::ref_ptr<const DeformationChain> _chain;
     osg::ref_ptr<const DeformationChain> _whole;
     osg::ref_ptr<const DeformationChain> _nothing;
     DeformationSwitch _deformation;
-    OwnPrograms _programs;
+    std::unique_ptr<OwnPrograms> _programs;
     osg::Matrixd _view;
     double _lodScale;
     double _lodRadius = 0.0;

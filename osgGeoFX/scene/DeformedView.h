@@ -14,40 +14,49 @@
 namespace osgGeoFX
 {
 
-/** One camera's picture of an EffectScene, both ways: from the ground to pixels and from pixels to the ground.
+/** The view that one camera has of an EffectScene: it converts places on the ground to pixels, and pixels to places.
 
-    World coordinates are those of the scene's children. Pixels count from the lower left corner of the viewport; the middle
-    of the first one is (0.5, 0.5). It keeps the camera and the effects as they were when it was made, and looks at the
-    tiles that are loaded when it is asked. To be used where the scene graph may be read: in event and update traversals.
+    A program uses it to keep cameras above exaggerated ground, to pick, to fly to the place of a click, and to place
+    labels.
 
-    With it a program keeps cameras above exaggerated ground, picks and flies to what a click shows, and places labels. */
+    World coordinates are those of the scene's children. Pixels count from the lower left corner of the viewport; the
+    centre of the first one is (0.5, 0.5). An object keeps the camera and the effects as they were when it was made.
+    Each query uses the tiles that are loaded at that time. Use it where the scene graph may be read: in event and
+    update traversals.
+
+    @ingroup scene */
 class OSGGEOFX_EXPORT DeformedView
 {
 public:
-    /// `camera` is a viewer's, with a viewport.
+    /// `camera`: a viewer's camera with a viewport.
     DeformedView(EffectScene& scene, const osg::Camera& camera);
-    /// `view` from the scene's own frame to eye space.
+    /// `view`: a camera's view matrix, from the viewer's world (above all transforms over the scene) to eye space.
+    /// `width`, `height`: the viewport, pixels. If the scene has several parents, the first path to it counts.
     DeformedView(EffectScene& scene, const osg::Matrixd& view, const osg::Matrixd& projection, double width,
                  double height, double lodScale = 1.0);
 
-    /// The pixel at which a place of the ground appears, if nothing hides it. False where it is behind the eye.
+    /// The pixel that shows a place, if nothing hides it. False if the place is behind the eye.
     bool project(const osg::Vec3d& world, osg::Vec2d& pixel) const;
-    /// The same by longitude and latitude, radians, and height, metres; false also outside the projection.
+    /// The same for a longitude and latitude, radians, and a height, metres. False also outside the projection.
     bool project(double longitude, double latitude, double height, const Georeference& reference,
                  osg::Vec2d& pixel) const;
 
-    /// What a pixel shows; nothing for the sky.
+    /// The point that a pixel shows; empty for the sky. `mask`: only nodes with one of these bits are visited.
     std::optional<DeformedLineIntersector::Intersection> pick(double x, double y,
                                                               osg::Node::NodeMask mask = ~0u) const;
-    /// The place of the ground that a pixel shows: radians, and metres above the database's zero height.
+    /// The place that a pixel shows: radians, and metres above the database's zero height. False for the sky and
+    /// outside the projection.
     bool unproject(double x, double y, const Georeference& reference, double& longitude, double& latitude,
                    double& height) const;
 
-    /// Where a place of the world is drawn, as a place of the world; and back.
+    /// The place where a world position is drawn, in world coordinates.
     osg::Vec3d deform(const osg::Vec3d& world) const;
+    /// The inverse of deform().
     osg::Vec3d undeform(const osg::Vec3d& world) const;
 
+    /// The camera's deformation.
     const DeformationChain& chain() const { return *_chain; }
+    /// The matrix from the frame of the scene's children to eye space.
     const osg::Matrixd& modelView() const { return _modelView; }
 
 private:

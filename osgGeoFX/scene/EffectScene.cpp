@@ -2,25 +2,19 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/EffectScene.h>
 
-#include <osgGeoFX/effect/ContextWatch.h>
-#include <osgGeoFX/effect/NodeFinder.h>
 #include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
-#include <osgGeoFX/effect/SurfaceEffect.h>
-#include <osgGeoFX/effect/TextureUnits.h>
-#include <osgGeoFX/effect/TileNormals.h>
-#include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>
-#include <osgGeoFX/scene/CompensatingCullVisitor.h>
-#include <osgGeoFX/scene/EffectProgram.h>
-#include <osgGeoFX/scene/FollowingPrograms.h>
+#include <osgGeoFX/scene/detail/CameraPasses.h>
+#include <osgGeoFX/scene/detail/CameraState.h>
+#include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
+#include <osgGeoFX/scene/detail/GroundFinder.h>
+#include <osgGeoFX/scene/detail/ProgramCache.h>
 
-#include <osg/CoordinateSystemNode>
 #include <osg/Notify>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <mutex>
 #include <set>
@@ -31,107 +25,22 @@ namespace osgGeoFX
 namespace
 {
 
-/// How far below the scene a coordinate system may be, and a terrain.
-constexpr std::size_t deepestSystem = 9, deepestTerrain = 32;
-
-bool isSystem(const osg::Node& node)
+struct BoundAccess : public osg::Node
 {
-    // Asked for many nodes, and casts take their time: transforms are none.
-    return !node.asTransform() && dynamic_cast<const osg::CoordinateSystemNode*>(&node);
-}
-
-bool isTerrainRoot(const osg::Node& node)
-{
-    const osg::UserDataContainer* values = node.getUserDataContainer();
-    return values && values->getUserObjectIndex("geofx.format") < values->getNumUserObjects() &&
-           isSystem(node);
-}
-
-void setDefine(osg::StateSet& state, const std::string& name, bool on)
-{
-    state.setDefine(name, on ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
-}
-
-/// What a deformation does for a camera; no frame where it does nothing.
-struct Placed
-{
-    osg::ref_ptr<const DeformationFrame> frame;
-    DeformationFrame::Uniforms uniforms;
+    static bool known(const osg::Node& node) { return node.*(&BoundAccess::_boundingSphereComputed); }
 };
 
-/// The deformations of a camera, by their effects.
-using Frames = std::vector<Placed>;
-
-bool finite(const DeformationFrame::Uniforms& uniforms)
+/// Computes the bounds of all nodes below one. `all`: those below known ones, too.
+void computeBounds(const osg::Group& group, bool all)
 {
-    return std::all_of(uniforms.begin(), uniforms.end(),
-                       [](const auto& uniform)
-                       {
-                           const osg::Vec4d& value = uniform.second;
-                           return std::isfinite(static_cast<float>(value.x())) &&
-                                  std::isfinite(static_cast<float>(value.y())) &&
-                                  std::isfinite(static_cast<float>(value.z())) &&
-                                  std::isfinite(static_cast<float>(value.w()));
-                       });
-}
-
-/// The state of one traversal of one camera.
-struct CameraState
-{
-    osg::ref_ptr<osg::StateSet> set;
-    /// Of the effects that it was made for.
-    std::shared_ptr<const TextureUnits> units;
-    /// Those of each effect, in the order of its list: to look for them by name takes longer than to set them.
-    std::vector<std::vector<osg::ref_ptr<osg::Uniform>>> uniforms;
-};
-
-/// The uniform in a place of an effect's list.
-osg::Uniform& uniformAt(CameraState& state, std::size_t effect, std::size_t place, const std::string& name)
-{
-    std::vector<osg::ref_ptr<osg::Uniform>>& known = state.uniforms[effect];
-    if (known.size() <= place) known.resize(place + 1);
-    osg::ref_ptr<osg::Uniform>& uniform = known[place];
-    // Another effect may have taken the former one's place; what comes before the name is the place's.
-    const bool same =
-        uniform && uniform->getName().size() > name.size() &&
-        uniform->getName().compare(uniform->getName().size() - name.size(), name.size(), name) == 0;
-    if (!same)
-        uniform =
-            state.set->getOrCreateUniform(EffectProgram::prefix(effect) + name, osg::Uniform::FLOAT_VEC4);
-    return *uniform;
-}
-
-/// Of the deformations, the defines of all effects.
-void fill(CameraState& state, const Frames& frames)
-{
-    setDefine(*state.set, "GEOFX_DEFORMATION", true);
-    state.uniforms.resize(frames.size());
-    for (std::size_t i = 0; i < frames.size(); ++i)
+    for (unsigned int i = 0; i < group.getNumChildren(); ++i)
     {
-        setDefine(*state.set, EffectProgram::define(i), frames[i].frame.valid());
-        for (std::size_t place = 0; place < frames[i].uniforms.size(); ++place)
-        {
-            const auto& [name, value] = frames[i].uniforms[place];
-            uniformAt(state, i, place, name).set(osg::Vec4f(value));
-        }
+        const osg::Node& child = *group.getChild(i);
+        const bool known = BoundAccess::known(child);
+        child.getBound();
+        const osg::Group* inner = child.asGroup();
+        if (inner && (all || !known)) computeBounds(*inner, all || dynamic_cast<const osg::LOD*>(inner));
     }
-}
-
-CameraState createState(const EffectProgram::Effects& effects, int mapUnit,
-                        const std::shared_ptr<const TextureUnits>& units)
-{
-    CameraState created;
-    created.units = units;
-    created.set = new osg::StateSet;
-    osg::StateSet* const state = created.set.get();
-    for (int unit = 0; unit < FixedFunctionLook::units; ++unit)
-    {
-        state->addUniform(new osg::Uniform(("geofx_texture" + std::to_string(unit)).c_str(), unit));
-    }
-    state->addUniform(new osg::Uniform("geofx_normals", static_cast<int>(TileNormals::unit)));
-    state->addUniform(new osg::Uniform("geofx_map", std::max(mapUnit, 0)));
-    state->setAttribute(new ContextWatch(effects));
-    return created;
 }
 
 } // namespace
@@ -143,7 +52,8 @@ struct EffectScene::Drawing
     struct Camera
     {
         osg::ref_ptr<CompensatingCullVisitor> visitor = new CompensatingCullVisitor;
-        std::vector<CameraState> states; ///< one for each traversal of a frame
+        CameraPasses passes;
+        std::vector<std::unique_ptr<CameraState>> states; ///< one for each traversal of a frame
         std::size_t used = 0;
     };
 
@@ -174,123 +84,6 @@ struct EffectScene::Drawing
         for (const std::string& sentence : changed->sentences)
             sayOnce(sentence);
         return changed;
-    }
-
-    osg::ref_ptr<osg::Program> programFor(const EffectProgram::Effects& effects)
-    {
-        const std::lock_guard<std::mutex> lock(mutex);
-        const bool changed = effectsChanged(effects);
-        if (programMade && !changed) return program;
-        const std::string key = EffectProgram::key(effects);
-        if (!programMade || key != programKey)
-        {
-            programKey = key;
-            programMade = true;
-            retire(program);
-            program = EffectProgram::create(effects);
-            // An application's programs keep the last functions that were well; tried again when something changes.
-            if (program)
-                following.follow(*program);
-            else
-                programKey.clear();
-        }
-        return program;
-    }
-
-    /// Of an effect that draws the scene again.
-    osg::ref_ptr<osg::Program> passProgram(const EffectProgram::Effects& effects, const PassShaders& shaders,
-                                           const std::string& prefix)
-    {
-        const std::lock_guard<std::mutex> lock(mutex);
-        std::string key = prefix + shaders.vertexMain + ';' + shaders.fragmentMain + ';';
-        for (const auto* files : {&shaders.vertex, &shaders.tessellationControl,
-                                  &shaders.tessellationEvaluation, &shaders.geometry, &shaders.fragment})
-        {
-            for (const std::string& file : *files)
-                key += file + ';';
-            key += '|';
-        }
-        for (const auto& [name, binding] : shaders.blocks)
-            key += name + std::to_string(binding) + ';';
-        PassProgram& found = passPrograms[key];
-        const std::string effectsKey = EffectProgram::key(effects);
-        if (!found.made || found.effects != effectsKey)
-        {
-            retire(found.program);
-            found = {true, effectsKey, EffectProgram::create(effects, shaders, prefix)};
-        }
-        return found.program;
-    }
-
-    /// One that is in use no more; state sets of frames and of cameras that have gone may hold it for a while.
-    void retire(const osg::ref_ptr<osg::Program>& former)
-    {
-        const auto gone = [](const osg::observer_ptr<osg::Program>& each)
-        {
-            return !each.valid();
-        };
-        retired.erase(std::remove_if(retired.begin(), retired.end(), gone), retired.end());
-        if (former) retired.emplace_back(former);
-    }
-
-    /// All programs that may have GL objects.
-    std::vector<osg::ref_ptr<osg::Program>> programs()
-    {
-        const std::lock_guard<std::mutex> lock(mutex);
-        std::vector<osg::ref_ptr<osg::Program>> all = following.programs();
-        if (program) all.push_back(program);
-        for (const auto& [key, pass] : passPrograms)
-        {
-            if (pass.program) all.push_back(pass.program);
-        }
-        for (const osg::observer_ptr<osg::Program>& each : retired)
-        {
-            osg::ref_ptr<osg::Program> former;
-            if (each.lock(former)) all.push_back(former);
-        }
-        return all;
-    }
-
-    /// Whether an effect has changed, or the list of them, since the last call.
-    bool effectsChanged(const EffectProgram::Effects& effects)
-    {
-        bool changed = effects != lastEffects;
-        lastEffects = effects;
-        revisions.resize(effects.size());
-        for (std::size_t i = 0; i < effects.size(); ++i)
-        {
-            const unsigned int revision = effects[i]->revision();
-            changed = changed || revision != revisions[i];
-            revisions[i] = revision;
-        }
-        return changed;
-    }
-
-    /// The first coordinate system below the scene; null where there is none.
-    const osg::CoordinateSystemNode* systemBelow(const EffectScene& scene)
-    {
-        const std::lock_guard<std::mutex> lock(mutex);
-        return dynamic_cast<const osg::CoordinateSystemNode*>(systems.find(scene));
-    }
-
-    /// What a terrain says of itself: that whose root the coordinate system is, else the first one below the scene. Read again
-    /// only where the root has other user values than the last time.
-    std::optional<TerrainInfo> terrainOf(const EffectScene& scene, const osg::CoordinateSystemNode* system)
-    {
-        if (!system) return std::nullopt;
-        const std::lock_guard<std::mutex> lock(mutex);
-        const osg::Node* root = isTerrainRoot(*system) ? system : terrains.find(scene);
-        const osg::UserDataContainer* values = root ? root->getUserDataContainer() : nullptr;
-        if (!values) return std::nullopt;
-        if (values == terrainValues) return terrain;
-        std::string error;
-        const std::optional<TerrainInfo> info = TerrainInfo::read(root, error);
-        if (info)
-        {
-            terrainValues = values;
-            terrain = info;
-        }
-        return info;
     }
 
     void sayOnce(const std::string& sentence)
@@ -327,26 +120,8 @@ struct EffectScene::Drawing
     std::shared_ptr<const TextureUnits> units;
     EffectProgram::Effects unitEffects; ///< those that the units were given to, and
     std::vector<unsigned int> unitRevisions;
-    NodeFinder systems = NodeFinder(&isSystem, deepestSystem);
-    NodeFinder terrains = NodeFinder(&isTerrainRoot, deepestTerrain);
-    osg::ref_ptr<const osg::UserDataContainer> terrainValues;
-    std::optional<TerrainInfo> terrain;
-    /// Of a globe that has no coordinate system. Always the same: effects tell by it whether the ground has changed.
-    const osg::ref_ptr<const osg::EllipsoidModel> globe = new osg::EllipsoidModel;
-    EffectProgram::Effects lastEffects; ///< those that the program was made for, and
-    std::vector<unsigned int> revisions;
-    std::string programKey;
-    bool programMade = false;
-    osg::ref_ptr<osg::Program> program;
-    struct PassProgram
-    {
-        bool made = false;
-        std::string effects; ///< the key of those that it was made for
-        osg::ref_ptr<osg::Program> program;
-    };
-    std::map<std::string, PassProgram> passPrograms;
-    std::vector<osg::observer_ptr<osg::Program>> retired;
-    FollowingPrograms following;
+    GroundFinder ground;
+    ProgramCache programs;
     osg::ref_ptr<osg::StateSet> untouched = new osg::StateSet;
     std::set<std::string> said;
     std::map<const osg::StateAttribute*, osg::observer_ptr<const osg::StateAttribute>> strangers;
@@ -382,7 +157,7 @@ bool EffectScene::addEffect(Effect* effect)
         return false;
     }
     _effects.emplace_back(effect);
-    _drawing->revisions.clear();
+    _drawing->programs.dirty();
     return true;
 }
 
@@ -391,7 +166,7 @@ bool EffectScene::removeEffect(Effect* effect)
     const auto found = std::find(_effects.begin(), _effects.end(), effect);
     if (found == _effects.end()) return false;
     _effects.erase(found);
-    _drawing->revisions.clear();
+    _drawing->programs.dirty();
     return true;
 }
 
@@ -409,92 +184,15 @@ void EffectScene::addFunctions(osg::Program& program)
 
 Ground EffectScene::ground(const osg::NodePath& above) const
 {
-    const osg::CoordinateSystemNode* system = nullptr;
-    for (const osg::Node* node : above)
-    {
-        const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node);
-        if (found) system = found;
-    }
-    if (!system) system = _drawing->systemBelow(*this);
-    Ground ground;
-    if (system && _terrainFrame != PROJECTED) ground.ellipsoid = system->getEllipsoidModel();
-    if (!ground.ellipsoid && _terrainFrame == GEOCENTRIC) ground.ellipsoid = _drawing->globe;
-    if (const std::optional<TerrainInfo> info = _drawing->terrainOf(*this, system))
-    {
-        ground.heightsKnown = true;
-        ground.terrain = info->root;
-        ground.minHeight = info->minHeight;
-        ground.maxHeight = info->maxHeight;
-        if (info->geocentric) ground.latitude = osg::DegreesToRadians(0.5 * (info->south + info->north));
-        // A range is the radius and error / pixelError · pixelsPerRadian; both meshes may be off by their error.
-        if (info->pixelsPerRadian > 0.0) ground.tileError = 2.0 * info->pixelError / info->pixelsPerRadian;
-        // The diagonal of a cell, and half of the tile's.
-        if (info->tileCells > 0) ground.tileEdge = 2.0 / info->tileCells;
-    }
-    return ground;
+    using Frame = GroundFinder::Frame;
+    const Frame frame = _terrainFrame == GEOCENTRIC  ? Frame::Geocentric
+                        : _terrainFrame == PROJECTED ? Frame::Projected
+                                                     : Frame::Automatic;
+    return _drawing->ground.find(*this, above, frame);
 }
 
 namespace
 {
-
-Frames framesFor(const EffectProgram::Effects& effects, const ViewGeometry& first)
-{
-    ViewGeometry view = first;
-    Frames frames(effects.size());
-    for (std::size_t i = 0; i < effects.size(); ++i)
-    {
-        const Deformation* deformation = effects[i]->asDeformation();
-        if (!deformation || !effects[i]->getEnabled()) continue;
-        const osg::ref_ptr<const DeformationFrame> frame = deformation->frame(view);
-        if (!frame) continue;
-        DeformationFrame::Uniforms uniforms = frame->uniforms();
-        if (!finite(uniforms)) continue;
-        frames[i] = {frame, std::move(uniforms)};
-        deformation->changeGround(view.ground);
-    }
-    return frames;
-}
-
-/// Of the effects that colour surfaces; whether there are any at work.
-bool fillSurfaces(const EffectProgram::Effects& effects, const TextureUnits& units, osg::StateSet& state,
-                  const ViewGeometry& geometry, osgUtil::CullVisitor& outer)
-{
-    bool any = false;
-    bool repainted = false;
-    const osg::Viewport* viewport = outer.getViewport();
-    const osg::FrameStamp* stamp = outer.getFrameStamp();
-    for (std::size_t i = 0; i < effects.size(); ++i)
-    {
-        SurfaceEffect* surface = effects[i]->asSurfaceEffect();
-        if (!surface) continue;
-        const SurfaceView view = {geometry,
-                                  *outer.getModelViewMatrix(),
-                                  viewport ? viewport->x() : 0.0,
-                                  viewport ? viewport->y() : 0.0,
-                                  viewport ? viewport->width() : 0.0,
-                                  viewport ? viewport->height() : 0.0,
-                                  stamp ? stamp->getSimulationTime() : 0.0,
-                                  units.ofEffects[i]};
-        const bool draws = effects[i]->getEnabled() && units.complete[i] &&
-                           surface->fill(state, EffectProgram::prefix(i), view);
-        setDefine(state, EffectProgram::surfaceDefine(i), draws);
-        any = any || draws;
-        repainted = repainted || (draws && surface->repaints());
-    }
-    setDefine(state, "GEOFX_PAINTED", repainted);
-    return any;
-}
-
-osg::ref_ptr<DeformationChain> chainOf(const Frames& frames, const Ground& ground)
-{
-    osg::ref_ptr<DeformationChain> chain = new DeformationChain;
-    chain->setTiles(ground.tileEdge, ground.tileError);
-    for (const Placed& placed : frames)
-    {
-        if (placed.frame) chain->add(placed.frame);
-    }
-    return chain;
-}
 
 bool drawsPasses(const EffectProgram::Effects& effects)
 {
@@ -526,7 +224,7 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformation(const osg::Matrixd
                                                               const osg::NodePath& above) const
 {
     const Ground known = ground(above);
-    return chainOf(framesFor(_effects, ViewGeometry(modelView, projection, known)), known);
+    return CameraFrames(_effects, ViewGeometry(modelView, projection, known)).chain(known);
 }
 
 namespace
@@ -555,22 +253,36 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     const osg::NodePath& path = outer.getNodePath();
     if (!_nestedCameras && isNested(outer)) return false;
 
+    // Two threads may be about to cull what a pager has brought, here or in another scene.
+    if (_compensation)
+    {
+        static std::mutex mutex;
+        const std::lock_guard<std::mutex> lock(mutex);
+        getBound();
+    }
     const ViewGeometry view(*outer.getModelViewMatrix(), *outer.getProjectionMatrix(), ground(path));
-    const Frames frames = framesFor(_effects, view);
-    CompensatingCullVisitor::Task task;
-    task.chain = chainOf(frames, view.ground);
-    task.mapUnit = mapUnitOf(_effects);
+    const CameraFrames frames(_effects, view);
     Drawing::Camera& own = _drawing->cameras.of(outer);
-    if (own.visitor->startsFrame(outer)) own.used = 0;
+    if (own.visitor->startsFrame(outer))
+    {
+        own.used = 0;
+        own.passes.startFrame(outer);
+    }
     const std::shared_ptr<const TextureUnits> units = _drawing->unitsOf(_effects);
+    const int mapUnit = mapUnitOf(_effects);
     if (own.used == own.states.size()) own.states.emplace_back();
+    std::unique_ptr<CameraState>& now = own.states[own.used];
     // Made anew for other effects, which would find the uniforms and textures of the former ones under their names.
-    if (own.states[own.used].units != units)
-        own.states[own.used] = createState(_effects, task.mapUnit, units);
-    osg::StateSet& state = *own.states[own.used].set;
-    state.getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(task.mapUnit, 0));
-    fill(own.states[own.used], frames);
-    const bool surfaces = fillSurfaces(_effects, *units, state, view, outer);
+    if (!now || now->units() != units) now = std::make_unique<CameraState>(_effects, mapUnit, units);
+    osg::StateSet& state = now->set();
+    now->fill(frames, mapUnit);
+    const bool surfaces = now->fillSurfaces(_effects, view, outer);
+
+    CompensatingCullVisitor::Task task;
+    task.chain = frames.chain(view.ground);
+    task.mapUnit = mapUnit;
+    task.untouched = _drawing->untouched;
+    task.tileError = view.ground.tileError;
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
     const bool draws = surfaces || _debugBounds || !task.chain->empty();
@@ -579,23 +291,37 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     if (!draws && !task.compensate && !passes) return false;
 
     ++own.used;
+    CompensatingCullVisitor::Task passTask = task;
+    passTask.state = &state;
+    passTask.following = &_drawing->programs.following();
+    passTask.compensate = _compensation;
+    const CameraPass::Traversal traversal = {
+        outer, *this, view, passTask, state, _compensation, own.passes, _drawing->programs, _effects};
+    const auto forPasses = [&](const auto& action)
+    {
+        for (std::size_t i = 0; i < _effects.size(); ++i)
+        {
+            PassEffect* effect = _effects[i]->asPassEffect();
+            if (!effect || !_effects[i]->getEnabled() || !units->complete[i]) continue;
+            const std::string prefix = EffectProgram::prefix(i);
+            action(*effect, CameraPass(traversal, prefix, units->ofEffects[i]));
+        }
+    };
     if (draws || task.compensate)
     {
-        task.untouched = _drawing->untouched;
         if (draws)
         {
-            task.program = _drawing->programFor(_effects);
-            task.following = &_drawing->following;
+            task.program = _drawing->programs.programOf(_effects);
+            task.following = passTask.following;
             task.state = &state;
-            forPasses(outer, view, *task.chain, state, task.mapUnit, *units,
-                      [&](PassEffect& effect, const ScenePass& pass)
-                      {
-                          DrawableCompanion* companion = effect.companion(pass);
-                          if (companion) task.companions.push_back(companion);
-                      });
+            forPasses(
+                [&](PassEffect& effect, const ScenePass& pass)
+                {
+                    DrawableCompanion* companion = effect.companion(pass);
+                    if (companion) task.companions.push_back(companion);
+                });
         }
         task.debugBounds = _debugBounds;
-        task.tileError = view.ground.tileError;
         own.visitor->run(outer, *this, task);
         _drawing->sayOnce(own.visitor->complaint());
         for (const auto& stranger : own.visitor->strangers())
@@ -605,50 +331,16 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     {
         osg::Group::traverse(outer);
     }
-    if (passes)
-    {
-        forPasses(outer, view, *task.chain, state, task.mapUnit, *units,
-                  [](PassEffect& effect, const ScenePass& pass) { effect.cull(pass); });
-    }
+    forPasses([](PassEffect& effect, const ScenePass& pass) { effect.cull(pass); });
     return true;
 }
 
-void EffectScene::forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view,
-                            const DeformationChain& chain, osg::StateSet& state, int mapUnit,
-                            const TextureUnits& units,
-                            const std::function<void(PassEffect&, const ScenePass&)>& action)
+osg::BoundingSphere EffectScene::computeBound() const
 {
-    class Pass : public ScenePass
-    {
-    public:
-        Pass(EffectScene& group, osgUtil::CullVisitor& visitor, const ViewGeometry& geometry,
-             const DeformationChain& deformations, osg::StateSet& stateSet, const std::string& names,
-             int unit, const std::vector<int>& textureUnits)
-            : ScenePass(visitor, group, geometry, deformations, stateSet, *group._drawing->untouched,
-                        group._drawing->following, names, geometry.ground.tileError, unit,
-                        group._compensation, textureUnits),
-              _group(group)
-        {
-        }
-        osg::ref_ptr<osg::Program> program(const PassShaders& shaders) const override
-        {
-            return _group._drawing->passProgram(_group._effects, shaders, prefix);
-        }
-        osg::ref_ptr<osg::Program> sceneProgram() const override
-        {
-            return _group._drawing->programFor(_group._effects);
-        }
-
-    private:
-        EffectScene& _group;
-    };
-    for (std::size_t i = 0; i < _effects.size(); ++i)
-    {
-        PassEffect* effect = _effects[i]->asPassEffect();
-        if (!effect || !_effects[i]->getEnabled() || !units.complete[i]) continue;
-        const std::string prefix = EffectProgram::prefix(i);
-        action(*effect, Pass(*this, outer, view, chain, state, prefix, mapUnit, units.ofEffects[i]));
-    }
+    // Those below paged nodes, too, which have bounds of their own: OSG would leave them to whoever asks first, and that may be two
+    // threads that cull at once.
+    computeBounds(*this, false);
+    return osg::Group::computeBound();
 }
 
 void EffectScene::listenTo(TileGuard& guard)
@@ -670,7 +362,7 @@ void EffectScene::traverse(osg::NodeVisitor& visitor)
 
 void EffectScene::resizeGLObjectBuffers(unsigned int size)
 {
-    for (const osg::ref_ptr<osg::Program>& program : _drawing->programs())
+    for (const osg::ref_ptr<osg::Program>& program : _drawing->programs.all())
         program->resizeGLObjectBuffers(size);
     for (const osg::ref_ptr<Effect>& effect : _effects)
         effect->resizeGLObjectBuffers(size);
@@ -679,7 +371,7 @@ void EffectScene::resizeGLObjectBuffers(unsigned int size)
 
 void EffectScene::releaseGLObjects(osg::State* state) const
 {
-    for (const osg::ref_ptr<osg::Program>& program : _drawing->programs())
+    for (const osg::ref_ptr<osg::Program>& program : _drawing->programs.all())
         program->releaseGLObjects(state);
     for (const osg::ref_ptr<Effect>& effect : _effects)
     {

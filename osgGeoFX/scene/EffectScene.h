@@ -12,19 +12,15 @@
 #include <osg/Shader>
 #include <osgUtil/CullVisitor>
 
-#include <functional>
 #include <memory>
 #include <vector>
 
 namespace osgGeoFX
 {
 
-class PassEffect;
-class ScenePass;
 class TileGuard;
-struct TextureUnits;
 
-/** The group that a program puts above its terrain to have the kit's effects.
+/** The group that a program puts above its terrain to use the kit's effects.
 
     @code
     osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
@@ -33,31 +29,37 @@ struct TextureUnits;
     viewer.setSceneData(scene);
     @endcode
 
-    **What it draws.** Everything below it, deformed by its effects in their order. Geometry without a shader keeps its
-    look: materials, lights, up to four 2D textures with their environments, fog. Geometry with shaders of its own is
-    deformed if these call geofx_vertex() and geofx_fragment() (shaders/stages/functions.*), after addFunctions();
-    else it is drawn and culled where it is, and a warning tells once of each such program. It may stand below a
-    RigidReference, which needs no shaders. A subgraph is left out with `stateSet->setDefine("GEOFX_DEFORMATION", OFF)`. Changes of
-    programs and defines below a node that is out of sight are noticed after some frames; `setCullingActive(false)` makes
-    it at once.
-    Cameras and projections below it (render to texture, head-up displays) are drawn as ever. So is everything in
-    cameras above it that are not the view's own or its slaves', such as a shadow map's, unless nestedCameras is on. Shadows are
-    thus those of the undeformed world: a program that looks them up by the position that it gives to geofx_vertex() finds
-    them wherever the ground goes.
+    **Drawing.** The group draws everything below it, deformed by its effects in their order.
+    - Geometry without a shader keeps its look: materials, lights, up to four 2D textures with their environments,
+      fog.
+    - Geometry with shaders of its own is deformed if these call geofx_vertex() and geofx_fragment()
+      (shaders/stages/functions.*), after addFunctions(). Otherwise it is drawn and culled where it is, and a warning
+      reports each such program once. It may also stand below a RigidReference, which needs no shaders.
+    - `stateSet->setDefine("GEOFX_DEFORMATION", OFF)` leaves a subgraph undeformed.
+    - A change of programs or defines below a node that is out of sight takes effect after some frames. It takes
+      effect at once if the node has `setCullingActive(false)`.
+    - Cameras and projections below the group (render to texture, head-up displays) are drawn without effects. So is
+      everything in cameras above it that are not the view's own or its slaves', such as a shadow map's, unless
+      nestedCameras is on. Shadows are therefore those of the undeformed world. A program finds them if it looks them
+      up by the position that it passes to geofx_vertex().
 
-    **Culling.** The terrain's nodes are not touched, whoever loads them, and may be shared with other scenes. Below the
-    group a cull visitor of our own takes the place of the camera's: it culls by what the deformation makes of bounds,
-    and chooses levels of detail by the deformed distance, for osg::LOD, osg::PagedLOD and whatever asks the visitor for
-    distances; near and far planes come out right. Where no enabled effect does anything for the camera, the group draws
-    what a plain osg::Group does; without an enabled deformation it is culled like one, too. See osgGeoFX/README.md.
+    **Culling.** The group does not change the terrain's nodes. Any loader may make them, and other scenes may share
+    them. Below the group, a cull visitor of the kit replaces the camera's. It culls deformed bounds and chooses
+    levels of detail by the deformed distance, for osg::LOD, osg::PagedLOD and any node that asks the visitor for
+    distances. Near and far planes are correct. If no enabled effect does anything for the camera, the group draws
+    the same as a plain osg::Group. If no deformation is enabled, it is also culled like one. See osgGeoFX/README.md.
 
-    **Frames.** World coordinates are those of the group's children: geocentric below an osg::CoordinateSystemNode with an
-    ellipsoid, which may stand above or below, else projected with z up. Transforms above must not scale.
+    **Frames.** World coordinates are those of the group's children. They are geocentric below an
+    osg::CoordinateSystemNode with an ellipsoid, which may stand above or below the group; otherwise they are
+    projected with z up. Transforms above must not scale.
 
-    **Threads.** May be drawn by any number of cameras, views and contexts, in every threading model. Effects are added,
-    removed and changed between frames. Several scenes may share a terrain, each with its own effects; one inside
-    another is drawn without the inner one's effects. Views that show a paged terrain below different roots must share a
-    pager (`view.setDatabasePager(other.getDatabasePager())`), for OSG keeps one request for each paged child. */
+    **Threads.** Any number of cameras, views and contexts may draw the group, in every threading model. Add, remove
+    and change effects between frames. Several scenes may share a terrain, each with its own effects. A scene inside
+    another one is drawn without the inner scene's effects. Views that show a paged terrain below different roots
+    must share a pager (`view.setDatabasePager(other.getDatabasePager())`), because OSG keeps only one request for
+    each paged child.
+
+    @ingroup scene */
 class OSGGEOFX_EXPORT EffectScene : public osg::Group
 {
 public:
@@ -65,48 +67,56 @@ public:
     EffectScene(const EffectScene& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGeoFX, EffectScene);
 
+    /// The kind of world coordinates.
     enum TerrainFrame
     {
-        AUTOMATIC, ///< what an osg::CoordinateSystemNode above or below says; projected where there is none
+        AUTOMATIC, ///< as an osg::CoordinateSystemNode above or below says; projected without one
         GEOCENTRIC,
         PROJECTED
     };
 
-    /// Null and an effect that is there already are refused.
+    /// Adds an effect after the others. Null, and an effect that the scene already has, are refused with a warning.
     bool addEffect(Effect* effect);
+    /// Removes an effect. False if the scene does not have it.
     bool removeEffect(Effect* effect);
     unsigned int getNumEffects() const { return static_cast<unsigned int>(_effects.size()); }
     Effect* getEffect(unsigned int i) { return _effects[i].get(); }
     const Effect* getEffect(unsigned int i) const { return _effects[i].get(); }
 
-    /// False: only the GPU deforms, and the CPU culls as if it did not. For comparison. True by default.
+    /// Whether culling takes the deformation into account. If false, only the GPU deforms, and the CPU culls as without
+    /// deformation, which is useful for comparison. True by default.
     void setCompensation(bool on) { _compensation = on; }
     bool getCompensation() const { return _compensation; }
-    /// Draws the deformed bounds that culling decides on, yellow, and those in the transition zone red. False by default.
+    /// Whether the deformed bounds that culling uses are drawn: red where a deformation bends them, yellow elsewhere.
+    /// False by default.
     void setDebugBounds(bool on) { _debugBounds = on; }
     bool getDebugBounds() const { return _debugBounds; }
-    /// Whether cameras that stand above in the graph are deformed, too. False by default.
+    /// Whether other cameras that stand above in the graph, such as a shadow map's, are deformed, too. False by
+    /// default.
     void setNestedCameras(bool on) { _nestedCameras = on; }
     bool getNestedCameras() const { return _nestedCameras; }
+    /// AUTOMATIC by default.
     void setTerrainFrame(TerrainFrame frame) { _terrainFrame = frame; }
     TerrainFrame getTerrainFrame() const { return _terrainFrame; }
 
-    /// Adds the functions geofx_vertex, geofx_normal and geofx_fragment to a program. Wherever an EffectScene draws with it, it draws
-    /// with a copy that has the functions of its own effects; the program itself never changes.
+    /// Adds the functions geofx_vertex, geofx_normal and geofx_fragment to a program. An EffectScene does not draw with
+    /// this program, but with a copy that has the functions of its own effects. The program itself never changes after
+    /// this call.
     void addFunctions(osg::Program& program);
 
-    /// The deformation of a camera: `modelView` from the children's frame to eye space. Never null; empty where
-    /// nothing is deformed.
+    /// The deformation of a camera. `modelView`: from the children's frame to eye space. `above`: the nodes above the
+    /// group. Never null; empty if nothing is deformed.
     osg::ref_ptr<const DeformationChain> deformation(const osg::Matrixd& modelView,
                                                      const osg::Matrixd& projection,
                                                      const osg::NodePath& above = {}) const;
-    /// Lets effects work on tiles on the thread of the pager that reads them, in the place of the first frame that shows
-    /// them. For the effects that the scene has now; may be called again.
+    /// Lets effects process a tile on the thread of the pager that reads it, instead of in the first frame that shows
+    /// it. This applies to the effects that the scene has now. It may be called again.
     void listenTo(TileGuard& guard);
-    /// What is known of the ground.
+    /// What is known of the ground. `above`: the nodes above the group.
     Ground ground(const osg::NodePath& above = {}) const;
 
     void traverse(osg::NodeVisitor& visitor) override;
+    osg::BoundingSphere computeBound() const override;
     void resizeGLObjectBuffers(unsigned int size) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
@@ -116,9 +126,6 @@ protected:
 private:
     struct Drawing;
     bool cull(osgUtil::CullVisitor& outer);
-    void forPasses(osgUtil::CullVisitor& outer, const ViewGeometry& view, const DeformationChain& chain,
-                   osg::StateSet& state, int mapUnit, const TextureUnits& units,
-                   const std::function<void(PassEffect&, const ScenePass&)>& action);
 
     std::vector<osg::ref_ptr<Effect>> _effects;
     bool _compensation = true;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/RigidReference.h>
 
+#include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
+
 namespace osgGeoFX
 {
 
@@ -12,6 +14,17 @@ RigidReference::RigidReference(const RigidReference& other, const osg::CopyOp& c
 }
 
 RigidReference::~RigidReference() = default;
+
+void RigidReference::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this)) return;
+    visitor.pushOntoNodePath(this);
+    if (auto* culling = dynamic_cast<CompensatingCullVisitor*>(visitor.asCullVisitor()))
+        culling->apply(*this);
+    else
+        visitor.apply(*this);
+    visitor.popFromNodePath();
+}
 
 osg::BoundingSphere RigidReference::computeBound() const
 {

@@ -10,19 +10,24 @@
 namespace osgGeoFX
 {
 
-/** Something that keeps its shape where the ground below it is deformed: a building, a sign, a label.
+/** A group for objects that keep their shape where the ground below them is deformed: a building, a sign, a label.
 
-    Below an EffectScene everything in this group moves as one piece, with one reference point for the whole object
-    (paper: multi-perspective views, Section 3 and 4, "rigid reference"): to where the deformation takes that point, and
-    turned as the ground there is, unless `turn` is off. Elsewhere it is a plain group.
+    Below an EffectScene, everything in this group moves as one piece, by one reference point for the whole object
+    (paper: multi-perspective views, Sections 3 and 4, "rigid reference"). The deformation moves this point, and the
+    object turns as the ground there does, unless `turn` is off. Outside an EffectScene it is a plain group.
 
-    Shared and threaded as any node; the placement is each camera's own. */
+    It may be shared and used by several threads as any node. Each camera has its own placement.
+
+    @ingroup scene */
 class OSGGEOFX_EXPORT RigidReference : public osg::Group
 {
 public:
     RigidReference() = default;
     RigidReference(const RigidReference& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
-    META_Node(osgGeoFX, RigidReference);
+    META_Object(osgGeoFX, RigidReference);
+
+    /// As any group. It tells the cull visitor of an EffectScene that this group keeps its shape.
+    void accept(osg::NodeVisitor& visitor) override;
 
     /// The reference point in the group's own frame; the origin by default.
     void setReference(const osg::Vec3d& point)
@@ -31,24 +36,25 @@ public:
         dirtyBound();
     }
     const osg::Vec3d& getReference() const { return _reference; }
-    /// Whether the middle of the bound is the reference point instead. False by default.
+    /// Whether the centre of the bounding sphere is the reference point instead. False by default.
     void setUseBoundCenter(bool use)
     {
         _useBoundCenter = use;
         dirtyBound();
     }
     bool getUseBoundCenter() const { return _useBoundCenter; }
-    /// Whether it turns with the ground; true by default. Signs and labels may better stay upright.
+    /// Whether the object turns with the ground. True by default. Signs and labels may look better upright.
     void setTurn(bool turn) { _turn = turn; }
     bool getTurn() const { return _turn; }
 
-    /// The point that is in force.
+    /// The reference point that is used.
     osg::Vec3d referencePoint() const
     {
         return _useBoundCenter ? osg::Vec3d(getBound().center()) : _reference;
     }
 
-    /// Three times as wide as what is in it: so the bounds above contain it wherever the deformation takes it.
+    /// The bounding sphere of the content and the reference point, with three times its radius. So bounds above contain
+    /// the object wherever the deformation moves it.
     osg::BoundingSphere computeBound() const override;
 
 protected:

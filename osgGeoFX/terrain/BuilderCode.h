@@ -7,8 +7,9 @@
 namespace osgGeoFX
 {
 
-/** A hash of the sources that decide on a database's bytes, made when the library is built: 16 hexadecimal digits. A database that
-    other code has built, or has begun, is another one, though its sources and options are the same. */
+/** A hash of the sources that determine a database's bytes, computed when the library is built: 16 hexadecimal digits.
+    A database that other code has built or begun counts as a different one, even if its rasters and options are the
+    same. */
 OSGGEOFXDATA_EXPORT const char* builderCode();
 
 } // namespace osgGeoFX

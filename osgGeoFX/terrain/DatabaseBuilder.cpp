@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include "DatabaseBuilder.h"
+#include <osgGeoFX/terrain/DatabaseBuilder.h>
 
-#include "AtomicFile.h"
-#include "BuildPlan.h"
-#include "NormalMap.h"
-#include "TileFile.h"
-#include "TileMesh.h"
-#include "TilePass.h"
+#include <osgGeoFX/terrain/detail/AtomicFile.h>
+#include <osgGeoFX/terrain/detail/BuildPlan.h>
+#include <osgGeoFX/terrain/detail/NormalMap.h>
+#include <osgGeoFX/terrain/detail/TileFile.h>
+#include <osgGeoFX/terrain/detail/TileMesh.h>
+#include <osgGeoFX/terrain/detail/TilePass.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
 

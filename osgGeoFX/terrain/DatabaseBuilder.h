@@ -15,113 +15,119 @@
 namespace osgGeoFX
 {
 
-/// Counts what builders put into databases of one format: older ones are still read, but have less in them.
+/// The version of a database's content within one format. Databases of lower versions can be read but contain less.
 constexpr int DATABASE_CONTENT = 8;
 
-/// How the heights of a DEM are to be understood.
+/// The meaning of the heights of a DEM.
 enum class VerticalDatum
 {
-    None,      ///< used as they are: the zero of the DEM is the zero of the database (the default)
-    Ellipsoid, ///< metres above the WGS 84 ellipsoid, used as they are
-    Egm96      ///< metres above the EGM96 geoid (mean sea level); moved to the ellipsoid by PROJ's grid
+    None,      ///< unchanged: the DEM's zero is the database's zero (the default)
+    Ellipsoid, ///< metres above the WGS 84 ellipsoid, unchanged
+    Egm96      ///< metres above the EGM96 geoid (mean sea level); PROJ's grid moves them to the ellipsoid
 };
 
-/// What becomes of voids: places inside the elevation that have none, such as SRTM's steep slopes and lakes.
+/// The treatment of voids: places within the elevation that have no height, such as SRTM's steep slopes and lakes.
 enum class Voids
 {
     FILL, ///< they get heights from those around them
-    KEEP  ///< they are holes in the terrain
+    KEEP  ///< they become holes in the terrain
 };
 
-/** What a database is built from and how.
+/** The sources and settings of a database.
 
-    Levels, tile shapes and every byte of the database follow from the fields above `threads` alone. */
+    The fields above `threads` alone determine levels, tile shapes and every byte of the database.
+    @ingroup terrain */
 struct BuildOptions
 {
-    std::vector<std::string> dems;    ///< elevation rasters, metres; where several overlap the later one wins
+    std::vector<std::string> dems;    ///< elevation rasters, metres; in overlaps the later one wins
     std::vector<std::string> imagery; ///< colour rasters (RGB, RGBA, grey or palette); the later one wins
     std::string landCover;            ///< class raster, one byte band; empty for none
-    std::string landCoverTable;       ///< what its values mean, for readLandCoverTable()
-    std::string treeCover;            ///< raster of the ground's share under trees, percent; empty for none
-    int epsg = 0;                     ///< projected database in this CRS; 0 for a geocentric one (WGS 84)
+    std::string landCoverTable;       ///< the meaning of its values, for readLandCoverTable()
+    std::string treeCover;            ///< raster of the share under trees, percent; empty for none
+    int epsg = 0;                     ///< EPSG code of a projected database; 0 for a geocentric one (WGS 84)
     VerticalDatum vertical = VerticalDatum::None;
     Voids voids = Voids::FILL;
-    /// How far from the data voids are filled, samples of the elevation, 1…500: where a square of twice as many on a side fits
-    /// into one, it counts as left out, and stays.
+    /// The distance from the data up to which voids are filled, in samples of the elevation, 1…500. An area into which
+    /// a square of twice as many samples fits counts as left out, and is not filled.
     int voidReach = 100;
-    int voidSmoothing = 10; ///< how often filled heights become means of those around them, 0…100
-    /// Metres above the sea up to which trees are likely where no raster tells; nothing for a line by latitude, from
-    /// 3,800 m up to 25° down to 0 at 70°.
+    int voidSmoothing = 10; ///< how often filled heights are averaged with their neighbours, 0…100
+    /// The height above the sea up to which trees are likely if no raster says so, metres, 0 or more. Empty: a line by
+    /// latitude, 3,800 m up to 25°, falling to 0 at 70°.
     std::optional<double> treeLine;
-    /// Least area of level ground that counts as a lake where no land cover tells, square metres, 0 or more.
+    /// The least area of level ground that counts as a lake if no land cover says so, square metres, 0 or more.
     double lakeArea = 2e5;
-    int tileSize = 128; ///< largest number of grid intervals along a tile's edge, 8…240
-    /// Largest number of texture intervals along a tile's edge, 16…4096; 0 for 4 × tileSize on the finest level and, where
-    /// that has fewer, 2 × tileSize above.
+    int tileSize = 128; ///< grid intervals along a tile's edge at most, a power of two, 8…256
+    /// Texture intervals along a tile's edge at most, 16…4096. 0 stands for 4 × tileSize on the finest level. If the
+    /// finest level has fewer, the levels above it keep its texels, up to 2 × tileSize.
     int textureSize = 0;
-    double pixelError = 1.0; ///< bound of the geometric error on the screen, pixels
-    double texelError = 2.0; ///< largest size of a texel on the screen where it would show, pixels
-    /// The colours' anisotropic filtering, texels across a pixel at most, 1…16; 0 for 4 with imagery and 1 without: colours of
-    /// heights and classes are smooth, and it costs software renderers a third of the frame.
+    double pixelError = 1.0; ///< bound of the geometric error on the screen, pixels, > 0
+    double texelError = 2.0; ///< largest size of a texel on the screen where it would show, pixels, > 0
+    /// Anisotropic filtering of the colours, texels across a pixel at most, 1…16. 0 stands for 4 with imagery and 1
+    /// without: the colours of heights and classes are smooth, and filtering costs software renderers a third of the
+    /// frame time.
     double anisotropy = 0.0;
-    /// Colours in BC1 and normals in BC5, which GPUs read as they are, with mipmaps of the builder: a sixth and half of the memory on
-    /// the GPU. What lies on the ground, classes, and normals of three channels stay exact. Textures are up to three texels
-    /// wider, since blocks have 4 × 4 texels.
+    /// Stores colours in BC1 and normals in BC5, with mipmaps made by the builder. GPUs read these formats directly:
+    /// colours then take a sixth of the GPU memory, and normals half. The cover, the classes and normals of three
+    /// channels stay exact. Textures are up to three texels wider, since a block has 4 × 4 texels.
     bool compressTextures = false;
-    /// The screen for which the bounds hold: pixels per radian at its centre. The default is that of
-    /// plain osgviewer, 1080 lines over a vertical field of view of 29.15°.
+    /// The screen for which the bounds hold: pixels per radian at its centre, > 0. The default is that of plain
+    /// osgviewer: 1080 lines over a vertical field of view of 29.15°.
     double pixelsPerRadian = 2077.0;
-    std::string output; ///< folder of the database; made when missing
+    std::string output; ///< folder of the database; made if missing
 
-    int threads = 0;      ///< worker threads; 0 for one for each core
-    int memoryMiB = 1024; ///< what the builder may use for its data, at least 128 MiB
-    bool resume = false;  ///< continue a build of the same options that was interrupted
+    int threads = 0;      ///< worker threads; 0 for one per core
+    int memoryMiB = 1024; ///< memory limit for the builder's data, MiB, at least 128
+    bool resume = false;  ///< continue an interrupted build of the same options
 };
 
-/** What a build will take, before it has begun. Samples and levels are exact, tiles an upper bound; the rest is about right for
-    terrain of the usual kind: a plain takes a third of the disk, noise twice as much. */
+/** An estimate of a build before it begins. Samples and levels are exact, and tiles are an upper bound. The other
+    values are about right for ordinary terrain: a plain takes a third of the disk space, noise twice as much.
+    @ingroup terrain */
 struct BuildEstimate
 {
     std::uint64_t samples = 0;   ///< grid posts of the finest level
-    std::uint64_t tiles = 0;     ///< of all levels
+    std::uint64_t tiles = 0;     ///< on all levels, at most
     int levels = 0;              ///< levels of detail
-    std::uint64_t bytes = 0;     ///< of the database
-    std::uint64_t workBytes = 0; ///< of work files, which the end of the build removes
-    double seconds = 0.0;        ///< on a machine like those of today, if it has nothing else to do
+    std::uint64_t bytes = 0;     ///< size of the database
+    std::uint64_t workBytes = 0; ///< size of the work files, which the build removes at its end
+    double seconds = 0.0;        ///< on a machine of today that does nothing else
 
-    /// All of it in a line, without a full stop.
+    /// The estimate as one line, without a full stop.
     OSGGEOFXDATA_EXPORT std::string text() const;
 };
 
-/// What compression has changed in one channel of textures, of 255, over all texels at full size.
+/// The error of compression in one channel of textures, on the scale 0…255, over all texels at full size.
+/// @ingroup terrain
 struct TextureError
 {
     double rootMeanSquare = 0.0;
     int largest = 0;
 };
 
-/// The textures of a database.
+/// Sizes and compression errors of a database's textures.
+/// @ingroup terrain
 struct TextureSummary
 {
-    /// On the GPU, with mipmaps, as the formats have them: many GPUs keep four bytes for a texel of three.
+    /// The size on the GPU, with mipmaps, as the formats specify. Many GPUs store a texel of three bytes in four.
     std::uint64_t bytes = 0;
-    std::uint64_t uncompressedBytes = 0;   ///< the same if nothing is compressed
+    std::uint64_t uncompressedBytes = 0;   ///< the same without any compression
     std::array<TextureError, 3> colors{};  ///< red, green, blue
-    std::array<TextureError, 2> normals{}; ///< x and y, of 255 for −1…1
+    std::array<TextureError, 2> normals{}; ///< x and y; 255 stands for the range −1…1
 
-    /// Sizes and errors in a few lines, each ended.
+    /// Sizes and errors as a few lines, each with a line end.
     OSGGEOFXDATA_EXPORT std::string text() const;
 };
 
 /// Figures of a finished build.
+/// @ingroup terrain
 struct BuildSummary
 {
     std::uint64_t tiles = 0;       ///< tiles with geometry, all levels
-    std::uint64_t tilesReused = 0; ///< of these, taken over from an interrupted build
+    std::uint64_t tilesReused = 0; ///< tiles taken over from an interrupted build
     int levels = 0;                ///< levels of detail
     std::uint64_t samples = 0;     ///< grid posts of the finest level
-    double filledShare = 0.0;      ///< of the posts that have a height, those in filled voids, 0…1
-    double openShare = 0.0;        ///< of all posts, those in voids that were too large to be filled, 0…1
+    double filledShare = 0.0;      ///< of the posts with a height, the share in filled voids, 0…1
+    double openShare = 0.0;        ///< of all posts, the share in voids too large to be filled, 0…1
     TextureSummary textures;
     std::uint64_t bytes = 0;           ///< size of the database on disk
     double seconds = 0.0;              ///< wall-clock time
@@ -129,20 +135,21 @@ struct BuildSummary
     std::string file;                  ///< the file to open: OUTPUT/terrain.osgb
 };
 
-/// Called from any worker, never from two at once: work units done and in all, and what is being done.
-/// Return false to cancel; the build then throws BuildError and can be resumed.
+/// Called from any worker, but never from two at once. The arguments are the finished work units, all work units, and
+/// the current phase. Return false to cancel: the build then throws BuildError and can be resumed.
 using BuildProgress = std::function<bool(std::uint64_t done, std::uint64_t total, const std::string& phase)>;
 
-/** What buildDatabase() would take, from the rasters' headers; writes nothing. Throws BuildError for what buildDatabase() would
-    refuse: also for a terrain that the disk of the output folder cannot hold. Safe to call from any thread. */
+/** Estimates a build from the rasters' headers; writes nothing. Throws BuildError for options and rasters that
+    buildDatabase() would refuse, and for a terrain that the disk of the output folder cannot hold. It does not check
+    for other files in that folder. Any thread may call it. */
 OSGGEOFXDATA_EXPORT BuildEstimate estimateBuild(const BuildOptions& options);
 
 /** Builds a paged terrain database from rasters.
 
-    The result is `OUTPUT/terrain.osgb` and one `.osgb` file for each group of four tiles below `OUTPUT/tiles`;
-    plain OpenSceneGraph reads it. `terrain.osgb` is written last, so a folder without it is not a database.
-    The same options give the same bytes, for any number of threads and through any interruptions.
-    Throws BuildError. Safe to call from any thread; one build for each output folder at a time. */
+    The result is `OUTPUT/terrain.osgb` and, below `OUTPUT/tiles`, one `.osgb` file for each group of four tiles. Plain
+    OpenSceneGraph reads it. `terrain.osgb` is written last, so a folder without it is not a database. The same options
+    give the same bytes, for any number of threads and through any interruptions. Throws BuildError. Any thread may
+    call it, but only one build at a time may use an output folder. */
 OSGGEOFXDATA_EXPORT BuildSummary buildDatabase(const BuildOptions& options,
                                                const BuildProgress& progress = {});
 

@@ -12,8 +12,10 @@
 namespace osgGeoFX
 {
 
-/// Shows how far a build is, on the standard error output: one line, rewritten on a terminal, else a line for
-/// each tenth of the way. Not thread-safe, as the builder calls it from one thread at a time.
+/// Prints the progress of a build to the standard error output: on a terminal as one line that is rewritten, else as
+/// one line for each tenth of the work. Pass std::ref() of it as the BuildProgress of buildDatabase(). Not
+/// thread-safe; the builder never calls it from two threads at once.
+/// @ingroup terrain
 class ProgressLine
 {
 public:
@@ -51,7 +53,7 @@ private:
 
     std::string _title;
     bool _terminal = isatty(STDERR_FILENO) != 0;
-    bool _open = false; ///< the line on the terminal is not ended
+    bool _open = false; ///< the line on the terminal is not ended yet
     int _tenths = -1;
     std::chrono::steady_clock::time_point _last;
 };

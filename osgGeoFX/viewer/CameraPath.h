@@ -13,14 +13,16 @@
 namespace osgGeoFX
 {
 
-/** A camera's way over the ground: view points at rising times, seconds, linearly interpolated.
+/** The path of a camera over the ground: view points at increasing times, seconds, with linear interpolation between
+    them.
 
-    The file is CSV with the header `time,lon,lat,alt,heading,pitch[,roll]`, degrees and metres as in
-    ViewPoint::parse; empty lines and lines that begin with # are skipped. */
+    The file is CSV with the header `time,lon,lat,alt,heading,pitch[,roll]`, in degrees and metres as in
+    ViewPoint::parse. Empty lines and lines that begin with # are skipped.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT CameraPath
 {
 public:
-    /// Nothing, with a sentence in `error` that names the file and the line, if the file is not such a path.
+    /// Returns nothing, with a sentence in `error` that names the file and the line, if the file is not a valid path.
     static std::optional<CameraPath> read(const std::string& file, std::string& error);
     /// `name` stands for the file in messages.
     static std::optional<CameraPath> read(std::istream& stream, const std::string& name, std::string& error);
@@ -28,10 +30,10 @@ public:
     double startTime() const { return _times.front(); }
     double endTime() const { return _times.back(); }
 
-    /// At a time; before the start and after the end the first and the last point hold.
+    /// The view point at a time. Before the start it is the first point, after the end the last point.
     ViewPoint at(double time) const;
 
-    /// Time of one of `count` frames that divide the path evenly, the first at its start, the last at its end.
+    /// The time of one of `count` frames at equal intervals: frame 0 at the start, the last frame at the end.
     double timeOfFrame(unsigned int frame, unsigned int count) const;
 
 private:

@@ -10,13 +10,14 @@
 namespace osgGeoFX
 {
 
-/** Click and fly (Mackinlay et al. 1990; paper: multi-perspective views, Section 3.2): Ctrl and the left button fly to the
-    ground that the picture shows there, also in the transition zone and in the context. Works on any camera manipulator,
-    through its matrices. Serves one view. */
+/** Click and fly (Mackinlay et al. 1990; paper: multi-perspective views, Section 3.2): a click with Ctrl and the left
+    button flies the camera to the ground shown at that pixel. It also works in the transition zone and in the context.
+    Any camera manipulator works, since only its matrices are used. One handler serves one view.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT ClickAndFly : public osgGA::GUIEventHandler
 {
 public:
-    /// `share` of the way, 0…1, that is flown, in so many seconds.
+    /// `share`: how much of the way is flown, 0…1. `seconds`: how long a flight takes.
     explicit ClickAndFly(EffectScene& scene, double share = 0.7, double seconds = 1.5)
         : _scene(&scene), _share(share), _seconds(seconds)
     {
@@ -34,9 +35,9 @@ private:
     double _share;
     double _seconds;
     double _start = -1.0;
-    osg::Vec3d _from; ///< eye, world
+    osg::Vec3d _from; ///< position of the eye at the start, world coordinates
     osg::Vec3d _to;
-    osg::Matrixd _attitude; ///< the view without its translation
+    osg::Matrixd _attitude; ///< the view matrix without its translation
 };
 
 } // namespace osgGeoFX

@@ -9,10 +9,11 @@
 namespace osgGeoFX
 {
 
-/** Keys for the effects of a scene: F5 switches them on and off together, F6 to the next one alone, and ( and ) turn the
-    main property of the effect that is in force: the horizon's line, the bend's angle, the exaggeration. Which one that
-    is an effect's own table says, see Property::turnedBy(). F7 shows the deformed bounds, F8 switches the compensation
-    off and on. Serves one scene. */
+/** Keys for the effects of a scene. F5 switches all effects on or off. F6 enables the next effect alone. ( and )
+    change the main property of each enabled effect, such as the horizon line, the bend angle or the exaggeration; each
+    effect marks it with Property::turnedBy(). F7 shows or hides the deformed bounds. F8 switches the compensation off
+    or on. One handler serves one scene.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT EffectKeys : public osgGA::GUIEventHandler
 {
 public:

@@ -11,25 +11,30 @@
 namespace osgGeoFX
 {
 
-/** A list of a scene's effects and all their properties over the window's upper left corner, to turn them by hand.
+/** A list of a scene's effects and all their properties in the upper left corner of the window. The user changes them
+    by keys and clicks.
 
-    F10 shows and hides it. Left and Right change the selected property by a step (stepped()), with Shift by ten, `,` and `.` by a
-    tenth. Return or a click on a row's box switches a flag or an effect and takes the next choice; Return gives a number its
-    default. What does not fit the effect's other properties is left as it is. */
+    F10 shows and hides the list. Left and Right change the selected property by one step (stepped()), with Shift by
+    ten; `,` and `.` change it by a tenth. Return, or a click on the row's box, switches a flag or an effect, or
+    selects the next choice. Return resets a number to its default. A value that contradicts the effect's other
+    properties is rejected, and the property stays as it is.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT EffectPanel : public ListPanel
 {
 public:
-    /// `font` for the texts; null: that of OSG's own handlers, fonts/arial.ttf or what stands for it.
+    /// `font` is for the texts. Null: the font of OSG's own handlers, fonts/arial.ttf or its substitute.
     explicit EffectPanel(EffectScene& scene, osgText::Font* font = nullptr);
 
     void getUsage(osg::ApplicationUsage& usage) const override;
 
-    /// What a property's value becomes by steps of a size that suits it: 1, 2 or 5 times a power of ten as people type it, a tenth of
-    /// its default or, where that tells nothing, of its range. It stays in the range; flags and choices go round.
+    /// A property's value after some steps. The step is 1, 2 or 5 times a power of ten in the unit that people type
+    /// (angles: degrees): about a tenth of the default value or, if that is near 0, of the range. A fraction of a step
+    /// counts as a tenth of a step; integers change by at least 1. The value stays in the range; flags and choices
+    /// wrap around.
     static double stepped(const Property& property, double value, double steps);
 
-    /// What is shown: "3 of 120", then for each row its name, value and unit with tabs between them; an effect's own row has its
-    /// kind, and "true" or "false". Empty while nothing is shown.
+    /// The text shown: "3 of 120", then for each row its name, value and unit, separated by tabs. The row of an effect
+    /// has its kind, and "true" or "false". Empty while the list is hidden.
     std::vector<std::string> lines() const;
 
 protected:

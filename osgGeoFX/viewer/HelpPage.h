@@ -18,34 +18,36 @@
 namespace osgGeoFX
 {
 
-/** The keys of a viewer over its picture, to be read: in groups, in columns, lines broken where they would not fit.
+/** Shows the keys of a viewer over its picture: in groups and columns, with long lines broken.
 
-    h shows the keys of the program's own handlers, H those of all others: OSG's handlers and camera manipulators, as their
-    getUsage() tells. The same key again goes on to the next page, where there is more than one, and hides the last one. It takes the
-    place of osgViewer::HelpHandler, whose page shrinks until its longest line fits. The page follows the window's size. Serves one
-    view, in its event traversal. */
+    h shows the keys of the program's own handlers. H shows the keys of all other handlers and of the camera
+    manipulator, as their getUsage() tells. The same key again shows the next page; after the last page it hides the
+    help. It replaces osgViewer::HelpHandler, which shrinks its page until the longest line fits. The page follows the
+    window's size. One handler serves one view, in its event traversal.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT HelpPage : public osgGA::GUIEventHandler
 {
 public:
-    /// Handlers whose keys stand below a title; UTF-8.
+    /// Handlers whose keys stand below one title; UTF-8.
     struct Group
     {
         std::string title;
         std::vector<osg::ref_ptr<const osgGA::GUIEventHandler>> handlers;
     };
 
-    /// The groups of the program's own, in their order; one without keys is left out. `font` for the texts; null: that of OSG's
-    /// own handlers, fonts/arial.ttf or what stands for it.
+    /// `own`: the groups of the program's own handlers, in their order; groups without keys are left out. `font` is
+    /// for the texts. Null: the font of OSG's own handlers, fonts/arial.ttf or its substitute.
     explicit HelpPage(std::vector<Group> own, osgText::Font* font = nullptr);
 
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
     void getUsage(osg::ApplicationUsage& usage) const override;
 
-    /// Whether a page is shown, and how many there are of its kind, own or OSG's; 0 while none is shown.
+    /// Whether a page is shown; and the number of pages, own or OSG's, 0 while none is shown.
     bool shown() const { return _chapter != NONE; }
     std::size_t pages() const { return _pages.size(); }
 
-    /// What stands on the page: a group's title, or a key and what it does with a tab between them. Empty while nothing is shown.
+    /// The texts on the page: a group's title, or a key and its action separated by a tab. Empty while no page is
+    /// shown.
     std::vector<std::string> lines() const;
 
 protected:
@@ -58,12 +60,12 @@ private:
         OWN,
         OTHERS
     };
-    /// A title has no key.
+    /// A key and its action, or a title, which has no key.
     struct Item
     {
         std::string key, text;
     };
-    /// An item, its lines, and where the first of them stands.
+    /// An item, its broken lines, and the column and row of the first line.
     struct Block
     {
         Item item;

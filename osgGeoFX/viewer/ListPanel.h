@@ -10,11 +10,13 @@
 namespace osgGeoFX
 {
 
-/** What lists over a window's corner have in common, by which things of a scene are turned by hand: EffectPanel, MappingPanel.
+/** The base class of the lists in a corner of the window with which the user changes a scene by hand: EffectPanel and
+    MappingPanel.
 
-    A key shows and hides the list; all else works while it is shown. Up, Down, Page Up, Page Down, Home and End or a click on a
-    row select it; the wheel over the list scrolls it. What others change shows in the next frame. With nothing to list it is not
-    shown. Serves one view, in its event traversal. */
+    A key shows and hides the list; all other input works only while it is shown. Up, Down, Page Up, Page Down, Home
+    and End or a click select a row. The wheel over the list scrolls it. Changes made by others show in the next frame.
+    An empty list is not shown. One panel serves one view, in its event traversal.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT ListPanel : public osgGA::GUIEventHandler
 {
 public:
@@ -24,31 +26,31 @@ public:
 protected:
     using Event = osgGA::GUIEventAdapter;
 
-    /// `font` for the texts; null: that of OSG's own handlers, fonts/arial.ttf or what stands for it.
+    /// `font` is for the texts. Null: the font of OSG's own handlers, fonts/arial.ttf or its substitute.
     ListPanel(int toggleKey, const PanelWords& words, PanelPicture::Corner corner, osgText::Font* font);
     ~ListPanel() override;
 
     /// Whether there is something to list.
     virtual bool hasRows() const = 0;
-    /// Whether what is listed is not what is there; asked at each event.
+    /// Whether the list no longer matches the scene. Called at each event.
     virtual bool changed() = 0;
-    /// Lists what is there, and keeps what is selected.
+    /// Builds the list from the scene and keeps the selection.
     virtual void list() = 0;
-    /// Lets go of what is listed: what is removed while nothing is shown need not wait for this list.
+    /// Releases the listed objects when the list is hidden, so that it does not keep removed objects alive.
     virtual void forget() = 0;
-    /// What is listed.
+    /// The number of listed rows.
     virtual std::size_t size() const = 0;
     virtual PanelPage::Row row(std::size_t number) const = 0;
-    /// Selects a row, or the last one.
+    /// Selects a row, or the last row if the number is too large.
     virtual void choose(std::size_t number);
-    /// What a key does to the selected row; false for other keys.
+    /// Applies a key to the selected row. Returns false for all other keys.
     virtual bool change(int code, int modifiers) = 0;
-    /// A click on a row's box.
+    /// Handles a click on a row's box.
     virtual void pressBox(std::size_t number) = 0;
-    /// A button beside the list; true where it was for the panel.
+    /// Handles a click beside the list. Returns true if the panel has used it.
     virtual bool pushBeside(const Event& event, osgViewer::View& view);
 
-    /// The rows that are shown.
+    /// The rows that are shown now.
     PanelPage page() const;
 
     PanelCursor _cursor;
@@ -62,7 +64,7 @@ private:
     const PanelWords _words;
     PanelPicture _picture;
     bool _shown = false;
-    bool _held = false; ///< a button that went down on the list
+    bool _held = false; ///< a button went down on the list and is still held
 };
 
 } // namespace osgGeoFX

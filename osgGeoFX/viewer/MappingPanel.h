@@ -16,29 +16,33 @@ namespace osgGeoFX
 
 class EffectScene;
 
-/** A list of a scene's mappings over the window's upper right corner, the topmost first, to switch and change them by hand.
+/** A list of a scene's mappings in the upper right corner of the window, the topmost mapping first. The user switches
+    and changes them by keys and clicks.
 
-    F9 shows and hides it. Alt and a click on the ground select a mapping, too (the topmost one there). Return or a click on a row's
-    box switches a mapping, Left and Right change its opacity, - and + its order, `,` and `.` its blending. A blending of none of
-    the usual kinds is called "custom". Blending belongs to the mapping's color transfer: mappings that share one change together.
+    F9 shows and hides the list. Alt and a click on the ground select the topmost mapping there. Return, or a click on
+    a row's box, switches a mapping on or off. Left and Right change its opacity, - and + its order, `,` and `.` its
+    blending. A blending that is none of the usual kinds is named "custom". The blending belongs to the mapping's
+    ColorTransfer, so mappings that share one change together.
 
-    A mapping is called by its name, else by that of its layer or the layer's picture, else by its number in its effect.
+    A mapping is listed by its name, else by the name of its layer or the file name of the layer's image, else by its
+    number in its effect.
 
-    An order that others change among more than some thousands of mappings shows a few frames later. */
+    If there are thousands of mappings and a program changes an order, the list shows the new order some frames later.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT MappingPanel : public ListPanel
 {
 public:
-    /// `font` for the texts; null: that of OSG's own handlers, fonts/arial.ttf or what stands for it.
+    /// `font` is for the texts. Null: the font of OSG's own handlers, fonts/arial.ttf or its substitute.
     explicit MappingPanel(EffectScene& scene, osgText::Font* font = nullptr);
 
     void getUsage(osg::ApplicationUsage& usage) const override;
 
-    /// Whether the scene has an effect whose mappings can be listed.
+    /// Whether the scene has a ProjectiveMappings effect.
     bool hasEffect() const;
-    /// Null where there is none, and while nothing is shown.
+    /// The selected mapping. Null if there is none, and while the list is hidden.
     ProjectiveMapping* selected();
-    /// What is shown, UTF-8: "3 of 120", then for each row "on" or "off", name, order, opacity and blending with tabs
-    /// between them. Names are whole here. Empty while nothing is shown.
+    /// The text shown, UTF-8: "3 of 120", then for each row "on" or "off", name, order, opacity and blending,
+    /// separated by tabs. Names are not shortened here. Empty while the list is hidden.
     std::vector<std::string> lines() const;
 
 protected:
@@ -49,8 +53,8 @@ private:
     {
         osg::ref_ptr<ProjectiveMapping> mapping;
         const ProjectiveMappings* effect;
-        unsigned int number; ///< among the effect's
-        int order;           ///< as sorted
+        unsigned int number; ///< index in the effect
+        int order;           ///< when the list was sorted
     };
 
     bool hasRows() const override { return hasEffect(); }

@@ -10,19 +10,19 @@
 namespace osgGeoFX
 {
 
-/** A camera that draws what is below it over the picture of the one it is put under; its units are pixels of a picture of this
-    size. Without light and depth test. */
+/** Makes a camera that draws its children over the picture of a parent camera. Its units are pixels of a viewport of
+    this size. Lighting and depth test are off. */
 OSGGEOFX_EXPORT osg::ref_ptr<osg::Camera> makeOverlay(int width, int height);
 
-/** Puts such a camera over a view's picture, as a slave, so that the scene itself stays as it was loaded. The overlay takes the
-    view's graphics context; it needs a viewport. From the thread that calls frame(), at any time of a frame but while it renders:
-    where threads run they are stopped and started anew, since OSG would cull a slave that comes later in the thread that draws,
-    while handlers change what is below it. */
+/** Adds an overlay camera to a view as a slave, so that the loaded scene stays unchanged. The overlay gets the view's
+    graphics context and needs a viewport. Call this from the thread that calls frame(), but not while a frame renders.
+    Running threads are stopped and started again: else OSG would cull the new slave in the drawing thread while
+    handlers change its children. */
 OSGGEOFX_EXPORT void attachOverlay(osgViewer::View& view, osg::Camera& overlay);
 
-/** Shows an overlay over the whole of a view's picture, whatever the window's size has become; makes and attaches it where it is null,
-    drawn after those of lower orders. Whether it is new or has another place or size than before. The view's camera needs a
-    viewport; for the rest as attachOverlay(). */
+/** Shows an overlay over a view's whole viewport, whatever the window's size is now. If `overlay` is null, it is made
+    and attached; overlays of lower `order` are drawn first. Returns true if the overlay is new or its viewport has
+    changed. The view's camera needs a viewport. The rules of attachOverlay() apply. */
 OSGGEOFX_EXPORT bool showOverlay(osgViewer::View& view, osg::ref_ptr<osg::Camera>& overlay, int order);
 
 } // namespace osgGeoFX

@@ -11,17 +11,18 @@
 namespace osgGeoFX
 {
 
-/// Which row of a panel's list is selected, and the uppermost one that is shown.
+/// The selected row of a panel's list and the first row that is shown.
+/// @ingroup viewer
 struct OSGGEOFX_EXPORT PanelCursor
 {
     std::size_t first = 0;
     std::size_t row = 0;
 
-    /// The row or the list's last one; it is shown.
+    /// Selects the wanted row, or the last row if that is larger, and scrolls it into sight.
     void choose(std::size_t wanted, std::size_t total);
-    /// Up, Down, Page Up, Page Down, Home and End; false for all other keys.
+    /// Handles Up, Down, Page Up, Page Down, Home and End. Returns false for all other keys.
     bool key(int code, std::size_t total);
-    /// By the wheel; the selected row may go out of sight.
+    /// Scrolls by the wheel. The selected row may go out of sight.
     void scroll(osgGA::GUIEventAdapter::ScrollingMotion motion, std::size_t total);
 };
 

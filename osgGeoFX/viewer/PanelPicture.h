@@ -16,22 +16,24 @@
 namespace osgGeoFX
 {
 
-/// What stands around the rows of a panel; texts are UTF-8.
+/// The fixed texts around the rows of a panel, UTF-8.
+/// @ingroup viewer
 struct PanelWords
 {
     std::string title, name, order, value, note; ///< of the list and its columns
     std::string keysAbove, keysBelow;            ///< two lines below the rows
 };
 
-/// What a panel shows at a time; texts are UTF-8.
+/// The part of a list that a panel shows; texts are UTF-8.
+/// @ingroup viewer
 struct PanelPage
 {
     struct Row
     {
         bool on;
-        bool inForce; ///< drawn bright
+        bool inForce; ///< drawn bright, else dim
         std::string name, order, value, note;
-        bool box = true; ///< whether it has a box that switches it
+        bool box = true; ///< whether the row has a box that switches it
 
         bool operator==(const Row& other) const
         {
@@ -40,7 +42,7 @@ struct PanelPage
         }
     };
     std::vector<Row> rows;
-    std::size_t first = 0; ///< the uppermost row's place in the list
+    std::size_t first = 0; ///< index of the first shown row in the list
     std::size_t selected = 0;
     std::size_t total = 0;
 
@@ -53,13 +55,14 @@ struct PanelPage
     }
 };
 
-/** The picture of a panel: a dark box in an upper corner of a view, by a slave camera of that view. It grows
-    with the window, and is made anew only when what it shows has changed, from new objects, so that a frame that is still
-    being drawn keeps its own. For the event traversal. */
+/** Draws a panel: a dark box in an upper corner of a view, by a slave camera of that view. The box grows with the
+    window. New objects replace the drawing only when its content has changed, so that a frame still being drawn keeps
+    its own objects. For the event traversal.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT PanelPicture
 {
 public:
-    static constexpr std::size_t rows = 12; ///< at a time
+    static constexpr std::size_t rows = 12; ///< shown at once
 
     enum Corner
     {
@@ -68,21 +71,21 @@ public:
     };
     explicit PanelPicture(osgText::Font* font, Corner corner = RIGHT);
 
-    /// The words are the same each time.
+    /// Shows a page. `words` must be the same each time.
     void show(osgViewer::View& view, const PanelPage& page, const PanelWords& words);
     void hide();
 
-    /// Where a pixel of the window lies on the picture.
+    /// The part of the panel at a pixel of the window.
     struct Spot
     {
-        std::optional<std::size_t> row; ///< of the list
-        bool onBox = false;             ///< the row's box that switches it
+        std::optional<std::size_t> row; ///< index in the list
+        bool onBox = false;             ///< on the box that switches the row
     };
-    /// Nothing beside the picture, and while there is none.
+    /// Returns nothing for pixels beside the panel, and while it is hidden.
     std::optional<Spot> spotAt(double x, double y) const;
 
 private:
-    /// Pixels of the viewport.
+    /// Sizes and places in pixels of the viewport.
     struct Layout
     {
         double text, line, margin;

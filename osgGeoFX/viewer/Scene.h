@@ -20,51 +20,57 @@
 namespace osgGeoFX
 {
 
-/** What a scene wishes of the program that shows it, from user values of its root node (the .geofx plugin sets them):
+/** The settings that a scene gives to the program that shows it. They are user values of its root node; the .geofx
+    plugin sets them. All are optional:
 
-    `geofx.homeView` string "LON,LAT,ALT,HEADING,PITCH[,ROLL]" in degrees and metres; `geofx.homeFov` double, the
-    vertical field of view in degrees; `geofx.background` string "r,g,b", 0…1; `geofx.hasLight` bool, true where
-    the scene has a light of its own and wants no headlight. All are optional. */
+    - `geofx.homeView`: string "LON,LAT,ALT,HEADING,PITCH[,ROLL]" in degrees and metres.
+    - `geofx.homeFov`: double, the vertical field of view in degrees, between 0 and 180.
+    - `geofx.background`: string "r,g,b", 0…1.
+    - `geofx.hasLight`: bool, true if the scene has its own light and needs no headlight.
+    @ingroup viewer */
 struct OSGGEOFX_EXPORT SceneSettings
 {
     std::optional<ViewPoint> homeView;
-    std::optional<double> homeFov; ///< degrees
+    std::optional<double> homeFov; ///< vertical, degrees
     osg::Vec4 background = {0.72f, 0.80f, 0.88f, 1.0f};
     bool hasLight = false;
 
-    /// Nothing, and a sentence in `error`, where a value is there but cannot be understood.
+    /// Returns nothing, with a sentence in `error`, if a value is present but invalid.
     static std::optional<SceneSettings> read(const osg::Node& root, std::string& error);
 };
 
-/// A scene file, read for showing: its tiles are guarded, and what it says about itself is at hand.
+/// A scene file that is loaded and ready to be shown: its tiles are guarded, and its settings and terrain facts are
+/// read.
+/// @ingroup viewer
 struct OSGGEOFX_EXPORT Scene
 {
     osg::ref_ptr<osg::Node> node;
-    /// The first EffectScene in the file, or an empty one that was put above it and is `node`. Never null.
+    /// The first EffectScene in the file, or a new empty one above the file's node; then `node` is this one. Never
+    /// null.
     osg::ref_ptr<EffectScene> effects;
     osg::ref_ptr<TileGuard> guard;
     SceneSettings settings;
     std::optional<TerrainInfo> terrain;
-    osg::ref_ptr<Georeference> reference; ///< null where the scene has none
-    std::string referenceError;           ///< why there is none
+    osg::ref_ptr<Georeference> reference; ///< null if the scene has none
+    std::string referenceError;           ///< the reason why there is none
 
-    /// Nothing, and a sentence in `error`, where the scene cannot be read. With the option string "allowOutside" a .geofx scene
-    /// may name files outside its folder, and addresses; without, it is refused.
+    /// Returns nothing, with a sentence in `error`, if the scene cannot be read. The option string "allowOutside" lets
+    /// a .geofx scene name network addresses and files outside its folder; without it such a scene is refused.
     static std::optional<Scene> load(const std::string& file, std::string& error,
                                      const osgDB::Options* options = nullptr);
-    /// The same for a scene that has been read already.
+    /// The same for a scene that the program has already read.
     static std::optional<Scene> adopt(osg::Node* node, std::string& error);
 
-    /// Gives a view the scene's background and light, and near and far planes fit for a wide landscape. The scene data
-    /// and the camera's place are left alone.
+    /// Sets a view's background, light and near/far ratio (1 : 5000) for a wide landscape. It changes neither the
+    /// scene data nor the camera's pose.
     void setUpView(osg::View& view) const;
 
-    /// The LOD scale that keeps the terrain's pixel-error bound; 1 for a scene without a terrain of ours.
-    /// `height` is the picture's in pixels, `fieldOfView` the vertical one in radians.
+    /// The LOD scale that keeps the terrain's pixel-error bound; 1 for a scene without a terrain of osggeofx_build.
+    /// `height` is the height of the viewport in pixels, `fieldOfView` is vertical, in radians.
     float lodScale(double height, double fieldOfView) const;
 
-    /// The home view, or else one that shows the whole scene. `aspect` is width / height, `fieldOfView` the
-    /// vertical one in radians.
+    /// The view matrix of the home view or, if there is none, of a view of the whole scene. `fieldOfView` is vertical,
+    /// in radians; `aspect` is width / height.
     osg::Matrixd homeViewMatrix(double fieldOfView, double aspect) const;
 };
 

@@ -15,10 +15,11 @@
 namespace osgGeoFX
 {
 
-/** Where a camera stands and how it looks, relative to the ground.
+/** The position and direction of a camera relative to the ground.
 
-    Radians and metres. Altitude is above the database's zero height; heading turns clockwise from north; pitch is
-    negative downwards (−π/2…π/2); roll is positive with the right wing down. */
+    Angles are radians, lengths are metres. The altitude is above the database's zero height. The heading turns
+    clockwise from north. The pitch is negative downwards (−π/2…π/2). The roll is positive with the right wing down.
+    @ingroup viewer */
 struct OSGGEOFX_EXPORT ViewPoint
 {
     double longitude = 0.0;
@@ -28,28 +29,28 @@ struct OSGGEOFX_EXPORT ViewPoint
     double pitch = 0.0;
     double roll = 0.0;
 
-    /// From "LON,LAT,ALT,HEADING,PITCH[,ROLL]" in degrees and metres; nothing, and a sentence in `error`, if it
-    /// is not that.
+    /// Reads "LON,LAT,ALT,HEADING,PITCH[,ROLL]" in degrees and metres. Returns nothing, with a sentence in `error`, if
+    /// the text is wrong.
     static std::optional<ViewPoint> parse(const std::string& text, std::string& error);
 
-    /// From the same numbers, in the same order; the values are checked.
+    /// The same from five or six numbers in that order. Latitude and pitch must lie within ±90 degrees.
     static std::optional<ViewPoint> fromNumbers(const std::vector<double>& numbers, std::string& error);
 
-    /// World to eye; false where the place lies outside the database's projection.
+    /// World to eye space. Returns false if the place lies outside the database's projection.
     bool viewMatrix(const Georeference& reference, osg::Matrixd& view) const;
 };
 
-/// Interpolates a view point; angles take the shorter arc. `t` is 0…1.
+/// Interpolates between two view points. Longitude, heading and roll take the shorter arc. `t` is 0…1.
 OSGGEOFX_EXPORT ViewPoint interpolate(const ViewPoint& a, const ViewPoint& b, double t);
 
-/** A view that shows all of the points, obliquely from the south, as large as the picture allows.
+/** The view matrix of a view from the south, 35° downwards, that shows all points as large as possible.
 
-    It looks at `center`. `fieldOfView` is the vertical one in radians, `aspect` the picture's width / height. The
-    sky is up along z, or along the ellipsoid's normal if the reference (which may be null) is geocentric. */
+    The view looks at `center` (world coordinates). `fieldOfView` is vertical, in radians; `aspect` is width / height.
+    Up is z or, if the reference is geocentric, the ellipsoid's normal. The reference may be null. */
 OSGGEOFX_EXPORT osg::Matrixd viewOfPoints(const std::vector<osg::Vec3d>& points, const osg::Vec3d& center,
                                           const Georeference* reference, double fieldOfView, double aspect);
 
-/// Comma-separated numbers; nothing if one of them is not a finite number.
+/// Reads comma-separated numbers. Returns nothing if one of them is not a finite number.
 OSGGEOFX_EXPORT std::optional<std::vector<double>> parseNumbers(const std::string& text);
 
 } // namespace osgGeoFX

@@ -15,8 +15,9 @@
 namespace osgGeoFX
 {
 
-/** Keeps the terrain's pixel-error bound when the window, or the field of view, changes its size. What others did to the
-    camera's LOD scale (osgViewer::LODScaleHandler's keys * and /) is kept. Serves one view. */
+/** Keeps the terrain's pixel-error bound when the size of the window or the field of view changes. It preserves other
+    changes of the camera's LOD scale (the keys * and / of osgViewer::LODScaleHandler). One handler serves one view.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT LodScaleFollower : public osgGA::GUIEventHandler
 {
 public:
@@ -29,8 +30,10 @@ private:
     float _base = 1.0f;
 };
 
-/** Shows longitude, latitude and height of the ground below the pointer, as the effects show it, in the window's lower
-    left corner; key c. Serves one view. Where the scene has no reference, it shows why. */
+/** Shows longitude and latitude (degrees) and height (metres) of the ground below the pointer, as the effects show the
+    ground, in the lower left corner of the window. The key c switches the text. If the scene has no reference, the
+    text says why. One handler serves one view.
+    @ingroup viewer */
 class OSGGEOFX_EXPORT CursorReadout : public osgGA::GUIEventHandler
 {
 public:
@@ -39,11 +42,11 @@ public:
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
     void getUsage(osg::ApplicationUsage& usage) const override;
 
-    /// The key that shows and hides it, as osgGA::GUIEventAdapter has them.
+    /// The key that shows and hides the text, as in osgGA::GUIEventAdapter; 'c' by default.
     void setKey(int key) { _key = key; }
     int getKey() const { return _key; }
 
-    /// What is shown; empty while nothing is.
+    /// The text shown; empty while it is hidden.
     std::string text() const;
 
 private:

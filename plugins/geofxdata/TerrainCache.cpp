@@ -29,7 +29,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr const char* mend = "; name another folder in the attribute \"cache\" of <rasters>.";
+constexpr const char* remedy = "; name another folder in the attribute \"cache\" of <rasters>.";
 
 fs::path cacheFolder(const SceneRasters& rasters)
 {
@@ -168,7 +168,7 @@ public:
         if (_descriptor >= 0) close(_descriptor);
         throw BuildError(path.string() +
                          ": the file that keeps two programs from building at once cannot be used (" +
-                         reason + ")" + mend);
+                         reason + ")" + remedy);
     }
     ~FileLock() { close(_descriptor); }
     FileLock(const FileLock&) = delete;
@@ -192,7 +192,7 @@ std::string cachedTerrain(const SceneRasters& rasters)
     fs::create_directories(cache, code);
     if (!fs::is_directory(cache))
         throw BuildError(cache.string() + ": the folder cannot be made (" +
-                         (code ? code.message() : std::string("a file has this name")) + ")" + mend);
+                         (code ? code.message() : std::string("a file has this name")) + ")" + remedy);
     const FileLock lock(folder.string() + ".lock",
                         "osgGeoFX: another program builds this terrain; waiting for it to finish.");
     if (!fs::exists(database, code))

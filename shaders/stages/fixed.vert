@@ -3,7 +3,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // OpenGL's fixed vertex stage, for geometry that has no shader of its own: what OpenGL 2.1, Section 2.14, says, with
-// the effects in between. scene/FixedFunctionLook.cpp sets the defines from the modes that are in force.
+// the effects in between. scene/detail/FixedFunctionLook.cpp sets the defines from the modes that are in force.
 #pragma import_defines(GEOFX_SPECULAR)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_LOCAL_VIEWER)
 #pragma import_defines(GEOFX_COLOR_MATERIAL, GEOFX_COLOR_SUM)

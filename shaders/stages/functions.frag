@@ -12,7 +12,7 @@
 GEOFX_IMPORTED_EFFECTS
 in float geofx_styleBlend;
 #ifdef GEOFX_NORMAL_MAP
-// What lies on the ground is lit by the normals of a texture, in the frame of the geometry: effect/TileNormals.h.
+// What lies on the ground is lit by the normals of a texture, in the frame of the geometry: effect/detail/TileNormals.h.
 in vec2 geofx_normalPlace;
 in vec3 geofx_groundPlace;
 uniform sampler2D geofx_normals;

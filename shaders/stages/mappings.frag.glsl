@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // ProjectiveMappings in the fragment stage: all mappings over a fragment, the lowest first. SLOT_ stands for the effect's
-// prefix. osgGeoFX/mapping/MappingRecord.cpp writes the records, osgGeoFX/mapping/MappingIndex.cpp the grid.
+// prefix. osgGeoFX/mapping/detail/MappingRecord.cpp writes the records, osgGeoFX/mapping/detail/MappingIndex.cpp the grid.
 #include "lib/mapping.glsl"
 
 #pragma import_defines(GEOFX_MAPPING_CHANNELS)
@@ -245,24 +245,6 @@ SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
     result.flags = head.w;
     result.opacity = uintBitsToFloat(head.z);
     result.pixels = 0.0;
-#ifdef SLOT_PINHOLES
-    if ((result.flags & 0x20u) != 0u)
-    {
-        vec4 eye = uintBitsToFloat(texelFetch(SLOT_data, record + 16));
-        vec4 right = uintBitsToFloat(texelFetch(SLOT_data, record + 17));
-        vec4 upwards = uintBitsToFloat(texelFetch(SLOT_data, record + 18));
-        vec4 forward = uintBitsToFloat(texelFetch(SLOT_data, record + 19));
-        vec4 radial = uintBitsToFloat(texelFetch(SLOT_data, record + 20));
-        vec4 more = uintBitsToFloat(texelFetch(SLOT_data, record + 21));
-        geofx_Pinhole camera = geofx_Pinhole(eye.xyz, right.xyz, upwards.xyz, forward.xyz, radial.xyz, more.xy,
-                                             more.zw, radial.w);
-        result.uv =
-            distance(camera.eye, SLOT_position) <= eye.w ? geofx_projectPinhole(camera, SLOT_position) : vec2(-1.0);
-        result.across = geofx_projectPinholeStep(camera, SLOT_position, fragment.positionAcross);
-        result.up = geofx_projectPinholeStep(camera, SLOT_position, fragment.positionUp);
-        return result;
-    }
-#endif
 #ifdef SLOT_SYMBOLS
     if ((result.flags & 0x6c0u) != 0u) // fades by distance and size, size in pixels, turned to the camera
     {
@@ -287,6 +269,24 @@ SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
             projector.rowU = vec2(u.x * north.y + u.y * north.x, u.y * north.y - u.x * north.x);
             projector.rowV = vec2(v.x * north.y + v.y * north.x, v.y * north.y - v.x * north.x);
         }
+    }
+#endif
+#ifdef SLOT_PINHOLES
+    if ((result.flags & 0x20u) != 0u)
+    {
+        vec4 eye = uintBitsToFloat(texelFetch(SLOT_data, record + 16));
+        vec4 right = uintBitsToFloat(texelFetch(SLOT_data, record + 17));
+        vec4 upwards = uintBitsToFloat(texelFetch(SLOT_data, record + 18));
+        vec4 forward = uintBitsToFloat(texelFetch(SLOT_data, record + 19));
+        vec4 radial = uintBitsToFloat(texelFetch(SLOT_data, record + 20));
+        vec4 more = uintBitsToFloat(texelFetch(SLOT_data, record + 21));
+        geofx_Pinhole camera = geofx_Pinhole(eye.xyz, right.xyz, upwards.xyz, forward.xyz, radial.xyz, more.xy,
+                                             more.zw, radial.w);
+        result.uv =
+            distance(camera.eye, SLOT_position) <= eye.w ? geofx_projectPinhole(camera, SLOT_position) : vec2(-1.0);
+        result.across = geofx_projectPinholeStep(camera, SLOT_position, fragment.positionAcross);
+        result.up = geofx_projectPinholeStep(camera, SLOT_position, fragment.positionUp);
+        return result;
     }
 #endif
 #ifdef SLOT_PROJECTIVE

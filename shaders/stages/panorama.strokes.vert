@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Brush strokes of PanoramaMap, one point each (osgGeoFX/panorama/TileStrokes.h tells the arrays): where a stroke goes and what
+// Brush strokes of PanoramaMap, one point each (osgGeoFX/panorama/detail/TileStrokes.h tells the arrays): where a stroke goes and what
 // it looks like, all of it flat. SLOT_ stands for the effect's prefix.
 #include "lib/strokes.glsl"
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Where one camera has a close-up, and what its tests and bounds promise to culling.
-#include <osgGeoFX/closeup/CloseUpItem.h>
+#include <osgGeoFX/closeup/detail/CloseUpItem.h>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <tools/CloseUpSamples.h>
 #include <tools/RandomViews.h>

@@ -10,6 +10,7 @@
 #include <tools/LookFixture.h>
 
 #include <osg/Fog>
+#include <osg/LOD>
 #include <osg/LightModel>
 #include <osg/Program>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
@@ -322,6 +323,37 @@ TEST_F(CloseUpPipelines, LinesPointsAndShadersOfTheirOwnAreDrawnByTheOtherPipeli
         EXPECT_TRUE(same(*with, *draw()));
         EXPECT_EQ(fresh->statistics().pipeline, CloseUps::MULTI_PASS);
         _scene->removeChild(guest);
+    }
+}
+
+// What is magnified is drawn from finer levels than the overview's, which a single pass does not have.
+TEST_F(CloseUpPipelines, MagnifiedLevelsOfDetailTakePassesOfTheirOwn)
+{
+    const osg::ref_ptr<osg::Node> ground = _scene->getChild(0);
+    osg::ref_ptr<osg::LOD> levels = new osg::LOD;
+    levels->addChild(ground, 0.0f, 1e9f);
+    for (const double scale : {1.0, 2.0})
+    {
+        for (osg::Node* below : {ground.get(), static_cast<osg::Node*>(levels)})
+        {
+            SCOPED_TRACE(::testing::Message() << "scale " << scale << (below == levels ? ", levels" : ""));
+            osg::ref_ptr<CloseUps> fresh = new CloseUps;
+            // Over one drawable, which a single pass draws once for both.
+            for (const double x : {-150.0, 150.0})
+            {
+                const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({x, 0.0});
+                closeUp->setScale(scale, scale, scale);
+                fresh->addCloseUp(closeUp);
+            }
+            fresh->setPipeline(CloseUps::AUTOMATIC);
+            _scene->removeEffect(_scene->getEffect(0));
+            _scene->addEffect(fresh);
+            _scene->setChild(0, below);
+            draw();
+            draw();
+            EXPECT_EQ(fresh->statistics().pipeline,
+                      scale > 1.0 && below == levels ? CloseUps::MULTI_PASS : CloseUps::SINGLE_PASS);
+        }
     }
 }
 

@@ -3,11 +3,11 @@
 //
 // Where the GPU lifts vertices to, against CloseUpItem in double: with any close-up, below bends and exaggeration, on globes
 // and on projected terrain.
-#include <osgGeoFX/closeup/CloseUpItem.h>
 #include <osgGeoFX/closeup/CloseUps.h>
+#include <osgGeoFX/closeup/detail/CloseUpItem.h>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
-#include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/detail/EffectProgram.h>
 #include <tools/CloseUpSamples.h>
 #include <tools/GlFixture.h>
 #include <tools/RandomViews.h>

@@ -3,7 +3,7 @@
 //
 // Copies of the triangles over a region have what lies there, are drawn as often, and follow the geometry.
 #include <gtest/gtest.h>
-#include <osgGeoFX/closeup/TriangleCopies.h>
+#include <osgGeoFX/closeup/detail/TriangleCopies.h>
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // What culling trusts: nothing that deformations make of a ball or a box lies outside of its bound.
 #include <osgGeoFX/effect/DeformationChain.h>
-#include <osgGeoFX/panorama/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
 #include <tools/RandomViews.h>
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The deformations on the GPU, in the very shaders and with the very uniforms of a frame, against the CPU's double.
 #include <osgGeoFX/effect/DeformationChain.h>
-#include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/detail/EffectProgram.h>
 #include <tools/GlFixture.h>
 #include <tools/RandomViews.h>
 

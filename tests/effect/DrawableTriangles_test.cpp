@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <osg/Geode>
 #include <osg/PrimitiveRestartIndex>
-#include <osgGeoFX/effect/DrawableTriangles.h>
+#include <osgGeoFX/effect/detail/DrawableTriangles.h>
 #include <osgGeoFX/scene/DeformedIntersector.h>
 
 #include <array>

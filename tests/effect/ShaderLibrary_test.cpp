@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // Assembling shader text without OpenGL, and what glslangValidator thinks of the kit's shaders.
 #include <osgGeoFX/effect/ShaderLibrary.h>
-#include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/scene/detail/EffectProgram.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <tools/RandomSamples.h>
 #include <tools/RunProgram.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Sampling one raster on lattices: every kind of file that people have.
-#include <osgGeoFX/geodata/RasterSource.h>
+#include <osgGeoFX/geodata/detail/RasterSource.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>

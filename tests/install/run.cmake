@@ -38,11 +38,36 @@ if(NOT EXISTS ${prefix}/${DATADIR}/osgGeoFX/shaders/lib/bend.glsl)
   message(FATAL_ERROR "The shaders are not installed.")
 endif()
 
+# Whoever lacks OpenSceneGraph hears of it, and goes on.
+file(WRITE ${root}/without/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)
+project(without LANGUAGES CXX)
+find_package(osgGeoFX CONFIG QUIET)
+if(osgGeoFX_FOUND)
+  message(FATAL_ERROR \"found without OpenSceneGraph\")
+endif()
+message(STATUS \"why: \${osgGeoFX_NOT_FOUND_MESSAGE}\")
+")
+run(${CMAKE_COMMAND} -S ${root}/without -B ${root}/without/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
+    -DCMAKE_DISABLE_FIND_PACKAGE_OpenSceneGraph=ON)
+if(NOT output MATCHES "why: OpenSceneGraph 3\\.6\\.5 or newer was not found; on Debian install")
+  message(FATAL_ERROR "The package does not say that OpenSceneGraph is missing:\n${output}")
+endif()
+file(GLOB_RECURSE private ${prefix}/include/*/detail/*)
+if(private)
+  message(FATAL_ERROR "Private headers are installed: ${private}")
+endif()
+
+set(components Offscreen)
+if(DATA)
+  list(APPEND components Data)
+endif()
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${root}/build -G ${GENERATOR}
-    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_FLAGS=${FLAGS} -DWITH_DATA=${DATA}
-    -DHEADERS=${prefix}/include/osgGeoFX)
+    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_FLAGS=${FLAGS} "-DCOMPONENTS=${components}"
+    -DHEADERS=${prefix}/include/osgGeoFX -DEXAMPLES=${CMAKE_CURRENT_LIST_DIR}/../../apps/examples)
 run(${CMAKE_COMMAND} --build ${root}/build)
 run(${root}/build/consumer)
+# Draws, without a window.
+run(${root}/build/effects)
 if(DATA)
   run(${root}/build/consumer_data)
 endif()

@@ -1,4 +1,5 @@
-# Whether folders of the libraries include each other as the drawing at the top of osgGeoFX/README.md allows, and no other way.
+# Whether folders of the libraries include each other as the drawing at the top of osgGeoFX/README.md allows, and no other way;
+# and whether what is in a folder's detail/ stays within the libraries.
 #   cmake -DROOT=FOLDER -P floors.cmake
 # Each arrow "a --> b" of the drawing allows a's files to include b's. An arrow that no file needs is refused, and so is a circle.
 cmake_minimum_required(VERSION 3.25)
@@ -47,6 +48,50 @@ foreach(edge IN LISTS allowed)
     message(FATAL_ERROR "No file needs ${edge}; take the arrow out of the drawing in osgGeoFX/README.md.")
   endif()
 endforeach()
+
+# Installed headers, plugins and programs do without what is not installed.
+file(GLOB outside RELATIVE ${ROOT} ${ROOT}/osgGeoFX/*/*.h)
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/plugins/*.h ${ROOT}/plugins/*.cpp ${ROOT}/apps/*.h ${ROOT}/apps/*.cpp)
+foreach(file IN LISTS outside files)
+  file(STRINGS ${ROOT}/${file} lines REGEX "^ *# *include [<\"].*detail/")
+  foreach(line IN LISTS lines)
+    list(APPEND broken "${file}: ${line}")
+  endforeach()
+endforeach()
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/osgGeoFX/*/detail/*.h)
+foreach(file IN LISTS files)
+  file(STRINGS ${ROOT}/${file} lines REGEX "OSGGEOFX(DATA)?_EXPORT")
+  if(lines)
+    list(APPEND broken "${file}: exports something")
+  endif()
+endforeach()
+if(broken)
+  list(JOIN broken "\n  " text)
+  message(FATAL_ERROR "What is in a folder's detail/ is neither installed nor exported; do without it, or move what others need "
+                      "out of detail/:\n  ${text}")
+endif()
+
+# Who includes osgGeoFX/osgGeoFX.h or osgGeoFX/osgGeoFXData.h has all that is installed, and Start.md tells of it.
+set(missing "")
+foreach(umbrella osgGeoFX osgGeoFXData)
+  file(STRINGS ${ROOT}/osgGeoFX/${umbrella}.h lines REGEX "#include")
+  list(APPEND umbrellas ${lines})
+endforeach()
+file(READ ${ROOT}/osgGeoFX/Start.md start)
+foreach(file IN LISTS outside)
+  if(NOT "#include <${file}>" IN_LIST umbrellas)
+    list(APPEND missing "${file} is in neither osgGeoFX.h nor osgGeoFXData.h")
+  endif()
+  string(REPLACE "osgGeoFX/" "" name ${file})
+  string(FIND "${start}" "${name}" place)
+  if(place EQUAL -1)
+    list(APPEND missing "${file} is not in Start.md")
+  endif()
+endforeach()
+if(missing)
+  list(JOIN missing "\n  " text)
+  message(FATAL_ERROR "Public headers are missing:\n  ${text}")
+endif()
 
 # Folders that include nothing, or that nothing includes, are taken away until none is left, or a circle.
 set(left "${allowed}")

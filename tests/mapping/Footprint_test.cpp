@@ -3,6 +3,8 @@
 // Footprints against squares, compared with a raster of places.
 #include "MappingModel.h"
 
+#include <osgGeoFX/mapping/detail/MappingIndex.h>
+
 #include <gtest/gtest.h>
 
 using namespace geofx::test;

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Where a layer's slot lies: alone, on its own grid, with little waste, and free again afterwards.
-#include <osgGeoFX/mapping/LayerAtlas.h>
+#include <osgGeoFX/mapping/detail/LayerAtlas.h>
 #include <tools/RandomSamples.h>
 
 #include <gtest/gtest.h>

@@ -3,6 +3,8 @@
 // Mappings that come, go and move: the grid stays right, little changes, and nothing is left behind.
 #include "MappingModel.h"
 
+#include <osgGeoFX/mapping/detail/MappingIndex.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

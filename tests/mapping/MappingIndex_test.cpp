@@ -3,6 +3,8 @@
 // The grid over the plane: what it finds for a place is compared with all footprints, one by one.
 #include "MappingModel.h"
 
+#include <osgGeoFX/mapping/detail/MappingIndex.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/mapping/MappingIndex.h>
+#include <osgGeoFX/mapping/detail/MappingIndex.h>
 #include <tools/RandomSamples.h>
 
 #include <gtest/gtest.h>

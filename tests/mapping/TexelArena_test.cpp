@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The arena: what is allocated stays apart, what is given back can be had again, and an upload of the changes makes
 // a copy equal.
-#include <osgGeoFX/mapping/TexelArena.h>
+#include <osgGeoFX/mapping/detail/TexelArena.h>
 #include <tools/RandomSamples.h>
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 //
 // Who is told of the tiles that a pager brings, and when.
 #include <osgGeoFX/paging/TileGuard.h>
-#include <osgGeoFX/panorama/StrokeMaker.h>
+#include <osgGeoFX/panorama/detail/StrokeMaker.h>
 #include <tools/NotifyWatch.h>
 #include <tools/PagedScene.h>
 #include <tools/TempDir.h>

@@ -8,8 +8,8 @@
 #include <tools/StrokeTiles.h>
 
 #include <osg/ValueObject>
-#include <osgGeoFX/panorama/EdgeMap.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/EdgeMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
 
 #include <algorithm>

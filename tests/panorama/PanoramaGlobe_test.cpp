@@ -4,12 +4,12 @@
 // Panorama maps that show much of the Earth, beyond 90 degrees of arc from the eye, where the ground falls away behind the planet:
 // what culling trusts holds there, too. And where a terrain's edge lies in the picture, by geodesics of a library.
 #include <osgGeoFX/effect/DeformationChain.h>
-#include <osgGeoFX/effect/EyeVector.h>
+#include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
-#include <osgGeoFX/panorama/PanoramaEdge.h>
-#include <osgGeoFX/panorama/PanoramaFrame.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
-#include <osgGeoFX/panorama/PanoramaTextures.h>
+#include <osgGeoFX/panorama/detail/PanoramaEdge.h>
+#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 #include <tools/RandomViews.h>
 #include <tools/StrokeTiles.h>
 

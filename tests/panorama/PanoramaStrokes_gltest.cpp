@@ -4,8 +4,8 @@
 // Brush strokes as the GPU draws them: over hills seen from above, in a map's scale.
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
-#include <osgGeoFX/panorama/StrokeMaker.h>
-#include <osgGeoFX/scene/EffectProgram.h>
+#include <osgGeoFX/panorama/detail/StrokeMaker.h>
+#include <osgGeoFX/scene/detail/EffectProgram.h>
 #include <tools/GlFixture.h>
 #include <tools/TempDir.h>
 

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The panorama map's projection before any camera: the picture is what the paper's Section 3.1 says, it has an inverse, and
 // nothing breaks at the ends of the Earth.
-#include <osgGeoFX/effect/EyeVector.h>
-#include <osgGeoFX/panorama/PanoramaFrame.h>
+#include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
 #include <tools/RandomViews.h>
 
 #include <gtest/gtest.h>

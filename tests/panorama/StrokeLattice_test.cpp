@@ -3,7 +3,7 @@
 //
 // The lattice of brush strokes: groups, chances, and that strokes stand equally dense on the screen at any zoom.
 #include <osgGeoFX/effect/GlslFunctions.h>
-#include <osgGeoFX/panorama/StrokeLattice.h>
+#include <osgGeoFX/panorama/detail/StrokeLattice.h>
 #include <tools/RandomSamples.h>
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Which points of the strokes' lattice a tile has: each exactly once over all tiles of a level, and the same ones at every level.
-#include <osgGeoFX/panorama/StrokeScan.h>
+#include <osgGeoFX/panorama/detail/StrokeScan.h>
 #include <tools/RandomSamples.h>
 #include <tools/StrokeTiles.h>
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Roads, rivers and towns as strokes of tiles: on the ground, along the line, the same in all tiles and levels.
-#include <osgGeoFX/panorama/StrokeMaker.h>
+#include <osgGeoFX/panorama/detail/StrokeMaker.h>
 #include <tools/StrokeTiles.h>
 
 #include <gtest/gtest.h>

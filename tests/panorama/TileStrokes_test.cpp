@@ -3,10 +3,10 @@
 //
 // Brush strokes of tiles: kinds by what covers the ground, the same ones after every reload, and who keeps them.
 #include <osgGeoFX/effect/PassEffect.h>
-#include <osgGeoFX/panorama/CoverSampler.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
-#include <osgGeoFX/panorama/StrokeLattice.h>
-#include <osgGeoFX/panorama/StrokeMaker.h>
+#include <osgGeoFX/panorama/detail/CoverSampler.h>
+#include <osgGeoFX/panorama/detail/StrokeLattice.h>
+#include <osgGeoFX/panorama/detail/StrokeMaker.h>
 #include <tools/NotifyWatch.h>
 #include <tools/StrokeTiles.h>
 #include <tools/TempDir.h>

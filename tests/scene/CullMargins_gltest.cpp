@@ -13,8 +13,8 @@
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/effect/DrawableCompanion.h>
 #include <osgGeoFX/effect/PassEffect.h>
-#include <osgGeoFX/scene/CompensatingCullVisitor.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectScene.h>
 

@@ -204,7 +204,7 @@ TEST_F(EffectChanges, ABrokenShaderFileIsSaidAndNothingElse)
     ASSERT_TRUE(broken);
     EXPECT_TRUE(same(*plain, *broken)) << "as it was before the effect came";
     EXPECT_TRUE(same(*plain, *draw())) << "and it is not said again";
-    // Mended, and the effects change: all is well again.
+    // Repaired, and the effects change: all is well again.
     unsetenv("OSGGEOFX_SHADER_PATH");
     _scene->removeEffect(lift);
     EXPECT_TRUE(same(*plain, *draw()));

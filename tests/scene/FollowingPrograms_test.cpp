@@ -3,8 +3,8 @@
 //
 // The copies of an application's programs: what they have, and when there is a new one.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
-#include <osgGeoFX/scene/EffectProgram.h>
-#include <osgGeoFX/scene/FollowingPrograms.h>
+#include <osgGeoFX/scene/detail/EffectProgram.h>
+#include <osgGeoFX/scene/detail/FollowingPrograms.h>
 
 #include <gtest/gtest.h>
 

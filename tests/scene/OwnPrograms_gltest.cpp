@@ -10,8 +10,8 @@
 #include <osg/Geode>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/scene/DeformedView.h>
-#include <osgGeoFX/scene/OwnPrograms.h>
 #include <osgGeoFX/scene/RigidReference.h>
+#include <osgGeoFX/scene/detail/OwnPrograms.h>
 
 #include <cstring>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// What osggeofx_build cannot use: exit code 2, one line that names the file and the mend, nothing that looks
+// What osggeofx_build cannot use: exit code 2, one line that names the file and the remedy, nothing that looks
 // whole.
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // The textures of normals of a built database.
-#include <osgGeoFX/panorama/NormalSampler.h>
+#include <osgGeoFX/panorama/detail/NormalSampler.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <tools/DatabaseTexels.h>
 #include <tools/TempDir.h>

@@ -3,7 +3,7 @@
 //
 // Databases with compressed textures beside those of the same sources without.
 #include <osgGeoFX/geodata/BuildError.h>
-#include <osgGeoFX/panorama/NormalSampler.h>
+#include <osgGeoFX/panorama/detail/NormalSampler.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <tools/BlockDecoder.h>
 #include <tools/DatabaseReader.h>

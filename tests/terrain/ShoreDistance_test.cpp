@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Distances from the shore against those of every cell to every other.
-#include <osgGeoFX/terrain/ShoreDistance.h>
+#include <osgGeoFX/terrain/detail/ShoreDistance.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // What is a void inside the data and what lies outside, and the two sweeps against a plain flood fill.
-#include <osgGeoFX/terrain/VoidFinder.h>
+#include <osgGeoFX/terrain/detail/VoidFinder.h>
 #include <tools/RandomSamples.h>
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // What is water in heights alone, and the two sweeps against a plain flood fill.
-#include <osgGeoFX/terrain/WaterFinder.h>
+#include <osgGeoFX/terrain/detail/WaterFinder.h>
 #include <tools/RandomSamples.h>
 
 #include <gtest/gtest.h>

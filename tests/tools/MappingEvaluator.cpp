@@ -200,7 +200,16 @@ MappingEvaluator::Sample MappingEvaluator::sampleClasses(const Layer& layer, con
 bool MappingEvaluator::coordinates(const ProjectiveMapping& mapping, const Fragment& fragment, glm::dvec2& uv,
                                    glm::dvec2& across, glm::dvec2& up, double& pixels) const
 {
-    if (mapping.getProjector() == ProjectiveMapping::PINHOLE)
+    const bool pinhole = mapping.getProjector() == ProjectiveMapping::PINHOLE;
+    const osg::Vec2d centre = mapping.getCentre();
+    const glm::dvec2 o(centre.x(), centre.y());
+    const glm::dvec3 way = fragment.eye - glm::dvec3(o, mapping.getHeight());
+    const double metres = std::max(glm::length(way) * _pixel, 1e-9);
+    // Of a camera, what its range covers.
+    const double halfSize =
+        pinhole ? mapping.getCamera().range : std::sqrt(mapping.getU().length() * mapping.getV().length());
+    pixels = 2.0 * halfSize / metres;
+    if (pinhole)
     {
         // By the textbook: turn into the camera's axes, divide, distort.
         const ProjectiveMapping::Camera c = mapping.getCamera();
@@ -235,11 +244,6 @@ bool MappingEvaluator::coordinates(const ProjectiveMapping& mapping, const Fragm
         up = slope(project, fragment.position, fragment.positionUp);
         return true;
     }
-    const osg::Vec2d centre = mapping.getCentre();
-    const glm::dvec2 o(centre.x(), centre.y());
-    const glm::dvec3 way = fragment.eye - glm::dvec3(o, mapping.getHeight());
-    const double metres = std::max(glm::length(way) * _pixel, 1e-9);
-    pixels = 2.0 * std::sqrt(mapping.getU().length() * mapping.getV().length()) / metres;
     double scale = 1.0;
     if (mapping.getSizeInPixels() > 0.0)
     {

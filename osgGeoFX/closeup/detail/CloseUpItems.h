@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/closeup/detail/CloseUpItem.h>
+
+#include <osg/BufferIndexBinding>
+#include <osg/BufferObject>
+
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The uniform blocks with one camera's items: as many as are needed, with `perBlock` items each. Only items that
+    have changed are uploaded. */
+class CloseUpItems
+{
+public:
+    static constexpr int perBlock = 64; ///< 16 KiB, which every GPU has room for
+
+    void resize(std::size_t items);
+    void set(std::size_t item, const CloseUpItem::Values& values);
+    static std::size_t blockOf(std::size_t item) { return item / perBlock; }
+    static int placeInBlock(std::size_t item) { return static_cast<int>(item % perBlock); }
+    /// Binds a block; `index` is its binding point.
+    osg::ref_ptr<osg::UniformBufferBinding> binding(std::size_t block, unsigned int index) const;
+    void resizeGLObjectBuffers(unsigned int size);
+    void releaseGLObjects(osg::State* state) const;
+
+private:
+    struct Block
+    {
+        osg::ref_ptr<osg::UniformBufferObject> buffer;
+        std::vector<osg::ref_ptr<osg::Vec4Array>> items;
+    };
+    std::vector<Block> _blocks;
+};
+
+} // namespace osgGeoFX

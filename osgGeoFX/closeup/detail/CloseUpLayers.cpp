@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/closeup/detail/CloseUpLayers.h>
+
+#include <osgGeoFX/closeup/detail/ArrayStorage.h>
+
+#include <osg/BlendFunc>
+#include <osg/ColorMask>
+#include <osg/Depth>
+
+#include <algorithm>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Bins of the layers in the camera's picture: over what is opaque, below what is transparent.
+constexpr int layerBin = 9;
+/// The layers are drawn before the application's own textures would be.
+constexpr int stageOrder = -10;
+constexpr unsigned int colourUnit = 0, depthUnit = 1;
+
+osg::ref_ptr<osg::Texture2DArray> createTexture(GLint internalFormat, GLenum format, GLenum type, int width,
+                                                int height, int layers)
+{
+    osg::ref_ptr<osg::Texture2DArray> texture = new osg::Texture2DArray;
+    texture->setTextureSize(width, height, layers);
+    texture->setInternalFormat(internalFormat);
+    texture->setSubloadCallback(new ArrayStorage(format, type));
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    texture->setResizeNonPowerOfTwoHint(false);
+    return texture;
+}
+
+osg::ref_ptr<osg::FrameBufferObject> createTarget(osg::Texture2DArray& colours, osg::Texture2DArray& depths,
+                                                  unsigned int layer)
+{
+    osg::ref_ptr<osg::FrameBufferObject> target = new osg::FrameBufferObject;
+    // Both must be layered, or neither.
+    target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(&colours, layer, 0));
+    target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(&depths, layer, 0));
+    return target;
+}
+
+/// Not made anew for every pixel by which a close-up grows.
+int rounded(int texels)
+{
+    constexpr int step = 64;
+    return (texels + step - 1) / step * step;
+}
+
+} // namespace
+
+CloseUpLayers::CloseUpLayers() : _square(new osg::Geometry)
+{
+    osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
+    for (const osg::Vec3& corner :
+         {osg::Vec3(0, 0, 0), osg::Vec3(1, 0, 0), osg::Vec3(0, 1, 0), osg::Vec3(1, 1, 0)})
+        corners->push_back(corner);
+    _square->setVertexArray(corners);
+    _square->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_STRIP, 0, 4));
+    _square->setCullingActive(false);
+    _square->setUseDisplayList(false);
+    _square->setUseVertexBufferObjects(true);
+}
+
+void CloseUpLayers::resize(int layers, int width, int height, int perArray)
+{
+    width = rounded(width);
+    height = rounded(height);
+    const bool fits = width <= _width && height <= _height && layers <= _layers && perArray == _perArray;
+    // What was much larger gives its memory back.
+    const bool wasteful = 4.0 * layers * width * height < 1.0 * _layers * _width * _height;
+    if (fits && !wasteful) return;
+    _layers = layers;
+    _width = width;
+    _height = height;
+    _perArray = perArray;
+    _arrays.clear();
+    for (int first = 0; first < layers; first += perArray)
+    {
+        const int count = std::min(perArray, layers - first);
+        Array array;
+        array.colours = createTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height, count);
+        array.depths =
+            createTexture(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, width, height, count);
+        array.all =
+            createTarget(*array.colours, *array.depths, osg::Camera::FACE_CONTROLLED_BY_GEOMETRY_SHADER);
+        for (int layer = 0; layer < count; ++layer)
+            array.single.push_back(
+                createTarget(*array.colours, *array.depths, static_cast<unsigned int>(layer)));
+        _arrays.push_back(array);
+    }
+}
+
+void CloseUpLayers::startFrame()
+{
+    _stagesUsed = 0;
+    _showsUsed = 0;
+}
+
+osgUtil::RenderStage* CloseUpLayers::newStage(osgUtil::CullVisitor& outer)
+{
+    if (_stagesUsed == _stages.size()) _stages.push_back(new osgUtil::RenderStage);
+    osgUtil::RenderStage& stage = *_stages[_stagesUsed++];
+    stage.reset();
+    osgUtil::RenderStage& camera = *outer.getCurrentRenderBin()->getStage();
+    // The scene's lights shine in the layers, too.
+    stage.setInheritedPositionalStateContainerMatrix(osg::Matrixd());
+    stage.setInheritedPositionalStateContainer(camera.getPositionalStateContainer());
+    stage.setInitialViewMatrix(camera.getInitialViewMatrix());
+    stage.setDrawBuffer(GL_NONE, false);
+    stage.setReadBuffer(GL_NONE, false);
+    stage.setColorMask(new osg::ColorMask);
+    stage.setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    stage.setClearColor(osg::Vec4(0.0f, 0.0f, 0.0f, 0.0f));
+    stage.setClearDepth(1.0);
+    return &stage;
+}
+
+osg::ref_ptr<osg::Viewport> CloseUpLayers::viewport(osgUtil::CullVisitor& outer, int layer,
+                                                    const osg::Vec2i& corner, int samples)
+{
+    const osg::Viewport& viewport = *outer.getViewport();
+    // Of a layer, its first pixel moves to its corner; of all together, the geometry stage moves the picture.
+    const double x = layer < 0 ? 0.0 : -corner.x() * samples;
+    const double y = layer < 0 ? 0.0 : -corner.y() * samples;
+    return new osg::Viewport(x, y, viewport.width() * samples, viewport.height() * samples);
+}
+
+void CloseUpLayers::draw(osgUtil::CullVisitor& outer, osgUtil::RenderStage& stage, int layer,
+                         osg::Viewport* viewport)
+{
+    stage.setViewport(viewport);
+    const Array& array = _arrays[layer < 0 ? 0 : static_cast<std::size_t>(layer / _perArray)];
+    stage.setFrameBufferObject(layer < 0 ? array.all
+                                         : array.single[static_cast<std::size_t>(layer % _perArray)]);
+    outer.getCurrentRenderBin()->getStage()->addPreRenderStage(&stage, stageOrder);
+}
+
+void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, const Show& what)
+{
+    if (_showsUsed == _shows.size()) _shows.push_back(new osg::StateSet);
+    osg::StateSet& state = *_shows[_showsUsed++];
+    const Array& array = _arrays[static_cast<std::size_t>(what.layer / _perArray)];
+    const auto forced = osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
+    const auto on = osg::StateAttribute::ON | forced;
+    const auto off = osg::StateAttribute::OFF | forced;
+    state.setRenderBinDetails(layerBin, "RenderBin", osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
+    state.setNestRenderBins(false);
+    state.setAttributeAndModes(program, on);
+    state.setAttributeAndModes(new osg::BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA), on);
+    state.setAttributeAndModes(
+        new osg::Depth(what.depthTest ? osg::Depth::LEQUAL : osg::Depth::ALWAYS, 0.0, 1.0, what.depthWrite),
+        on);
+    state.setMode(GL_DEPTH_TEST, on);
+    state.setMode(GL_CULL_FACE, off);
+    state.setMode(GL_ALPHA_TEST, off);
+    state.setTextureAttribute(colourUnit, array.colours, forced);
+    state.setTextureAttribute(depthUnit, array.depths, forced);
+    state.getOrCreateUniform("geofx_layerColours", osg::Uniform::INT)->set(static_cast<int>(colourUnit));
+    state.getOrCreateUniform("geofx_layerDepths", osg::Uniform::INT)->set(static_cast<int>(depthUnit));
+    const osg::Viewport& viewport = *outer.getViewport();
+    state.getOrCreateUniform("geofx_layerOrigin", osg::Uniform::INT_VEC4)
+        ->set(static_cast<int>(viewport.x()) + what.corner.x(),
+              static_cast<int>(viewport.y()) + what.corner.y(), what.layer % _perArray, what.samples);
+    state.getOrCreateUniform("geofx_layerOpacity", osg::Uniform::FLOAT)
+        ->set(static_cast<float>(what.opacity));
+    state.getOrCreateUniform("geofx_layerAlphas", osg::Uniform::FLOAT_VEC2)
+        ->set(osg::Vec2(osg::Vec2d(what.above, what.upTo)));
+    state.getOrCreateUniform("geofx_layerTurn", osg::Uniform::INT)->set(static_cast<int>(what.turn));
+    state.getOrCreateUniform("geofx_layerAnchor", osg::Uniform::INT)
+        ->set(what.anchorLayer < 0 ? -1 : what.anchorLayer % _perArray);
+    const std::size_t others = std::min(what.others.size(), mostOthers);
+    state.getOrCreateUniform("geofx_others", osg::Uniform::INT)->set(static_cast<int>(others));
+    osg::Uniform* const origins =
+        state.getOrCreateUniform("geofx_otherOrigins", osg::Uniform::INT_VEC4, mostOthers);
+    osg::Uniform* const parts =
+        state.getOrCreateUniform("geofx_otherParts", osg::Uniform::INT_VEC4, mostOthers);
+    osg::Uniform* const covers =
+        state.getOrCreateUniform("geofx_otherCovers", osg::Uniform::FLOAT, mostOthers);
+    const int left = static_cast<int>(viewport.x()), bottom = static_cast<int>(viewport.y());
+    for (std::size_t i = 0; i < others; ++i)
+    {
+        const Other& other = what.others[i];
+        const auto at = static_cast<unsigned int>(i);
+        origins->setElement(at, left + other.corner.x(), bottom + other.corner.y(), other.layer % _perArray,
+                            0);
+        parts->setElement(at, left + other.part.x, bottom + other.part.y,
+                          left + other.part.x + other.part.width, bottom + other.part.y + other.part.height);
+        covers->setElement(at, static_cast<float>(other.covers));
+    }
+    const auto share = [](int pixel, double size)
+    {
+        return static_cast<float>(2.0 * pixel / size - 1.0);
+    };
+    state.getOrCreateUniform("geofx_layerPart", osg::Uniform::FLOAT_VEC4)
+        ->set(osg::Vec4(share(what.part.x, viewport.width()), share(what.part.y, viewport.height()),
+                        share(what.part.x + what.part.width, viewport.width()),
+                        share(what.part.y + what.part.height, viewport.height())));
+    outer.pushStateSet(&state);
+    outer.addDrawableAndDepth(_square, outer.getModelViewMatrix(), 0.0f);
+    outer.popStateSet();
+}
+
+void CloseUpLayers::resizeGLObjectBuffers(unsigned int size)
+{
+    _square->resizeGLObjectBuffers(size);
+    for (const Array& array : _arrays)
+    {
+        array.colours->resizeGLObjectBuffers(size);
+        array.depths->resizeGLObjectBuffers(size);
+        array.all->resizeGLObjectBuffers(size);
+        for (const auto& target : array.single)
+            target->resizeGLObjectBuffers(size);
+    }
+}
+
+void CloseUpLayers::releaseGLObjects(osg::State* state) const
+{
+    _square->releaseGLObjects(state);
+    for (const Array& array : _arrays)
+    {
+        array.colours->releaseGLObjects(state);
+        array.depths->releaseGLObjects(state);
+        array.all->releaseGLObjects(state);
+        for (const auto& target : array.single)
+            target->releaseGLObjects(state);
+    }
+}
+
+} // namespace osgGeoFX

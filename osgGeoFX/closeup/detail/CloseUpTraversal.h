@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/closeup/detail/CloseUpLayers.h>
+#include <osgGeoFX/closeup/detail/CloseUpStates.h>
+#include <osgGeoFX/closeup/detail/ContourFence.h>
+#include <osgGeoFX/closeup/detail/TriangleCopies.h>
+
+namespace osgGeoFX
+{
+
+/// What one traversal of a frame needs until it is drawn; then another frame may use it.
+struct CloseUpTraversal
+{
+    CloseUpStates states;
+    CloseUpLayers layers;
+    TriangleCopies copies;
+    std::vector<ContourFence> fences; ///< of each item
+    osg::ref_ptr<osg::Program> program, fenceProgram;
+
+    void resizeGLObjectBuffers(unsigned int size);
+    void releaseGLObjects(osg::State* state) const;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/closeup/RegionOfInterest.h>
+#include <osgGeoFX/effect/detail/DrawableTriangles.h>
+
+#include <osg/Geometry>
+#include <osg/observer_ptr>
+
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The wall between a region's border on the ground and that of its close-up, and the line on the ground: geometry in the
+    region's frame, whose first texture coordinate says how far a vertex goes up (stages/closeup.fence.vert).
+
+    Heights are those of the triangles that the camera sees there; of the border's points as many as are needed to be within a tenth
+    of the mask's texel. One belongs to one camera and close-up. */
+class ContourFence
+{
+public:
+    /// A drawable over the region; from its own frame to the region's, metres.
+    struct Ground
+    {
+        osg::ref_ptr<const osg::Drawable> drawable;
+        osg::Matrixd toRegion;
+    };
+
+    /// Makes the geometry anew where the region or the ground has changed. False where there is no ground below it.
+    bool update(const RegionOfInterest& region, const std::vector<Ground>& ground);
+    /// In the region's frame; as they were at the last update. New ones whenever they change.
+    osg::Geometry* wall() { return _wall.get(); }
+    osg::Geometry* line() { return _line.get(); }
+    void resizeGLObjectBuffers(unsigned int size);
+    void releaseGLObjects(osg::State* state) const;
+
+private:
+    struct Known
+    {
+        osg::observer_ptr<const osg::Drawable> drawable;
+        osg::Matrixd toRegion;
+        GeometryStamp stamp;
+    };
+    bool isKnown(const RegionOfInterest& region, const std::vector<Ground>& ground) const;
+    void build(const RegionOfInterest& region, const std::vector<Ground>& ground);
+
+    osg::observer_ptr<const RegionOfInterest> _region;
+    unsigned int _revision = 0;
+    std::vector<Known> _known;
+    bool _grounded = false;
+    osg::ref_ptr<osg::Geometry> _wall, _line;
+};
+
+} // namespace osgGeoFX

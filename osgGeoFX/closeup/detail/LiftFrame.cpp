@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/closeup/detail/LiftFrame.h>
+
+#include <algorithm>
+
+namespace osgGeoFX
+{
+
+LiftFrame::LiftFrame(const CloseUpItem& item) : _lift(item.lift())
+{
+    const CloseUp& closeUp = item.closeUp();
+    _stretch = std::max({closeUp.getScaleX(), closeUp.getScaleY(), closeUp.getScaleHeight()});
+    // A flat map has no way back; its heights are taken as its scale in the plane would make them.
+    if (closeUp.getScaleHeight() > 0.0) _back = osg::Matrixd::inverse(_lift);
+}
+
+LiftFrame::~LiftFrame() = default;
+
+} // namespace osgGeoFX

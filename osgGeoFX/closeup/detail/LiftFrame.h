@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/closeup/detail/CloseUpItem.h>
+#include <osgGeoFX/effect/Deformation.h>
+
+namespace osgGeoFX
+{
+
+/// A close-up's lift as a deformation: what levels of detail go by where it is drawn by itself.
+class LiftFrame : public DeformationFrame
+{
+public:
+    explicit LiftFrame(const CloseUpItem& item);
+
+    osg::Vec3d deform(const osg::Vec3d& position) const override { return position * _lift; }
+    osg::Vec3d undeform(const osg::Vec3d& position) const override { return position * _back; }
+    osg::Vec3d deformNormal(const osg::Vec3d&, const osg::Vec3d& normal) const override { return normal; }
+    Reach reach(const Ball&) const override { return Reach::Affine; }
+    double lipschitz(const Ball&) const override { return _stretch; }
+    Sag sag(const Ball&, const osg::Vec3d&) const override { return {}; }
+    Uniforms uniforms() const override { return {}; }
+
+protected:
+    ~LiftFrame() override;
+
+private:
+    osg::Matrixd _lift, _back;
+    double _stretch;
+};
+
+} // namespace osgGeoFX

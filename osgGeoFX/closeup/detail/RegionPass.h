@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/closeup/detail/CloseUpTraversal.h>
+#include <osgGeoFX/closeup/detail/RegionFilter.h>
+#include <osgGeoFX/closeup/detail/VisibleCloseUp.h>
+#include <osgGeoFX/effect/ScenePass.h>
+
+namespace osgGeoFX
+{
+
+/// Draws what lies over regions, in one cull. A CloseUpPipeline says what is drawn, when, and into which stage.
+class RegionPass
+{
+public:
+    const ScenePass& pass;
+    CloseUpTraversal& traversal;
+    const std::vector<CloseUpItem>& items;
+
+    RegionPass(const ScenePass& scenePass, const CloseUpTask& task, CloseUpTraversal& needed,
+               const std::vector<CloseUpItem>& closeUps, bool tessellates);
+
+    /// To be called before anything is drawn. `copies`: a geometry stage copies triangles into layers.
+    void choosePrograms(bool copies);
+    /// Goes on with the vertex and the fragment stage alone: they draw whatever there is.
+    void simplify();
+    bool tessellated() const { return _tessellated; }
+
+    osgUtil::RenderStage* newStage() const { return traversal.layers.newStage(pass.outer); }
+    /// Has a look at all that lies over regions, as detailed as the overview is, and draws it into the stage with the
+    /// states that are named.
+    RegionSurvey survey(const RegionFilter::StatesOf& statesOf, osgUtil::RenderStage* stage) const;
+    /// Draws what lies over one region into its close-up's layer (0) or its anchor's (1), as detailed as its size where `chain`
+    /// takes it asks for. `found` gets the heights.
+    void draw(const VisibleCloseUp& visible, std::size_t which, const DeformationChain& chain,
+              RegionContents& found);
+    /// Draws the wall and the line around a region into its anchor's layer.
+    void drawFence(const VisibleCloseUp& visible, const RegionContents& found);
+
+    int drawables = 0; ///< handed to the GPU; the pipelines count those of a survey
+
+private:
+    RegionSurvey run(std::vector<std::size_t> wanted, const RegionFilter::StatesOf& statesOf,
+                     osgUtil::RenderStage* stage, const DeformationChain* chain) const;
+
+    const CloseUpTask& _task;
+    bool _tessellated;
+    bool _amplified = false; ///< whether there is a geometry stage
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/closeup/detail/TriangleCopies.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Of a region's half: what a drawable may move by before it is looked at again, and a border as wide as several of these.
+constexpr double slack = 1e-3, border = 1.01;
+
+/// Where vertices are, seen from a region, a bit for each side that they are beyond.
+using Sides = std::vector<unsigned char>;
+
+Sides sidesOf(const std::vector<osg::Vec3d>& vertices, const TriangleCopies::Region& region)
+{
+    Sides sides(vertices.size());
+    std::transform(vertices.begin(), vertices.end(), sides.begin(),
+                   [&](const osg::Vec3d& vertex)
+                   {
+                       const osg::Vec3d place = vertex * region.toPlaces;
+                       return static_cast<unsigned char>(
+                           (place.x() > border ? 1 : 0) | (place.x() < -border ? 2 : 0) |
+                           (place.y() > border ? 4 : 0) | (place.y() < -border ? 8 : 0) |
+                           (place.z() < region.otherSide ? 16 : 0));
+                   });
+    return sides;
+}
+
+/// Whether a triangle is not wholly beyond one side of each region; without regions, all are wanted.
+bool wanted(const unsigned int* corners, const std::vector<Sides>& regions)
+{
+    return regions.empty() ||
+           std::any_of(regions.begin(), regions.end(),
+                       [&](const Sides& sides)
+                       { return (sides[corners[0]] & sides[corners[1]] & sides[corners[2]]) == 0; });
+}
+
+/// Whether what is in a box is in the same place of the regions, but for what a camera's matrices round.
+bool same(const std::vector<TriangleCopies::Region>& some, const std::vector<TriangleCopies::Region>& others,
+          const osg::BoundingBox& box)
+{
+    return std::equal(some.begin(), some.end(), others.begin(), others.end(),
+                      [&](const TriangleCopies::Region& one, const TriangleCopies::Region& other)
+                      {
+                          for (unsigned int i = 0; i < 8; ++i)
+                          {
+                              const osg::Vec3d corner(box.corner(i));
+                              const osg::Vec3d moved = corner * one.toPlaces - corner * other.toPlaces;
+                              if (!(std::abs(moved.x()) < slack && std::abs(moved.y()) < slack)) return false;
+                          }
+                          return true;
+                      });
+}
+
+} // namespace
+
+void TriangleCopies::build(Entry& entry, bool patches)
+{
+    const osg::Geometry& geometry = *entry.geometry;
+    const DrawableTriangles mesh(geometry);
+    std::vector<Sides> sides;
+    // Instances, and what a shader moves, lie elsewhere than the vertices say.
+    for (std::size_t i = 0; mesh.tellAll() && i < entry.regions.size(); ++i)
+        sides.push_back(sidesOf(mesh.positions(), entry.regions[i]));
+    std::vector<osg::ref_ptr<osg::DrawElementsUInt>> copies;
+    std::size_t count = 0;
+    std::size_t corner = 0;
+    for (const DrawableTriangles::Part& part : mesh.parts())
+    {
+        osg::ref_ptr<osg::DrawElementsUInt> indices =
+            new osg::DrawElementsUInt(patches ? GL_PATCHES : GL_TRIANGLES);
+        indices->setNumInstances(part.instances);
+        for (; corner < part.end; corner += 3)
+        {
+            const unsigned int* corners = &mesh.corners()[corner];
+            if (wanted(corners, sides)) indices->insert(indices->end(), corners, corners + 3);
+        }
+        count += indices->size();
+        if (!indices->empty()) copies.push_back(indices);
+    }
+    // Vertices that could not be read may be anywhere.
+    const bool unread = mesh.positions().empty();
+    entry.empty = count == 0 && !unread;
+    entry.copy = nullptr;
+    constexpr double most = 0.8;
+    const bool worthIt =
+        patches || static_cast<double>(count) < most * static_cast<double>(mesh.corners().size());
+    if (entry.empty || unread || !worthIt) return;
+    entry.copy = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
+    // The arrays are another's, who may be drawing them: their buffers stay as they are.
+    entry.copy->setUseDisplayList(false);
+    entry.copy->removePrimitiveSet(0, entry.copy->getNumPrimitiveSets());
+    for (const osg::ref_ptr<osg::DrawElementsUInt>& indices : copies)
+    {
+        entry.copy->addPrimitiveSet(indices);
+        // OSG gives it to the next copy of the same size.
+        if (osg::ElementBufferObject* buffer = indices->getElementBufferObject())
+            buffer->setUsage(GL_DYNAMIC_DRAW);
+    }
+}
+
+osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches)
+{
+    Key key = {&geometry, {}};
+    for (const Region& region : regions)
+        key.second.push_back(region.item);
+    Entry& entry = (patches ? _patches : _triangles)[key];
+    const bool known = entry.geometry.valid() && entry.stamp.matches(geometry) &&
+                       same(entry.regions, regions, geometry.getBoundingBox());
+    if (!known)
+    {
+        entry.geometry = &geometry;
+        entry.stamp = GeometryStamp(geometry, GeometryStamp::ALL_ARRAYS);
+        entry.regions = regions;
+        build(entry, patches);
+    }
+    if (entry.empty) return nullptr;
+    return entry.copy ? entry.copy.get() : &geometry;
+}
+
+double TriangleCopies::longestEdge(const osg::Geometry& geometry)
+{
+    Measured& measured = _measured[&geometry];
+    if (!measured.geometry.valid() || !measured.stamp.matches(geometry))
+    {
+        const DrawableTriangles mesh(geometry);
+        double square = 0.0;
+        const auto edge = [&](std::size_t from, std::size_t to)
+        {
+            const std::vector<unsigned int>& corners = mesh.corners();
+            return (mesh.positions()[corners[to]] - mesh.positions()[corners[from]]).length2();
+        };
+        for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
+            square = std::max({square, edge(i, i + 1), edge(i + 1, i + 2), edge(i + 2, i)});
+        measured.geometry = &geometry;
+        measured.stamp = GeometryStamp(geometry);
+        measured.longestEdge = std::sqrt(square);
+    }
+    return measured.longestEdge;
+}
+
+void TriangleCopies::purge()
+{
+    for (auto measured = _measured.begin(); measured != _measured.end();)
+        measured = measured->second.geometry.valid() ? std::next(measured) : _measured.erase(measured);
+    for (auto* entries : {&_triangles, &_patches})
+    {
+        for (auto entry = entries->begin(); entry != entries->end();)
+            entry = entry->second.geometry.valid() ? std::next(entry) : entries->erase(entry);
+    }
+}
+
+void TriangleCopies::resizeGLObjectBuffers(unsigned int size)
+{
+    for (auto* entries : {&_triangles, &_patches})
+    {
+        for (auto& [key, entry] : *entries)
+            osg::resizeGLObjectBuffers(entry.copy, size);
+    }
+}
+
+void TriangleCopies::releaseGLObjects(osg::State* state) const
+{
+    for (const auto* entries : {&_triangles, &_patches})
+    {
+        for (const auto& [key, entry] : *entries)
+        {
+            if (!entry.copy) continue;
+            // osg::Geometry's would take the arrays' buffers, too, which another geometry draws from.
+            entry.copy->Drawable::releaseGLObjects(state);
+            for (const osg::ref_ptr<osg::PrimitiveSet>& indices : entry.copy->getPrimitiveSetList())
+                indices->releaseGLObjects(state);
+        }
+    }
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/effect/detail/NodeFinder.h>
+
+#include <osg/LOD>
+
+#include <limits>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Steps that a look goes on by: up to half as many nodes.
+constexpr std::size_t slice = 128;
+
+/// The children that are looked into.
+const osg::Group* insideOf(const osg::Node& node)
+{
+    const osg::Group* group = node.asGroup();
+    return group && !dynamic_cast<const osg::LOD*>(group) ? group : nullptr;
+}
+
+} // namespace
+
+bool NodeFinder::leadsDown() const
+{
+    // What is still a child of a living group lives; nothing else is looked at.
+    const osg::Group* parent = _top;
+    for (const Step& step : _way)
+    {
+        if (!parent || step.place >= parent->getNumChildren() || parent->getChild(step.place) != step.node)
+            return false;
+        parent = step.node->asGroup();
+    }
+    return true;
+}
+
+void NodeFinder::start()
+{
+    _way.clear();
+    _next = 0;
+    _found = _wanted(*_top);
+    _looking = !_found;
+}
+
+void NodeFinder::walk(std::size_t nodes)
+{
+    for (; _looking && nodes > 0; --nodes)
+    {
+        const osg::Group* parent = nullptr;
+        if (_way.size() < _depth) parent = _way.empty() ? _top : insideOf(*_way.back().node);
+        if (parent && _next < parent->getNumChildren())
+        {
+            const osg::Node* child = parent->getChild(_next);
+            _way.push_back({child, _next});
+            _next = 0;
+            _found = _wanted(*child);
+            _looking = !_found;
+        }
+        else if (_way.empty())
+        {
+            _looking = false;
+        }
+        else
+        {
+            _next = _way.back().place + 1;
+            _way.pop_back();
+        }
+    }
+}
+
+const osg::Node* NodeFinder::find(const osg::Group& top)
+{
+    constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+    const auto found = [&]
+    {
+        return _way.empty() ? _top : _way.back().node;
+    };
+    if (&top != _top)
+    {
+        _top = &top;
+        start();
+        walk(all);
+    }
+    else if (_found)
+    {
+        if (leadsDown() && _wanted(*found())) return found();
+        // The scene's frame hangs on it: what takes its place counts at once.
+        start();
+        walk(all);
+    }
+    else
+    {
+        if (!_looking || !leadsDown()) start();
+        walk(slice);
+    }
+    return _found ? found() : nullptr;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/geodata/detail/FrameRaster.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+
+#include <cpl_string.h>
+#include <gdal_alg.h>
+#include <gdal_utils.h>
+#include <osg/Math>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+using Transform = std::array<double, 6>;
+
+CPLStringList listOf(const std::vector<std::string>& arguments)
+{
+    CPLStringList list;
+    for (const std::string& argument : arguments)
+        list.AddString(argument.c_str());
+    return list;
+}
+
+std::string exact(double value)
+{
+    return CPLSPrintf("%.17g", value);
+}
+
+std::string wktOf(const OGRSpatialReference& srs)
+{
+    char* text = nullptr;
+    srs.exportToWkt(&text);
+    std::string wkt = text ? text : "";
+    CPLFree(text);
+    return wkt;
+}
+
+} // namespace
+
+FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
+{
+    FrameCrs crs;
+    if (frame.globe)
+    {
+        crs.definition =
+            CPLSPrintf("+proj=ortho +lat_0=%.17g +lon_0=%.17g +datum=WGS84 +units=m +no_defs",
+                       osg::RadiansToDegrees(frame.latitude), osg::RadiansToDegrees(frame.longitude));
+        return crs;
+    }
+    OGRSpatialReference srs;
+    GdalErrorScope errors;
+    if (srs.SetFromUserInput(frame.wkt.c_str()) != OGRERR_NONE || !srs.IsProjected())
+        throw BuildError(file +
+                         ": the terrain has no coordinate system into which it could be brought; build "
+                         "the terrain with osggeofx_build.");
+    srs.StripVertical();
+    crs.definition = wktOf(srs);
+    crs.origin = frame.origin;
+    crs.metresPerUnit = srs.GetLinearUnits();
+    return crs;
+}
+
+FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed)
+    : _file(std::move(file))
+{
+    GdalErrorScope errors;
+    _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
+    if (!_chain.back())
+        fail("it is not a raster that GDAL can read (" + errors.message() +
+             "); check it with gdalinfo, or convert it to GeoTIFF");
+    if (top().GetRasterCount() == 0)
+        fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
+    if (placed) checkPlace();
+    if (GDALDataTypeIsComplex(band().GetRasterDataType()))
+        fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
+    const bool colors = band().GetColorTable() || top().GetRasterCount() >= 3;
+    kind = wanted.value_or(colors ? DataLayer::COLOR : DataLayer::VALUE);
+    if (kind == DataLayer::COLOR)
+        makeColors();
+    else
+        makeValues();
+}
+
+void FrameRaster::checkPlace() const
+{
+    Transform transform{};
+    const bool placed = top().GetGeoTransform(transform.data()) == CE_None;
+    if (!placed && top().GetGCPCount() == 0)
+        fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
+    const OGRSpatialReference* srs = placed ? top().GetSpatialRef() : top().GetGCPSpatialRef();
+    if (!srs || srs->IsEmpty() || srs->IsLocal())
+        fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
+}
+
+FrameRaster::~FrameRaster()
+{
+    // A virtual dataset reads from the one before it, so the last goes first.
+    while (!_chain.empty())
+        _chain.pop_back();
+}
+
+void FrameRaster::fail(const std::string& what) const
+{
+    throw BuildError(_file + ": " + what + ".");
+}
+
+FrameRaster::Extent FrameRaster::extent(const FrameCrs& crs) const
+{
+    GdalErrorScope errors;
+    const Transformer transformer = transformerTo(crs, errors);
+    Transform transform{};
+    std::array<double, 4> suggested{};
+    int width = 0;
+    int height = 0;
+    if (GDALSuggestedWarpOutput2(GDALDataset::ToHandle(&top()), GDALGenImgProjTransform, transformer.get(),
+                                 transform.data(), &width, &height, suggested.data(), 0) != CE_None)
+        failToPlace(errors);
+    // GDAL rounds to whole texels, which may cut off half of one; so its rectangle is for rasters only that are
+    // in part beyond what can be told, such as the other side of the globe.
+    Extent result{{suggested[0], suggested[1]}, {suggested[2], suggested[3]}, std::abs(transform[1])};
+    constexpr int side = 65;
+    osg::Vec2d low(std::numeric_limits<double>::max(), std::numeric_limits<double>::max());
+    osg::Vec2d high = -low;
+    for (int i = 0; i < side * side; ++i)
+    {
+        const int row = i / side;
+        double x = top().GetRasterXSize() * (i % side) / (side - 1.0);
+        double y = top().GetRasterYSize() * row / (side - 1.0);
+        double z = 0.0;
+        int success = FALSE;
+        GDALGenImgProjTransform(transformer.get(), FALSE, 1, &x, &y, &z, &success);
+        if (!success || !std::isfinite(x) || !std::isfinite(y)) return result;
+        low.set(std::min(low.x(), x), std::min(low.y(), y));
+        high.set(std::max(high.x(), x), std::max(high.y(), y));
+    }
+    result.low = low;
+    result.high = high;
+    return result;
+}
+
+osg::Vec2d FrameRaster::middle(const FrameCrs& crs) const
+{
+    GdalErrorScope errors;
+    const Transformer transformer = transformerTo(crs, errors);
+    double x = top().GetRasterXSize() / 2.0;
+    double y = top().GetRasterYSize() / 2.0;
+    double z = 0.0;
+    int success = FALSE;
+    GDALGenImgProjTransform(transformer.get(), FALSE, 1, &x, &y, &z, &success);
+    if (!success || !std::isfinite(x) || !std::isfinite(y)) failToPlace(errors);
+    return {x, y};
+}
+
+DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
+                               int height) const
+{
+    Arguments arguments{
+        "-of",           "MEM",           "-te", exact(low.x()),        exact(low.y()),
+        exact(high.x()), exact(high.y()), "-ts", std::to_string(width), std::to_string(height)};
+    // Neighbours of a palette's and of classes' numbers have nothing to do with each other.
+    const std::string resampling = kind == DataLayer::CLASS || _palette ? "near" : "bilinear";
+    // An error far below half a texel, of interpolated transformations.
+    arguments.insert(arguments.end(), {"-t_srs", crs.definition, "-et", "0.01", "-r", resampling});
+    if (kind == DataLayer::COLOR)
+        arguments.emplace_back("-dstalpha");
+    else
+        arguments.insert(arguments.end(), {"-ot", "Float64", "-dstnodata", "nan"});
+    if (_hasMask) arguments.emplace_back("-srcalpha");
+    GdalErrorScope errors;
+    GDALWarpAppOptions* options = GDALWarpAppOptionsNew(listOf(arguments).List(), nullptr);
+    GDALDatasetH source = GDALDataset::ToHandle(_chain.back().get());
+    DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
+    GDALWarpAppOptionsFree(options);
+    if (!result || errors.failed()) failToRead(errors);
+    return result;
+}
+
+void FrameRaster::readValues(GDALDataset& warped, int row, std::vector<double>& values) const
+{
+    const int width = warped.GetRasterXSize();
+    values.resize(static_cast<std::size_t>(width));
+    if (warped.GetRasterBand(1)->RasterIO(GF_Read, 0, row, width, 1, values.data(), width, 1, GDT_Float64, 0,
+                                          0, nullptr) != CE_None)
+        fail("its pixels cannot be read; copy or export it again");
+    constexpr double most = static_cast<double>(std::numeric_limits<float>::max());
+    for (double& value : values)
+    {
+        value = value * scale + offset;
+        if (!(std::abs(value) <= most)) value = std::numeric_limits<double>::quiet_NaN();
+    }
+}
+
+void FrameRaster::readColors(GDALDataset& warped, unsigned char* colors) const
+{
+    const int width = warped.GetRasterXSize();
+    const int height = warped.GetRasterYSize();
+    // From below, as OSG has its rows.
+    const GSpacing row = 4 * static_cast<GSpacing>(width);
+    if (warped.RasterIO(GF_Read, 0, 0, width, height, colors + row * (height - 1), width, height, GDT_Byte, 4,
+                        nullptr, 4, -row, 1, nullptr) != CE_None)
+        fail("its pixels cannot be read; copy or export it again");
+}
+
+osg::ref_ptr<osg::Image> FrameRaster::picture(int maxSide) const
+{
+    const osg::Vec2d all = size();
+    const double share = std::min(1.0, maxSide / std::max(all.x(), all.y()));
+    const int width = std::max(1, static_cast<int>(std::lround(all.x() * share)));
+    const int height = std::max(1, static_cast<int>(std::lround(all.y() * share)));
+    GDALRasterIOExtraArg how;
+    INIT_RASTERIO_EXTRA_ARG(how);
+    if (kind != DataLayer::CLASS && !_palette) how.eResampleAlg = GRIORA_Average;
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    if (kind == DataLayer::COLOR)
+    {
+        image->allocateImage(width, height, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+        const GSpacing row = 4 * static_cast<GSpacing>(width);
+        GdalErrorScope errors;
+        if (top().RasterIO(GF_Read, 0, 0, static_cast<int>(all.x()), static_cast<int>(all.y()),
+                           image->data() + row * (height - 1), width, height, GDT_Byte, 4, nullptr, 4, -row,
+                           1, &how) != CE_None)
+            failToRead(errors);
+    }
+    else
+    {
+        image->allocateImage(width, height, 1, GL_RED, GL_FLOAT);
+        image->setInternalTextureFormat(GL_R32F);
+        readNumbers(*image, how);
+    }
+    image->setFileName(_file);
+    return image;
+}
+
+void FrameRaster::readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const
+{
+    const int columns = top().GetRasterXSize();
+    const int rows = top().GetRasterYSize();
+    const int width = image.s();
+    const int height = image.t();
+    const std::size_t last = static_cast<std::size_t>(width) * static_cast<std::size_t>(height - 1);
+    auto* numbers = reinterpret_cast<float*>(image.data());
+    const GSpacing row = static_cast<GSpacing>(sizeof(float)) * width;
+    GdalErrorScope errors;
+    if (band().RasterIO(GF_Read, 0, 0, columns, rows, numbers + last, width, height, GDT_Float32,
+                        sizeof(float), -row, &how) != CE_None)
+        failToRead(errors);
+    int hasNoData = FALSE;
+    const auto noData = static_cast<float>(band().GetNoDataValue(&hasNoData));
+    std::vector<GByte> mask;
+    if (!(band().GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)))
+    {
+        mask.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+        if (band().GetMaskBand()->RasterIO(GF_Read, 0, 0, columns, rows, mask.data() + last, width, height,
+                                           GDT_Byte, 1, -width, nullptr) != CE_None)
+            failToRead(errors);
+    }
+    for (std::size_t i = 0; i < last + static_cast<std::size_t>(width); ++i)
+    {
+        const bool isNone = (hasNoData && numbers[i] == noData) || (!mask.empty() && mask[i] == 0);
+        const double number =
+            isNone ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(numbers[i]);
+        numbers[i] = static_cast<float>(number * scale + offset);
+        if (!std::isfinite(numbers[i])) numbers[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+}
+
+void FrameRaster::failToRead(const GdalErrorScope& errors) const
+{
+    fail("its pixels cannot be read (" + errors.message() +
+         "); the file may be cut short: copy or export it again");
+}
+
+void FrameRaster::TransformerDestroyer::operator()(void* transformer) const
+{
+    GDALDestroyGenImgProjTransformer(transformer);
+}
+
+FrameRaster::Transformer FrameRaster::transformerTo(const FrameCrs& crs, const GdalErrorScope& errors) const
+{
+    CPLStringList options;
+    options.SetNameValue("DST_SRS", crs.definition.c_str());
+    Transformer result(
+        GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&top()), nullptr, options.List()));
+    if (!result) failToPlace(errors);
+    return result;
+}
+
+void FrameRaster::failToPlace(const GdalErrorScope& errors) const
+{
+    fail("it cannot be brought to the place of the effect (" + errors.message() +
+         "); give the effect an origin near it, or warp it with gdalwarp first");
+}
+
+void FrameRaster::translate(Arguments arguments)
+{
+    arguments.insert(arguments.end(), {"-of", "VRT"});
+    GdalErrorScope errors;
+    GDALTranslateOptions* options = GDALTranslateOptionsNew(listOf(arguments).List(), nullptr);
+    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(_chain.back().get()), options, nullptr);
+    GDALTranslateOptionsFree(options);
+    if (!result)
+        fail("its bands cannot be used (" + errors.message() +
+             "); convert it to GeoTIFF with gdal_translate");
+    _chain.emplace_back(GDALDataset::FromHandle(result));
+}
+
+/// Red, green, blue and alpha, bytes.
+void FrameRaster::makeColors()
+{
+    const GDALDataType type = band().GetRasterDataType();
+    if (band().GetColorTable())
+    {
+        _palette = true;
+        return translate({"-expand", "rgba"});
+    }
+    if (type != GDT_Byte && type != GDT_UInt16)
+        fail("its pixels are not colours (" + std::string(GDALGetDataTypeName(type)) +
+             "); show them as values, or colour them with gdaldem color-relief");
+    const bool grey = top().GetRasterCount() < 3;
+    Arguments arguments{"-b", "1",      "-b",  grey ? "1" : "2", "-b",        grey ? "1" : "3",
+                        "-b", "mask,1", "-ot", "Byte",           "-a_nodata", "none"};
+    arguments.insert(arguments.end(), {"-colorinterp", "red,green,blue,alpha"});
+    if (type == GDT_UInt16)
+        for (const char* band : {"-scale_1", "-scale_2", "-scale_3"})
+            arguments.insert(arguments.end(), {band, "0", "65535", "0", "255"});
+    translate(arguments);
+}
+
+void FrameRaster::makeValues()
+{
+    scale = band().GetScale();
+    offset = band().GetOffset();
+    if (top().GetRasterCount() == 1) return;
+    // A mask goes along as alpha; a no-data value tells the same.
+    int hasNoData = FALSE;
+    band().GetNoDataValue(&hasNoData);
+    _hasMask = !hasNoData;
+    translate(_hasMask ? Arguments{"-b", "1", "-b", "mask,1", "-colorinterp", "gray,alpha"}
+                       : Arguments{"-b", "1"});
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+// Private to osgGeoFXData: consumers of the library do not need GDAL's headers.
+
+#include <osgGeoFX/geodata/detail/GdalSupport.h>
+
+#include <osgGeoFX/geodata/MappingRaster.h>
+
+#include <osg/Vec2d>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// The frame as a coordinate system, and its unit.
+struct FrameCrs
+{
+    std::string definition;
+    osg::Vec2d origin; ///< metres
+    double metresPerUnit = 1.0;
+
+    /// From metres in the frame.
+    osg::Vec2d fromFrame(const osg::Vec2d& place) const { return (place + origin) / metresPerUnit; }
+};
+
+/// Throws BuildError, naming `file`, where a projected terrain's coordinate system is none.
+FrameCrs crsOf(const MappingFrame& frame, const std::string& file);
+
+/** A raster file to be warped into a frame, with the virtual datasets on top of it that make colours or values of its
+    bands. All of it throws BuildError, naming file and remedy. */
+class FrameRaster
+{
+public:
+    /// `placed`: whether it needs a georeference, which all but picture() go by.
+    FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed = true);
+    ~FrameRaster();
+    FrameRaster(const FrameRaster&) = delete;
+    FrameRaster& operator=(const FrameRaster&) = delete;
+
+    DataLayer::Kind kind = DataLayer::COLOR;
+    double scale = 1.0; ///< of values
+    double offset = 0.0;
+
+    [[noreturn]] void fail(const std::string& what) const;
+
+    /// What the raster covers, from edge to edge of its outermost pixels, and the size of a texel that keeps its
+    /// resolution; in the CRS's unit.
+    struct Extent
+    {
+        osg::Vec2d low, high;
+        double texel = 0.0;
+    };
+    Extent extent(const FrameCrs& crs) const;
+    osg::Vec2d middle(const FrameCrs& crs) const;
+
+    /// A rectangle in the CRS's unit, in so many texels: red, green, blue and alpha in bytes, or values in doubles with NaN
+    /// where there is none, not yet scaled.
+    DatasetPtr warped(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,
+                      int height) const;
+    /// A row of values that were warped, from the north, scaled; NaN where there is none that a float can hold.
+    void readValues(GDALDataset& warped, int row, std::vector<double>& values) const;
+    /// Colours that were warped, four bytes each, in rows from the south.
+    void readColors(GDALDataset& warped, unsigned char* colors) const;
+
+    /// The raster's own pixels, in rows from the south: colours as RGBA bytes, else floats with NaN where there is none. One
+    /// with more than `maxSide` pixels on a side is reduced to it, by area, or of classes and palettes by the nearest pixel.
+    osg::ref_ptr<osg::Image> picture(int maxSide) const;
+    osg::Vec2d size() const { return osg::Vec2d(top().GetRasterXSize(), top().GetRasterYSize()); }
+
+private:
+    using Arguments = std::vector<std::string>;
+    struct TransformerDestroyer
+    {
+        void operator()(void* transformer) const;
+    };
+    using Transformer = std::unique_ptr<void, TransformerDestroyer>;
+
+    Transformer transformerTo(const FrameCrs& crs, const GdalErrorScope& errors) const;
+    [[noreturn]] void failToPlace(const GdalErrorScope& errors) const;
+    GDALDataset& top() const { return *_chain.back(); }
+    GDALRasterBand& band() const { return *top().GetRasterBand(1); }
+    [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
+    void checkPlace() const;
+    void readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const;
+    void translate(Arguments arguments);
+    void makeColors();
+    void makeValues();
+
+    std::string _file;
+    std::vector<DatasetPtr> _chain;
+    bool _palette = false;
+    bool _hasMask = false; ///< as a second band beside values
+};
+
+} // namespace osgGeoFX

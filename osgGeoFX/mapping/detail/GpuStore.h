@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/mapping/detail/LayerAtlas.h>
+#include <osgGeoFX/mapping/detail/TexelArena.h>
+#include <osgGeoFX/raster/LayerPixels.h>
+
+#include <osg/Referenced>
+#include <osg/State>
+#include <osg/StateAttribute>
+#include <osg/observer_ptr>
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** What the GPUs hold of a set of mappings: a texture buffer, a texture array of data layers, and a texture of color
+    tables; and the way of each change there.
+
+    Changes are written once, with commit(), and told by a number. A graphics context, when it draws a frame, takes over what
+    it has not seen, up to the number that the frame was culled with; so a frame that is drawn late does not see
+    what came after it, and only what changed is uploaded. Thread-safe. (osg::TextureBuffer and osg::Texture2DArray
+    upload whole buffers and lose changes; OSG has no place for partial ones.) */
+class GpuStore : public osg::Referenced
+{
+public:
+    /// Width of the color tables' texture.
+    static constexpr int tableWidth = 1024;
+
+    explicit GpuStore(int pageSide) : _pageSide(pageSide) {}
+
+    int pageSide() const { return _pageSide; }
+
+    /// One commit's changes.
+    struct Layer
+    {
+        LayerAtlas::Slot slot;
+        std::shared_ptr<const LayerPixels> pixels; ///< null: the slot is free
+    };
+    struct Table
+    {
+        int row = 0;
+        std::vector<std::uint16_t> texels; ///< RGBA, finer than bytes: blending may square them
+    };
+    struct Commit
+    {
+        std::vector<Layer> layers;
+        std::vector<Table> tables;
+    };
+    /// Takes over the arena's changes and these; its number is that of the frame to cull.
+    std::uint64_t commit(TexelArena& arena, Commit changes);
+
+    /// What the GPU can take; 0 before it has drawn anything.
+    struct Limits
+    {
+        int texels = 0; ///< of the texture buffer
+        int pages = 0;
+        int pageSide = 0;
+    };
+    Limits limits() const;
+    /// Bytes that have been uploaded so far, all contexts together.
+    std::uint64_t uploadedBytes() const;
+
+    enum class Part
+    {
+        Data,
+        Layers,
+        Tables
+    };
+    /// Binds a part on the active texture unit, with all changes up to a number.
+    void bind(Part part, osg::State& state, std::uint64_t upTo);
+    /// Of all contexts where null.
+    void releaseGLObjects(osg::State* state);
+
+protected:
+    ~GpuStore() override;
+
+private:
+    using Texels = std::vector<TexelArena::Texel>;
+    struct Patch
+    {
+        std::uint32_t first = 0;
+        Texels texels;
+    };
+    struct Entry
+    {
+        std::uint64_t number = 0;
+        std::shared_ptr<const Texels> all; ///< where much or the size has changed
+        std::vector<Patch> patches;
+        Commit changes;
+        std::size_t bytes = 0;
+    };
+    struct Context
+    {
+        /// Of the context's own data, and gone when it is closed: the next one with its number has none of these names.
+        osg::observer_ptr<osg::Referenced> life;
+        std::uint64_t number = 0;
+        unsigned int buffer = 0, data = 0, layers = 0, tables = 0;
+        int pages = 0;
+        int rows = 0;
+    };
+    using SlotKey = std::pair<int, std::pair<int, int>>;
+
+    void update(Context& context, osg::State& state, std::uint64_t upTo);
+    void uploadAll(Context& context, osg::State& state);
+    void replay(Context& context, osg::State& state, const Entry& entry);
+    void uploadTexels(Context& context, osg::State& state, const Texels& texels);
+    void uploadLayers(const Context& context, osg::State& state, const std::vector<Layer>& layers);
+    void uploadAllLayers(Context& context, osg::State& state);
+    void uploadTable(const Table& table);
+    void uploadAllTables(Context& context);
+    void askLimits();
+
+    const int _pageSide;
+    mutable std::mutex _mutex;
+    std::uint64_t _number = 0;
+    Texels _texels;
+    std::map<SlotKey, Layer> _layers;
+    std::map<int, Table> _tables;
+    int _pages = 1;
+    int _rows = 1;
+    std::deque<Entry> _journal;
+    std::size_t _journalBytes = 0;
+    std::map<unsigned int, Context> _contexts;
+    Limits _limits;
+    std::uint64_t _uploaded = 0;
+};
+
+/// One of the store's textures in a state set, as a frame saw it.
+class StoreTexture : public osg::StateAttribute
+{
+public:
+    StoreTexture() = default;
+    StoreTexture(GpuStore* store, GpuStore::Part part) : _store(store), _part(part) {}
+    StoreTexture(const StoreTexture& other, const osg::CopyOp& copy)
+        : osg::StateAttribute(other, copy), _store(other._store), _part(other._part), _upTo(other._upTo)
+    {
+    }
+    META_StateAttribute(osgGeoFX, StoreTexture, TEXTURE);
+
+    void show(std::uint64_t upTo) { _upTo = upTo; }
+
+    bool isTextureAttribute() const override { return true; }
+    int compare(const osg::StateAttribute& other) const override;
+    void apply(osg::State& state) const override;
+
+protected:
+    ~StoreTexture() override = default;
+
+private:
+    osg::ref_ptr<GpuStore> _store;
+    GpuStore::Part _part = GpuStore::Part::Data;
+    std::uint64_t _upTo = 0;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/mapping/detail/LayerResidency.h>
+
+#include <osg/Notify>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+unsigned int imageCountOf(const DataLayer& data)
+{
+    return data.getImage() ? data.getImage()->getModifiedCount() : 0;
+}
+
+bool isSame(const std::optional<PlacedLayer>& a, const std::optional<PlacedLayer>& b)
+{
+    if (!a || !b) return a.has_value() == b.has_value();
+    return a->slot.page == b->slot.page && a->slot.x == b->slot.x && a->slot.y == b->slot.y &&
+           a->slot.side == b->slot.side && a->width == b->width && a->height == b->height;
+}
+
+} // namespace
+
+void LayerResidency::reset(int pageSide, int maxPages)
+{
+    for (auto& [data, layer] : _layers)
+    {
+        layer.placed.reset();
+        layer.seen = false;
+    }
+    _pageSide = pageSide;
+    _atlas = LayerAtlas(pageSide, maxPages);
+}
+
+void LayerResidency::use(ProjectiveMapping& user, const Pair& next, const Pair& former)
+{
+    for (DataLayer* data : {former.layer.get(), former.mask.get()})
+    {
+        if (data != next.layer && data != next.mask) leave(data, user);
+    }
+    for (DataLayer* data : {next.layer.get(), next.mask.get()})
+    {
+        if (!data) continue;
+        Layer& layer = _layers[data];
+        layer.data = data;
+        layer.users.insert(&user);
+    }
+}
+
+void LayerResidency::leave(DataLayer* data, ProjectiveMapping& user)
+{
+    const auto found = _layers.find(data);
+    if (found == _layers.end()) return;
+    found->second.users.erase(&user);
+    if (!found->second.users.empty()) return;
+    unplace(found->second);
+    if (found->second.leftOut) --_leftOut;
+    _layers.erase(found);
+}
+
+bool LayerResidency::isStale(const Layer& layer) const
+{
+    return !layer.seen || layer.revision != layer.data->revision() ||
+           layer.imageCount != imageCountOf(*layer.data) || (layer.leftOut && _changes.roomMade);
+}
+
+void LayerResidency::update()
+{
+    if (std::none_of(_layers.begin(), _layers.end(),
+                     [&](const auto& entry) { return isStale(entry.second); }))
+        return;
+    // The most important first: what has to go for them gets what room is left.
+    std::vector<Layer*> layers;
+    for (auto& [data, layer] : _layers)
+        layers.push_back(&layer);
+    std::stable_sort(layers.begin(), layers.end(),
+                     [](const Layer* a, const Layer* b)
+                     { return a->data->getImportance() > b->data->getImportance(); });
+    for (Layer* layer : layers)
+    {
+        if (!isStale(*layer)) continue;
+        const DataLayer& data = *layer->data;
+        const bool differs = layer->revision != data.revision();
+        const bool moved = updateLayer(*layer);
+        if (moved || differs || !layer->seen)
+            _changes.mappings.insert(layer->users.begin(), layer->users.end());
+        layer->seen = true;
+        layer->revision = data.revision();
+        layer->imageCount = imageCountOf(data);
+    }
+}
+
+/// Whether its place is another one than before.
+bool LayerResidency::updateLayer(Layer& layer)
+{
+    const std::shared_ptr<LayerPixels> pixels = pixelsOf(layer);
+    const std::optional<PlacedLayer> former = layer.placed;
+    if (layer.placed && (!pixels || pixels->side != layer.placed->slot.side)) unplace(layer);
+    if (pixels && !layer.placed)
+    {
+        const std::optional<LayerAtlas::Slot> slot = findRoom(pixels->side, *layer.data);
+        if (slot) layer.placed = PlacedLayer{*slot, 0, 0};
+    }
+    const bool leftOut = pixels && !layer.placed;
+    _leftOut += static_cast<int>(leftOut) - static_cast<int>(layer.leftOut);
+    layer.leftOut = leftOut;
+    if (layer.placed)
+    {
+        layer.placed->width = pixels->width;
+        layer.placed->height = pixels->height;
+        _changes.uploads.layers.push_back({layer.placed->slot, pixels});
+    }
+    return !isSame(former, layer.placed);
+}
+
+/// Null without a picture, and for one that cannot be drawn.
+std::shared_ptr<LayerPixels> LayerResidency::pixelsOf(const Layer& layer) const
+{
+    const DataLayer& data = *layer.data;
+    const osg::Image* image = data.getImage();
+    if (!image || image->s() <= 0) return nullptr;
+    LayerPixels::Options options;
+    options.kind = static_cast<LayerPixels::Kind>(data.getKind());
+    options.sRGB = data.getSRgb();
+    if (data.getHasNoData()) options.noData = data.getNoData();
+    options.maxSide = _pageSide;
+    std::string error;
+    std::optional<LayerPixels> made = LayerPixels::make(*image, options, error);
+    if (!made)
+    {
+        OSG_WARN << "osgGeoFX: DataLayer \"" << data.getName() << "\": " << error << " It is not drawn."
+                 << std::endl;
+        return nullptr;
+    }
+    if (made->reduced && layer.revision != data.revision())
+    {
+        OSG_WARN << "osgGeoFX: DataLayer \"" << data.getName() << "\" has " << image->s() << " x "
+                 << image->t() << " texels, and is reduced to pages of " << _pageSide
+                 << "; raise ProjectiveMappings' pageSide to see all of it." << std::endl;
+    }
+    return std::make_shared<LayerPixels>(std::move(*made));
+}
+
+std::optional<LayerAtlas::Slot> LayerResidency::findRoom(int side, const DataLayer& data)
+{
+    std::optional<LayerAtlas::Slot> slot = _atlas.add(side);
+    while (!slot && makeRoomFor(data))
+        slot = _atlas.add(side);
+    return slot;
+}
+
+/// False where all that have a place are as important.
+bool LayerResidency::makeRoomFor(const DataLayer& data)
+{
+    Layer* least = nullptr;
+    for (auto& [other, layer] : _layers)
+    {
+        const bool better = !least || other->getImportance() < least->data->getImportance();
+        if (layer.placed && better) least = &layer;
+    }
+    if (!least || least->data->getImportance() >= data.getImportance()) return false;
+    unplace(*least);
+    least->leftOut = true;
+    ++_leftOut;
+    _changes.mappings.insert(least->users.begin(), least->users.end());
+    return true;
+}
+
+void LayerResidency::unplace(Layer& layer)
+{
+    if (!layer.placed) return;
+    _atlas.release(layer.placed->slot);
+    _changes.uploads.layers.push_back({layer.placed->slot, nullptr});
+    layer.placed.reset();
+    _changes.roomMade = true;
+}
+
+std::optional<PlacedLayer> LayerResidency::placed(const DataLayer* data) const
+{
+    const auto found = _layers.find(data);
+    return found != _layers.end() ? found->second.placed : std::nullopt;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/mapping/Footprint.h>
+#include <osgGeoFX/mapping/detail/GridStatistics.h>
+#include <osgGeoFX/mapping/detail/GridStore.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** Tells which mappings lie over a place of the plane: a hierarchical grid in an arena, for a fragment shader to walk.
+
+    A block has 8 x 8 cells of one word each: 16 texels, word i for cell (i % 8, i / 8) in component i % 4 of texel
+    i / 4. A cell's word is 0 where no mapping lies; with the highest bit, the rest is the texel where the block that
+    the cell is split into begins; else it is the texel of a list: the number of mappings, then their ids in drawing
+    order, the last one on top. Up to three cost one fetch.
+
+    The walk, with `place` in metres from the root's origin, `inverseSize` the root's 1 / size, and `block` its
+    block; it returns the texel of the list, or 0:
+
+        uint geofx_mappingList(vec2 place, float inverseSize, uint block)
+        {
+            vec2 p = place * inverseSize;
+            // Written so that NaN finds nothing.
+            bool inside = all(greaterThanEqual(p, vec2(0.0))) && all(lessThan(p, vec2(1.0)));
+            if (block == 0u || !inside) return 0u;
+            uint word = block | 0x80000000u;
+            while ((word & 0x80000000u) != 0u) // at most 6 times
+            {
+                p *= 8.0;
+                vec2 cell = clamp(floor(p), vec2(0.0), vec2(7.0));
+                p -= cell;
+                int i = 8 * int(cell.y) + int(cell.x);
+                word = texelFetch(texels, int(word & 0x7fffffffu) + i / 4)[i % 4];
+            }
+            return word;
+        }
+
+    The root's size is a power of two, so all of this but `place` is exact. Footprints are widened by a millionth of
+    the root's size for what `place` has lost by then; so a list may have mappings that end just before a place, and
+    those whose footprint passes elsewhere through its cell, but lacks none.
+
+    Cells follow the density: see planGrid(). Cells are not smaller than 1 / 8^6 of the root. The grid takes about
+    64 words for each mapping, and a million, and no more than a quarter of what its arena may have; when this leaves
+    no words for splitting, lists are longer. Edits touch the lists of the cells that a footprint leaves or enters.
+
+    What footprints leave is given back, but the root shrinks only when it is made anew for another reason. For one
+    thread at a time. */
+class MappingIndex
+{
+public:
+    struct Entry
+    {
+        std::uint32_t id = 0;
+        std::uint64_t rank = 0; ///< the lowest is drawn first; among equal ones, the lowest id
+        PlaneFootprint footprint;
+    };
+
+    /// The square around all footprints; metres.
+    struct Root
+    {
+        osg::Vec2d origin;
+        double size = 0.0;       ///< a power of two; 0 without mappings
+        std::uint32_t block = 0; ///< its texel; 0 without mappings
+    };
+
+    /// The arena must outlive the index.
+    explicit MappingIndex(TexelArena& arena) : _store(arena) {}
+    ~MappingIndex() { clear(); }
+    MappingIndex(const MappingIndex&) = delete;
+    MappingIndex& operator=(const MappingIndex&) = delete;
+
+    /// False, and nothing changes, where the id is there already, the footprint is not valid(), or the arena is
+    /// full.
+    bool insert(const Entry& entry);
+    /// False where there is no such id.
+    bool erase(std::uint32_t id);
+    /// Moves or reorders a mapping. False, and nothing changes for a walk, where there is no such id, the footprint
+    /// is not valid(), or the arena is full.
+    bool update(std::uint32_t id, std::uint64_t rank, const PlaneFootprint& footprint);
+    /// Replaces all mappings, without those that insert() would refuse. False, and nothing changes, where the arena
+    /// has no room for the new grid beside the old one.
+    bool assign(const std::vector<Entry>& entries);
+    void clear();
+
+    const Root& root() const { return _root; }
+    std::size_t size() const { return _items.size(); }
+    bool contains(std::uint32_t id) const { return _items.count(id) != 0; }
+
+    /// What a shader finds for a place: in drawing order, all mappings over it and perhaps some nearby.
+    std::vector<std::uint32_t> at(const osg::Vec2d& place) const;
+
+    /// Mappings in the longest list that there has been.
+    std::size_t longestList() const { return _store.longestList(); }
+
+    GridStatistics statistics() const { return statisticsOf(_store, _root.block); }
+
+private:
+    using Items = std::unordered_map<std::uint32_t, GridItem>;
+
+    /// A cell whose list has become longer.
+    struct Grown
+    {
+        std::uint32_t block;
+        unsigned int cell;
+        PlaneSquare square;
+    };
+
+    PlaneSquare rootSquare() const { return {_root.origin, _root.size}; }
+    double margin() const;
+    bool holds(const FootprintShape& shape) const;
+    GridLimits limits(double rootSize, std::size_t count, std::uint32_t taken) const;
+    bool rebuild(const Items& items, double formerSize);
+
+    bool place(const GridItem& item, std::uint32_t block, const PlaneSquare& square);
+    bool placeInList(const GridItem& item, std::uint32_t block, unsigned int cell, const PlaneSquare& square);
+    void splitGrown();
+    bool remove(const GridItem& item, const FootprintShape* except, std::uint32_t block,
+                const PlaneSquare& square);
+    bool removeFromList(const GridItem& item, std::uint32_t block, unsigned int cell);
+    void mergeChild(std::uint32_t block, unsigned int cell, const PlaneSquare& square);
+    bool mayMerge(std::uint32_t block, const PlaneSquare& square, std::vector<const GridItem*>& items) const;
+
+    GridStore _store;
+    Root _root;
+    Items _items;
+    std::uint32_t _texelsWhenBuilt = 0;
+    std::vector<Grown> _grown;
+    std::vector<std::uint32_t> _ids; ///< of the list at hand
+};
+
+} // namespace osgGeoFX

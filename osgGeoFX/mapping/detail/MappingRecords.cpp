@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/mapping/detail/MappingRecords.h>
+
+#include <algorithm>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// From so many changes at once on the whole grid is made anew.
+constexpr std::size_t bulk = 2000;
+
+bool needsLayer(const ProjectiveMapping& mapping)
+{
+    const ColorTransfer::Source source = mapping.getTransfer()->getSource();
+    return source == ColorTransfer::LAYER || source == ColorTransfer::TABLE;
+}
+
+/// Whether one is to stay rather than the other.
+bool outranks(const ProjectiveMapping& a, const ProjectiveMapping& b)
+{
+    if (a.getImportance() != b.getImportance()) return a.getImportance() > b.getImportance();
+    const auto area = [](const ProjectiveMapping& mapping)
+    {
+        return mapping.getU().length() * mapping.getV().length();
+    };
+    return area(a) > area(b);
+}
+
+} // namespace
+
+MappingRecords::MappingRecords(MappingChanges& changes, const LayerResidency& layers, const TableRows& tables)
+    : _changes(changes), _layers(layers), _tables(tables), _arena(std::make_shared<TexelArena>()),
+      _index(std::make_unique<MappingIndex>(*_arena))
+{
+}
+
+void MappingRecords::add(ProjectiveMapping& mapping)
+{
+    Item& item = _items[&mapping];
+    item.mapping = &mapping;
+    item.sequence = ++_sequence;
+    _changes.mappings.insert(&mapping);
+}
+
+void MappingRecords::remove(ProjectiveMapping& mapping)
+{
+    const auto found = _items.find(&mapping);
+    if (found == _items.end()) return;
+    takeOff(found->second);
+    if (found->second.leftOut) --_leftOut;
+    _changes.mappings.erase(&mapping);
+    _items.erase(found);
+}
+
+void MappingRecords::clear()
+{
+    // At once: out of a long list one after the other takes its length squared.
+    _index->clear();
+    for (const auto& [mapping, item] : _items)
+    {
+        if (item.record != 0) _arena->release(item.record, item.texels);
+    }
+    _items.clear();
+    _changes.mappings.clear();
+    _sorted.clear();
+    _leftOut = 0;
+    _changes.roomMade = true;
+}
+
+MappingRecords::Sources* MappingRecords::sources(ProjectiveMapping& mapping)
+{
+    const auto found = _items.find(&mapping);
+    return found != _items.end() ? &found->second.sources : nullptr;
+}
+
+void MappingRecords::changeAll()
+{
+    for (const auto& [mapping, item] : _items)
+        _changes.mappings.insert(mapping);
+}
+
+void MappingRecords::reset()
+{
+    for (auto& [mapping, item] : _items)
+        item.record = 0;
+    changeAll();
+    _sorted.clear();
+    _index.reset();
+    _arena = std::make_shared<TexelArena>();
+    _index = std::make_unique<MappingIndex>(*_arena);
+}
+
+std::uint64_t MappingRecords::rankOf(const Item& item)
+{
+    return static_cast<std::uint64_t>(item.mapping->getOrder() + 1000) << 48u | item.sequence;
+}
+
+bool MappingRecords::isReady(const Item& item) const
+{
+    const ProjectiveMapping& mapping = *item.mapping;
+    const LayerResidency::Pair& layers = item.sources.layers;
+    if (!mapping.getEnabled() || mapping.getOpacity() <= 0.0 || mapping.getChannels() == 0) return false;
+    if ((needsLayer(mapping) || mapping.getLayer()) && !_layers.placed(layers.layer)) return false;
+    if (mapping.getTransfer()->getSource() == ColorTransfer::TABLE && !mapping.getTable()) return false;
+    return mapping.getTransfer()->getAlpha() != ColorTransfer::FROM_MASK || _layers.placed(layers.mask);
+}
+
+void MappingRecords::takeOff(Item& item)
+{
+    if (item.record == 0) return;
+    _index->erase(item.record);
+    _arena->release(item.record, item.texels);
+    _sorted.erase(item.rank);
+    item.record = 0;
+    _changes.roomMade = true;
+}
+
+bool MappingRecords::writeRecord(Item& item, const PositionOf& positionOf)
+{
+    const ProjectiveMapping& mapping = *item.mapping;
+    const std::uint32_t texels = MappingRecord::sizeOf(mapping);
+    if (item.record != 0 && item.texels != texels) takeOff(item);
+    if (item.record == 0)
+    {
+        item.record = _arena->allocate(texels);
+        item.texels = texels;
+    }
+    if (item.record == 0) return false;
+    const Sources& sources = item.sources;
+    const osg::Vec2d centre = mapping.getCentre();
+    TexelArena::Texel* record = _arena->edit(item.record, texels);
+    MappingRecord::write(mapping, _layers.placed(sources.layers.layer), _layers.placed(sources.layers.mask),
+                         _tables.row(sources.table),
+                         positionOf(osg::Vec3d(centre.x(), centre.y(), mapping.getHeight())), record);
+    _features |= MappingRecord::featuresOf(record);
+    return true;
+}
+
+bool MappingRecords::place(Item& item, const PositionOf& positionOf)
+{
+    const bool there = item.record != 0 && item.texels == MappingRecord::sizeOf(*item.mapping);
+    if (!writeRecord(item, positionOf)) return false;
+    const std::uint64_t rank = rankOf(item);
+    const PlaneFootprint footprint = item.mapping->footprint();
+    const bool placed =
+        there ? _index->update(item.record, rank, footprint) : _index->insert({item.record, rank, footprint});
+    if (!placed)
+    {
+        takeOff(item);
+        return false;
+    }
+    setRank(item, rank);
+    return true;
+}
+
+void MappingRecords::setRank(Item& item, std::uint64_t rank)
+{
+    if (item.rank != rank) _sorted.erase(item.rank);
+    item.rank = rank;
+    _sorted[rank] = item.record;
+}
+
+bool MappingRecords::placeAll(const std::vector<Item*>& items, const PositionOf& positionOf)
+{
+    for (Item* item : items)
+    {
+        if (!writeRecord(*item, positionOf)) return false;
+        setRank(*item, rankOf(*item));
+    }
+    std::vector<MappingIndex::Entry> entries;
+    entries.reserve(_sorted.size());
+    for (const auto& [mapping, item] : _items)
+    {
+        if (item.record != 0) entries.push_back({item.record, item.rank, mapping->footprint()});
+    }
+    std::sort(entries.begin(), entries.end(),
+              [](const auto& one, const auto& other) { return one.rank < other.rank; });
+    return _index->assign(entries);
+}
+
+void MappingRecords::placeByImportance(const PositionOf& positionOf)
+{
+    std::vector<Item*> items;
+    for (auto& [mapping, item] : _items)
+    {
+        takeOff(item);
+        if (isReady(item)) items.push_back(&item);
+    }
+    std::sort(items.begin(), items.end(),
+              [](const Item* a, const Item* b)
+              {
+                  if (outranks(*a->mapping, *b->mapping)) return true;
+                  return !outranks(*b->mapping, *a->mapping) && a->sequence < b->sequence;
+              });
+    bool full = false;
+    for (Item* item : items)
+    {
+        full = full || !place(*item, positionOf);
+        item->leftOut = full;
+    }
+}
+
+void MappingRecords::update(const PositionOf& positionOf)
+{
+    if (_changes.roomMade && _leftOut > 0)
+    {
+        for (const auto& [mapping, item] : _items)
+        {
+            if (item.leftOut) _changes.mappings.insert(mapping);
+        }
+    }
+    std::vector<Item*> items;
+    for (ProjectiveMapping* mapping : _changes.mappings)
+    {
+        Item& item = _items.at(mapping);
+        item.leftOut = false;
+        if (isReady(item))
+            items.push_back(&item);
+        else
+            takeOff(item);
+    }
+    // How the grid is split depends on the order, and that of the set is one of addresses.
+    std::sort(items.begin(), items.end(),
+              [](const Item* one, const Item* other) { return one->sequence < other->sequence; });
+    bool placed = true;
+    if (items.size() >= bulk)
+    {
+        placed = placeAll(items, positionOf);
+    }
+    else
+    {
+        for (Item* item : items)
+            placed = placed && place(*item, positionOf);
+    }
+    if (!placed) placeByImportance(positionOf);
+    if (!placed || _leftOut > 0)
+    {
+        _leftOut = static_cast<int>(std::count_if(_items.begin(), _items.end(),
+                                                  [](const auto& each) { return each.second.leftOut; }));
+    }
+}
+
+void MappingRecords::fill(CameraList& list, const Wanted& wanted)
+{
+    std::unordered_map<std::uint32_t, const ProjectiveMapping*> mappings;
+    for (const auto& [mapping, item] : _items)
+    {
+        if (item.record != 0) mappings[item.record] = mapping;
+    }
+    std::vector<std::uint32_t> records;
+    for (const auto& [rank, record] : _sorted)
+    {
+        if (wanted(*mappings.at(record))) records.push_back(record);
+    }
+    list.write(_arena, records);
+}
+
+} // namespace osgGeoFX

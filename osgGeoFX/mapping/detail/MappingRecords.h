@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/mapping/detail/CameraList.h>
+#include <osgGeoFX/mapping/detail/LayerResidency.h>
+#include <osgGeoFX/mapping/detail/MappingIndex.h>
+#include <osgGeoFX/mapping/detail/TableRows.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The mappings' records in the texel arena, the grid over them (MappingIndex), and cameras' lists of them.
+
+    A record is there while its mapping shows something and the arena has room. Where it has not, the most important mappings
+    stay, of equal ones the largest, and the others are left out until room is made. For one thread at a time. */
+class MappingRecords
+{
+public:
+    /// Where in the frame a place of the plane at a height is.
+    using PositionOf = std::function<osg::Vec3d(const osg::Vec3d& place)>;
+    using Wanted = std::function<bool(const ProjectiveMapping&)>;
+    /// What a record refers to, as it was when the mapping's last change was worked in.
+    struct Sources
+    {
+        LayerResidency::Pair layers;
+        TableRows::Key table;
+    };
+
+    /// All three must outlive it.
+    MappingRecords(MappingChanges& changes, const LayerResidency& layers, const TableRows& tables);
+
+    void add(ProjectiveMapping& mapping);
+    void remove(ProjectiveMapping& mapping);
+    void clear();
+    std::size_t count() const { return _items.size(); }
+    /// Null for a mapping that was not added. Valid until it is removed.
+    Sources* sources(ProjectiveMapping& mapping);
+    template<class Action>
+    void each(const Action& action)
+    {
+        for (auto& [mapping, item] : _items)
+            action(*mapping, item.sources);
+    }
+
+    /// All are to be written anew.
+    void changeAll();
+    /// Another arena: no mapping has a record before the next update(), and lists that cameras have are not valid any more.
+    void reset();
+    /// Writes the records of the mappings that have changed, or takes them off.
+    void update(const PositionOf& positionOf);
+
+    /// Fills a camera's empty list with those of the mappings that are wanted.
+    void fill(CameraList& list, const Wanted& wanted);
+    void release(CameraList& list) { list.release(_arena); }
+
+    TexelArena& arena() { return *_arena; }
+    const TexelArena& arena() const { return *_arena; }
+    const MappingIndex& index() const { return *_index; }
+    /// What the shader's code must have; only grows, so that it is not compiled again and again.
+    std::uint32_t features() const { return _features; }
+    /// Mappings that show something and have no room.
+    int leftOut() const { return _leftOut; }
+
+private:
+    struct Item
+    {
+        osg::ref_ptr<ProjectiveMapping> mapping;
+        std::uint64_t sequence = 0;
+        std::uint64_t rank = 0;   ///< while it is on the GPU
+        std::uint32_t record = 0; ///< 0: not on the GPU
+        std::uint32_t texels = 0;
+        Sources sources;
+        bool leftOut = false;
+    };
+
+    bool isReady(const Item& item) const;
+    bool writeRecord(Item& item, const PositionOf& positionOf);
+    bool place(Item& item, const PositionOf& positionOf);
+    bool placeAll(const std::vector<Item*>& items, const PositionOf& positionOf);
+    void placeByImportance(const PositionOf& positionOf);
+    void takeOff(Item& item);
+    void setRank(Item& item, std::uint64_t rank);
+    static std::uint64_t rankOf(const Item& item);
+
+    MappingChanges& _changes;
+    const LayerResidency& _layers;
+    const TableRows& _tables;
+    std::shared_ptr<TexelArena> _arena; ///< shared with no one; lists tell by it whether they are valid
+    std::unique_ptr<MappingIndex> _index;
+    std::uint64_t _sequence = 0;
+    std::unordered_map<ProjectiveMapping*, Item> _items;
+    std::map<std::uint64_t, std::uint32_t> _sorted; ///< records on the GPU by rank
+    std::uint32_t _features = 0;
+    int _leftOut = 0;
+};
+
+} // namespace osgGeoFX

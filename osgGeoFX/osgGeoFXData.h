@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// All that the library osgGeoFXData offers: GDAL's rasters as what effects take, and the building of databases.
+#pragma once
+
+#include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/FileSources.h>
+#include <osgGeoFX/geodata/LandCoverTable.h>
+#include <osgGeoFX/geodata/MappingRaster.h>
+#include <osgGeoFX/geodata/PictureRaster.h>
+#include <osgGeoFX/geodata/StrokeVectors.h>
+#include <osgGeoFX/geodata/SurfaceRaster.h>
+
+#include <osgGeoFX/terrain/BuilderCode.h>
+#include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <osgGeoFX/terrain/ProgressLine.h>

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+
+#include <osgGeoFX/effect/detail/EyeVector.h>
+#include <osgGeoFX/effect/detail/GlobeFrame.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// From D2 to where nothing shows any more, of D2.
+constexpr double endOfHeights = 1.25;
+constexpr double leastRadius = 1e-3;
+/// Of the picture's half width and height, with room for rounding.
+constexpr double beside = 1.0 + 1e-4;
+/// Where the ground falls away behind the Earth, of its radius.
+constexpr double mostTurned = 1.3;
+/// By how much x and s grow there at most: 20 for what lies behind, the rest for the projection itself, which goes on.
+constexpr double stretchBehind = 30.0;
+/// Without any exaggeration heights could not be told from the picture.
+constexpr double leastExaggeration = 1e-6;
+/// Of what is seen from the eye, of that of the picture's base.
+constexpr double leastDistance = 1e-6;
+
+osg::Vec4d vec4(const glm::dvec3& vector, double w)
+{
+    return {vector.x, vector.y, vector.z, w};
+}
+
+/// The lines of the picture as geofx_panoramaEye has them, moved to begin in the plane of the eye.
+void setRays(glsl::geofx_Panorama& panorama, const ViewGeometry& view)
+{
+    const auto line = [&](double x, double y, glm::dvec3& origin, glm::dvec3& direction)
+    {
+        osg::Vec3d from, along;
+        view.ray(x, y, from, along);
+        along /= -along.z();
+        from += along * from.z();
+        origin = toGlm(from);
+        direction = toGlm(along);
+    };
+    line(0.0, 0.0, panorama.origin, panorama.direction);
+    line(1.0, 0.0, panorama.originX, panorama.directionX);
+    line(0.0, 1.0, panorama.originY, panorama.directionY);
+    panorama.originX -= panorama.origin;
+    panorama.originY -= panorama.origin;
+    panorama.directionX -= panorama.direction;
+    panorama.directionY -= panorama.direction;
+}
+
+bool finite(const glsl::geofx_Panorama& panorama)
+{
+    double sum = 0.0;
+    for (const double each : {panorama.across, panorama.along, panorama.lift, panorama.base, panorama.end,
+                              panorama.nearest, panorama.globe.height})
+        sum += std::abs(each);
+    for (const glm::dvec3& each : {panorama.right, panorama.forward, panorama.origin, panorama.originX,
+                                   panorama.originY, panorama.direction, panorama.directionX,
+                                   panorama.directionY, panorama.globe.up, panorama.globe.axis})
+        sum += std::abs(each.x) + std::abs(each.y) + std::abs(each.z);
+    return sum < 1e12;
+}
+
+} // namespace
+
+std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const ViewGeometry& view)
+{
+    glsl::geofx_Panorama panorama{};
+    panorama.globe.up = toGlm(view.up);
+    panorama.globe.axis = toGlm(view.polarAxis);
+    panorama.globe.height = view.eyeHeight;
+    if (view.ground.ellipsoid) setGlobe(panorama.globe, *view.ground.ellipsoid, view.up * view.polarAxis);
+    osg::Vec3d right = osg::Vec3d(1.0, 0.0, 0.0) - view.up * view.up.x();
+    if (!(right.normalize() > 1e-6)) return std::nullopt;
+    panorama.right = toGlm(right);
+    panorama.forward = toGlm(view.up ^ right);
+
+    panorama.base = map.getBaseHeight();
+    if (map.getBaseFromTerrain() && view.ground.heightsKnown)
+        panorama.base = std::max(panorama.base, view.ground.minHeight);
+    const bool perspective = view.projection(3, 3) == 0.0;
+    const double wide = std::abs(view.projection(0, 0));
+    const double high = std::abs(view.projection(1, 1));
+    double radius = map.getViewRadius();
+    if (radius == 0.0)
+        radius = perspective ? std::max(view.eyeHeight - panorama.base, 1.0) / wide : 1.0 / wide;
+    radius = std::max(radius, leastRadius);
+
+    panorama.across = 1.0 / radius;
+    panorama.curve = map.getCurveDistance() * radius;
+    panorama.horizon = map.getHorizonDistance() * radius;
+    panorama.end = endOfHeights * panorama.horizon;
+    panorama.along = 4.0 * map.getHorizonLine() / (panorama.curve + panorama.horizon);
+    panorama.lift = std::max(map.getExaggeration(), leastExaggeration) * high / wide / radius;
+    panorama.arch = 2.0 * map.getHorizonBend();
+    panorama.nearest = radius * (perspective ? wide : 1.0);
+    setRays(panorama, view);
+    if (!finite(panorama)) return std::nullopt;
+    return panorama;
+}
+
+PanoramaFrame::PanoramaFrame(const glsl::geofx_Panorama& view, double viewDistance)
+    : _view(view), _viewDistance(viewDistance)
+{
+}
+
+PanoramaFrame::~PanoramaFrame() = default;
+
+osg::Vec3d PanoramaFrame::deform(const osg::Vec3d& position) const
+{
+    return toOsg(glsl::geofx_panoramaDeform(_view, toGlm(position)));
+}
+
+osg::Vec3d PanoramaFrame::undeform(const osg::Vec3d& position) const
+{
+    // Nothing is seen at the eye and behind it.
+    osg::Vec3d before = position;
+    before.z() = std::min(before.z(), _view.origin.z - leastDistance * _view.nearest);
+    return toOsg(glsl::geofx_panoramaUndeform(_view, toGlm(before)));
+}
+
+/// What bounds need of a ball: its place, and how the place changes at most over a metre within it.
+struct PanoramaFrame::Extent
+{
+    glm::dvec3 place;  ///< of the middle
+    double reach;      ///< of x and s, metres: the radius, stretched
+    double stretch;    ///< of x and s for each metre
+    double curvature;  ///< of x, s and height: second derivatives, 1/metre
+    double height;     ///< above or below the base at most
+    double slope;      ///< of the curve, at most; 0…1
+    double slopeRate;  ///< its derivative, 1/metre
+    double fadeRate;   ///< of heights and of x beyond the horizon, 1/metre
+    double fadeSecond; ///< 1/metre²
+    double x;          ///< of the picture, at most
+    double n;          ///< at most
+    double nSecond;    ///< of n by s, 1/metre
+    double turned;     ///< share of the ground's radius that the ball reaches to from the eye
+};
+
+PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
+{
+    Extent extent;
+    extent.place = glsl::geofx_panoramaPlace(_view, toGlm(ball.centre));
+    const double k = _view.globe.curvature;
+    const double tallest = std::abs(extent.place.z) + ball.radius;
+    // The angle of arc that the ball reaches to; the equidistant projection stretches by it over its sine.
+    const double arc = k * (std::hypot(extent.place.x, extent.place.y) + ball.radius);
+    extent.turned = k * (glm::length(toGlm(ball.centre)) + ball.radius);
+    extent.stretch = 1.0 + 0.5 * arc * arc;
+    if (extent.turned > mostTurned) extent.stretch = std::max(extent.stretch, stretchBehind);
+    extent.reach = ball.radius * extent.stretch;
+    extent.curvature = 2.1 * (4.0 * k + 3.0 * k * k * tallest) * extent.stretch;
+    extent.height = std::abs(extent.place.z - _view.base) + ball.radius;
+    const double nearS = extent.place.y - extent.reach;
+    const double farS = extent.place.y + extent.reach;
+    const double width = std::max(_view.horizon - _view.curve, 1e-3);
+    extent.slope = std::clamp((_view.horizon - nearS) / width, 0.0, 1.0);
+    extent.slopeRate = nearS < _view.horizon && farS > _view.curve ? 1.0 / width : 0.0;
+    const double fading = _view.end - _view.horizon;
+    const bool fades = nearS < _view.end + fading && farS > _view.horizon;
+    extent.fadeRate = fades ? 1.5 / fading : 0.0;
+    extent.fadeSecond = fades ? 6.0 / (fading * fading) : 0.0;
+    extent.x = _view.across * (std::abs(extent.place.x) + extent.reach);
+    extent.n = _view.nearest + std::max(farS, 0.0);
+    extent.nSecond = nearS < 0.0 ? 2.0 / _view.nearest : 0.0;
+    return extent;
+}
+
+double PanoramaFrame::lipschitz(const Ball& ball) const
+{
+    const Extent extent = extentOf(ball);
+    const double x = (_view.across + extent.x * extent.fadeRate) * extent.stretch;
+    const double arch = _view.arch * 1.5708 * x;
+    const double lift = std::abs(_view.lift);
+    const double bySide =
+        _view.along * extent.slope * extent.stretch + lift * extent.fadeRate * extent.height * extent.stretch;
+    const double y = std::hypot(bySide, lift) + arch;
+    const double reachY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + y * ball.radius;
+    const double acrossEye = x * (glm::length(_view.originX) + extent.n * glm::length(_view.directionX));
+    const double upEye = y * (glm::length(_view.originY) + extent.n * glm::length(_view.directionY));
+    const double awayEye =
+        extent.stretch * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
+                          reachY * glm::length(_view.directionY));
+    return std::max(1.0, std::hypot(acrossEye, upEye) + awayEye);
+}
+
+DeformationFrame::Sag PanoramaFrame::sag(const Ball& ball, const osg::Vec3d& edge) const
+{
+    const Extent extent = extentOf(ball);
+    const double length = edge.length();
+    const double up = edge * toOsg(_view.globe.up);
+    // A flat edge hardly changes its height: by what it rises below the eye, and by the ground's curve.
+    const double turned = _view.globe.curvature * (std::hypot(extent.place.x, extent.place.y) + extent.reach);
+    const double rise = std::min(length, std::abs(up) + 1.1 * turned * length);
+    const double side =
+        std::min(1.0, std::abs(edge * toOsg(_view.right)) / std::max(length, 1e-30) + 1.1 * turned) * length *
+        extent.stretch;
+    const double ahead =
+        std::min(1.0, std::abs(edge * toOsg(_view.forward)) / std::max(length, 1e-30) + 1.1 * turned) *
+        length * extent.stretch;
+    const double second = extent.curvature * length * length;
+    const double lift = std::abs(_view.lift);
+
+    const double x1 = _view.across * side + extent.x * extent.fadeRate * ahead;
+    const double x2 = _view.across * (second + 2.0 * side * extent.fadeRate * ahead) +
+                      extent.x * (extent.fadeSecond * ahead * ahead + extent.fadeRate * second);
+    const double y1 = _view.along * extent.slope * ahead +
+                      lift * (extent.fadeRate * extent.height * ahead + rise) + _view.arch * 1.5708 * x1;
+    const double y2 = _view.along * (extent.slopeRate * ahead * ahead + extent.slope * second) +
+                      lift * (extent.fadeSecond * ahead * ahead * extent.height +
+                              extent.fadeRate * (second * extent.height + 2.0 * ahead * rise) + second) +
+                      _view.arch * (2.4675 * x1 * x1 + 1.5708 * x2);
+    const double n1 = ahead;
+    const double n2 = extent.nSecond * ahead * ahead + second;
+
+    const double reachY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + y1;
+    const double sideX = glm::length(_view.originX) + extent.n * glm::length(_view.directionX);
+    const double sideY = glm::length(_view.originY) + extent.n * glm::length(_view.directionY);
+    const double away = glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
+                        reachY * glm::length(_view.directionY);
+    const double curve = x2 * sideX + y2 * sideY + n2 * away +
+                         2.0 * n1 * (x1 * glm::length(_view.directionX) + y1 * glm::length(_view.directionY));
+    // Where the ground falls away behind the Earth the projection has a kink.
+    if (extent.turned > mostTurned) return {curve, lipschitz(ball) * length};
+    // Nowhere is it off by more than all of the ball is apart in the picture.
+    const double nearS = extent.place.y - extent.reach;
+    const double farS = extent.place.y + extent.reach;
+    const double apartX = farS > _view.end ? 2.0 * extent.x : 2.0 * _view.across * extent.reach;
+    const double apartY =
+        _view.along * (glsl::geofx_panoramaRise(_view, farS) - glsl::geofx_panoramaRise(_view, nearS)) +
+        2.0 * lift * (farS > _view.horizon ? extent.height : ball.radius * extent.stretch) + 2.0 * _view.arch;
+    const double apartN = 2.0 * extent.reach;
+    const double mostY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + apartY;
+    const double most = apartX * sideX + apartY * sideY +
+                        apartN * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
+                                  mostY * glm::length(_view.directionY));
+    return {curve, 0.0, most};
+}
+
+osg::ref_ptr<const PanoramaFrame> PanoramaFrame::mirrored(double level, double detail) const
+{
+    glsl::geofx_Panorama view = _view;
+    view.lift = -view.lift;
+    view.base = 2.0 * level - view.base;
+    return new PanoramaFrame(view, _viewDistance / detail);
+}
+
+double PanoramaFrame::longestEdge(const Ball& ball, double tolerance) const
+{
+    const Extent extent = extentOf(ball);
+    if (extent.place.y - extent.reach > _view.end) return HUGE_VAL;
+    // Of the picture's y: the curve's second derivative, and that of Eq. 1.
+    const double second =
+        _view.along * extent.slopeRate + std::abs(_view.arch) * 2.4675 * _view.across * _view.across;
+    return std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
+}
+
+bool PanoramaFrame::hides(const Ball& ball, const osg::Vec2d& room) const
+{
+    const Extent extent = extentOf(ball);
+    const double nearS = extent.place.y - extent.reach;
+    const double farS = extent.place.y + extent.reach;
+    if (nearS > 2.0 * _view.end - _view.horizon) return true;
+    // What has x and s of its own lies beside the picture or below it as the ground does, which its bounds in eye space, where
+    // everything there is stretched, may not tell.
+    if (extent.turned > mostTurned || farS > _view.end) return false;
+    if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside + room.x()) return true;
+    return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside - room.y();
+}
+
+bool PanoramaFrame::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
+{
+    const Ball ball = box.ball();
+    if (hides(ball, room)) return true;
+    const Extent extent = extentOf(ball);
+    if (extent.turned > mostTurned) return false;
+    // Places within the box lie between those of its corners, but for what the ground's curve adds.
+    double bent = 0.0;
+    for (const osg::Vec3d& half : box.half)
+        bent += extent.curvature * half.length2() / 2.0;
+    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+    for (int corner = 0; corner < 8; ++corner)
+    {
+        osg::Vec3d position = box.centre;
+        for (int axis = 0; axis < 3; ++axis)
+            position += box.half[axis] * (corner & (1 << axis) ? 1.0 : -1.0);
+        const glm::dvec3 place = glsl::geofx_panoramaPlace(_view, toGlm(position));
+        low = glm::min(low, place - bent);
+        high = glm::max(high, place + bent);
+    }
+    if (low.y > 2.0 * _view.end - _view.horizon) return true;
+    if (high.y > _view.end) return false;
+    const double side = beside + room.x();
+    if (_view.across * low.x > side || _view.across * high.x < -side) return true;
+
+    // Heights and Eq. 1 move what is shown there up or down.
+    const double lifts[] = {_view.lift * (low.z - _view.base), _view.lift * (high.z - _view.base)};
+    const auto lifted = [&](double lift, bool most)
+    {
+        const bool whole = (lift > 0.0) == most;
+        return lift * glsl::geofx_panoramaFade(_view, whole ? low.y : high.y);
+    };
+    const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 +
+                       lifted(std::max(lifts[0], lifts[1]), true);
+    if (top < -beside - room.y()) return true;
+    const double farthest = std::min(_view.across * std::max(std::abs(low.x), std::abs(high.x)), 2.0);
+    const double foot = _view.along * glsl::geofx_panoramaRise(_view, low.y) - 1.0 +
+                        lifted(std::min(lifts[0], lifts[1]), false) -
+                        std::abs(glsl::geofx_panoramaArch(_view, farthest));
+    return foot > beside + room.y();
+}
+
+std::optional<double> PanoramaFrame::viewDistance(const Ball&) const
+{
+    return _viewDistance;
+}
+
+DeformationFrame::Uniforms PanoramaFrame::uniforms() const
+{
+    const glsl::geofx_Exaggeration& globe = _view.globe;
+    return {
+        {"up", vec4(globe.up, globe.height)},
+        {"axis", vec4(globe.axis, globe.flattening)},
+        {"right", vec4(_view.right, globe.curvature)},
+        {"forward", vec4(_view.forward, globe.scale)},
+        {"scale", {_view.across, _view.along, _view.lift, _view.base}},
+        {"curve", {_view.curve, _view.horizon, _view.end, _view.arch}},
+        {"origin", vec4(_view.origin, _view.nearest)},
+        {"originX", vec4(_view.originX, 0.0)},
+        {"originY", vec4(_view.originY, 0.0)},
+        {"direction", vec4(_view.direction, 0.0)},
+        {"directionX", vec4(_view.directionX, 0.0)},
+        {"directionY", vec4(_view.directionY, 0.0)},
+    };
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/Deformation.h>
+#include <osgGeoFX/effect/GlslFunctions.h>
+
+#include <optional>
+
+namespace osgGeoFX
+{
+
+class PanoramaMap;
+
+/// Where a panorama map lies for a camera; nothing where the camera has no heading or shows nothing.
+std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const ViewGeometry& view);
+
+/// The tree line of a latitude (radians), metres.
+inline double treeLineAt(double latitude)
+{
+    return 0.8 * glsl::geofx_snowLine(latitude);
+}
+
+/** The projection of a panorama map for one camera and frame (shaders/lib/panorama.glsl). Immutable. */
+class PanoramaFrame : public DeformationFrame
+{
+public:
+    /// `viewDistance`: the distance at which the camera's own projection would show ground as large as the picture's base does,
+    /// metres.
+    PanoramaFrame(const glsl::geofx_Panorama& view, double viewDistance);
+
+    osg::Vec3d deform(const osg::Vec3d& position) const override;
+    osg::Vec3d undeform(const osg::Vec3d& position) const override;
+    /// The ground is lit as it lies.
+    osg::Vec3d deformNormal(const osg::Vec3d&, const osg::Vec3d& normal) const override { return normal; }
+    Reach reach(const Ball&) const override { return Reach::Curved; }
+    double lipschitz(const Ball& ball) const override;
+    Sag sag(const Ball& ball, const osg::Vec3d& edge) const override;
+    double longestEdge(const Ball& ball, double tolerance) const override;
+    bool hides(const Ball& ball, const osg::Vec2d& room) const override;
+    bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const override;
+    std::optional<double> viewDistance(const Ball& ball) const override;
+    Uniforms uniforms() const override;
+
+    const glsl::geofx_Panorama& view() const { return _view; }
+    /// The picture in a still water's surface at a height, metres: what stands `h` above it stands `h` below. `detail`: levels of
+    /// detail are that much finer.
+    osg::ref_ptr<const PanoramaFrame> mirrored(double level, double detail) const;
+
+protected:
+    ~PanoramaFrame() override;
+
+private:
+    struct Extent;
+    Extent extentOf(const Ball& ball) const;
+
+    glsl::geofx_Panorama _view;
+    double _viewDistance;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/panorama/detail/PanoramaScenery.h>
+
+#include <osgGeoFX/effect/PerCamera.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/detail/EyeVector.h>
+#include <osgGeoFX/panorama/detail/PanoramaEdge.h>
+#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaTextures.h>
+#include <osgGeoFX/panorama/detail/StrokeCompanion.h>
+
+#include <osg/ColorMask>
+#include <osg/Depth>
+#include <osg/FrameBufferObject>
+#include <osg/Notify>
+#include <osgUtil/CullVisitor>
+#include <osgUtil/RenderStage>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// The picture in the water is as many times smaller than the camera's: what is blurred needs no more.
+constexpr int mirrorShrink = 4;
+/// Over so many grounds one map may hang at a time, with strokes that stay.
+constexpr std::size_t mostGrounds = 8;
+/// Its levels of detail are as many times coarser.
+constexpr double mirrorDetail = 0.3;
+/// Drawn before the camera's picture, after the application's own textures.
+constexpr int mirrorOrder = -5;
+/// Over what is opaque, so that it is drawn where nothing else is.
+constexpr int skyBin = 8;
+
+osg::ref_ptr<osg::Geometry> createSquare()
+{
+    osg::ref_ptr<osg::Geometry> square = new osg::Geometry;
+    osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
+    for (const osg::Vec3& corner :
+         {osg::Vec3(-1, -1, 0), osg::Vec3(1, -1, 0), osg::Vec3(-1, 1, 0), osg::Vec3(1, 1, 0)})
+        corners->push_back(corner);
+    square->setVertexArray(corners);
+    square->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_STRIP, 0, 4));
+    square->setCullingActive(false);
+    square->setUseDisplayList(false);
+    square->setUseVertexBufferObjects(true);
+    return square;
+}
+
+osg::ref_ptr<osg::Texture2D> createTarget(int width, int height, bool depth)
+{
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+    texture->setTextureSize(width, height);
+    texture->setInternalFormat(depth ? GL_DEPTH_COMPONENT24 : GL_RGBA8);
+    if (depth) texture->setSourceFormat(GL_DEPTH_COMPONENT);
+    const auto filter = depth ? osg::Texture::NEAREST : osg::Texture::LINEAR;
+    texture->setFilter(osg::Texture::MIN_FILTER, filter);
+    texture->setFilter(osg::Texture::MAG_FILTER, filter);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    texture->setResizeNonPowerOfTwoHint(false);
+    return texture;
+}
+
+/// What one camera draws into the water in one of the frames that are on their way.
+class Mirror
+{
+public:
+    /// The stage of this frame, cleared, with a picture of the camera's proportions.
+    osgUtil::RenderStage& begin(osgUtil::CullVisitor& outer)
+    {
+        const osg::Viewport& viewport = *outer.getViewport();
+        const int width = std::max(1, static_cast<int>(viewport.width()) / mirrorShrink);
+        const int height = std::max(1, static_cast<int>(viewport.height()) / mirrorShrink);
+        if (!_colours || _colours->getTextureWidth() != width || _colours->getTextureHeight() != height)
+        {
+            _colours = createTarget(width, height, false);
+            _depths = createTarget(width, height, true);
+            _target = new osg::FrameBufferObject;
+            _target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(_colours));
+            _target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(_depths));
+            _viewport = new osg::Viewport(0, 0, width, height);
+        }
+        if (!_stage) _stage = new osgUtil::RenderStage;
+        _stage->reset();
+        osgUtil::RenderStage& camera = *outer.getCurrentRenderBin()->getStage();
+        _stage->setInheritedPositionalStateContainerMatrix(osg::Matrixd());
+        _stage->setInheritedPositionalStateContainer(camera.getPositionalStateContainer());
+        _stage->setInitialViewMatrix(camera.getInitialViewMatrix());
+        _stage->setDrawBuffer(GL_NONE, false);
+        _stage->setReadBuffer(GL_NONE, false);
+        _stage->setColorMask(new osg::ColorMask);
+        _stage->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        _stage->setClearColor(osg::Vec4(0.6f, 0.7f, 0.85f, 1.0f));
+        _stage->setClearDepth(1.0);
+        _stage->setViewport(_viewport);
+        _stage->setFrameBufferObject(_target);
+        camera.addPreRenderStage(_stage, mirrorOrder);
+        return *_stage;
+    }
+
+    void resizeGLObjectBuffers(unsigned int size)
+    {
+        osg::resizeGLObjectBuffers(_colours, size);
+        osg::resizeGLObjectBuffers(_depths, size);
+        osg::resizeGLObjectBuffers(_target, size);
+    }
+
+    osg::Texture2D* colours() const { return _colours; }
+    osg::Viewport* viewport() const { return _viewport; }
+    osg::StateSet& state() { return *_state; }
+    osg::StateSet& skyState(bool mirrored) { return *(mirrored ? _mirroredSky : _sky); }
+
+    void releaseGLObjects(osg::State* state) const
+    {
+        if (_colours) _colours->releaseGLObjects(state);
+        if (_depths) _depths->releaseGLObjects(state);
+        if (_target) _target->releaseGLObjects(state);
+    }
+
+private:
+    osg::ref_ptr<osg::Texture2D> _colours, _depths;
+    osg::ref_ptr<osg::FrameBufferObject> _target;
+    osg::ref_ptr<osg::Viewport> _viewport;
+    osg::ref_ptr<osgUtil::RenderStage> _stage;
+    osg::ref_ptr<osg::StateSet> _state = new osg::StateSet;
+    osg::ref_ptr<osg::StateSet> _sky = new osg::StateSet;
+    osg::ref_ptr<osg::StateSet> _mirroredSky = new osg::StateSet;
+};
+
+constexpr auto forced = osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
+
+/// Uniforms whose names begin with the prefix, by what is in a frame of the projection.
+void setFrame(osg::StateSet& state, const std::string& prefix, const PanoramaFrame& frame)
+{
+    for (const auto& [name, value] : frame.uniforms())
+        state.getOrCreateUniform(prefix + name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
+}
+
+} // namespace
+
+class PanoramaMap::Scenery::Cameras
+{
+public:
+    /// What one traversal of a frame needs until it is drawn.
+    struct Look
+    {
+        Mirror mirror;
+        StrokeCompanion strokes;
+    };
+
+    /// One camera's. Its cull visitor may come by several times, for a camera that renders to a texture or a scene with two
+    /// parents, before anything is drawn.
+    class Looks
+    {
+    public:
+        /// That of the traversal that is on its way.
+        Look& now(const ScenePass& pass)
+        {
+            if (pass.frame != _frame) _used = 0;
+            _frame = pass.frame;
+            if (_used == _all.size()) _all.push_back(std::make_unique<Look>());
+            return *_all[_used];
+        }
+        /// The traversal needs its look no more until it is drawn.
+        void end() { ++_used; }
+
+        void resizeGLObjectBuffers(unsigned int size)
+        {
+            for (const std::unique_ptr<Look>& each : _all)
+            {
+                each->mirror.resizeGLObjectBuffers(size);
+                each->strokes.resizeGLObjectBuffers(size);
+            }
+        }
+        void releaseGLObjects(osg::State* state) const
+        {
+            for (const std::unique_ptr<Look>& each : _all)
+            {
+                each->mirror.releaseGLObjects(state);
+                each->strokes.releaseGLObjects(state);
+            }
+        }
+
+    private:
+        unsigned int _frame = 0; ///< ScenePass::frame
+        std::vector<std::unique_ptr<Look>> _all;
+        std::size_t _used = 0;
+    };
+    PerCamera<Looks> looks;
+
+    /// Who makes the strokes of a terrain, with the map's parameters. Scenes over different grounds, whose threads may ask at once,
+    /// have different ones.
+    osg::ref_ptr<StrokeMaker> maker(const PanoramaMap& map, const osgGeoFX::Ground& ground)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        const double latitude = std::clamp(ground.latitude, -1.4, 1.4);
+        const auto madeFor = [&](double at)
+        {
+            return std::find_if(_makers.begin(), _makers.end(),
+                                [&](const osg::ref_ptr<StrokeMaker>& each) {
+                                    return each->isFor(ground.ellipsoid) &&
+                                           each->getParameters().referenceLatitude == at;
+                                });
+        };
+        auto known = madeFor(latitude);
+        // A maker that a pager has been given before there was a terrain goes on with it.
+        if (known == _makers.end()) known = madeFor(0.0);
+        const osg::ref_ptr<StrokeMaker> maker =
+            known == _makers.end() ? new StrokeMaker(ground.ellipsoid) : known->get();
+        // The one that was asked for last comes first.
+        if (known != _makers.end()) _makers.erase(known);
+        _makers.insert(_makers.begin(), maker);
+        if (_makers.size() > mostGrounds) _makers.pop_back();
+        StrokeParameters parameters;
+        parameters.spacing = map.getStrokeStep();
+        parameters.referenceLatitude = latitude;
+        parameters.coverUnit = map.getCoverUnit();
+        parameters.cliffSlope = 1.2 * map.getCliffSlope();
+        parameters.treeLine = map.getTreeLine() >= 0.0 ? map.getTreeLine() : treeLineAt(ground.latitude);
+        parameters.lines = map.getLines();
+        if (maker->getParameters() != parameters) maker->setParameters(parameters);
+        return maker;
+    }
+
+    osg::Program* skyProgram()
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        if (!_skyProgram)
+            _skyProgram = ShaderLibrary::createProgram("osgGeoFX sky", "stages/panorama.sky.vert",
+                                                       "stages/panorama.sky.frag");
+        return _skyProgram;
+    }
+
+    osg::Geometry* square() const { return _square; }
+
+    void resizeGLObjectBuffers(unsigned int size)
+    {
+        looks.resizeGLObjectBuffers(size);
+        const std::lock_guard<std::mutex> lock(_mutex);
+        osg::resizeGLObjectBuffers(_skyProgram, size);
+        _square->resizeGLObjectBuffers(size);
+    }
+
+    void releaseGLObjects(osg::State* state) const
+    {
+        looks.releaseGLObjects(state);
+        const std::lock_guard<std::mutex> lock(_mutex);
+        if (_skyProgram) _skyProgram->releaseGLObjects(state);
+        _square->releaseGLObjects(state);
+    }
+
+private:
+    mutable std::mutex _mutex;
+    std::vector<osg::ref_ptr<StrokeMaker>> _makers;
+    osg::ref_ptr<osg::Program> _skyProgram;
+    osg::ref_ptr<osg::Geometry> _square = createSquare();
+};
+
+PanoramaMap::Scenery::Scenery(const PanoramaMap& map, PanoramaTextures& textures)
+    : _map(map), _textures(textures), _cameras(std::make_unique<Cameras>())
+{
+}
+
+PanoramaMap::Scenery::~Scenery() = default;
+
+const Properties& PanoramaMap::Scenery::properties() const
+{
+    static const Properties none;
+    return none;
+}
+
+void PanoramaMap::Scenery::cull(const ScenePass& pass)
+{
+    Cameras::Looks& looks = _cameras->looks.of(pass.outer, pass.scene);
+    Mirror& mirror = looks.now(pass).mirror;
+    looks.end();
+    if (!pass.outer.getViewport()) return;
+    const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(_map, pass.view);
+    if (!panorama) return;
+    const bool reflects = _map.getWater() && _map.getReflection() > 0.0 && _map.getPaint();
+    osg::Program* skyProgram = _map.getSky() ? _cameras->skyProgram() : nullptr;
+    const auto fillSky = [&](bool mirrored) -> osg::StateSet&
+    {
+        osg::StateSet& state = mirror.skyState(mirrored);
+        state.setRenderBinDetails(skyBin, "RenderBin");
+        state.setAttributeAndModes(skyProgram, osg::StateAttribute::ON | forced);
+        state.setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
+                                   osg::StateAttribute::ON | forced);
+        state.setMode(GL_DEPTH_TEST, osg::StateAttribute::ON | forced);
+        state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
+        state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
+        state.setTextureAttribute(0, _textures.sky(_map), forced);
+        state.setTextureAttribute(1, reflects && !mirrored ? mirror.colours() : _textures.noCover().get(),
+                                  forced);
+        state.setTextureAttribute(2, _textures.brush(), forced);
+        state.getOrCreateUniform("geofx_sky", osg::Uniform::SAMPLER_2D)->set(0);
+        state.getOrCreateUniform("geofx_skyMirror", osg::Uniform::SAMPLER_2D)->set(1);
+        state.getOrCreateUniform("geofx_skyBrush", osg::Uniform::SAMPLER_2D)->set(2);
+        const auto put = [&](const char* name, double x, double y, double z, double w)
+        {
+            state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4(osg::Vec4d(x, y, z, w)));
+        };
+        const auto putAll = [&](const char* name, const osg::Vec4d& v)
+        {
+            put(name, v.x(), v.y(), v.z(), v.w());
+        };
+        const PanoramaEdge edge(_map, _textures, pass.view, *pass.outer.getModelViewMatrix(), *panorama);
+        putAll("geofx_skyPlace", edge.sky);
+        putAll("geofx_skyEdgeEye", edge.eye);
+        putAll("geofx_skyEdgeWays", edge.ways);
+        putAll("geofx_skyEdgeKind", edge.kind);
+        state.setTextureAttribute(3, edge.map, forced);
+        state.getOrCreateUniform("geofx_skyEdge", osg::Uniform::SAMPLER_2D)->set(3);
+        put("geofx_skyCurve", panorama->along, panorama->curve, panorama->horizon, panorama->end);
+        // Where the water's ripples lie on the ground, also where there is none.
+        const auto axis = [&](const char* name, const std::string& ground)
+        {
+            const osg::Uniform* uniform = pass.state.getUniform(pass.prefix + ground);
+            osg::Vec4f row;
+            if (uniform) uniform->get(row);
+            const osg::Vec3d along(osg::Vec3f(row.x(), row.y(), row.z()));
+            put(name, toOsg(panorama->right) * along / panorama->across, toOsg(panorama->forward) * along,
+                static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along),
+                1.0 / panorama->across);
+        };
+        axis("geofx_skyAxisX", "brushX");
+        axis("geofx_skyAxisY", "brushY");
+        put("geofx_skyWater", _map.getDeepShore(), _map.getReflection(), _map.getRipples(), 0.0);
+        const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
+        put("geofx_skyClock", stamp ? std::fmod(stamp->getSimulationTime(), 3600.0) : 0.0,
+            _map.getAtmosphere(), reflects ? 1.0 : 0.0, 0.0);
+        return state;
+    };
+    const auto drawSky = [&](osgUtil::CullVisitor& visitor, bool mirrored)
+    {
+        visitor.pushStateSet(&fillSky(mirrored));
+        visitor.addDrawableAndDepth(_cameras->square(), visitor.getModelViewMatrix(), 0.0f);
+        visitor.popStateSet();
+    };
+    if (!reflects)
+    {
+        if (skyProgram) drawSky(pass.outer, false);
+        return;
+    }
+    osgUtil::RenderStage& stage = mirror.begin(pass.outer);
+    if (skyProgram) drawSky(pass.outer, false);
+    osg::ref_ptr<DeformationChain> chain = new DeformationChain;
+    osg::StateSet& state = mirror.state();
+    bool turned = false;
+    for (const auto& frame : pass.chain.frames())
+    {
+        const auto* own = dynamic_cast<const PanoramaFrame*>(frame.get());
+        osg::ref_ptr<const DeformationFrame> seen = frame;
+        if (own)
+        {
+            const osg::ref_ptr<const PanoramaFrame> mirrored = own->mirrored(0.0, mirrorDetail);
+            setFrame(state, pass.prefix, *mirrored);
+            seen = mirrored;
+            turned = true;
+        }
+        chain->add(seen);
+    }
+    state.setDefine("GEOFX_MIRROR", osg::StateAttribute::ON);
+    state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
+    state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
+    state.setAttribute(mirror.viewport(), forced);
+    const auto unit = static_cast<unsigned int>(pass.units[MirrorUnit]);
+    // Another effect may have its texture now where this was.
+    for (unsigned int former = 0; former < state.getNumTextureAttributeLists(); ++former)
+        state.removeTextureAttribute(former, osg::StateAttribute::TEXTURE);
+    state.setTextureAttribute(unit, _textures.noCover(), forced);
+    const osg::Viewport& size = *mirror.viewport();
+    state.getOrCreateUniform(pass.prefix + "window", osg::Uniform::FLOAT_VEC4)
+        ->set(osg::Vec4(0.0f, 0.0f, static_cast<float>(1.0 / size.width()),
+                        static_cast<float>(1.0 / size.height())));
+
+    const osg::ref_ptr<osg::Program> program = pass.sceneProgram();
+    const ScenePass::Drawing drawing = {program, &state, &stage, chain};
+    // It is the projection that turns the ground over; without it there is the sky to reflect.
+    if (turned) pass.draw(drawing);
+    if (skyProgram)
+    {
+        const ScenePass::Piece sky = {_cameras->square(), *pass.outer.getModelViewMatrix(), &fillSky(true)};
+        pass.draw({sky}, drawing);
+    }
+    pass.state.setTextureAttribute(unit, mirror.colours());
+}
+
+DrawableCompanion* PanoramaMap::Scenery::companion(const ScenePass& pass)
+{
+    if (!_map.getStrokes() || !_map.getPaint()) return nullptr;
+    StrokeCompanion& strokes = _cameras->looks.of(pass.outer, pass.scene).now(pass).strokes;
+    return strokes.begin(pass, _map, *_cameras->maker(_map, pass.view.ground)) ? &strokes : nullptr;
+}
+
+osg::ref_ptr<TileListener> PanoramaMap::Scenery::tileListener(const osgGeoFX::Ground& ground)
+{
+    return _cameras->maker(_map, ground);
+}
+
+void PanoramaMap::Scenery::resizeGLObjectBuffers(unsigned int size)
+{
+    _cameras->resizeGLObjectBuffers(size);
+}
+
+void PanoramaMap::Scenery::releaseGLObjects(osg::State* state) const
+{
+    _cameras->releaseGLObjects(state);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/DrawableCompanion.h>
+#include <osgGeoFX/effect/PassEffect.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/StrokeMaker.h>
+
+#include <osg/Texture2D>
+#include <osg/observer_ptr>
+
+#include <cstddef>
+#include <map>
+#include <set>
+
+namespace osgGeoFX
+{
+
+/** Draws the strokes of each terrain tile that one camera has in sight. Tiles are geometries that say what lies on them (a
+    texture at PanoramaMap's coverUnit); what else is in the scene has no strokes. */
+class StrokeCompanion final : public DrawableCompanion
+{
+public:
+    /// For one frame. False where there is nothing to be drawn.
+    bool begin(const ScenePass& pass, const PanoramaMap& map, StrokeMaker& maker);
+
+    void start() override { _given.clear(); }
+    osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) override;
+    osg::StateSet* state() override { return _state; }
+    double reach() const override { return _reach; }
+    /// Of the points, which tiles keep to themselves; the program is the scene's.
+    void resizeGLObjectBuffers(unsigned int size);
+    void releaseGLObjects(osg::State* state) const;
+
+private:
+    void forgetGone();
+
+    osg::ref_ptr<osg::StateSet> _state = new osg::StateSet;
+    osg::ref_ptr<StrokeMaker> _maker;
+    osg::Matrixd _toWorld; ///< from eye space
+    unsigned int _coverUnit = 0;
+    double _reach = 0.0; ///< pixels from a stroke's foot to its end, at most
+    std::map<const osg::Drawable*, osg::observer_ptr<osg::Drawable>> _drawn; ///< all strokes so far, and
+    std::set<const osg::Drawable*> _given;                                   ///< in the traversal under way
+    std::size_t _remembered = 0; ///< how many lived when last looked
+};
+
+} // namespace osgGeoFX

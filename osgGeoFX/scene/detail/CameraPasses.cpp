@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/CameraPasses.h>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+CompensatingCullVisitor::Task taskOf(const CompensatingCullVisitor::Task& scene,
+                                     const ScenePass::Drawing& drawing)
+{
+    CompensatingCullVisitor::Task task = scene;
+    task.companions.clear();
+    task.debugBounds = false;
+    task.findsNearAndFar = false;
+    task.program = drawing.program;
+    task.stage = drawing.stage;
+    task.passState = drawing.state;
+    if (drawing.chain) task.chain = drawing.chain;
+    if (drawing.filter) task.compensate = true;
+    return task;
+}
+
+} // namespace
+
+template<class Visitor>
+Visitor& CameraPasses::of(Visitors<Visitor>& visitors, osg::Program* program, osgUtil::CullVisitor& outer)
+{
+    Known<Visitor>& known = visitors[program];
+    if (!known.visitor)
+    {
+        known.program = program;
+        known.visitor = new Visitor;
+        known.visitor->startFrame(outer);
+    }
+    known.used = true;
+    return *known.visitor;
+}
+
+template<class Visitor>
+void CameraPasses::startFrame(Visitors<Visitor>& visitors, osgUtil::CullVisitor& outer)
+{
+    for (auto entry = visitors.begin(); entry != visitors.end();)
+    {
+        Known<Visitor>& known = entry->second;
+        if (!known.used)
+        {
+            entry = visitors.erase(entry);
+            continue;
+        }
+        known.used = false;
+        known.visitor->startFrame(outer);
+        ++entry;
+    }
+}
+
+void CameraPasses::startFrame(osgUtil::CullVisitor& outer)
+{
+    ++_frame;
+    startFrame(_wholes, outer);
+    startFrame(_parts, outer);
+}
+
+void CameraPasses::draw(osgUtil::CullVisitor& outer, osg::Group& scene,
+                        const CompensatingCullVisitor::Task& task, const ScenePass::Drawing& drawing)
+{
+    const CompensatingCullVisitor::Task pass = taskOf(task, drawing);
+    if (drawing.filter)
+        of(_parts, drawing.program, outer).run(outer, scene, pass, *drawing.filter);
+    else
+        of(_wholes, drawing.program, outer).run(outer, scene, pass);
+}
+
+void CameraPasses::draw(osgUtil::CullVisitor& outer, const std::vector<ScenePass::Piece>& pieces,
+                        const CompensatingCullVisitor::Task& task, const ScenePass::Drawing& drawing)
+{
+    CompensatingCullVisitor::Task pass = taskOf(task, drawing);
+    // Nothing is culled, and OSG would look for near and far.
+    pass.compensate = true;
+    of(_wholes, drawing.program, outer).run(outer, pieces, pass);
+}
+
+CameraPass::CameraPass(const Traversal& traversal, const std::string& names,
+                       const std::vector<int>& textureUnits)
+    : ScenePass(traversal.outer, traversal.scene, traversal.view, *traversal.task.chain, traversal.state,
+                names, textureUnits, traversal.compensate, traversal.passes.frame()),
+      _traversal(traversal)
+{
+}
+
+osg::ref_ptr<osg::Program> CameraPass::program(const PassShaders& shaders) const
+{
+    return _traversal.programs.passProgramOf(_traversal.effects, shaders, prefix);
+}
+
+osg::ref_ptr<osg::Program> CameraPass::sceneProgram() const
+{
+    return _traversal.programs.programOf(_traversal.effects);
+}
+
+void CameraPass::draw(const Drawing& drawing) const
+{
+    _traversal.passes.draw(outer, scene, _traversal.task, drawing);
+}
+
+void CameraPass::draw(const std::vector<Piece>& pieces, const Drawing& drawing) const
+{
+    _traversal.passes.draw(outer, pieces, _traversal.task, drawing);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/CameraState.h>
+
+#include <osgGeoFX/effect/SurfaceEffect.h>
+#include <osgGeoFX/effect/detail/TileNormals.h>
+#include <osgGeoFX/scene/detail/ContextWatch.h>
+#include <osgGeoFX/scene/detail/FixedFunctionLook.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+void setDefine(osg::StateSet& state, const std::string& name, bool on)
+{
+    state.setDefine(name, on ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
+}
+
+bool finite(const DeformationFrame::Uniforms& uniforms)
+{
+    return std::all_of(uniforms.begin(), uniforms.end(),
+                       [](const auto& uniform)
+                       {
+                           const osg::Vec4d& value = uniform.second;
+                           return std::isfinite(static_cast<float>(value.x())) &&
+                                  std::isfinite(static_cast<float>(value.y())) &&
+                                  std::isfinite(static_cast<float>(value.z())) &&
+                                  std::isfinite(static_cast<float>(value.w()));
+                       });
+}
+
+} // namespace
+
+CameraFrames::CameraFrames(const EffectProgram::Effects& effects, const ViewGeometry& first)
+    : _all(effects.size())
+{
+    ViewGeometry view = first;
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        const Deformation* deformation = effects[i]->asDeformation();
+        if (!deformation || !effects[i]->getEnabled()) continue;
+        const osg::ref_ptr<const DeformationFrame> frame = deformation->frame(view);
+        if (!frame) continue;
+        DeformationFrame::Uniforms uniforms = frame->uniforms();
+        if (!finite(uniforms)) continue;
+        _all[i] = {frame, std::move(uniforms)};
+        deformation->changeGround(view.ground);
+    }
+}
+
+osg::ref_ptr<DeformationChain> CameraFrames::chain(const Ground& ground) const
+{
+    osg::ref_ptr<DeformationChain> result = new DeformationChain;
+    result->setTiles(ground.tileEdge, ground.tileError);
+    for (const Placed& placed : _all)
+    {
+        if (placed.frame) result->add(placed.frame);
+    }
+    return result;
+}
+
+CameraState::CameraState(const EffectProgram::Effects& effects, int mapUnit,
+                         const std::shared_ptr<const TextureUnits>& units)
+    : _units(units)
+{
+    for (int unit = 0; unit < FixedFunctionLook::units; ++unit)
+        _set->addUniform(new osg::Uniform(("geofx_texture" + std::to_string(unit)).c_str(), unit));
+    _set->addUniform(new osg::Uniform("geofx_normals", static_cast<int>(TileNormals::unit)));
+    _set->addUniform(new osg::Uniform("geofx_map", std::max(mapUnit, 0)));
+    _set->setAttribute(new ContextWatch(effects));
+}
+
+/// The uniform in a place of an effect's list.
+osg::Uniform& CameraState::uniformAt(std::size_t effect, std::size_t place, const std::string& name)
+{
+    std::vector<osg::ref_ptr<osg::Uniform>>& known = _uniforms[effect];
+    if (known.size() <= place) known.resize(place + 1);
+    osg::ref_ptr<osg::Uniform>& uniform = known[place];
+    // Another effect may have taken the former one's place; what comes before the name is the place's.
+    const bool same =
+        uniform && uniform->getName().size() > name.size() &&
+        uniform->getName().compare(uniform->getName().size() - name.size(), name.size(), name) == 0;
+    if (!same)
+        uniform = _set->getOrCreateUniform(EffectProgram::prefix(effect) + name, osg::Uniform::FLOAT_VEC4);
+    return *uniform;
+}
+
+void CameraState::fill(const CameraFrames& frames, int mapUnit)
+{
+    _set->getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(mapUnit, 0));
+    setDefine(*_set, "GEOFX_DEFORMATION", true);
+    const std::vector<CameraFrames::Placed>& all = frames.all();
+    _uniforms.resize(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+        setDefine(*_set, EffectProgram::define(i), all[i].frame.valid());
+        for (std::size_t place = 0; place < all[i].uniforms.size(); ++place)
+        {
+            const auto& [name, value] = all[i].uniforms[place];
+            uniformAt(i, place, name).set(osg::Vec4f(value));
+        }
+    }
+}
+
+bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const ViewGeometry& geometry,
+                               osgUtil::CullVisitor& outer)
+{
+    bool any = false;
+    bool repainted = false;
+    const osg::Viewport* viewport = outer.getViewport();
+    const osg::FrameStamp* stamp = outer.getFrameStamp();
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        SurfaceEffect* surface = effects[i]->asSurfaceEffect();
+        if (!surface) continue;
+        const SurfaceView view = {geometry,
+                                  *outer.getModelViewMatrix(),
+                                  viewport ? viewport->x() : 0.0,
+                                  viewport ? viewport->y() : 0.0,
+                                  viewport ? viewport->width() : 0.0,
+                                  viewport ? viewport->height() : 0.0,
+                                  stamp ? stamp->getSimulationTime() : 0.0,
+                                  _units->ofEffects[i]};
+        const bool draws = effects[i]->getEnabled() && _units->complete[i] &&
+                           surface->fill(*_set, EffectProgram::prefix(i), view);
+        setDefine(*_set, EffectProgram::surfaceDefine(i), draws);
+        any = any || draws;
+        repainted = repainted || (draws && surface->repaints());
+    }
+    setDefine(*_set, "GEOFX_PAINTED", repainted);
+    return any;
+}
+
+} // namespace osgGeoFX

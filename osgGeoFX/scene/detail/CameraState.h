@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/TextureUnits.h>
+#include <osgGeoFX/scene/detail/EffectProgram.h>
+
+#include <osg/StateSet>
+#include <osg/Uniform>
+#include <osgUtil/CullVisitor>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// The deformations of a camera, by the effects of its scene.
+class CameraFrames
+{
+public:
+    CameraFrames(const EffectProgram::Effects& effects, const ViewGeometry& view);
+
+    /// All of them, one after the other.
+    osg::ref_ptr<DeformationChain> chain(const Ground& ground) const;
+
+    /// What a deformation does for the camera; no frame where it does nothing.
+    struct Placed
+    {
+        osg::ref_ptr<const DeformationFrame> frame;
+        DeformationFrame::Uniforms uniforms;
+    };
+    const std::vector<Placed>& all() const { return _all; }
+
+private:
+    std::vector<Placed> _all;
+};
+
+/// Uniforms, defines and textures of all effects for one traversal of one camera. For one thread at a time.
+class CameraState
+{
+public:
+    CameraState(const EffectProgram::Effects& effects, int mapUnit,
+                const std::shared_ptr<const TextureUnits>& units);
+
+    /// Of the effects that it was made for.
+    const std::shared_ptr<const TextureUnits>& units() const { return _units; }
+    osg::StateSet& set() const { return *_set; }
+    void fill(const CameraFrames& frames, int mapUnit);
+    /// Of the effects that colour surfaces; whether there are any at work.
+    bool fillSurfaces(const EffectProgram::Effects& effects, const ViewGeometry& geometry,
+                      osgUtil::CullVisitor& outer);
+
+private:
+    osg::Uniform& uniformAt(std::size_t effect, std::size_t place, const std::string& name);
+
+    osg::ref_ptr<osg::StateSet> _set = new osg::StateSet;
+    std::shared_ptr<const TextureUnits> _units;
+    /// Those of each effect, in the order of its list: to look for them by name takes longer than to set them.
+    std::vector<std::vector<osg::ref_ptr<osg::Uniform>>> _uniforms;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,501 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
+
+#include <osgGeoFX/effect/DrawableCompanion.h>
+#include <osgGeoFX/scene/RigidReference.h>
+
+#include <osg/OcclusionQueryNode>
+#include <osg/Projection>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Members of OSG's cull visitor that have no accessors; a pointer to member may be formed in a derived class.
+struct Access : public osgUtil::CullVisitor
+{
+    static unsigned int& order(osgUtil::CullVisitor& visitor)
+    {
+        return visitor.*(&Access::_traversalOrderNumber);
+    }
+    static unsigned int& overrides(osgUtil::CullVisitor& visitor)
+    {
+        return visitor.*(&Access::_numberOfEncloseOverrideRenderBinDetails);
+    }
+    static std::vector<osgUtil::RenderBin*>& bins(osgUtil::CullVisitor& visitor)
+    {
+        return visitor.*(&Access::_renderBinStack);
+    }
+};
+
+/// Whether a transform's children ask for nothing but its matrix: geometry, and no callbacks.
+bool holdsGeometryOnly(const osg::Transform& node)
+{
+    if (node.getCullCallback() || node.getReferenceFrame() != osg::Transform::RELATIVE_RF) return false;
+    for (unsigned int i = 0; i < node.getNumChildren(); ++i)
+    {
+        const osg::Node* child = node.getChild(i);
+        if (!child->asGeometry() || child->getCullCallback()) return false;
+    }
+    return true;
+}
+
+} // namespace
+
+CompensatingCullVisitor::Scope::Scope(CompensatingCullVisitor& visitor, const osg::Node& node)
+    : _visitor(visitor), _former(visitor._mode)
+{
+    if (!visitor._mode.ours) return;
+    visitor.meet(node.getStateSet());
+    if (visitor._task.compensate) _skip = visitor.outOfSight(node);
+}
+
+CompensatingCullVisitor::CompensatingCullVisitor() : _nothing(new DeformationChain) {}
+
+CompensatingCullVisitor::~CompensatingCullVisitor() = default;
+
+bool CompensatingCullVisitor::startsFrame(osgUtil::CullVisitor& outer)
+{
+    // The outer visitor's leaves of the last frame have been drawn when it begins a new one; so have ours.
+    const unsigned int frame = outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
+    const bool starts = frame != _frame || Access::order(outer) < _order;
+    if (starts) startFrame(outer);
+    // Also where nothing is drawn until it is asked again.
+    _order = Access::order(outer);
+    return starts;
+}
+
+void CompensatingCullVisitor::startFrame(osgUtil::CullVisitor& outer)
+{
+    _frame = outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
+    reset();
+    _placedUsed = 0;
+    _programs.startFrame();
+    _drawables.purge();
+}
+
+void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& task)
+{
+    _task = task;
+    _looks.begin(task.program, task.following, task.mapUnit);
+
+    setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
+    setTraversalNumber(outer.getTraversalNumber());
+    setTraversalMode(outer.getTraversalMode());
+    setTraversalMask(outer.getTraversalMask());
+    setNodeMaskOverride(outer.getNodeMaskOverride());
+    setDatabaseRequestHandler(outer.getDatabaseRequestHandler());
+    setImageRequestHandler(outer.getImageRequestHandler());
+    getNodePath() = outer.getNodePath();
+    setUserDataContainer(outer.getUserDataContainer());
+    setIdentifier(outer.getIdentifier());
+    setRenderInfo(outer.getRenderInfo());
+    setCullSettings(outer);
+
+    _rootStateGraph = outer.getRootStateGraph();
+    _currentStateGraph = outer.getCurrentStateGraph();
+    _rootRenderStage = outer.getRenderStage();
+    _currentRenderBin = outer.getCurrentRenderBin();
+    _renderBinStack = Access::bins(outer);
+    if (task.stage)
+    {
+        _rootRenderStage = task.stage;
+        _currentRenderBin = task.stage;
+        _renderBinStack.clear();
+    }
+    _traversalOrderNumber = Access::order(outer);
+    _numberOfEncloseOverrideRenderBinDetails = Access::overrides(outer);
+    _entry = _currentStateGraph;
+
+    _outerCullingMode = outer.getCullingMode();
+    _outerNearFar = task.findsNearAndFar ? outer.getComputeNearFarMode() : DO_NOT_COMPUTE_NEAR_FAR;
+    if (task.compensate)
+    {
+        setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
+    }
+    pushViewport(outer.getViewport());
+    pushProjectionMatrix(outer.getProjectionMatrix());
+    setVisibility(outer);
+    // OSG's own tests, which the base class makes, pass everything.
+    if (task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
+    pushReferenceViewPoint(outer.getReferenceViewPoint());
+    // OSG knows a matrix by its address, and each stage loads another one behind its back: stages must not share any.
+    osg::RefMatrix* modelView =
+        task.stage ? createOrReuseMatrix(*outer.getModelViewMatrix()) : outer.getModelViewMatrix();
+    pushModelViewMatrix(modelView, osg::Transform::RELATIVE_RF);
+    if (task.compensate) getCurrentCullingSet().setCullingMask(NO_CULLING);
+
+    _mode = Mode();
+    _mode.chain = task.chain;
+    meetAll(*_entry);
+    meet(task.state);
+    _strangers.clear();
+    _ownGraphs.clear();
+    _graphsBefore = graphsIn(*_currentRenderBin->getStage());
+    _top = _entry;
+    _mode.planes = _sight.all();
+    _scale = largestScale(*getModelViewMatrix());
+    _drawables.begin(
+        {_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR, _outerCullingMode != NO_CULLING, task.debugBounds});
+}
+
+void CompensatingCullVisitor::setVisibility(const osgUtil::CullVisitor& outer)
+{
+    const bool culls = cullsByPicture();
+    Visibility::Camera camera;
+    camera.projection = *getProjectionMatrix();
+    camera.viewport = getViewport();
+    if (culls && (_outerCullingMode & VIEW_FRUSTUM_CULLING))
+        camera.planes = &getProjectionCullingStack().back().getFrustum();
+    camera.sides = (_outerCullingMode & VIEW_FRUSTUM_SIDES_CULLING) != 0;
+    camera.nearPlane = (_outerCullingMode & NEAR_PLANE_CULLING) != 0;
+    camera.farPlane = (_outerCullingMode & FAR_PLANE_CULLING) != 0;
+    if (culls && (_outerCullingMode & SMALL_FEATURE_CULLING))
+        camera.smallPixels = static_cast<double>(outer.getSmallFeatureCullingPixelSize());
+    for (const DrawableCompanion* each : _task.companions)
+        camera.reach = std::max(camera.reach, each->reach());
+    _sight.set(camera);
+}
+
+void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
+{
+    adoptLeaves();
+    _order = _traversalOrderNumber;
+    Access::order(outer) = _traversalOrderNumber;
+    if (!_task.compensate)
+    {
+        // Found by the base class, as OSG finds it.
+        computeNearPlane();
+        if (_computed_zfar >= _computed_znear) _drawables.depths().include(_computed_znear, _computed_zfar);
+        _computed_znear = static_cast<value_type>(FLT_MAX);
+        _computed_zfar = -static_cast<value_type>(FLT_MAX);
+    }
+    DepthRange& depths = _drawables.depths();
+    depths.settle();
+    if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && depths.farthest() >= depths.nearest())
+    {
+        outer.setCalculatedNearPlane(std::min(outer.getCalculatedNearPlane(), depths.nearest()));
+        outer.setCalculatedFarPlane(std::max(outer.getCalculatedFarPlane(), depths.farthest()));
+    }
+    popModelViewMatrix();
+    popReferenceViewPoint();
+    setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
+    popProjectionMatrix();
+    popViewport();
+}
+
+void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task)
+{
+    begin(outer, task);
+    for (DrawableCompanion* each : task.companions)
+        each->start();
+    if (task.state) pushStateSet(task.state);
+    if (task.passState) pushStateSet(task.passState);
+    _top = _currentStateGraph;
+    for (unsigned int i = 0; i < scene.getNumChildren(); ++i)
+        scene.getChild(i)->accept(*this);
+    if (task.passState) popStateSet();
+    if (task.state) popStateSet();
+    if (task.debugBounds)
+    {
+        osg::Geometry& bounds = _drawables.bounds().geometry();
+        pushStateSet(bounds.getStateSet());
+        addLeaf(bounds, createOrReuseMatrix(osg::Matrix()), 0.0);
+        popStateSet();
+    }
+    end(outer);
+}
+
+void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const std::vector<ScenePass::Piece>& pieces,
+                                  const Task& task)
+{
+    begin(outer, task);
+    pushStateSet(task.state);
+    if (task.passState) pushStateSet(task.passState);
+    for (const ScenePass::Piece& piece : pieces)
+    {
+        if (piece.state) pushStateSet(piece.state);
+        addLeaf(*piece.drawable, createOrReuseMatrix(piece.modelView), 0.0);
+        if (piece.state) popStateSet();
+    }
+    if (task.passState) popStateSet();
+    popStateSet();
+    end(outer);
+}
+
+Ball CompensatingCullVisitor::eyeBall(const osg::BoundingSphere& sphere) const
+{
+    const auto* modelView = _modelviewStack.back().get();
+    return {osg::Vec3d(sphere.center()) * *modelView, static_cast<double>(sphere.radius()) * _scale};
+}
+
+bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
+{
+    if (!node.isCullingActive())
+    {
+        _mode.planes = _sight.all();
+        return false;
+    }
+    if (_mode.planes == 0 && (_mayBeSmall || !_sight.cullsSmall())) return false;
+    const osg::BoundingSphere& sphere = node.getBound();
+    if (!sphere.valid()) return false;
+    const Ball undeformed = eyeBall(sphere);
+    bool out = _sight.hides(*_mode.chain, undeformed);
+    if (!out)
+    {
+        const Ball ball = _mode.chain->bound(undeformed);
+        _middle = ball.centre;
+        out = _sight.outOfSight(ball, _mode.planes, _mayBeSmall);
+    }
+    return out && !partsInSight(node, undeformed);
+}
+
+bool CompensatingCullVisitor::partsInSight(const osg::Node& node, const Ball& undeformed)
+{
+    if (_mode.chain->empty()) return false;
+    Visibility::Mask planes = _sight.all();
+    if (_sight.outOfSight(undeformed, planes, _mayBeSmall) ||
+        !_undeformedParts.below(node, _programs, _frame))
+        return false;
+    _mode.planes = _sight.all();
+    _middle = undeformed.centre;
+    return true;
+}
+
+void CompensatingCullVisitor::apply(osg::Node& node)
+{
+    const Scope scope(*this, node);
+    if (!scope.skip()) CullVisitor::apply(node);
+}
+
+void CompensatingCullVisitor::apply(osg::Geode& node)
+{
+    const Scope scope(*this, node);
+    if (!scope.skip()) CullVisitor::apply(node);
+}
+
+void CompensatingCullVisitor::apply(osg::Group& node)
+{
+    const Scope scope(*this, node);
+    if (!scope.skip()) CullVisitor::apply(node);
+}
+
+void CompensatingCullVisitor::meet(const osg::StateSet* state)
+{
+    if (!state) return;
+    const osg::StateAttribute* former = _mode.deformation.program;
+    _mode.deformation.meet(state);
+    const osg::StateAttribute* program = _mode.deformation.program;
+    if (program != former) _mode.stranger = _programs.isStranger(program);
+    _mode.chain = _mode.stranger ? _nothing.get() : &definedChain();
+}
+
+const DeformationChain& CompensatingCullVisitor::definedChain() const
+{
+    return _mode.deformation.on ? *_task.chain : *_nothing;
+}
+
+void CompensatingCullVisitor::meetAll(const osgUtil::StateGraph& state)
+{
+    if (state._parent) meetAll(*state._parent);
+    meet(state.getStateSet());
+}
+
+void CompensatingCullVisitor::apply(RigidReference& node)
+{
+    if (!_mode.ours)
+    {
+        apply(static_cast<osg::Group&>(node));
+        return;
+    }
+    // Moved as a whole, and then culled and drawn as if nothing were deformed.
+    const Mode former = _mode;
+    meet(node.getStateSet());
+    const osg::Matrixd& modelView = *getModelViewMatrix();
+    const osg::Vec3d reference = node.referencePoint() * modelView;
+    const osg::Matrixd placement = rigidPlacement(definedChain(), reference, node.getTurn());
+    pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
+    meet(_task.untouched);
+    pushStateSet(_task.untouched);
+    pushStateSet(placed(placement));
+    {
+        const Scope scope(*this, node);
+        if (!scope.skip()) CullVisitor::apply(node);
+    }
+    popStateSet();
+    popStateSet();
+    popModelViewMatrix();
+    _mode = former;
+}
+
+osg::StateSet* CompensatingCullVisitor::placed(const osg::Matrixd& placement)
+{
+    if (_placedUsed == _placed.size())
+    {
+        _placed.push_back(new osg::StateSet);
+        _placed.back()->setDefine("GEOFX_PLACED");
+    }
+    osg::StateSet* state = _placed[_placedUsed++];
+    state->getOrCreateUniform("geofx_unplaced", osg::Uniform::FLOAT_MAT4)
+        ->set(osg::Matrixf(osg::Matrixd::inverse(placement)));
+    return state;
+}
+
+void CompensatingCullVisitor::apply(osg::Transform& node)
+{
+    if (_mode.ours && _task.compensate && holdsGeometryOnly(node))
+    {
+        applyTile(node);
+        return;
+    }
+    const Scope scope(*this, node);
+    if (scope.skip()) return;
+    if (!_mode.ours || !_task.compensate)
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    // As the base class has it, and with the matrix' scale.
+    pushCurrentMask();
+    osg::StateSet* state = node.getStateSet();
+    if (state) pushStateSet(state);
+    osg::RefMatrix* matrix = createOrReuseMatrix(*getModelViewMatrix());
+    node.computeLocalToWorldMatrix(*matrix, this);
+    pushModelViewMatrix(matrix, node.getReferenceFrame());
+    const double formerScale = _scale;
+    _scale = largestScale(*matrix);
+    handle_cull_callbacks_and_traverse(node);
+    _scale = formerScale;
+    popModelViewMatrix();
+    if (state) popStateSet();
+    popCurrentMask();
+}
+
+void CompensatingCullVisitor::apply(osg::OcclusionQueryNode& node)
+{
+    // Its query would ask for the box where the box is not.
+    if (_mode.ours)
+        apply(static_cast<osg::Group&>(node));
+    else
+        CullVisitor::apply(node);
+}
+
+template<typename NodeType>
+void CompensatingCullVisitor::passUntouched(NodeType& node)
+{
+    if (!_mode.ours)
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    const Mode formerMode = _mode;
+    const osg::CullSettings formerSettings(*this);
+    osgUtil::StateGraph* const formerGraph = _currentStateGraph;
+    // The state from the entry on, without ours.
+    std::vector<const osg::StateSet*> below;
+    for (osgUtil::StateGraph* graph = _currentStateGraph; graph && graph != _entry; graph = graph->_parent)
+    {
+        const osg::StateSet* set = graph->getStateSet();
+        if (set != _task.state && set != _task.untouched && !isPlaced(set)) below.push_back(set);
+    }
+    _currentStateGraph = _entry;
+    for (auto set = below.rbegin(); set != below.rend(); ++set)
+    {
+        _currentStateGraph = _currentStateGraph->find_or_insert(*set);
+    }
+    _mode.ours = false;
+    _mode.chain = _nothing.get();
+    const std::size_t graphs = graphsIn(*_currentRenderBin->getStage());
+    setCullingMode(_outerCullingMode);
+    setComputeNearFarMode(_outerNearFar);
+    const value_type formerNear = _computed_znear;
+    const value_type formerFar = _computed_zfar;
+    CullVisitor::apply(node);
+    _computed_znear = formerNear;
+    _computed_zfar = formerFar;
+    setCullSettings(formerSettings);
+    _currentStateGraph = formerGraph;
+    _mode = formerMode;
+    // Not to be looked for among what is ours.
+    _graphsBefore += graphsIn(*_currentRenderBin->getStage()) - graphs;
+}
+
+void CompensatingCullVisitor::apply(osg::Camera& node)
+{
+    passUntouched(node);
+}
+
+void CompensatingCullVisitor::apply(osg::Projection& node)
+{
+    passUntouched(node);
+}
+
+void CompensatingCullVisitor::apply(osg::Drawable& drawable)
+{
+    if (!_mode.ours)
+    {
+        CullVisitor::apply(drawable);
+        return;
+    }
+    const Mode former = _mode;
+    meet(drawable.getStateSet());
+    if (_mode.stranger) noteStranger();
+    if (!_task.compensate)
+    {
+        osg::StateSet* look = _looks.lookFor(drawable, *_currentStateGraph);
+        if (!look) look = _looks.followingOf(_mode.deformation.program);
+        if (look) pushStateSet(look);
+        const osg::StateSet* own = drawable.getStateSet();
+        const osgUtil::StateGraph* graph = own ? _currentStateGraph->find_or_insert(own) : _currentStateGraph;
+        const bool empty = graph->leaves_empty();
+        CullVisitor::apply(drawable);
+        if (empty && !graph->leaves_empty()) _ownGraphs.push_back(graph);
+        if (look) popStateSet();
+        drawCompanions(drawable, 0.0);
+        _mode = former;
+        return;
+    }
+    if (osg::Callback* callback = drawable.getCullCallback())
+    {
+        osg::DrawableCullCallback* cull = callback->asDrawableCullCallback();
+        if (cull && cull->cull(this, &drawable, &_renderInfo))
+        {
+            _mode = former;
+            return;
+        }
+        if (!cull) callback->run(&drawable, this);
+    }
+    place(drawable);
+    _mode = former;
+}
+
+void CompensatingCullVisitor::place(osg::Drawable& drawable)
+{
+    double depth = 0.0;
+    const DrawableSight::Place where = {*_mode.chain, *_modelviewStack.back(), _scale, _mode.planes,
+                                        _mode.tile};
+    if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
+    addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
+    drawCompanions(drawable, depth);
+}
+
+void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, double depth)
+{
+    for (DrawableCompanion* each : _task.companions)
+    {
+        osg::Drawable* companion = each->companion(drawable, *getModelViewMatrix());
+        if (!companion) continue;
+        pushStateSet(each->state());
+        addLeaf(*companion, getModelViewMatrix(), depth);
+        popStateSet();
+    }
+}
+
+} // namespace osgGeoFX

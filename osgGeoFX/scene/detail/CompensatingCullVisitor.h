@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/ScenePass.h>
+#include <osgGeoFX/scene/detail/DrawableSight.h>
+#include <osgGeoFX/scene/detail/LookCache.h>
+#include <osgGeoFX/scene/detail/OwnPrograms.h>
+#include <osgGeoFX/scene/detail/UndeformedParts.h>
+#include <osgGeoFX/scene/detail/Visibility.h>
+
+#include <osgUtil/CullVisitor>
+#include <osgUtil/RenderLeaf>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+class DrawableCompanion;
+class FollowingPrograms;
+class RigidReference;
+
+/** Culls what the GPU is going to deform.
+
+    One stands in for a cull visitor of OSG below an EffectScene: it shares the other one's state graph, render stage
+    and bins, and hands back what it found of near and far. One belongs to one cull visitor, and so to one thread at a
+    time and to one of the frames that are on their way.
+
+    What it does instead of OSG's:
+    - frustum and small-feature culling by a ball around what the deformation makes of a node's bounding sphere, then
+      by the hull of what it makes of a drawable's box;
+    - levels of detail by DeformationChain::lodDistance;
+    - near and far planes from the deformed boxes;
+    - what nodes put into the render graph by themselves (osgSim::LightPointNode) gets the effects' state afterwards;
+    - what is drawn by a program that does not call the effects' functions is culled undeformed;
+    - below cameras and projections it is OSG's cull visitor, without our state. */
+class CompensatingCullVisitor : public osgUtil::CullVisitor
+{
+public:
+    CompensatingCullVisitor();
+
+    /// What a scene wants for one traversal.
+    struct Task
+    {
+        osg::ref_ptr<const DeformationChain> chain;
+        osg::StateSet* state = nullptr; ///< uniforms and defines of the effects; null where they draw nothing
+        osg::Program* program = nullptr; ///< for what has none
+        FollowingPrograms* following =
+            nullptr; ///< for what has one of the application's with the effects' functions
+        osg::StateSet* untouched = nullptr; ///< takes the deformation away
+        int mapUnit = -1;
+        bool compensate = true;
+        bool debugBounds = false;
+        double tileError = 0.0; ///< Ground::tileError
+        std::vector<DrawableCompanion*> companions;
+        bool findsNearAndFar = true;           ///< false: the camera's stay as they are
+        osgUtil::RenderStage* stage = nullptr; ///< where it draws; null for where `outer` does
+        osg::StateSet* passState = nullptr;    ///< below `state`
+    };
+
+    /// Whether `outer` begins a new frame. To be asked once before each frame's or traversal's run().
+    bool startsFrame(osgUtil::CullVisitor& outer);
+    /// Forgets what was drawn in the last frame; where startsFrame() says so, or that of another visitor of the same camera.
+    void startFrame(osgUtil::CullVisitor& outer);
+    /// Traverses a group's children in the place of `outer`.
+    void run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task);
+    /// Draws pieces in the place of a scene.
+    void run(osgUtil::CullVisitor& outer, const std::vector<ScenePass::Piece>& pieces, const Task& task);
+
+    /// A program that does not call the functions, though effects would move what it draws.
+    struct Stranger
+    {
+        osg::observer_ptr<const osg::StateAttribute> program;
+        osg::NodePath path; ///< to where it was met
+    };
+    /// Those of the last run.
+    const std::vector<Stranger>& strangers() const { return _strangers; }
+
+    /// What is to be said once, from the last run; empty as a rule.
+    const std::string& complaint() const { return _drawables.complaint(); }
+
+    using osgUtil::CullVisitor::apply;
+    void apply(osg::Node& node) override;
+    void apply(osg::Geode& node) override;
+    void apply(osg::Group& node) override;
+    void apply(osg::Transform& node) override;
+    void apply(osg::LOD& node) override;
+    void apply(osg::Billboard& node) override;
+    void apply(osg::ClearNode& node) override;
+    void apply(osg::ClipNode& node) override;
+    void apply(osg::LightSource& node) override;
+    void apply(osg::OccluderNode& node) override;
+    void apply(osg::OcclusionQueryNode& node) override;
+    void apply(osg::TexGenNode& node) override;
+    void apply(osg::Camera& node) override;
+    void apply(osg::Projection& node) override;
+    void apply(osg::Drawable& drawable) override;
+    /// A rigid object, which tells its own visitor what it is.
+    void apply(RigidReference& node);
+
+    float getDistanceToEyePoint(const osg::Vec3& position, bool withLodScale) const override;
+    float getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const override;
+    float getDistanceFromEyePoint(const osg::Vec3& position, bool withLodScale) const override;
+
+protected:
+    ~CompensatingCullVisitor() override;
+
+    /// What is in force for a subgraph.
+    struct Mode
+    {
+        const DeformationChain* chain = nullptr; ///< empty below what keeps its shape or is left out
+        DeformationSwitch deformation;
+        bool stranger = false;       ///< the program in force does not call the functions
+        bool tile = false;           ///< a drawable's own size tells whether its node is too small
+        Visibility::Mask planes = 0; ///< frustum planes that bounds may still cross
+        bool ours = true;            ///< false below cameras: OSG's culling, no state of ours
+        double lodRadius = 0.0;      ///< of the LOD that is asking for distances
+        double lodLimit = HUGE_VAL;  ///< what it hears at most
+    };
+
+    /// Whether the borders of the camera's picture cull; false where something else says what is wanted.
+    virtual bool cullsByPicture() const { return true; }
+    /// Whether a node is out of sight; narrows the planes for what is below it.
+    virtual bool outOfSight(const osg::Node& node);
+    /// A node with levels of detail that is not out of sight.
+    virtual void meetLevels(const osg::LOD&) {}
+    /// A drawable whose callbacks leave it to be drawn, with compensation.
+    virtual void place(osg::Drawable& drawable);
+    /// What a node has put into the render graph by itself. `look`, `above`: as for drawables; null for none.
+    virtual void adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph, osgUtil::RenderLeaf& leaf,
+                       const osg::BoundingBox& bounds, osg::StateSet* look, osg::StateSet* above);
+    /// By which billboards turn to the eye.
+    virtual const DeformationChain& turningChain() const { return *_mode.chain; }
+
+    Ball eyeBall(const osg::BoundingSphere& sphere) const;
+    /// Puts a drawable into the graph below a look, its own state and a copy of its program, and remembers that it was done here.
+    void addLeaf(osg::Drawable& drawable, osg::StateSet* own, osg::StateSet* look, double depth);
+    /// As the base class does it, and remembers that it was done here.
+    void addLeaf(osg::Drawable& drawable, osg::RefMatrix* matrix, double depth);
+    static void put(osgUtil::RenderBin& bin, osgUtil::StateGraph& from, osgUtil::StateGraph& to,
+                    osgUtil::RenderLeaf* leaf);
+
+    Task _task;
+    Mode _mode;
+    osg::ref_ptr<const DeformationChain> _nothing;
+    LookCache _looks;
+
+private:
+    /// For as long as a node is visited: its mode, and whether it is out of sight.
+    class Scope
+    {
+    public:
+        Scope(CompensatingCullVisitor& visitor, const osg::Node& node);
+        ~Scope() { _visitor._mode = _former; }
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+
+        bool skip() const { return _skip; }
+
+    private:
+        CompensatingCullVisitor& _visitor;
+        const Mode _former;
+        bool _skip = false;
+    };
+
+    /// For what is below an object that was moved as a whole: the way back.
+    osg::StateSet* placed(const osg::Matrixd& placement);
+    bool isPlaced(const osg::StateSet* state) const
+    {
+        return std::find(_placed.begin(), _placed.end(), state) != _placed.end();
+    }
+    /// Takes a state set's word on whether what is below it is deformed.
+    void meet(const osg::StateSet* state);
+    void meetAll(const osgUtil::StateGraph& state);
+    void begin(osgUtil::CullVisitor& outer, const Task& task);
+    void end(osgUtil::CullVisitor& outer);
+    /// What the define says, whatever the program does.
+    const DeformationChain& definedChain() const;
+    template<typename NodeType>
+    void applyUntested(NodeType& node);
+    void noteStranger();
+    /// Gives what nodes have put into the render graph by themselves the state of what is drawn here.
+    void adoptLeaves();
+    void adoptLeaves(osgUtil::RenderBin& bin);
+    void adoptLeaves(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph);
+    /// Those with leaves that a bin and those in it know.
+    static std::size_t graphsIn(osgUtil::RenderBin& bin);
+    bool isForeign(const osgUtil::StateGraph& graph) const;
+    void setVisibility(const osgUtil::CullVisitor& outer);
+    /// Whether parts of a node that is out of sight, deformed, are in sight since they are not.
+    bool partsInSight(const osg::Node& node, const Ball& undeformed);
+    /// Whether a paged tile of the kit's databases, with all that is finer, is out of sight.
+    bool tileOutOfSight(const osg::LOD& node);
+    /// A transform with nothing but geometry below it.
+    void applyTile(osg::Transform& node);
+    /// A block of a tile, and what is below it.
+    void applyBlock(osg::LOD& block);
+    void applyPart(osg::Node& part);
+    template<typename NodeType>
+    void passUntouched(NodeType& node);
+    void drawCompanions(osg::Drawable& drawable, double depth);
+
+    Visibility _sight;
+    DrawableSight _drawables = DrawableSight(_sight);
+    CullingMode _outerCullingMode = 0;
+    ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;
+    bool _mayBeSmall = false; ///< what is looked at is never left out for being small
+    double _scale = 1.0;      ///< of the current modelview matrix
+    osg::Vec3d _middle;       ///< where that of the node goes which outOfSight() tested last
+    std::vector<osg::ref_ptr<osg::StateSet>> _placed; ///< one for each such object of a frame
+    std::size_t _placedUsed = 0;
+    OwnPrograms _programs;
+    UndeformedParts _undeformedParts;
+    std::vector<Stranger> _strangers;
+    osgUtil::StateGraph* _top = nullptr;                ///< below which all is ours
+    std::vector<const osgUtil::StateGraph*> _ownGraphs; ///< that got their first leaf here
+    std::size_t _graphsBefore = 0;                      ///< with leaves, when the run began
+    osg::ref_ptr<osg::StateSet> _lightPoints; ///< the modes that osgSim's light points set themselves
+    osgUtil::StateGraph* _entry = nullptr;    ///< the outer visitor's, where our state begins
+    unsigned int _frame = 0;
+    unsigned int _order = 0;
+};
+
+} // namespace osgGeoFX

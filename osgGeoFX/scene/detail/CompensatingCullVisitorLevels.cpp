@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Levels of detail, and the tiles of the kit's databases.
+#include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
+
+#include <osgGeoFX/paging/TerrainInfo.h>
+
+#include <osg/LOD>
+
+#include <algorithm>
+#include <cmath>
+#include <typeinfo>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// A block of a tile with nothing that OSG's own traversal would have to look at: with many of them in a view, what
+/// a visitor does for any node is most of the time.
+bool isPlain(const osg::LOD& block)
+{
+    return TileInfo::meshesOf(block) && block.isCullingActive() && !block.getStateSet() &&
+           !block.getCullCallback() && block.getRangeMode() == osg::LOD::DISTANCE_FROM_EYE_POINT;
+}
+
+/// A group that does nothing but hold its children.
+bool isPlain(const osg::Node& node)
+{
+    return typeid(node) == typeid(osg::Group) && node.isCullingActive() && !node.getStateSet() &&
+           !node.getCullCallback();
+}
+
+} // namespace
+
+void CompensatingCullVisitor::applyTile(osg::Transform& node)
+{
+    // Its geometry is tested by boxes, which are tighter than its sphere, and asks for no more than a matrix: what the
+    // base class would also work out, culling sets and eye points, no one would look at.
+    const Mode former = _mode;
+    osg::StateSet* state = node.getStateSet();
+    meet(state);
+    if (!node.isCullingActive())
+    {
+        _mode.planes = _sight.all();
+    }
+    else if (_sight.cullsSmall() && node.getNumChildren() > 1)
+    {
+        // OSG leaves out nodes that are too small, never single drawables.
+        Visibility::Mask planes = _mode.planes;
+        const osg::BoundingSphere& sphere = node.getBound();
+        if (sphere.valid() && _sight.outOfSight(_mode.chain->bound(eyeBall(sphere)), planes) &&
+            !partsInSight(node, eyeBall(sphere)))
+        {
+            _mode = former;
+            return;
+        }
+    }
+    _mode.tile = node.getNumChildren() == 1;
+    if (state) pushStateSet(state);
+    osg::RefMatrix* matrix = createOrReuseMatrix(*getModelViewMatrix());
+    node.computeLocalToWorldMatrix(*matrix, this);
+    _modelviewStack.push_back(matrix);
+    node.traverse(*this);
+    _modelviewStack.pop_back();
+    if (state) popStateSet();
+    _mode = former;
+}
+
+void CompensatingCullVisitor::applyBlock(osg::LOD& block)
+{
+    const Visibility::Mask formerPlanes = _mode.planes;
+    const Ball ball = eyeBall(block.getBound());
+    const Ball deformed = _mode.chain->bound(ball);
+    // Never left out for being small: a deformation may squeeze many of them into a few pixels.
+    const bool out =
+        formerPlanes && (_sight.hides(*_mode.chain, ball) || _sight.outOfSight(deformed, _mode.planes, true));
+    if (!out || partsInSight(block, ball))
+    {
+        const double distance = _mode.chain->lodDistance(ball, getReferenceViewPoint(), &deformed);
+        const auto told = static_cast<float>(
+            std::min(distance * static_cast<double>(getLODScale()), _mode.chain->lodLimit(block, ball)));
+        for (unsigned int i = 0; i < block.getNumChildren(); ++i)
+        {
+            if (block.getMinRange(i) <= told && told < block.getMaxRange(i)) applyPart(*block.getChild(i));
+        }
+    }
+    _mode.planes = formerPlanes;
+}
+
+void CompensatingCullVisitor::applyPart(osg::Node& part)
+{
+    if (!isPlain(part))
+    {
+        part.accept(*this);
+        return;
+    }
+    if (!validNodeMask(part)) return;
+    pushOntoNodePath(&part);
+    part.traverse(*this);
+    popFromNodePath();
+}
+
+void CompensatingCullVisitor::apply(osg::LOD& node)
+{
+    if (_mode.ours && _task.compensate && cullsByPicture() && isPlain(node))
+    {
+        applyBlock(node);
+        return;
+    }
+    // As in applyBlock(): a part of a tile is never left out for being small.
+    _mayBeSmall = _sight.cullsSmall() && TileInfo::meshesOf(node);
+    const Scope scope(*this, node);
+    _mayBeSmall = false;
+    if (scope.skip()) return;
+    if (!_mode.ours || !_task.compensate)
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    meetLevels(node);
+    // The mesh and its box lie elsewhere in memory; where the middle shows they have nothing to tell.
+    if (_mode.planes && !_sight.holds(_middle, _mode.planes) && tileOutOfSight(node)) return;
+    _mode.lodRadius = static_cast<double>(node.getBound().radius()) * _scale;
+    _mode.lodLimit = _mode.chain->lodLimit(node, eyeBall(node.getBound()));
+    if (node.getRangeMode() != osg::LOD::PIXEL_SIZE_ON_SCREEN)
+    {
+        CullVisitor::apply(node);
+        return;
+    }
+    // OSG divides the undeformed size in pixels by the LOD scale; the scale makes it the deformed one.
+    const float former = getLODScale();
+    const Ball ball = eyeBall(node.getBound());
+    const Ball deformed = _mode.chain->bound(ball);
+    const double undeformedSize = static_cast<double>(clampedPixelSize(node.getBound()));
+    const double deformedSize =
+        std::abs(ball.radius / _sight.radiusOfPixel(deformed.centre)) * _mode.chain->detail(ball);
+    if (deformedSize > 0.0 && std::isfinite(undeformedSize / deformedSize))
+    {
+        setLODScale(static_cast<float>(static_cast<double>(former) * undeformedSize / deformedSize));
+    }
+    CullVisitor::apply(node);
+    setLODScale(former);
+}
+
+bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
+{
+    // Its sphere is wide for a flat tile, which has a box.
+    const osg::Transform* tile = _task.tileError > 0.0 ? TileInfo::coarseOf(node) : nullptr;
+    osg::BoundingBoxd tileBox;
+    if (!tile || !TileInfo::readBox(*tile, tileBox)) return false;
+    osg::Matrixd matrix = *getModelViewMatrix();
+    tile->computeLocalToWorldMatrix(matrix, this);
+    const double range = static_cast<double>(node.getMaxRange(1));
+    const auto radius = static_cast<double>(node.getBound().radius());
+    const double error = std::max(0.0, range - radius) * _task.tileError;
+    osg::BoundingBox bounds(osg::Vec3(tileBox._min), osg::Vec3(tileBox._max));
+    const osg::Vec3 more(osg::Vec3d(error, error, error));
+    bounds._min -= more;
+    bounds._max += more;
+    return _sight.outOfSight(*_mode.chain, EyeBox::of(bounds, matrix), _mode.planes);
+}
+
+float CompensatingCullVisitor::getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const
+{
+    if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceToViewPoint(position, withLodScale);
+    const Ball ball = {osg::Vec3d(position) * *_modelviewStack.back(), _mode.lodRadius};
+    // The reference view point is in eye space: the origin but for cameras that inherit another one's.
+    const double distance = _mode.chain->lodDistance(ball, getReferenceViewPoint());
+    return static_cast<float>(
+        std::min(withLodScale ? distance * static_cast<double>(getLODScale()) : distance, _mode.lodLimit));
+}
+
+float CompensatingCullVisitor::getDistanceToEyePoint(const osg::Vec3& position, bool withLodScale) const
+{
+    if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceToEyePoint(position, withLodScale);
+    const Ball ball = {osg::Vec3d(position) * *_modelviewStack.back(), _mode.lodRadius};
+    const double distance = _mode.chain->lodDistance(ball, osg::Vec3d());
+    return static_cast<float>(withLodScale ? distance * static_cast<double>(getLODScale()) : distance);
+}
+
+float CompensatingCullVisitor::getDistanceFromEyePoint(const osg::Vec3& position, bool withLodScale) const
+{
+    if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceFromEyePoint(position, withLodScale);
+    const osg::Vec3d deformed = _mode.chain->deform(osg::Vec3d(position) * *_modelviewStack.back());
+    return static_cast<float>(withLodScale ? -deformed.z() * static_cast<double>(getLODScale())
+                                           : -deformed.z());
+}
+
+} // namespace osgGeoFX

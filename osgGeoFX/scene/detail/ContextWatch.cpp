@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/ContextWatch.h>
+
+#include <osg/ContextData>
+#include <osg/GLObjects>
+#include <osg/State>
+
+#include <iterator>
+#include <map>
+#include <mutex>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Of a context's own data. OSG has it delete what it knows while the closing context is still there.
+class Closing : public osg::GraphicsObjectManager
+{
+public:
+    explicit Closing(unsigned int context) : osg::GraphicsObjectManager("osgGeoFX effects", context) {}
+
+    void add(const std::vector<osg::observer_ptr<Effect>>& effects)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const osg::observer_ptr<Effect>& effect : effects)
+        {
+            osg::observer_ptr<Effect>& known = _effects[effect.get()];
+            if (known.valid()) continue;
+            known = effect;
+            forgetGone();
+        }
+    }
+
+    void flushDeletedGLObjects(double, double&) override {}
+    void flushAllDeletedGLObjects() override {}
+    void deleteAllGLObjects() override { release(); }
+    void discardAllGLObjects() override { release(); }
+
+private:
+    void forgetGone()
+    {
+        for (auto entry = _effects.begin(); entry != _effects.end();)
+            entry = entry->second.valid() ? std::next(entry) : _effects.erase(entry);
+    }
+
+    void release()
+    {
+        std::map<const Effect*, osg::observer_ptr<Effect>> effects;
+        {
+            const std::lock_guard<std::mutex> lock(_mutex);
+            effects.swap(_effects);
+        }
+        // The context's own is not known here; effects ask it for its number only.
+        const osg::ref_ptr<osg::State> state = new osg::State;
+        state->setContextID(_contextID);
+        for (const auto& [address, watched] : effects)
+        {
+            osg::ref_ptr<Effect> effect;
+            if (watched.lock(effect)) effect->releaseGLObjects(state);
+        }
+    }
+
+    std::mutex _mutex;
+    std::map<const Effect*, osg::observer_ptr<Effect>> _effects;
+};
+
+} // namespace
+
+ContextWatch::ContextWatch(const std::vector<osg::ref_ptr<Effect>>& effects)
+    : _effects(effects.begin(), effects.end())
+{
+}
+
+ContextWatch::ContextWatch(const ContextWatch& other, const osg::CopyOp& copy)
+    : osg::StateAttribute(other, copy), _effects(other._effects)
+{
+}
+
+ContextWatch::~ContextWatch() = default;
+
+int ContextWatch::compare(const osg::StateAttribute& other) const
+{
+    COMPARE_StateAttribute_Types(ContextWatch, other);
+    if (_effects == rhs._effects) return 0;
+    return _effects < rhs._effects ? -1 : 1;
+}
+
+void ContextWatch::apply(osg::State& state) const
+{
+    // OSG applies an empty one where there is no scene.
+    if (!_effects.empty()) osg::get<Closing>(state.getContextID())->add(_effects);
+}
+
+} // namespace osgGeoFX

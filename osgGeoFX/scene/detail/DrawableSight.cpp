@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/DrawableSight.h>
+
+#include <cstddef>
+
+namespace osgGeoFX
+{
+
+void DrawableSight::begin(const Wishes& wishes)
+{
+    _wishes = wishes;
+    _depths.clear();
+    _complaint.clear();
+    if (wishes.bounds) _bounds.begin();
+}
+
+bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, double& depth)
+{
+    const osg::BoundingBox& bounds = drawable.getBoundingBox();
+    depth = 0.0;
+    if (!bounds.valid()) return true;
+    const bool test = drawable.isCullingActive();
+    const bool small = test && place.smallCounts && _sight.cullsSmall();
+    Visibility::Mask planes = test ? place.planes : 0;
+    // Most are in the middle of the picture, and of what is near and far in it: their spheres say so.
+    if (!planes && !small && !place.chain.looksAtBoxes() && !_wishes.bounds)
+    {
+        const osg::BoundingSphere& sphere = drawable.getBound();
+        const Ball roughly = place.chain.bound({osg::Vec3d(sphere.center()) * place.modelView,
+                                                static_cast<double>(sphere.radius()) * place.scale});
+        depth = -roughly.centre.z();
+        if (!_wishes.depths || _depths.covers(roughly)) return true;
+    }
+    const EyeBox box = EyeBox::of(bounds, place.modelView);
+    const Ball deformed = place.chain.bound(box.ball());
+    depth = -deformed.centre.z();
+    if (test && _wishes.hides && _sight.hides(place.chain, box)) return false;
+    if (small && _sight.tooSmall(deformed)) return false;
+    if (planes && _sight.outOfSight(deformed, planes, true)) return false;
+    // Where the box's middle shows there is no more to be found out; nor where the part does that showed last time.
+    if (planes && !_sight.holds(deformed.centre, planes) && !witnessInSight(drawable, place, planes) &&
+        (_sight.misses(place.chain, box, planes) || meshOutside(drawable, place, planes)))
+        return false;
+    for (const auto& frame : place.chain.frames())
+    {
+        if (_complaint.empty()) _complaint = frame->complaint(box);
+    }
+    if (_wishes.depths) _depths.add(box, deformed, place.chain);
+    if (_wishes.bounds) _bounds.add(box, place.chain);
+    return true;
+}
+
+bool DrawableSight::meshOutside(const osg::Drawable& drawable, const Place& place, Visibility::Mask planes)
+{
+    MeshBoxes::Entry& mesh = _meshBoxes.of(drawable);
+    const std::size_t count = mesh.boxes.size();
+    const std::size_t former = mesh.witness;
+    if (former < count && !misses(mesh.boxes[former], place, planes)) return false;
+    // The middles are quick to test, and most often one of them settles it.
+    for (const bool wholly : {false, true})
+    {
+        for (mesh.witness = 0; mesh.witness < count; ++mesh.witness)
+        {
+            const osg::BoundingBox& box = mesh.boxes[mesh.witness];
+            if (wholly ? !misses(box, place, planes) : middleInSight(box, place, planes)) return false;
+        }
+    }
+    return count > 0;
+}
+
+bool DrawableSight::misses(const osg::BoundingBox& box, const Place& place, Visibility::Mask planes)
+{
+    const EyeBox eyeBox = EyeBox::of(box, place.modelView);
+    return _sight.hides(place.chain, eyeBox) || _sight.misses(place.chain, eyeBox, planes);
+}
+
+bool DrawableSight::middleInSight(const osg::BoundingBox& box, const Place& place,
+                                  Visibility::Mask planes) const
+{
+    return _sight.holds(place.chain.roughly(osg::Vec3d(box.center()) * place.modelView), planes);
+}
+
+bool DrawableSight::witnessInSight(const osg::Drawable& drawable, const Place& place, Visibility::Mask planes)
+{
+    const MeshBoxes::Entry* mesh = _meshBoxes.find(drawable);
+    return mesh && mesh->witness < mesh->boxes.size() &&
+           middleInSight(mesh->boxes[mesh->witness], place, planes);
+}
+
+} // namespace osgGeoFX

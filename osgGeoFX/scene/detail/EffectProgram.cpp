@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/EffectProgram.h>
+
+#include <osgGeoFX/effect/Deformation.h>
+#include <osgGeoFX/effect/NormalTurner.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/SurfaceEffect.h>
+
+#include <osg/Notify>
+
+#include <regex>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+std::string replaced(std::string text, const std::string& word, const std::string& by)
+{
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size()))
+    {
+        text.replace(at, word.size(), by);
+    }
+    return text;
+}
+
+/// The file that turns the normals of fragments; empty where they stay as they are.
+std::string normalFile(const Deformation& deformation)
+{
+    const auto* turner = dynamic_cast<const NormalTurner*>(&deformation);
+    return turner ? turner->normalFile() : std::string();
+}
+
+/// What stands in the place of the words in capitals in stages/functions.*.
+struct Parts
+{
+    std::string imports, functions, locate, face, deform, normal, turn, colour, move, finish;
+
+    std::string fill(std::string text) const
+    {
+        text = replaced(std::move(text), "GEOFX_IMPORTED_EFFECTS", imports);
+        text = replaced(std::move(text), "GEOFX_EFFECT_FUNCTIONS", functions);
+        text = replaced(std::move(text), "GEOFX_LOCATE_CALLS", locate);
+        text = replaced(std::move(text), "GEOFX_FACE_CALLS", face);
+        text = replaced(std::move(text), "GEOFX_DEFORM_CALLS", deform);
+        text = replaced(std::move(text), "GEOFX_NORMAL_CALLS", normal);
+        text = replaced(std::move(text), "GEOFX_COLOUR_CALLS", colour);
+        text = replaced(std::move(text), "GEOFX_MOVE_CALLS", move);
+        return replaced(std::move(text), "GEOFX_FINISH_CALLS", finish);
+    }
+};
+
+std::string fileOf(osg::Shader::Type stage)
+{
+    return stage == osg::Shader::VERTEX ? "stages/functions.vert" : "stages/functions.frag";
+}
+
+std::string conditional(const std::string& condition, const std::string& text)
+{
+    return "#if " + condition + "\n" + text + "#endif\n";
+}
+
+void addDeformation(Parts& parts, const Deformation& deformation, const std::string& prefix,
+                    const std::string& define)
+{
+    const std::string move = "    position = " + prefix + "deform(position);\n";
+    std::string deform = "    geofx_styleBlend = max(geofx_styleBlend, ";
+    deform += prefix + "style(position));\n";
+    deform += move;
+    parts.deform += conditional("defined(" + define + ")", deform);
+    std::string normal = "    normal = ";
+    normal += prefix + "normal(position, normal);\n";
+    normal += move;
+    parts.normal += conditional("defined(" + define + ")", normal);
+    if (!normalFile(deformation).empty())
+        parts.turn += conditional("defined(" + define + ")",
+                                  "    normal = " + prefix + "normal(geofx_groundPlace, normal);\n");
+    if (deformation.fragmentFile().empty()) return;
+    parts.colour += conditional("defined(GEOFX_DEFORMATION) && defined(" + define + ")",
+                                "    result = " + prefix + "restyle(result, map, geofx_styleBlend);\n");
+}
+
+void addSurface(Parts& parts, const SurfaceEffect& surface, const std::string& prefix,
+                const std::string& define)
+{
+    if (surface.looksAtNormals())
+        parts.face += conditional("defined(" + define + ")", "    " + prefix + "face(eyeNormal);\n");
+    parts.locate += conditional("defined(" + define + ")", "    " + prefix + "locate(located);\n");
+    parts.colour += conditional("defined(" + define + ")", "    result = " + prefix + "colour(result);\n");
+}
+
+/// The code of all effects for one stage.
+Parts partsOf(const std::vector<osg::ref_ptr<Effect>>& effects, const ShaderLibrary& library, bool vertex)
+{
+    Parts parts;
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        const Deformation* deformation = effects[i]->asDeformation();
+        const SurfaceEffect* surface = effects[i]->asSurfaceEffect();
+        if (!deformation && !surface) continue;
+        const std::string prefix = EffectProgram::prefix(i);
+        std::string text;
+        // Short lines: some drivers broke on long ones.
+        if (deformation)
+        {
+            const std::string define = EffectProgram::define(i);
+            parts.imports += "#pragma import_defines(" + define + ")\n";
+            for (const std::string& file :
+                 vertex ? std::vector{deformation->vertexFile()}
+                        : std::vector{normalFile(*deformation), deformation->fragmentFile()})
+                if (!file.empty())
+                    text += (text.empty() ? deformation->constants() : "") + library.read(file);
+            addDeformation(parts, *deformation, prefix, define);
+        }
+        if (surface)
+        {
+            const std::string define = EffectProgram::surfaceDefine(i);
+            parts.imports += "#pragma import_defines(" + define + ")\n";
+            text += library.read(vertex ? surface->vertexFile() : surface->fragmentFile());
+            addSurface(parts, *surface, prefix, define);
+        }
+        parts.functions += replaced(text, "SLOT_", prefix);
+    }
+    if (!vertex) parts.normal = parts.turn;
+    return parts;
+}
+
+std::string joined(const ShaderLibrary& library, const std::vector<std::string>& files,
+                   const std::string& prefix)
+{
+    std::string text;
+    for (const std::string& file : files)
+        text += library.read(file);
+    return replaced(text, "SLOT_", prefix);
+}
+
+/// A variable that goes from the vertex stage to the fragment stage.
+struct Varying
+{
+    std::string qualifiers, type, name;
+    std::string define = {}; ///< without which it is not there
+};
+
+std::vector<Varying> varyingsOf(const std::string& text)
+{
+    static const std::regex declaration(
+        R"((?:^|\n)\s*((?:flat\s+|noperspective\s+)?)out\s+(\w+)\s+(\w+)\s*;)");
+    std::vector<Varying> varyings;
+    for (std::sregex_iterator each(text.begin(), text.end(), declaration), end; each != end; ++each)
+        varyings.push_back({(*each)[1], (*each)[2], (*each)[3]});
+    return varyings;
+}
+
+/// What the other effects hand to the fragment stage, and their own style.
+std::vector<Varying> allVaryings(const Parts& vertexParts)
+{
+    std::vector<Varying> all = varyingsOf(vertexParts.functions);
+    all.push_back({"", "float", "geofx_styleBlend"});
+    all.push_back({"", "vec2", "geofx_normalPlace", "GEOFX_NORMAL_MAP"});
+    all.push_back({"", "vec3", "geofx_groundPlace", "GEOFX_NORMAL_MAP"});
+    return all;
+}
+
+/// Adds what a pass has in the vertex stage.
+void addMove(Parts& parts, const ShaderLibrary& library, const PassShaders& pass, const std::string& prefix)
+{
+    const bool amplified = !pass.geometry.empty();
+    const bool tessellated = !pass.tessellationControl.empty();
+    if (amplified)
+    {
+        // Later stages hand the values on under the names that the fragment stage knows.
+        parts.imports += "#define GEOFX_AMPLIFY\n";
+        if (tessellated) parts.imports += "#define GEOFX_TESSELLATE\n";
+        for (const Varying& varying : allVaryings(parts))
+            parts.imports +=
+                "#define " + varying.name + " " + varying.name + (tessellated ? "_vertex\n" : "_in\n");
+    }
+    parts.functions += joined(library, pass.vertex, prefix);
+    parts.move = "    return vec4(" + prefix + "move(located, position), 1.0);\n";
+}
+
+/// Adds what a pass has in the fragment stage.
+void addFinish(Parts& parts, const ShaderLibrary& library, const PassShaders& pass, const std::string& prefix)
+{
+    // Which mappings show is the pass' own choice, among those that the subgraph takes.
+    const std::string channels = "#ifdef GEOFX_MAPPING_CHANNELS\n"
+                                 "const int geofx_subgraphChannels = GEOFX_MAPPING_CHANNELS;\n"
+                                 "#undef GEOFX_MAPPING_CHANNELS\n"
+                                 "#else\n"
+                                 "const int geofx_subgraphChannels = 255;\n"
+                                 "#endif\n"
+                                 "#define GEOFX_MAPPING_CHANNELS (geofx_subgraphChannels & " +
+                                 prefix + "channels())\n";
+    parts.imports += "#pragma import_defines(GEOFX_MAPPING_CHANNELS)\n";
+    if (!pass.geometry.empty()) parts.imports += "#define GEOFX_AMPLIFY\n";
+    parts.functions = joined(library, pass.fragment, prefix) + channels + parts.functions;
+    parts.finish = "    result = " + prefix + "finish(result);\n";
+}
+
+/// How a stage between the vertices and the fragments hands the other effects' variables on.
+struct Relay
+{
+    const char* from; ///< endings of the names
+    const char* to;
+    const char* fromArray;
+    const char* toArray;
+    const char* place; ///< where GEOFX_COPY stands
+};
+
+std::string copyOf(const Varying& varying, const Relay& relay)
+{
+    const std::string from = varying.name + relay.from;
+    const std::string to = varying.name + relay.to;
+    if (*relay.toArray) return to + "[gl_InvocationID] = " + from + "[gl_InvocationID];";
+    if (std::string(relay.place) == "GEOFX_COPY(i)") return to + " = " + from + "[i];";
+    if (!varying.qualifiers.empty()) return to + " = " + from + "[0];";
+    return to + " = w.x * " + from + "[0] + w.y * " + from + "[1] + w.z * " + from + "[2];";
+}
+
+/// The main function of a stage between vertices and fragments.
+std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary& library,
+                      const std::vector<std::string>& files, const std::string& prefix, const Relay& relay,
+                      const char* version)
+{
+    const Parts parts = partsOf(effects, library, true);
+    std::string declarations, copies;
+    for (const Varying& each : allVaryings(parts))
+    {
+        std::string declaration =
+            each.qualifiers + "in " + each.type + " " + each.name + relay.from + relay.fromArray + ";\n";
+        declaration +=
+            each.qualifiers + "out " + each.type + " " + each.name + relay.to + relay.toArray + ";\n";
+        const std::string copy = copyOf(each, relay) + "\n";
+        const std::string condition = "defined(" + each.define + ")";
+        declarations += each.define.empty() ? declaration : conditional(condition, declaration);
+        // A condition begins a line.
+        copies += each.define.empty() ? copy : "\n" + conditional(condition, copy);
+    }
+    std::string text = version + parts.imports;
+    text += "#pragma import_defines(GEOFX_FOG, GEOFX_TWO_SIDED, GEOFX_COLOR_SUM, GEOFX_MAP)\n"
+            "#pragma import_defines(GEOFX_NORMAL_MAP)\n"
+            "#pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)\n" +
+            joined(library, files, prefix);
+    text = replaced(text, "GEOFX_VARYINGS\n", declarations);
+    return replaced(text, relay.place, copies);
+}
+
+std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary& library,
+                      const PassShaders& pass, const std::string& prefix, osg::Shader::Type stage)
+{
+    constexpr const char* version = "#version 330 compatibility\n";
+    constexpr const char* later = "#version 400 compatibility\n";
+    if (stage == osg::Shader::GEOMETRY)
+    {
+        return relayText(effects, library, pass.geometry, prefix, {"_in", "", "[]", "", "GEOFX_COPY(i)"},
+                         version);
+    }
+    if (stage == osg::Shader::TESSCONTROL)
+    {
+        return relayText(effects, library, pass.tessellationControl, prefix,
+                         {"_vertex", "_control", "[]", "[]", "GEOFX_COPY(gl_InvocationID)"}, later);
+    }
+    return relayText(effects, library, pass.tessellationEvaluation, prefix,
+                     {"_control", "_in", "[]", "", "GEOFX_COPY(w)"}, later);
+}
+
+const std::vector<std::string>& relayFiles(const PassShaders& pass, osg::Shader::Type stage)
+{
+    if (stage == osg::Shader::GEOMETRY) return pass.geometry;
+    return stage == osg::Shader::TESSCONTROL ? pass.tessellationControl : pass.tessellationEvaluation;
+}
+
+osg::ref_ptr<osg::Shader> functionShader(const EffectProgram::Effects& effects, osg::Shader::Type stage)
+{
+    osg::ref_ptr<osg::Shader> shader = new osg::Shader(stage, EffectProgram::functions(effects, stage));
+    shader->setName(fileOf(stage));
+    return shader;
+}
+
+} // namespace
+
+std::string EffectProgram::prefix(std::size_t effect)
+{
+    return "geofx_" + std::to_string(effect) + "_";
+}
+
+std::string EffectProgram::define(std::size_t effect)
+{
+    return "GEOFX_EFFECT_" + std::to_string(effect);
+}
+
+std::string EffectProgram::surfaceDefine(std::size_t effect)
+{
+    return "GEOFX_SURFACE_" + std::to_string(effect);
+}
+
+std::string EffectProgram::key(const Effects& effects)
+{
+    std::string key;
+    for (const auto& effect : effects)
+    {
+        const Deformation* deformation = effect->asDeformation();
+        if (deformation)
+            key += deformation->vertexFile() + normalFile(*deformation) + deformation->fragmentFile() +
+                   deformation->constants();
+        if (const SurfaceEffect* surface = effect->asSurfaceEffect())
+            key += surface->vertexFile() + surface->fragmentFile();
+        key += ';';
+    }
+    return key;
+}
+
+std::string EffectProgram::functions(const Effects& effects, osg::Shader::Type stage)
+{
+    const ShaderLibrary library;
+    const std::string file = fileOf(stage);
+    const Parts parts = partsOf(effects, library, stage == osg::Shader::VERTEX);
+    return library.assemble(parts.fill(library.read(file)), file);
+}
+
+std::string EffectProgram::passFunctions(const Effects& effects, const PassShaders& pass,
+                                         const std::string& prefix, osg::Shader::Type stage)
+{
+    const ShaderLibrary library;
+    if (stage != osg::Shader::VERTEX && stage != osg::Shader::FRAGMENT)
+    {
+        const std::vector<std::string>& files = relayFiles(pass, stage);
+        if (files.empty()) return {};
+        return library.assemble(relayText(effects, library, pass, prefix, stage), files.back());
+    }
+    const std::string file = fileOf(stage);
+    Parts parts = partsOf(effects, library, stage == osg::Shader::VERTEX);
+    if (stage == osg::Shader::VERTEX && !pass.vertex.empty()) addMove(parts, library, pass, prefix);
+    if (stage == osg::Shader::FRAGMENT && !pass.fragment.empty()) addFinish(parts, library, pass, prefix);
+    return library.assemble(parts.fill(library.read(file)), file);
+}
+
+void EffectProgram::addFunctions(osg::Program& program, const Effects& effects)
+{
+    if (hasFunctions(program)) return;
+    const osg::ref_ptr<osg::Shader> vertex = functionShader(effects, osg::Shader::VERTEX);
+    const osg::ref_ptr<osg::Shader> fragment = functionShader(effects, osg::Shader::FRAGMENT);
+    program.addShader(vertex);
+    program.addShader(fragment);
+}
+
+bool EffectProgram::isFunctions(const osg::Shader& shader)
+{
+    // A name outlives copies and files.
+    return (shader.getType() == osg::Shader::VERTEX || shader.getType() == osg::Shader::FRAGMENT) &&
+           shader.getName() == fileOf(shader.getType());
+}
+
+bool EffectProgram::hasFunctions(const osg::Program& program)
+{
+    for (unsigned int i = 0; i < program.getNumShaders(); ++i)
+    {
+        if (isFunctions(*program.getShader(i))) return true;
+    }
+    return false;
+}
+
+osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects, const PassShaders& pass,
+                                                 const std::string& prefix)
+{
+    const auto add =
+        [](osg::Program& program, osg::Shader::Type stage, const std::string& text, const std::string& name)
+    {
+        osg::ref_ptr<osg::Shader> shader = new osg::Shader(stage, text);
+        shader->setName(name);
+        program.addShader(shader);
+    };
+    try
+    {
+        const ShaderLibrary library;
+        osg::ref_ptr<osg::Program> program = new osg::Program;
+        program->setName("osgGeoFX pass");
+        for (const osg::Shader::Type stage :
+             {osg::Shader::VERTEX, osg::Shader::TESSCONTROL, osg::Shader::TESSEVALUATION,
+              osg::Shader::GEOMETRY, osg::Shader::FRAGMENT})
+        {
+            const std::string text = passFunctions(effects, pass, prefix, stage);
+            if (!text.empty()) add(*program, stage, text, "functions of " + prefix);
+        }
+        const auto addMain = [&](osg::Shader::Type stage, const std::string& own, const char* standIn)
+        {
+            const std::string name = own.empty() ? standIn : own;
+            add(*program, stage, library.assemble(replaced(library.read(name), "SLOT_", prefix), name), name);
+        };
+        addMain(osg::Shader::VERTEX, pass.vertexMain, "stages/fixed.vert");
+        addMain(osg::Shader::FRAGMENT, pass.fragmentMain, "stages/fixed.frag");
+        for (const auto& [name, binding] : pass.blocks)
+            program->addBindUniformBlock(prefix + name, binding);
+        return program;
+    }
+    catch (const ShaderError& error)
+    {
+        OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
+        return nullptr;
+    }
+}
+
+osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects)
+{
+    try
+    {
+        const ShaderLibrary library;
+        osg::ref_ptr<osg::Program> program = new osg::Program;
+        program->setName("osgGeoFX");
+        program->addShader(library.createShader(osg::Shader::VERTEX, "stages/fixed.vert"));
+        program->addShader(library.createShader(osg::Shader::FRAGMENT, "stages/fixed.frag"));
+        addFunctions(*program, effects);
+        return program;
+    }
+    catch (const ShaderError& error)
+    {
+        OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
+        return nullptr;
+    }
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/Effect.h>
+#include <osgGeoFX/effect/PassEffect.h>
+
+#include <osg/Program>
+
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The shaders of a scene's effects, put together.
+
+    Effect i of the scene has the prefix geofx_<i>_ and the defines GEOFX_EFFECT_<i>, which is set where it deforms, and
+    GEOFX_SURFACE_<i>, where it colours, so that switching effects changes defines and nothing else. */
+class EffectProgram
+{
+public:
+    using Effects = std::vector<osg::ref_ptr<Effect>>;
+
+    static std::string prefix(std::size_t effect);
+    static std::string define(std::size_t effect);
+    static std::string surfaceDefine(std::size_t effect);
+
+    /// Changes where the shaders' text does.
+    static std::string key(const Effects& effects);
+    /// The text of a function shader; ShaderError as ShaderLibrary has it.
+    static std::string functions(const Effects& effects, osg::Shader::Type stage);
+    /// Adds the functions of effects to a program that has none yet; ShaderError.
+    static void addFunctions(osg::Program& program, const Effects& effects);
+    /// Whether a shader is one of those that addFunctions() adds; create() has such, too.
+    static bool isFunctions(const osg::Shader& shader);
+    static bool hasFunctions(const osg::Program& program);
+    /// A program for geometry that has none. A new one each time, since one that is in use must not change. Null, after a
+    /// warning, where a shader file is missing.
+    static osg::ref_ptr<osg::Program> create(const Effects& effects);
+
+    /// The same with what the effect of that prefix draws a pass with; the text of a `stage` that the pass has
+    /// not is empty.
+    static std::string passFunctions(const Effects& effects, const PassShaders& pass,
+                                     const std::string& prefix, osg::Shader::Type stage);
+    static osg::ref_ptr<osg::Program> create(const Effects& effects, const PassShaders& pass,
+                                             const std::string& prefix);
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/EyeFrustum.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+double planeDistance(const osg::Vec4d& plane, const osg::Vec3d& point)
+{
+    return plane.x() * point.x() + plane.y() * point.y() + plane.z() * point.z() + plane.w();
+}
+
+double cross(const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c)
+{
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// The convex hull of points, counter-clockwise; Andrew's monotone chain. The points are sorted.
+std::vector<osg::Vec2d> convexOutline(std::vector<osg::Vec2d>& points)
+{
+    std::sort(points.begin(), points.end());
+    std::vector<osg::Vec2d> outline(2 * points.size());
+    std::size_t count = 0;
+    for (const osg::Vec2d& point : points)
+    {
+        while (count >= 2 && cross(outline[count - 2], outline[count - 1], point) <= 0.0)
+            --count;
+        outline[count++] = point;
+    }
+    const std::size_t lower = count + 1;
+    for (auto point = points.rbegin() + 1; point != points.rend(); ++point)
+    {
+        while (count >= lower && cross(outline[count - 2], outline[count - 1], *point) <= 0.0)
+            --count;
+        outline[count++] = *point;
+    }
+    outline.resize(count > 1 ? count - 1 : count);
+    return outline;
+}
+
+/// What rounding of positions on the GPU may add at a distance.
+double rounding(const osg::Vec3d& point)
+{
+    return 1e-6 * (std::abs(point.x()) + std::abs(point.y()) + std::abs(point.z())) + 1e-4;
+}
+
+/// Near and far may lie that much farther apart, as a share of a box's radius.
+constexpr double coarse = 0.1;
+
+} // namespace
+
+void EyeFrustum::set(const osg::Polytope* planes, const osg::Matrixd& projection, bool sides)
+{
+    _planes.clear();
+    if (planes)
+    {
+        for (const osg::Plane& plane : planes->getPlaneList())
+            _planes.push_back(plane.asVec4());
+    }
+    _projection = projection;
+    _sides = sides;
+}
+
+EyeFrustum::Side EyeFrustum::side(const Ball& ball, Mask& mask) const
+{
+    const double radius = ball.radius + rounding(ball.centre);
+    for (std::size_t i = 0; i < _planes.size(); ++i)
+    {
+        if (!(mask & (1u << i))) continue;
+        const double distance = planeDistance(_planes[i], ball.centre);
+        if (distance < -radius) return Side::Outside;
+        if (distance >= radius) mask &= ~(1u << i);
+    }
+    return mask ? Side::Crossing : Side::Inside;
+}
+
+bool EyeFrustum::holds(const osg::Vec3d& point, Mask mask) const
+{
+    for (std::size_t i = 0; i < _planes.size(); ++i)
+    {
+        if ((mask & (1u << i)) && planeDistance(_planes[i], point) < 0.0) return false;
+    }
+    return true;
+}
+
+bool EyeFrustum::misses(const Hull& hull, Mask mask)
+{
+    int crossed = 0;
+    for (std::size_t i = 0; i < _planes.size(); ++i)
+    {
+        if (!(mask & (1u << i))) continue;
+        bool outside = true;
+        bool inside = true;
+        for (const osg::Vec3d& point : hull.points)
+        {
+            const double distance = planeDistance(_planes[i], point);
+            const double slack = hull.margin + rounding(point);
+            outside = outside && distance < -slack;
+            inside = inside && distance > slack;
+            if (!outside && !inside) break;
+        }
+        if (outside) return true;
+        if (!inside) ++crossed;
+    }
+    // What crosses one plane alone is on its inner side, too, and that is in the picture.
+    return crossed > 1 && _sides && missesPicture(hull);
+}
+
+bool EyeFrustum::missesPicture(const Hull& hull)
+{
+    // A hull beside a corner of the picture crosses planes and yet misses the picture. Where all of it lies before the
+    // eye, its outline in the picture tells.
+    const bool perspective = _projection(3, 3) == 0.0;
+    double nearest = DBL_MAX;
+    double widest = 0.0;
+    _points.clear();
+    for (const osg::Vec3d& point : hull.points)
+    {
+        const double depth = perspective ? -point.z() : 1.0;
+        nearest = std::min(nearest, depth);
+        if (nearest <= 0.0) return false;
+        const osg::Vec3d projected = point * _projection;
+        _points.emplace_back(projected.x(), projected.y());
+        widest = std::max({widest, std::abs(projected.x()), std::abs(projected.y())});
+    }
+    // What the margin is at most in the picture.
+    const double margin = hull.margin + 1e-6 * nearest;
+    if (perspective && nearest <= 2.0 * margin) return false;
+    const double zoom = std::max(std::abs(_projection(0, 0)), std::abs(_projection(1, 1)));
+    const double skew = std::max(std::abs(_projection(2, 0)), std::abs(_projection(2, 1)));
+    const double slack = perspective ? margin * (zoom + skew + widest) / (nearest - margin) : margin * zoom;
+    const double edge = 1.0 + 2.0 * slack + 1e-5 * (1.0 + widest);
+    const std::vector<osg::Vec2d> outline = convexOutline(_points);
+    for (std::size_t i = 0; i < outline.size(); ++i)
+    {
+        const osg::Vec2d along = outline[(i + 1) % outline.size()] - outline[i];
+        const osg::Vec2d outward(along.y(), -along.x());
+        // The corner of the widened picture that is nearest to the hull on this side.
+        const double corner = -edge * (std::abs(outward.x()) + std::abs(outward.y()));
+        if (corner > outward * outline[i]) return true;
+    }
+    return false;
+}
+
+void DepthRange::clear()
+{
+    _candidates.clear();
+    _nearest = DBL_MAX;
+    _farthest = -DBL_MAX;
+}
+
+void DepthRange::include(double nearest, double farthest)
+{
+    // What is behind the eye has no say, as in OSG.
+    if (farthest < 0.0) return;
+    _nearest = std::min(_nearest, nearest);
+    _farthest = std::max(_farthest, farthest);
+}
+
+void DepthRange::include(const Ball& ball)
+{
+    include(-ball.centre.z() - ball.radius, -ball.centre.z() + ball.radius);
+}
+
+void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain)
+{
+    const double depth = -deformed.centre.z();
+    if (!std::isfinite(depth) || !std::isfinite(deformed.radius)) return;
+    // The middle is for sure within; most of the others then lie between what is certain.
+    include(depth, depth);
+    if (depth - deformed.radius >= _nearest && depth + deformed.radius <= _farthest) return;
+    if (chain.leavesAlone(box.ball()))
+    {
+        const double half = std::abs(box.half[0].z()) + std::abs(box.half[1].z()) + std::abs(box.half[2].z());
+        include(depth - half, depth + half);
+        return;
+    }
+    _candidates.push_back({box, &chain, depth - deformed.radius, depth + deformed.radius});
+}
+
+void DepthRange::measure(Candidate& candidate)
+{
+    candidate.chain->bound(candidate.box, _hull, coarse);
+    double nearest = DBL_MAX;
+    double farthest = -DBL_MAX;
+    for (const osg::Vec3d& point : _hull.points)
+    {
+        nearest = std::min(nearest, -point.z());
+        farthest = std::max(farthest, -point.z());
+    }
+    include(nearest - _hull.margin, farthest + _hull.margin);
+    // It has had its say.
+    candidate.nearest = DBL_MAX;
+    candidate.farthest = -DBL_MAX;
+}
+
+void DepthRange::settle()
+{
+    // The most promising one first: after it, few others can still change anything.
+    const auto nearer = [](const Candidate& a, const Candidate& b)
+    {
+        return a.nearest < b.nearest;
+    };
+    const auto farther = [](const Candidate& a, const Candidate& b)
+    {
+        return a.farthest < b.farthest;
+    };
+    while (!_candidates.empty())
+    {
+        Candidate& first = *std::min_element(_candidates.begin(), _candidates.end(), nearer);
+        if (first.nearest >= _nearest) break;
+        measure(first);
+    }
+    while (!_candidates.empty())
+    {
+        Candidate& last = *std::max_element(_candidates.begin(), _candidates.end(), farther);
+        if (last.farthest <= _farthest) break;
+        measure(last);
+    }
+    _candidates.clear();
+}
+
+} // namespace osgGeoFX

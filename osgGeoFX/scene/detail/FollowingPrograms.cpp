@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/FollowingPrograms.h>
+
+#include <osgGeoFX/scene/detail/EffectProgram.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Those of the application.
+std::vector<const osg::Shader*> ownShaders(const osg::Program& program)
+{
+    std::vector<const osg::Shader*> own;
+    for (unsigned int i = 0; i < program.getNumShaders(); ++i)
+    {
+        if (!EffectProgram::isFunctions(*program.getShader(i))) own.push_back(program.getShader(i));
+    }
+    return own;
+}
+
+std::vector<std::string> feedback(const osg::Program& program)
+{
+    std::vector<std::string> names;
+    for (unsigned int i = 0; i < program.getNumTransformFeedBackVaryings(); ++i)
+        names.push_back(program.getTransformFeedBackVarying(i));
+    return names;
+}
+
+/// Whether a copy still has what the application has put into its program.
+bool isCopyOf(const osg::Program& copy, const osg::Program& program)
+{
+    for (const GLenum parameter :
+         {GL_GEOMETRY_VERTICES_OUT_EXT, GL_GEOMETRY_INPUT_TYPE_EXT, GL_GEOMETRY_OUTPUT_TYPE_EXT})
+    {
+        if (copy.getParameter(parameter) != program.getParameter(parameter)) return false;
+    }
+    const osg::ShaderDefines& defines = copy.getShaderDefines();
+    const osg::ShaderDefines& wanted = program.getShaderDefines();
+    return ownShaders(copy) == ownShaders(program) && copy.getName() == program.getName() &&
+           copy.getAttribBindingList() == program.getAttribBindingList() &&
+           copy.getFragDataBindingList() == program.getFragDataBindingList() &&
+           copy.getUniformBlockBindingList() == program.getUniformBlockBindingList() &&
+           copy.getTransformFeedBackMode() == program.getTransformFeedBackMode() &&
+           feedback(copy) == feedback(program) &&
+           std::includes(defines.begin(), defines.end(), wanted.begin(), wanted.end());
+}
+
+osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Program& functions)
+{
+    osg::ref_ptr<osg::Program> copy = osg::clone(&program, osg::CopyOp::SHALLOW_COPY);
+    for (unsigned int i = copy->getNumShaders(); i-- > 0;)
+    {
+        if (EffectProgram::isFunctions(*copy->getShader(i))) copy->removeShader(copy->getShader(i));
+    }
+    for (unsigned int i = 0; i < functions.getNumShaders(); ++i)
+    {
+        // They are the same for all, and compiled once.
+        auto* shader = const_cast<osg::Shader*>(functions.getShader(i));
+        if (EffectProgram::isFunctions(*shader)) copy->addShader(shader);
+    }
+    // What OSG's own copy leaves out.
+    for (const auto& [name, binding] : program.getUniformBlockBindingList())
+        copy->addBindUniformBlock(name, binding);
+    const osg::ShaderDefines& defines = program.getShaderDefines();
+    copy->getShaderDefines().insert(defines.begin(), defines.end());
+    return copy;
+}
+
+} // namespace
+
+void FollowingPrograms::follow(const osg::Program& functions)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _functions = &functions;
+}
+
+osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& program)
+{
+    const auto* original = dynamic_cast<const osg::Program*>(&program);
+    if (!original || !EffectProgram::hasFunctions(*original)) return nullptr;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    if (!_functions) return nullptr;
+    Copy& copy = _copies[&program];
+    if (copy.original.valid() && copy.functions == _functions && isCopyOf(*copy.program, *original))
+        return copy.state;
+    if (copy.program) _former.emplace_back(copy.program);
+    copy.original = &program;
+    copy.functions = _functions;
+    copy.program = copyOf(*original, *_functions);
+    copy.state = new osg::StateSet;
+    // Whatever put the program into force.
+    copy.state->setAttributeAndModes(copy.program, osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
+                                                       osg::StateAttribute::PROTECTED);
+    const osg::ref_ptr<osg::StateSet> state = copy.state;
+    purge();
+    return state;
+}
+
+void FollowingPrograms::purge()
+{
+    for (auto each = _copies.begin(); each != _copies.end();)
+    {
+        const bool lives = each->second.original.valid();
+        if (!lives) _former.emplace_back(each->second.program);
+        each = lives ? std::next(each) : _copies.erase(each);
+    }
+    const auto gone = [](const osg::observer_ptr<osg::Program>& each)
+    {
+        return !each.valid();
+    };
+    _former.erase(std::remove_if(_former.begin(), _former.end(), gone), _former.end());
+}
+
+std::vector<osg::ref_ptr<osg::Program>> FollowingPrograms::programs()
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    std::vector<osg::ref_ptr<osg::Program>> all;
+    for (const auto& [original, copy] : _copies)
+        all.push_back(copy.program);
+    for (const osg::observer_ptr<osg::Program>& each : _former)
+    {
+        osg::ref_ptr<osg::Program> former;
+        if (each.lock(former)) all.push_back(former);
+    }
+    return all;
+}
+
+} // namespace osgGeoFX

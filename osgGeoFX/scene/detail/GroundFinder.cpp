@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/GroundFinder.h>
+
+#include <osg/Math>
+
+#include <string>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// How far below the scene a coordinate system may be, and a terrain.
+constexpr std::size_t deepestSystem = 9, deepestTerrain = 32;
+
+bool isSystem(const osg::Node& node)
+{
+    // Asked for many nodes, and casts take their time: transforms are none.
+    return !node.asTransform() && dynamic_cast<const osg::CoordinateSystemNode*>(&node);
+}
+
+bool isTerrainRoot(const osg::Node& node)
+{
+    const osg::UserDataContainer* values = node.getUserDataContainer();
+    return values && values->getUserObjectIndex("geofx.format") < values->getNumUserObjects() &&
+           isSystem(node);
+}
+
+} // namespace
+
+GroundFinder::GroundFinder() : _systems(&isSystem, deepestSystem), _terrains(&isTerrainRoot, deepestTerrain)
+{
+}
+
+const osg::CoordinateSystemNode* GroundFinder::systemBelow(const osg::Group& scene)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return dynamic_cast<const osg::CoordinateSystemNode*>(_systems.find(scene));
+}
+
+/// What a terrain says of itself: that whose root the coordinate system is, else the first one below the scene. Read again
+/// only where the root has other user values than the last time.
+std::optional<TerrainInfo> GroundFinder::terrainOf(const osg::Group& scene,
+                                                   const osg::CoordinateSystemNode* system)
+{
+    if (!system) return std::nullopt;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const osg::Node* root = isTerrainRoot(*system) ? system : _terrains.find(scene);
+    const osg::UserDataContainer* values = root ? root->getUserDataContainer() : nullptr;
+    if (!values) return std::nullopt;
+    if (values == _terrainValues) return _terrain;
+    std::string error;
+    const std::optional<TerrainInfo> info = TerrainInfo::read(root, error);
+    if (info)
+    {
+        _terrainValues = values;
+        _terrain = info;
+    }
+    return info;
+}
+
+Ground GroundFinder::find(const osg::Group& scene, const osg::NodePath& above, Frame frame)
+{
+    const osg::CoordinateSystemNode* system = nullptr;
+    for (const osg::Node* node : above)
+    {
+        const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node);
+        if (found) system = found;
+    }
+    if (!system) system = systemBelow(scene);
+    Ground ground;
+    if (system && frame != Frame::Projected) ground.ellipsoid = system->getEllipsoidModel();
+    if (!ground.ellipsoid && frame == Frame::Geocentric) ground.ellipsoid = _globe;
+    if (const std::optional<TerrainInfo> info = terrainOf(scene, system))
+    {
+        ground.heightsKnown = true;
+        ground.terrain = info->root;
+        ground.minHeight = info->minHeight;
+        ground.maxHeight = info->maxHeight;
+        if (info->geocentric) ground.latitude = osg::DegreesToRadians(0.5 * (info->south + info->north));
+        // A range is the radius and error / pixelError · pixelsPerRadian; both meshes may be off by their error.
+        if (info->pixelsPerRadian > 0.0) ground.tileError = 2.0 * info->pixelError / info->pixelsPerRadian;
+        // The diagonal of a cell, and half of the tile's.
+        if (info->tileCells > 0) ground.tileEdge = 2.0 / info->tileCells;
+    }
+    return ground;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/ViewGeometry.h>
+#include <osgGeoFX/effect/detail/NodeFinder.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/Group>
+#include <osg/UserDataContainer>
+
+#include <mutex>
+#include <optional>
+
+namespace osgGeoFX
+{
+
+/// Finds out what is known of the ground below a scene, and remembers where it is said. Thread-safe.
+class GroundFinder
+{
+public:
+    enum class Frame
+    {
+        Automatic,
+        Geocentric,
+        Projected
+    };
+
+    GroundFinder();
+    /// `above`: the nodes above the scene.
+    Ground find(const osg::Group& scene, const osg::NodePath& above, Frame frame);
+
+private:
+    /// The first coordinate system below the scene; null where there is none.
+    const osg::CoordinateSystemNode* systemBelow(const osg::Group& scene);
+    std::optional<TerrainInfo> terrainOf(const osg::Group& scene, const osg::CoordinateSystemNode* system);
+
+    std::mutex _mutex;
+    NodeFinder _systems, _terrains;
+    osg::ref_ptr<const osg::UserDataContainer> _terrainValues;
+    std::optional<TerrainInfo> _terrain;
+    /// Of a globe that has no coordinate system. Always the same: effects tell by it whether the ground has changed.
+    const osg::ref_ptr<const osg::EllipsoidModel> _globe = new osg::EllipsoidModel;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/OwnPrograms.h>
+
+#include <osgGeoFX/effect/detail/TileNormals.h>
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr const char* function = "geofx_vertex";
+
+bool placesVertices(const osg::Shader& shader)
+{
+    return shader.getType() == osg::Shader::VERTEX || shader.getType() == osg::Shader::TESSEVALUATION ||
+           shader.getType() == osg::Shader::GEOMETRY;
+}
+
+/// A text with a space in the place of each comment.
+std::string withoutComments(const std::string& text)
+{
+    std::string result;
+    result.reserve(text.size());
+    for (std::size_t i = 0; i < text.size();)
+    {
+        const bool line = text.compare(i, 2, "//") == 0;
+        if (!line && text.compare(i, 2, "/*") != 0)
+        {
+            result += text[i++];
+            continue;
+        }
+        const std::size_t end = line ? text.find('\n', i) : text.find("*/", i + 2);
+        i = end == std::string::npos ? text.size() : end + (line ? 0 : 2);
+        result += ' ';
+    }
+    return result;
+}
+
+bool isPartOfName(char letter)
+{
+    return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_';
+}
+
+/// Whether a name that begins there is declared or defined: its type stands before it.
+bool followsType(const std::string& text, std::size_t at)
+{
+    while (at > 0 && std::isspace(static_cast<unsigned char>(text[at - 1])) != 0)
+        --at;
+    constexpr const char type[] = "vec4";
+    constexpr std::size_t size = sizeof type - 1;
+    return at >= size && text.compare(at - size, size, type) == 0 &&
+           (at == size || !isPartOfName(text[at - size - 1]));
+}
+
+} // namespace
+
+bool OwnPrograms::isOwn(const osg::StateAttribute* program)
+{
+    if (!program) return false;
+    const auto* known = dynamic_cast<const osg::Program*>(program);
+    return !known || !(known->isFixedFunction() || known->getName() == TileNormals::program);
+}
+
+bool OwnPrograms::calls(const std::string& source)
+{
+    if (source.find(function) == std::string::npos) return false;
+    const std::string text = withoutComments(source);
+    const std::string name = function;
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
+    {
+        const std::size_t end = at + name.size();
+        const bool whole =
+            (at == 0 || !isPartOfName(text[at - 1])) && (end >= text.size() || !isPartOfName(text[end]));
+        if (whole && !followsType(text, at)) return true;
+    }
+    return false;
+}
+
+void OwnPrograms::startFrame()
+{
+    for (auto known = _known.begin(); known != _known.end();)
+    {
+        known->second.current = false;
+        known = known->second.program.valid() ? std::next(known) : _known.erase(known);
+    }
+}
+
+bool OwnPrograms::callsFunctions(const osg::StateAttribute& program)
+{
+    Known& known = _known[&program];
+    if (known.current && known.program.valid()) return known.calls;
+    if (!known.program.valid()) known = {};
+    known.program = &program;
+    known.current = true;
+    const auto* shaders = dynamic_cast<const osg::Program*>(&program);
+    if (!shaders) return known.calls = false;
+    // A shader does not count its changes.
+    const unsigned int count = shaders->getNumShaders();
+    bool same = known.sources.size() == count;
+    for (unsigned int i = 0; same && i < count; ++i)
+        same = known.sources[i].first == shaders->getShader(i) &&
+               known.sources[i].second == shaders->getShader(i)->getShaderSource();
+    if (same && count > 0) return known.calls;
+    known.sources.clear();
+    known.calls = false;
+    for (unsigned int i = 0; i < count; ++i)
+    {
+        const osg::Shader* shader = shaders->getShader(i);
+        known.sources.emplace_back(shader, shader->getShaderSource());
+        known.calls = known.calls || (placesVertices(*shader) && calls(shader->getShaderSource()));
+    }
+    return known.calls;
+}
+
+std::string OwnPrograms::describe(const osg::StateAttribute& program, const osg::NodePath& path)
+{
+    if (!program.getName().empty()) return "The program \"" + program.getName() + "\"";
+    std::string names;
+    if (const auto* shaders = dynamic_cast<const osg::Program*>(&program))
+    {
+        for (unsigned int i = 0; i < shaders->getNumShaders(); ++i)
+        {
+            const osg::Shader& shader = *shaders->getShader(i);
+            const std::string& name = shader.getName().empty() ? shader.getFileName() : shader.getName();
+            if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
+        }
+    }
+    else
+    {
+        names = program.getCompoundClassName();
+    }
+    const auto named = std::find_if(path.rbegin(), path.rend(),
+                                    [](const osg::Node* node) { return !node->getName().empty(); });
+    std::string text = names.empty() ? "A program without a name" : "The program of " + names;
+    if (named != path.rend())
+        text += ", at the node \"" + (*named)->getName() + "\",";
+    else if (!path.empty())
+        text += ", at a node of the class " + path.back()->getCompoundClassName() + ",";
+    return text;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/PassCullVisitor.h>
+
+#include <osgGeoFX/effect/PassFilter.h>
+
+namespace osgGeoFX
+{
+
+PassCullVisitor::~PassCullVisitor() = default;
+
+void PassCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task,
+                          PassFilter& filter)
+{
+    _filter = &filter;
+    CompensatingCullVisitor::run(outer, scene, task);
+}
+
+bool PassCullVisitor::outOfSight(const osg::Node& node)
+{
+    const osg::BoundingSphere& all = node.getBound();
+    return node.isCullingActive() && all.valid() && _filter->outside(eyeBall(all));
+}
+
+void PassCullVisitor::meetLevels(const osg::LOD& node)
+{
+    _filter->meet(node);
+}
+
+osg::Drawable* PassCullVisitor::drawn(osg::Drawable& drawable, const std::vector<osg::StateSet*>& states)
+{
+    // What does not call the functions would stand in the pass where it stands on the ground.
+    return states.empty() || _mode.stranger ? nullptr : _filter->drawn(drawable);
+}
+
+void PassCullVisitor::place(osg::Drawable& drawable)
+{
+    const osg::BoundingBox& bounds = drawable.getBoundingBox();
+    if (!bounds.valid()) return;
+    const osg::Matrixd& modelView = *_modelviewStack.back();
+    const EyeBox box = EyeBox::of(bounds, modelView);
+    if (_filter->outside(box.ball())) return;
+    osg::StateSet* look = _looks.lookFor(drawable, *_currentStateGraph);
+    const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, look == nullptr);
+    osg::Drawable* const copy = drawn(drawable, states);
+    if (!copy) return;
+    for (osg::StateSet* state : states)
+    {
+        pushStateSet(state);
+        addLeaf(*copy, drawable.getStateSet(), look, -box.centre.z());
+        popStateSet();
+    }
+}
+
+void PassCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph, osgUtil::RenderLeaf& leaf,
+                            const osg::BoundingBox& bounds, osg::StateSet* look, osg::StateSet* above)
+{
+    if (!bounds.valid()) return;
+    osg::Drawable& drawable = *leaf._drawable;
+    const osg::Matrixd modelView = leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd();
+    const EyeBox box = EyeBox::of(bounds, modelView);
+    if (_filter->outside(box.ball())) return;
+    const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, look == nullptr);
+    osg::Drawable* const copy = drawn(drawable, states);
+    if (!copy) return;
+    for (osg::StateSet* state : states)
+    {
+        osgUtil::StateGraph* target = graph.find_or_insert(state);
+        if (above) target = target->find_or_insert(above);
+        put(bin, graph, *target,
+            createOrReuseRenderLeaf(copy, leaf._projection.get(), leaf._modelview.get(), leaf._depth));
+    }
+}
+
+} // namespace osgGeoFX

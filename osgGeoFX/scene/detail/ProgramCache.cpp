@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/ProgramCache.h>
+
+#include <algorithm>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+std::string keyOf(const PassShaders& shaders, const std::string& prefix)
+{
+    std::string key = prefix + shaders.vertexMain + ';' + shaders.fragmentMain + ';';
+    for (const auto* files : {&shaders.vertex, &shaders.tessellationControl, &shaders.tessellationEvaluation,
+                              &shaders.geometry, &shaders.fragment})
+    {
+        for (const std::string& file : *files)
+            key += file + ';';
+        key += '|';
+    }
+    for (const auto& [name, binding] : shaders.blocks)
+        key += name + std::to_string(binding) + ';';
+    return key;
+}
+
+} // namespace
+
+osg::ref_ptr<osg::Program> ProgramCache::programOf(const Effects& effects)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const bool other = changed(effects);
+    if (_made && !other) return _program;
+    const std::string key = EffectProgram::key(effects);
+    if (_made && key == _key) return _program;
+    _key = key;
+    _made = true;
+    retire(_program);
+    _program = EffectProgram::create(effects);
+    // An application's programs keep the last functions that were well; tried again when something changes.
+    if (_program)
+        _following.follow(*_program);
+    else
+        _key.clear();
+    return _program;
+}
+
+osg::ref_ptr<osg::Program> ProgramCache::passProgramOf(const Effects& effects, const PassShaders& shaders,
+                                                       const std::string& prefix)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    PassProgram& found = _passes[keyOf(shaders, prefix)];
+    const std::string key = EffectProgram::key(effects);
+    if (!found.made || found.effects != key)
+    {
+        retire(found.program);
+        found = {true, key, EffectProgram::create(effects, shaders, prefix)};
+    }
+    return found.program;
+}
+
+void ProgramCache::dirty()
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _revisions.clear();
+}
+
+void ProgramCache::retire(const osg::ref_ptr<osg::Program>& former)
+{
+    const auto gone = [](const osg::observer_ptr<osg::Program>& each)
+    {
+        return !each.valid();
+    };
+    _retired.erase(std::remove_if(_retired.begin(), _retired.end(), gone), _retired.end());
+    if (former) _retired.emplace_back(former);
+}
+
+std::vector<osg::ref_ptr<osg::Program>> ProgramCache::all()
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    std::vector<osg::ref_ptr<osg::Program>> programs = _following.programs();
+    if (_program) programs.push_back(_program);
+    for (const auto& [key, pass] : _passes)
+    {
+        if (pass.program) programs.push_back(pass.program);
+    }
+    for (const osg::observer_ptr<osg::Program>& each : _retired)
+    {
+        osg::ref_ptr<osg::Program> former;
+        if (each.lock(former)) programs.push_back(former);
+    }
+    return programs;
+}
+
+bool ProgramCache::changed(const Effects& effects)
+{
+    bool other = effects != _effects;
+    _effects = effects;
+    _revisions.resize(effects.size());
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        const unsigned int revision = effects[i]->revision();
+        other = other || revision != _revisions[i];
+        _revisions[i] = revision;
+    }
+    return other;
+}
+
+} // namespace osgGeoFX

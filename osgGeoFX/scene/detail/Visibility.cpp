@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/Visibility.h>
+
+#include <osg/CullingSet>
+
+namespace osgGeoFX
+{
+
+void Visibility::set(const Camera& camera)
+{
+    const osg::Viewport* viewport = camera.viewport;
+    const bool sized = viewport && viewport->width() >= 1.0 && viewport->height() >= 1.0;
+    if (camera.reach > 0.0 && sized)
+    {
+        // A wider picture, so that what stands beside the camera's is drawn while it still reaches into it.
+        _room.set(2.0 * camera.reach / viewport->width(), 2.0 * camera.reach / viewport->height());
+        const osg::Matrixd wider =
+            camera.projection * osg::Matrixd::scale(1.0 / (1.0 + _room.x()), 1.0 / (1.0 + _room.y()), 1.0);
+        osg::Polytope planes;
+        planes.setToUnitFrustum(camera.nearPlane, camera.farPlane);
+        planes.transformProvidingInverse(wider);
+        _frustum.set(camera.planes ? &planes : nullptr, wider, camera.sides);
+    }
+    else
+    {
+        _room.set(0.0, 0.0);
+        _frustum.set(camera.planes, camera.projection, camera.sides);
+    }
+    _smallPixels = viewport && viewport->height() > 0.0 ? camera.smallPixels : 0.0;
+    if (viewport && viewport->height() > 0.0)
+        _pixelSize = osg::CullingSet::computePixelSizeVector(*viewport, camera.projection, osg::Matrix());
+}
+
+double Visibility::radiusOfPixel(const osg::Vec3d& point) const
+{
+    return _pixelSize.x() * point.x() + _pixelSize.y() * point.y() + _pixelSize.z() * point.z() +
+           _pixelSize.w();
+}
+
+bool Visibility::tooSmall(const Ball& deformed) const
+{
+    return _smallPixels > 0.0 && radiusOfPixel(deformed.centre) * _smallPixels > deformed.radius;
+}
+
+bool Visibility::outOfSight(const Ball& deformed, Mask& planes, bool mayBeSmall) const
+{
+    return _frustum.side(deformed, planes) == EyeFrustum::Side::Outside ||
+           (!mayBeSmall && tooSmall(deformed));
+}
+
+bool Visibility::misses(const DeformationChain& chain, const EyeBox& box, Mask planes)
+{
+    chain.bound(box, _hull);
+    return _frustum.misses(_hull, planes);
+}
+
+bool Visibility::outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes)
+{
+    if (hides(chain, box)) return true;
+    const Ball deformed = chain.bound(box.ball());
+    const EyeFrustum::Side side = _frustum.side(deformed, planes);
+    if (side != EyeFrustum::Side::Crossing) return side == EyeFrustum::Side::Outside;
+    return !_frustum.holds(deformed.centre, planes) && misses(chain, box, planes);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/scene/detail/EyeFrustum.h>
+
+#include <osg/Matrixd>
+#include <osg/Polytope>
+#include <osg/Vec2d>
+#include <osg/Vec4d>
+#include <osg/Viewport>
+
+namespace osgGeoFX
+{
+
+/** What one camera sees of balls and boxes once they are deformed: by the planes of its frustum, by hulls in its picture, and by
+    their size in pixels. Knows nothing of a scene graph. Everything is in eye space, metres. For one thread at a time. */
+class Visibility
+{
+public:
+    using Mask = EyeFrustum::Mask;
+
+    struct Camera
+    {
+        osg::Matrixd projection;
+        const osg::Viewport* viewport = nullptr;              ///< null: sizes in pixels are unknown
+        const osg::Polytope* planes = nullptr;                ///< of the frustum; null: they cull nothing
+        bool sides = true, nearPlane = true, farPlane = true; ///< which of them there are
+        double smallPixels = 0.0; ///< what is smaller is out of sight; 0: nothing is too small
+        double reach = 0.0;       ///< how far beyond its own part of the picture a thing may draw, pixels
+    };
+    void set(const Camera& camera);
+
+    /// All planes: for what may cross any of them.
+    Mask all() const { return _frustum.all(); }
+    bool cullsSmall() const { return _smallPixels > 0.0; }
+    /// The radius, metres, of a ball at a point that is one pixel wide as OSG counts it.
+    double radiusOfPixel(const osg::Vec3d& point) const;
+
+    /// Of a deformed ball. Takes the planes that it is wholly inside of out of the mask. `mayBeSmall`: its size does not count.
+    bool outOfSight(const Ball& deformed, Mask& planes, bool mayBeSmall = false) const;
+    bool tooSmall(const Ball& deformed) const;
+    /// Whether nothing of a ball, still undeformed, is to be drawn, wherever it goes.
+    bool hides(const DeformationChain& chain, const Ball& ball) const { return chain.hides(ball, _room); }
+    bool hides(const DeformationChain& chain, const EyeBox& box) const { return chain.hides(box, _room); }
+    /// Whether a point is inside of the planes of a mask.
+    bool holds(const osg::Vec3d& deformed, Mask planes) const { return _frustum.holds(deformed, planes); }
+    /// Whether what becomes of a box misses the picture, by its hull. Slow.
+    bool misses(const DeformationChain& chain, const EyeBox& box, Mask planes);
+    /// The same, where a ball around it does not tell.
+    bool outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes);
+
+private:
+    EyeFrustum _frustum;
+    osg::Vec2d _room; ///< for the reach, in the picture's x and y (−1…1)
+    double _smallPixels = 0.0;
+    osg::Vec4d _pixelSize;
+    Hull _hull;
+};
+
+} // namespace osgGeoFX

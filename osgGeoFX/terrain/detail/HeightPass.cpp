@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/terrain/detail/AtomicFile.h>
+#include <osgGeoFX/terrain/detail/BuildPlan.h>
+#include <osgGeoFX/terrain/detail/HeightGrid.h>
+#include <osgGeoFX/terrain/detail/WorkQueue.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Largest vertical distance between the mesh with every `step`-th post and the full one.
+/// Where only one of the two has ground, `missing` stands for the distance.
+float meshDeviation(const HeightGrid& grid, int step, float missing)
+{
+    float worst = 0.0f;
+    const float scale = 1.0f / static_cast<float>(step);
+    for (int j0 = 0; j0 + step < grid.rows; j0 += step)
+        for (int i0 = 0; i0 + step < grid.columns; i0 += step)
+        {
+            const float sw = grid.at(i0, j0), se = grid.at(i0 + step, j0);
+            const float nw = grid.at(i0, j0 + step), ne = grid.at(i0 + step, j0 + step);
+            for (int j = 0; j <= step; ++j)
+                for (int i = 0; i <= step; ++i)
+                {
+                    const float u = static_cast<float>(i) * scale, v = static_cast<float>(j) * scale;
+                    const float coarse =
+                        i >= j ? sw + u * (se - sw) + v * (ne - se) : sw + v * (nw - sw) + u * (ne - nw);
+                    const float fine = grid.at(i0 + i, j0 + j);
+                    const float difference = std::abs(fine - coarse);
+                    if (difference == difference)
+                        worst = std::max(worst, difference);
+                    else if (std::isnan(fine) != std::isnan(coarse))
+                        worst = std::max(worst, missing);
+                }
+        }
+    return worst;
+}
+
+HeightGrid decimated(const HeightGrid& grid, int step)
+{
+    HeightGrid result((grid.columns - 1) / step + 1, (grid.rows - 1) / step + 1);
+    for (int j = 0; j < result.rows; ++j)
+        for (int i = 0; i < result.columns; ++i)
+            result.at(i, j) = grid.at(i * step, j * step);
+    return result;
+}
+
+/// The unit's tiles whose facts it settles: down to its lattice's level, which for an upper tier is not its own.
+template<typename Visit>
+void forTiles(const Unit& unit, Visit visit)
+{
+    for (int level = unit.latticeLevel() - (unit.tier == 0 ? 0 : 1); level >= unit.root.level; --level)
+    {
+        const int span = 1 << (level - unit.root.level);
+        for (int y = 0; y < span; ++y)
+            for (int x = 0; x < span; ++x)
+                visit(TileKey{level, unit.root.x * span + x, unit.root.y * span + y});
+    }
+}
+
+TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& key, const HeightGrid& grid)
+{
+    const int n = plan.scheme.intervals;
+    const int column = (key.x - unit.root.x * unit.span()) * n, row = (key.y - unit.root.y * unit.span()) * n;
+    TileFacts facts;
+    for (int j = row; j <= row + n; ++j)
+        for (int i = column; i <= column + n; ++i)
+        {
+            const float height = grid.at(i, j);
+            if (std::isnan(height)) continue;
+            facts.minHeight = facts.any ? std::min(facts.minHeight, height) : height;
+            facts.maxHeight = facts.any ? std::max(facts.maxHeight, height) : height;
+            facts.any = 1;
+        }
+    return facts;
+}
+
+TileFacts gatheredFacts(const BuildPlan& plan, const Unit& unit, const TileKey& key)
+{
+    TileFacts facts;
+    for (int c = 0; c < 4; ++c)
+    {
+        const TileFacts& child = plan.fact(key.child(c & 1, c >> 1));
+        if (!child.any) continue;
+        facts.minHeight = facts.any ? std::min(facts.minHeight, child.minHeight) : child.minHeight;
+        facts.maxHeight = facts.any ? std::max(facts.maxHeight, child.maxHeight) : child.maxHeight;
+        facts.any = 1;
+        // Lattices of upper tiers are made of the roots below them; above that they are the same lattice.
+        const bool root = unit.tier > 0 && key.level == unit.latticeLevel() - 1;
+        facts.latticeError = std::max(facts.latticeError, root ? child.rootError : child.latticeError);
+    }
+    facts.error = facts.latticeError + static_cast<float>(plan.finestError(key.level));
+    return facts;
+}
+
+void settleFacts(BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
+{
+    forTiles(unit,
+             [&](const TileKey& key)
+             {
+                 TileFacts facts;
+                 if (plan.scheme.exists(key))
+                     facts = key.level == plan.scheme.finestLevel ? finestFacts(plan, unit, key, grid)
+                                                                  : gatheredFacts(plan, unit, key);
+                 plan.fact(key) = facts;
+             });
+    // What the next tier will miss. Coverage is off by at most a cell.
+    TileFacts& root = plan.fact(unit.root);
+    const double cell = plan.scheme.tileMetres(unit.root.level) / plan.scheme.intervals;
+    // Between its posts the Earth is round: by this much above a chord across a cell.
+    const double sag = plan.scheme.crs.geographic ? 0.25 * cell * cell / 6378137.0 : 0.0;
+    root.rootError = 0.0f;
+    if (root.any)
+        root.rootError = root.latticeError + static_cast<float>(sag) +
+                         meshDeviation(grid, unit.span(), static_cast<float>(cell));
+}
+
+bool loadFacts(BuildPlan& plan, const Unit& unit)
+{
+    ByteReader reader(plan.workFile("facts", unit));
+    if (!reader.good()) return false;
+    const auto facts = reader.getVector<TileFacts>();
+    std::size_t next = 0;
+    forTiles(unit,
+             [&](const TileKey& key)
+             {
+                 if (next < facts.size()) plan.fact(key) = facts[next];
+                 ++next;
+             });
+    return next == facts.size();
+}
+
+void writeFacts(const BuildPlan& plan, const Unit& unit)
+{
+    std::vector<TileFacts> facts;
+    forTiles(unit, [&](const TileKey& key) { facts.push_back(plan.fact(key)); });
+    ByteWriter writer;
+    writer.put(facts);
+    writeFileAtomically(plan.workFile("facts", unit), writer.bytes().data(), writer.bytes().size());
+}
+
+void writeGrid(const BuildPlan& plan, const char* name, const Unit& unit, const HeightGrid& grid)
+{
+    ByteWriter writer;
+    writer.put(grid.values);
+    writeFileAtomically(plan.workFile(name, unit), writer.bytes().data(), writer.bytes().size());
+}
+
+/// Whether any of the posts lacks a height where a raster should have one.
+bool lacksHeights(RasterStack& rasters, const Lattice& lattice, const HeightGrid& heights)
+{
+    const auto isMissing = [](float height)
+    {
+        return std::isnan(height);
+    };
+    if (std::none_of(heights.values.begin(), heights.values.end(), isMissing)) return false;
+    const std::vector<unsigned char> covered = rasters.covered(lattice, heights.values);
+    for (std::size_t i = 0; i < covered.size(); ++i)
+        if (covered[i] && isMissing(heights.values[i])) return true;
+    return false;
+}
+
+void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
+{
+    const TilingScheme& scheme = plan.scheme;
+    HeightGrid grid(unit.span() * scheme.intervals + 1, unit.span() * scheme.intervals + 1);
+    TileFacts::VoidState voids = TileFacts::NO_VOIDS;
+    if (scheme.exists(unit.root))
+    {
+        const int validColumns = plan.validColumns(unit), validRows = plan.validRows(unit);
+        HeightGrid withApron(validColumns + 2, validRows + 2);
+        const Lattice lattice = plan.postsWithApron(unit);
+        withApron.values = rasters.heights(lattice);
+        if (plan.voids)
+            voids = TileFacts::FILLED_VOIDS;
+        else if (plan.options.voids == Voids::FILL && lacksHeights(rasters, lattice, withApron))
+            voids = TileFacts::HAS_VOIDS;
+        writeGrid(plan, "heights", unit, withApron);
+        for (int j = 0; j < validRows; ++j)
+            for (int i = 0; i < validColumns; ++i)
+                grid.at(i, j) = withApron.at(i + 1, j + 1);
+        extendBeyond(grid.values, grid.columns, grid.rows, 1, validColumns, validRows);
+    }
+    settleFacts(plan, unit, grid);
+    plan.fact(unit.root).voids = voids;
+    if (plan.fact(unit.root).any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
+}
+
+void gatherUnit(BuildPlan& plan, const Unit& unit)
+{
+    if (plan.scheme.exists(unit.root))
+    {
+        const HeightGrid grid = gatherRoots(plan, unit);
+        settleFacts(plan, unit, grid);
+        if (plan.fact(unit.root).any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
+    }
+}
+
+} // namespace
+
+HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit)
+{
+    const TilingScheme& scheme = plan.scheme;
+    const int n = scheme.intervals;
+    HeightGrid grid(unit.span() * n + 1, unit.span() * n + 1);
+    std::fill(grid.values.begin(), grid.values.end(), std::numeric_limits<float>::quiet_NaN());
+    for (int y = 0; y < unit.span(); ++y)
+        for (int x = 0; x < unit.span(); ++x)
+        {
+            Unit below;
+            below.root = {unit.latticeLevel(), unit.root.x * unit.span() + x, unit.root.y * unit.span() + y};
+            if (!plan.fact(below.root).any) continue;
+            ByteReader reader(plan.workFile("roots", below));
+            HeightGrid part(n + 1, n + 1);
+            const std::size_t expected = part.values.size();
+            part.values = reader.getVector<float>();
+            if (!reader.good() || part.values.size() != expected)
+                throw BuildError(plan.workFile("roots", below) +
+                                 ": this work file is damaged; build again without --resume.");
+            for (int j = 0; j <= n; ++j)
+                for (int i = 0; i <= n; ++i)
+                    // A neighbour without data must not take away a border that this one has.
+                    if (!std::isnan(part.at(i, j))) grid.at(x * n + i, y * n + j) = part.at(i, j);
+        }
+    extendBeyond(grid.values, grid.columns, grid.rows, 1, plan.validColumns(unit), plan.validRows(unit));
+    return grid;
+}
+
+void runHeightPass(BuildPlan& plan)
+{
+    std::vector<std::unique_ptr<RasterStack>> rasters(static_cast<std::size_t>(plan.threads));
+    const auto sample = [&](int worker, const Unit& unit)
+    {
+        auto& stack = rasters[static_cast<std::size_t>(worker)];
+        if (!stack) stack = std::make_unique<RasterStack>(plan);
+        sampleUnit(plan, unit, *stack);
+    };
+    for (const auto& units : plan.tiers)
+    {
+        runOnWorkers(plan.threads, units.size(),
+                     [&](int worker, std::size_t index)
+                     {
+                         const Unit& unit = units[index];
+                         if (!plan.options.resume || !loadFacts(plan, unit))
+                         {
+                             if (unit.tier == 0)
+                                 sample(worker, unit);
+                             else
+                                 gatherUnit(plan, unit);
+                             // Written last: a unit with facts is a unit that is done.
+                             writeFacts(plan, unit);
+                         }
+                         plan.advance("heights");
+                     });
+        if (&units != &plan.tiers.front()) continue;
+
+        const auto lacks = [&](const Unit& unit)
+        {
+            return plan.fact(unit.root).voids != TileFacts::NO_VOIDS;
+        };
+        const auto lacking = static_cast<std::uint64_t>(std::count_if(units.begin(), units.end(), lacks));
+        if (lacking == 0) continue;
+        plan.unitsTotal += voidSteps(plan) + lacking;
+        fillVoids(plan);
+        runOnWorkers(plan.threads, units.size(),
+                     [&](int worker, std::size_t index)
+                     {
+                         const Unit& unit = units[index];
+                         if (!lacks(unit)) return;
+                         if (plan.fact(unit.root).voids == TileFacts::HAS_VOIDS)
+                         {
+                             sample(worker, unit);
+                             writeFacts(plan, unit);
+                         }
+                         plan.advance("voids");
+                     });
+    }
+    if (!plan.facts[0][0].any)
+        throw BuildError(plan.options.dems.front() +
+                         ": the elevation has no data at all; check its no-data value with gdalinfo -stats.");
+
+    for (int level = plan.scheme.finestLevel; level >= 0; --level)
+        for (int y = 0; y < plan.scheme.tilesAcross(level); ++y)
+            for (int x = 0; x < plan.scheme.tilesAcross(level); ++x)
+            {
+                const TileKey key{level, x, y};
+                TileFacts& facts = plan.fact(key);
+                if (!facts.any) continue;
+                // Where the walls of its coarsest meshes reach to.
+                facts.skirtBelow =
+                    static_cast<float>(2.0 * plan.largestError(level) + plan.leastSkirt(level)) +
+                    facts.latticeError;
+                for (int side = 0; side < 4; ++side)
+                    facts.skirtBelow =
+                        std::max(facts.skirtBelow,
+                                 static_cast<float>(plan.largestError(level) + plan.skirt(key, side)));
+                if (level < plan.scheme.finestLevel)
+                    for (int c = 0; c < 4; ++c)
+                        facts.skirtBelow =
+                            std::max(facts.skirtBelow, plan.fact(key.child(c & 1, c >> 1)).skirtBelow);
+            }
+}
+
+} // namespace osgGeoFX

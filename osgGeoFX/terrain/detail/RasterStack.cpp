@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/terrain/detail/BuildPlan.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+// Heights that no point of the Earth has: a no-data value that the file does not declare.
+constexpr float LOWEST = -12000.0f, HIGHEST = 9500.0f;
+
+// More is a no-data value that the file does not declare; a resampling kernel may overshoot a little.
+constexpr float MOST_PERCENT = 100.5f;
+
+struct RampStop
+{
+    float fraction; ///< 0 at the database's lowest land, 1 at its highest
+    float red, green, blue;
+};
+
+// Lowland green over yellow and brown to the white of the summits, muted so that light and shade can be read.
+constexpr RampStop RAMP[] = {{0.0f, 116, 143, 94},   {0.15f, 152, 168, 107}, {0.35f, 197, 189, 137},
+                             {0.55f, 176, 149, 110}, {0.75f, 150, 127, 106}, {0.9f, 190, 182, 174},
+                             {1.0f, 240, 240, 238}};
+constexpr RampStop SEA_RAMP[] = {{0.0f, 40, 70, 112}, {1.0f, 108, 147, 178}};
+
+template<std::size_t N>
+void rampColor(const RampStop (&ramp)[N], float fraction, unsigned char* rgb)
+{
+    std::size_t next = 1;
+    while (next + 1 < N && ramp[next].fraction < fraction)
+        ++next;
+    const RampStop &a = ramp[next - 1], &b = ramp[next];
+    const float t = std::clamp((fraction - a.fraction) / (b.fraction - a.fraction), 0.0f, 1.0f);
+    rgb[0] = static_cast<unsigned char>(std::lround(a.red + t * (b.red - a.red)));
+    rgb[1] = static_cast<unsigned char>(std::lround(a.green + t * (b.green - a.green)));
+    rgb[2] = static_cast<unsigned char>(std::lround(a.blue + t * (b.blue - a.blue)));
+}
+
+unsigned char byteOf(double share)
+{
+    return static_cast<unsigned char>(std::lround(share * 255.0));
+}
+
+} // namespace
+
+RasterStack::RasterStack(const BuildPlan& plan) : _plan(plan)
+{
+    for (const auto& file : plan.options.dems)
+        _dems.emplace_back(file, RasterKind::Elevation);
+    for (const auto& file : plan.options.imagery)
+        _imagery.emplace_back(file, RasterKind::Imagery);
+    if (!plan.options.landCover.empty())
+    {
+        _landCover.emplace_back(plan.options.landCover, RasterKind::LandCover);
+        _landCoverColors.emplace_back(plan.options.landCover, RasterKind::LandCover);
+        _landCoverColors.back().colorize(plan.classColors);
+        std::array<std::array<unsigned char, 4>, 256> shares{};
+        for (const auto& entry : plan.classes)
+            shares[static_cast<std::size_t>(entry.value)] = {byteOf(entry.trees), byteOf(entry.town),
+                                                             byteOf(entry.bare), 255};
+        _landCoverShares.emplace_back(plan.options.landCover, RasterKind::LandCover);
+        _landCoverShares.back().colorize(shares);
+    }
+    if (!plan.options.treeCover.empty())
+        _treeCover.emplace_back(plan.options.treeCover, RasterKind::TreeCover);
+    if (plan.options.vertical == VerticalDatum::Egm96)
+    {
+        OGRSpatialReference geoid, ellipsoid;
+        geoid.SetFromUserInput("EPSG:4326+5773");
+        ellipsoid.importFromEPSG(4979);
+        _geoid = createTransformation(gisOrder(geoid), gisOrder(ellipsoid), plan.options.dems.front());
+    }
+}
+
+std::vector<float> RasterStack::heights(const Lattice& lattice)
+{
+    std::vector<float> result = heightsAboveSea(lattice);
+    if (_geoid) moveToEllipsoid(lattice, result);
+    return result;
+}
+
+std::vector<float> RasterStack::heightsAboveSea(const Lattice& lattice, std::vector<unsigned char>* filled)
+{
+    std::vector<float> result = measuredHeights(lattice);
+    if (filled) filled->assign(result.size(), 0);
+    if (_plan.voids) _plan.voids->fill(lattice, result, filled);
+    return result;
+}
+
+std::vector<unsigned char> RasterStack::covered(const Lattice& lattice, const std::vector<float>& heights)
+{
+    std::vector<unsigned char> result;
+    result.reserve(heights.size());
+    for (const float height : heights)
+        result.push_back(std::isnan(height) ? 0 : 1);
+    for (auto& dem : _dems)
+        dem.markCovered(_plan.scheme.crs, lattice, result.data());
+    return result;
+}
+
+std::vector<float> RasterStack::measuredHeights(const Lattice& lattice)
+{
+    std::vector<float> result(static_cast<std::size_t>(lattice.columns) *
+                                  static_cast<std::size_t>(lattice.rows),
+                              std::numeric_limits<float>::quiet_NaN());
+    for (auto& dem : _dems)
+        dem.sampleHeights(_plan.scheme.crs, lattice, result.data());
+    for (float& height : result)
+        if (!(height >= LOWEST && height <= HIGHEST)) height = std::numeric_limits<float>::quiet_NaN();
+    return result;
+}
+
+void RasterStack::moveToEllipsoid(const Lattice& lattice, std::vector<float>& heights)
+{
+    const auto columns = static_cast<std::size_t>(lattice.columns);
+    std::vector<double> x(columns), y(columns), z(columns);
+    std::vector<int> success(columns);
+    const TransformationPtr toGeographic =
+        _plan.scheme.crs.geographic ? nullptr
+                                    : createTransformation(_plan.scheme.crs.srs, GridCrs::geocentric().srs,
+                                                           _plan.options.dems.front());
+    for (int row = 0; row < lattice.rows; ++row)
+    {
+        float* line = heights.data() + static_cast<std::size_t>(row) * columns;
+        for (std::size_t i = 0; i < columns; ++i)
+        {
+            x[i] = lattice.x0 + static_cast<double>(i) * lattice.dx;
+            y[i] = lattice.y0 + row * lattice.dy;
+            z[i] = 0.0;
+        }
+        if (toGeographic)
+            toGeographic->Transform(lattice.columns, x.data(), y.data(), nullptr, success.data());
+        for (double& longitude : x)
+            longitude -= 360.0 * std::round(longitude / 360.0);
+        _geoid->Transform(lattice.columns, x.data(), y.data(), z.data(), success.data());
+        for (std::size_t i = 0; i < columns; ++i)
+        {
+            // Outside ±150 m no geoid undulation lies: PROJ has passed the height through without a grid.
+            if (!success[i] || !(std::abs(z[i]) < 150.0))
+                throw BuildError(
+                    _plan.options.dems.front() +
+                    ": PROJ cannot move its heights from EGM96 to the ellipsoid; install the package "
+                    "proj-data, or build with --vertical none.");
+            line[i] += static_cast<float>(z[i]);
+        }
+    }
+}
+
+std::vector<unsigned char> RasterStack::classes(const Lattice& lattice)
+{
+    if (_landCover.empty()) return {};
+    std::vector<unsigned char> result(static_cast<std::size_t>(lattice.columns) *
+                                      static_cast<std::size_t>(lattice.rows));
+    _landCover.front().sampleClasses(_plan.scheme.crs, lattice, result.data());
+    return result;
+}
+
+std::vector<unsigned char> RasterStack::colors(const Lattice& lattice)
+{
+    const std::size_t count =
+        static_cast<std::size_t>(lattice.columns) * static_cast<std::size_t>(lattice.rows);
+    std::vector<unsigned char> planes(4 * count, 0);
+    // From the ground up: the hypsometric ramp, the land cover's colours, the imagery. Each where it has data.
+    if (_landCover.empty())
+    {
+        const TileFacts& whole = _plan.facts[0][0];
+        const float top = std::max(whole.maxHeight, 1.0f), bottom = std::max(whole.minHeight, 0.0f);
+        const std::vector<float> ground = heights(lattice);
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            unsigned char rgb[3] = {128, 128, 128};
+            if (ground[i] <= 0.0f)
+                rampColor(SEA_RAMP, 1.0f - ground[i] / std::min(whole.minHeight, -1.0f), rgb);
+            else if (ground[i] > 0.0f)
+                rampColor(RAMP, (ground[i] - bottom) / std::max(top - bottom, 1.0f), rgb);
+            for (std::size_t channel = 0; channel < 3; ++channel)
+                planes[channel * count + i] = rgb[channel];
+            planes[3 * count + i] = 255;
+        }
+    }
+    else
+    {
+        std::fill(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(3 * count),
+                  static_cast<unsigned char>(128));
+        _landCoverColors.front().sampleColors(_plan.scheme.crs, lattice, planes.data());
+        std::fill(planes.begin() + static_cast<std::ptrdiff_t>(3 * count), planes.end(),
+                  static_cast<unsigned char>(255));
+    }
+    for (auto& image : _imagery)
+        image.sampleColors(_plan.scheme.crs, lattice, planes.data());
+
+    std::vector<unsigned char> result(3 * count);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            result[3 * i + channel] = planes[channel * count + i];
+    return result;
+}
+
+std::vector<unsigned char> RasterStack::cover(const Lattice& lattice, const std::vector<GroundCell>& ground)
+{
+    const std::size_t count = ground.size();
+    std::vector<unsigned char> planes(4 * count, 0);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        planes[i] = ground[i].trees;
+        planes[2 * count + i] = ground[i].bare;
+        planes[3 * count + i] = 255;
+    }
+    for (auto& shares : _landCoverShares)
+        shares.sampleColors(_plan.scheme.crs, lattice, planes.data());
+    std::vector<float> percent;
+    if (!_treeCover.empty())
+    {
+        percent.assign(count, std::numeric_limits<float>::quiet_NaN());
+        _treeCover.front().sampleMeans(_plan.scheme.crs, lattice, percent.data());
+    }
+    std::vector<unsigned char> result(4 * count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        unsigned char* texel = &result[4 * i];
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            texel[channel] = planes[channel * count + i];
+        if (!percent.empty() && percent[i] >= 0.0f && percent[i] <= MOST_PERCENT)
+            texel[0] = byteOf(std::min(static_cast<double>(percent[i]) / 100.0, 1.0));
+        texel[3] = static_cast<unsigned char>((ground[i].shore + 128) / 256);
+    }
+    return result;
+}
+
+} // namespace osgGeoFX

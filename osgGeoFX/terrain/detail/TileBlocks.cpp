@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/terrain/detail/TileBlocks.h>
+
+#include <osg/BoundingBox>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Four finer blocks take a block's place within so many of its radii. With more, blocks fit their distance better, and
+/// there are more of them to draw; the architecture page has what was measured.
+constexpr double FINER_WITHIN = 20.0;
+/// A mesh has at most this share of the posts of the one before it that could be left out.
+constexpr double STEP = 0.65;
+/// Below this gain a coarser mesh is not worth its bytes.
+constexpr double LEAST_GAIN = 0.85;
+/// A mesh that would be shown from one distance to hardly more than that is left out.
+constexpr double LEAST_STEP = 1.1;
+/// The errors of an edge and of those that it is split into add up: posts may lie so many times the tolerance off. In the corners of
+/// a wide picture that is one and a half pixels, since an angle takes more of them there than in the middle.
+constexpr double ACCUMULATION = 1.2;
+/// Cells along the smallest blocks of a finest tile, and how many times its tile's edge has that of a coarser one.
+constexpr int FINEST_CELLS = 16;
+constexpr int COARSE_SHARE = 4;
+/// A finest tile leaves posts out whose errors are below this share of a cell, and below a millimetre: no camera comes near
+/// enough to see them.
+constexpr double NEGLIGIBLE = 1.0 / 32768.0, NEGLIGIBLE_METRES = 1e-3;
+/// What bends a plain finds edges of so many cells on a finest tile.
+constexpr int PLAIN_CELLS = 2;
+/// A wall leans outwards a little, so that it also closes hair lines when one looks straight down.
+constexpr double LEAN = 0.1;
+
+int smallestBlock(const TilingScheme& scheme, int level, int intervals)
+{
+    if (level == scheme.finestLevel) return std::min(intervals, FINEST_CELLS);
+    return intervals / std::clamp(scheme.intervals / FINEST_CELLS, 1, COARSE_SHARE);
+}
+
+/// Twice the area of a triangle, positive where it is anticlockwise.
+double turn(const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c)
+{
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+} // namespace
+
+/// One side of a block.
+struct TileBlocks::Side
+{
+    int number = 0;      ///< 0 south, 1 east, 2 north, 3 west
+    int line = 0;        ///< the row or the column that it lies on
+    double depth = 0.0;  ///< metres that its wall reaches below the ground at least
+    bool border = false; ///< of the tile
+    std::size_t vertices = 0;
+
+    bool alongColumns() const { return number % 2 == 0; }
+    /// Grows along the side with the block's inside on the left.
+    int place(const Post& post) const
+    {
+        const int along = alongColumns() ? post.column : post.row;
+        return number < 2 ? along : -along;
+    }
+    bool holds(const Post& post) const { return (alongColumns() ? post.row : post.column) == line; }
+    Post post(int place) const
+    {
+        const int along = number < 2 ? place : -place;
+        return alongColumns() ? Post{along, line} : Post{line, along};
+    }
+    osg::Vec2d out() const
+    {
+        return {number == 1 ? 1.0 : number == 3 ? -1.0 : 0.0, number == 2 ? 1.0 : number == 0 ? -1.0 : 0.0};
+    }
+};
+
+TileBlocks::TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetwork& network,
+                       const LevelArrays& arrays, int x, int y)
+    : _plan(plan), _key(key), _network(network), _lattice(network.lattice()), _arrays(arrays), _x(x), _y(y)
+{
+    addVertices({0, 0, _lattice.intervals});
+    for (int side = 0; side < 4; ++side)
+        _skirts[static_cast<std::size_t>(side)] = plan.skirt(key, side);
+    // Whole tiles are far enough away for one block on the coarsest level alone; halves of a finest one hardly ever are.
+    const int intervals = _lattice.intervals, smallest = smallestBlock(plan.scheme, key.level, intervals);
+    const int parts = key.level == 0 ? 1 : key.level == plan.scheme.finestLevel ? 4 : 2;
+    const int size = std::max(smallest, intervals / parts);
+    std::vector<Block> roots;
+    for (int row = 0; row < intervals; row += size)
+        for (int column = 0; column < intervals; column += size)
+        {
+            Block block = make({column, row, size});
+            if (!block.meshes.empty() || !block.finer.empty()) roots.push_back(std::move(block));
+        }
+    // The roots come first.
+    _roots = roots.size();
+    for (Block& block : _blocks)
+    {
+        for (std::size_t& each : block.finer)
+            each += _roots;
+        roots.push_back(std::move(block));
+    }
+    for (std::size_t i = 0; i < _roots; ++i)
+        for (std::size_t& each : roots[i].finer)
+            each += _roots;
+    _blocks = std::move(roots);
+    std::vector<std::vector<std::vector<std::uint32_t>*>> lists(_vertices.size());
+    for (Block& block : _blocks)
+        for (Mesh& mesh : block.meshes)
+            lists[block.vertices].push_back(&mesh.triangles);
+    for (std::size_t i = 0; i < lists.size(); ++i)
+        _vertices[i]->finish(lists[i]);
+}
+
+std::size_t TileBlocks::addVertices(const TileBlock& block)
+{
+    _vertices.push_back(std::make_unique<TileVertices>(_plan, _key, _arrays, _x, _y, block));
+    return _vertices.size() - 1;
+}
+
+double TileBlocks::metres() const
+{
+    return _plan.scheme.tileMetres(_key.level) / _lattice.intervals;
+}
+
+TileBlocks::Block TileBlocks::make(const TileBlock& block)
+{
+    Block result;
+    float low = FLT_MAX, high = -FLT_MAX;
+    for (int row = block.row; row <= block.row + block.size; ++row)
+        for (int column = block.column; column <= block.column + block.size; ++column)
+        {
+            const float height = _lattice.heights.at(_lattice.column + column, _lattice.row + row);
+            low = std::min(low, height); // not by NaN
+            high = std::max(high, height);
+        }
+    if (low > high || block.column >= _lattice.endColumn || block.row >= _lattice.endRow) return result;
+    // The middle of its box. Between these points the globe is near enough a plane.
+    constexpr int parts = 4;
+    osg::BoundingBoxd box;
+    const int step = std::max(1, block.size / parts);
+    for (int row = 0; row <= block.size; row += step)
+        for (int column = 0; column <= block.size; column += step)
+        {
+            const Post post{block.column + column, block.row + row};
+            const osg::Vec3d ground = _vertices.front()->ground(post), up = _vertices.front()->up(post);
+            box.expandBy(ground + up * static_cast<double>(low));
+            box.expandBy(ground + up * static_cast<double>(high));
+        }
+    result.middle = box.center();
+    result.radius = box.radius();
+
+    const int smallest = smallestBlock(_plan.scheme, _key.level, _lattice.intervals);
+    if (block.size > smallest)
+    {
+        const int half = block.size / 2;
+        for (int quarter = 0; quarter < 4; ++quarter)
+        {
+            Block finer =
+                make({block.column + (quarter & 1) * half, block.row + (quarter >> 1) * half, half});
+            if (finer.meshes.empty() && finer.finer.empty()) continue;
+            _blocks.push_back(std::move(finer));
+            result.finer.push_back(_blocks.size() - 1);
+        }
+        // Not before its own error is small enough, where it is smaller than others: at the end of the ground.
+        const double perMetre = _plan.options.pixelsPerRadian / _plan.options.pixelError;
+        if (!result.finer.empty())
+            result.finerWithin = std::max(FINER_WITHIN * result.radius,
+                                          result.radius + _plan.tolerance(_key.level) * perMetre);
+    }
+    makeMeshes(block, result);
+    return result;
+}
+
+void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
+{
+    const double perMetre = _plan.options.pixelsPerRadian / _plan.options.pixelError;
+    const bool smallest = block.size == smallestBlock(_plan.scheme, _key.level, _lattice.intervals);
+    const bool finest = _key.level == _plan.scheme.finestLevel;
+    const bool own = smallest && finest;
+    double tolerance = -1.0;
+    bool dense = false;
+    if (own)
+    {
+        // Where hardly a post can be left out, all are there.
+        const double negligible = std::min(NEGLIGIBLE * metres(), NEGLIGIBLE_METRES);
+        const auto posts =
+            static_cast<std::size_t>(block.size + 1) * static_cast<std::size_t>(block.size + 1);
+        dense = 2 * _network.errors(block, negligible).size() > posts;
+        if (!dense) tolerance = negligible;
+    }
+    else
+        tolerance = std::max(_plan.tolerance(_key.level), (result.finerWithin - result.radius) / perMetre);
+    // What the finest meshes may be off by is part of what neighbours' walls reach down to.
+    const double most = own        ? HUGE_VAL
+                        : smallest ? _plan.finestError(_key.level)
+                                   : std::min(_plan.largestError(_key.level), ACCUMULATION * tolerance);
+    const int all = block.size;
+    std::vector<BlockMesh> meshes{_network.triangulate(block, tolerance, all)};
+    while (tolerance > 0.0 && meshes.front().deviation > most)
+        meshes.front() = _network.triangulate(block, tolerance *= 0.7, all);
+    if (meshes.front().corners.empty()) return;
+    // With all posts what is left is rounding.
+    if (tolerance < 0.0) meshes.front().deviation = 0.0;
+    std::vector<double> from{result.finerWithin};
+
+    // Of these vertices, and of those of the finest level.
+    const double rounding = 2.0 * _vertices.front()->rounding();
+    const std::vector<float> errors = _network.errors(block, tolerance);
+    for (auto count = errors.size(); count > 0;)
+    {
+        count = static_cast<std::size_t>(STEP * static_cast<double>(count));
+        const auto coarser = static_cast<double>(errors[count]);
+        BlockMesh mesh = _network.triangulate(block, coarser, all);
+        if (mesh.deviation > _plan.largestError(_key.level)) break;
+        if (static_cast<double>(mesh.corners.size()) >
+            LEAST_GAIN * static_cast<double>(meshes.back().corners.size()))
+            continue;
+        const double error = std::max(coarser, mesh.deviation / ACCUMULATION) +
+                             static_cast<double>(_plan.fact(_key).latticeError) + rounding;
+        const double distance = result.radius + error * perMetre;
+        // Where the nearer one would hardly ever be seen, this one takes its place; the nearest one goes only where it never
+        // would.
+        const bool replaces = distance <= (meshes.size() > 1 ? LEAST_STEP : 1.0) * from.back();
+        if (replaces)
+        {
+            meshes.back() = std::move(mesh);
+            from.back() = std::max(from.back(), distance);
+        }
+        else
+        {
+            meshes.push_back(std::move(mesh));
+            from.push_back(distance);
+        }
+    }
+    // A plain is off by rounding alone, which is no reason to load finer tiles.
+    if (smallest && meshes.front().deviation > NEGLIGIBLE_METRES)
+        _error = std::max(_error, meshes.front().deviation + rounding);
+
+    // What bends a plain asks for edges that are short, wherever it is.
+    const int longest = finest ? PLAIN_CELLS : _lattice.intervals / leastCells(_plan.scheme.intervals);
+    if (smallest && longestEdge(meshes.front()) > 1.5 * longest)
+    {
+        meshes.insert(meshes.begin(), _network.triangulate(block, tolerance, longest));
+        from.insert(from.begin(), 0.0);
+        from[1] = std::max(from[1], NEARER_THAN_ANY_CAMERA);
+    }
+    if (own) result.vertices = addVertices(block);
+    TileVertices& vertices = *_vertices[result.vertices];
+    if (dense) vertices.addAll();
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+    {
+        Mesh made;
+        made.from = from[i];
+        made.longestEdge = longestEdge(meshes[i]) * metres();
+        for (const Post& corner : meshes[i].corners)
+            made.triangles.push_back(vertices.post(corner));
+        made.ground = made.triangles.size();
+        // A neighbour of the same tile, or of its level, is hardly farther away than the farthest place where this mesh
+        // is drawn; twice that, since deformations stretch distances.
+        double other = _plan.largestError(_key.level);
+        if (i + 1 < meshes.size()) other = std::min(other, 2.0 * (from[i + 1] + result.radius) / perMetre);
+        other += static_cast<double>(_plan.fact(_key).latticeError);
+        addWalls(block, result.vertices, meshes[i], meshes[i].deviation + other, made.triangles);
+        result.meshes.push_back(std::move(made));
+    }
+}
+
+/// In cells.
+double TileBlocks::longestEdge(const BlockMesh& mesh)
+{
+    int squared = 0;
+    for (std::size_t i = 0; i < mesh.corners.size(); ++i)
+    {
+        const Post &a = mesh.corners[i], &b = mesh.corners[i % 3 == 2 ? i - 2 : i + 1];
+        const int across = a.column - b.column, up = a.row - b.row;
+        squared = std::max(squared, across * across + up * up);
+    }
+    return std::sqrt(squared);
+}
+
+void TileBlocks::addWalls(const TileBlock& block, std::size_t vertices, const BlockMesh& mesh, double depth,
+                          std::vector<std::uint32_t>& triangles)
+{
+    // Rounding alone opens hair lines between meshes of different density, even in a plain.
+    // Meshes of about the same depth share a wall's lower end.
+    const double inner = std::exp2(std::ceil(std::log2(depth + _plan.leastSkirt(_key.level))));
+    // Beyond the end of the ground there is nothing.
+    const int east = _lattice.eastColumn(), north = _lattice.northRow();
+    const int lines[4] = {block.row, std::min(block.column + block.size, east),
+                          std::min(block.row + block.size, north), block.column};
+    const int borders[4] = {0, east, north, 0};
+    for (int number = 0; number < 4; ++number)
+    {
+        Side side{number, lines[number], inner, false, vertices};
+        side.border = side.line == borders[number];
+        const double neighbours = _skirts[static_cast<std::size_t>(number)];
+        if (side.border) side.depth = neighbours > 0.0 ? std::max(inner, mesh.deviation + neighbours) : 0.0;
+        if (side.depth <= 0.0) continue;
+        // A wall hangs from each edge of the surface along the side; not across a hole, nor beyond the ground's end.
+        std::vector<std::pair<int, int>> edges;
+        for (std::size_t i = 0; i < mesh.corners.size(); ++i)
+        {
+            const Post &a = mesh.corners[i], &b = mesh.corners[i % 3 == 2 ? i - 2 : i + 1];
+            if (side.holds(a) && side.holds(b) && side.place(a) < side.place(b))
+                edges.emplace_back(side.place(a), side.place(b));
+        }
+        std::sort(edges.begin(), edges.end());
+        std::vector<Post> way;
+        for (std::size_t i = 0; i < edges.size(); ++i)
+        {
+            if (way.empty()) way.push_back(side.post(edges[i].first));
+            way.push_back(side.post(edges[i].second));
+            if (i + 1 < edges.size() && edges[i + 1].first == edges[i].second) continue;
+            addWall(side, way, triangles);
+            way.clear();
+        }
+    }
+}
+
+/// Whether a post lies on the terrain's border, where all levels have the same post.
+bool TileBlocks::ends(const Post& post) const
+{
+    const bool on[4] = {post.row == 0, post.column >= _lattice.eastColumn(), post.row >= _lattice.northRow(),
+                        post.column == 0};
+    for (std::size_t side = 0; side < 4; ++side)
+        if (on[side] && _skirts[side] <= 0.0) return true;
+    return false;
+}
+
+void TileBlocks::addWall(const Side& side, const std::vector<Post>& top,
+                         std::vector<std::uint32_t>& triangles)
+{
+    TileVertices& vertices = *_vertices[side.vertices];
+    const Post first = top.front(), last = top.back();
+    if (!_lattice.places.empty() || ends(first) || ends(last))
+    {
+        addStrip(side, top, triangles);
+        return;
+    }
+    const int start = side.place(first), end = side.place(last);
+    const auto height = [&](const Post& post)
+    {
+        return static_cast<double>(_lattice.height(post.column, post.row));
+    };
+    const auto [entry, isNew] =
+        _lines.try_emplace(std::make_tuple(side.vertices, side.number, side.line, start, end, side.depth));
+    Line& line = entry->second;
+    if (isNew)
+    {
+        // A straight line below all that lies between, along the chord or level, whichever does not go below both.
+        const double a = height(first), b = height(last);
+        double sag = 0.0, lowest = std::min(a, b);
+        for (int place = start + 1; place < end; ++place)
+        {
+            const double each = height(side.post(place));
+            const double share = static_cast<double>(place - start) / (end - start);
+            sag = std::max(sag, a + share * (b - a) - each);
+            lowest = std::min(lowest, each);
+        }
+        const bool chord = std::min(a, b) - sag >= lowest - 0.01;
+        line.depths = {side.depth + (chord ? sag : a - lowest), side.depth + (chord ? sag : b - lowest)};
+        const osg::Vec2d out = side.out() * (LEAN * side.depth);
+        line.ends = {vertices.below(first, line.depths[0], out.x(), out.y()),
+                     vertices.below(last, line.depths[1], out.x(), out.y())};
+    }
+    // The polygon between the border and the line, cut into triangles ear by ear.
+    struct Corner
+    {
+        osg::Vec2d at;
+        std::uint32_t index;
+    };
+    std::vector<Corner> open{{osg::Vec2d(start, height(first) - line.depths[0]), line.ends[0]}};
+    const auto add = [&](const Corner& next)
+    {
+        while (open.size() > 1)
+        {
+            const Corner &from = open[open.size() - 2], &middle = open.back();
+            if (turn(from.at, middle.at, next.at) >= 0.0) break;
+            triangles.insert(triangles.end(), {from.index, next.index, middle.index});
+            open.pop_back();
+        }
+        open.push_back(next);
+    };
+    for (const Post& post : top)
+        add({osg::Vec2d(side.place(post), height(post)), vertices.post(post)});
+    add({osg::Vec2d(end, height(last) - line.depths[1]), line.ends[1]});
+}
+
+void TileBlocks::addStrip(const Side& side, const std::vector<Post>& top,
+                          std::vector<std::uint32_t>& triangles)
+{
+    TileVertices& vertices = *_vertices[side.vertices];
+    const auto low = [&](const Post& post)
+    {
+        const auto [entry, isNew] = _strips.try_emplace(
+            std::make_tuple(side.vertices, side.number, post.column, post.row, side.depth), 0u);
+        if (isNew)
+        {
+            // At the terrain's border it may still stand above the first posts of a finer neighbour, by its own error;
+            // deeper, or leaning, the wall's end would show below the border.
+            const bool end = ends(post);
+            const double depth =
+                end ? std::min(side.depth, 1.5 * _plan.largestError(_key.level) / 4.0) : side.depth;
+            const osg::Vec2d out = side.out() * (end ? 0.0 : LEAN * depth);
+            entry->second = vertices.below(post, depth, out.x(), out.y());
+        }
+        return entry->second;
+    };
+    for (std::size_t i = 0; i + 1 < top.size(); ++i)
+    {
+        const std::uint32_t a = vertices.post(top[i]), b = vertices.post(top[i + 1]);
+        const std::uint32_t lowA = low(top[i]), lowB = low(top[i + 1]);
+        triangles.insert(triangles.end(), {a, lowA, b, b, lowA, lowB});
+    }
+}
+
+} // namespace osgGeoFX

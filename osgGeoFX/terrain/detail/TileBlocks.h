@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/terrain/detail/TileMesh.h>
+#include <osgGeoFX/terrain/detail/TileVertices.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** What a tile's levels of detail are made of: a quadtree of blocks, each with meshes for several distances.
+
+    A mesh is right to a pixel from its own distance on, and has hardly more triangles than that needs. All of them are
+    index lists over vertices that they share. Each has walls along the block's border, down to what may stand on the other
+    side; a wall ends in a straight line, so it costs one triangle for each edge of the border, and one more.
+
+    Not thread-safe. */
+class TileBlocks
+{
+public:
+    struct Mesh
+    {
+        std::vector<std::uint32_t> triangles; ///< the ground's, then the walls'
+        std::size_t ground = 0;               ///< indices of the ground
+        double from = 0.0;                    ///< metres from the block's middle
+        double longestEdge = 0.0;             ///< of the surface, along the ground, metres
+    };
+    struct Block
+    {
+        osg::Vec3d middle;
+        double radius = 0.0;            ///< around the ground, without walls
+        double error = 0.0;             ///< by how much its first mesh misses the lattice, metres
+        std::vector<Mesh> meshes;       ///< the nearest first
+        std::size_t vertices = 0;       ///< whose its meshes' indices are
+        double finerWithin = 0.0;       ///< metres; the four finer blocks are due there
+        std::vector<std::size_t> finer; ///< their places in the list of all blocks; none, or up to four
+    };
+
+    /// Metres; no camera is as near to a block's middle, but a deformation may ask as if it were.
+    static constexpr double NEARER_THAN_ANY_CAMERA = 1e-3;
+
+    /// The tile's place in the arrays, x and y, is counted in tiles from their south-west corner.
+    TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetwork& network,
+               const LevelArrays& arrays, int x, int y);
+
+    /// Those that nothing else holds come first.
+    const std::vector<Block>& blocks() const { return _blocks; }
+    std::size_t roots() const { return _roots; }
+    /// What blocks have in common; a smallest block of a finest tile has its own.
+    const std::vector<std::unique_ptr<TileVertices>>& vertices() const { return _vertices; }
+    /// By how much the tile's finest meshes miss the lattice, as a length that must not show a pixel: metres.
+    double error() const { return _error; }
+    bool empty() const { return _blocks.empty(); }
+
+private:
+    using Post = BlockMesh::Post;
+    struct Side;
+
+    Block make(const TileBlock& block);
+    void makeMeshes(const TileBlock& block, Block& result);
+    /// Makes one for a block, or for the whole tile.
+    std::size_t addVertices(const TileBlock& block);
+    static double longestEdge(const BlockMesh& mesh);
+    void addWalls(const TileBlock& block, std::size_t vertices, const BlockMesh& mesh, double depth,
+                  std::vector<std::uint32_t>& triangles);
+    void addWall(const Side& side, const std::vector<Post>& top, std::vector<std::uint32_t>& triangles);
+    void addStrip(const Side& side, const std::vector<Post>& top, std::vector<std::uint32_t>& triangles);
+    bool ends(const Post& post) const;
+    double metres() const; ///< from post to post
+
+    const BuildPlan& _plan;
+    const TileKey _key;
+    const TileNetwork& _network;
+    const TileLattice& _lattice;
+    const LevelArrays& _arrays;
+    const int _x, _y;
+    std::vector<std::unique_ptr<TileVertices>> _vertices; ///< the tile's own first
+    std::array<double, 4> _skirts{}; ///< what the tile's sides ask for: 0 south, 1 east, 2 north, 3 west
+    std::vector<Block> _blocks;
+    std::size_t _roots = 0;
+    double _error = 0.0;
+    struct Line
+    {
+        std::array<std::uint32_t, 2> ends{};
+        std::array<double, 2> depths{}; ///< below the border's first and last post, metres
+    };
+    /// By the vertices, the side, its row or column, the border's first and last place, and the least depth: meshes share
+    /// them.
+    std::map<std::tuple<std::size_t, int, int, int, int, double>, Line> _lines;
+    /// By the vertices, the side, the post and the depth.
+    std::map<std::tuple<std::size_t, int, int, int, double>, std::uint32_t> _strips;
+};
+
+} // namespace osgGeoFX

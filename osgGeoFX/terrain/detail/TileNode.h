@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/terrain/detail/BuildPlan.h>
+#include <osgGeoFX/terrain/detail/TileMesh.h>
+#include <osgGeoFX/terrain/detail/TileTextures.h>
+
+#include <osg/Array>
+#include <osg/Geometry>
+#include <osg/Node>
+
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// One level's lattices over a unit.
+struct LevelArrays
+{
+    int level = 0;
+    int span = 0;             ///< tiles along the unit's edge
+    HeightGrid heights{0, 0}; ///< as dense as the unit has them, whatever the level
+    std::vector<float> slopeX,
+        slopeY; ///< smoothed rise to the east and to the north at the level's posts, m in a metre
+    std::vector<float> texelSlopeX,
+        texelSlopeY; ///< the same where the texels of normals lie, TilingScheme::normalIntervals
+    int texelColumns = 0;
+    std::vector<unsigned char> colors;  ///< red, green, blue
+    std::vector<unsigned char> classes; ///< empty without land cover
+    std::vector<unsigned char> cover;   ///< four bytes each, as shaders/lib/cover.glsl codes them
+    std::vector<float>
+        textureError; ///< by tile: size in metres of a texel that hides something, 0 if none does
+};
+
+/** Makes the scene graph of a tile: a tree of levels of detail of its blocks (TileBlocks), each mesh an osg::Geometry over
+    vertices that it shares with others, with normals of vertices and of texels, base colour, land cover, and what lies on
+    the ground.
+
+    A smallest block of a finest tile has vertices of its own; all other meshes of a tile have theirs in common. The
+    transform's user value "geofx.cells" tells how many cells the tile's lattice has along an edge. Where the texture of colours
+    is wider than the colours, "geofx.texels" tells how many intervals between texels those have along an edge. An osg::LOD of a
+    block has as its user data an osg::Vec2Array, which TileInfo::meshesOf() explains. Not thread-safe. */
+class TileNodeFactory
+{
+public:
+    explicit TileNodeFactory(const BuildPlan& plan);
+
+    /// The tile, x and y counted from the arrays' south-west corner; it must have data.
+    osg::ref_ptr<osg::Node> create(const TileKey& key, const LevelArrays& arrays, int x, int y);
+
+    /// The textures of all tiles since it was made, or since they were forgotten.
+    TileTextures& textures() { return _textures; }
+
+private:
+    TileLattice createLattice(const TileKey& key, const LevelArrays& arrays, int x, int y) const;
+    osg::ref_ptr<osg::StateSet> createState(const TileKey& key, const LevelArrays& arrays, int x, int y);
+
+    const BuildPlan& _plan;
+    TileTextures _textures;
+    osg::ref_ptr<osg::VertexBufferObject> _sharedBuffer;
+    osg::ref_ptr<osg::Vec4Array> _white;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/terrain/detail/TilePass.h>
+
+#include <osgGeoFX/terrain/detail/AtomicFile.h>
+#include <osgGeoFX/terrain/detail/TileFile.h>
+#include <osgGeoFX/terrain/detail/TileNode.h>
+#include <osgGeoFX/terrain/detail/WorkQueue.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+
+#include <osg/Group>
+#include <osg/Math>
+#include <osgDB/Registry>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <mutex>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+// A difference of colour that an eye would miss, of 255.
+constexpr int VISIBLE_DIFFERENCE = 10;
+
+/// Every second point of a lattice, smoothed by 1-2-1 in each direction. Points on the lattice's border are smoothed
+/// along the border only: the neighbouring unit has the same points there and must come to the same result.
+template<typename T, typename Sum, int Channels>
+std::vector<T> halved(const std::vector<T>& values, int columns, int rows)
+{
+    const int halfColumns = (columns - 1) / 2 + 1, halfRows = (rows - 1) / 2 + 1;
+    std::vector<T> result(static_cast<std::size_t>(halfColumns) * static_cast<std::size_t>(halfRows) *
+                          Channels);
+    const auto at = [&](int column, int row, int channel)
+    {
+        return static_cast<Sum>(values[(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                                        static_cast<std::size_t>(column)) *
+                                           Channels +
+                                       static_cast<std::size_t>(channel)]);
+    };
+    for (int j = 0; j < halfRows; ++j)
+        for (int i = 0; i < halfColumns; ++i)
+        {
+            const bool insideX = i > 0 && i + 1 < halfColumns, insideY = j > 0 && j + 1 < halfRows;
+            // On the west or east border: along y only; on the south or north one: along x only; a corner: itself.
+            const int wx[3] = {insideX ? 1 : 0, insideX ? 2 : 1, insideX ? 1 : 0};
+            const int wy[3] = {insideY ? 1 : 0, insideY ? 2 : 1, insideY ? 1 : 0};
+            const int total = (insideX ? 4 : 1) * (insideY ? 4 : 1);
+            for (int channel = 0; channel < Channels; ++channel)
+            {
+                Sum sum = 0;
+                for (int y = -1; y <= 1; ++y)
+                    for (int x = -1; x <= 1; ++x)
+                        if (const int weight = wx[x + 1] * wy[y + 1])
+                            sum += static_cast<Sum>(weight) * at(2 * i + x, 2 * j + y, channel);
+                if constexpr (std::is_integral_v<T>)
+                    sum = (sum + total / 2) / total;
+                else
+                    sum /= static_cast<Sum>(total);
+                result[(static_cast<std::size_t>(j) * static_cast<std::size_t>(halfColumns) +
+                        static_cast<std::size_t>(i)) *
+                           Channels +
+                       static_cast<std::size_t>(channel)] = static_cast<T>(sum);
+            }
+        }
+    return result;
+}
+
+/// Copies a lattice of `partColumns` columns into a larger one.
+template<typename T>
+void paste(const std::vector<T>& part, int partColumns, int channels, std::vector<T>& whole, int wholeColumns,
+           int x0, int y0)
+{
+    const std::size_t run = static_cast<std::size_t>(partColumns) * static_cast<std::size_t>(channels);
+    const int rows = static_cast<int>(part.size() / run);
+    for (int row = 0; row < rows; ++row)
+        std::copy_n(part.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * run), run,
+                    whole.begin() + (static_cast<std::ptrdiff_t>(y0 + row) * wholeColumns + x0) * channels);
+}
+
+std::string rootTileFile(const BuildPlan& plan, const TileKey& key)
+{
+    return plan.workFolder() + "/nodes/" + key.path() + ".osgb";
+}
+
+osg::ref_ptr<osg::Node> readRootTile(const BuildPlan& plan, const TileKey& key)
+{
+    const std::string file = rootTileFile(plan, key);
+    // Without a path in the options OSG leaves the tile's own file names as they were written.
+    std::ifstream stream(file, std::ios::binary);
+    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
+    osg::ref_ptr<osg::Node> node;
+    if (stream && reader) node = reader->readNode(stream, new osgDB::Options).getNode();
+    if (!node) throw BuildError(file + ": this work file is damaged; build again without --resume.");
+    return node;
+}
+
+/// Whether the finer texels show anything that the coarser ones, interpolated, do not.
+bool losesDetail(const LevelArrays& fine, const LevelArrays& coarse, int x, int y, int intervals)
+{
+    const auto texel = [](const LevelArrays& arrays, int column, int row)
+    {
+        return arrays.colors.data() +
+               3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(arrays.texelColumns) +
+                    static_cast<std::size_t>(column));
+    };
+    for (int row = 2 * y * intervals; row <= 2 * (y + 1) * intervals; ++row)
+        for (int column = 2 * x * intervals; column <= 2 * (x + 1) * intervals; ++column)
+        {
+            const unsigned char* value = texel(fine, column, row);
+            const unsigned char* corner[] = {
+                texel(coarse, column / 2, row / 2), texel(coarse, (column + 1) / 2, row / 2),
+                texel(coarse, column / 2, (row + 1) / 2), texel(coarse, (column + 1) / 2, (row + 1) / 2)};
+            for (int channel = 0; channel < 3; ++channel)
+                if (std::abs(value[channel] - (corner[0][channel] + corner[1][channel] + corner[2][channel] +
+                                               corner[3][channel]) /
+                                                  4) > VISIBLE_DIFFERENCE)
+                    return true;
+        }
+    return false;
+}
+
+/// What a unit's last work file tells first.
+struct UnitFigures
+{
+    std::uint64_t tiles = 0;
+    TextureFigures textures;
+};
+
+class UnitBuilder
+{
+public:
+    explicit UnitBuilder(BuildPlan& plan) : _plan(plan), _factory(plan) {}
+
+    /// Writes the files of all groups of four tiles in the unit, and its root where the next tier finds it.
+    UnitFigures build(const Unit& unit);
+
+private:
+    LevelArrays sampled(const Unit& unit);
+    LevelArrays gathered(const Unit& unit);
+    /// The next coarser level; may take over the finer one's texels and slopes, which is then done with.
+    LevelArrays coarser(LevelArrays& fine) const;
+    void slopes(const Unit& unit, const HeightGrid& withApron, LevelArrays& arrays) const;
+    std::uint64_t writeGroups(const Unit& unit, const LevelArrays& arrays);
+
+    BuildPlan& _plan;
+    TileNodeFactory _factory;
+    std::unique_ptr<RasterStack> _rasters;
+};
+
+/// Slopes at the posts from their neighbours; the apron gives those on the border theirs.
+void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArrays& arrays) const
+{
+    const TilingScheme& scheme = _plan.scheme;
+    arrays.slopeX.resize(arrays.heights.values.size());
+    arrays.slopeY.resize(arrays.heights.values.size());
+    const auto rise = [](float before, float here, float after, double distance)
+    {
+        const bool hasBefore = !std::isnan(before), hasAfter = !std::isnan(after);
+        if (std::isnan(here) || (!hasBefore && !hasAfter)) return 0.0f;
+        const float difference = (hasAfter ? after : here) - (hasBefore ? before : here);
+        return static_cast<float>(static_cast<double>(difference) /
+                                  (distance * (hasBefore && hasAfter ? 2.0 : 1.0)));
+    };
+    const int validColumns = withApron.columns - 2, validRows = withApron.rows - 2;
+    for (int j = 0; j < validRows; ++j)
+    {
+        const double y = scheme.gridY(scheme.firstRow(unit.root) + j);
+        const double metresX = scheme.metresX(y), metresY = scheme.metresY(y);
+        for (int i = 0; i < validColumns; ++i)
+        {
+            const std::size_t index =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(arrays.heights.columns) +
+                static_cast<std::size_t>(i);
+            const float here = withApron.at(i + 1, j + 1);
+            arrays.slopeX[index] = rise(withApron.at(i, j + 1), here, withApron.at(i + 2, j + 1), metresX);
+            arrays.slopeY[index] = rise(withApron.at(i + 1, j), here, withApron.at(i + 1, j + 2), metresY);
+        }
+    }
+    extendBeyond(arrays.slopeX, arrays.heights.columns, arrays.heights.rows, 1, validColumns, validRows);
+    extendBeyond(arrays.slopeY, arrays.heights.columns, arrays.heights.rows, 1, validColumns, validRows);
+    arrays.texelSlopeX = arrays.slopeX;
+    arrays.texelSlopeY = arrays.slopeY;
+}
+
+LevelArrays UnitBuilder::sampled(const Unit& unit)
+{
+    const TilingScheme& scheme = _plan.scheme;
+    const int span = unit.span(), posts = span * scheme.intervals + 1, texels = span * scheme.texels + 1;
+    const int column = scheme.firstColumn(unit.root), row = scheme.firstRow(unit.root);
+    LevelArrays arrays;
+    arrays.level = unit.latticeLevel();
+    arrays.span = span;
+
+    HeightGrid withApron(_plan.validColumns(unit) + 2, _plan.validRows(unit) + 2);
+    ByteReader reader(_plan.workFile("heights", unit));
+    const std::size_t expected = withApron.values.size();
+    withApron.values = reader.getVector<float>();
+    if (!reader.good() || withApron.values.size() != expected)
+        throw BuildError(_plan.workFile("heights", unit) +
+                         ": this work file is damaged; build again without --resume.");
+    arrays.heights = HeightGrid(posts, posts);
+    for (int j = 0; j < withApron.rows - 2; ++j)
+        for (int i = 0; i < withApron.columns - 2; ++i)
+            arrays.heights.at(i, j) = withApron.at(i + 1, j + 1);
+    extendBeyond(arrays.heights.values, posts, posts, 1, withApron.columns - 2, withApron.rows - 2);
+    slopes(unit, withApron, arrays);
+
+    const double spacing = static_cast<double>(scheme.intervals) / scheme.texels;
+    const auto valid = [&](int last)
+    {
+        return std::min(texels, static_cast<int>(std::floor(last / spacing)) + 1);
+    };
+    const int validColumns = valid(scheme.lastColumn - column), validRows = valid(scheme.lastRow - row);
+    const Lattice lattice = scheme.lattice(column, row, spacing, validColumns, validRows);
+    if (!_rasters) _rasters = std::make_unique<RasterStack>(_plan);
+    const auto widened = [&](const std::vector<unsigned char>& part, int channels)
+    {
+        std::vector<unsigned char> whole(static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels) *
+                                         static_cast<std::size_t>(channels));
+        paste(part, validColumns, channels, whole, texels, 0, 0);
+        extendBeyond(whole, texels, texels, channels, validColumns, validRows);
+        return whole;
+    };
+    arrays.texelColumns = texels;
+    arrays.colors = widened(_rasters->colors(lattice), 3);
+    if (!_plan.options.landCover.empty()) arrays.classes = widened(_rasters->classes(lattice), 1);
+    const auto firstTexel = [&](int post)
+    {
+        return static_cast<std::int64_t>(post / scheme.intervals) * scheme.texels;
+    };
+    arrays.cover = widened(_rasters->cover(lattice, _plan.ground->sample(firstTexel(column), firstTexel(row),
+                                                                         validColumns, validRows)),
+                           4);
+    arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
+    return arrays;
+}
+
+LevelArrays UnitBuilder::gathered(const Unit& unit)
+{
+    const TilingScheme& scheme = _plan.scheme;
+    const int n = scheme.intervals, span = unit.span(), posts = span * n + 1;
+    const int m = scheme.textureIntervals(unit.latticeLevel()), texels = span * m + 1;
+    LevelArrays arrays;
+    arrays.level = unit.latticeLevel();
+    arrays.span = span;
+    arrays.heights = gatherRoots(_plan, unit);
+    arrays.slopeX.resize(arrays.heights.values.size());
+    arrays.slopeY.resize(arrays.heights.values.size());
+    const int normals = scheme.normalIntervals(unit.latticeLevel()), normalColumns = span * normals + 1;
+    arrays.texelSlopeX.resize(static_cast<std::size_t>(normalColumns) *
+                              static_cast<std::size_t>(normalColumns));
+    arrays.texelSlopeY.resize(arrays.texelSlopeX.size());
+    arrays.texelColumns = texels;
+    const std::size_t count = static_cast<std::size_t>(texels) * static_cast<std::size_t>(texels);
+    arrays.colors.assign(3 * count, 128);
+    if (!_plan.options.landCover.empty()) arrays.classes.assign(count, 0);
+    arrays.cover.assign(4 * count, 0);
+    arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
+    for (int y = 0; y < span; ++y)
+        for (int x = 0; x < span; ++x)
+        {
+            Unit below;
+            below.root = {arrays.level, unit.root.x * span + x, unit.root.y * span + y};
+            if (!_plan.fact(below.root).any) continue;
+            ByteReader reader(_plan.workFile("tiles", below));
+            reader.get<UnitFigures>();
+            const auto slopeX = reader.getVector<float>();
+            const auto slopeY = reader.getVector<float>();
+            const auto texelSlopeX = reader.getVector<float>();
+            const auto texelSlopeY = reader.getVector<float>();
+            const auto colors = reader.getVector<unsigned char>();
+            const auto classes = reader.getVector<unsigned char>();
+            const auto cover = reader.getVector<unsigned char>();
+            arrays.textureError[static_cast<std::size_t>(y * span + x)] = reader.get<float>();
+            if (!reader.good())
+                throw BuildError(_plan.workFile("tiles", below) +
+                                 ": this work file is damaged; build again without --resume.");
+            paste(slopeX, n + 1, 1, arrays.slopeX, posts, x * n, y * n);
+            paste(slopeY, n + 1, 1, arrays.slopeY, posts, x * n, y * n);
+            paste(texelSlopeX, normals + 1, 1, arrays.texelSlopeX, normalColumns, x * normals, y * normals);
+            paste(texelSlopeY, normals + 1, 1, arrays.texelSlopeY, normalColumns, x * normals, y * normals);
+            paste(colors, m + 1, 3, arrays.colors, texels, x * m, y * m);
+            paste(classes, m + 1, 1, arrays.classes, texels, x * m, y * m);
+            paste(cover, m + 1, 4, arrays.cover, texels, x * m, y * m);
+        }
+    return arrays;
+}
+
+LevelArrays UnitBuilder::coarser(LevelArrays& fine) const
+{
+    const int posts = (fine.span * _plan.scheme.intervals) + 1;
+    LevelArrays coarse;
+    coarse.level = fine.level - 1;
+    coarse.span = fine.span / 2;
+    coarse.heights = std::move(fine.heights);
+    coarse.slopeX = halved<float, float, 1>(fine.slopeX, posts, posts);
+    coarse.slopeY = halved<float, float, 1>(fine.slopeY, posts, posts);
+    if (_plan.scheme.keepsNormals(coarse.level))
+    {
+        coarse.texelSlopeX = std::move(fine.texelSlopeX);
+        coarse.texelSlopeY = std::move(fine.texelSlopeY);
+    }
+    else
+    {
+        const int columns = fine.span * _plan.scheme.normalIntervals(fine.level) + 1;
+        coarse.texelSlopeX = halved<float, float, 1>(fine.texelSlopeX, columns, columns);
+        coarse.texelSlopeY = halved<float, float, 1>(fine.texelSlopeY, columns, columns);
+    }
+    const int span = coarse.span;
+    for (int y = 0; y < span; ++y)
+        for (int x = 0; x < span; ++x)
+        {
+            float error = 0.0f;
+            for (int c = 0; c < 4; ++c)
+                error = std::max(error, fine.textureError[static_cast<std::size_t>(
+                                            (2 * y + (c >> 1)) * 2 * span + 2 * x + (c & 1))]);
+            coarse.textureError.push_back(error);
+        }
+    if (_plan.scheme.keepsTexels(coarse.level))
+    {
+        coarse.texelColumns = fine.texelColumns;
+        coarse.colors = std::move(fine.colors);
+        coarse.classes = std::move(fine.classes);
+        coarse.cover = std::move(fine.cover);
+        return coarse;
+    }
+    coarse.texelColumns = (fine.texelColumns - 1) / 2 + 1;
+    coarse.colors = halved<unsigned char, int, 3>(fine.colors, fine.texelColumns, fine.texelColumns);
+    coarse.cover = halved<unsigned char, int, 4>(fine.cover, fine.texelColumns, fine.texelColumns);
+    if (!fine.classes.empty())
+        for (int j = 0; j < fine.texelColumns; j += 2)
+            for (int i = 0; i < fine.texelColumns; i += 2)
+                coarse.classes.push_back(
+                    fine.classes[static_cast<std::size_t>(j) * static_cast<std::size_t>(fine.texelColumns) +
+                                 static_cast<std::size_t>(i)]);
+    const int intervals = _plan.scheme.textureIntervals(coarse.level);
+    const auto texelMetres = static_cast<float>(_plan.scheme.tileMetres(coarse.level) / intervals);
+    for (int y = 0; y < span; ++y)
+        for (int x = 0; x < span; ++x)
+            if (losesDetail(fine, coarse, x, y, intervals))
+                coarse.textureError[static_cast<std::size_t>(y * span + x)] = texelMetres;
+    return coarse;
+}
+
+std::uint64_t UnitBuilder::writeGroups(const Unit& unit, const LevelArrays& arrays)
+{
+    const int parentLevel = arrays.level - 1, span = arrays.span / 2;
+    std::uint64_t tiles = 0;
+    for (int y = 0; y < span; ++y)
+        for (int x = 0; x < span; ++x)
+        {
+            const TileKey parent{parentLevel, unit.root.x * span + x, unit.root.y * span + y};
+            if (!_plan.fact(parent).any) continue;
+            osg::ref_ptr<osg::Group> group = new osg::Group;
+            for (int c = 0; c < 4; ++c)
+            {
+                const TileKey key = parent.child(c & 1, c >> 1);
+                if (!_plan.fact(key).any) continue;
+                // An upper tier's finest tiles are the roots of the units below it, which made them from their
+                // denser heights.
+                const bool made = unit.tier > 0 && key.level == unit.latticeLevel();
+                group->addChild(made ? readRootTile(_plan, key)
+                                     : _factory.create(key, arrays, 2 * x + (c & 1), 2 * y + (c >> 1)));
+                tiles += made ? 0 : 1;
+            }
+            writeNodeAtomically(*group, _plan.tileFile(parent));
+        }
+    return tiles;
+}
+
+UnitFigures UnitBuilder::build(const Unit& unit)
+{
+    _factory.textures().forget();
+    LevelArrays arrays = unit.tier == 0 ? sampled(unit) : gathered(unit);
+    std::uint64_t tiles = 0;
+    for (int level = unit.latticeLevel(); level > unit.root.level; --level)
+    {
+        tiles += writeGroups(unit, arrays);
+        arrays = coarser(arrays);
+    }
+    writeNodeAtomically(*_factory.create(unit.root, arrays, 0, 0), rootTileFile(_plan, unit.root));
+    const UnitFigures figures{tiles + 1, _factory.textures().figures()};
+    ByteWriter writer;
+    writer.put(figures);
+    writer.put(arrays.slopeX);
+    writer.put(arrays.slopeY);
+    writer.put(arrays.texelSlopeX);
+    writer.put(arrays.texelSlopeY);
+    writer.put(arrays.colors);
+    writer.put(arrays.classes);
+    writer.put(arrays.cover);
+    writer.put(arrays.textureError.front());
+    writeFileAtomically(_plan.workFile("tiles", unit), writer.bytes().data(), writer.bytes().size());
+    return figures;
+}
+
+} // namespace
+
+TilePassResult runTilePass(BuildPlan& plan)
+{
+    std::vector<std::unique_ptr<UnitBuilder>> builders(static_cast<std::size_t>(plan.threads));
+    std::mutex mutex;
+    TilePassResult result;
+    const auto count = [&](const UnitFigures& figures, bool reused)
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        result.tiles += figures.tiles;
+        result.tilesReused += reused ? figures.tiles : 0;
+        result.textures.add(figures.textures);
+    };
+    for (const auto& units : plan.tiers)
+        runOnWorkers(plan.threads, units.size(),
+                     [&](int worker, std::size_t index)
+                     {
+                         const Unit& unit = units[index];
+                         if (plan.fact(unit.root).any)
+                         {
+                             ByteReader reader(plan.options.resume ? plan.workFile("tiles", unit)
+                                                                   : std::string());
+                             if (reader.good())
+                             {
+                                 count(reader.get<UnitFigures>(), true);
+                             }
+                             else
+                             {
+                                 auto& builder = builders[static_cast<std::size_t>(worker)];
+                                 if (!builder) builder = std::make_unique<UnitBuilder>(plan);
+                                 count(builder->build(unit), false);
+                             }
+                         }
+                         plan.advance("tiles");
+                     });
+    result.root = readRootTile(plan, {0, 0, 0});
+    return result;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/terrain/detail/AtomicFile.h>
+#include <osgGeoFX/terrain/detail/BuildPlan.h>
+#include <osgGeoFX/terrain/detail/VoidRaster.h>
+#include <osgGeoFX/terrain/detail/WorkQueue.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+
+#include <cpl_string.h>
+#include <gdal_alg.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+// Cells along the mask's longer side.
+constexpr int MASK_SIDE = 1024;
+// What GDAL has left as it was: no height of the Earth, and exact in a float.
+constexpr float UNFILLED = -1048576.0f;
+// Of a window in GDAL's hands: heights, mask, and what it keeps itself.
+constexpr double BYTES_PER_POST = 24.0;
+
+class VoidPass
+{
+public:
+    explicit VoidPass(BuildPlan& plan);
+    void run();
+
+private:
+    void sample(RasterStack& rasters, const Unit& unit);
+    void find();
+    void fill(const Unit& unit);
+    void finish();
+    int firstColumn(const Unit& unit) const { return _plan.scheme.firstColumn(unit.root); }
+    int firstRow(const Unit& unit) const { return _plan.scheme.firstRow(unit.root); }
+    /// Posts that a unit has for itself: those on its northern and eastern border are the next unit's, if there is one.
+    int ownColumns(const Unit& unit) const;
+    int ownRows(const Unit& unit) const;
+    void flushPosts(int row, int column, std::size_t count, Post post);
+
+    BuildPlan& _plan;
+    const TilingScheme& _scheme;
+    const int _columns, _rows;
+    /// How far GDAL looks for data: across the largest void, and to the middle of one that the data's edge cuts.
+    const int _search;
+    const int _margin; ///< so that posts of a window's middle come to what they would come to in the whole
+    RowFile _heights, _posts, _filled;
+};
+
+DatasetPtr wrap(void* values, int columns, int rows, GDALDataType type)
+{
+    DatasetPtr dataset(
+        GetGDALDriverManager()->GetDriverByName("MEM")->Create("", columns, rows, 0, type, nullptr));
+    char pointer[64] = {};
+    CPLPrintPointer(pointer, values, sizeof(pointer) - 1);
+    CPLStringList options;
+    options.SetNameValue("DATAPOINTER", pointer);
+    dataset->AddBand(type, options.List());
+    return dataset;
+}
+
+VoidPass::VoidPass(BuildPlan& plan)
+    : _plan(plan), _scheme(plan.scheme), _columns(plan.scheme.lastColumn + 1), _rows(plan.scheme.lastRow + 1),
+      _search(plan.options.voidReach * 9 / 4 + 2), _margin(_search + plan.options.voidSmoothing),
+      _heights(VoidRaster::file(plan, "heights"), static_cast<std::size_t>(_columns) * sizeof(float),
+               RowFile::Mode::CREATE),
+      _posts(VoidRaster::file(plan, "posts"), static_cast<std::size_t>(_columns), RowFile::Mode::CREATE),
+      _filled(VoidRaster::file(plan, "filled"), static_cast<std::size_t>(_columns) * sizeof(float),
+              RowFile::Mode::CREATE)
+{
+    _heights.extend(_rows);
+    _posts.extend(_rows);
+    _filled.extend(_rows);
+}
+
+int VoidPass::ownColumns(const Unit& unit) const
+{
+    const int side = unit.span() * _scheme.intervals, left = _scheme.lastColumn - firstColumn(unit);
+    return left <= side ? left + 1 : side;
+}
+
+int VoidPass::ownRows(const Unit& unit) const
+{
+    const int side = unit.span() * _scheme.intervals, left = _scheme.lastRow - firstRow(unit);
+    return left <= side ? left + 1 : side;
+}
+
+void VoidPass::sample(RasterStack& rasters, const Unit& unit)
+{
+    // The same points as the height pass samples: GDAL's last bits depend on them.
+    const Lattice lattice = _plan.postsWithApron(unit);
+    const std::vector<float> heights = rasters.measuredHeights(lattice);
+    const std::vector<unsigned char> covered = rasters.covered(lattice, heights);
+    const int columns = ownColumns(unit), rows = ownRows(unit);
+    std::vector<Post> posts(static_cast<std::size_t>(columns));
+    for (int j = 0; j < rows; ++j)
+    {
+        const std::size_t start =
+            (static_cast<std::size_t>(j) + 1) * static_cast<std::size_t>(lattice.columns) + 1;
+        for (std::size_t i = 0; i < posts.size(); ++i)
+            posts[i] = !std::isnan(heights[start + i]) ? Post::DATA
+                       : covered[start + i]            ? Post::VOID
+                                                       : Post::OUTSIDE;
+        const int row = firstRow(unit) + j;
+        const auto column = static_cast<std::size_t>(firstColumn(unit));
+        _posts.write(row, column, posts.size(), posts.data());
+        _heights.write(row, column * sizeof(float), posts.size() * sizeof(float), heights.data() + start);
+    }
+}
+
+void VoidPass::find()
+{
+    VoidFinder finder(_columns, _rows, _plan.options.voidReach, _scheme.wholeCircle());
+    std::vector<Post> posts(static_cast<std::size_t>(_columns));
+    std::vector<float> heights(posts.size());
+    for (int row = 0; row < _rows; ++row)
+    {
+        _posts.read(row, posts.data());
+        _heights.read(row, heights.data());
+        finder.add(posts, heights);
+    }
+    for (int row = _rows - 1; row >= 0; --row)
+    {
+        _posts.read(row, posts.data());
+        if (finder.mark(posts)) _posts.write(row, posts.data());
+    }
+}
+
+void VoidPass::fill(const Unit& unit)
+{
+    const int column = firstColumn(unit), row = firstRow(unit), ownWidth = ownColumns(unit),
+              ownHeight = ownRows(unit);
+    std::vector<Post> line(static_cast<std::size_t>(ownWidth));
+    bool any = false;
+    for (int j = 0; j < ownHeight && !any; ++j)
+    {
+        _posts.read(row + j, static_cast<std::size_t>(column), line.size(), line.data());
+        any = std::find(line.begin(), line.end(), Post::FILLED) != line.end();
+    }
+    if (!any) return;
+
+    // Around the globe a window goes on beyond the seam; the last column is the first one again.
+    const bool circle = _scheme.wholeCircle();
+    const int west = circle ? column - _margin : std::max(column - _margin, 0);
+    const int east = circle ? column + ownWidth + _margin : std::min(column + ownWidth + _margin, _columns);
+    const int south = std::max(row - _margin, 0), north = std::min(row + ownHeight + _margin, _rows);
+    const int width = east - west, height = north - south;
+    const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    std::vector<float> heights(count);
+    std::vector<Post> posts(count);
+    for (int j = 0; j < height; ++j)
+    {
+        const std::size_t start = static_cast<std::size_t>(j) * static_cast<std::size_t>(width);
+        for (int i = 0; i < width;)
+        {
+            const int lap = _columns - 1;
+            const int from = circle ? ((west + i) % lap + lap) % lap : west + i;
+            const int run = std::min(width - i, (circle ? lap : _columns) - from);
+            const auto first = static_cast<std::size_t>(from), size = static_cast<std::size_t>(run);
+            const std::size_t target = start + static_cast<std::size_t>(i);
+            _posts.read(south + j, first, size, posts.data() + target);
+            _heights.read(south + j, first * sizeof(float), size * sizeof(float), heights.data() + target);
+            i += run;
+        }
+    }
+    std::vector<unsigned char> valid(count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        valid[i] = posts[i] == Post::DATA ? 255 : 0;
+        if (!valid[i]) heights[i] = UNFILLED;
+    }
+    {
+        const GdalErrorScope errors;
+        const DatasetPtr values = wrap(heights.data(), width, height, GDT_Float32);
+        const DatasetPtr mask = wrap(valid.data(), width, height, GDT_Byte);
+        CPLStringList options;
+        options.SetNameValue("TEMP_FILE_DRIVER", "MEM");
+        if (GDALFillNodata(values->GetRasterBand(1), mask->GetRasterBand(1), _search, 0,
+                           _plan.options.voidSmoothing, options.List(), nullptr, nullptr) != CE_None)
+            throw BuildError(_plan.options.dems.front() + ": its voids cannot be filled (" +
+                             errors.message() + "); build with --voids keep.");
+    }
+    for (int j = 0; j < ownHeight; ++j)
+    {
+        const std::size_t start =
+            static_cast<std::size_t>(row + j - south) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(column - west);
+        for (int i = 0; i < ownWidth;)
+        {
+            const auto at = [&](int k)
+            {
+                return start + static_cast<std::size_t>(k);
+            };
+            const auto isFilled = [&](int k)
+            {
+                return posts[at(k)] == Post::FILLED && heights[at(k)] != UNFILLED;
+            };
+            const auto isOpen = [&](int k)
+            {
+                return posts[at(k)] == Post::FILLED && heights[at(k)] == UNFILLED;
+            };
+            int end = i;
+            while (end < ownWidth && isFilled(end))
+                ++end;
+            if (end > i)
+                _filled.write(row + j, static_cast<std::size_t>(column + i) * sizeof(float),
+                              static_cast<std::size_t>(end - i) * sizeof(float), heights.data() + at(i));
+            // Where GDAL has found no data near enough, the post stays as it was.
+            for (i = end; i < ownWidth && isOpen(i); ++i)
+                flushPosts(row + j, column + i, 1, Post::VOID);
+            while (i < ownWidth && !isFilled(i) && !isOpen(i))
+                ++i;
+        }
+    }
+}
+
+void VoidPass::flushPosts(int row, int column, std::size_t count, Post post)
+{
+    const std::vector<Post> posts(count, post);
+    _posts.write(row, static_cast<std::size_t>(column), count, posts.data());
+}
+
+/// Counts, and writes what VoidRaster looks for first.
+void VoidPass::finish()
+{
+    const double scale = std::min(1.0, static_cast<double>(MASK_SIDE) / std::max(_columns, _rows));
+    const int maskColumns = std::max(1, static_cast<int>(std::ceil(_columns * scale)));
+    const int maskRows = std::max(1, static_cast<int>(std::ceil(_rows * scale)));
+    std::vector<std::uint32_t> filled(static_cast<std::size_t>(maskColumns) *
+                                      static_cast<std::size_t>(maskRows)),
+        all(filled);
+    std::uint64_t filledPosts = 0, openPosts = 0, dataPosts = 0;
+    std::vector<Post> posts(static_cast<std::size_t>(_columns));
+    const auto cellOf = [](int post, int count, int cells)
+    {
+        return static_cast<std::size_t>(static_cast<std::int64_t>(post) * cells / count);
+    };
+    for (int row = 0; row < _rows; ++row)
+    {
+        _posts.read(row, posts.data());
+        const std::size_t start = cellOf(row, _rows, maskRows) * static_cast<std::size_t>(maskColumns);
+        for (int column = 0; column < _columns; ++column)
+        {
+            const Post post = posts[static_cast<std::size_t>(column)];
+            const std::size_t cell = start + cellOf(column, _columns, maskColumns);
+            ++all[cell];
+            filled[cell] += post == Post::FILLED ? 1 : 0;
+            filledPosts += post == Post::FILLED ? 1 : 0;
+            openPosts += post == Post::VOID ? 1 : 0;
+            dataPosts += post == Post::DATA ? 1 : 0;
+        }
+    }
+    std::vector<unsigned char> mask(filled.size());
+    for (std::size_t cell = 0; cell < mask.size(); ++cell)
+        if (filled[cell] > 0)
+            mask[cell] = static_cast<unsigned char>(std::clamp<std::uint64_t>(
+                (std::uint64_t{255} * filled[cell] + all[cell] / 2) / all[cell], 1, 255));
+    ByteWriter writer;
+    writer.put(filledPosts);
+    writer.put(openPosts);
+    writer.put(dataPosts);
+    writer.put(maskColumns);
+    writer.put(mask);
+    writeFileAtomically(VoidRaster::file(_plan, "done"), writer.bytes().data(), writer.bytes().size());
+}
+
+void VoidPass::run()
+{
+    const auto& units = _plan.tiers.front();
+    std::vector<std::unique_ptr<RasterStack>> rasters(static_cast<std::size_t>(_plan.threads));
+    runOnWorkers(_plan.threads, units.size(),
+                 [&](int worker, std::size_t index)
+                 {
+                     auto& stack = rasters[static_cast<std::size_t>(worker)];
+                     if (!stack) stack = std::make_unique<RasterStack>(_plan);
+                     if (_scheme.exists(units[index].root)) sample(*stack, units[index]);
+                     _plan.advance("voids");
+                 });
+    find();
+    _plan.advance("voids");
+    const double side = units.front().span() * _scheme.intervals + 2.0 * _margin;
+    const double windowMiB = side * side * BYTES_PER_POST / (1024.0 * 1024.0);
+    const int threads =
+        std::clamp(static_cast<int>(0.75 * _plan.options.memoryMiB / windowMiB), 1, _plan.threads);
+    runOnWorkers(threads, units.size(),
+                 [&](int, std::size_t index)
+                 {
+                     if (_scheme.exists(units[index].root)) fill(units[index]);
+                     _plan.advance("voids");
+                 });
+    finish();
+}
+
+} // namespace
+
+std::uint64_t voidSteps(const BuildPlan& plan)
+{
+    return 2 * plan.tiers.front().size() + 1;
+}
+
+void fillVoids(BuildPlan& plan)
+{
+    if (plan.options.resume && std::filesystem::exists(VoidRaster::file(plan, "done")))
+        for (std::uint64_t step = voidSteps(plan); step > 0; --step)
+            plan.advance("voids");
+    else
+        VoidPass(plan).run();
+    plan.voids = std::make_shared<VoidRaster>(plan);
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/terrain/detail/RowFile.h>
+#include <osgGeoFX/terrain/detail/VoidFinder.h>
+
+#include <osgGeoFX/geodata/detail/RasterSource.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+class BuildPlan;
+
+/** The finest level's posts where the elevation has voids: heights above the sea, what each post is, and what the voids were
+    filled with. Three work files, written by fillVoids(); sampling is thread-safe. */
+class VoidRaster
+{
+public:
+    /// Reads what fillVoids() has written. Throws BuildError.
+    explicit VoidRaster(const BuildPlan& plan);
+
+    /// Gives points without a height (NaN) that lie in filled voids theirs, metres above the sea, bilinear between posts.
+    /// Sets `filled` to 1 there; it has a byte for each point, or is null.
+    void fill(const Lattice& lattice, std::vector<float>& heights, std::vector<unsigned char>* filled) const;
+
+    std::uint64_t filledPosts() const { return _filledPosts; }
+    std::uint64_t openPosts() const
+    {
+        return _openPosts;
+    } ///< within a raster's rectangle, and without a height
+    std::uint64_t dataPosts() const { return _dataPosts; }
+
+    /// The share of filled posts over the extent, a byte for each cell, 255 for all and at least 1 for any; the
+    /// south-western cell first, at most 1,024 cells a side.
+    const std::vector<unsigned char>& mask() const { return _mask; }
+    int maskColumns() const { return _maskColumns; }
+
+    static std::string file(const BuildPlan& plan, const char* name);
+
+private:
+    class Rows;
+
+    const BuildPlan& _plan;
+    RowFile _heights, _posts, _filled;
+    std::uint64_t _filledPosts = 0, _openPosts = 0, _dataPosts = 0;
+    int _maskColumns = 0;
+    std::vector<unsigned char> _mask;
+};
+
+/// Finds the voids of the elevation on the finest level's posts and fills them; sets the plan's `voids`. An interrupted
+/// build's are taken over. Throws BuildError.
+void fillVoids(BuildPlan& plan);
+
+/// Steps of progress that fillVoids() takes.
+std::uint64_t voidSteps(const BuildPlan& plan);
+
+} // namespace osgGeoFX
