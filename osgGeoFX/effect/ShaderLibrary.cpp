@@ -177,8 +177,8 @@ std::string ShaderLibrary::read(const std::string& name) const
             _overrideFolder.empty() ? "" : " and not in the folder " + _overrideFolder.string();
         throw ShaderError(
             "there is no shader file \"" + name + "\" in the library" + orFolder +
-            "; correct the name, or add the file: to the list in shaders/CMakeLists.txt, or with "
-            "ShaderLibrary::add().");
+            "; correct the name, or add the file, one of the kit's to the list in shaders/CMakeLists.txt, "
+            "another one with ShaderLibrary::add().");
     }
     return shader->text;
 }

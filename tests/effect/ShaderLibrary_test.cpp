@@ -252,17 +252,33 @@ TEST(ShaderLibrary, TheEnvironmentNamesTheOverrideFolder)
     EXPECT_NE(ShaderLibrary().read("lib/bend.glsl"), "// mine\n");
 }
 
+TEST(ShaderLibrary, TakesFilesOfApplications)
+{
+    const ShaderLibrary library{std::filesystem::path()};
+    EXPECT_NE(errorOf([&] { library.read("mine/wave.glsl"); }), "");
+    EXPECT_TRUE(ShaderLibrary::add("mine/wave.glsl", "float wave() { return 1.0; }\n"));
+    EXPECT_EQ(library.read("mine/wave.glsl"), "float wave() { return 1.0; }\n");
+    EXPECT_TRUE(ShaderLibrary::add("mine/wave.glsl", "float wave() { return 2.0; }\n")) << "replaced";
+    EXPECT_NE(library.assemble("#include \"mine/wave.glsl\"\n", "own").find("return 2.0"), std::string::npos);
+    // The kit's own stay.
+    const std::string bend = library.read("lib/bend.glsl");
+    EXPECT_FALSE(ShaderLibrary::add("lib/bend.glsl", "// mine\n"));
+    EXPECT_EQ(library.read("lib/bend.glsl"), bend);
+    const TempDir folder;
+    folder.write("mine/wave.glsl", "// edited\n");
+    EXPECT_EQ(ShaderLibrary(folder.path()).read("mine/wave.glsl"), "// edited\n") << "the folder comes first";
+}
+
 TEST(ShaderLibrary, SaysWhatIsMissing)
 {
     const ShaderLibrary library{std::filesystem::path()};
-    EXPECT_EQ(errorOf([&] { library.source("lib/none.glsl"); }),
-              "there is no shader file \"lib/none.glsl\" in the library; correct the name, or add the file "
-              "to the list "
-              "in shaders/CMakeLists.txt.");
+    const std::string sentence =
+        "there is no shader file \"lib/none.glsl\" in the library; correct the name, or add the file, one of "
+        "the "
+        "kit's to the list in shaders/CMakeLists.txt, another one with ShaderLibrary::add().";
+    EXPECT_EQ(errorOf([&] { library.source("lib/none.glsl"); }), sentence);
     EXPECT_EQ(errorOf([&] { library.assemble("\n#include \"lib/none.glsl\"\n", "own"); }),
-              "own:2: there is no shader file \"lib/none.glsl\" in the library; correct the name, or add the "
-              "file to "
-              "the list in shaders/CMakeLists.txt.");
+              "own:2: " + sentence);
     const TempDir folder;
     EXPECT_NE(errorOf([&] { ShaderLibrary(folder.path()).read("none"); }).find(folder.path()),
               std::string::npos);

@@ -59,10 +59,10 @@ endif()
 
 set(components Offscreen)
 if(DATA)
-  list(APPEND components Data)
+  string(APPEND components ",Data")
 endif()
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${root}/build -G ${GENERATOR}
-    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_FLAGS=${FLAGS} "-DCOMPONENTS=${components}"
+    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_FLAGS=${FLAGS} -DWANTED=${components}
     -DHEADERS=${prefix}/include/osgGeoFX -DEXAMPLES=${CMAKE_CURRENT_LIST_DIR}/../../apps/examples)
 run(${CMAKE_COMMAND} --build ${root}/build)
 run(${root}/build/consumer)
