@@ -24,7 +24,9 @@ public:
             "in float SLOT_height;\n"
             "vec4 SLOT_colour(vec4 colour)\n{\n"
             "    float lines = SLOT_height / SLOT_step;\n"
-            "    float pixels = abs(fract(lines + 0.5) - 0.5) / max(fwidth(lines), 1e-6);\n"
+            "    float step = fwidth(lines);\n"
+            "    if (step < 1e-4) return colour; // level ground has no line\n"
+            "    float pixels = abs(fract(lines + 0.5) - 0.5) / step;\n"
             "    return vec4(mix(vec3(0.35, 0.15, 0.0), colour.rgb, clamp(pixels, 0.0, 1.0)), "
             "colour.a);\n}\n");
     }

@@ -7,6 +7,7 @@
 #include <osg/CullFace>
 #include <osg/LineWidth>
 #include <osg/PolygonMode>
+#include <osg/PolygonOffset>
 #include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/PassFilter.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
@@ -26,6 +27,8 @@ public:
         _lines->setAttributeAndModes(
             new osg::PolygonMode(osg::PolygonMode::FRONT_AND_BACK, osg::PolygonMode::LINE), on);
         _lines->setAttributeAndModes(new osg::LineWidth(6.0f), on);
+        // Behind the faces that look this way, with which they share edges.
+        _lines->setAttributeAndModes(new osg::PolygonOffset(2.0f, 4.0f), on);
     }
     Outline(const Outline& other, const osg::CopyOp& copy)
         : PassEffect(other, copy), _lines(other._lines), _selected(other._selected)
