@@ -24,7 +24,8 @@ public:
     {
         auto* view = dynamic_cast<osgViewer::View*>(&action);
         if (event.getEventType() != osgGA::GUIEventAdapter::PUSH || !view) return false;
-        const auto hit = osgGeoFX::DeformedView(_scene, *view->getCamera()).pick(event.getX(), event.getY());
+        const osgGeoFX::DeformedView deformed(_scene, *view->getCamera());
+        const auto hit = deformed.pick(static_cast<double>(event.getX()), static_cast<double>(event.getY()));
         _outline.select(hit ? hit->drawable : nullptr);
         return false;
     }

@@ -51,10 +51,10 @@ LayerRef makeLayer(int side, double importance = 0.5)
 class LayerResidencyTest : public ::testing::Test
 {
 protected:
-    static constexpr int _pageSide = 64;
-    static constexpr int _quarter = 32;
+    static constexpr int pageSide = 64;
+    static constexpr int quarter = 32;
 
-    void SetUp() override { _layers.reset(_pageSide, 1); }
+    void SetUp() override { _layers.reset(pageSide, 1); }
 
     /// A mapping of its own that shows the layer.
     MappingRef show(const LayerRef& layer)
@@ -97,7 +97,7 @@ protected:
 
 TEST_F(LayerResidencyTest, HasAPlaceForWhatMappingsUseOnly)
 {
-    const LayerRef layer = makeLayer(_quarter), empty = new DataLayer;
+    const LayerRef layer = makeLayer(quarter), empty = new DataLayer;
     EXPECT_FALSE(_layers.placed(nullptr));
     EXPECT_FALSE(isPlaced(layer));
     const MappingRef user = show(layer);
@@ -105,9 +105,9 @@ TEST_F(LayerResidencyTest, HasAPlaceForWhatMappingsUseOnly)
     EXPECT_FALSE(isPlaced(layer)) << "before the commit";
     update();
     ASSERT_TRUE(isPlaced(layer));
-    EXPECT_EQ(_layers.placed(layer)->slot.side, _quarter);
-    EXPECT_EQ(_layers.placed(layer)->width, _quarter);
-    EXPECT_EQ(_layers.placed(layer)->height, _quarter);
+    EXPECT_EQ(_layers.placed(layer)->slot.side, quarter);
+    EXPECT_EQ(_layers.placed(layer)->width, quarter);
+    EXPECT_EQ(_layers.placed(layer)->height, quarter);
     EXPECT_FALSE(isPlaced(empty));
     EXPECT_EQ(_layers.count(), 2u);
     EXPECT_EQ(_layers.leftOut(), 0) << "a layer without a picture needs no room";
@@ -116,7 +116,7 @@ TEST_F(LayerResidencyTest, HasAPlaceForWhatMappingsUseOnly)
 
 TEST_F(LayerResidencyTest, UsersShareALayer)
 {
-    const LayerRef layer = makeLayer(_quarter);
+    const LayerRef layer = makeLayer(quarter);
     const MappingRef first = show(layer), second = show(layer);
     const MappingChanges added = update();
     EXPECT_EQ(_layers.count(), 1u);
@@ -145,7 +145,7 @@ TEST_F(LayerResidencyTest, UsersShareALayer)
 
 TEST_F(LayerResidencyTest, ALayerThatGoesOnBeingUsedKeepsItsPlace)
 {
-    const LayerRef picture = makeLayer(_quarter), other = makeLayer(_quarter);
+    const LayerRef picture = makeLayer(quarter), other = makeLayer(quarter);
     const MappingRef user = show(picture);
     update();
     const Place place = placeOfLayer(picture);
@@ -167,8 +167,8 @@ TEST_F(LayerResidencyTest, ALayerThatGoesOnBeingUsedKeepsItsPlace)
 
 TEST_F(LayerResidencyTest, TheLeastImportantOneGoes)
 {
-    const std::vector<LayerRef> layers = {makeLayer(_quarter, 0.4), makeLayer(_quarter, 0.2),
-                                          makeLayer(_quarter, 0.3), makeLayer(_quarter, 0.5)};
+    const std::vector<LayerRef> layers = {makeLayer(quarter, 0.4), makeLayer(quarter, 0.2),
+                                          makeLayer(quarter, 0.3), makeLayer(quarter, 0.5)};
     std::vector<MappingRef> users;
     for (const LayerRef& layer : layers)
         users.push_back(show(layer));
@@ -178,7 +178,7 @@ TEST_F(LayerResidencyTest, TheLeastImportantOneGoes)
         places.push_back(placeOfLayer(layer));
     EXPECT_EQ(_onGpu.size(), 4u);
 
-    const LayerRef better = makeLayer(_quarter, 0.6);
+    const LayerRef better = makeLayer(quarter, 0.6);
     const MappingRef user = show(better);
     const MappingChanges told = update();
     EXPECT_FALSE(isPlaced(layers[1]));
@@ -206,14 +206,14 @@ TEST_F(LayerResidencyTest, NoneGoesForOneThatIsNotMoreImportant)
     std::vector<LayerRef> layers;
     for (int i = 0; i < 4; ++i)
     {
-        layers.push_back(makeLayer(_quarter, 0.3));
+        layers.push_back(makeLayer(quarter, 0.3));
         show(layers.back());
     }
     update();
     int leftOut = 0;
     for (const double importance : {0.3, 0.1})
     {
-        const LayerRef late = makeLayer(_quarter, importance);
+        const LayerRef late = makeLayer(quarter, importance);
         show(late);
         const MappingChanges told = update();
         EXPECT_FALSE(isPlaced(late)) << importance;
@@ -229,15 +229,15 @@ TEST_F(LayerResidencyTest, SeveralGoForALargeOne)
     std::vector<LayerRef> small;
     for (int i = 0; i < 4; ++i)
     {
-        small.push_back(makeLayer(_quarter, 0.1 + 0.1 * i));
+        small.push_back(makeLayer(quarter, 0.1 + 0.1 * i));
         show(small.back());
     }
     update();
-    const LayerRef large = makeLayer(_pageSide, 0.9);
+    const LayerRef large = makeLayer(pageSide, 0.9);
     show(large);
     update();
     ASSERT_TRUE(isPlaced(large));
-    EXPECT_EQ(_layers.placed(large)->slot.side, _pageSide);
+    EXPECT_EQ(_layers.placed(large)->slot.side, pageSide);
     for (const LayerRef& layer : small)
         EXPECT_FALSE(isPlaced(layer));
     EXPECT_EQ(_layers.leftOut(), 4);
@@ -246,10 +246,10 @@ TEST_F(LayerResidencyTest, SeveralGoForALargeOne)
 
 TEST_F(LayerResidencyTest, WhatHadToGoHasTheRoomThatIsLeft)
 {
-    _layers.reset(_pageSide, 2);
-    const LayerRef least = makeLayer(_quarter, 0.1), second = makeLayer(_quarter, 0.2);
+    _layers.reset(pageSide, 2);
+    const LayerRef least = makeLayer(quarter, 0.1), second = makeLayer(quarter, 0.2);
     for (const LayerRef& layer :
-         {least, makeLayer(_quarter, 0.4), makeLayer(_quarter, 0.4), makeLayer(_quarter, 0.4)})
+         {least, makeLayer(quarter, 0.4), makeLayer(quarter, 0.4), makeLayer(quarter, 0.4)})
         show(layer);
     update();
     show(second);
@@ -257,7 +257,7 @@ TEST_F(LayerResidencyTest, WhatHadToGoHasTheRoomThatIsLeft)
     ASSERT_EQ(std::get<0>(placeOfLayer(second)), 1) << "alone on the other page";
     // Both go for a whole page, and a quarter of the first one is free then.
     const Place hole = placeOfLayer(least);
-    const LayerRef large = makeLayer(_pageSide, 0.9);
+    const LayerRef large = makeLayer(pageSide, 0.9);
     show(large);
     update();
     ASSERT_TRUE(isPlaced(large));
@@ -273,7 +273,7 @@ TEST_F(LayerResidencyTest, WhatIsLeftOutComesBackWhenRoomIsMade)
     std::vector<MappingRef> users;
     for (int i = 0; i < 6; ++i)
     {
-        layers.push_back(makeLayer(_quarter, 0.1 * (i + 1)));
+        layers.push_back(makeLayer(quarter, 0.1 * (i + 1)));
         users.push_back(show(layers.back()));
     }
     update();
@@ -300,9 +300,9 @@ TEST_F(LayerResidencyTest, WhatIsLeftOutComesBackWhenRoomIsMade)
 
 TEST_F(LayerResidencyTest, AnotherPictureIsUploadedWhereItHasRoom)
 {
-    const LayerRef layer = makeLayer(_quarter);
+    const LayerRef layer = makeLayer(quarter);
     const MappingRef user = show(layer);
-    show(makeLayer(_quarter));
+    show(makeLayer(quarter));
     update();
     const Place place = placeOfLayer(layer);
     // In its place, and no record is the worse for it.
@@ -312,10 +312,10 @@ TEST_F(LayerResidencyTest, AnotherPictureIsUploadedWhereItHasRoom)
     EXPECT_EQ(placeOf(told.uploads.layers[0].slot), place);
     EXPECT_TRUE(told.mappings.empty());
     // Of another size, in another place.
-    resize(*layer->getImage(), _quarter / 2);
+    resize(*layer->getImage(), quarter / 2);
     told = update();
     ASSERT_TRUE(isPlaced(layer));
-    EXPECT_EQ(_layers.placed(layer)->slot.side, _quarter / 2);
+    EXPECT_EQ(_layers.placed(layer)->slot.side, quarter / 2);
     EXPECT_EQ(told.mappings.count(user), 1u);
     EXPECT_TRUE(told.roomMade);
     EXPECT_EQ(_onGpu.size(), 2u);
@@ -334,12 +334,12 @@ TEST_F(LayerResidencyTest, OtherPagesTakeAllAnew)
     std::vector<MappingRef> users;
     for (int i = 0; i < 6; ++i)
     {
-        layers.push_back(makeLayer(_quarter));
+        layers.push_back(makeLayer(quarter));
         users.push_back(show(layers.back()));
     }
     update();
     EXPECT_EQ(_layers.leftOut(), 2);
-    _layers.reset(_pageSide, 2);
+    _layers.reset(pageSide, 2);
     for (const LayerRef& layer : layers)
         EXPECT_FALSE(isPlaced(layer));
     const MappingChanges told = update();
@@ -356,11 +356,11 @@ TEST_F(LayerResidencyTest, OtherPagesTakeAllAnew)
 TEST_F(LayerResidencyTest, SaysOnceThatALayerIsReduced)
 {
     geofx::test::NotifyWatch watch;
-    const LayerRef layer = makeLayer(2 * _pageSide, 0.7);
+    const LayerRef layer = makeLayer(2 * pageSide, 0.7);
     show(layer);
     EXPECT_EQ(watch.messagesOf([&] { update(); }).size(), 1u);
     ASSERT_TRUE(isPlaced(layer));
-    EXPECT_EQ(_layers.placed(layer)->slot.side, _pageSide);
+    EXPECT_EQ(_layers.placed(layer)->slot.side, pageSide);
     // A film that plays does not say it for each of its pictures.
     layer->getImage()->dirty();
     EXPECT_EQ(update().uploads.layers.size(), 1u);
@@ -371,7 +371,7 @@ TEST_F(LayerResidencyTest, RandomUseNeverOverlapsAndLeavesNothingBehind)
     for (int sample = 0; sample < 20; ++sample)
     {
         Random random(sample);
-        _layers.reset(_pageSide, 2);
+        _layers.reset(pageSide, 2);
         std::vector<LayerRef> layers;
         for (int i = 0; i < 12; ++i)
             layers.push_back(makeLayer(8 << random.integer(0, 3), random.uniform(0.0, 1.0)));

@@ -23,20 +23,20 @@ constexpr int WIDTH = 400, HEIGHT = 300;
 class VisibilityTest : public ::testing::Test
 {
 protected:
-    VisibilityTest() : viewport(new osg::Viewport(0, 0, WIDTH, HEIGHT))
+    VisibilityTest() : _viewport(new osg::Viewport(0, 0, WIDTH, HEIGHT))
     {
-        camera.projection = osg::Matrixd::perspective(45.0, 1.0 * WIDTH / HEIGHT, 1.0, 1e5);
-        planes.setToUnitFrustum(true, true);
-        planes.transformProvidingInverse(camera.projection);
-        camera.viewport = viewport;
-        camera.planes = &planes;
-        sight.set(camera);
+        _camera.projection = osg::Matrixd::perspective(45.0, 1.0 * WIDTH / HEIGHT, 1.0, 1e5);
+        _planes.setToUnitFrustum(true, true);
+        _planes.transformProvidingInverse(_camera.projection);
+        _camera.viewport = _viewport;
+        _camera.planes = &_planes;
+        _sight.set(_camera);
     }
 
     /// Of eye space; true where a point is drawn.
     bool inPicture(const osg::Vec3d& point) const
     {
-        const osg::Vec4d clip = osg::Vec4d(point, 1.0) * camera.projection;
+        const osg::Vec4d clip = osg::Vec4d(point, 1.0) * _camera.projection;
         return clip.w() > 0.0 && std::abs(clip.x()) < clip.w() && std::abs(clip.y()) < clip.w() &&
                std::abs(clip.z()) < clip.w();
     }
@@ -53,44 +53,44 @@ protected:
         return chain;
     }
 
-    osg::ref_ptr<osg::Viewport> viewport;
-    osg::Polytope planes;
-    Visibility::Camera camera;
-    Visibility sight;
+    osg::ref_ptr<osg::Viewport> _viewport;
+    osg::Polytope _planes;
+    Visibility::Camera _camera;
+    Visibility _sight;
 };
 
 } // namespace
 
 TEST_F(VisibilityTest, BallsAreOutsideCrossingOrInside)
 {
-    Visibility::Mask mask = sight.all();
+    Visibility::Mask mask = _sight.all();
     EXPECT_NE(mask, 0u);
-    EXPECT_FALSE(sight.outOfSight({osg::Vec3d(0, 0, -1000), 50.0}, mask));
+    EXPECT_FALSE(_sight.outOfSight({osg::Vec3d(0, 0, -1000), 50.0}, mask));
     EXPECT_EQ(mask, 0u) << "nothing below it needs a test any more";
-    mask = sight.all();
-    EXPECT_TRUE(sight.outOfSight({osg::Vec3d(-2000, 0, -1000), 50.0}, mask));
+    mask = _sight.all();
+    EXPECT_TRUE(_sight.outOfSight({osg::Vec3d(-2000, 0, -1000), 50.0}, mask));
     // The left plane stands at x = −552 there.
-    mask = sight.all();
-    EXPECT_FALSE(sight.outOfSight({osg::Vec3d(-560, 0, -1000), 50.0}, mask));
+    mask = _sight.all();
+    EXPECT_FALSE(_sight.outOfSight({osg::Vec3d(-560, 0, -1000), 50.0}, mask));
     EXPECT_NE(mask, 0u) << "its parts may still be outside";
-    mask = sight.all();
-    EXPECT_TRUE(sight.outOfSight({osg::Vec3d(0, 0, 100), 50.0}, mask)) << "behind the eye";
+    mask = _sight.all();
+    EXPECT_TRUE(_sight.outOfSight({osg::Vec3d(0, 0, 100), 50.0}, mask)) << "behind the eye";
 }
 
 TEST_F(VisibilityTest, SmallThingsAreOutOfSightWhereTheyMayBe)
 {
     // A pixel is 2·1000·tan(22.5°)/300 metres wide there; OSG counts somewhat generously.
-    const double pixel = sight.radiusOfPixel(osg::Vec3d(0, 0, -1000));
+    const double pixel = _sight.radiusOfPixel(osg::Vec3d(0, 0, -1000));
     EXPECT_GT(pixel, 0.4 * pixelAt(1000.0));
     EXPECT_LT(pixel, 0.5 * pixelAt(1000.0));
-    EXPECT_FALSE(sight.tooSmall({osg::Vec3d(0, 0, -1000), 0.001})) << "nobody asked";
-    camera.smallPixels = 2.0;
-    sight.set(camera);
-    Visibility::Mask mask = sight.all();
+    EXPECT_FALSE(_sight.tooSmall({osg::Vec3d(0, 0, -1000), 0.001})) << "nobody asked";
+    _camera.smallPixels = 2.0;
+    _sight.set(_camera);
+    Visibility::Mask mask = _sight.all();
     const Ball small = {osg::Vec3d(0, 0, -1000), 1.9 * pixel};
-    EXPECT_TRUE(sight.outOfSight(small, mask));
-    EXPECT_FALSE(sight.outOfSight(small, mask, true));
-    EXPECT_FALSE(sight.outOfSight({small.centre, 2.1 * pixel}, mask));
+    EXPECT_TRUE(_sight.outOfSight(small, mask));
+    EXPECT_FALSE(_sight.outOfSight(small, mask, true));
+    EXPECT_FALSE(_sight.outOfSight({small.centre, 2.1 * pixel}, mask));
 }
 
 TEST_F(VisibilityTest, WhatReachesIntoThePictureIsInSight)
@@ -101,14 +101,14 @@ TEST_F(VisibilityTest, WhatReachesIntoThePictureIsInSight)
     const Ball beside = {osg::Vec3d(border + 5.0 * pixel, 0, -1000), 1.0};
     for (const auto& [reach, seen] : {std::pair(0.0, false), {3.0, false}, {7.0, true}})
     {
-        camera.reach = reach;
-        sight.set(camera);
-        Visibility::Mask mask = sight.all();
-        EXPECT_EQ(sight.outOfSight(beside, mask), !seen) << "reach of " << reach << " pixels";
+        _camera.reach = reach;
+        _sight.set(_camera);
+        Visibility::Mask mask = _sight.all();
+        EXPECT_EQ(_sight.outOfSight(beside, mask), !seen) << "reach of " << reach << " pixels";
     }
 }
 
-// What is out of sight has no point in the picture, wherever it comes from; and most that has none is out of sight.
+// What is out of _sight has no point in the picture, wherever it comes from; and most that has none is out of _sight.
 TEST_F(VisibilityTest, BoxesOutOfSightHaveNoPointInThePicture)
 {
     const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
@@ -124,7 +124,7 @@ TEST_F(VisibilityTest, BoxesOutOfSightHaveNoPointInThePicture)
             eye, eye + osg::Vec3d(0, std::cos(pitch), std::sin(pitch)), osg::Vec3d(osg::Z_AXIS));
         const Deformation& deformation = i % 2 == 0 ? static_cast<const Deformation&>(*bend) : *lift;
         const osg::ref_ptr<DeformationChain> chain =
-            chainOf(deformation, ViewGeometry(view, camera.projection, Ground()));
+            chainOf(deformation, ViewGeometry(view, _camera.projection, Ground()));
         const osg::Vec3d middle(random.uniform(-9000.0, 9000.0), random.uniform(-2000.0, 20000.0),
                                 random.uniform(0.0, 500.0));
         const osg::Vec3d half(random.uniform(10.0, 800.0), random.uniform(10.0, 800.0),
@@ -139,7 +139,7 @@ TEST_F(VisibilityTest, BoxesOutOfSightHaveNoPointInThePicture)
             seen += inPicture(chain->deform(point)) ? 1 : 0;
             seenBefore += inPicture(point) ? 1 : 0;
         }
-        const bool outOfSight = sight.outOfSight(*chain, box, sight.all());
+        const bool outOfSight = _sight.outOfSight(*chain, box, _sight.all());
         EXPECT_FALSE(outOfSight && seen > 0) << "box " << i << " has " << seen << " points in the picture";
         out += outOfSight ? 1 : 0;
         empty += seen == 0 ? 1 : 0;

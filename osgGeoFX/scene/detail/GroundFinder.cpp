@@ -52,7 +52,7 @@ std::optional<TerrainInfo> GroundFinder::terrainOf(const osg::Group& scene,
     if (!values) return std::nullopt;
     if (values == _terrainValues) return _terrain;
     std::string error;
-    const std::optional<TerrainInfo> info = TerrainInfo::read(root, error);
+    std::optional<TerrainInfo> info = TerrainInfo::read(root, error);
     if (info)
     {
         _terrainValues = values;
