@@ -108,7 +108,7 @@ TEST_F(VisibilityTest, WhatReachesIntoThePictureIsInSight)
     }
 }
 
-// What is out of _sight has no point in the picture, wherever it comes from; and most that has none is out of _sight.
+// What is out of sight has no point in the picture, wherever it comes from; and most that has none is out of sight.
 TEST_F(VisibilityTest, BoxesOutOfSightHaveNoPointInThePicture)
 {
     const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
