@@ -25,21 +25,14 @@ namespace osgGeoFX
 namespace
 {
 
-struct BoundAccess : public osg::Node
-{
-    static bool known(const osg::Node& node) { return node.*(&BoundAccess::_boundingSphereComputed); }
-};
-
-/// Computes the bounds of all nodes below one. `all`: those below known ones, too.
-void computeBounds(const osg::Group& group, bool all)
+/// Of all nodes below one, whatever is known of those above them: a node with a bound of its own says nothing of its children.
+void computeBounds(const osg::Group& group)
 {
     for (unsigned int i = 0; i < group.getNumChildren(); ++i)
     {
         const osg::Node& child = *group.getChild(i);
-        const bool known = BoundAccess::known(child);
         child.getBound();
-        const osg::Group* inner = child.asGroup();
-        if (inner && (all || !known)) computeBounds(*inner, all || dynamic_cast<const osg::LOD*>(inner));
+        if (const osg::Group* inner = child.asGroup()) computeBounds(*inner);
     }
 }
 
@@ -184,11 +177,7 @@ void EffectScene::addFunctions(osg::Program& program)
 
 Ground EffectScene::ground(const osg::NodePath& above) const
 {
-    using Frame = GroundFinder::Frame;
-    const Frame frame = _terrainFrame == GEOCENTRIC  ? Frame::Geocentric
-                        : _terrainFrame == PROJECTED ? Frame::Projected
-                                                     : Frame::Automatic;
-    return _drawing->ground.find(*this, above, frame);
+    return _drawing->ground.find(*this, above);
 }
 
 namespace
@@ -295,8 +284,8 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     passTask.state = &state;
     passTask.following = &_drawing->programs.following();
     passTask.compensate = _compensation;
-    const CameraPass::Traversal traversal = {
-        outer, *this, view, passTask, state, _compensation, own.passes, _drawing->programs, _effects};
+    const CameraPass::Traversal traversal = {outer,   *this, view, passTask, own.passes, _drawing->programs,
+                                             _effects};
     const auto forPasses = [&](const auto& action)
     {
         for (std::size_t i = 0; i < _effects.size(); ++i)
@@ -339,7 +328,7 @@ osg::BoundingSphere EffectScene::computeBound() const
 {
     // Those below paged nodes, too, which have bounds of their own: OSG would leave them to whoever asks first, and that may be two
     // threads that cull at once.
-    computeBounds(*this, false);
+    computeBounds(*this);
     return osg::Group::computeBound();
 }
 

@@ -84,8 +84,9 @@ void CameraPasses::draw(osgUtil::CullVisitor& outer, const std::vector<ScenePass
 
 CameraPass::CameraPass(const Traversal& traversal, const std::string& names,
                        const std::vector<int>& textureUnits)
-    : ScenePass(traversal.outer, traversal.scene, traversal.view, *traversal.task.chain, traversal.state,
-                names, textureUnits, traversal.compensate, traversal.passes.frame()),
+    : ScenePass(traversal.outer, traversal.scene, traversal.view, *traversal.task.chain,
+                *traversal.task.state, names, textureUnits, traversal.task.compensate,
+                traversal.passes.frame()),
       _traversal(traversal)
 {
 }

@@ -58,9 +58,7 @@ public:
         osgUtil::CullVisitor& outer;
         osg::Group& scene;
         const ViewGeometry& view;
-        const CompensatingCullVisitor::Task& task; ///< the scene's
-        osg::StateSet& state;
-        bool compensate; ///< EffectScene::getCompensation()
+        const CompensatingCullVisitor::Task& task; ///< of all passes, before they say what they draw
         CameraPasses& passes;
         ProgramCache& programs;
         const ProgramCache::Effects& effects;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/GroundFinder.h>
 
+#include <osgGeoFX/scene/EffectScene.h>
+
 #include <osg/Math>
 
 #include <string>
@@ -61,7 +63,7 @@ std::optional<TerrainInfo> GroundFinder::terrainOf(const osg::Group& scene,
     return info;
 }
 
-Ground GroundFinder::find(const osg::Group& scene, const osg::NodePath& above, Frame frame)
+Ground GroundFinder::find(const EffectScene& scene, const osg::NodePath& above)
 {
     const osg::CoordinateSystemNode* system = nullptr;
     for (const osg::Node* node : above)
@@ -71,8 +73,9 @@ Ground GroundFinder::find(const osg::Group& scene, const osg::NodePath& above, F
     }
     if (!system) system = systemBelow(scene);
     Ground ground;
-    if (system && frame != Frame::Projected) ground.ellipsoid = system->getEllipsoidModel();
-    if (!ground.ellipsoid && frame == Frame::Geocentric) ground.ellipsoid = _globe;
+    const EffectScene::TerrainFrame frame = scene.getTerrainFrame();
+    if (system && frame != EffectScene::PROJECTED) ground.ellipsoid = system->getEllipsoidModel();
+    if (!ground.ellipsoid && frame == EffectScene::GEOCENTRIC) ground.ellipsoid = _globe;
     if (const std::optional<TerrainInfo> info = terrainOf(scene, system))
     {
         ground.heightsKnown = true;

@@ -16,20 +16,15 @@
 namespace osgGeoFX
 {
 
+class EffectScene;
+
 /// Finds out what is known of the ground below a scene, and remembers where it is said. Thread-safe.
 class GroundFinder
 {
 public:
-    enum class Frame
-    {
-        Automatic,
-        Geocentric,
-        Projected
-    };
-
     GroundFinder();
     /// `above`: the nodes above the scene.
-    Ground find(const osg::Group& scene, const osg::NodePath& above, Frame frame);
+    Ground find(const EffectScene& scene, const osg::NodePath& above);
 
 private:
     /// The first coordinate system below the scene; null where there is none.
