@@ -24,7 +24,7 @@ int main(int argc, char** argv)
     app.add_option("--dem", options.dems, "Elevation rasters; where several overlap, the later one wins")
         ->required()
         ->type_name("FILE…");
-    app.add_option("--imagery", options.imagery, "Colour rasters for the surface; the later one wins")
+    app.add_option("--imagery", options.imagery, "Color rasters for the surface; the later one wins")
         ->type_name("FILE…");
     app.add_option("--landcover,--land-cover", options.landCover,
                    "Raster of land-cover classes, one byte for each pixel")
@@ -32,7 +32,7 @@ int main(int argc, char** argv)
     app.add_option("--landcover-table,--land-cover-table", options.landCoverTable,
                    "Its classes: value,class,name,red,green,blue and, where wanted, trees,town,bare,water; "
                    "or a ready "
-                   "legend: worldcover, corine, nlcd, flightgear. Without imagery they colour the surface")
+                   "legend: worldcover, corine, nlcd, flightgear. Without imagery they color the surface")
         ->type_name("CSV|NAME");
     app.add_option("--tree-cover", options.treeCover,
                    "Raster of the ground's share under trees, percent; in place of the land cover's")
@@ -78,10 +78,10 @@ int main(int argc, char** argv)
     app.add_option("--pixel-error", options.pixelError, "Largest error of the relief on the screen, pixels")
         ->capture_default_str();
     app.add_option("--anisotropy", options.anisotropy,
-                   "Anisotropic filtering of the colours, 1 to 16; 0 for 4 with imagery and 1 without")
+                   "Anisotropic filtering of the colors, 1 to 16; 0 for 4 with imagery and 1 without")
         ->capture_default_str();
     app.add_flag("--compress-textures", options.compressTextures,
-                 "Colours in BC1 and normals in BC5: a fraction of the memory on the GPU; sizes and errors "
+                 "Colors in BC1 and normals in BC5: a fraction of the memory on the GPU; sizes and errors "
                  "are printed");
     app.add_option("--texel-error", options.texelError, "Largest texel on the screen where it shows, pixels")
         ->capture_default_str();

@@ -77,7 +77,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
                        "Camera on the ground's terms: degrees; metres above the database's zero height; "
                        "heading clockwise from north; pitch negative downwards; roll positive with the "
                        "right wing down")
-            ->type_name("LON,LAT,ALT,HEADING,PITCH[,ROLL]");
+            ->type_name("LON,LAT,HEIGHT,HEADING,PITCH[,ROLL]");
     auto* eye = app.add_option("--eye", arguments.eye, "Camera in world coordinates: where it is")
                     ->type_name("X,Y,Z")
                     ->excludes(view);
@@ -102,11 +102,14 @@ void addOptions(CLI::App& app, Arguments& arguments)
 
     app.add_option(
            "--effect", arguments.effects,
-           "Add an effect to the scene's: KIND PROPERTY=VALUE …, in one word; kinds and properties are "
-           "the scene file's. As often as wanted")
+           "Add an effect to the scene's: KIND PROPERTY=VALUE …, in one word; --help-effects lists kinds and "
+           "properties, which are the scene file's. As often as wanted")
         ->type_name("'KIND …'")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    // What CLI11 has for a version is a text that takes the place of everything else.
+    app.set_version_flag("--help-effects", osgGeoFX::effectsHelp,
+                         "List the effects with all their properties");
     app.add_flag("--inset", arguments.inset,
                  "Put the same view without effects, a quarter as wide, into the lower right corner");
     app.add_flag("--no-compensation", arguments.noCompensation,

@@ -41,6 +41,7 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
                                "Add an effect to the scene's, as in osggeofx_render; as often as wanted.");
+    usage.addCommandLineOption("--help-effects", "List the effects with all their properties.");
     usage.addCommandLineOption("--allow-outside",
                                "Let a .geofx scene name files outside its own folder, and addresses.");
     usage.addCommandLineOption("-p <file>", "Play a camera path that was saved with the key z.");
@@ -80,6 +81,11 @@ int main(int argc, char** argv)
     if (const unsigned int help = arguments.readHelpType())
     {
         arguments.getApplicationUsage()->write(std::cout, help);
+        return 0;
+    }
+    if (arguments.read("--help-effects"))
+    {
+        std::cout << osgGeoFX::effectsHelp();
         return 0;
     }
     std::vector<osg::ref_ptr<osgGeoFX::Effect>> effects;

@@ -53,7 +53,7 @@ osg::ref_ptr<osg::Geometry> makePatch(int column, int row, int quads, int gridQu
     const double step = 2.0 * REACH / gridQuads;
     osg::ref_ptr<osg::Vec3Array> places = new osg::Vec3Array;
     osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array;
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     for (int j = 0; j <= quads; ++j)
     {
         for (int i = 0; i <= quads; ++i)
@@ -67,7 +67,7 @@ osg::ref_ptr<osg::Geometry> makePatch(int column, int row, int quads, int gridQu
             normal.normalize();
             normals->push_back(osg::Vec3(normal));
             const double green = 0.55 + 0.25 * std::sin(height / 120.0);
-            colours->push_back(osg::Vec4(osg::Vec4d(0.45 + height / 2500.0, green, 0.35, 1.0)));
+            colors->push_back(osg::Vec4(osg::Vec4d(0.45 + height / 2500.0, green, 0.35, 1.0)));
         }
     }
     osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
@@ -86,7 +86,7 @@ osg::ref_ptr<osg::Geometry> makePatch(int column, int row, int quads, int gridQu
     patch->setUseVertexBufferObjects(true);
     patch->setVertexArray(places);
     patch->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
-    patch->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+    patch->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     patch->addPrimitiveSet(triangles);
     return patch;
 }
@@ -97,8 +97,8 @@ void addCloseUps(CloseUps& closeUps, int count,
 {
     const double diameter = 2.0 * side * std::sqrt(0.01 / osg::PI);
     const int columns = count > 4 ? 4 : 2;
-    const osg::Vec3 colours[] = {osg::Vec3(1.0f, 0.55f, 0.1f), osg::Vec3(0.2f, 0.6f, 1.0f),
-                                 osg::Vec3(0.4f, 0.85f, 0.3f), osg::Vec3(0.9f, 0.3f, 0.6f)};
+    const osg::Vec3 colors[] = {osg::Vec3(1.0f, 0.55f, 0.1f), osg::Vec3(0.2f, 0.6f, 1.0f),
+                                osg::Vec3(0.4f, 0.85f, 0.3f), osg::Vec3(0.9f, 0.3f, 0.6f)};
     for (int i = 0; i < count; ++i)
     {
         osg::ref_ptr<CloseUp> closeUp = new CloseUp;
@@ -109,7 +109,7 @@ void addCloseUps(CloseUps& closeUps, int count,
         closeUp->getRegion()->setSize(diameter, diameter);
         closeUp->setOffset(osg::Vec3d(0.0, 0.0, 0.12 * side));
         closeUp->setScale(1.5, 1.5, 1.5);
-        closeUp->setColor(colours[i % 4]);
+        closeUp->setColor(colors[i % 4]);
         closeUps.addCloseUp(closeUp);
     }
 }
@@ -142,7 +142,7 @@ public:
                                               osg::Vec3d(0.0, -800.0, 0.0), osg::Vec3d(0.0, 0.0, 1.0));
         const auto place = [](osgGeoFX::RegionOfInterest& region, double x, double y)
         {
-            region.setCentre(osg::Vec2d(2.0 * REACH * x, 2.0 * REACH * y));
+            region.setCenter(osg::Vec2d(2.0 * REACH * x, 2.0 * REACH * y));
         };
         return measure("grid", place, 2.0 * REACH);
     }
@@ -172,9 +172,9 @@ public:
             const double latitude = osg::DegreesToRadians(21.45 + 0.35 * y);
             osg::Vec3d world;
             if (globe)
-                region.setGeodeticCentre(longitude, latitude);
+                region.setGeodeticCenter(longitude, latitude);
             else if (reference->toWorld(longitude, latitude, 0.0, world))
-                region.setCentre(osg::Vec2d(world.x(), world.y()));
+                region.setCenter(osg::Vec2d(world.x(), world.y()));
         };
         return measure("paged", place, 50000.0);
     }

@@ -47,22 +47,22 @@ struct Case
     double frames; ///< a second, over those without, at least; 0 where nothing is asked
 };
 
-osgGeoFX::ViewPoint place(double longitude, double latitude, double altitude, double heading, double pitch)
+osgGeoFX::ViewPoint place(double longitude, double latitude, double height, double heading, double pitch)
 {
-    return {osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude), altitude,
+    return {osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude), height,
             osg::DegreesToRadians(heading),   osg::DegreesToRadians(pitch),    0.0};
 }
 
 std::vector<Case> cases()
 {
-    return {
-        {"birdsEye", "bird's-eye view of Honolulu, the Koolau as its skyline",
-         "birdsEyeView focusLine=0.4 horizonLine=0.85", place(-157.862, 21.281, 5000.0, 20.0, -50.0), 0.8},
-        {"pedestrian", "pedestrian's view from Honolulu, Oahu folded up ahead",
-         "pedestrianView bendAngleDegrees=50 focusDistance=1500 zoneWidth=2500 planeElevation=20 tallest=700",
-         place(-157.862, 21.281, 250.0, 20.0, 2.0), 1.0},
-        {"exaggeration", "vertical exaggeration by 2, over Honolulu", "verticalExaggeration factor=2",
-         place(-157.862, 21.24, 3500.0, 20.0, -20.0), 0.0}};
+    return {{"birdsEye", "bird's-eye view of Honolulu, the Koolau as its skyline",
+             "birdsEyeView focusLine=0.4 horizonLine=0.85", place(-157.862, 21.281, 5000.0, 20.0, -50.0),
+             0.8},
+            {"pedestrian", "pedestrian's view from Honolulu, Oahu folded up ahead",
+             "pedestrianView bendAngle=50 focusDistance=1500 zoneWidth=2500 planeHeight=20 tallest=700",
+             place(-157.862, 21.281, 250.0, 20.0, 2.0), 1.0},
+            {"exaggeration", "vertical exaggeration by 2, over Honolulu", "verticalExaggeration factor=2",
+             place(-157.862, 21.24, 3500.0, 20.0, -20.0), 0.0}};
 }
 
 /// The state that a node's own parents set below \p scene, first that of the uppermost.

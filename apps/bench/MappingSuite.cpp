@@ -66,7 +66,7 @@ osg::ref_ptr<osg::Geometry> makeGround(int vertices)
     };
     osg::ref_ptr<osg::Vec3Array> places = new osg::Vec3Array;
     osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array;
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     for (int j = 0; j < side; ++j)
     {
         for (int i = 0; i < side; ++i)
@@ -79,7 +79,7 @@ osg::ref_ptr<osg::Geometry> makeGround(int vertices)
                               flat ? 0.0 : height(x, y - 1.0) - height(x, y + 1.0), 2.0);
             normal.normalize();
             normals->push_back(osg::Vec3(normal));
-            colours->push_back(osg::Vec4(
+            colors->push_back(osg::Vec4(
                 osg::Vec4d(0.5 + 0.2 * std::sin(x / 400.0), 0.6 + 0.2 * std::cos(y / 500.0), 0.45, 1.0)));
         }
     }
@@ -98,12 +98,12 @@ osg::ref_ptr<osg::Geometry> makeGround(int vertices)
     ground->setUseVertexBufferObjects(true);
     ground->setVertexArray(places);
     ground->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
-    ground->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+    ground->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     ground->addPrimitiveSet(triangles);
     return ground;
 }
 
-/// A soft disc in one colour, or a picture with rings.
+/// A soft disc in one color, or a picture with rings.
 osg::ref_ptr<DataLayer> makePicture(int side, bool rings)
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
@@ -141,16 +141,16 @@ osg::ref_ptr<DataLayer> makeValues(int side)
     return layer;
 }
 
-osg::ref_ptr<ProjectiveMapping> makeMapping(DataLayer* layer, const osg::Vec2d& centre, double halfWidth,
+osg::ref_ptr<ProjectiveMapping> makeMapping(DataLayer* layer, const osg::Vec2d& center, double halfWidth,
                                             double halfHeight, double heading = 0.0)
 {
     osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
     mapping->setLayer(layer);
-    mapping->setRectangle(centre, halfWidth, halfHeight, heading);
+    mapping->setRectangle(center, halfWidth, halfHeight, heading);
     return mapping;
 }
 
-/// As 3.B: the context darkened and without colour, and a route over it.
+/// As 3.B: the context darkened and without color, and a route over it.
 void addRoute(ProjectiveMappings& mappings, int count)
 {
     osg::ref_ptr<ProjectiveMapping> context = makeMapping(nullptr, {0.0, 0.0}, REACH, REACH);
@@ -408,7 +408,7 @@ private:
             if (drawn) _view->frame();
             const std::uint64_t before = mappings.capacity().uploadedBytes;
             const auto start = Clock::now();
-            mapping->setCentre(mapping->getCentre() + osg::Vec2d(step(engine), step(engine)));
+            mapping->setCenter(mapping->getCenter() + osg::Vec2d(step(engine), step(engine)));
             mappings.update(nullptr);
             times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
             if (!drawn) continue;

@@ -45,9 +45,9 @@ struct NamedView
     double frames; ///< a second, over those of the single mesh, at least
 };
 
-osgGeoFX::ViewPoint place(double longitude, double latitude, double altitude, double heading, double pitch)
+osgGeoFX::ViewPoint place(double longitude, double latitude, double height, double heading, double pitch)
 {
-    return {osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude), altitude,
+    return {osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude), height,
             osg::DegreesToRadians(heading),   osg::DegreesToRadians(pitch),    0.0};
 }
 
@@ -149,7 +149,7 @@ private:
 
     Figure outline(const NamedView& view)
     {
-        // White on black, whatever the terrain's colours are.
+        // White on black, whatever the terrain's colors are.
         osg::StateSet& state = *_switch->getOrCreateStateSet();
         const auto off = osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE;
         state.setMode(GL_LIGHTING, off);

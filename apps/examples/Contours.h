@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// An effect of one's own that colours surfaces: a contour line every so many metres of a projected terrain. Nothing here is part of
+// An effect of one's own that colors surfaces: a contour line every so many metres of a projected terrain. Nothing here is part of
 // the kit.
 #pragma once
 
@@ -22,13 +22,13 @@ public:
             "example/contours.frag.glsl",
             "uniform float SLOT_step;\n"
             "in float SLOT_height;\n"
-            "vec4 SLOT_colour(vec4 colour)\n{\n"
+            "vec4 SLOT_color(vec4 color)\n{\n"
             "    float lines = SLOT_height / SLOT_step;\n"
             "    float step = fwidth(lines);\n"
-            "    if (step < 1e-4) return colour; // level ground has no line\n"
+            "    if (step < 1e-4) return color; // level ground has no line\n"
             "    float pixels = abs(fract(lines + 0.5) - 0.5) / step;\n"
-            "    return vec4(mix(vec3(0.35, 0.15, 0.0), colour.rgb, clamp(pixels, 0.0, 1.0)), "
-            "colour.a);\n}\n");
+            "    return vec4(mix(vec3(0.35, 0.15, 0.0), color.rgb, clamp(pixels, 0.0, 1.0)), "
+            "color.a);\n}\n");
     }
     Contours(const Contours& other, const osg::CopyOp& copy) : SurfaceEffect(other, copy) {}
     META_Object(example, Contours);

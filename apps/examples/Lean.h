@@ -11,10 +11,10 @@
 #include <cmath>
 
 /// position + slope · height · right: an affine map, of which culling, picking and levels of detail learn all from these.
-class LeanFrame : public osgGeoFX::DeformationFrame
+class LeanSnapshot : public osgGeoFX::DeformationSnapshot
 {
 public:
-    LeanFrame(const osgGeoFX::ViewGeometry& view, double slope)
+    LeanSnapshot(const osgGeoFX::ViewGeometry& view, double slope)
         : _up(view.up), _eyeHeight(view.eyeHeight), _right(osg::Vec3d(1, 0, 0) - view.up * view.up.x())
     {
         _right *= slope;
@@ -60,9 +60,10 @@ public:
         static const osgGeoFX::Properties all = {enabledProperty()};
         return all;
     }
-    osg::ref_ptr<const osgGeoFX::DeformationFrame> frame(const osgGeoFX::ViewGeometry& view) const override
+    osg::ref_ptr<const osgGeoFX::DeformationSnapshot>
+    snapshot(const osgGeoFX::ViewGeometry& view) const override
     {
-        return new LeanFrame(view, 0.5);
+        return new LeanSnapshot(view, 0.5);
     }
     std::string vertexFile() const override { return "example/lean.glsl"; }
 };

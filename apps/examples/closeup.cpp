@@ -15,7 +15,7 @@ int main(int argc, char** argv)
     if (!terrain) return 1;
 
     const osg::ref_ptr<osgGeoFX::CloseUp> closeUp = new osgGeoFX::CloseUp;
-    closeUp->getRegion()->setGeodeticCentre(osg::DegreesToRadians(-157.808), osg::DegreesToRadians(21.261));
+    closeUp->getRegion()->setGeodeticCenter(osg::DegreesToRadians(-157.808), osg::DegreesToRadians(21.261));
     closeUp->getRegion()->setSize(2600.0, 2600.0);    // metres
     closeUp->setOffset(osg::Vec3d(0.0, 0.0, 3000.0)); // metres above its place
     closeUp->setScale(2.0, 2.0, 3.0);                 // heights more than the rest

@@ -100,7 +100,7 @@ int main(int argc, char** argv)
         ->check(CLI::IsMember(&figures));
     app.add_option("picture", arguments.picture, "File to write")->required();
     app.add_option("effects", arguments.effects, "Other effects than the figure's: 'KIND PROPERTY=VALUE …'");
-    app.add_option("--view", arguments.view, "Another view: LON,LAT,ALT,HEADING,PITCH");
+    app.add_option("--view", arguments.view, "Another view: LON,LAT,HEIGHT,HEADING,PITCH");
     app.add_option("--size", size, "WIDTHxHEIGHT")->capture_default_str();
     CLI11_PARSE(app, argc, argv)
     try

@@ -48,8 +48,8 @@ NODATA = -32768.0
 HEIGHT_STEP = 1 / 8  # metres; finer digits would be noise that packs badly
 
 # Land cover is sampled SUBCELLS x SUBCELLS times in every cell: roads and
-# streams are narrower than a cell, and samples at the centres alone would
-# leave dotted lines.  Odd, so that the cell's centre is one of the samples.
+# streams are narrower than a cell, and samples at the centers alone would
+# leave dotted lines.  Odd, so that the cell's center is one of the samples.
 SUBCELLS = 5
 
 SEA = 'sea'
@@ -475,7 +475,7 @@ def level_lakes(elevation, lake):
 
 
 def read_classes(path):
-    """Values and colours of the classes, as landcover.csv has them."""
+    """Values and colors of the classes, as landcover.csv has them."""
     values, colors = {}, {}
     with open(path, newline='', encoding='utf-8') as file:
         for row in csv.DictReader(file):

@@ -49,14 +49,29 @@ Anchor::~Anchor() = default;
 const Properties& Anchor::properties() const
 {
     using Self = Anchor;
-    static const Properties all = {
-        Property::choice("kind", CONTOUR, {"none", "stretched", "contour"}).of<&Self::_kind>(),
-        Property::choice("style", FALLING,
-                         {"solid", "veil", "rising", "falling", "ends", "middle", "rings", "table"})
-            .of<&Self::_style>(),
-        Property::number("opacity", 0.8, 0.0, 1.0).of<&Self::_opacity>(),
-        Property::number("lineWidth", 2.0, 0.0, 64.0).of<&Self::_lineWidth>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            Property::choice("kind", "what it is",
+                             {{"none", ""},
+                              {"stretched", "the terrain's triangles"},
+                              {"contour", "a wall along the region's border"}})
+                .of<&Self::_kind>(),
+            Property::choice("style", "how it becomes transparent; in a scene file, table where there is one",
+                             {{"solid", ""},
+                              {"veil", "alike everywhere"},
+                              {"rising", "clear at the ground"},
+                              {"falling", "clear at the close-up"},
+                              {"ends", "clear between"},
+                              {"middle", "clear at both ends"},
+                              {"rings", ""},
+                              {"table", "by a table of opacities"}})
+                .of<&Self::_style>(),
+            Property::number("opacity", "the opacity of all of it", 0.0, 1.0).of<&Self::_opacity>(),
+            Property::number("lineWidth", "the width of the lines around the region and the close-up", 0.0,
+                             64.0, "px")
+                .of<&Self::_lineWidth>(),
+        });
     return all;
 }
 

@@ -9,7 +9,7 @@
 namespace osgGeoFX
 {
 
-/** The fence between a region on the ground and its close-up, in the close-up's colour (paper: interactive close-ups,
+/** The fence between a region on the ground and its close-up, in the close-up's color (paper: interactive close-ups,
     Section II.D).
 
     A table gives its opacity at each normalised height: 0 at the ground, 1 at the close-up. The thread of the frame

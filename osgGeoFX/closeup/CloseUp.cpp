@@ -111,37 +111,75 @@ const Properties& CloseUp::properties() const
 {
     using Self = CloseUp;
     static const double turn = 2.0 * osg::PI;
-    static const Properties all = {
-        Property::flag("enabled", true).of<&Self::_enabled>(),
-        Property::number("offsetX", 0.0, -1e7, 1e7, "m").of<&Self::_offsetX>(),
-        Property::number("offsetY", 0.0, -1e7, 1e7, "m").of<&Self::_offsetY>(),
-        Property::number("offsetHeight", 2000.0, -1e7, 1e7, "m").of<&Self::_offsetHeight>(),
-        Property::number("scaleX", 1.5, 0.001, 1000.0).of<&Self::_scaleX>(),
-        Property::number("scaleY", 1.5, 0.001, 1000.0).of<&Self::_scaleY>(),
-        Property::number("scaleHeight", 1.5, 0.0, 1000.0).of<&Self::_scaleHeight>(),
-        Property::choice("orientation", SCENE, {"scene", "fixed", "billboard"}).of<&Self::_orientation>(),
-        Property::angle("tilt", 0.0, -turn, turn).of<&Self::_tilt>(),
-        Property::angle("turn", 0.0, -turn, turn).of<&Self::_turn>(),
-        Property::choice("edge", FRAGMENTS, {"fragments", "primitives"}).of<&Self::_edge>(),
-        Property::number("roundness", 0.0, 0.0, 1.0).of<&Self::_roundness>(),
-        Property::number("red", 1.0, 0.0, 1.0).of<&Self::_red>(),
-        Property::number("green", 0.55, 0.0, 1.0).of<&Self::_green>(),
-        Property::number("blue", 0.1, 0.0, 1.0).of<&Self::_blue>(),
-        Property::number("surfaceOpacity", 1.0, 0.0, 1.0).of<&Self::_surfaceOpacity>(),
-        Property::choice("lighting", AS_SCENE, {"asScene", "unlit", "sun"}).of<&Self::_lighting>(),
-        Property::angle("sunAzimuth", osg::DegreesToRadians(sunAzimuthOfMaps), -turn, turn)
-            .of<&Self::_sunAzimuth>(),
-        Property::angle("sunElevation", osg::DegreesToRadians(sunElevationOfMaps), 0.0, osg::PI_2)
-            .of<&Self::_sunElevation>(),
-        Property::number("saturation", 1.0, 0.0, 4.0).of<&Self::_saturation>(),
-        Property::number("contrast", 1.0, 0.0, 4.0).of<&Self::_contrast>(),
-        Property::number("brightness", 0.0, -1.0, 1.0).of<&Self::_brightness>(),
-        Property::number("opacity", 1.0, 0.0, 1.0).of<&Self::_opacity>(),
-        Property::integer("mappingChannels", 255, 0, 255).of<&Self::_mappingChannels>(),
-        Property::choice("activity", ACTIVE, {"active", "regionOnly", "noAnchor", "desaturated"})
-            .of<&Self::_activity>(),
-        Property::number("turnRate", 0.0, -10.0, 10.0, "rad/s").of<&Self::_turnRate>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            Property::flag("enabled", "whether the close-up is drawn").of<&Self::_enabled>(),
+            Property::number(
+                "offsetX", "how far it lies from the region's center to the right, along the region's x axis",
+                -1e7, 1e7, "m")
+                .of<&Self::_offsetX>(),
+            Property::number(
+                "offsetY", "how far it lies from the region's center to the front, along the region's y axis",
+                -1e7, 1e7, "m")
+                .of<&Self::_offsetY>(),
+            Property::number("offsetHeight", "how far it lies above the region's center", -1e7, 1e7, "m")
+                .of<&Self::_offsetHeight>(),
+            Property::number("scaleX", "its scale along the region's x axis", 0.001, 1000.0)
+                .of<&Self::_scaleX>(),
+            Property::number("scaleY", "its scale along the region's y axis", 0.001, 1000.0)
+                .of<&Self::_scaleY>(),
+            Property::number("scaleHeight", "the scale of its heights; 0 is a flat map", 0.0, 1000.0)
+                .of<&Self::_scaleHeight>(),
+            Property::choice("orientation", "what it stands in",
+                             {{"scene", ""},
+                              {"fixed", "it goes with the camera"},
+                              {"billboard", "the same without perspective"}})
+                .of<&Self::_orientation>(),
+            Property::angle("tilt", "its turn about its x axis; the far side rises", -turn, turn)
+                .of<&Self::_tilt>(),
+            Property::angle("turn", "its turn about the vertical, counter-clockwise", -turn, turn)
+                .of<&Self::_turn>(),
+            Property::choice("edge", "how its edge is cut",
+                             {{"fragments", "along the mask's border"},
+                              {"primitives", "the triangles that lie in the mask wholly"}})
+                .of<&Self::_edge>(),
+            Property::number("roundness", "how far added vertices leave the flat triangles for round ground",
+                             0.0, 1.0)
+                .of<&Self::_roundness>(),
+            Property::color("color", "the color of the anchor and the lines").of<&Self::_color>(),
+            Property::number("surfaceOpacity", "how much of the surface shows over the scene's colors", 0.0,
+                             1.0)
+                .of<&Self::_surfaceOpacity>(),
+            Property::choice("lighting", "how it is lit",
+                             {{"asScene", "the scene's colors with their light"},
+                              {"unlit", ""},
+                              {"sun", "by the surface data's normals and a sun of its own"}})
+                .of<&Self::_lighting>(),
+            Property::angle("sunAzimuth", "where its sun stands, clockwise from the region's y axis", -turn,
+                            turn)
+                .of<&Self::_sunAzimuth>(),
+            Property::angle("sunElevation", "the angle of its sun above the horizon", 0.0, osg::PI_2)
+                .of<&Self::_sunElevation>(),
+            Property::number("saturation", "the factor of the saturation; 0 is grey", 0.0, 4.0)
+                .of<&Self::_saturation>(),
+            Property::number("contrast", "the factor of the contrast about a middle grey", 0.0, 4.0)
+                .of<&Self::_contrast>(),
+            Property::number("brightness", "what is added to colors", -1.0, 1.0).of<&Self::_brightness>(),
+            Property::number("opacity", "the opacity of the close-up", 0.0, 1.0).of<&Self::_opacity>(),
+            Property::integer("mappingChannels",
+                              "the bits of the projective mappings that it shows, by their channels", 0, 255)
+                .of<&Self::_mappingChannels>(),
+            Property::choice("activity", "how much of it is drawn",
+                             {{"active", "all"},
+                              {"regionOnly", "the line around the region"},
+                              {"noAnchor", ""},
+                              {"desaturated", ""}})
+                .of<&Self::_activity>(),
+            Property::angle("turnRate", "how fast it turns about the vertical, counter-clockwise", -10.0,
+                            10.0, "rad/s")
+                .of<&Self::_turnRate>(),
+        });
     return all;
 }
 

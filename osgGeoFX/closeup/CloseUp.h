@@ -16,9 +16,9 @@ namespace osgGeoFX
 /** A region of the ground that is lifted, scaled, rotated and drawn in its own style (paper: interactive close-ups,
     Section II.B).
 
-    **Geometry.** In the region's frame (x right, y to the front, z up, metres, origin at the region's centre and base)
+    **Geometry.** In the region's frame (x right, y to the front, z up, metres, origin at the region's center and base)
     a point v of the ground moves to `offset + R · S · v`. S scales by (scaleX, scaleY, scaleHeight) and R rotates. The
-    paper's matrix M multiplies in the opposite order and names no centre. The paper's axes are x, height, y. A height
+    paper's matrix M multiplies in the opposite order and names no center. The paper's axes are x, height, y. A height
     scale of 0 makes a flat map.
 
     **Orientation.** With SCENE, R rotates by `turn` about the vertical (counter-clockwise from above), then by `tilt`
@@ -27,7 +27,7 @@ namespace osgGeoFX
     down at the map, and its y axis points up on the screen. BILLBOARD is FIXED without perspective, unless the camera
     is very near.
 
-    **With a bend**, the offset starts at the region's centre after the bend and rotates with the ground there. The
+    **With a bend**, the offset starts at the region's center after the bend and rotates with the ground there. The
     close-up itself is not bent.
 
     Setters refuse values out of range: they return false, warn once and keep the former state. The thread of the frame
@@ -53,7 +53,7 @@ public:
     bool setEnabled(bool enabled) { return assign("enabled", enabled ? 1.0 : 0.0); }
     bool getEnabled() const { return _enabled; }
 
-    /// The offset from the region's centre along the region's axes x, y and up, metres, ±1e7. Default: (0, 0, 2000).
+    /// The offset from the region's center along the region's axes x, y and up, metres, ±1e7. Default: (0, 0, 2000).
     bool setOffset(const osg::Vec3d& offset)
     {
         return assign({{"offsetX", offset.x()}, {"offsetY", offset.y()}, {"offsetHeight", offset.z()}});
@@ -99,28 +99,25 @@ public:
     bool setRoundness(double share) { return assign("roundness", share); }
     double getRoundness() const { return _roundness; }
 
-    /// The colour of the anchor and the lines, rgb, 0…1 each. It ties the close-up to its region (paper: P2). Default:
-    /// orange.
-    bool setColor(const osg::Vec3d& color)
-    {
-        return assign({{"red", color.x()}, {"green", color.y()}, {"blue", color.z()}});
-    }
-    osg::Vec3d getColor() const { return {_red, _green, _blue}; }
+    /// The color of the anchor and the lines: red, green and blue, 0…1 each, rounded to eight bits. It ties the close-up to
+    /// its region (paper: P2). Default: orange.
+    bool setColor(const osg::Vec3d& color) { return assign("color", packedColor(color)); }
+    osg::Vec3d getColor() const { return unpackedColor(_color); }
 
-    /// The name of the layer of CloseUps' SurfaceData that replaces the scene's colours. "", the default, and unknown
+    /// The name of the layer of CloseUps' SurfaceData that replaces the scene's colors. "", the default, and unknown
     /// names mean no layer. A layer of values uses a color table.
     void setSurface(const std::string& layer);
     const std::string& getSurface() const { return _surface; }
-    /// The share of the layer in the colour, 0…1. The scene's colours are the rest. Default: 1.
+    /// The share of the layer in the color, 0…1. The scene's colors are the rest. Default: 1.
     bool setSurfaceOpacity(double opacity) { return assign("surfaceOpacity", opacity); }
     double getSurfaceOpacity() const { return _surfaceOpacity; }
-    /// The colours for the layer's values, over the table's own range. With null, the default, a ready table is used.
+    /// The colors for the layer's values, over the table's own range. With null, the default, a ready table is used.
     bool setTable(ColorTable* table);
     ColorTable* getTable() { return _table.get(); }
     const ColorTable* getTable() const { return _table.get(); }
     enum Lighting
     {
-        AS_SCENE, ///< the scene's colours with their light; a layer has no light
+        AS_SCENE, ///< the scene's colors with their light; a layer has no light
         UNLIT,    ///< the layer without light
         SUN       ///< light from the data's NORMAL layer and a sun of the close-up's own
     };
@@ -136,10 +133,10 @@ public:
     double getSunAzimuth() const { return _sunAzimuth; }
     double getSunElevation() const { return _sunElevation; }
 
-    /// The saturation of the colours, 0…4. Default: 1, unchanged.
+    /// The saturation of the colors, 0…4. Default: 1, unchanged.
     bool setSaturation(double saturation) { return assign("saturation", saturation); }
     double getSaturation() const { return _saturation; }
-    /// The contrast of the colours, 0…4. Default: 1, unchanged.
+    /// The contrast of the colors, 0…4. Default: 1, unchanged.
     bool setContrast(double contrast) { return assign("contrast", contrast); }
     double getContrast() const { return _contrast; }
     /// A brightness that is added, −1…1. Default: 0.
@@ -193,7 +190,7 @@ private:
     double _tilt = 0.0, _turn = 0.0;
     int _edge = FRAGMENTS;
     double _roundness = 0.0;
-    double _red = 1.0, _green = 0.55, _blue = 0.1;
+    int _color = 0xff8c1a;
     double _surfaceOpacity = 1.0;
     int _lighting = AS_SCENE;
     double _sunAzimuth, _sunElevation;

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/CloseUpPicking.h>
 
-#include <osgGeoFX/closeup/detail/LiftFrame.h>
+#include <osgGeoFX/closeup/detail/LiftSnapshot.h>
 #include <osgGeoFX/effect/detail/DrawableTriangles.h>
 #include <osgGeoFX/scene/DeformedView.h>
 
@@ -197,14 +197,14 @@ std::optional<LiftedHit> meet(EffectScene& scene, CloseUp& closeUp, const Pictur
     Stretch stretch;
     stretch.clip(at.x(), step.x(), 1.0);
     stretch.clip(at.y(), step.y(), 1.0);
-    stretch.clip(at.z(), step.z(), highestGround + std::abs(closeUp.getRegion()->getBase()));
+    stretch.clip(at.z(), step.z(), highestGround + std::abs(closeUp.getRegion()->getBaseHeight()));
     if (stretch.empty()) return std::nullopt;
 
     osg::ref_ptr<const DeformationChain> drawn = overview;
     if (!drawn)
     {
         const osg::ref_ptr<DeformationChain> lift = new DeformationChain;
-        lift->add(new LiftFrame(item));
+        lift->add(new LiftSnapshot(item));
         drawn = lift;
     }
     const osg::ref_ptr<DeformedLineIntersector> line =

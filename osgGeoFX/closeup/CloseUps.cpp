@@ -130,20 +130,37 @@ CloseUps::Statistics CloseUps::statistics() const
 const Properties& CloseUps::properties() const
 {
     using Self = CloseUps;
-    static const Properties all = {
-        enabledProperty(),
-        Property::choice("pipeline", AUTOMATIC, {"automatic", "singlePass", "multiPass"})
-            .of<&Self::_pipeline>(),
-        Property::integer("tessellation", 16, 1, 64).of<&Self::_tessellation>(),
-        Property::number("opacity", 1.0, 0.0, 1.0).of<&Self::_opacity>().turnedBy(0.05),
-        Property::integer("supersampling", 1, 1, 4).of<&Self::_supersampling>(),
-        Property::flag("depthTest", true).of<&Self::_depthTest>(),
-        Property::integer("maxLayers", 2048, 2, 2048).of<&Self::_maxLayers>(),
-        TextureUnits::property("maskUnit").of<&Self::_maskUnit>(),
-        TextureUnits::property("tableUnit").of<&Self::_tableUnit>(),
-        TextureUnits::property("surfaceUnit").of<&Self::_surfaceUnit>(),
-        Property::integer("blockBinding", 7, 0, 35).of<&Self::_blockBinding>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            enabledProperty(),
+            Property::choice("pipeline", "how close-ups are drawn",
+                             {{"automatic", "as it suits"},
+                              {"singlePass", "what lies in a region once, copied by a geometry shader"},
+                              {"multiPass", "each close-up by itself, as detailed as it is large"}})
+                .of<&Self::_pipeline>(),
+            Property::integer(
+                "tessellation",
+                "the largest number of parts of a triangle's edge where vertices are added; 1 adds none", 1,
+                64)
+                .of<&Self::_tessellation>(),
+            Property::number("opacity", "the opacity of all close-ups together", 0.0, 1.0)
+                .of<&Self::_opacity>()
+                .turnedBy(0.05),
+            Property::integer("supersampling", "the number of samples along each side of a pixel", 1, 4)
+                .of<&Self::_supersampling>(),
+            Property::flag("depthTest", "whether what stands in front hides close-ups and anchors")
+                .of<&Self::_depthTest>(),
+            Property::integer("maxLayers", "the largest number of layers of a texture array", 2, 2048)
+                .of<&Self::_maxLayers>(),
+            TextureUnits::property("maskUnit", "the texture unit of the regions' masks")
+                .of<&Self::_maskUnit>(),
+            TextureUnits::property("tableUnit", "the texture unit of the tables").of<&Self::_tableUnit>(),
+            TextureUnits::property("surfaceUnit", "the texture unit of the surface data")
+                .of<&Self::_surfaceUnit>(),
+            Property::integer("blockBinding", "the binding point of the uniform block", 0, 35)
+                .of<&Self::_blockBinding>(),
+        });
     return all;
 }
 

@@ -20,7 +20,7 @@ namespace osgGeoFX
     @code
     osg::ref_ptr<osgGeoFX::CloseUps> closeUps = new osgGeoFX::CloseUps;
     osg::ref_ptr<osgGeoFX::CloseUp> closeUp = new osgGeoFX::CloseUp;
-    closeUp->getRegion()->setGeodeticCentre(longitude, latitude);   // radians
+    closeUp->getRegion()->setGeodeticCenter(longitude, latitude);   // radians
     closeUp->getRegion()->setSize(3000.0, 3000.0);                  // metres
     closeUp->setOffset(osg::Vec3d(0.0, 0.0, 4000.0));
     closeUps->addCloseUp(closeUp);

@@ -159,23 +159,49 @@ RegionOfInterest::~RegionOfInterest() = default;
 const Properties& RegionOfInterest::properties() const
 {
     using Self = RegionOfInterest;
-    static const Properties all = {
-        Property::number("centreX", 0.0, -5e7, 5e7, "m").of<&Self::_centreX>(),
-        Property::number("centreY", 0.0, -5e7, 5e7, "m").of<&Self::_centreY>(),
-        Property::angle("longitude", 0.0, -osg::PI, osg::PI).of<&Self::_longitude>(),
-        Property::angle("latitude", 0.0, -osg::PI_2, osg::PI_2).of<&Self::_latitude>(),
-        Property::number("base", 0.0, -12000.0, 1e7, "m").of<&Self::_base>(),
-        Property::number("width", 2000.0, 1.0, 2e6, "m").of<&Self::_width>(),
-        Property::number("depth", 2000.0, 1.0, 2e6, "m").of<&Self::_depth>(),
-        Property::angle("heading", 0.0, -2.0 * osg::PI, 2.0 * osg::PI).of<&Self::_heading>(),
-        Property::choice("shape", ELLIPSE, {"ellipse", "rectangle", "rounded", "polygon", "star", "image"})
-            .of<&Self::_shape>(),
-        Property::number("rounding", 0.3, 0.0, 1.0).of<&Self::_rounding>(),
-        Property::integer("points", 5, 3, 64).of<&Self::_points>(),
-        Property::number("innerRadius", 0.45, 0.05, 1.0).of<&Self::_innerRadius>(),
-        Property::number("softness", 0.0, 0.0, 1.0).of<&Self::_softness>(),
-        Property::integer("maskSide", 256, 16, 1024).of<&Self::_maskSide>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            Property::number("centerX", "the center on a projected terrain, to the east", -5e7, 5e7, "m")
+                .of<&Self::_centerX>(),
+            Property::number("centerY", "the center on a projected terrain, to the north", -5e7, 5e7, "m")
+                .of<&Self::_centerY>(),
+            Property::angle("longitude", "the longitude of the center on a globe, to the east", -osg::PI,
+                            osg::PI)
+                .of<&Self::_longitude>(),
+            Property::angle("latitude", "the latitude of the center on a globe, to the north", -osg::PI_2,
+                            osg::PI_2)
+                .of<&Self::_latitude>(),
+            Property::number("baseHeight", "the height that heights are scaled about", -12000.0, 1e7, "m")
+                .of<&Self::_baseHeight>(),
+            Property::number("width", "the whole width of the region", 1.0, 2e6, "m").of<&Self::_width>(),
+            Property::number("depth", "the whole depth of the region", 1.0, 2e6, "m").of<&Self::_depth>(),
+            Property::angle("heading", "the turn of the region's y axis, clockwise from north",
+                            -2.0 * osg::PI, 2.0 * osg::PI)
+                .of<&Self::_heading>(),
+            Property::choice("shape",
+                             "the shape of the region; in a scene file, polygon where there are corners and "
+                             "image where there is one",
+                             {{"ellipse", ""},
+                              {"rectangle", ""},
+                              {"rounded", "a rectangle with round corners"},
+                              {"polygon", "its corners"},
+                              {"star", ""},
+                              {"image", "the grey values of an image"}})
+                .of<&Self::_shape>(),
+            Property::number("rounding", "the radius of round corners, as a share of the smaller half side",
+                             0.0, 1.0)
+                .of<&Self::_rounding>(),
+            Property::integer("points", "the number of points of a star", 3, 64).of<&Self::_points>(),
+            Property::number("innerRadius", "a star's inner radius, as a share of the outer one", 0.05, 1.0)
+                .of<&Self::_innerRadius>(),
+            Property::number("softness",
+                             "how far inside of the border it fades, as a share of the smaller half side",
+                             0.0, 1.0)
+                .of<&Self::_softness>(),
+            Property::integer("maskSide", "the side of the region's mask", 16, 1024, "texel")
+                .of<&Self::_maskSide>(),
+        });
     return all;
 }
 
@@ -286,9 +312,9 @@ std::vector<std::vector<osg::Vec2d>> RegionOfInterest::contours(double step) con
 
 osg::Matrixd RegionOfInterest::frameToWorld(const osg::EllipsoidModel* ellipsoid) const
 {
-    osg::Matrixd place = osg::Matrixd::translate(_centreX, _centreY, _base);
+    osg::Matrixd place = osg::Matrixd::translate(_centerX, _centerY, _baseHeight);
     if (ellipsoid)
-        ellipsoid->computeLocalToWorldTransformFromLatLongHeight(_latitude, _longitude, _base, place);
+        ellipsoid->computeLocalToWorldTransformFromLatLongHeight(_latitude, _longitude, _baseHeight, place);
     // A heading is clockwise.
     return osg::Matrixd::rotate(-_heading, osg::Vec3d(0.0, 0.0, 1.0)) * place;
 }

@@ -20,8 +20,8 @@ namespace osgGeoFX
 /** The part of the ground that a close-up shows: a place, a size, and a mask of any shape (paper: interactive
     close-ups, Section III.A).
 
-    **Frame.** x points right, y to the front and z up, metres. The origin is the region's centre at its base height.
-    Without a heading, x points east and y north. On a globe x and y lie in the tangent plane at the centre. A place in
+    **Frame.** x points right, y to the front and z up, metres. The origin is the region's center at its base height.
+    Without a heading, x points east and y north. On a globe x and y lie in the tangent plane at the center. A place in
     the region is given in shares of half its width and half its depth: −1…1 on both axes.
 
     **Mask.** The mask is 1 where the ground belongs to the region and 0 elsewhere. A soft border has values between
@@ -38,14 +38,14 @@ public:
     RegionOfInterest(const RegionOfInterest& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, RegionOfInterest);
 
-    /// The centre on a projected terrain, metres in its coordinate system, ±5e7. Default: (0, 0).
-    bool setCentre(const osg::Vec2d& centre)
+    /// The center on a projected terrain, metres in its coordinate system, ±5e7. Default: (0, 0).
+    bool setCenter(const osg::Vec2d& center)
     {
-        return assign({{"centreX", centre.x()}, {"centreY", centre.y()}});
+        return assign({{"centerX", center.x()}, {"centerY", center.y()}});
     }
-    osg::Vec2d getCentre() const { return {_centreX, _centreY}; }
-    /// The centre on a globe, radians. Default: (0, 0).
-    bool setGeodeticCentre(double longitude, double latitude)
+    osg::Vec2d getCenter() const { return {_centerX, _centerY}; }
+    /// The center on a globe, radians. Default: (0, 0).
+    bool setGeodeticCenter(double longitude, double latitude)
     {
         return assign({{"longitude", longitude}, {"latitude", latitude}});
     }
@@ -53,8 +53,8 @@ public:
     double getLatitude() const { return _latitude; }
     /// The height of the frame's origin, metres above the ellipsoid or above z = 0, −12 000…1e7. Heights are scaled
     /// about it. Default: 0.
-    bool setBase(double height) { return assign("base", height); }
-    double getBase() const { return _base; }
+    bool setBaseHeight(double height) { return assign("baseHeight", height); }
+    double getBaseHeight() const { return _baseHeight; }
     /// The full width and depth, metres, 1…2e6. Default: 2000.
     bool setSize(double width, double depth) { return assign({{"width", width}, {"depth", depth}}); }
     double getWidth() const { return _width; }
@@ -114,8 +114,8 @@ public:
     osg::ref_ptr<const osg::Image> mask() const;
     /// Whether no texel of the mask is 0.5 or more. If so, there is no close-up.
     bool isEmpty() const;
-    /// The mask and the distance at a place of the region, as the GPU interpolates them: bilinear between the centres
-    /// of texels. Beyond the outermost centres the distance continues to the region's own border. Outside −1…1 they
+    /// The mask and the distance at a place of the region, as the GPU interpolates them: bilinear between the centers
+    /// of texels. Beyond the outermost centers the distance continues to the region's own border. Outside −1…1 they
     /// are 0 and −2.
     osg::Vec2d maskAt(const osg::Vec2d& place) const;
     /// The borders as closed lines in the region, −1…1: the lines where the distance is 0, at the mask's resolution.
@@ -135,7 +135,7 @@ protected:
 
 private:
     struct Cache; ///< the mask as it was made last, under a mutex
-    double _centreX = 0.0, _centreY = 0.0, _longitude = 0.0, _latitude = 0.0, _base = 0.0;
+    double _centerX = 0.0, _centerY = 0.0, _longitude = 0.0, _latitude = 0.0, _baseHeight = 0.0;
     double _width = 2000.0, _depth = 2000.0, _heading = 0.0;
     int _shape = ELLIPSE;
     double _rounding = 0.3;

@@ -103,7 +103,7 @@ std::vector<Mix> mixesOf(int source, int target)
     return mixes;
 }
 
-/// Along x; along y with the two steps exchanged. Colours are multiplied with their alpha.
+/// Along x; along y with the two steps exchanged. Colors are multiplied with their alpha.
 void mix(const std::vector<Mix>& mixes, const float* from, std::size_t fromStep, float* to,
          std::size_t toStep)
 {
@@ -298,16 +298,26 @@ const Properties& SurfaceData::properties() const
 {
     using Self = SurfaceData;
     constexpr double far = 5e7;
-    static const Properties all = {
-        Property::number("originX", 0.0, -far, far, "m").of<&Self::_originX>(),
-        Property::number("originY", 0.0, -far, far, "m").of<&Self::_originY>(),
-        Property::angle("longitude", 0.0, -osg::PI, osg::PI).of<&Self::_longitude>(),
-        Property::angle("latitude", 0.0, -osg::PI_2, osg::PI_2).of<&Self::_latitude>(),
-        Property::number("lowX", -1000.0, -far, far, "m").of<&Self::_lowX>(),
-        Property::number("lowY", -1000.0, -far, far, "m").of<&Self::_lowY>(),
-        Property::number("highX", 1000.0, -far, far, "m").of<&Self::_highX>(),
-        Property::number("highY", 1000.0, -far, far, "m").of<&Self::_highY>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            Property::number("originX", "the frame's origin on a projected terrain, to the east", -far, far,
+                             "m")
+                .of<&Self::_originX>(),
+            Property::number("originY", "the frame's origin on a projected terrain, to the north", -far, far,
+                             "m")
+                .of<&Self::_originY>(),
+            Property::angle("longitude", "the longitude of the frame's origin on a globe, to the east",
+                            -osg::PI, osg::PI)
+                .of<&Self::_longitude>(),
+            Property::angle("latitude", "the latitude of the frame's origin on a globe, to the north",
+                            -osg::PI_2, osg::PI_2)
+                .of<&Self::_latitude>(),
+            Property::number("lowX", "the western edge", -far, far, "m").of<&Self::_lowX>(),
+            Property::number("lowY", "the southern edge", -far, far, "m").of<&Self::_lowY>(),
+            Property::number("highX", "the eastern edge", -far, far, "m").of<&Self::_highX>(),
+            Property::number("highY", "the northern edge", -far, far, "m").of<&Self::_highY>(),
+        });
     return all;
 }
 

@@ -23,10 +23,10 @@ namespace osgGeoFX
     origin. On a globe x points east and y north about the origin, of a point's foot on the ellipsoid (PROJ's
     `+proj=ortho` there). The images cover the rectangle from `low` to `high`, metres. Row 0 is the southernmost.
 
-    **Layers.** A texel has four floats. Colours are 0…1 with alpha. For values the first float is the value, and the
+    **Layers.** A texel has four floats. Colors are 0…1 with alpha. For values the first float is the value, and the
     fourth is 1 where there is a value. For NORMAL the first three are the unit normal: x east, y north, z up. For
     ASPECT the second and third are the sine and cosine of the angle, which may be interpolated although angles may
-    not. Texels without data are 0 in all four floats (only colours may have rgb under an alpha of 0). A reader divides
+    not. Texels without data are 0 in all four floats (only colors may have rgb under an alpha of 0). A reader divides
     values and normals that it interpolated between texels by the fourth float. Classes are never interpolated.
 
     The thread of the frame loop changes the data, between frames. Reading is thread-safe.
@@ -40,7 +40,7 @@ public:
 
     enum Kind
     {
-        COLOR,     ///< colours with alpha
+        COLOR,     ///< colors with alpha
         HEIGHT,    ///< heights, metres
         NORMAL,    ///< unit normals
         SLOPE,     ///< 0…π/2, radians from the horizontal
@@ -93,7 +93,7 @@ public:
     /// The distance from texel to texel along x and y, metres. 0 without layers.
     osg::Vec2d getSpacing() const;
 
-    /** Makes a layer of colours from an image of GL_RGB, RGBA, BGR, BGRA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, ALPHA
+    /** Makes a layer of colors from an image of GL_RGB, RGBA, BGR, BGRA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, ALPHA
         (white), RED or RG, with bytes, shorts, ints (signed or not) or floats. Values beyond 0…1 are clamped. Row 0 is
         the lowest, also for an image whose origin is TOP_LEFT. If a size is given, the image is resampled, weighted
         with alpha: averaged where it shrinks, linear where it grows. Any other image or size gives null, with a

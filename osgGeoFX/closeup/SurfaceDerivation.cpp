@@ -148,7 +148,7 @@ struct Direction
 
 /** Walks all parallel lines of a direction and its opposite through a grid, and adds up what the horizons hide.
 
-    A line is half a texel aside of a texel's centre at most. So both lines beside it are asked, from the ground on the line
+    A line is half a texel aside of a texel's center at most. So both lines beside it are asked, from the ground on the line
     and not on the texel, and mixed: on a smooth slope that is right, where the nearest line alone makes stripes. */
 class Sweep
 {

@@ -74,11 +74,24 @@ const Properties& BirdsEyeView::properties() const
     static const Properties all = []
     {
         Properties list = bendProperties();
-        list.push_back(Property::number("focusLine", 0.4, 0.0, 1.0).of<&Self::_focusLine>());
-        list.push_back(
-            Property::number("horizonLine", 0.85, 0.0, 1.0).of<&Self::_horizonLine>().turnedBy(0.02));
-        list.push_back(Property::number("contextTilt", 0.0, 0.0, 0.9).of<&Self::_contextTilt>());
-        return list;
+        list.insert(
+            list.end(),
+            {Property::number("focusLine",
+                              "where the transition zone begins, as a share of the image's height from "
+                              "below; less than horizonLine",
+                              0.0, 1.0)
+                 .of<&Self::_focusLine>(),
+             Property::number("horizonLine",
+                              "where the horizon lies, as a share of the image's height from below; more "
+                              "than focusLine",
+                              0.0, 1.0)
+                 .of<&Self::_horizonLine>()
+                 .turnedBy(0.02),
+             Property::number("contextTilt",
+                              "how much of the context's ground shows; with 0 it is seen from its edge", 0.0,
+                              0.9)
+                 .of<&Self::_contextTilt>()});
+        return withDefaultsOf(new Self, std::move(list));
     }();
     return all;
 }

@@ -56,11 +56,20 @@ const Properties& BlendedView::properties() const
     static const Properties all = []
     {
         Properties list = bendProperties();
-        list.push_back(Property::number("lowHeight", 300.0, -12000.0, 1e7, "m").of<&Self::_lowHeight>());
-        list.push_back(Property::number("highHeight", 1500.0, -12000.0, 1e7, "m")
-                           .of<&Self::_highHeight>()
-                           .turnedByFactor(1.15));
-        return list;
+        list.insert(
+            list.end(),
+            {Property::number("lowHeight",
+                              "the height of the camera above the database's zero height below which the "
+                              "pedestrian's view alone is in force; less than highHeight",
+                              -12000.0, 1e7, "m")
+                 .of<&Self::_lowHeight>(),
+             Property::number("highHeight",
+                              "the height of the camera above the database's zero height above which the "
+                              "bird's-eye view alone is in force; more than lowHeight",
+                              -12000.0, 1e7, "m")
+                 .of<&Self::_highHeight>()
+                 .turnedByFactor(1.15)});
+        return withDefaultsOf(new Self, std::move(list));
     }();
     return all;
 }

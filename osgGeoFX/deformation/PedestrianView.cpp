@@ -24,15 +24,21 @@ const Properties& PedestrianView::properties() const
     static const Properties all = []
     {
         Properties list = bendProperties();
-        const Self defaults;
-        list.push_back(Property::angle("bendAngle", defaults._bendAngle, 0.0, osg::PI_2)
-                           .of<&Self::_bendAngle>()
-                           .turnedBy(0.05));
-        list.push_back(Property::number("focusDistance", defaults._focusDistance, -1e7, 1e7, "m")
-                           .of<&Self::_focusDistance>());
-        list.push_back(
-            Property::number("zoneWidth", defaults._zoneWidth, 0.0, 1e7, "m").of<&Self::_zoneWidth>());
-        return list;
+        list.insert(
+            list.end(),
+            {Property::angle("bendAngle", "the angle by which the ground ahead is folded up", 0.0, osg::PI_2)
+                 .of<&Self::_bendAngle>()
+                 .turnedBy(0.05),
+             Property::number(
+                 "focusDistance",
+                 "the distance from the point below the camera to where the transition zone begins", -1e7,
+                 1e7, "m")
+                 .of<&Self::_focusDistance>(),
+             Property::number("zoneWidth",
+                              "the width of the transition zone, which is wider where tallest needs it", 0.0,
+                              1e7, "m")
+                 .of<&Self::_zoneWidth>()});
+        return withDefaultsOf(new Self, std::move(list));
     }();
     return all;
 }

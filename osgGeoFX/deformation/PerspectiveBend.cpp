@@ -17,7 +17,7 @@ namespace
 /// Within this share of the curve's radius nothing folds.
 constexpr double foldMargin = 0.9;
 
-class BendFrame : public DeformationFrame
+class BendSnapshot : public DeformationSnapshot
 {
 public:
     struct Look
@@ -26,7 +26,7 @@ public:
         bool foldPossible; ///< the heights of what stands in the zone are not known for sure
     };
 
-    BendFrame(const glsl::geofx_BendView& view, const Look& look) : _view(view), _look(look)
+    BendSnapshot(const glsl::geofx_BendView& view, const Look& look) : _view(view), _look(look)
     {
         const glsl::geofx_Bend& bend = view.bend;
         const double d = std::max(bend.size, 1e-9);
@@ -56,15 +56,15 @@ public:
     }
     double roughness(const Ball& ball) const override
     {
-        const glm::dvec2 at = profile(ball.centre);
+        const glm::dvec2 at = profile(ball.center);
         const bool outside = at.x + ball.radius <= 0.0 || at.x - ball.radius >= _view.bend.size;
         return outside ? 0.0 : roughness(std::abs(at.y) + ball.radius);
     }
     Ball bound(const Ball& ball) const override
     {
-        const glm::dvec2 at = profile(ball.centre);
+        const glm::dvec2 at = profile(ball.center);
         if (at.x + ball.radius <= 0.0) return ball;
-        Ball result = {roughly(ball.centre, at), ball.radius};
+        Ball result = {roughly(ball.center, at), ball.radius};
         if (at.x - ball.radius < _view.bend.size)
         {
             const double height = std::abs(at.y) + ball.radius;
@@ -99,13 +99,13 @@ public:
 
     Reach reach(const Ball& ball) const override
     {
-        const double s = profile(ball.centre).x;
+        const double s = profile(ball.center).x;
         if (s + ball.radius <= 0.0) return Reach::Identity;
         return s - ball.radius >= _view.bend.size ? Reach::Affine : Reach::Curved;
     }
     double lipschitz(const Ball& ball) const override
     {
-        const glm::dvec2 at = profile(ball.centre);
+        const glm::dvec2 at = profile(ball.center);
         if (at.x + ball.radius <= 0.0 || at.x - ball.radius >= _view.bend.size) return 1.0;
         // Along h lengths stay; along s they grow by speed − h·turnRate, and the speed is at most 1.
         return 1.0 + (std::abs(at.y) + ball.radius) * _turnRate;
@@ -125,12 +125,12 @@ public:
     {
         if (reach(ball) != Reach::Curved) return HUGE_VAL;
         const Ball bent = bound(ball);
-        const double gap = std::max(0.0, bent.centre.length() - bent.radius);
+        const double gap = std::max(0.0, bent.center.length() - bent.radius);
         return std::sqrt(8.0 * tolerance * gap / (_look.transitionDetail * std::max(_curvature, 1e-30)));
     }
     double detail(const Ball& ball) const override
     {
-        const double s = profile(ball.centre).x;
+        const double s = profile(ball.center).x;
         if (s + ball.radius <= 0.0) return 1.0;
         return s - ball.radius >= _view.bend.size ? _look.contextDetail : _look.transitionDetail;
     }
@@ -205,7 +205,7 @@ private:
     Extent extentOf(const EyeBox& box) const
     {
         Extent extent;
-        extent.middle = profile(box.centre);
+        extent.middle = profile(box.center);
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
             const osg::Vec3d& half = box.half[axis];
@@ -310,7 +310,7 @@ private:
 } // namespace
 
 PerspectiveBend::PerspectiveBend(const PerspectiveBend& other, const osg::CopyOp& copy)
-    : Deformation(other, copy), _curve(other._curve), _planeElevation(other._planeElevation),
+    : Deformation(other, copy), _curve(other._curve), _planeHeight(other._planeHeight),
       _planeReference(other._planeReference), _tallest(other._tallest),
       _transitionDetail(other._transitionDetail), _contextDetail(other._contextDetail),
       _contextSaturation(other._contextSaturation), _contextBrightness(other._contextBrightness),
@@ -325,21 +325,41 @@ Properties PerspectiveBend::bendProperties()
     using Self = PerspectiveBend;
     return {
         enabledProperty(),
-        Property::choice("curve", ARC_LENGTH, {"bezier", "arcLength", "circularArc"}).of<&Self::_curve>(),
-        Property::number("planeElevation", 0.0, -12000.0, 1e7, "m").of<&Self::_planeElevation>(),
-        Property::choice("planeReference", GROUND, {"ground", "eye"}).of<&Self::_planeReference>(),
-        Property::number("tallest", -1.0, -1.0, 1e6, "m").of<&Self::_tallest>(),
-        Property::number("transitionDetail", 2.0, 1.0, 16.0).of<&Self::_transitionDetail>(),
-        Property::number("contextDetail", 1.0, 0.1, 16.0).of<&Self::_contextDetail>(),
-        Property::number("contextSaturation", 1.0, 0.0, 2.0).of<&Self::_contextSaturation>(),
-        Property::number("contextBrightness", 1.0, 0.0, 2.0).of<&Self::_contextBrightness>(),
-        Property::integer("mapUnit", -1, -1, 3).of<&Self::_mapUnit>(),
+        Property::choice("curve", "the curve of the transition zone",
+                         {{"bezier", ""},
+                          {"arcLength", "the same, but equal ground takes equal length"},
+                          {"circularArc", "which keeps lengths"}})
+            .of<&Self::_curve>(),
+        Property::number("planeHeight", "the height of the reference plane above what planeReference says",
+                         -12000.0, 1e7, "m")
+            .of<&Self::_planeHeight>(),
+        Property::choice("planeReference", "what planeHeight counts from",
+                         {{"ground", "the database's zero height"}, {"eye", "the camera"}})
+            .of<&Self::_planeReference>(),
+        Property::number(
+            "tallest",
+            "how far the tallest thing in the transition zone rises above the reference plane; -1 "
+            "takes it from the database",
+            -1.0, 1e6, "m")
+            .of<&Self::_tallest>(),
+        Property::number("transitionDetail",
+                         "how many times finer the level of detail is in the transition zone", 1.0, 16.0)
+            .of<&Self::_transitionDetail>(),
+        Property::number("contextDetail", "how many times finer the level of detail is in the context", 0.1,
+                         16.0)
+            .of<&Self::_contextDetail>(),
+        Property::number("contextSaturation", "the saturation of the context; 0 is grey", 0.0, 2.0)
+            .of<&Self::_contextSaturation>(),
+        Property::number("contextBrightness", "the brightness of the context; 0 is black", 0.0, 2.0)
+            .of<&Self::_contextBrightness>(),
+        Property::integer("mapUnit", "the texture unit of a map that the context shows; -1 is none", -1, 3)
+            .of<&Self::_mapUnit>(),
     };
 }
 
 double PerspectiveBend::planeHeight(const ViewGeometry& view) const
 {
-    return _planeReference == EYE ? -_planeElevation : view.eyeHeight - _planeElevation;
+    return _planeReference == EYE ? -_planeHeight : view.eyeHeight - _planeHeight;
 }
 
 double PerspectiveBend::planeLevel(const ViewGeometry& view) const
@@ -380,7 +400,7 @@ osg::Vec3d PerspectiveBend::heading(const ViewGeometry& view)
     return heading * (share * share * (3.0 - 2.0 * share));
 }
 
-osg::ref_ptr<const DeformationFrame> PerspectiveBend::frame(const ViewGeometry& view) const
+osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeometry& view) const
 {
     const std::optional<BendPlacement> place = placement(view);
     if (!place) return nullptr;
@@ -402,9 +422,9 @@ osg::ref_ptr<const DeformationFrame> PerspectiveBend::frame(const ViewGeometry& 
     // A database that tells its heights needs no watching, unless someone says that they do not matter; and what hangs
     // below T in it are skirts.
     const bool foldPossible = !view.ground.heightsKnown || (_tallest >= 0.0 && angle > 0.0);
-    const BendFrame::Look look = {_transitionDetail,  _contextDetail,           _contextSaturation,
-                                  _contextBrightness, _mapUnit < 0 ? 0.0 : 1.0, foldPossible};
-    return new BendFrame(bend, look);
+    const BendSnapshot::Look look = {_transitionDetail,  _contextDetail,           _contextSaturation,
+                                     _contextBrightness, _mapUnit < 0 ? 0.0 : 1.0, foldPossible};
+    return new BendSnapshot(bend, look);
 }
 
 std::string PerspectiveBend::fragmentFile() const

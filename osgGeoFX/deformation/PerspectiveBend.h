@@ -35,7 +35,7 @@ struct OSGGEOFX_EXPORT BendPlacement
     bend angle. Light and shadows are computed on the undeformed terrain.
 
     Each fragment has a style value q, from 0 in the focus to 1 in the context. The context's saturation and brightness
-    are blended in by q. So is the map of texture unit `mapUnit`, which replaces the ground's own colours.
+    are blended in by q. So is the map of texture unit `mapUnit`, which replaces the ground's own colors.
     @ingroup deformation */
 class OSGGEOFX_EXPORT PerspectiveBend : public Deformation
 {
@@ -48,17 +48,17 @@ public:
     };
     enum PlaneReference
     {
-        GROUND, ///< planeElevation is the height of T above the ellipsoid or map zero
-        EYE     ///< planeElevation is the height of T above the eye, so it is negative
+        GROUND, ///< planeHeight is the height of T above the ellipsoid or map zero
+        EYE     ///< planeHeight is the height of T above the eye, so it is negative
     };
 
     /// The curve of the transition zone. Default: ARC_LENGTH.
     bool setCurve(Curve curve) { return assign("curve", curve); }
     Curve getCurve() const { return static_cast<Curve>(_curve); }
     /// Raises the reference plane (paper, Section 3), metres, −12 000…1e7. Default: 0.
-    bool setPlaneElevation(double metres) { return assign("planeElevation", metres); }
-    double getPlaneElevation() const { return _planeElevation; }
-    /// The level from which planeElevation is measured. Default: GROUND.
+    bool setPlaneHeight(double metres) { return assign("planeHeight", metres); }
+    double getPlaneHeight() const { return _planeHeight; }
+    /// The level from which planeHeight is measured. Default: GROUND.
     bool setPlaneReference(PlaneReference reference) { return assign("planeReference", reference); }
     PlaneReference getPlaneReference() const { return static_cast<PlaneReference>(_planeReference); }
     /// Largest distance from T, metres, of an object on the inner side of the bend: above T where the ground bends up,
@@ -91,7 +91,7 @@ public:
     /// The same for a given curve, which may differ from this view's own curve.
     virtual std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const = 0;
 
-    osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
+    osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
     std::string vertexFile() const override { return "stages/bendview.glsl"; }
     /// Empty if the context has the same style as the focus.
     std::string fragmentFile() const override;
@@ -117,7 +117,7 @@ protected:
 
 private:
     int _curve = ARC_LENGTH;
-    double _planeElevation = 0.0;
+    double _planeHeight = 0.0;
     int _planeReference = GROUND;
     double _tallest = -1.0;
     double _transitionDetail = 2.0;

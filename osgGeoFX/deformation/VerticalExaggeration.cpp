@@ -14,10 +14,12 @@ namespace osgGeoFX
 namespace
 {
 
-class ExaggerationFrame : public DeformationFrame
+class ExaggerationSnapshot : public DeformationSnapshot
 {
 public:
-    ExaggerationFrame(const glsl::geofx_Exaggeration& view, bool relight) : _view(view), _relight(relight) {}
+    ExaggerationSnapshot(const glsl::geofx_Exaggeration& view, bool relight) : _view(view), _relight(relight)
+    {
+    }
 
     osg::Vec3d deform(const osg::Vec3d& position) const override
     {
@@ -35,23 +37,28 @@ public:
     Reach reach(const Ball&) const override { return _view.curvature > 0.0 ? Reach::Curved : Reach::Affine; }
     double lipschitz(const Ball& ball) const override
     {
+        // The derivatives of the vertical and of the height are 10 k and 11 at most, as far as they are followed.
+        if (deep(ball))
+            return 1.0 + std::abs(_view.factor - 1.0) * 11.0 + 10.0 * _view.curvature * farthest(ball);
         // Horizontally (R + factor·h)/(R + h) on a globe, and a little for the turn of the vertical.
         const double lift =
-            std::abs(_view.factor - 1.0) * (std::abs(height(ball.centre) - _view.base) + ball.radius);
+            std::abs(_view.factor - 1.0) * (std::abs(height(ball.center) - _view.base) + ball.radius);
         return std::max(1.0, _view.factor) * (1.0 + 1.1 * lift * _view.curvature);
     }
     Ball bound(const Ball& ball) const override
     {
+        const osg::Vec3d center = deform(ball.center);
+        if (deep(ball)) return {center, ball.radius + 2.0 * farthest(ball)};
         // As above, where the way of the middle tells its height.
-        const osg::Vec3d centre = deform(ball.centre);
-        const double lift = (centre - ball.centre).length() + std::abs(_view.factor - 1.0) * ball.radius;
-        return {centre, ball.radius * std::max(1.0, _view.factor) * (1.0 + 1.1 * lift * _view.curvature)};
+        const double lift = (center - ball.center).length() + std::abs(_view.factor - 1.0) * ball.radius;
+        return {center, ball.radius * std::max(1.0, _view.factor) * (1.0 + 1.1 * lift * _view.curvature)};
     }
     Sag sag(const Ball& ball, const osg::Vec3d& edge) const override
     {
+        if (deep(ball)) return {HUGE_VAL, 0.0, 2.0 * farthest(ball)};
         // lift·up: the height's second derivative is at most the curvature k, its first 1, up's first k and its second
         // 3k²; 1.3 covers the ellipsoid's flattening and heights of a tenth of the radius.
-        const double lift = std::abs(height(ball.centre) - _view.base) + ball.radius;
+        const double lift = std::abs(height(ball.center) - _view.base) + ball.radius;
         const double k = _view.curvature;
         const double second = std::abs(_view.factor - 1.0) * 1.3 * (3.0 * k + 3.0 * k * k * lift);
         return {second * edge.length2(), 0.0};
@@ -72,6 +79,19 @@ private:
         return glsl::geofx_exaggerationHeight(_view, toGlm(position));
     }
 
+    /// Whether a ball goes deeper than a tenth of the Earth's radius. Verticals meet there, and derivatives bound little.
+    bool deep(const Ball& ball) const
+    {
+        return _view.curvature > 0.0 && (height(ball.center) - ball.radius) * _view.curvature < -0.1;
+    }
+    /// How far anything in a ball moves at most, metres: no height is larger than the distance from the foot or the radius.
+    double farthest(const Ball& ball) const
+    {
+        const double away = (ball.center + toOsg(_view.up) * _view.height).length() + ball.radius;
+        return std::abs(_view.factor - 1.0) *
+               (1.1 * std::max(away, 1.0 / _view.curvature) + std::abs(_view.base));
+    }
+
     glsl::geofx_Exaggeration _view;
     bool _relight;
 };
@@ -79,7 +99,8 @@ private:
 } // namespace
 
 VerticalExaggeration::VerticalExaggeration(const VerticalExaggeration& other, const osg::CopyOp& copy)
-    : Deformation(other, copy), _factor(other._factor), _base(other._base), _relight(other._relight)
+    : Deformation(other, copy), _factor(other._factor), _baseHeight(other._baseHeight),
+      _relight(other._relight)
 {
 }
 
@@ -88,35 +109,43 @@ VerticalExaggeration::~VerticalExaggeration() = default;
 const Properties& VerticalExaggeration::properties() const
 {
     using Self = VerticalExaggeration;
-    static const Properties all = {
-        enabledProperty(),
-        Property::number("factor", 1.0, 0.01, 100.0).of<&Self::_factor>().turnedByFactor(1.15),
-        Property::number("base", 0.0, -12000.0, 12000.0, "m").of<&Self::_base>(),
-        Property::flag("relight", true).of<&Self::_relight>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            enabledProperty(),
+            Property::number("factor", "the factor by which heights grow", 0.01, 100.0)
+                .of<&Self::_factor>()
+                .turnedByFactor(1.15),
+            Property::number(
+                "baseHeight",
+                "the height above the database's zero height at which everything stays in its place",
+                -12000.0, 12000.0, "m")
+                .of<&Self::_baseHeight>(),
+            Property::flag("relight", "whether slopes are lit as steep as they look").of<&Self::_relight>(),
+        });
     return all;
 }
 
-osg::ref_ptr<const DeformationFrame> VerticalExaggeration::frame(const ViewGeometry& view) const
+osg::ref_ptr<const DeformationSnapshot> VerticalExaggeration::snapshot(const ViewGeometry& view) const
 {
     if (_factor == 1.0) return nullptr;
-    glsl::geofx_Exaggeration frame{};
-    frame.up = toGlm(view.up);
-    frame.axis = toGlm(view.polarAxis);
-    frame.height = view.eyeHeight;
-    frame.factor = _factor;
-    frame.base = _base;
-    if (view.ground.ellipsoid) setGlobe(frame, *view.ground.ellipsoid, view.up * view.polarAxis);
+    glsl::geofx_Exaggeration globe{};
+    globe.up = toGlm(view.up);
+    globe.axis = toGlm(view.polarAxis);
+    globe.height = view.eyeHeight;
+    globe.factor = _factor;
+    globe.base = _baseHeight;
+    if (view.ground.ellipsoid) setGlobe(globe, *view.ground.ellipsoid, view.up * view.polarAxis);
     // Not a number, or beyond what floats can work with: no camera over a terrain is like this.
-    const double sum = std::abs(view.eyeHeight) + std::abs(view.up * view.polarAxis) + frame.curvature;
+    const double sum = std::abs(view.eyeHeight) + std::abs(view.up * view.polarAxis) + globe.curvature;
     if (!(sum < 1e15)) return nullptr;
-    return new ExaggerationFrame(frame, _relight);
+    return new ExaggerationSnapshot(globe, _relight);
 }
 
 void VerticalExaggeration::changeGround(Ground& ground) const
 {
-    ground.minHeight = _base + _factor * (ground.minHeight - _base);
-    ground.maxHeight = _base + _factor * (ground.maxHeight - _base);
+    ground.minHeight = _baseHeight + _factor * (ground.minHeight - _baseHeight);
+    ground.maxHeight = _baseHeight + _factor * (ground.maxHeight - _baseHeight);
 }
 
 } // namespace osgGeoFX

@@ -31,14 +31,14 @@ public:
     bool setFactor(double factor) { return assign("factor", factor); }
     double getFactor() const { return _factor; }
     /// The height that stays unchanged, metres, −12 000…12 000. Default: 0.
-    bool setBase(double height) { return assign("base", height); }
-    double getBase() const { return _base; }
+    bool setBaseHeight(double height) { return assign("baseHeight", height); }
+    double getBaseHeight() const { return _baseHeight; }
     /// Whether the lighting uses the exaggerated slopes. Default: true.
     bool setRelight(bool relight) { return assign("relight", relight ? 1.0 : 0.0); }
     bool getRelight() const { return _relight; }
 
     const Properties& properties() const override;
-    osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
+    osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
     void changeGround(Ground& ground) const override;
     std::string vertexFile() const override { return "stages/exaggeration.glsl"; }
     std::string normalFile() const override { return vertexFile(); }
@@ -48,7 +48,7 @@ protected:
 
 private:
     double _factor = 1.0;
-    double _base = 0.0;
+    double _baseHeight = 0.0;
     bool _relight = true;
 };
 

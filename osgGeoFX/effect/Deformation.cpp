@@ -15,7 +15,7 @@ namespace
 /// At most this many cells along one axis of a box.
 constexpr int mostCells = 8;
 
-double sagOf(const DeformationFrame::Sag& sag, int cells)
+double sagOf(const DeformationSnapshot::Sag& sag, int cells)
 {
     return std::min(sag.curve / (8.0 * cells * cells) + sag.kink / (4.0 * cells), sag.most);
 }
@@ -27,7 +27,7 @@ EyeBox EyeBox::of(const osg::BoundingBox& box, const osg::Matrixd& modelView)
     EyeBox result;
     const osg::Vec3d low(box._min);
     const osg::Vec3d high(box._max);
-    result.centre = (low + high) * 0.5 * modelView;
+    result.center = (low + high) * 0.5 * modelView;
     for (int axis = 0; axis < 3; ++axis)
     {
         const double half = (high[axis] - low[axis]) / 2.0;
@@ -48,7 +48,7 @@ Ball EyeBox::ball() const
             square = std::max(square, (half[0] + half[1] * a + half[2] * b).length2());
         }
     }
-    return {centre, std::sqrt(square)};
+    return {center, std::sqrt(square)};
 }
 
 void EyeBox::corners(std::vector<osg::Vec3d>& points) const
@@ -59,20 +59,20 @@ void EyeBox::corners(std::vector<osg::Vec3d>& points) const
         for (const double b : {-1.0, 1.0})
         {
             for (const double c : {-1.0, 1.0})
-                points.push_back(centre + half[0] * a + half[1] * b + half[2] * c);
+                points.push_back(center + half[0] * a + half[1] * b + half[2] * c);
         }
     }
 }
 
-DeformationFrame::~DeformationFrame() = default;
+DeformationSnapshot::~DeformationSnapshot() = default;
 
-Ball DeformationFrame::bound(const Ball& ball) const
+Ball DeformationSnapshot::bound(const Ball& ball) const
 {
     if (reach(ball) == Reach::Identity) return ball;
-    return {roughly(ball.centre), ball.radius * lipschitz(ball) + roughness(ball)};
+    return {roughly(ball.center), ball.radius * lipschitz(ball) + roughness(ball)};
 }
 
-void DeformationFrame::boundBox(const EyeBox& box, Hull& hull, double fineness) const
+void DeformationSnapshot::boundBox(const EyeBox& box, Hull& hull, double fineness) const
 {
     hull.margin = 0.0;
     const Ball ball = box.ball();
@@ -83,9 +83,9 @@ void DeformationFrame::boundBox(const EyeBox& box, Hull& hull, double fineness) 
         EyeBox image = box;
         if (reaching == Reach::Affine)
         {
-            image.centre = roughly(box.centre);
+            image.center = roughly(box.center);
             for (int axis = 0; axis < 3; ++axis)
-                image.half[axis] = roughly(box.centre + box.half[axis]) - image.centre;
+                image.half[axis] = roughly(box.center + box.half[axis]) - image.center;
         }
         image.corners(hull.points);
         return;
@@ -105,7 +105,7 @@ void DeformationFrame::boundBox(const EyeBox& box, Hull& hull, double fineness) 
     hull.points.clear();
     for (int i = 0; i <= cells[0]; ++i)
     {
-        const osg::Vec3d atI = box.centre + box.half[0] * (2.0 * i / cells[0] - 1.0);
+        const osg::Vec3d atI = box.center + box.half[0] * (2.0 * i / cells[0] - 1.0);
         for (int j = 0; j <= cells[1]; ++j)
         {
             const osg::Vec3d atJ = atI + box.half[1] * (2.0 * j / cells[1] - 1.0);
@@ -115,13 +115,13 @@ void DeformationFrame::boundBox(const EyeBox& box, Hull& hull, double fineness) 
     }
 }
 
-DeformationFrame::Sag DeformationFrame::sag(const Ball& ball, const osg::Vec3d& edge) const
+DeformationSnapshot::Sag DeformationSnapshot::sag(const Ball& ball, const osg::Vec3d& edge) const
 {
     // Half the edge away from both of its ends, at the farthest.
     return {0.0, 2.0 * lipschitz(ball) * edge.length()};
 }
 
-osg::Matrixd DeformationFrame::turn(const osg::Vec3d&) const
+osg::Matrixd DeformationSnapshot::turn(const osg::Vec3d&) const
 {
     return {};
 }

@@ -25,7 +25,7 @@ namespace osgGeoFX
 /// @ingroup effect
 struct Ball
 {
-    osg::Vec3d centre;
+    osg::Vec3d center;
     double radius = 0.0;
 };
 
@@ -33,8 +33,8 @@ struct Ball
 /// @ingroup effect
 struct OSGGEOFX_EXPORT EyeBox
 {
-    osg::Vec3d centre;
-    osg::Vec3d half[3]; ///< half axes: from the centre to the centres of three faces
+    osg::Vec3d center;
+    osg::Vec3d half[3]; ///< half axes: from the center to the centers of three faces
 
     /// A box in eye space. `modelView`: from the frame of `box` to eye space.
     static EyeBox of(const osg::BoundingBox& box, const osg::Matrixd& modelView);
@@ -52,12 +52,12 @@ struct Hull
     double margin = 0.0;
 };
 
-/** A deformation for one camera and one frame: a function of eye space, and the bounds that culling needs.
+/** A deformation for one camera and one drawn frame: a function of eye space, and the bounds that culling needs.
 
     An object is immutable, so every thread may use it. All positions are in eye space, metres.
 
     @ingroup effect */
-class OSGGEOFX_EXPORT DeformationFrame : public osg::Referenced
+class OSGGEOFX_EXPORT DeformationSnapshot : public osg::Referenced
 {
 public:
     /// The deformed place of a position.
@@ -134,7 +134,7 @@ public:
     virtual Uniforms uniforms() const = 0;
 
 protected:
-    ~DeformationFrame() override;
+    ~DeformationSnapshot() override;
 };
 
 /** An effect that moves the geometry below its scene on the GPU. The movement is a continuous function of eye space.
@@ -142,8 +142,8 @@ protected:
     To write a new deformation:
     - Put the function into a file in shaders/lib, and list the file in shaders/CMakeLists.txt and
       effect/GlslFunctions.h. The GPU, culling and the tests then run the same text.
-    - Derive a class from DeformationFrame. It calls this text in double precision and computes bounds.
-    - Derive a class from Deformation. It makes the frame for a camera, lists its properties, and names the shader
+    - Derive a class from DeformationSnapshot. It calls this text in double precision and computes bounds.
+    - Derive a class from Deformation. It makes the snapshot for a camera, lists its properties, and names the shader
       file with `vec3 SLOT_deform(vec3)`, `vec3 SLOT_normal(vec3 position, vec3 normal)` and
       `float SLOT_style(vec3)`.
     - Add a line to viewer/EffectKinds.cpp.
@@ -159,20 +159,20 @@ class OSGGEOFX_EXPORT Deformation : public Effect
 public:
     const Deformation* asDeformation() const override { return this; }
 
-    /// The deformation for this camera; null where it does nothing.
-    virtual osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const = 0;
+    /// The deformation as this camera needs it now; null where it does nothing.
+    virtual osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const = 0;
 
     /// Changes the ground to what it is after this deformation, for the deformations that follow in the scene.
     virtual void changeGround(Ground&) const {}
 
     /// The vertex shader file. `SLOT_` in it stands for the prefix of its names.
     virtual std::string vertexFile() const = 0;
-    /// The fragment shader file with `vec4 SLOT_restyle(vec4 colour, vec4 map, float style)`; empty, the default, for
+    /// The fragment shader file with `vec4 SLOT_restyle(vec4 color, vec4 map, float style)`; empty, the default, for
     /// none.
     virtual std::string fragmentFile() const { return {}; }
     /// Text that is put before the files, such as constants that are worth compiling in.
     virtual std::string constants() const { return {}; }
-    /// The texture unit of a map that the context shows instead of its colours; −1, the default, for none.
+    /// The texture unit of a map that the context shows instead of its colors; −1, the default, for none.
     virtual int mapUnit() const { return -1; }
 
 protected:

@@ -35,9 +35,9 @@ EyeBox around(const Hull& hull, const EyeBox& former)
             high = std::max(high, along);
         }
         box.half[axis] = axes[axis] * ((high - low) / 2.0 + hull.margin);
-        box.centre += axes[axis] * ((high + low) / 2.0);
+        box.center += axes[axis] * ((high + low) / 2.0);
     }
-    box.centre += hull.points[0];
+    box.center += hull.points[0];
     return box;
 }
 
@@ -48,24 +48,24 @@ DeformationChain::~DeformationChain() = default;
 osg::Vec3d DeformationChain::deform(const osg::Vec3d& position) const
 {
     osg::Vec3d result = position;
-    for (const auto& frame : _frames)
-        result = frame->deform(result);
+    for (const auto& snapshot : _snapshots)
+        result = snapshot->deform(result);
     return result;
 }
 
 osg::Vec3d DeformationChain::roughly(const osg::Vec3d& position) const
 {
     osg::Vec3d result = position;
-    for (const auto& frame : _frames)
-        result = frame->roughly(result);
+    for (const auto& snapshot : _snapshots)
+        result = snapshot->roughly(result);
     return result;
 }
 
 osg::Vec3d DeformationChain::undeform(const osg::Vec3d& position) const
 {
     osg::Vec3d result = position;
-    for (auto frame = _frames.rbegin(); frame != _frames.rend(); ++frame)
-        result = (*frame)->undeform(result);
+    for (auto snapshot = _snapshots.rbegin(); snapshot != _snapshots.rend(); ++snapshot)
+        result = (*snapshot)->undeform(result);
     return result;
 }
 
@@ -73,10 +73,10 @@ osg::Vec3d DeformationChain::deformNormal(const osg::Vec3d& position, const osg:
 {
     osg::Vec3d at = position;
     osg::Vec3d result = normal;
-    for (const auto& frame : _frames)
+    for (const auto& snapshot : _snapshots)
     {
-        result = frame->deformNormal(at, result);
-        at = frame->deform(at);
+        result = snapshot->deformNormal(at, result);
+        at = snapshot->deform(at);
     }
     return result;
 }
@@ -85,10 +85,10 @@ double DeformationChain::style(const osg::Vec3d& position) const
 {
     osg::Vec3d at = position;
     double style = 0.0;
-    for (const auto& frame : _frames)
+    for (const auto& snapshot : _snapshots)
     {
-        style = std::max(style, frame->style(at));
-        at = frame->deform(at);
+        style = std::max(style, snapshot->style(at));
+        at = snapshot->deform(at);
     }
     return style;
 }
@@ -97,29 +97,29 @@ osg::Matrixd DeformationChain::placement(const osg::Vec3d& reference) const
 {
     osg::Vec3d at = reference;
     osg::Matrixd turn;
-    for (const auto& frame : _frames)
+    for (const auto& snapshot : _snapshots)
     {
-        turn.postMult(frame->turn(at));
-        at = frame->deform(at);
+        turn.postMult(snapshot->turn(at));
+        at = snapshot->deform(at);
     }
     return osg::Matrixd::translate(-reference) * turn * osg::Matrixd::translate(at);
 }
 
 bool DeformationChain::leavesAlone(const Ball& ball) const
 {
-    return std::all_of(_frames.begin(), _frames.end(),
-                       [&](const auto& frame)
-                       { return frame->reach(ball) == DeformationFrame::Reach::Identity; });
+    return std::all_of(_snapshots.begin(), _snapshots.end(),
+                       [&](const auto& snapshot)
+                       { return snapshot->reach(ball) == DeformationSnapshot::Reach::Identity; });
 }
 
 bool DeformationChain::hides(const Ball& ball, const osg::Vec2d& room) const
 {
     if (!_looksAtBoxes) return false;
     Ball current = ball;
-    for (std::size_t i = 0; i < _frames.size(); ++i)
+    for (std::size_t i = 0; i < _snapshots.size(); ++i)
     {
-        if (i > 0) current = _frames[i - 1]->bound(current);
-        if (_frames[i]->hides(current, room)) return true;
+        if (i > 0) current = _snapshots[i - 1]->bound(current);
+        if (_snapshots[i]->hides(current, room)) return true;
     }
     return false;
 }
@@ -127,20 +127,20 @@ bool DeformationChain::hides(const Ball& ball, const osg::Vec2d& room) const
 bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
 {
     if (!_looksAtBoxes) return false;
-    if (_frames.front()->hidesBox(box, room)) return true;
-    if (_frames.size() == 1) return false;
+    if (_snapshots.front()->hidesBox(box, room)) return true;
+    if (_snapshots.size() == 1) return false;
     Ball current = box.ball();
-    for (std::size_t i = 1; i < _frames.size(); ++i)
+    for (std::size_t i = 1; i < _snapshots.size(); ++i)
     {
-        current = _frames[i - 1]->bound(current);
-        if (_frames[i]->hides(current, room)) return true;
+        current = _snapshots[i - 1]->bound(current);
+        if (_snapshots[i]->hides(current, room)) return true;
     }
     return false;
 }
 
 double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
 {
-    if (_tileEdge <= 0.0 || _frames.empty()) return HUGE_VAL;
+    if (_tileEdge <= 0.0 || _snapshots.empty()) return HUGE_VAL;
     if (!TileInfo::coarseOf(node)) return blockLimit(node, ball);
     const double share = longestEdge(ball) / (_tileEdge * ball.radius);
     if (!(share < 1.0)) return HUGE_VAL;
@@ -169,14 +169,14 @@ double DeformationChain::longestEdge(const Ball& ball) const
     Ball current = ball;
     double longest = HUGE_VAL;
     double growth = 1.0;
-    for (std::size_t i = 0; i < _frames.size(); ++i)
+    for (std::size_t i = 0; i < _snapshots.size(); ++i)
     {
         if (i > 0)
         {
-            growth *= _frames[i - 1]->lipschitz(current);
-            current = _frames[i - 1]->bound(current);
+            growth *= _snapshots[i - 1]->lipschitz(current);
+            current = _snapshots[i - 1]->bound(current);
         }
-        longest = std::min(longest, _frames[i]->longestEdge(current, _tileError) / growth);
+        longest = std::min(longest, _snapshots[i]->longestEdge(current, _tileError) / growth);
     }
     return longest;
 }
@@ -184,24 +184,24 @@ double DeformationChain::longestEdge(const Ball& ball) const
 Ball DeformationChain::bound(const Ball& ball) const
 {
     Ball result = ball;
-    for (const auto& frame : _frames)
-        result = frame->bound(result);
+    for (const auto& snapshot : _snapshots)
+        result = snapshot->bound(result);
     return result;
 }
 
 void DeformationChain::bound(const EyeBox& box, Hull& hull, double fineness) const
 {
-    if (_frames.empty())
+    if (_snapshots.empty())
     {
         hull.margin = 0.0;
         box.corners(hull.points);
         return;
     }
     EyeBox current = box;
-    for (std::size_t i = 0; i < _frames.size(); ++i)
+    for (std::size_t i = 0; i < _snapshots.size(); ++i)
     {
         if (i > 0) current = around(hull, current);
-        _frames[i]->boundBox(current, hull, fineness);
+        _snapshots[i]->boundBox(current, hull, fineness);
     }
 }
 
@@ -209,10 +209,10 @@ double DeformationChain::detail(const Ball& ball) const
 {
     Ball current = ball;
     double detail = 1.0;
-    for (const auto& frame : _frames)
+    for (const auto& snapshot : _snapshots)
     {
-        detail *= frame->detail(current) * frame->lipschitz(current);
-        current = frame->bound(current);
+        detail *= snapshot->detail(current) * snapshot->lipschitz(current);
+        current = snapshot->bound(current);
     }
     return detail;
 }
@@ -221,15 +221,15 @@ double DeformationChain::lodDistance(const Ball& ball, const osg::Vec3d& viewPoi
 {
     Ball current = ball;
     double detail = 1.0;
-    for (const auto& frame : _frames)
+    for (const auto& snapshot : _snapshots)
     {
-        if (frame->reach(current) == DeformationFrame::Reach::Identity) continue;
-        if (const std::optional<double> distance = frame->viewDistance(current))
-            return ball.radius + *distance / (detail * frame->detail(current));
-        detail *= frame->detail(current) * frame->lipschitz(current);
-        current = bound && _frames.size() == 1 ? *bound : frame->bound(current);
+        if (snapshot->reach(current) == DeformationSnapshot::Reach::Identity) continue;
+        if (const std::optional<double> distance = snapshot->viewDistance(current))
+            return ball.radius + *distance / (detail * snapshot->detail(current));
+        detail *= snapshot->detail(current) * snapshot->lipschitz(current);
+        current = bound && _snapshots.size() == 1 ? *bound : snapshot->bound(current);
     }
-    const double distance = (current.centre - viewPoint).length();
+    const double distance = (current.center - viewPoint).length();
     if (detail == 1.0 && current.radius == ball.radius) return distance;
     // A range is the ball's radius and what must lie between it and the eye. What lies between is divided.
     const double gap = distance - current.radius;

@@ -23,10 +23,10 @@ class OSGGEOFX_EXPORT DeformationChain : public osg::Referenced
 {
 public:
     /// Adds a deformation at the end of the chain.
-    void add(osg::ref_ptr<const DeformationFrame> frame)
+    void add(osg::ref_ptr<const DeformationSnapshot> snapshot)
     {
-        _looksAtBoxes = _looksAtBoxes || frame->looksAtBoxes();
-        _frames.push_back(std::move(frame));
+        _looksAtBoxes = _looksAtBoxes || snapshot->looksAtBoxes();
+        _snapshots.push_back(std::move(snapshot));
     }
     /// Sets the values of Ground::tileEdge and Ground::tileError, which lodLimit() needs.
     void setTiles(double edge, double error)
@@ -34,11 +34,11 @@ public:
         _tileEdge = edge;
         _tileError = error;
     }
-    bool empty() const { return _frames.empty(); }
-    const std::vector<osg::ref_ptr<const DeformationFrame>>& frames() const { return _frames; }
+    bool empty() const { return _snapshots.empty(); }
+    const std::vector<osg::ref_ptr<const DeformationSnapshot>>& snapshots() const { return _snapshots; }
 
     osg::Vec3d deform(const osg::Vec3d& position) const;
-    /// A faster approximation of deform(): the centre of bound() for a sphere at this position.
+    /// A faster approximation of deform(): the center of bound() for a sphere at this position.
     osg::Vec3d roughly(const osg::Vec3d& position) const;
     osg::Vec3d undeform(const osg::Vec3d& position) const;
     osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const;
@@ -50,7 +50,7 @@ public:
 
     /// Whether no point of a sphere moves.
     bool leavesAlone(const Ball& ball) const;
-    /// Whether nothing within a sphere or box needs to be drawn. `room` is that of DeformationFrame::hides().
+    /// Whether nothing within a sphere or box needs to be drawn. `room` is that of DeformationSnapshot::hides().
     bool hides(const Ball& ball, const osg::Vec2d& room) const;
     bool hides(const EyeBox& box, const osg::Vec2d& room) const;
     /// Whether hides() or a frame's complaint() can ever give an answer.
@@ -80,7 +80,7 @@ private:
     double blockLimit(const osg::LOD& node, const Ball& ball) const;
     double longestEdge(const Ball& ball) const;
 
-    std::vector<osg::ref_ptr<const DeformationFrame>> _frames;
+    std::vector<osg::ref_ptr<const DeformationSnapshot>> _snapshots;
     bool _looksAtBoxes = false;
     double _tileEdge = 0.0;
     double _tileError = 0.0;

@@ -13,7 +13,7 @@ SurfaceEffect::~SurfaceEffect() = default;
 
 Property Effect::enabledProperty()
 {
-    return Property::flag("enabled", true).of<&Effect::_enabled>();
+    return Property::flag("enabled", "whether the effect is in force").of<&Effect::_enabled>();
 }
 
 } // namespace osgGeoFX

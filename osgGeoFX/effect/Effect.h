@@ -30,7 +30,7 @@ public:
 
     /// The effect as a deformation; null if it is none.
     virtual const Deformation* asDeformation() const { return nullptr; }
-    /// The effect as one that colours surfaces; null if it is none.
+    /// The effect as one that colors surfaces; null if it is none.
     virtual SurfaceEffect* asSurfaceEffect() { return nullptr; }
     const SurfaceEffect* asSurfaceEffect() const { return const_cast<Effect*>(this)->asSurfaceEffect(); }
     /// The effect as one that draws the scene again; null if it is none.

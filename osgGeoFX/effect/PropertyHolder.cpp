@@ -141,7 +141,7 @@ bool PropertyHolder::setPropertyTexts(const Texts& texts, std::string& error)
         const Properties& all = properties();
         const auto found =
             std::find_if(all.begin(), all.end(),
-                         [&, &wanted = name](const Property& each) { return each.textName() == wanted; });
+                         [&, &wanted = name](const Property& each) { return each.name == wanted; });
         if (found == all.end())
         {
             error = std::string(className()) + " has no property " + name + ".";

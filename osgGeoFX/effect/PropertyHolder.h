@@ -52,7 +52,7 @@ public:
     /// are refused, they keep their former values and the others are set. The result is then false, with a sentence for
     /// each in `error`.
     bool setProperties(const std::map<std::string, double>& values, std::string& error);
-    /// Sets a property from text: "bendAngleDegrees", "30". The name of a property of a part is
+    /// Sets a property from text: "bendAngle", "30" (degrees). The name of a property of a part is
     /// "birdsEyeView.focusLine".
     bool setPropertyText(const std::string& name, const std::string& value, std::string& error);
     /// Sets several properties from text, in any order. If a name occurs twice, the last value counts. False at the

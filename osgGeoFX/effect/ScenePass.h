@@ -26,8 +26,8 @@ class PassFilter;
     - Vertex files have `vec3 SLOT_move(vec3 located, vec3 bent)`, which returns where a point goes, in eye space.
       `located` is its undeformed place; `bent` is the place that the scene's deformations give it. Without vertex
       files all points go to `bent`.
-    - Fragment files have `vec4 SLOT_finish(vec4 colour)`, which returns the final colour, and `int SLOT_channels()`,
-      which returns the channels of the mappings to show, as bits. Without fragment files the colours stay.
+    - Fragment files have `vec4 SLOT_finish(vec4 color)`, which returns the final color, and `int SLOT_channels()`,
+      which returns the channels of the mappings to show, as bits. Without fragment files the colors stay.
     - Geometry files have main(). The vertex and the fragment files then see the define GEOFX_AMPLIFY. In geometry
       files, GEOFX_VARYINGS stands for the declarations of all variables that the other effects hand to the fragment
       stage. GEOFX_COPY(i) hands on the values of vertex i.

@@ -27,15 +27,15 @@ struct SurfaceView
     const std::vector<int>& units; ///< the effect's texture units (TextureUser)
 };
 
-/** An effect that colours the geometry, fragment by fragment. It goes by the geometry's undeformed place.
+/** An effect that colors the geometry, fragment by fragment. It goes by the geometry's undeformed place.
 
     To write a new surface effect, derive a class from this one:
     - Name a vertex shader file with `void SLOT_locate(vec3 eyePosition)`. This function writes the effect's own
       varyings for an undeformed position in eye space.
-    - Name a fragment shader file with `vec4 SLOT_colour(vec4 colour)`.
+    - Name a fragment shader file with `vec4 SLOT_color(vec4 color)`.
     - Fill the state of a camera in fill().
 
-    The effects of a scene colour in their order. The styles of bends take part in this order.
+    The effects of a scene color in their order. The styles of bends take part in this order.
     apps/examples/Contours.h is an example.
 
     @ingroup effect */
@@ -51,9 +51,9 @@ public:
     /// Whether the vertex file has `void SLOT_face(vec3 eyeNormal)`. This function gets the undeformed normal of length
     /// 1. False by default.
     virtual bool looksAtNormals() const { return false; }
-    /// Whether SLOT_colour() ignores the colour that comes in, so that neither lights nor textures need to be computed.
-    /// Below a state set with `setDefine("GEOFX_PAINTED", OFF)` they are computed, and SLOT_colour() should return the
-    /// colour that comes in. False by default.
+    /// Whether SLOT_color() ignores the color that comes in, so that neither lights nor textures need to be computed.
+    /// Below a state set with `setDefine("GEOFX_PAINTED", OFF)` they are computed, and SLOT_color() should return the
+    /// color that comes in. False by default.
     virtual bool repaints() const { return false; }
 
     /** Puts everything that the shaders need into a camera's state: uniforms with the prefix, and textures on the

@@ -54,9 +54,10 @@ std::string nameOf(const Effect& effect, std::size_t place)
 
 } // namespace
 
-Property TextureUnits::property(const std::string& name)
+Property TextureUnits::property(const std::string& name, const std::string& description)
 {
-    return Property::integer(name, -1, -1, last);
+    return Property::integer(name, description + "; -1 takes one that the scene's effects have free", -1,
+                             last);
 }
 
 std::string TextureUnits::inconsistency(const std::vector<TextureUnitWish>& wishes)

@@ -67,7 +67,7 @@ struct OSGGEOFX_EXPORT TextureUnits
     /// Assigns units to the effects of a scene.
     static TextureUnits of(const Effects& effects);
     /// A property for a unit; −1, the default, is for the scene's choice.
-    static Property property(const std::string& name);
+    static Property property(const std::string& name, const std::string& description);
     /// A sentence if an effect's own requests do not fit each other, or if one is for a unit of the geometry.
     static std::string inconsistency(const std::vector<TextureUnitWish>& wishes);
 };

@@ -28,7 +28,7 @@ struct MappingFrame
     frame.
 
     It accepts any raster that GDAL opens: any coordinate system on Earth, rotated geotransforms or ground control
-    points, no-data, masks, palettes, scale and offset. A palette, or three or more bands, become colours with alpha.
+    points, no-data, masks, palettes, scale and offset. A palette, or three or more bands, become colors with alpha.
     Otherwise the first band becomes values, with NaN where there is no data. It reads only as much as it needs,
     from overviews if the file has any.
 

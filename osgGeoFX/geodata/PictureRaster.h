@@ -29,7 +29,7 @@ struct OSGGEOFXDATA_EXPORT PictureRaster
     int width = 0;
     int height = 0;
     DataLayer::Kind kind = DataLayer::COLOR;
-    /// RGBA bytes for colours. Floats for values and classes, with NaN where there is no data. Null after look().
+    /// RGBA bytes for colors. Floats for values and classes, with NaN where there is no data. Null after look().
     osg::ref_ptr<osg::Image> image;
 
     /// Returns nothing, with a sentence in `error` that names file and remedy, if the file cannot be used.

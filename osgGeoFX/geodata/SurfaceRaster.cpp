@@ -214,7 +214,7 @@ osg::ref_ptr<SurfaceData> readDem(const std::string& file, const MappingFrame& f
     return data;
 }
 
-/// Draws lines into a layer of colours, metres in the frame.
+/// Draws lines into a layer of colors, metres in the frame.
 class Pen
 {
 public:
@@ -223,7 +223,7 @@ public:
           _side(std::sqrt(_texel.x() * _texel.y())), _half(width / 2.0), _alpha(color.a()),
           image(SurfaceDerivation::emptyLayer(grid.width, grid.height))
     {
-        // The colour is everywhere, so that it stays when alpha is interpolated.
+        // The color is everywhere, so that it stays when alpha is interpolated.
         for (int row = 0; row < grid.height; ++row)
             for (int column = 0; column < grid.width; ++column)
                 std::copy_n(color.ptr(), 3, texelOf(*image, column, row));
@@ -358,7 +358,7 @@ void addLines(SurfaceData& data, const std::string& name, const std::string& fil
     checkName(data, name, file);
     if (!(width > 0.0 && width <= 1e6)) fail(file, "its lines need a width; give metres, up to 1000000");
     for (const float channel : {color.r(), color.g(), color.b(), color.a()})
-        if (!(channel >= 0.0f && channel <= 1.0f)) fail(file, "its colour is none; give numbers of 0 to 1");
+        if (!(channel >= 0.0f && channel <= 1.0f)) fail(file, "its color is none; give numbers of 0 to 1");
     const FrameCrs crs = crsOf(frameOf(data, frame), file);
     const DatasetPtr dataset = openVectors(file);
     OGRSpatialReference target;

@@ -47,7 +47,7 @@ struct OSGGEOFXDATA_EXPORT SurfaceRaster
                                              const Options& options, std::string& error);
 
     /** Adds a COLOR layer from vector data, such as roads. It draws lines and the borders of areas `width` metres wide
-        (up to 1e6), and points as discs. The colour's channels are 0…1; its alpha is that of the whole line. All
+        (up to 1e6), and points as discs. The color's channels are 0…1; its alpha is that of the whole line. All
         layers of the file are drawn. Edges are smooth, and a line narrower than a texel is fainter instead. If there
         are no layers yet, the layer has `maxSide` texels along the longer side. A file without anything in the
         rectangle is refused. */

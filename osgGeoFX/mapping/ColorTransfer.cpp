@@ -64,23 +64,24 @@ Matrix hueTurned(double angle)
             osg::Vec4d(r - c * r - s * (1.0 - r), g - c * g + s * g, b + c * (1.0 - b) + s * b, 0.0)};
 }
 
-std::vector<std::string> factorNames()
+/// In the order of Factor.
+std::vector<Property::Choice> factors()
 {
-    return {"zero",
-            "one",
-            "sourceColor",
-            "oneMinusSourceColor",
-            "destinationColor",
-            "oneMinusDestinationColor",
-            "sourceAlpha",
-            "oneMinusSourceAlpha",
-            "destinationAlpha",
-            "oneMinusDestinationAlpha",
-            "constantColor",
-            "oneMinusConstantColor",
-            "constantAlpha",
-            "oneMinusConstantAlpha",
-            "sourceAlphaSaturate"};
+    return {{"zero", ""},
+            {"one", ""},
+            {"sourceColor", ""},
+            {"oneMinusSourceColor", ""},
+            {"destinationColor", ""},
+            {"oneMinusDestinationColor", ""},
+            {"sourceAlpha", ""},
+            {"oneMinusSourceAlpha", ""},
+            {"destinationAlpha", ""},
+            {"oneMinusDestinationAlpha", ""},
+            {"constantColor", ""},
+            {"oneMinusConstantColor", ""},
+            {"constantAlpha", ""},
+            {"oneMinusConstantAlpha", ""},
+            {"sourceAlphaSaturate", ""}};
 }
 
 } // namespace
@@ -98,41 +99,71 @@ const Properties& ColorTransfer::properties() const
 {
     using Self = ColorTransfer;
     constexpr double most = 9e7;
-    static const Properties all = {
-        Property::choice("source", LAYER, {"layer", "table", "scene", "constant"}).of<&Self::_source>(),
-        Property::choice("alpha", FROM_SOURCE, {"opaque", "source", "mask", "ramp"}).of<&Self::_alpha>(),
-        Property::choice("sourceFactor", SOURCE_ALPHA, factorNames()).of<&Self::_sourceFactor>(),
-        Property::choice("destinationFactor", ONE_MINUS_SOURCE_ALPHA, factorNames())
-            .of<&Self::_destinationFactor>(),
-        Property::choice("equation", ADD,
-                         {"add", "subtract", "reverseSubtract", "minimum", "maximum", "multiply", "screen",
-                          "overlay", "discard"})
-            .of<&Self::_equation>(),
-        Property::number("lowValue", 0.0, -most, most).of<&Self::_lowValue>(),
-        Property::number("highValue", 1.0, -most, most).of<&Self::_highValue>(),
-        Property::number("rampLow", 0.0, -most, most).of<&Self::_rampLow>(),
-        Property::number("rampHigh", 1.0, -most, most).of<&Self::_rampHigh>(),
-        Property::number("red", 1.0, 0.0, 1.0).of<&Self::_red>(),
-        Property::number("green", 1.0, 0.0, 1.0).of<&Self::_green>(),
-        Property::number("blue", 1.0, 0.0, 1.0).of<&Self::_blue>(),
-        Property::number("constantAlpha", 1.0, 0.0, 1.0).of<&Self::_constantAlpha>(),
-        Property::number("brightness", 1.0, 0.0, 4.0).of<&Self::_brightness>(),
-        Property::number("contrast", 1.0, 0.0, 4.0).of<&Self::_contrast>(),
-        Property::number("saturation", 1.0, 0.0, 4.0).of<&Self::_saturation>(),
-        Property::angle("hue", 0.0, -osg::PI, osg::PI).of<&Self::_hue>(),
-        Property::number("redFromRed", 1.0, -100.0, 100.0).of<&Self::_rr>(),
-        Property::number("redFromGreen", 0.0, -100.0, 100.0).of<&Self::_rg>(),
-        Property::number("redFromBlue", 0.0, -100.0, 100.0).of<&Self::_rb>(),
-        Property::number("redAdded", 0.0, -100.0, 100.0).of<&Self::_r1>(),
-        Property::number("greenFromRed", 0.0, -100.0, 100.0).of<&Self::_gr>(),
-        Property::number("greenFromGreen", 1.0, -100.0, 100.0).of<&Self::_gg>(),
-        Property::number("greenFromBlue", 0.0, -100.0, 100.0).of<&Self::_gb>(),
-        Property::number("greenAdded", 0.0, -100.0, 100.0).of<&Self::_g1>(),
-        Property::number("blueFromRed", 0.0, -100.0, 100.0).of<&Self::_br>(),
-        Property::number("blueFromGreen", 0.0, -100.0, 100.0).of<&Self::_bg>(),
-        Property::number("blueFromBlue", 1.0, -100.0, 100.0).of<&Self::_bb>(),
-        Property::number("blueAdded", 0.0, -100.0, 100.0).of<&Self::_b1>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            Property::choice("source", "where colors come from",
+                             {{"layer", ""},
+                              {"table", "the color table at the layer's value"},
+                              {"scene", "what is drawn already"},
+                              {"constant", "constantColor"}})
+                .of<&Self::_source>(),
+            Property::choice("alpha", "where alpha comes from",
+                             {{"opaque", ""},
+                              {"source", "the layer or the table"},
+                              {"mask", "the mask from rampLow to rampHigh"},
+                              {"ramp", "the layer's value from rampLow to rampHigh"}})
+                .of<&Self::_alpha>(),
+            Property::choice("sourceFactor", "OpenGL's blend factor of the mapping", factors())
+                .of<&Self::_sourceFactor>(),
+            Property::choice("destinationFactor", "OpenGL's blend factor of the scene", factors())
+                .of<&Self::_destinationFactor>(),
+            Property::choice("equation", "how both are combined",
+                             {{"add", ""},
+                              {"subtract", ""},
+                              {"reverseSubtract", ""},
+                              {"minimum", ""},
+                              {"maximum", ""},
+                              {"multiply", ""},
+                              {"screen", ""},
+                              {"overlay", ""},
+                              {"discard", "takes the scene away"}})
+                .of<&Self::_equation>(),
+            Property::number("lowValue",
+                             "the layer's value at the color table's beginning; less than highValue", -most,
+                             most)
+                .of<&Self::_lowValue>(),
+            Property::number("highValue", "the layer's value at the color table's end; more than lowValue",
+                             -most, most)
+                .of<&Self::_highValue>(),
+            Property::number("rampLow", "the value or grey where alpha is 0", -most, most)
+                .of<&Self::_rampLow>(),
+            Property::number("rampHigh", "the value or grey where alpha is 1", -most, most)
+                .of<&Self::_rampHigh>(),
+            Property::color("constantColor", "the constant color").of<&Self::_constantColor>(),
+            Property::number("constantAlpha", "the alpha of the constant color", 0.0, 1.0)
+                .of<&Self::_constantAlpha>(),
+            Property::number("brightness", "the factor of the brightness; 0 is black", 0.0, 4.0)
+                .of<&Self::_brightness>(),
+            Property::number("contrast", "the factor of the contrast about a middle grey", 0.0, 4.0)
+                .of<&Self::_contrast>(),
+            Property::number("saturation", "the factor of the saturation; 0 is grey", 0.0, 4.0)
+                .of<&Self::_saturation>(),
+            Property::angle("hue", "the turn of the hue", -osg::PI, osg::PI).of<&Self::_hue>(),
+            Property::number("redFromRed", "how much red becomes red", -100.0, 100.0).of<&Self::_rr>(),
+            Property::number("redFromGreen", "how much green becomes red", -100.0, 100.0).of<&Self::_rg>(),
+            Property::number("redFromBlue", "how much blue becomes red", -100.0, 100.0).of<&Self::_rb>(),
+            Property::number("redAdded", "what is added to red", -100.0, 100.0).of<&Self::_r1>(),
+            Property::number("greenFromRed", "how much red becomes green", -100.0, 100.0).of<&Self::_gr>(),
+            Property::number("greenFromGreen", "how much green becomes green", -100.0, 100.0)
+                .of<&Self::_gg>(),
+            Property::number("greenFromBlue", "how much blue becomes green", -100.0, 100.0).of<&Self::_gb>(),
+            Property::number("greenAdded", "what is added to green", -100.0, 100.0).of<&Self::_g1>(),
+            Property::number("blueFromRed", "how much red becomes blue", -100.0, 100.0).of<&Self::_br>(),
+            Property::number("blueFromGreen", "how much green becomes blue", -100.0, 100.0).of<&Self::_bg>(),
+            Property::number("blueFromBlue", "how much blue becomes blue", -100.0, 100.0).of<&Self::_bb>(),
+            Property::number("blueAdded", "what is added to blue", -100.0, 100.0).of<&Self::_b1>(),
+        });
     return all;
 }
 
@@ -143,7 +174,8 @@ std::string ColorTransfer::inconsistency() const
 
 bool ColorTransfer::setConstant(const osg::Vec4d& rgba)
 {
-    return assign({{"red", rgba.r()}, {"green", rgba.g()}, {"blue", rgba.b()}, {"constantAlpha", rgba.a()}});
+    return assign(
+        {{"constantColor", packedColor({rgba.r(), rgba.g(), rgba.b()})}, {"constantAlpha", rgba.a()}});
 }
 
 bool ColorTransfer::setColorMatrix(const Matrix& m)

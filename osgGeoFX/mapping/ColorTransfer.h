@@ -11,13 +11,13 @@
 namespace osgGeoFX
 {
 
-/** Turns a mapping's raster into colours and blends them with the scene's colours: CM = (f_BS, f_BD, f_CS, f_CD, M_C,
-    f_α) of the paper's Section 3.3. The destination f_CD is the scene's colour with all lower mappings on it.
+/** Turns a mapping's raster into colors and blends them with the scene's colors: CM = (f_BS, f_BD, f_CS, f_CD, M_C,
+    f_α) of the paper's Section 3.3. The destination f_CD is the scene's color with all lower mappings on it.
 
-    The source colour comes from the layer, from the color table at the layer's value, from the scene itself, or it is
+    The source color comes from the layer, from the color table at the layer's value, from the scene itself, or it is
     a constant. The color matrix M_C then changes its rgb, and f_α gives its alpha. The blended rgb lies within 0…1,
-    and the scene's alpha stays unchanged. The mapping's opacity, fades and soft edges mix the blended colour with the
-    scene's colour, whatever the blend functions are. Where the layer has no data, the scene stays unchanged.
+    and the scene's alpha stays unchanged. The mapping's opacity, fades and soft edges mix the blended color with the
+    scene's color, whatever the blend functions are. Where the layer has no data, the scene stays unchanged.
 
     Setters refuse values out of range: they return false, warn once and keep the former value.
     @ingroup mapping */
@@ -30,9 +30,9 @@ public:
 
     enum Source
     {
-        LAYER,   ///< the layer's colour; a layer of values gives a grey from lowValue to highValue
-        TABLE,   ///< the color table's colour at the layer's value, or at its grey from 0 to 1
-        SCENE,   ///< the scene's own colour, which the color matrix then changes
+        LAYER,   ///< the layer's color; a layer of values gives a grey from lowValue to highValue
+        TABLE,   ///< the color table's color at the layer's value, or at its grey from 0 to 1
+        SCENE,   ///< the scene's own color, which the color matrix then changes
         CONSTANT ///< constant rgb; its alpha only serves blend functions, FROM_SOURCE is the layer's or 1
     };
     enum Alpha
@@ -77,7 +77,7 @@ public:
         DISCARD
     };
 
-    /// The origin of the source colour. Default: LAYER.
+    /// The origin of the source color. Default: LAYER.
     bool setSource(Source source) { return assign("source", source); }
     Source getSource() const { return static_cast<Source>(_source); }
     /// The origin of the source's alpha. Default: FROM_SOURCE.
@@ -104,9 +104,10 @@ public:
     bool setRamp(double low, double high) { return assign({{"rampLow", low}, {"rampHigh", high}}); }
     double getRampLow() const { return _rampLow; }
     double getRampHigh() const { return _rampHigh; }
-    /// The constant colour of the source and of the blend functions, 0…1 each. Default: opaque white.
+    /// The constant color of the source and of the blend functions: red, green, blue and alpha, 0…1 each. The three
+    /// are rounded to eight bits. Default: opaque white.
     bool setConstant(const osg::Vec4d& rgba);
-    osg::Vec4d getConstant() const { return {_red, _green, _blue, _constantAlpha}; }
+    osg::Vec4d getConstant() const { return {unpackedColor(_constantColor), _constantAlpha}; }
 
     /// 0…4, where 0 is black. Default: 1.
     bool setBrightness(double factor) { return assign("brightness", factor); }
@@ -146,7 +147,8 @@ private:
     double _highValue = 1.0;
     double _rampLow = 0.0;
     double _rampHigh = 1.0;
-    double _red = 1.0, _green = 1.0, _blue = 1.0, _constantAlpha = 1.0;
+    int _constantColor = 0xffffff;
+    double _constantAlpha = 1.0;
     double _brightness = 1.0;
     double _contrast = 1.0;
     double _saturation = 1.0;

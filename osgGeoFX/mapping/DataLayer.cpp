@@ -24,14 +24,25 @@ void DataLayer::setImage(osg::Image* image)
 const Properties& DataLayer::properties() const
 {
     using Self = DataLayer;
-    static const Properties all = {
-        Property::choice("kind", COLOR, {"color", "value", "class"}).of<&Self::_kind>(),
-        Property::flag("smooth", true).of<&Self::_smooth>(),
-        Property::flag("sRgb", true).of<&Self::_sRgb>(),
-        Property::flag("hasNoData", false).of<&Self::_hasNoData>(),
-        Property::number("noData", 0.0, -3.5e38, 3.5e38).of<&Self::_noData>(),
-        Property::number("importance", 0.5, 0.0, 1.0).of<&Self::_importance>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            Property::choice("kind", "what the numbers are",
+                             {{"color", ""},
+                              {"value", "the first channel's numbers"},
+                              {"class", "numbers that name something"}})
+                .of<&Self::_kind>(),
+            Property::flag("smooth", "whether texels are interpolated; classes never are")
+                .of<&Self::_smooth>(),
+            Property::flag("sRgb", "whether colors are coded as sRGB").of<&Self::_sRgb>(),
+            Property::flag("hasNoData", "whether there is a value that means no data")
+                .of<&Self::_hasNoData>(),
+            Property::number("noData", "the value that means no data", -3.5e38, 3.5e38).of<&Self::_noData>(),
+            Property::number("importance",
+                             "which layers stay where there is no room for all; the highest stay longest",
+                             0.0, 1.0)
+                .of<&Self::_importance>(),
+        });
     return all;
 }
 

@@ -9,7 +9,7 @@
 namespace osgGeoFX
 {
 
-/** A raster of colours, values or classes that mappings show. Any number of mappings may share it.
+/** A raster of colors, values or classes that mappings show. Any number of mappings may share it.
 
     The image is an osg::Image of any uncompressed 2D format. Rows count from the bottom, as in OSG. A program may
     replace the image. An image that changes (osg::Image::dirty(), or an osg::ImageStream that plays) is uploaded
@@ -39,11 +39,11 @@ public:
     osg::Image* getImage() { return _image.get(); }
     const osg::Image* getImage() const { return _image.get(); }
 
-    /// Whether colours and values are interpolated between texels. Otherwise the nearest texel counts. Classes are
+    /// Whether colors and values are interpolated between texels. Otherwise the nearest texel counts. Classes are
     /// never interpolated. Default: true.
     bool setSmooth(bool smooth) { return assign("smooth", smooth ? 1.0 : 0.0); }
     bool getSmooth() const { return _smooth; }
-    /// Whether colours are sRGB-coded. If so, they are averaged in linear light. Default: true.
+    /// Whether colors are sRGB-coded. If so, they are averaged in linear light. Default: true.
     bool setSRgb(bool coded) { return assign("sRgb", coded ? 1.0 : 0.0); }
     bool getSRgb() const { return _sRgb; }
     /// The value that means "no data", besides NaN and infinite numbers, which always do. Default: none.

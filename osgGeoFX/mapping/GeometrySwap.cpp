@@ -32,7 +32,7 @@ void makeDiscarding(ProjectiveMapping& mapping, int channels, ColorTransfer::Alp
 } // namespace
 
 GeometrySwap::GeometrySwap(osg::Node& inside, osg::Node& outside, osg::Node& rest,
-                           ProjectiveMappings& mappings, DataLayer* mask, const osg::Vec2d& centre,
+                           ProjectiveMappings& mappings, DataLayer* mask, const osg::Vec2d& center,
                            double halfWidth, double halfHeight)
     : _nodes{&inside, &outside, &rest}, _masked(mappings, [](ProjectiveMapping&) {}),
       _around(mappings,
@@ -43,7 +43,7 @@ GeometrySwap::GeometrySwap(osg::Node& inside, osg::Node& outside, osg::Node& res
     makeDiscarding(_masked.next(), 1, ColorTransfer::FROM_MASK, 1.0, 0.0);
     makeDiscarding(_masked.next(), 2, ColorTransfer::FROM_MASK, 0.0, 1.0);
     setMask(mask);
-    setPlace(centre, halfWidth, halfHeight);
+    setPlace(center, halfWidth, halfHeight);
 }
 
 GeometrySwap::~GeometrySwap()
@@ -68,14 +68,14 @@ bool GeometrySwap::setMask(DataLayer* mask)
     return true;
 }
 
-bool GeometrySwap::setPlace(const osg::Vec2d& centre, double halfWidth, double halfHeight)
+bool GeometrySwap::setPlace(const osg::Vec2d& center, double halfWidth, double halfHeight)
 {
     for (std::size_t i = 0; i < _masked.size(); ++i)
     {
-        if (!_masked.at(i).setRectangle(centre, halfWidth, halfHeight)) return false;
+        if (!_masked.at(i).setRectangle(center, halfWidth, halfHeight)) return false;
     }
     const osg::Vec2d half(halfWidth, halfHeight);
-    surround(_around, centre - half, centre + half, everywhere);
+    surround(_around, center - half, center + half, everywhere);
     return true;
 }
 
@@ -90,9 +90,9 @@ void GeometrySwap::setEnabled(bool enabled)
 
 osg::ref_ptr<GeometrySwap> swapGeometries(osg::Node& inside, osg::Node& outside, osg::Node& rest,
                                           ProjectiveMappings& mappings, DataLayer* mask,
-                                          const osg::Vec2d& centre, double halfWidth, double halfHeight)
+                                          const osg::Vec2d& center, double halfWidth, double halfHeight)
 {
-    return new GeometrySwap(inside, outside, rest, mappings, mask, centre, halfWidth, halfHeight);
+    return new GeometrySwap(inside, outside, rest, mappings, mask, center, halfWidth, halfHeight);
 }
 
 } // namespace osgGeoFX

@@ -22,14 +22,14 @@ class OSGGEOFX_EXPORT GeometrySwap : public osg::Referenced
 {
 public:
     /// A grey of 0.5 or more in the mask counts as inside. The mask covers a rectangle of the mappings' frame with the
-    /// given centre and half size, metres.
+    /// given center and half size, metres.
     GeometrySwap(osg::Node& inside, osg::Node& outside, osg::Node& rest, ProjectiveMappings& mappings,
-                 DataLayer* mask, const osg::Vec2d& centre, double halfWidth, double halfHeight);
+                 DataLayer* mask, const osg::Vec2d& center, double halfWidth, double halfHeight);
 
     /// Returns false and keeps the former mask, with a warning, if `mask` is null.
     bool setMask(DataLayer* mask);
     /// Moves the mask, as in the constructor. Returns false if the rectangle has no area.
-    bool setPlace(const osg::Vec2d& centre, double halfWidth, double halfHeight);
+    bool setPlace(const osg::Vec2d& center, double halfWidth, double halfHeight);
     /// While disabled, both geometries are visible everywhere. Default: enabled.
     void setEnabled(bool enabled);
 
@@ -48,7 +48,7 @@ private:
 /// Makes a GeometrySwap in one call.
 OSGGEOFX_EXPORT osg::ref_ptr<GeometrySwap> swapGeometries(osg::Node& inside, osg::Node& outside,
                                                           osg::Node& rest, ProjectiveMappings& mappings,
-                                                          DataLayer* mask, const osg::Vec2d& centre,
+                                                          DataLayer* mask, const osg::Vec2d& center,
                                                           double halfWidth, double halfHeight);
 
 } // namespace osgGeoFX

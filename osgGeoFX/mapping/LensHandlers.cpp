@@ -46,7 +46,7 @@ bool LensFollowsPointer::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIA
     if (!view || (type != Event::MOVE && type != Event::DRAG)) return false;
     const std::optional<osg::Vec3d> place = placeUnderPointer(*_scene, *_mappings, *view->getCamera(), event);
     if (!place) return false;
-    _lens->setCentre({place->x(), place->y()});
+    _lens->setCenter({place->x(), place->y()});
     action.requestRedraw();
     return false;
 }
@@ -71,7 +71,7 @@ void LensFollowsNode::operator()(osg::Node* node, osg::NodeVisitor* visitor)
     if (_scene.lock(scene))
     {
         const osg::Vec3d place = _mappings->placeOf(world, scene->ground().ellipsoid);
-        _lens->setCentre({place.x(), place.y()});
+        _lens->setCenter({place.x(), place.y()});
     }
     traverse(node, visitor);
 }

@@ -40,7 +40,7 @@ LensMapping::LensMapping(ProjectiveMappings& mappings, int order)
     _rim->setLayer(_rimLayer);
     setOrder(order);
     draw();
-    place(_centre, _halfWidth, _halfHeight);
+    place(_center, _halfWidth, _halfHeight);
     _host->addMapping(_rim);
 }
 
@@ -86,7 +86,7 @@ void LensMapping::refresh()
         _cut->setSmooth(layer->getSmooth());
         _cut->setSRgb(layer->getSRgb());
     }
-    // Colours have the lens' outline in their own alpha, beside what alpha they have.
+    // Colors have the lens' outline in their own alpha, beside what alpha they have.
     const bool colors = layer && layer->getKind() == DataLayer::COLOR;
     const bool ownAlpha = colors && wanted.getSource() != ColorTransfer::SCENE;
     _transfer->setAlpha(ownAlpha ? ColorTransfer::FROM_SOURCE : ColorTransfer::FROM_MASK);
@@ -103,32 +103,32 @@ void LensMapping::cutOut()
         _cut->setImage(cutOutLens(*_inside, *_content, *_pixels, _style.side, *_mask->getImage()));
 }
 
-bool LensMapping::setCentre(const osg::Vec2d& place)
+bool LensMapping::setCenter(const osg::Vec2d& place)
 {
     return this->place(place, _halfWidth, _halfHeight, _heading);
 }
 
 bool LensMapping::setSize(double halfWidth, double halfHeight, double heading)
 {
-    return place(_centre, halfWidth, halfHeight, heading);
+    return place(_center, halfWidth, halfHeight, heading);
 }
 
-bool LensMapping::place(const osg::Vec2d& centre, double halfWidth, double halfHeight, double heading)
+bool LensMapping::place(const osg::Vec2d& center, double halfWidth, double halfHeight, double heading)
 {
-    if (!within(centre.x(), -5e7, 5e7) || !within(centre.y(), -5e7, 5e7) || !within(halfWidth, 1e-3, 1e7) ||
+    if (!within(center.x(), -5e7, 5e7) || !within(center.y(), -5e7, 5e7) || !within(halfWidth, 1e-3, 1e7) ||
         !within(halfHeight, 1e-3, 1e7) || !std::isfinite(heading))
     {
         OSG_WARN << "osgGeoFX: LensMapping got a place or size out of range; it stays." << std::endl;
         return false;
     }
-    _centre = centre;
+    _center = center;
     _halfWidth = halfWidth;
     _halfHeight = halfHeight;
     _heading = heading;
     // The marks end within their pictures, the rim's shade outside of the lens.
     const double outer = (1.0 + _style.shade) / markReach;
-    _inside->setRectangle(centre, halfWidth / markReach, halfHeight / markReach, heading);
-    _rim->setRectangle(centre, halfWidth * outer, halfHeight * outer, heading);
+    _inside->setRectangle(center, halfWidth / markReach, halfHeight / markReach, heading);
+    _rim->setRectangle(center, halfWidth * outer, halfHeight * outer, heading);
     cutOut();
     return true;
 }
@@ -147,7 +147,7 @@ bool LensMapping::setStyle(const Style& style)
     }
     _style = style;
     draw();
-    place(_centre, _halfWidth, _halfHeight, _heading);
+    place(_center, _halfWidth, _halfHeight, _heading);
     refresh();
     return true;
 }

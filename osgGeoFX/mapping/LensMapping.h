@@ -15,11 +15,11 @@ namespace osgGeoFX
 class EffectScene;
 
 /** A lens that moves over the terrain (Trapp and Döllner 2009, Section 5, focus and context). Inside a soft outline
-    with a rim it shows another mapping, or the scene in other colours.
+    with a rim it shows another mapping, or the scene in other colors.
 
     The content of the lens is a mapping that the program places but does not add to the ProjectiveMappings. The lens
     uses its layer, table, transfer, opacity and place. At each move the lens copies the part of the content's image
-    below it and uploads it (`side`² texels). Content without a layer, for instance the scene's own colours through a
+    below it and uploads it (`side`² texels). Content without a layer, for instance the scene's own colors through a
     color matrix, needs no upload. If lenses overlap, the lens of higher order lies on top. Of equal orders the later
     lens does.
 
@@ -33,16 +33,16 @@ public:
     /// `order` is −1000…1000.
     explicit LensMapping(ProjectiveMappings& mappings, int order = 100);
 
-    /// The content: a mapping of the projector PLANE, with any transform. The alpha of its colours counts. Values and
+    /// The content: a mapping of the projector PLANE, with any transform. The alpha of its colors counts. Values and
     /// classes are opaque. With a null pointer only the rim is drawn.
     void setContent(ProjectiveMapping* content);
     ProjectiveMapping* getContent() { return _content.get(); }
     /// A program calls this after it has changed the content or the image of the content's layer.
     void refresh();
 
-    /// The centre of the lens, metres, ±5e7. Default: (0, 0).
-    bool setCentre(const osg::Vec2d& place);
-    osg::Vec2d getCentre() const { return _centre; }
+    /// The center of the lens, metres, ±5e7. Default: (0, 0).
+    bool setCenter(const osg::Vec2d& place);
+    osg::Vec2d getCenter() const { return _center; }
     /// Half the width and half the height, metres, 0.001…1e7 (default: 500), and the direction of the upper edge,
     /// radians clockwise from the frame's y axis (default: 0).
     bool setSize(double halfWidth, double halfHeight, double heading = 0.0);
@@ -51,8 +51,8 @@ public:
     double getHalfWidth() const { return _halfWidth; }
     double getHalfHeight() const { return _halfHeight; }
     double getHeading() const { return _heading; }
-    /// Sets centre, size and heading together, so that the image is copied only once.
-    bool place(const osg::Vec2d& centre, double halfWidth, double halfHeight, double heading = 0.0);
+    /// Sets center, size and heading together, so that the image is copied only once.
+    bool place(const osg::Vec2d& center, double halfWidth, double halfHeight, double heading = 0.0);
 
     /// The look of the lens. Shares of the radius are shares of half the width and half the height.
     struct Style
@@ -87,7 +87,7 @@ private:
     osg::ref_ptr<DataLayer> _mask, _rimLayer, _cut;
     osg::ref_ptr<ColorTransfer> _transfer;
     Style _style;
-    osg::Vec2d _centre;
+    osg::Vec2d _center;
     double _halfWidth = 500.0, _halfHeight = 500.0, _heading = 0.0;
     std::optional<LayerPixels> _pixels; ///< of the content's layer
 };
@@ -116,7 +116,7 @@ private:
     double _smallest, _largest;
 };
 
-/** An update callback that keeps a lens at the centre of the bounding sphere of its node, for instance a vehicle in
+/** An update callback that keeps a lens at the center of the bounding sphere of its node, for instance a vehicle in
     the scene.
     @ingroup mapping */
 class OSGGEOFX_EXPORT LensFollowsNode : public osg::NodeCallback

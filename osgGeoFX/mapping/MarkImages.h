@@ -16,13 +16,13 @@ namespace osgGeoFX
 /// smooth.
 constexpr double markReach = 0.97;
 
-/// A function that gives the colour at x and y, −1…1 within a mark's reach. `texel` is the size of a texel in this
-/// unit. Colours are sRGB-coded, 0…1, with straight alpha.
+/// A function that gives the color at x and y, −1…1 within a mark's reach. `texel` is the size of a texel in this
+/// unit. Colors are sRGB-coded, 0…1, with straight alpha.
 using MarkColor = std::function<osg::Vec4(double x, double y, double texel)>;
 /// A square RGBA image of `color`, with `side` texels along each side.
 OSGGEOFX_EXPORT osg::ref_ptr<osg::Image> makeMark(int side, const MarkColor& color);
 
-/// The share of a texel that lies within an outline, 0…1. `inwards` is the distance of the texel's centre from the
+/// The share of a texel that lies within an outline, 0…1. `inwards` is the distance of the texel's center from the
 /// outline, positive inside, in the mark's unit.
 inline double markCover(double inwards, double texel)
 {
@@ -30,7 +30,7 @@ inline double markCover(double inwards, double texel)
     return cover < 0.0 ? 0.0 : cover > 1.0 ? 1.0 : cover;
 }
 
-/// A disc. Outside of the radius `inner` (0…1) it has the colour `rim`.
+/// A disc. Outside of the radius `inner` (0…1) it has the color `rim`.
 OSGGEOFX_EXPORT osg::ref_ptr<osg::Image> makeDisc(int side, const osg::Vec4& color, const osg::Vec4& rim,
                                                   double inner);
 

@@ -75,61 +75,124 @@ ProjectiveMapping::~ProjectiveMapping()
 const Properties& ProjectiveMapping::properties() const
 {
     using Self = ProjectiveMapping;
-    const auto metres = [](const char* name, double value)
-    {
-        return Property::number(name, value, -farAway, farAway, "m");
-    };
-    const auto factor = [](const char* name, double value)
-    {
-        return Property::number(name, value, -1e6, 1e6);
-    };
-    static const Properties all = {
-        Property::flag("enabled", true).of<&Self::_enabled>(),
-        Property::integer("order", 0, -1000, 1000).of<&Self::_order>(),
-        Property::number("opacity", 1.0, 0.0, 1.0).of<&Self::_opacity>(),
-        Property::number("importance", 0.5, 0.0, 1.0).of<&Self::_importance>(),
-        Property::integer("channels", 255, 0, 255).of<&Self::_channels>(),
-        metres("centreX", 0.0).of<&Self::_centreX>(),
-        metres("centreY", 0.0).of<&Self::_centreY>(),
-        metres("uX", 100.0).of<&Self::_uX>(),
-        metres("uY", 0.0).of<&Self::_uY>(),
-        metres("vX", 0.0).of<&Self::_vX>(),
-        metres("vY", 100.0).of<&Self::_vY>(),
-        factor("m00", 1.0).of<&Self::_m00>(),
-        factor("m01", 0.0).of<&Self::_m01>(),
-        factor("m02", 0.0).of<&Self::_m02>(),
-        factor("m10", 0.0).of<&Self::_m10>(),
-        factor("m11", 1.0).of<&Self::_m11>(),
-        factor("m12", 0.0).of<&Self::_m12>(),
-        factor("m20", 0.0).of<&Self::_m20>(),
-        factor("m21", 0.0).of<&Self::_m21>(),
-        factor("m22", 1.0).of<&Self::_m22>(),
-        Property::number("lowest", -1e6, -1e6, 1e6, "m").of<&Self::_lowest>(),
-        Property::number("highest", 1e6, -1e6, 1e6, "m").of<&Self::_highest>(),
-        Property::number("nearest", 0.0, 0.0, 5e7, "m").of<&Self::_nearest>(),
-        Property::number("farthest", 5e7, 0.0, 5e7, "m").of<&Self::_farthest>(),
-        Property::number("softness", 0.2, 0.0, 1.0).of<&Self::_softness>(),
-        Property::number("pixelsNone", 0.0, 0.0, 1e6).of<&Self::_pixelsNone>(),
-        Property::number("pixelsFull", 0.0, 0.0, 1e6).of<&Self::_pixelsFull>(),
-        Property::angle("slopeFull", osg::PI_2, 0.0, osg::PI_2).of<&Self::_slopeFull>(),
-        Property::angle("slopeNone", osg::PI_2, 0.0, osg::PI_2).of<&Self::_slopeNone>(),
-        Property::flag("softEdges", true).of<&Self::_softEdges>(),
-        Property::number("sizeInPixels", 0.0, 0.0, 1e5).of<&Self::_sizeInPixels>(),
-        Property::flag("turned", false).of<&Self::_turned>(),
-        Property::choice("projector", PLANE, {"plane", "pinhole"}).of<&Self::_projector>(),
-        Property::number("height", 0.0, -12000.0, 1e7, "m").of<&Self::_height>(),
-        Property::angle("heading", 0.0, -2.0 * osg::PI, 2.0 * osg::PI).of<&Self::_heading>(),
-        Property::angle("pitch", 0.0, -osg::PI_2, osg::PI_2).of<&Self::_pitch>(),
-        Property::angle("roll", 0.0, -osg::PI, osg::PI).of<&Self::_roll>(),
-        Property::angle("fieldOfView", 1.0, 0.001, 3.0).of<&Self::_fieldOfView>(),
-        Property::number("aspectRatio", 4.0 / 3.0, 0.01, 100.0).of<&Self::_aspectRatio>(),
-        Property::number("k1", 0.0, -10.0, 10.0).of<&Self::_k1>(),
-        Property::number("k2", 0.0, -10.0, 10.0).of<&Self::_k2>(),
-        Property::number("k3", 0.0, -10.0, 10.0).of<&Self::_k3>(),
-        Property::number("p1", 0.0, -1.0, 1.0).of<&Self::_p1>(),
-        Property::number("p2", 0.0, -1.0, 1.0).of<&Self::_p2>(),
-        Property::number("range", 5000.0, 0.1, 1e6, "m").of<&Self::_range>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            Property::flag("enabled", "whether the mapping is shown").of<&Self::_enabled>(),
+            Property::integer(
+                "order",
+                "which mapping lies on top: the one of the higher number, of equal ones the later one", -1000,
+                1000)
+                .of<&Self::_order>(),
+            Property::number("opacity", "the opacity of the mapping", 0.0, 1.0).of<&Self::_opacity>(),
+            Property::number("importance",
+                             "which mappings stay where there is no room for all; the highest stay longest",
+                             0.0, 1.0)
+                .of<&Self::_importance>(),
+            Property::integer("channels", "the bits of the geometries that the mapping is for; 255 is all", 0,
+                              255)
+                .of<&Self::_channels>(),
+            Property::number("centerX", "the center, east of the frame's origin", -farAway, farAway, "m")
+                .of<&Self::_centerX>(),
+            Property::number("centerY", "the center, north of the frame's origin", -farAway, farAway, "m")
+                .of<&Self::_centerY>(),
+            Property::number("uX", "how far the middle of the right edge lies east of the center", -farAway,
+                             farAway, "m")
+                .of<&Self::_uX>(),
+            Property::number("uY", "how far the middle of the right edge lies north of the center", -farAway,
+                             farAway, "m")
+                .of<&Self::_uY>(),
+            Property::number("vX", "how far the middle of the upper edge lies east of the center", -farAway,
+                             farAway, "m")
+                .of<&Self::_vX>(),
+            Property::number("vY", "how far the middle of the upper edge lies north of the center", -farAway,
+                             farAway, "m")
+                .of<&Self::_vY>(),
+            Property::number("m00", "row 0, column 0 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m00>(),
+            Property::number("m01", "row 0, column 1 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m01>(),
+            Property::number("m02", "row 0, column 2 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m02>(),
+            Property::number("m10", "row 1, column 0 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m10>(),
+            Property::number("m11", "row 1, column 1 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m11>(),
+            Property::number("m12", "row 1, column 2 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m12>(),
+            Property::number("m20", "row 2, column 0 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m20>(),
+            Property::number("m21", "row 2, column 1 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m21>(),
+            Property::number("m22", "row 2, column 2 of the transform in raster coordinates", -1e6, 1e6)
+                .of<&Self::_m22>(),
+            Property::number("lowest", "the height from which on the mapping is shown", -1e6, 1e6, "m")
+                .of<&Self::_lowest>(),
+            Property::number("highest", "the height up to which the mapping is shown", -1e6, 1e6, "m")
+                .of<&Self::_highest>(),
+            Property::number("nearest", "the distance from the camera from which on the mapping is shown",
+                             0.0, 5e7, "m")
+                .of<&Self::_nearest>(),
+            Property::number("farthest", "the distance from the camera up to which the mapping is shown", 0.0,
+                             5e7, "m")
+                .of<&Self::_farthest>(),
+            Property::number("softness", "the share of those distances in which it fades", 0.0, 1.0)
+                .of<&Self::_softness>(),
+            Property::number(
+                "pixelsNone",
+                "the size on the screen up to which the mapping is not shown; not more than pixelsFull", 0.0,
+                1e6, "px")
+                .of<&Self::_pixelsNone>(),
+            Property::number("pixelsFull",
+                             "the size on the screen from which on the mapping is shown in full", 0.0, 1e6,
+                             "px")
+                .of<&Self::_pixelsFull>(),
+            Property::angle("slopeFull", "the slope of the ground up to which the mapping is shown in full",
+                            0.0, osg::PI_2)
+                .of<&Self::_slopeFull>(),
+            Property::angle(
+                "slopeNone",
+                "the slope of the ground above which the mapping is not shown; not less than slopeFull", 0.0,
+                osg::PI_2)
+                .of<&Self::_slopeNone>(),
+            Property::flag("softEdges",
+                           "whether edges are smooth; tiles that meet without a seam have hard ones")
+                .of<&Self::_softEdges>(),
+            Property::number("sizeInPixels", "the size of a symbol on the screen; 0 leaves it to the metres",
+                             0.0, 1e5, "px")
+                .of<&Self::_sizeInPixels>(),
+            Property::flag("turned", "whether a symbol's upper edge points away from the camera")
+                .of<&Self::_turned>(),
+            Property::choice("projector", "along which rays the raster is thrown",
+                             {{"plane", "straight down"}, {"pinhole", "those of a camera at the center"}})
+                .of<&Self::_projector>(),
+            Property::number("height", "the height of the center or the camera", -12000.0, 1e7, "m")
+                .of<&Self::_height>(),
+            Property::angle("heading", "where the camera looks, clockwise from the frame's north",
+                            -2.0 * osg::PI, 2.0 * osg::PI)
+                .of<&Self::_heading>(),
+            Property::angle("pitch", "the angle by which the camera looks up", -osg::PI_2, osg::PI_2)
+                .of<&Self::_pitch>(),
+            Property::angle("roll", "the turn of the camera to the right", -osg::PI, osg::PI)
+                .of<&Self::_roll>(),
+            Property::angle("fieldOfView", "the camera's angle of view from left to right",
+                            osg::DegreesToRadians(0.1), osg::DegreesToRadians(170.0))
+                .of<&Self::_fieldOfView>(),
+            Property::number("aspectRatio", "width over height of the camera's image", 0.01, 100.0)
+                .of<&Self::_aspectRatio>(),
+            Property::number("k1", "coefficient 1 of the lens's radial distortion (Brown)", -10.0, 10.0)
+                .of<&Self::_k1>(),
+            Property::number("k2", "coefficient 2 of the lens's radial distortion (Brown)", -10.0, 10.0)
+                .of<&Self::_k2>(),
+            Property::number("k3", "coefficient 3 of the lens's radial distortion (Brown)", -10.0, 10.0)
+                .of<&Self::_k3>(),
+            Property::number("p1", "coefficient 1 of the lens's tangential distortion (Brown)", -1.0, 1.0)
+                .of<&Self::_p1>(),
+            Property::number("p2", "coefficient 2 of the lens's tangential distortion (Brown)", -1.0, 1.0)
+                .of<&Self::_p2>(),
+            Property::number("range", "how far the camera's image reaches", 0.1, 1e6, "m")
+                .of<&Self::_range>(),
+        });
     return all;
 }
 
@@ -158,13 +221,13 @@ bool ProjectiveMapping::setAxes(const osg::Vec2d& u, const osg::Vec2d& v)
     return assign({{"uX", u.x()}, {"uY", u.y()}, {"vX", v.x()}, {"vY", v.y()}});
 }
 
-bool ProjectiveMapping::setRectangle(const osg::Vec2d& centre, double halfWidth, double halfHeight,
+bool ProjectiveMapping::setRectangle(const osg::Vec2d& center, double halfWidth, double halfHeight,
                                      double heading)
 {
     const double sine = std::sin(heading);
     const double cosine = std::cos(heading);
-    return assign({{"centreX", centre.x()},
-                   {"centreY", centre.y()},
+    return assign({{"centerX", center.x()},
+                   {"centerY", center.y()},
                    {"uX", halfWidth * cosine},
                    {"uY", -halfWidth * sine},
                    {"vX", halfHeight * sine},
@@ -186,7 +249,7 @@ bool ProjectiveMapping::setQuad(const osg::Vec2d (&corners)[4])
     // The parallelogram through three of the corners, and the rest as a transform.
     const osg::Vec2d u = (corners[1] - corners[0]) / 2.0;
     const osg::Vec2d v = (corners[3] - corners[0]) / 2.0;
-    const osg::Vec2d centre = corners[0] + u + v;
+    const osg::Vec2d center = corners[0] + u + v;
     const double area = u.x() * v.y() - u.y() * v.x();
     osg::Vec2d within[4];
     for (int i = 0; i < 4; ++i)
@@ -198,8 +261,8 @@ bool ProjectiveMapping::setQuad(const osg::Vec2d (&corners)[4])
     glm::dmat3 m = glm::inverse(squareToQuad(within));
     m /= m[2][2];
     std::map<std::string, double> values = transformValues(m);
-    values.insert({{"centreX", centre.x()},
-                   {"centreY", centre.y()},
+    values.insert({{"centerX", center.x()},
+                   {"centerY", center.y()},
                    {"uX", u.x()},
                    {"uY", u.y()},
                    {"vX", v.x()},
@@ -210,8 +273,8 @@ bool ProjectiveMapping::setQuad(const osg::Vec2d (&corners)[4])
 bool ProjectiveMapping::setCamera(const Camera& camera)
 {
     return assign({{"projector", PINHOLE},
-                   {"centreX", camera.eye.x()},
-                   {"centreY", camera.eye.y()},
+                   {"centerX", camera.eye.x()},
+                   {"centerY", camera.eye.y()},
                    {"height", camera.eye.z()},
                    {"heading", camera.heading},
                    {"pitch", camera.pitch},
@@ -228,7 +291,7 @@ bool ProjectiveMapping::setCamera(const Camera& camera)
 
 ProjectiveMapping::Camera ProjectiveMapping::getCamera() const
 {
-    return {{_centreX, _centreY, _height},
+    return {{_centerX, _centerY, _height},
             _heading,
             _pitch,
             _roll,
@@ -284,9 +347,9 @@ glm::dmat3 ProjectiveMapping::placeToRaster() const
     // d = a U + b V, and raster coordinates 1/2 + (a, b)/2.
     const glm::dvec2 a(_vY / (2.0 * area), -_vX / (2.0 * area));
     const glm::dvec2 b(-_uY / (2.0 * area), _uX / (2.0 * area));
-    const glm::dvec2 centre(_centreX, _centreY);
-    const glm::dmat3 square(a.x, b.x, 0.0, a.y, b.y, 0.0, 0.5 - glm::dot(a, centre),
-                            0.5 - glm::dot(b, centre), 1.0);
+    const glm::dvec2 center(_centerX, _centerY);
+    const glm::dmat3 square(a.x, b.x, 0.0, a.y, b.y, 0.0, 0.5 - glm::dot(a, center),
+                            0.5 - glm::dot(b, center), 1.0);
     return getTransform() * square;
 }
 
@@ -311,7 +374,7 @@ std::optional<PlaneFootprint> ProjectiveMapping::outline() const
 
 PlaneFootprint ProjectiveMapping::footprint() const
 {
-    const osg::Vec2d centre = getCentre();
+    const osg::Vec2d center = getCenter();
     double radius = 0.0;
     if (_projector == PINHOLE)
         radius = _range;
@@ -320,7 +383,7 @@ PlaneFootprint ProjectiveMapping::footprint() const
     if (radius > 0.0)
     {
         const osg::Vec2d half(radius, radius);
-        return PlaneFootprint::box(centre - half, centre + half);
+        return PlaneFootprint::box(center - half, center + half);
     }
     return outline().value_or(PlaneFootprint());
 }

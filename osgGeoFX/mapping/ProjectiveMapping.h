@@ -22,7 +22,7 @@ namespace osgGeoFX
     above the plane. The raster covers the parallelogram O ± U ± V. Its left edge lies at −U and its lower edge at −V.
     The transform M_T then changes the raster coordinates 0…1. The transformed edges are the raster's outline.
 
-    A mapping draws the layer's image, a constant colour or the changed scene colour, as its color transfer says. It
+    A mapping draws the layer's image, a constant color or the changed scene color, as its color transfer says. It
     draws on everything below the EffectScene. The projector PLANE projects along the normal of the reference plane,
     the projector PINHOLE along the rays of a camera.
 
@@ -55,23 +55,23 @@ public:
     int getChannels() const { return _channels; }
 
     /// O, metres, ±5e7. Default: (0, 0).
-    bool setCentre(const osg::Vec2d& place)
+    bool setCenter(const osg::Vec2d& place)
     {
-        return assign({{"centreX", place.x()}, {"centreY", place.y()}});
+        return assign({{"centerX", place.x()}, {"centerY", place.y()}});
     }
-    osg::Vec2d getCentre() const { return {_centreX, _centreY}; }
-    /// The height of the centre, metres, −12 000…1e7. Fades and sizes on the screen are measured there, and it is the
+    osg::Vec2d getCenter() const { return {_centerX, _centerY}; }
+    /// The height of the center, metres, −12 000…1e7. Fades and sizes on the screen are measured there, and it is the
     /// height of a pinhole camera. Nothing else depends on it. Default: 0.
     bool setHeight(double metres) { return assign("height", metres); }
     double getHeight() const { return _height; }
-    /// U and V: from the centre to the middle of the right edge and to the middle of the upper edge, metres. They need
+    /// U and V: from the center to the middle of the right edge and to the middle of the upper edge, metres. They need
     /// not be perpendicular, but must span an area. Default: (100, 0) and (0, 100).
     bool setAxes(const osg::Vec2d& u, const osg::Vec2d& v);
     osg::Vec2d getU() const { return {_uX, _uY}; }
     osg::Vec2d getV() const { return {_vX, _vY}; }
     /// A rectangle with half the width and half the height, metres. `heading` is the direction of the upper edge,
     /// radians clockwise from the frame's y axis.
-    bool setRectangle(const osg::Vec2d& centre, double halfWidth, double halfHeight, double heading = 0.0);
+    bool setRectangle(const osg::Vec2d& center, double halfWidth, double halfHeight, double heading = 0.0);
     /// M_T in raster coordinates, in general projective: (u, v, 1) becomes M (u, v, 1). It must have an inverse, and
     /// the outline must not reach infinity. Default: identity.
     bool setTransform(const glm::dmat3& m);
@@ -133,14 +133,14 @@ public:
 
     /// A pinhole camera: its place in the frame, metres, and its direction, radians. The heading is clockwise from the
     /// frame's y axis (±2π), the pitch is upwards (±π/2) and the roll is to the right (±π). fieldOfView is the full
-    /// horizontal angle of view, 0.001…3 radians. aspectRatio is the image's width over its height, 0.01…100.
+    /// horizontal angle of view, 0.1 to 170 degrees in radians; 60 degrees by default. aspectRatio is the image's width over its height, 0.01…100.
     struct Camera
     {
         osg::Vec3d eye;
         double heading = 0.0;
         double pitch = 0.0;
         double roll = 0.0;
-        double fieldOfView = 1.0;
+        double fieldOfView = osg::PI / 3.0;
         double aspectRatio = 4.0 / 3.0;
         double k1 = 0.0, k2 = 0.0, k3 = 0.0; ///< radial distortion after Brown, in tangents, ±10
         double p1 = 0.0, p2 = 0.0;           ///< tangential distortion, ±1
@@ -190,7 +190,7 @@ private:
     double _opacity = 1.0;
     double _importance = 0.5;
     int _channels = 255;
-    double _centreX = 0.0, _centreY = 0.0;
+    double _centerX = 0.0, _centerY = 0.0;
     double _uX = 100.0, _uY = 0.0, _vX = 0.0, _vY = 100.0;
     double _m00 = 1.0, _m01 = 0.0, _m02 = 0.0, _m10 = 0.0, _m11 = 1.0, _m12 = 0.0, _m20 = 0.0, _m21 = 0.0,
            _m22 = 1.0;
@@ -202,7 +202,7 @@ private:
     double _sizeInPixels = 0.0;
     bool _turned = false;
     int _projector = PLANE;
-    double _height = 0.0, _heading = 0.0, _pitch = 0.0, _roll = 0.0, _fieldOfView = 1.0,
+    double _height = 0.0, _heading = 0.0, _pitch = 0.0, _roll = 0.0, _fieldOfView = osg::PI / 3.0,
            _aspectRatio = 4.0 / 3.0;
     double _k1 = 0.0, _k2 = 0.0, _k3 = 0.0, _p1 = 0.0, _p2 = 0.0, _range = 5000.0;
     osg::ref_ptr<DataLayer> _layer, _mask;

@@ -156,23 +156,48 @@ ProjectiveMappings::~ProjectiveMappings()
 const Properties& ProjectiveMappings::properties() const
 {
     using Self = ProjectiveMappings;
-    static const Properties all = {
-        enabledProperty(),
-        Property::number("originX", 0.0, -5e7, 5e7, "m").of<&Self::_originX>(),
-        Property::number("originY", 0.0, -5e7, 5e7, "m").of<&Self::_originY>(),
-        Property::angle("longitude", 0.0, -osg::PI, osg::PI).of<&Self::_longitude>(),
-        Property::angle("latitude", 0.0, -osg::PI_2, osg::PI_2).of<&Self::_latitude>(),
-        Property::number("opacity", 1.0, 0.0, 1.0).of<&Self::_opacity>().turnedBy(0.05),
-        Property::flag("wholeList", false).of<&Self::_wholeList>(),
-        Property::integer("anisotropy", 8, 1, 16).of<&Self::_anisotropy>(),
-        Property::flag("linear", false).of<&Self::_linear>(),
-        TextureUnits::property("dataUnit").of<&Self::_dataUnit>(),
-        TextureUnits::property("layerUnit").of<&Self::_layerUnit>(),
-        TextureUnits::property("tableUnit").of<&Self::_tableUnit>(),
-        Property::integer("pageSide", 2048, 64, 16384).of<&Self::_pageSide>(),
-        Property::integer("maxPages", 64, 1, 2048).of<&Self::_maxPages>(),
-        Property::number("maxDataSize", 2048.0, 0.001, 32000.0, "MiB").of<&Self::_maxDataSize>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            enabledProperty(),
+            Property::number("originX", "the frame's origin on a projected terrain, to the east", -5e7, 5e7,
+                             "m")
+                .of<&Self::_originX>(),
+            Property::number("originY", "the frame's origin on a projected terrain, to the north", -5e7, 5e7,
+                             "m")
+                .of<&Self::_originY>(),
+            Property::angle("longitude", "the longitude of the frame's origin on a globe, to the east",
+                            -osg::PI, osg::PI)
+                .of<&Self::_longitude>(),
+            Property::angle("latitude", "the latitude of the frame's origin on a globe, to the north",
+                            -osg::PI_2, osg::PI_2)
+                .of<&Self::_latitude>(),
+            Property::number("opacity", "the opacity of all mappings together", 0.0, 1.0)
+                .of<&Self::_opacity>()
+                .turnedBy(0.05),
+            Property::flag(
+                "wholeList",
+                "whether every fragment goes through all mappings instead of the grid, for comparison")
+                .of<&Self::_wholeList>(),
+            Property::integer("anisotropy",
+                              "the largest number of probes along the longer side of a pixel's footprint", 1,
+                              16)
+                .of<&Self::_anisotropy>(),
+            Property::flag("linear",
+                           "whether colors are made linear, for scenes that are lit in linear light")
+                .of<&Self::_linear>(),
+            TextureUnits::property("dataUnit", "the texture unit of the parameters").of<&Self::_dataUnit>(),
+            TextureUnits::property("layerUnit", "the texture unit of the rasters").of<&Self::_layerUnit>(),
+            TextureUnits::property("tableUnit", "the texture unit of the color tables")
+                .of<&Self::_tableUnit>(),
+            Property::integer("pageSide", "the side of the pages that rasters share, a power of two", 64,
+                              16384, "texel")
+                .of<&Self::_pageSide>(),
+            Property::integer("maxPages", "the largest number of pages", 1, 2048).of<&Self::_maxPages>(),
+            Property::number("maxDataSize", "the most memory for the mappings' parameters", 0.001, 32000.0,
+                             "MiB")
+                .of<&Self::_maxDataSize>(),
+        });
     return all;
 }
 
@@ -337,8 +362,8 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     {
         if (mapping.getPixelsNone() <= 0.0 || mapping.getProjector() == ProjectiveMapping::PINHOLE)
             return true;
-        const osg::Vec2d centre = mapping.getCentre();
-        const osg::Vec3d at = position({centre.x(), centre.y(), mapping.getHeight()});
+        const osg::Vec2d center = mapping.getCenter();
+        const osg::Vec3d at = position({center.x(), center.y(), mapping.getHeight()});
         const double metres = parallel ? span : (at - eye).length() * span;
         const double size = 2.0 * std::sqrt(mapping.getU().length() * mapping.getV().length());
         // A little more than what the shader draws.

@@ -44,7 +44,7 @@ struct MappingSettings;
     mappings are left out (lowest `importance` first, then the smaller mappings). One warning names the limit, and
     capacity() counts what was left out.
 
-    **With other effects.** Mappings lie on the undeformed ground and bend with it. They colour the ground in the
+    **With other effects.** Mappings lie on the undeformed ground and bend with it. They color the ground in the
     scene's order of effects. A scene may have several ProjectiveMappings. A subgraph with the define
     GEOFX_MAPPING_CHANNELS 0 shows no mappings. With other bits it shows only mappings of these channels.
 
@@ -102,7 +102,7 @@ public:
     /// The largest number of texture probes along the longer side of a pixel's footprint, 1…16. Default: 8.
     bool setAnisotropy(int probes) { return assign("anisotropy", probes); }
     int getAnisotropy() const { return _anisotropy; }
-    /// For scenes that are lit in linear light: colours are taken as sRGB and made linear before blending. Default:
+    /// For scenes that are lit in linear light: colors are taken as sRGB and made linear before blending. Default:
     /// false.
     bool setLinear(bool linear) { return assign("linear", linear ? 1.0 : 0.0); }
     bool getLinear() const { return _linear; }

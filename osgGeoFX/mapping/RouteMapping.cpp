@@ -120,7 +120,7 @@ bool RouteMapping::setStyle(const Style& style)
     if (!makesSense(style))
     {
         OSG_WARN
-            << "osgGeoFX: RouteMapping got a style with lengths, colours or factors out of range; the former "
+            << "osgGeoFX: RouteMapping got a style with lengths, colors or factors out of range; the former "
                "one stays."
             << std::endl;
         return false;
@@ -294,11 +294,11 @@ void RouteMapping::addStrip(Role role, const osg::Vec2d& from, const osg::Vec2d&
     mapping.setRectangle((from + to) / 2.0, halfWidth, way.length() / 2.0, std::atan2(way.x(), way.y()));
 }
 
-void RouteMapping::addDisc(Role role, const osg::Vec2d& centre, double radius)
+void RouteMapping::addDisc(Role role, const osg::Vec2d& center, double radius)
 {
     ProjectiveMapping& mapping = pool(role).next();
     if (mapping.getLayer() != _disc) mapping.setLayer(_disc);
-    mapping.setRectangle(centre, radius / markReach, radius / markReach);
+    mapping.setRectangle(center, radius / markReach, radius / markReach);
 }
 
 void RouteMapping::make()

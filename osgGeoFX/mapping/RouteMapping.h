@@ -17,7 +17,7 @@ namespace osgGeoFX
     saturation.
 
     Each leg is a strip and each way point a disc. Both are mappings. A dashed leg has a mapping for each dash. The
-    context is a mapping of the scene's own colours. Its mask holds the distance to the route, metres, so its edges are
+    context is a mapping of the scene's own colors. Its mask holds the distance to the route, metres, so its edges are
     smooth. Four more mappings extend the context to `contextReach`. The mappings use the orders from `order` to
     `order` + 5.
 
@@ -39,7 +39,7 @@ public:
     /// The length of the route on the reference plane, metres.
     double length() const;
 
-    /// The look of a route. Colours are sRGB-coded, 0…1. A translucent colour shows where strips and discs overlap.
+    /// The look of a route. Colors are sRGB-coded, 0…1. A translucent color shows where strips and discs overlap.
     struct Style
     {
         double halfWidth = 12.0; ///< half the width of the line, metres, 0…1e7; 0: no line
@@ -64,7 +64,7 @@ public:
 
     /// A symbol in place of the round marks. It turns towards the eye. A null pointer brings the round marks back.
     void setPointLayer(DataLayer* layer);
-    /// Shows one leg (counted from 0) in the highlight colour and above the rest. An index that does not exist
+    /// Shows one leg (counted from 0) in the highlight color and above the rest. An index that does not exist
     /// highlights nothing.
     void highlight(std::optional<std::size_t> leg);
     std::optional<std::size_t> highlighted() const { return _highlighted; }
@@ -102,7 +102,7 @@ private:
     void makeColors();
     void drawDistances(const osg::Vec2d& low, double texel);
     void addStrip(Role role, const osg::Vec2d& from, const osg::Vec2d& to, double halfWidth);
-    void addDisc(Role role, const osg::Vec2d& centre, double radius);
+    void addDisc(Role role, const osg::Vec2d& center, double radius);
 
     std::vector<osg::Vec2d> _points;
     Style _style;

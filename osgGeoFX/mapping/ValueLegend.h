@@ -15,7 +15,7 @@
 namespace osgGeoFX
 {
 
-/// The texts, sizes and colours of a legend. Sizes are in pixels. Colours are sRGB-coded, 0…1.
+/// The texts, sizes and colors of a legend. Sizes are in pixels. Colors are sRGB-coded, 0…1.
 /// @ingroup mapping
 struct LegendStyle
 {
@@ -38,8 +38,8 @@ OSGGEOFX_EXPORT std::vector<double> roundTicks(double low, double high, int most
 /// The text of a tick, with as many digits as it needs to differ from ticks `step` away.
 OSGGEOFX_EXPORT std::string tickText(double value, double step);
 
-/** Makes a legend for a table's colours from low to high. A program puts it into a camera whose unit is the pixel. The
-    legend has a title with a unit, a bar with the map's own colours on a checkered ground (which shows opacity), and
+/** Makes a legend for a table's colors from low to high. A program puts it into a camera whose unit is the pixel. The
+    legend has a title with a unit, a bar with the map's own colors on a checkered ground (which shows opacity), and
     ticks at round numbers. For a table of the mode EXACT it instead has a named field for each stop from low to high,
     one below the other.
 

@@ -8,8 +8,8 @@
 namespace osgGeoFX
 {
 
-/** Shows numbers as colours on the terrain: noise, concentrations, heights, classes. Lines of equal value and a legend
-    in the same colours are optional (Trapp and Döllner 2009, Section 5 and Figure 3.A).
+/** Shows numbers as colors on the terrain: noise, concentrations, heights, classes. Lines of equal value and a legend
+    in the same colors are optional (Trapp and Döllner 2009, Section 5 and Figure 3.A).
 
     @code
     osg::ref_ptr<osgGeoFX::ValueMap> map = new osgGeoFX::ValueMap(mappings, noise, colors);
@@ -27,7 +27,7 @@ class OSGGEOFX_EXPORT ValueMap : public osg::Referenced, private PropertyListene
 {
 public:
     /// `values` is a layer of values or classes. The table may be shared and changed; refresh() then applies the
-    /// change. Values below the range have the colour of its lower end, values above it the colour of the upper end.
+    /// change. Values below the range have the color of its lower end, values above it the color of the upper end.
     /// With a table of the mode EXACT they are transparent. The range at first is the table's.
     ValueMap(ProjectiveMappings& mappings, DataLayer* values, ColorTable* colors, int order = 0);
 
@@ -35,7 +35,7 @@ public:
     /// A null pointer is refused.
     bool setColors(ColorTable* colors);
     ColorTable& colors() { return *_colors; }
-    /// The values at the two ends of the colours, in the layer's unit. `low` must be less than `high`.
+    /// The values at the two ends of the colors, in the layer's unit. `low` must be less than `high`.
     bool setRange(double low, double high);
     double getLow() const { return _low; }
     double getHigh() const { return _high; }
@@ -48,7 +48,7 @@ public:
 
     /// The mapping of the lines, or null without lines.
     const ProjectiveMapping* lines() const { return _lines.get(); }
-    /// A legend with the present colours of the map. Null if makeLegend() cannot make it.
+    /// A legend with the present colors of the map. Null if makeLegend() cannot make it.
     osg::ref_ptr<osg::Group> legend(const LegendStyle& style) const;
 
 protected:

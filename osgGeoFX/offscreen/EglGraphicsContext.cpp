@@ -132,7 +132,7 @@ struct EglGraphicsContext::Egl
         return value;
     }
 
-    // eglChooseConfig puts 10 bit colours before 8 bit ones; we want what was asked for.
+    // eglChooseConfig puts 10 bit colors before 8 bit ones; we want what was asked for.
     bool chooseConfig(const Traits& traits, unsigned int samples)
     {
         const EGLint wanted[] = {EGL_SURFACE_TYPE,
@@ -233,7 +233,7 @@ struct EglGraphicsContext::Egl
         {
             if (samples == 0)
             {
-                error = "no pbuffer configuration with the wanted colour and depth bits";
+                error = "no pbuffer configuration with the wanted color and depth bits";
                 return false;
             }
             samples = samples > 2 ? samples / 2 : 0;

@@ -15,7 +15,7 @@ namespace osgGeoFX
 
 /** An off-screen OpenGL context over EGL that osgViewer uses like any other context. It needs no X server.
 
-    It draws into a pbuffer of the traits' size, which is fixed, with the traits' colour, depth and stencil bits.
+    It draws into a pbuffer of the traits' size, which is fixed, with the traits' color, depth and stencil bits.
     `traits->samples` requests multisampling; if the driver has no such configuration, the count is halved until one
     fits, and the traits are set to the count in use. If the traits name no version (OSG's default "1.0"), the context
     is the driver's newest desktop compatibility profile. A `sharedContext` must be a valid EglGraphicsContext; the new

@@ -18,7 +18,7 @@ namespace osgGeoFX
     It is one of the camera's final draw callbacks, which run before the buffers are swapped, and it replaces no other
     callback. The camera must draw into the context's own framebuffer. (A camera that draws into a framebuffer object
     attaches an image instead.) The image covers the camera's viewport. Its first row is the lowest, as in OpenGL and
-    OSG. Colours of multisampled frames are resolved. Depth is window depth, 0…1.
+    OSG. Colors of multisampled frames are resolved. Depth is window depth, 0…1.
 
     Threads: any thread may call all methods. The reading happens in the drawing thread. One capture serves one
     camera.

@@ -103,7 +103,7 @@ struct OSGGEOFX_EXPORT TileInfo
     `pixelsPerRadian` is viewport height / (2·tan(vertical field of view / 2)). */
 OSGGEOFX_EXPORT float lodScaleFor(const TerrainInfo& info, double pixelsPerRadian);
 
-/// Pixels per radian at the centre of an image. `height`: of the image, pixels. `fieldOfView`: vertical, radians.
+/// Pixels per radian at the center of an image. `height`: of the image, pixels. `fieldOfView`: vertical, radians.
 OSGGEOFX_EXPORT double pixelsPerRadian(double height, double fieldOfView);
 
 } // namespace osgGeoFX

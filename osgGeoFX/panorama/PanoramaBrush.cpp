@@ -88,17 +88,17 @@ void paintStrokes(int side, Field& relief, Field& tone)
         stroke.width = random.uniform(4.0, 8.0) * texel;
         stroke.angle = 0.9 * paint::cloudy(3 * u, 3 * v, 3, 3, 2, 11) + random.uniform(-0.25, 0.25);
         stroke.seed = static_cast<std::uint32_t>(i);
-        const double colour = random.uniform(-1.0, 1.0);
+        const double color = random.uniform(-1.0, 1.0);
         const double ridge = random.uniform(0.3, 1.0);
         paint::stamp(stroke,
                      [&](int x, int y, double cover, double across)
                      {
                          // Paint is pushed to the brush's sides.
-                         const double height = ridge * (0.8 + 0.2 * across * across) + 0.5 * colour;
+                         const double height = ridge * (0.8 + 0.2 * across * across) + 0.5 * color;
                          double& relieved = relief.at(x, y);
                          relieved += (height - relieved) * 0.7 * cover;
                          double& toned = tone.at(x, y);
-                         toned += (colour - toned) * 0.7 * cover;
+                         toned += (color - toned) * 0.7 * cover;
                      });
     }
 }

@@ -71,13 +71,13 @@ osg::Matrixd PanoramaManipulator::getInverseMatrix() const
     return osg::Matrixd::inverse(_pose.matrix());
 }
 
-bool PanoramaManipulator::setCentre(const osg::Vec3d& world)
+bool PanoramaManipulator::setCenter(const osg::Vec3d& world)
 {
     rest();
-    return _pose.setCentre(world);
+    return _pose.setCenter(world);
 }
 
-osg::Vec3d PanoramaManipulator::getCentre() const
+osg::Vec3d PanoramaManipulator::getCenter() const
 {
     return _pose.holdOnBase(_pose.middle()).world;
 }
@@ -109,9 +109,9 @@ void PanoramaManipulator::home(double)
     const osg::BoundingSphere bound = _scene->getBound();
     if (!bound.valid()) return;
     _pose.setHeading(0.0);
-    setCentre(bound.center());
+    setCenter(bound.center());
     if (_homeRadius == 0.0) setWidth(2.0 * static_cast<double>(bound.radius()));
-    setCentre(bound.center());
+    setCenter(bound.center());
 }
 
 void PanoramaManipulator::home(const Event& event, osgGA::GUIActionAdapter& action)

@@ -36,12 +36,12 @@ public:
 
     /// Moves the camera until this place of the ground (world coordinates) appears in the middle of the picture. If
     /// the middle shows sky, it appears at 70 % of the horizon's height. Returns false if that is impossible.
-    bool setCentre(const osg::Vec3d& world);
-    osg::Vec3d getCentre() const;
-    /// The width of the ground shown at the picture's base, metres, clamped to the limits above. The centre stays.
+    bool setCenter(const osg::Vec3d& world);
+    osg::Vec3d getCenter() const;
+    /// The width of the ground shown at the picture's base, metres, clamped to the limits above. The center stays.
     void setWidth(double metres);
     double getWidth() const { return 2.0 * _pose.radius(); }
-    /// Radians clockwise from north. The camera turns about the centre.
+    /// Radians clockwise from north. The camera turns about the center.
     void setHeading(double radians);
     double getHeading() const { return _pose.heading(); }
     /// Radians; 0 is level, negative looks down. −85°…0, −35° by default.

@@ -3,9 +3,9 @@
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
 #include <osgGeoFX/panorama/StrokeLines.h>
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
 #include <osgGeoFX/panorama/detail/PanoramaGround.h>
 #include <osgGeoFX/panorama/detail/PanoramaScenery.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 
 #include <algorithm>
@@ -42,49 +42,139 @@ PanoramaMap::~PanoramaMap() = default;
 const Properties& PanoramaMap::properties() const
 {
     using Self = PanoramaMap;
-    static const Properties all = {
-        enabledProperty(),
-        Property::flag("projection", true).of<&Self::_projection>(),
-        Property::number("viewRadius", 0.0, 0.0, 2e6, "m").of<&Self::_viewRadius>(),
-        Property::number("horizonLine", 0.8, 0.1, 1.0).of<&Self::_horizonLine>(),
-        Property::number("curveDistance", 0.4, 0.0, 20.0).of<&Self::_curveDistance>(),
-        Property::number("horizonDistance", 3.6, 0.1, 50.0).of<&Self::_horizonDistance>(),
-        Property::number("horizonBend", 0.05, 0.0, 0.5).of<&Self::_horizonBend>(),
-        Property::number("exaggeration", 2.0, 0.0, 20.0).of<&Self::_exaggeration>().turnedByFactor(1.15),
-        Property::number("baseHeight", 0.0, -12000.0, 12000.0, "m").of<&Self::_baseHeight>(),
-        Property::flag("baseFromTerrain", true).of<&Self::_baseFromTerrain>(),
-        Property::number("detail", 1.0, 0.05, 16.0).of<&Self::_detail>(),
-        Property::flag("paint", true).of<&Self::_paint>(),
-        Property::number("season", 0.5, 0.0, 1.0).of<&Self::_season>(),
-        Property::number("snowLine", -1.0, -1.0, 12000.0, "m").of<&Self::_snowLine>(),
-        Property::number("snowWidth", 500.0, 1.0, 5000.0, "m").of<&Self::_snowWidth>(),
-        Property::number("treeLine", -1.0, -1.0, 12000.0, "m").of<&Self::_treeLine>(),
-        Property::number("cliffSlope", 0.85, 0.05, 10.0).of<&Self::_cliffSlope>(),
-        Property::number("hillSlope", 0.18, 0.005, 10.0).of<&Self::_hillSlope>(),
-        Property::number("relief", 2.2, 0.1, 20.0).of<&Self::_relief>(),
-        Property::number("brush", 0.35, 0.0, 2.0).of<&Self::_brush>(),
-        Property::number("bottomShade", 0.3, 0.0, 2.0).of<&Self::_bottomShade>(),
-        Property::angle("lightAzimuth", -osg::PI / 3.0, -osg::PI, osg::PI).of<&Self::_lightAzimuth>(),
-        Property::angle("lightElevation", 32.0 * osg::PI / 180.0, 0.0, osg::PI_2)
-            .of<&Self::_lightElevation>(),
-        Property::flag("sceneLight", false).of<&Self::_sceneLight>(),
-        Property::number("atmosphere", 0.8, 0.0, 1.0).of<&Self::_atmosphere>(),
-        Property::flag("water", true).of<&Self::_water>(),
-        Property::number("deepShore", 2200.0, 1.0, 1e6, "m").of<&Self::_deepShore>(),
-        Property::number("reflection", 0.5, 0.0, 1.0).of<&Self::_reflection>(),
-        Property::number("ripples", 1.0, 0.0, 10.0).of<&Self::_ripples>(),
-        Property::flag("sky", true).of<&Self::_sky>(),
-        Property::integer("clouds", 1, 0, 9999).of<&Self::_clouds>(),
-        Property::choice("edge", AUTOMATIC, {"automatic", "sea", "haze"}).of<&Self::_edge>(),
-        Property::number("edgeWidth", 0.3, 0.0, 5.0).of<&Self::_edgeWidth>(),
-        Property::flag("strokes", true).of<&Self::_strokes>(),
-        Property::number("strokeSize", 5.0, 1.0, 200.0).of<&Self::_strokeSize>(),
-        Property::number("strokeSpacing", 4.2, 1.0, 200.0).of<&Self::_strokeSpacing>(),
-        Property::number("strokeStep", 25.0, 1.0, 10000.0, "m").of<&Self::_strokeStep>(),
-        Property::integer("coverUnit", 7, 4, 31).of<&Self::_coverUnit>(),
-        Property::integer("firstUnit", -1, -1, 29).of<&Self::_firstUnit>(),
-        Property::integer("edgeUnit", -1, -1, 30).of<&Self::_edgeUnit>(),
-    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            enabledProperty(),
+            Property::flag("projection", "whether the terrain is drawn as a painted panorama is, and not "
+                                         "only painted in the camera's own view")
+                .of<&Self::_projection>(),
+            Property::number("viewRadius", "half the width of the ground shown; 0 takes it from the camera",
+                             0.0, 2e6, "m")
+                .of<&Self::_viewRadius>(),
+            Property::number("horizonLine",
+                             "where a flat sea ends, as a share of the image's height from below", 0.1, 1.0)
+                .of<&Self::_horizonLine>(),
+            Property::number("curveDistance",
+                             "how far the ground lies as at the base before it curves, in view radii; less "
+                             "than horizonDistance",
+                             0.0, 20.0)
+                .of<&Self::_curveDistance>(),
+            Property::number(
+                "horizonDistance",
+                "the distance of the horizon from the base, in view radii; more than curveDistance", 0.1,
+                50.0)
+                .of<&Self::_horizonDistance>(),
+            Property::number("horizonBend",
+                             "how far the horizon is lower at the sides, as a share of the image's height",
+                             0.0, 0.5)
+                .of<&Self::_horizonBend>(),
+            Property::number("exaggeration", "the ratio of heights to widths", 0.0, 20.0)
+                .of<&Self::_exaggeration>()
+                .turnedByFactor(1.15),
+            Property::number("baseHeight",
+                             "the height above the database's zero height that lies on the curve", -12000.0,
+                             12000.0, "m")
+                .of<&Self::_baseHeight>(),
+            Property::flag("baseFromTerrain", "whether the lowest ground of the database lies on the curve "
+                                              "where it is higher than baseHeight")
+                .of<&Self::_baseFromTerrain>(),
+            Property::number(
+                "detail",
+                "how many times finer the level of detail is than in a plain view of the same scale", 0.05,
+                16.0)
+                .of<&Self::_detail>(),
+            Property::flag("paint", "whether the ground is painted").of<&Self::_paint>(),
+            Property::number("season",
+                             "the time of the year, which palettes and the snow line follow; 0 and 1 are "
+                             "midwinter, 0.5 is midsummer",
+                             0.0, 1.0)
+                .of<&Self::_season>(),
+            Property::number("snowLine",
+                             "the height above which most of the even ground is white in midsummer; -1 takes "
+                             "it from the latitude",
+                             -1.0, 12000.0, "m")
+                .of<&Self::_snowLine>(),
+            Property::number("snowWidth", "the range of heights over which snow comes in", 1.0, 5000.0, "m")
+                .of<&Self::_snowWidth>(),
+            Property::number("treeLine",
+                             "the height above which no woods are where the tiles do not tell what grows; -1 "
+                             "takes it from the latitude",
+                             -1.0, 12000.0, "m")
+                .of<&Self::_treeLine>(),
+            Property::number("cliffSlope", "the slope, rise over run, from which on ground is rock", 0.05,
+                             10.0)
+                .of<&Self::_cliffSlope>(),
+            Property::number("hillSlope", "the slope, rise over run, up to which ground is field", 0.005,
+                             10.0)
+                .of<&Self::_hillSlope>(),
+            Property::number("relief", "the factor by which slopes are lit as steeper than they are", 0.1,
+                             20.0)
+                .of<&Self::_relief>(),
+            Property::number("brush", "how much brush strokes turn the ground's normals", 0.0, 2.0)
+                .of<&Self::_brush>(),
+            Property::number("bottomShade", "how much light the base lacks", 0.0, 2.0)
+                .of<&Self::_bottomShade>(),
+            Property::angle("lightAzimuth",
+                            "where the light comes from, clockwise from the way up in the image", -osg::PI,
+                            osg::PI)
+                .of<&Self::_lightAzimuth>(),
+            Property::angle("lightElevation", "the angle of the light above the horizon", 0.0, osg::PI_2)
+                .of<&Self::_lightElevation>(),
+            Property::flag("sceneLight", "whether the scene's sun shines instead").of<&Self::_sceneLight>(),
+            Property::number("atmosphere", "how much of the air's blue the horizon has", 0.0, 1.0)
+                .of<&Self::_atmosphere>(),
+            Property::flag("water", "whether water is painted as such").of<&Self::_water>(),
+            Property::number("deepShore",
+                             "the distance from the shore from which on water is deep; where depths are "
+                             "known, 50 times the depth counts as well",
+                             1.0, 1e6, "m")
+                .of<&Self::_deepShore>(),
+            Property::number("reflection", "how much of the terrain and the sky the water shows", 0.0, 1.0)
+                .of<&Self::_reflection>(),
+            Property::number("ripples", "how far ripples move reflections", 0.0, 10.0).of<&Self::_ripples>(),
+            Property::flag(
+                "sky", "whether a sky is painted behind the terrain, and what edge says where no terrain is")
+                .of<&Self::_sky>(),
+            Property::integer("clouds", "which clouds there are", 0, 9999).of<&Self::_clouds>(),
+            Property::choice(
+                "edge", "what lies beyond the terrain",
+                {{"automatic",
+                  "sea where the data's own border is sea, else haze; haze for databases that do not tell"},
+                 {"sea", ""},
+                 {"haze", "the land runs out into haze, and into paper at the base"}})
+                .of<&Self::_edge>(),
+            Property::number("edgeWidth",
+                             "over how much of the ground the land runs out, in view radii; not over more "
+                             "than a fifth of the terrain",
+                             0.0, 5.0)
+                .of<&Self::_edgeWidth>(),
+            Property::flag("strokes", "whether trees, cliffs and houses are painted as strokes")
+                .of<&Self::_strokes>(),
+            Property::number("strokeSize", "the height of a painted tree", 1.0, 200.0, "px")
+                .of<&Self::_strokeSize>(),
+            Property::number("strokeSpacing", "the distance between trees in the image", 1.0, 200.0, "px")
+                .of<&Self::_strokeSpacing>(),
+            Property::number("strokeStep", "the least distance between trees on the ground", 1.0, 10000.0,
+                             "m")
+                .of<&Self::_strokeStep>(),
+            Property::integer("coverUnit",
+                              "the texture unit where tiles have what they say of the ground; none of the "
+                              "three from firstUnit on",
+                              4, 31)
+                .of<&Self::_coverUnit>(),
+            Property::integer("firstUnit",
+                              "the first of three texture units for the palette, the brush and the "
+                              "reflection; -1 takes units that the scene's effects have free",
+                              -1, 29)
+                .of<&Self::_firstUnit>(),
+            Property::integer("edgeUnit",
+                              "the first of two texture units for the terrain's edge and the sky, neither of "
+                              "them coverUnit or one of the three from firstUnit on; -1 takes units that the "
+                              "scene's effects have free",
+                              -1, 30)
+                .of<&Self::_edgeUnit>(),
+        });
     return all;
 }
 
@@ -106,14 +196,14 @@ std::string PanoramaMap::inconsistency() const
     return {};
 }
 
-osg::ref_ptr<const DeformationFrame> PanoramaMap::frame(const ViewGeometry& view) const
+osg::ref_ptr<const DeformationSnapshot> PanoramaMap::snapshot(const ViewGeometry& view) const
 {
     if (!_projection) return nullptr;
     const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(*this, view);
     if (!panorama) return nullptr;
     const bool perspective = view.projection(3, 3) == 0.0;
     const double scale = perspective ? std::abs(view.projection(0, 0)) : orthographicScale;
-    return new PanoramaFrame(*panorama, scale / panorama->across / _detail);
+    return new PanoramaSnapshot(*panorama, scale / panorama->across / _detail);
 }
 
 SurfaceEffect* PanoramaMap::asSurfaceEffect()

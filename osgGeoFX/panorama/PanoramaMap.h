@@ -28,7 +28,7 @@ class StrokeLines;
     down. So every manipulator pans, zooms and rotates the map. An orthographic camera shows its own width. The
     projection is a Deformation: culling, paging, picking and labels work as with the other deformations.
 
-    **Ground** (Section 3.2): fields, hills, cliffs, snow, forest and towns, each in colours of its own from light to
+    **Ground** (Section 3.2): fields, hills, cliffs, snow, forest and towns, each in colors of its own from light to
     shade. The classes come from the tiles' cover (a texture at `coverUnit`, shaders/lib/cover.glsl, made by
     osggeofx_build), else from height and slope. Objects that are not ground keep their look below a state set with
     `setDefine("GEOFX_PAINTED", OFF)`.
@@ -36,7 +36,7 @@ class StrokeLines;
     **Strokes** (Section 3.3): trees, cliffs and houses on a lattice over the whole Earth, equally dense on the screen
     at any zoom. Roads, rivers and towns come from vector data (StrokeLines).
 
-    **Water** (Section 3.4): coloured by the distance from the shore, with reflections of terrain and sky.
+    **Water** (Section 3.4): colored by the distance from the shore, with reflections of terrain and sky.
     **Atmosphere** (Section 3.5) and a painted **sky**.
 
     In a scene the map comes after an exaggeration or a mapping, and replaces a bend. Positions are exact within 1e-5
@@ -95,7 +95,7 @@ public:
     /// Whether the ground is painted; true by default.
     bool setPaint(bool on) { return assign("paint", on ? 1.0 : 0.0); }
     bool getPaint() const { return _paint; }
-    /// 0 is midwinter, 1/4 spring, 1/2 midsummer (the default), 3/4 autumn, 1 midwinter. It sets the colours and the
+    /// 0 is midwinter, 1/4 spring, 1/2 midsummer (the default), 3/4 autumn, 1 midwinter. It sets the colors and the
     /// snow line.
     bool setSeason(double season) { return assign("season", season); }
     double getSeason() const { return _season; }
@@ -135,10 +135,10 @@ public:
     /// Whether the scene's light 0 replaces the light of these two angles; false by default.
     bool setSceneLight(bool on) { return assign("sceneLight", on ? 1.0 : 0.0); }
     bool getSceneLight() const { return _sceneLight; }
-    /// The share of the air's blue in the ground's colour at the horizon; 0…1, 0.8 by default.
+    /// The share of the air's blue in the ground's color at the horizon; 0…1, 0.8 by default.
     bool setAtmosphere(double strength) { return assign("atmosphere", strength); }
     double getAtmosphere() const { return _atmosphere; }
-    /// The colours of the classes from shade to light, as PanoramaPalette.h describes. Null, the default: the kit's
+    /// The colors of the classes from shade to light, as PanoramaPalette.h describes. Null, the default: the kit's
     /// own.
     void setPalette(osg::Image* image);
     osg::Image* getPalette() { return _palette; }
@@ -155,7 +155,7 @@ public:
     /// 1…1e6, 2200 by default.
     bool setDeepShore(double metres) { return assign("deepShore", metres); }
     double getDeepShore() const { return _deepShore; }
-    /// The share of the reflected terrain and sky in the water's colour; 0…1, 0.5 by default.
+    /// The share of the reflected terrain and sky in the water's color; 0…1, 0.5 by default.
     bool setReflection(double strength) { return assign("reflection", strength); }
     double getReflection() const { return _reflection; }
     /// How far ripples displace reflections; 0…10, 1 by default.
@@ -235,7 +235,7 @@ public:
     /// @}
 
     const Properties& properties() const override;
-    osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override;
+    osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
     std::string vertexFile() const override { return "stages/panorama.glsl"; }
 
     using Deformation::asPassEffect;

@@ -170,7 +170,7 @@ Rgb resampled(const osg::Image& image, int column, int row)
     return sum / static_cast<double>(last - first);
 }
 
-/// The colours of one class in a painting, by light.
+/// The colors of one class in a painting, by light.
 class Samples
 {
 public:

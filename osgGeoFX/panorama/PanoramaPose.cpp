@@ -3,7 +3,7 @@
 #include <osgGeoFX/panorama/PanoramaPose.h>
 
 #include <osgGeoFX/effect/detail/EyeVector.h>
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <osgGeoFX/scene/DeformedView.h>
 
 #include <algorithm>
@@ -239,7 +239,7 @@ bool PanoramaPose::keep(const PanoramaHold& hold)
     return false;
 }
 
-bool PanoramaPose::setCentre(const osg::Vec3d& world)
+bool PanoramaPose::setCenter(const osg::Vec3d& world)
 {
     const osg::Vec3d former = _eye;
     // From above the place it is never far.

@@ -59,7 +59,7 @@ public:
     /// false if that is impossible; the eye then stays.
     bool keep(const PanoramaHold& hold);
     /// The same for any place, and the middle of the picture.
-    bool setCentre(const osg::Vec3d& world);
+    bool setCenter(const osg::Vec3d& world);
 
 private:
     osg::Matrixd frame() const;

@@ -83,12 +83,12 @@ struct Refusal
     std::string sentence;
 };
 
-/// One part of a colour, 0…1.
+/// One part of a color, 0…1.
 float part(const std::string& word)
 {
     const std::optional<double> value = number(word);
     if (!value || *value < 0.0 || *value > 255.0)
-        throw Refusal{"the colour has " + inQuotes(word) + "; write a number from 0 to 255."};
+        throw Refusal{"the color has " + inQuotes(word) + "; write a number from 0 to 255."};
     return static_cast<float>(*value / 255.0);
 }
 
@@ -107,7 +107,7 @@ osg::Vec4 namedColor(const std::string& name)
                     static_cast<float>(color.rgb[2]) / 255.0f, 1.0f};
         known += std::string(known.empty() ? "" : ", ") + color.name;
     }
-    throw Refusal{"the colour " + inQuotes(name) +
+    throw Refusal{"the color " + inQuotes(name) +
                   " is not known; write red, green and blue as numbers, or one of " + known + "."};
 }
 
@@ -131,7 +131,7 @@ public:
     osg::ref_ptr<ColorTable> finish()
     {
         if (_stops.empty())
-            throw Refusal{"there are no colours; write a line for each value, such as 100 0 128 0."};
+            throw Refusal{"there are no colors; write a line for each value, such as 100 0 128 0."};
         addOutside();
         osg::ref_ptr<ColorTable> table = new ColorTable;
         table->setStops(_stops);
@@ -153,13 +153,13 @@ private:
     void takeStop(const Words& words)
     {
         if (words.size() < 2)
-            throw Refusal{inQuotes(words[0]) + " has no colour; write value, red, green, blue."};
+            throw Refusal{inQuotes(words[0]) + " has no color; write value, red, green, blue."};
         osg::Vec4 color;
         std::size_t next = 2;
         if (!number(words[1]))
             color = namedColor(words[1]);
         else if (words.size() < 4)
-            throw Refusal{"the colour is not complete; write value, red, green, blue."};
+            throw Refusal{"the color is not complete; write value, red, green, blue."};
         else
         {
             color = partsToColor(words[1], words[2], words[3]);
@@ -209,7 +209,7 @@ private:
         if (words.size() == 5 || words.size() == 9)
             if (words.back() == "L" || words.back() == "U" || words.back() == "B") words.pop_back();
         if (words.size() != 4 && words.size() != 8)
-            throw Refusal{"the line is not z0 colour z1 colour; write the colours as R G B or R/G/B."};
+            throw Refusal{"the line is not z0 color z1 color; write the colors as R G B or R/G/B."};
         const auto middle = words.begin() + static_cast<std::ptrdiff_t>(words.size() / 2);
         const std::optional<double> from = number(words[0]), to = number(*middle);
         if (!from || !to || *from >= *to)
@@ -227,12 +227,12 @@ private:
     {
         const Words parts = words.size() == 1 ? split(words[0], "/") : words;
         if (parts.size() == 3) return partsToColor(parts[0], parts[1], parts[2]);
-        if (parts.size() != 1) throw Refusal{"the colour is not complete; write R G B or R/G/B."};
+        if (parts.size() != 1) throw Refusal{"the color is not complete; write R G B or R/G/B."};
         if (parts[0] == "-") return {}; // "leave it unpainted"
         return number(parts[0]) ? partsToColor(parts[0], parts[0], parts[0]) : namedColor(parts[0]);
     }
 
-    /// A .cpt's colours below and above: with a little of its ends' colours between, for they count from beyond the ends.
+    /// A .cpt's colors below and above: with a little of its ends' colors between, for they count from beyond the ends.
     void addOutside()
     {
         const Stop first = _stops.front(), last = _stops.back();
@@ -275,7 +275,7 @@ std::string lineOf(const std::string& value, const osg::Vec4& color)
 osg::ref_ptr<ColorTable> ColorRampFile::read(const std::string& path, const std::optional<Range>& rangeOfData,
                                              std::string& error)
 {
-    // The text of a million colours; what is larger is another file by mistake.
+    // The text of a million colors; what is larger is another file by mistake.
     constexpr std::uintmax_t largest = 32u << 20;
     std::error_code failure;
     const bool isFile = std::filesystem::is_regular_file(path, failure);

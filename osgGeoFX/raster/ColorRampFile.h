@@ -17,15 +17,15 @@ namespace osgGeoFX
 
     A line of the gdaldem format is `value red green blue [alpha]` or `value name [alpha]`.
     - Spaces, tabs, commas or colons separate the words.
-    - Parts of colours are 0…255.
+    - Parts of colors are 0…255.
     - A value may be a percentage of the range of the data.
     - `nv` stands for the no-data value.
     - A comment begins with #.
-    - If two lines have the same value, the colour jumps there.
+    - If two lines have the same value, the color jumps there.
 
     A file is read as .cpt if its name ends so, or if a comment contains COLOR_MODEL, which must be RGB. Its lines
-    are `z0 colour z1 colour` with colours as R G B or R/G/B. Its colours B (below) and F (above) begin 1/512 of the
-    table's range outside the range, so that a row of 1024 texels contains them. N is the no-data colour.
+    are `z0 color z1 color` with colors as R G B or R/G/B. Its colors B (below) and F (above) begin 1/512 of the
+    table's range outside the range, so that a row of 1024 texels contains them. N is the no-data color.
 
     @ingroup raster */
 class OSGGEOFX_EXPORT ColorRampFile
@@ -39,7 +39,7 @@ public:
     static osg::ref_ptr<ColorTable> read(const std::string& path, const std::optional<Range>& rangeOfData,
                                          std::string& error);
 
-    /// Writes text for gdaldem, with colours rounded to 1/255. STEPS become jumps. For NEAREST and EXACT, a comment
+    /// Writes text for gdaldem, with colors rounded to 1/255. STEPS become jumps. For NEAREST and EXACT, a comment
     /// names the option of gdaldem. False, with a sentence in `error`, if the table has no stops or if writing fails.
     static bool write(const ColorTable& table, const std::string& path, std::string& error);
 };

@@ -25,7 +25,7 @@ struct NamedTable
     std::vector<std::uint32_t> colors; ///< 0xrrggbb
 };
 
-// Every 17th of the 256 published colours: viridis and magma by Smith, van der Walt and Firing (CC0), cividis by Nuñez,
+// Every 17th of the 256 published colors: viridis and magma by Smith, van der Walt and Firing (CC0), cividis by Nuñez,
 // Anderton and Renslow (2018).
 const std::vector<NamedTable>& namedTables()
 {
@@ -62,7 +62,7 @@ bool isColor(const osg::Vec4& color)
 const char* refusal(double value, const osg::Vec4& color)
 {
     if (!std::isfinite(value)) return "the value of a stop must be a finite number";
-    if (!isColor(color)) return "the colour's parts must be from 0 to 1";
+    if (!isColor(color)) return "the color's parts must be from 0 to 1";
     return nullptr;
 }
 
@@ -90,7 +90,7 @@ float single(double value)
     return static_cast<float>(std::clamp(value, -largest, largest));
 }
 
-/// On the line through two stops, before and behind them too, as far as colours go.
+/// On the line through two stops, before and behind them too, as far as colors go.
 osg::Vec4 mix(const Stop& a, const Stop& b, double value)
 {
     // Halves, for differences beyond the largest number.
@@ -104,7 +104,7 @@ osg::Vec4 mix(const Stop& a, const Stop& b, double value)
     return color;
 }
 
-/// A colour in whole numbers, of which the largest is full intensity.
+/// A color in whole numbers, of which the largest is full intensity.
 template<typename Texel>
 Texel whole(const osg::Vec4& color)
 {

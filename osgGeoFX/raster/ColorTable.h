@@ -17,11 +17,11 @@
 namespace osgGeoFX
 {
 
-/** Colours for numbers: heights, noise levels, classes.
+/** Colors for numbers: heights, noise levels, classes.
 
     The table is a list of stops in order of their values. Two stops with the same value are a jump: below the value,
-    the colour of the first stop applies; at the value and above, the colour of the second. Below the first stop and
-    above the last one the colour stays, except in EXACT. Colours are sRGB-coded, 0…1, with straight alpha. They are
+    the color of the first stop applies; at the value and above, the color of the second. Below the first stop and
+    above the last one the color stays, except in EXACT. Colors are sRGB-coded, 0…1, with straight alpha. They are
     mixed as they are coded.
 
     A setter refuses an invalid value: it returns false, prints one warning and keeps the last valid state. The
@@ -35,7 +35,7 @@ public:
     ColorTable(const ColorTable& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, ColorTable);
 
-    /// A value and its colour.
+    /// A value and its color.
     struct Stop
     {
         double value = 0.0;
@@ -43,13 +43,13 @@ public:
     };
     using Stops = std::vector<Stop>;
 
-    /// Replaces all stops. They may be in any order; equal values keep theirs. Values must be finite, colours 0…1.
+    /// Replaces all stops. They may be in any order; equal values keep theirs. Values must be finite, colors 0…1.
     bool setStops(Stops stops);
     const Stops& getStops() const { return _stops; }
     /// Adds a stop, after those with the same value.
     bool addStop(double value, const osg::Vec4& color);
 
-    /// How the colour of a value follows from the stops.
+    /// How the color of a value follows from the stops.
     enum Mode
     {
         LINEAR,  ///< mixed between the two neighbouring stops
@@ -61,17 +61,17 @@ public:
     void setMode(Mode mode);
     Mode getMode() const { return _mode; }
 
-    /// The colour where the raster has no value (NaN); transparent by default.
+    /// The color where the raster has no value (NaN); transparent by default.
     bool setNoDataColor(const osg::Vec4& color);
     const osg::Vec4& getNoDataColor() const { return _noDataColor; }
 
-    /// The colour of a value. NaN gives the no-data colour. Transparent if the table has no stops.
+    /// The color of a value. NaN gives the no-data color. Transparent if the table has no stops.
     osg::Vec4 at(double value) const;
 
     /// The values of the first and the last stop; 0 and 1 if the table has no stops.
     std::pair<double, double> range() const;
 
-    /** The table from `low` to `high` as texels for the GPU, RGBA. A shader finds the colour of a value at
+    /** The table from `low` to `high` as texels for the GPU, RGBA. A shader finds the color of a value at
 
             s = clamp((value − low) / (high − low), 0, 1) · (width − 1)
 
@@ -79,17 +79,17 @@ public:
         width. In the other modes it takes the texel floor(s + ½), as a nearest filter does there. In EXACT, a value
         outside low…high is transparent, and a value less than half a texel beside a stop counts as equal.
 
-        The texels first get the colours at their own values. Then stops are snapped, so that a shader finds the
-        colour of a stop at its value. In EXACT, NEAREST and STEPS, a stop gets the texel that its value finds. In
-        LINEAR, the colours above a jump begin in the texel below it, so the jump blurs over the two texels below its
+        The texels first get the colors at their own values. Then stops are snapped, so that a shader finds the
+        color of a stop at its value. In EXACT, NEAREST and STEPS, a stop gets the texel that its value finds. In
+        LINEAR, the colors above a jump begin in the texel below it, so the jump blurs over the two texels below its
         value.
 
         The error in LINEAR away from jumps is ½/255, due to the bytes. At a stop where the slope changes by b, it is
         also at most b / (4 · (width − 1)), where b is in full intensity per low…high: 1/255 with 1024 texels and a b
         of 8. The borders of STEPS and NEAREST are off by at most one texel.
 
-        If high is not above low, or if width is below 2, all texels have the colour at low. False if two stops with
-        different values between low and high lie less than a texel apart, so that colours are lost. */
+        If high is not above low, or if width is below 2, all texels have the color at low. False if two stops with
+        different values between low and high lie less than a texel apart, so that colors are lost. */
     bool row(double low, double high, osg::Vec4ub* texels, int width) const;
     /// The same with 16 bits: 65535 is full intensity, and the error of ½/255 becomes ½/65535.
     bool row(double low, double high, osg::Vec4us* texels, int width) const;

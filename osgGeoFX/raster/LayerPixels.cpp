@@ -74,7 +74,7 @@ Texel byteOf(T number)
 }
 
 template<typename T>
-void readColours(const unsigned char* row, const Channels& channels, const Options&, int width, Texel* texels)
+void readColors(const unsigned char* row, const Channels& channels, const Options&, int width, Texel* texels)
 {
     for (int x = 0; x < width; ++x)
     {
@@ -114,18 +114,18 @@ struct Reader
 {
     GLenum type;
     std::size_t size;
-    ReadRow colours, values;
+    ReadRow colors, values;
 };
 
 constexpr Reader knownTypes[] = {
-    {GL_UNSIGNED_BYTE, sizeof(std::uint8_t), readColours<std::uint8_t>, readValues<std::uint8_t>},
-    {GL_BYTE, sizeof(std::int8_t), readColours<std::int8_t>, readValues<std::int8_t>},
-    {GL_UNSIGNED_SHORT, sizeof(std::uint16_t), readColours<std::uint16_t>, readValues<std::uint16_t>},
-    {GL_SHORT, sizeof(std::int16_t), readColours<std::int16_t>, readValues<std::int16_t>},
-    {GL_UNSIGNED_INT, sizeof(std::uint32_t), readColours<std::uint32_t>, readValues<std::uint32_t>},
-    {GL_INT, sizeof(std::int32_t), readColours<std::int32_t>, readValues<std::int32_t>},
-    {GL_FLOAT, sizeof(float), readColours<float>, readValues<float>},
-    {GL_DOUBLE, sizeof(double), readColours<double>, readValues<double>},
+    {GL_UNSIGNED_BYTE, sizeof(std::uint8_t), readColors<std::uint8_t>, readValues<std::uint8_t>},
+    {GL_BYTE, sizeof(std::int8_t), readColors<std::int8_t>, readValues<std::int8_t>},
+    {GL_UNSIGNED_SHORT, sizeof(std::uint16_t), readColors<std::uint16_t>, readValues<std::uint16_t>},
+    {GL_SHORT, sizeof(std::int16_t), readColors<std::int16_t>, readValues<std::int16_t>},
+    {GL_UNSIGNED_INT, sizeof(std::uint32_t), readColors<std::uint32_t>, readValues<std::uint32_t>},
+    {GL_INT, sizeof(std::int32_t), readColors<std::int32_t>, readValues<std::int32_t>},
+    {GL_FLOAT, sizeof(float), readColors<float>, readValues<float>},
+    {GL_DOUBLE, sizeof(double), readColors<double>, readValues<double>},
 };
 
 const Reader* findReader(GLenum type)
@@ -141,7 +141,7 @@ class Source
 public:
     Source(const osg::Image& image, const Options& options, const Channels& channels, const Reader& reader)
         : _image(image), _options(options), _channels(channels),
-          _readRow(options.kind == Kind::Colour ? reader.colours : reader.values)
+          _readRow(options.kind == Kind::Color ? reader.colors : reader.values)
     {
         // osg::Image does not know the size of a double.
         const std::size_t packing = std::max(1u, image.getPacking());
@@ -204,14 +204,14 @@ private:
 
 // Three ways to make one texel of several; add() takes the share of the new one that each covers.
 
-class ColourMean
+class ColorMean
 {
 public:
-    explicit ColourMean(const Options& options) : _light(&Light::of(options.sRGB)) {}
+    explicit ColorMean(const Options& options) : _light(&Light::of(options.sRGB)) {}
     void add(Texel texel, double share)
     {
         const Texel alpha = texel >> 24;
-        // Where all are transparent, their colour is kept for those that blend without alpha.
+        // Where all are transparent, their color is kept for those that blend without alpha.
         const double weight = share * (alpha > 0 ? alpha : 1e-6);
         for (int channel = 0; channel < 3; ++channel)
             _sum[channel] += weight * _light->light((texel >> (8 * channel)) & 255u);
@@ -224,12 +224,12 @@ public:
         Texel texel = static_cast<Texel>(std::lround(_alpha / _share)) << 24;
         for (int channel = 0; channel < 3; ++channel)
             texel |= _light->code(_sum[channel] / _weight) << (8 * channel);
-        *this = ColourMean(*_light);
+        *this = ColorMean(*_light);
         return texel;
     }
 
 private:
-    explicit ColourMean(const Light& light) : _light(&light) {}
+    explicit ColorMean(const Light& light) : _light(&light) {}
 
     const Light* _light;
     std::array<double, 3> _sum{};
@@ -422,8 +422,8 @@ std::optional<LayerPixels> LayerPixels::make(const osg::Image& image, const Opti
 
     switch (options.kind)
     {
-    case Kind::Colour:
-        fill<ColourMean>(source, options, pixels);
+    case Kind::Color:
+        fill<ColorMean>(source, options, pixels);
         break;
     case Kind::Value:
         fill<ValueMean>(source, options, pixels);

@@ -16,9 +16,9 @@ namespace osgGeoFX
 
 /** The texels of a data layer, ready for the GPU: a square with a power of two as its side, and its mip levels.
 
-    A texel has 32 bits. A texel of colours has red in bits 0…7, then green, blue and alpha above. A texel of values
+    A texel has 32 bits. A texel of colors has red in bits 0…7, then green, blue and alpha above. A texel of values
     or classes has the bits of a 32-bit float: the number that the image holds, or 0x7fc00000 for none. If they are
-    uploaded as GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, colours and numbers arrive in the same four bytes on every
+    uploaded as GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV, colors and numbers arrive in the same four bytes on every
     machine.
 
     The image lies at the lower left, with t upwards. Row 0 is the image's row 0, or its last row if the image's
@@ -32,15 +32,15 @@ struct OSGGEOFX_EXPORT LayerPixels
 
     enum class Kind
     {
-        Colour, ///< bytes, filtered; integers are scaled as in OpenGL, floats are clamped to 0…1
-        Value,  ///< numbers to interpolate, from the image's first channel
-        Class   ///< numbers that stand for classes; they are never averaged
+        Color, ///< bytes, filtered; integers are scaled as in OpenGL, floats are clamped to 0…1
+        Value, ///< numbers to interpolate, from the image's first channel
+        Class  ///< numbers that stand for classes; they are never averaged
     };
 
     struct Options
     {
-        Kind kind = Kind::Colour;
-        /// Whether the colours are sRGB-coded. They stay so and are averaged in linear light.
+        Kind kind = Kind::Color;
+        /// Whether the colors are sRGB-coded. They stay so and are averaged in linear light.
         bool sRGB = true;
         /// The number that stands for "none" in values and classes. Infinite numbers and NaN always stand for it.
         std::optional<double> noData;
@@ -63,7 +63,7 @@ struct OSGGEOFX_EXPORT LayerPixels
     /** Makes the texels of an image. The format may be GL_RGB, RGBA, BGR, BGRA, LUMINANCE, LUMINANCE_ALPHA, ALPHA
         (white), RED or RG. The type may be bytes, shorts, ints (signed or not), floats or doubles, with any packing.
 
-        Averages of colours are weighted with alpha, so that transparent texels do not bleed. Averages of values
+        Averages of colors are weighted with alpha, so that transparent texels do not bleed. Averages of values
         leave out "none". Of classes the most frequent one is taken, without "none"; if several are equally frequent,
         it is the first one found. Empty, with a sentence in `error`, for any other image and for options out of
         range. */

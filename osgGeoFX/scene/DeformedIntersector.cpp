@@ -17,25 +17,31 @@ namespace osgGeoFX
 namespace
 {
 
-/// Distance along a ray to a triangle, in units of the direction; negative where it misses. Möller and Trumbore, from
-/// both sides.
-double meet(const osg::Vec3d& origin, const osg::Vec3d& direction, const osg::Vec3d& a, const osg::Vec3d& b,
-            const osg::Vec3d& c)
+/// Where a ray meets a triangle: the distance in units of the direction, negative where it misses, and the shares of the
+/// second and third corner.
+struct Meeting
+{
+    double distance = -1.0, u = 0.0, v = 0.0;
+};
+
+/// Möller and Trumbore, from both sides.
+Meeting meet(const osg::Vec3d& origin, const osg::Vec3d& direction, const osg::Vec3d& a, const osg::Vec3d& b,
+             const osg::Vec3d& c)
 {
     const osg::Vec3d ab = b - a;
     const osg::Vec3d ac = c - a;
     const osg::Vec3d p = direction ^ ac;
     const double determinant = ab * p;
     // Where a deformation gathers ground in one point of the picture, triangles are lines of sight, and nothing but rounding.
-    if (std::abs(determinant) <= 1e-10 * ab.length() * p.length()) return -1.0;
+    if (std::abs(determinant) <= 1e-10 * ab.length() * p.length()) return {};
     const osg::Vec3d from = origin - a;
     const double u = (from * p) / determinant;
     const osg::Vec3d q = from ^ ab;
     const double v = (direction * q) / determinant;
     // Neighbours share their edges: a ray between them must not slip through.
     constexpr double tolerance = 1e-9;
-    if (u < -tolerance || v < -tolerance || u + v > 1.0 + tolerance) return -1.0;
-    return (ac * q) / determinant;
+    if (u < -tolerance || v < -tolerance || u + v > 1.0 + tolerance) return {};
+    return {(ac * q) / determinant, u, v};
 }
 
 } // namespace
@@ -80,11 +86,11 @@ osgUtil::Intersector* DeformedLineIntersector::clone(osgUtil::IntersectionVisito
 
 bool DeformedLineIntersector::meets(const Ball& ball) const
 {
-    const osg::Vec3d toCentre = ball.centre - _origin;
-    const double along = toCentre * _direction;
+    const osg::Vec3d toCenter = ball.center - _origin;
+    const double along = toCenter * _direction;
     const double radius = ball.radius * (1.0 + 1e-9) + 1e-6;
-    if (along < 0.0) return toCentre.length2() <= radius * radius;
-    return (toCentre - _direction * along).length2() <= radius * radius;
+    if (along < 0.0) return toCenter.length2() <= radius * radius;
+    return (toCenter - _direction * along).length2() <= radius * radius;
 }
 
 bool DeformedLineIntersector::missesBox(const osg::BoundingBox& box) const
@@ -137,12 +143,12 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
     for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
     {
         const unsigned int* corner = &mesh.corners()[i];
-        const double distance =
+        const Meeting met =
             meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]);
-        if (!(distance >= 0.0)) continue;
+        if (!(met.distance >= 0.0)) continue;
         Intersection hit;
-        hit.distance = distance;
-        hit.deformed = _origin + _direction * distance;
+        hit.distance = met.distance;
+        hit.deformed = _origin + _direction * met.distance;
         hit.drawable = drawable;
         hit.triangle = static_cast<unsigned int>(i / 3);
         hit.path = visitor.getNodePath();
@@ -150,8 +156,14 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         const osg::Matrixd model = toWorld ? osg::Matrixd(*toWorld) : osg::Matrixd();
         osg::Matrixd toLocal;
         toLocal.invert(_modelView);
-        hit.world = _chain->undeform(hit.deformed) * toLocal * model;
         const osg::Vec3d* first = mesh.positions().data();
+        const osg::Vec3d a = first[corner[0]] * _modelView, ab = first[corner[1]] * _modelView - a,
+                         ac = first[corner[2]] * _modelView - a;
+        const osg::Vec3d flat = a + ab * met.u + ac * met.v;
+        osg::Vec3d eye = _chain->undeform(hit.deformed);
+        // Where a deformation gathers ground in one point, the flat triangle that is drawn may lie where no ground goes.
+        if (!((eye - flat).length2() <= std::max(ab.length2(), ac.length2()))) eye = flat;
+        hit.world = eye * toLocal * model;
         hit.normal = (first[corner[1]] - first[corner[0]]) ^ (first[corner[2]] - first[corner[0]]);
         hit.normal = osg::Matrixd::transform3x3(hit.normal, model);
         hit.normal.normalize();
@@ -227,7 +239,8 @@ void DeformedIntersectionVisitor::apply(osg::Node& node)
 void DeformedIntersectionVisitor::apply(osg::Geode& node)
 {
     const Scope scope(*this, node);
-    IntersectionVisitor::apply(node);
+    // OSG's own way with geodes passes over what their drawables say of programs and defines.
+    IntersectionVisitor::apply(static_cast<osg::Node&>(node));
 }
 
 void DeformedIntersectionVisitor::apply(osg::Group& node)

@@ -20,7 +20,7 @@ namespace osgGeoFX
     labels.
 
     World coordinates are those of the scene's children. Pixels count from the lower left corner of the viewport; the
-    centre of the first one is (0.5, 0.5). An object keeps the camera and the effects as they were when it was made.
+    center of the first one is (0.5, 0.5). An object keeps the camera and the effects as they were when it was made.
     Each query uses the tiles that are loaded at that time. Use it where the scene graph may be read: in event and
     update traversals.
 

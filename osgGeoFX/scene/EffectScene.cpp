@@ -213,7 +213,7 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformation(const osg::Matrixd
                                                               const osg::NodePath& above) const
 {
     const Ground known = ground(above);
-    return CameraFrames(_effects, ViewGeometry(modelView, projection, known)).chain(known);
+    return CameraSnapshots(_effects, ViewGeometry(modelView, projection, known)).chain(known);
 }
 
 namespace
@@ -250,7 +250,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         getBound();
     }
     const ViewGeometry view(*outer.getModelViewMatrix(), *outer.getProjectionMatrix(), ground(path));
-    const CameraFrames frames(_effects, view);
+    const CameraSnapshots snapshots(_effects, view);
     Drawing::Camera& own = _drawing->cameras.of(outer);
     if (own.visitor->startsFrame(outer))
     {
@@ -264,11 +264,11 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     // Made anew for other effects, which would find the uniforms and textures of the former ones under their names.
     if (!now || now->units() != units) now = std::make_unique<CameraState>(_effects, mapUnit, units);
     osg::StateSet& state = now->set();
-    now->fill(frames, mapUnit);
+    now->fill(snapshots, mapUnit);
     const bool surfaces = now->fillSurfaces(_effects, view, outer);
 
     CompensatingCullVisitor::Task task;
-    task.chain = frames.chain(view.ground);
+    task.chain = snapshots.chain(view.ground);
     task.mapUnit = mapUnit;
     task.untouched = _drawing->untouched;
     task.tileError = view.ground.tileError;

@@ -36,7 +36,7 @@ public:
         dirtyBound();
     }
     const osg::Vec3d& getReference() const { return _reference; }
-    /// Whether the centre of the bounding sphere is the reference point instead. False by default.
+    /// Whether the center of the bounding sphere is the reference point instead. False by default.
     void setUseBoundCenter(bool use)
     {
         _useBoundCenter = use;

@@ -40,7 +40,7 @@ enum class Voids
 struct BuildOptions
 {
     std::vector<std::string> dems;    ///< elevation rasters, metres; in overlaps the later one wins
-    std::vector<std::string> imagery; ///< colour rasters (RGB, RGBA, grey or palette); the later one wins
+    std::vector<std::string> imagery; ///< color rasters (RGB, RGBA, grey or palette); the later one wins
     std::string landCover;            ///< class raster, one byte band; empty for none
     std::string landCoverTable;       ///< the meaning of its values, for readLandCoverTable()
     std::string treeCover;            ///< raster of the share under trees, percent; empty for none
@@ -62,15 +62,15 @@ struct BuildOptions
     int textureSize = 0;
     double pixelError = 1.0; ///< bound of the geometric error on the screen, pixels, > 0
     double texelError = 2.0; ///< largest size of a texel on the screen where it would show, pixels, > 0
-    /// Anisotropic filtering of the colours, texels across a pixel at most, 1…16. 0 stands for 4 with imagery and 1
-    /// without: the colours of heights and classes are smooth, and filtering costs software renderers a third of the
+    /// Anisotropic filtering of the colors, texels across a pixel at most, 1…16. 0 stands for 4 with imagery and 1
+    /// without: the colors of heights and classes are smooth, and filtering costs software renderers a third of the
     /// frame time.
     double anisotropy = 0.0;
-    /// Stores colours in BC1 and normals in BC5, with mipmaps made by the builder. GPUs read these formats directly:
-    /// colours then take a sixth of the GPU memory, and normals half. The cover, the classes and normals of three
+    /// Stores colors in BC1 and normals in BC5, with mipmaps made by the builder. GPUs read these formats directly:
+    /// colors then take a sixth of the GPU memory, and normals half. The cover, the classes and normals of three
     /// channels stay exact. Textures are up to three texels wider, since a block has 4 × 4 texels.
     bool compressTextures = false;
-    /// The screen for which the bounds hold: pixels per radian at its centre, > 0. The default is that of plain
+    /// The screen for which the bounds hold: pixels per radian at its center, > 0. The default is that of plain
     /// osgviewer: 1080 lines over a vertical field of view of 29.15°.
     double pixelsPerRadian = 2077.0;
     std::string output; ///< folder of the database; made if missing

@@ -19,27 +19,61 @@ namespace osgGeoFX
 namespace
 {
 
-template<typename Class>
-osg::ref_ptr<Effect> make()
+template<typename Base, typename Class>
+osg::ref_ptr<Base> make()
 {
     return new Class;
 }
 
+template<typename Base>
 struct Kind
 {
     const char* name;
-    osg::ref_ptr<Effect> (*create)();
+    osg::ref_ptr<Base> (*create)();
+    const char* description;
 };
 
 /// The one list of effects: scene files, options and tests go by it. A name is the class's with a small first letter.
-constexpr Kind kinds[] = {
-    {"birdsEyeView", make<BirdsEyeView>},
-    {"pedestrianView", make<PedestrianView>},
-    {"blendedView", make<BlendedView>},
-    {"verticalExaggeration", make<VerticalExaggeration>},
-    {"projectiveMappings", make<ProjectiveMappings>},
-    {"closeUps", make<CloseUps>},
-    {"panoramaMap", make<PanoramaMap>},
+constexpr Kind<Effect> effects[] = {
+    {"birdsEyeView", make<Effect, BirdsEyeView>,
+     "A map below and the skyline above it: behind a line of the image the ground bends down until the "
+     "horizon lies "
+     "where it is wanted."},
+    {"pedestrianView", make<Effect, PedestrianView>,
+     "The surroundings as they are, and the ground ahead folded up like a map."},
+    {"blendedView", make<Effect, BlendedView>,
+     "The bird's-eye view from high up, the pedestrian's view near the ground, and one bend between them on "
+     "the way. "
+     "Of the two views only what is their own counts: lines, distances, angles, reference planes and "
+     "tallest."},
+    {"verticalExaggeration", make<Effect, VerticalExaggeration>,
+     "Heights drawn larger or smaller than they are."},
+    {"projectiveMappings", make<Effect, ProjectiveMappings>,
+     "Rasters thrown onto the terrain and what stands on it, thousands at once. They lie in a frame whose "
+     "origin is "
+     "on the terrain; where nothing says its origin, it lies in the terrain's center."},
+    {"closeUps", make<Effect, CloseUps>,
+     "Regions of the terrain, lifted out, scaled and restyled above it, and tied to their place by anchors."},
+    {"panoramaMap", make<Effect, PanoramaMap>,
+     "A panorama map in the manner of painted ones: the terrain from above at the base, up to a horizon; "
+     "ground, water "
+     "and sky in the colors of a painting. The camera tells place, heading and width."},
+};
+
+/// What mappings and close-ups are made of.
+constexpr Kind<PropertyHolder> parts[] = {
+    {"projectiveMapping", make<PropertyHolder, ProjectiveMapping>, "A raster on the terrain."},
+    {"dataLayer", make<PropertyHolder, DataLayer>, "The raster that a mapping shows."},
+    {"colorTransfer", make<PropertyHolder, ColorTransfer>,
+     "How rasters become colors, and how these meet the scene's."},
+    {"closeUp", make<PropertyHolder, CloseUp>, "A region of the ground, lifted out."},
+    {"regionOfInterest", make<PropertyHolder, RegionOfInterest>,
+     "What is lifted out: a place, a size and a shape. Corners make it a polygon, and an image makes it a "
+     "mask."},
+    {"anchor", make<PropertyHolder, Anchor>,
+     "The fence between a region and its close-up. It is transparent by a table over the height."},
+    {"surfaceData", make<PropertyHolder, SurfaceData>,
+     "Several rasters of one part of the ground, by their names."},
 };
 
 std::string joined(const std::vector<std::string>& words)
@@ -55,18 +89,64 @@ std::string joined(const std::vector<std::string>& words)
 std::vector<std::string> effectKinds()
 {
     std::vector<std::string> names;
-    for (const Kind& kind : kinds)
+    for (const Kind<Effect>& kind : effects)
         names.emplace_back(kind.name);
     return names;
 }
 
 osg::ref_ptr<Effect> createEffect(const std::string& name)
 {
-    for (const Kind& kind : kinds)
+    for (const Kind<Effect>& kind : effects)
     {
         if (name == kind.name) return kind.create();
     }
     return nullptr;
+}
+
+std::vector<std::string> propertyHolderKinds()
+{
+    std::vector<std::string> names = effectKinds();
+    for (const Kind<PropertyHolder>& kind : parts)
+        names.emplace_back(kind.name);
+    return names;
+}
+
+osg::ref_ptr<PropertyHolder> createPropertyHolder(const std::string& name)
+{
+    for (const Kind<PropertyHolder>& kind : parts)
+    {
+        if (name == kind.name) return kind.create();
+    }
+    return createEffect(name);
+}
+
+std::string describeKind(const std::string& name)
+{
+    for (const Kind<Effect>& kind : effects)
+    {
+        if (name == kind.name) return kind.description;
+    }
+    for (const Kind<PropertyHolder>& kind : parts)
+    {
+        if (name == kind.name) return kind.description;
+    }
+    return {};
+}
+
+std::string effectsHelp()
+{
+    std::string text;
+    for (const Kind<Effect>& kind : effects)
+    {
+        text += std::string(text.empty() ? "" : "\n") + kind.name + ": " + kind.description + "\n";
+        const osg::ref_ptr<Effect> effect = kind.create();
+        for (const Property& property : effect->properties())
+            text += "  " + property.name + "=" + property.text(property.defaultValue) + "  " +
+                    property.documentation() + "\n";
+        for (const PropertyHolder::Part& part : effect->parts())
+            text += std::string("  ") + part.name + ".…  the properties of " + kindOf(*part.object) + "\n";
+    }
+    return text;
 }
 
 std::string kindOf(const osg::Object& object)

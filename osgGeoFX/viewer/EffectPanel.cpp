@@ -124,7 +124,7 @@ void EffectPanel::add(PropertyHolder& holder, const Effect& effect, const std::s
     {
         const bool first = property.name == "enabled";
         _entries.push_back(
-            {&holder, &property, first ? prefix + kindOf(holder) : inside + property.textName(), &effect});
+            {&holder, &property, first ? prefix + kindOf(holder) : inside + property.name, &effect});
     }
     for (const PropertyHolder::Part& part : holder.parts())
         add(*part.object, effect, inside);
@@ -159,7 +159,7 @@ PanelPage::Row EffectPanel::row(std::size_t number) const
     row.inForce = entry.effect->getEnabled();
     row.name = entry.label;
     row.value = entry.property->text(value);
-    row.note = entry.property->unit == "rad" ? "" : entry.property->unit;
+    row.note = entry.property->textUnit();
     return row;
 }
 

@@ -86,8 +86,7 @@ std::optional<SceneSettings> SceneSettings::read(const osg::Node& root, std::str
         const std::optional<std::vector<double>> rgb = parseNumbers(text);
         if (!rgb || rgb->size() != 3)
         {
-            error =
-                "The scene's background \"" + text + "\" is not a colour; write r,g,b with values 0 to 1.";
+            error = "The scene's background \"" + text + "\" is not a color; write r,g,b with values 0 to 1.";
             return std::nullopt;
         }
         for (unsigned int i = 0; i < 3; ++i)

@@ -23,7 +23,7 @@ namespace osgGeoFX
 /** The settings that a scene gives to the program that shows it. They are user values of its root node; the .geofx
     plugin sets them. All are optional:
 
-    - `geofx.homeView`: string "LON,LAT,ALT,HEADING,PITCH[,ROLL]" in degrees and metres.
+    - `geofx.homeView`: string "LON,LAT,HEIGHT,HEADING,PITCH[,ROLL]" in degrees and metres.
     - `geofx.homeFov`: double, the vertical field of view in degrees, between 0 and 180.
     - `geofx.background`: string "r,g,b", 0…1.
     - `geofx.hasLight`: bool, true if the scene has its own light and needs no headlight.

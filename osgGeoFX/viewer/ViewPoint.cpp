@@ -52,7 +52,7 @@ std::optional<ViewPoint> ViewPoint::fromNumbers(const std::vector<double>& numbe
 {
     if (numbers.size() != 5 && numbers.size() != 6)
     {
-        error = "A view needs five or six numbers, LON,LAT,ALT,HEADING,PITCH[,ROLL].";
+        error = "A view needs five or six numbers, LON,LAT,HEIGHT,HEADING,PITCH[,ROLL].";
         return std::nullopt;
     }
     if (std::abs(numbers[1]) > 90.0 || std::abs(numbers[4]) > 90.0)
@@ -64,7 +64,7 @@ std::optional<ViewPoint> ViewPoint::fromNumbers(const std::vector<double>& numbe
     ViewPoint point;
     point.longitude = numbers[0] * radians;
     point.latitude = numbers[1] * radians;
-    point.altitude = numbers[2];
+    point.height = numbers[2];
     point.heading = numbers[3] * radians;
     point.pitch = numbers[4] * radians;
     point.roll = numbers.size() == 6 ? numbers[5] * radians : 0.0;
@@ -77,7 +77,7 @@ std::optional<ViewPoint> ViewPoint::parse(const std::string& text, std::string& 
     if (!numbers)
     {
         error =
-            "\"" + text + "\" is not a view; write five or six numbers, LON,LAT,ALT,HEADING,PITCH[,ROLL].";
+            "\"" + text + "\" is not a view; write five or six numbers, LON,LAT,HEIGHT,HEADING,PITCH[,ROLL].";
         return std::nullopt;
     }
     return fromNumbers(*numbers, error);
@@ -86,7 +86,7 @@ std::optional<ViewPoint> ViewPoint::parse(const std::string& text, std::string& 
 bool ViewPoint::viewMatrix(const Georeference& reference, osg::Matrixd& view) const
 {
     osg::Matrixd frame;
-    if (!reference.localToWorld(longitude, latitude, altitude, frame))
+    if (!reference.localToWorld(longitude, latitude, height, frame))
     {
         return false;
     }
@@ -107,7 +107,7 @@ ViewPoint interpolate(const ViewPoint& a, const ViewPoint& b, double t)
     ViewPoint point;
     point.longitude = alongShorterArc(a.longitude, b.longitude, t);
     point.latitude = a.latitude + t * (b.latitude - a.latitude);
-    point.altitude = a.altitude + t * (b.altitude - a.altitude);
+    point.height = a.height + t * (b.height - a.height);
     point.heading = alongShorterArc(a.heading, b.heading, t);
     point.pitch = a.pitch + t * (b.pitch - a.pitch);
     point.roll = alongShorterArc(a.roll, b.roll, t);
@@ -118,7 +118,7 @@ osg::Matrixd viewOfPoints(const std::vector<osg::Vec3d>& points, const osg::Vec3
                           const Georeference* reference, double fieldOfView, double aspect)
 {
     osg::Matrixd frame = osg::Matrixd::translate(center);
-    // Near the Earth's own centre, where a whole globe has its middle, no direction is up.
+    // Near the Earth's own center, where a whole globe has its middle, no direction is up.
     if (reference && reference->isGeocentric() && center.length() > 1e6)
     {
         double longitude = 0.0;

@@ -17,19 +17,19 @@ namespace osgGeoFX
 
 /** The position and direction of a camera relative to the ground.
 
-    Angles are radians, lengths are metres. The altitude is above the database's zero height. The heading turns
+    Angles are radians, lengths are metres. The height is above the database's zero height. The heading turns
     clockwise from north. The pitch is negative downwards (−π/2…π/2). The roll is positive with the right wing down.
     @ingroup viewer */
 struct OSGGEOFX_EXPORT ViewPoint
 {
     double longitude = 0.0;
     double latitude = 0.0;
-    double altitude = 0.0;
+    double height = 0.0;
     double heading = 0.0;
     double pitch = 0.0;
     double roll = 0.0;
 
-    /// Reads "LON,LAT,ALT,HEADING,PITCH[,ROLL]" in degrees and metres. Returns nothing, with a sentence in `error`, if
+    /// Reads "LON,LAT,HEIGHT,HEADING,PITCH[,ROLL]" in degrees and metres. Returns nothing, with a sentence in `error`, if
     /// the text is wrong.
     static std::optional<ViewPoint> parse(const std::string& text, std::string& error);
 

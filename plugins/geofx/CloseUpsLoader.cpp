@@ -113,26 +113,25 @@ private:
                                     "\" cannot be a mask; expected: a plain picture, such as a grey PNG.");
         if (_terrain.ellipsoid())
         {
-            if (closeUp.centre == SceneCloseUp::METRES)
-                fail(closeUp.place,
-                     "the terrain is a globe; write longitudeDegrees and latitudeDegrees in the place "
-                     "of centreX and centreY.");
-            if (closeUp.centre == SceneCloseUp::NOTHING)
+            if (closeUp.center == SceneCloseUp::METRES)
+                fail(closeUp.place, "the terrain is a globe; write longitude and latitude in the place "
+                                    "of centerX and centerY.");
+            if (closeUp.center == SceneCloseUp::NOTHING)
                 fail(closeUp.place, "nothing says where the region lies, and the terrain is a globe; give "
-                                    "<region> its longitudeDegrees and latitudeDegrees.");
+                                    "<region> its longitude and latitude.");
         }
-        else if (closeUp.centre == SceneCloseUp::DEGREES)
+        else if (closeUp.center == SceneCloseUp::DEGREES)
         {
             const osg::Vec3d world =
                 _terrain.worldOf(closeUp.place, osg::RadiansToDegrees(region.getLongitude()),
                                  osg::RadiansToDegrees(region.getLatitude()));
-            region.setCentre({world.x(), world.y()});
+            region.setCenter({world.x(), world.y()});
         }
-        const osg::Vec2d centre = _terrain.ellipsoid()
+        const osg::Vec2d center = _terrain.ellipsoid()
                                       ? osg::Vec2d(osg::RadiansToDegrees(region.getLongitude()),
                                                    osg::RadiansToDegrees(region.getLatitude()))
-                                      : region.getCentre();
-        _terrain.warnIfOff(closeUp.place, centre, std::hypot(region.getWidth(), region.getDepth()) / 2.0);
+                                      : region.getCenter();
+        _terrain.warnIfOff(closeUp.place, center, std::hypot(region.getWidth(), region.getDepth()) / 2.0);
     }
 
     const SceneCloseUps& _closeUps;

@@ -87,7 +87,7 @@ private:
         {
             surface.source = SceneSurface::VECTORS;
             surface.width = SceneXml::real(node, "width");
-            surface.colour = colourOf(node, "colour");
+            surface.color = colorOf(node, "color");
             return surface;
         }
         const auto kind = std::find(kinds.begin(), kinds.end(), attributeOf(node, "kind"));
@@ -123,14 +123,14 @@ private:
     void readRegion(xmlNode* node, SceneCloseUp& result) const
     {
         result.place = _xml.place(node);
-        const std::vector<const char*> angles = {"longitudeDegrees", "latitudeDegrees"};
+        const std::vector<const char*> angles = {"longitude", "latitude"};
         const bool hasAngles = isGivenAny(node, angles);
-        const bool hasMetres = isGivenAny(node, {"centreX", "centreY"});
+        const bool hasMetres = isGivenAny(node, {"centerX", "centerY"});
         const bool hasBoth = isGiven(node, angles[0]) && isGiven(node, angles[1]);
         if (hasAngles && (hasMetres || !hasBoth))
-            _xml.fail(node, "longitudeDegrees and latitudeDegrees belong together and stand in the place of "
-                            "centreX and centreY; remove one of the pairs.");
-        result.centre = hasAngles   ? SceneCloseUp::DEGREES
+            _xml.fail(node, "longitude and latitude belong together and stand in the place of "
+                            "centerX and centerY; remove one of the pairs.");
+        result.center = hasAngles   ? SceneCloseUp::DEGREES
                         : hasMetres ? SceneCloseUp::METRES
                                     : SceneCloseUp::NOTHING;
         RegionOfInterest& region = *result.closeUp->getRegion();

@@ -77,7 +77,7 @@ private:
             constexpr double nearlyBeyond = 0.05;
             if (there * up < nearlyBeyond)
                 fail(place, "it lies on the other side of the globe from the effect's origin; give "
-                            "<projectiveMappings> its longitudeDegrees and latitudeDegrees near it.");
+                            "<projectiveMappings> its longitude and latitude near it.");
         }
         const osg::Vec3d result = _effect.placeOf(world, _ellipsoid);
         return {result.x(), result.y()};
@@ -113,7 +113,7 @@ private:
         const osg::Vec3d world = _terrain.worldOf(mapping.place, point.longitude, point.latitude);
         setOrigin(_ellipsoid ? osg::Vec2d(point.longitude, point.latitude)
                              : osg::Vec2d(world.x(), world.y()));
-        mapping.mapping->setCentre(placeOf(mapping.place, world));
+        mapping.mapping->setCenter(placeOf(mapping.place, world));
     }
 
     void place(const SceneMapping& mapping, const SceneMapping::Raster& raster)

@@ -59,7 +59,7 @@ private:
         ProjectiveMapping& mapping = *result.mapping;
         _xml.set(mapping, node,
                  {"layer", "mask", "table", "transfer", "file", "kind", "maxSide", "west", "south", "east",
-                  "north", "longitudeDegrees", "latitudeDegrees"});
+                  "north", "longitude", "latitude"});
         mapping.setLayer(findNamed(_xml, node, "layer", _layers, "layer"));
         mapping.setMask(findNamed(_xml, node, "mask", _layers, "layer"));
         mapping.setTable(findNamed(_xml, node, "table", _tables, "colorTable"));
@@ -88,8 +88,8 @@ private:
     void readPlacing(xmlNode* node, SceneMapping& result) const
     {
         const std::vector<const char*> edges = {"west", "south", "east", "north"};
-        const std::vector<const char*> angles = {"longitudeDegrees", "latitudeDegrees"};
-        const std::vector<const char*> centre = {"centreX", "centreY"};
+        const std::vector<const char*> angles = {"longitude", "latitude"};
+        const std::vector<const char*> center = {"centerX", "centerY"};
         const std::vector<const char*> frame = {"uX",  "uY",  "vX",  "vY",  "m00", "m01", "m02",
                                                 "m10", "m11", "m12", "m20", "m21", "m22"};
         const auto has = [&](const std::vector<const char*>& names)
@@ -103,20 +103,19 @@ private:
         };
         if (has(edges))
         {
-            if (!hasAll(edges) || has(angles) || has(centre) || has(frame))
+            if (!hasAll(edges) || has(angles) || has(center) || has(frame))
                 return _xml.fail(node,
                                  "west, south, east and north belong together and say all of the place; "
-                                 "remove centreX, uX and the like, or the edges.");
+                                 "remove centerX, uX and the like, or the edges.");
             result.box = _xml.box(node);
         }
         else if (has(angles))
         {
-            if (!hasAll(angles) || has(centre))
-                return _xml.fail(
-                    node, "longitudeDegrees and latitudeDegrees belong together and stand in the place of "
-                          "centreX and centreY; remove one of the pairs.");
-            result.point = SceneMapping::Point{SceneXml::real(node, "longitudeDegrees"),
-                                               SceneXml::real(node, "latitudeDegrees")};
+            if (!hasAll(angles) || has(center))
+                return _xml.fail(node, "longitude and latitude belong together and stand in the place of "
+                                       "centerX and centerY; remove one of the pairs.");
+            result.point =
+                SceneMapping::Point{SceneXml::real(node, "longitude"), SceneXml::real(node, "latitude")};
         }
     }
 
@@ -134,7 +133,7 @@ SceneMappings readMappings(const SceneXml& xml, xmlNode* element, ProjectiveMapp
     SceneMappings result;
     result.place = xml.place(element);
     result.effect = &effect;
-    result.hasOrigin = isGivenAny(element, {"originX", "originY", "longitudeDegrees", "latitudeDegrees"});
+    result.hasOrigin = isGivenAny(element, {"originX", "originY", "longitude", "latitude"});
     Reader(xml, result).read(element);
     return result;
 }

@@ -40,8 +40,8 @@ public:
         if (xmlNode* view = child(root, "homeView")) result.homeView = homeView(view);
         if (xmlNode* sunNode = child(root, "sun"))
             result.sun = SceneSun{_xml.place(sunNode), real(sunNode, "azimuth"), real(sunNode, "elevation"),
-                                  colour(sunNode, "colour"), colour(sunNode, "ambient")};
-        if (xmlNode* background = child(root, "background")) result.background = colour(background, "colour");
+                                  color(sunNode, "color"), color(sunNode, "ambient")};
+        if (xmlNode* background = child(root, "background")) result.background = color(background, "color");
         if (xmlNode* effectsNode = child(root, "effects")) effects(effectsNode, result);
         return result;
     }
@@ -51,9 +51,9 @@ private:
     static double real(xmlNode* node, const char* name) { return SceneXml::real(node, name); }
     static int integer(xmlNode* node, const char* name) { return SceneXml::integer(node, name); }
 
-    static SceneColour colour(xmlNode* node, const char* name)
+    static SceneColor color(xmlNode* node, const char* name)
     {
-        const std::array<double, 4> rgba = SceneXml::colour(node, name);
+        const std::array<double, 4> rgba = SceneXml::color(node, name);
         return {rgba[0], rgba[1], rgba[2]};
     }
 
@@ -88,13 +88,9 @@ private:
 
     static SceneView homeView(xmlNode* node)
     {
-        SceneView view{real(node, "longitude"),
-                       real(node, "latitude"),
-                       real(node, "altitude"),
-                       real(node, "heading"),
-                       real(node, "pitch"),
-                       real(node, "roll"),
-                       std::nullopt};
+        SceneView view{
+            real(node, "longitude"), real(node, "latitude"), real(node, "height"), real(node, "heading"),
+            real(node, "pitch"),     real(node, "roll"),     std::nullopt};
         if (!attributeOf(node, "verticalFieldOfView").empty())
             view.verticalFieldOfView = real(node, "verticalFieldOfView");
         return view;

@@ -39,7 +39,7 @@ struct ScenePath
 };
 
 /// Red, green, blue, 0…1.
-using SceneColour = std::array<double, 3>;
+using SceneColor = std::array<double, 3>;
 
 struct SceneRasters
 {
@@ -67,7 +67,7 @@ struct SceneRasters
 /// Degrees, and metres above the database's zero height.
 struct SceneView
 {
-    double longitude = 0.0, latitude = 0.0, altitude = 0.0, heading = 0.0, pitch = 0.0, roll = 0.0;
+    double longitude = 0.0, latitude = 0.0, height = 0.0, heading = 0.0, pitch = 0.0, roll = 0.0;
     std::optional<double> verticalFieldOfView;
 };
 
@@ -76,7 +76,7 @@ struct SceneSun
 {
     ScenePlace place;
     double azimuth = 0.0, elevation = 0.0;
-    SceneColour colour{}, ambient{};
+    SceneColor color{}, ambient{};
 };
 
 /// Degrees on a globe, else metres of the terrain's coordinate system.
@@ -85,7 +85,7 @@ struct SceneBox
     double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
 };
 
-/// A colour table of a text file.
+/// A color table of a text file.
 struct SceneTable
 {
     osg::ref_ptr<ColorTable> table; ///< with its mode
@@ -150,7 +150,7 @@ struct SceneSurface
     SurfaceData::Kind kind = SurfaceData::COLOR; ///< of RASTER and DERIVED
     ScenePath file;                              ///< not of DERIVED
     double width = 0.0;                          ///< of VECTORS, metres
-    osg::Vec4 colour;                            ///< of VECTORS
+    osg::Vec4 color;                             ///< of VECTORS
 };
 
 struct SceneSurfaceData
@@ -167,14 +167,14 @@ struct SceneCloseUp
 {
     ScenePlace place; ///< of its region
     osg::ref_ptr<CloseUp> closeUp;
-    /// What the region's centre is said in.
-    enum Centre
+    /// What the region's center is said in.
+    enum Center
     {
         NOTHING,
         METRES,
         DEGREES
     };
-    Centre centre = NOTHING;
+    Center center = NOTHING;
     std::optional<ScenePath> image; ///< of its mask
 };
 
@@ -203,7 +203,7 @@ struct ScenePanorama
     std::vector<Lines> lines;
 };
 
-/** What a .geofx file says; data/geofx.xsd has the meaning, range and default of everything.
+/** What a .geofx file says; geofx.xsd.in and data/properties.md have the meaning, range and default of everything.
 
     All functions may be called from any thread. The effects belong to whoever has the value. */
 struct SceneFile
@@ -215,7 +215,7 @@ struct SceneFile
 
     std::optional<SceneView> homeView;
     std::optional<SceneSun> sun;
-    std::optional<SceneColour> background;
+    std::optional<SceneColor> background;
     std::vector<osg::ref_ptr<Effect>> effects; ///< in their order
     std::vector<SceneMappings> mappings;       ///< of the effects among them that have mappings
     std::vector<SceneCloseUps> closeUps;       ///< of the effects among them that have close-ups

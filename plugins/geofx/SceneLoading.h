@@ -34,14 +34,14 @@ struct PictureRequest
     bool done = false;
 };
 
-/** The picture of a file, or a film. Colours are read by OSG, and by GDAL where OSG does not know the file, where it is a TIFF, or
+/** The picture of a file, or a film. Colors are read by OSG, and by GDAL where OSG does not know the file, where it is a TIFF, or
     where it is so large that it must be reduced while it is read; values and classes by GDAL, and by OSG where GDAL does not know it or is
     not there. What GDAL reads has no more than `maxSide` texels on a side; a warning says where it had more. */
 osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file, DataLayer::Kind kind = DataLayer::COLOR,
                                    int maxSide = 16384);
 /// A warning about a place of the scene file.
 void warn(const ScenePlace& place, const std::string& text);
-/// The colours of a file.
+/// The colors of a file.
 void readTable(const SceneTable& table);
 
 /// The terrain of a scene, and where places of its file lie on it.

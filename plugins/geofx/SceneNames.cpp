@@ -12,9 +12,9 @@ bool isGivenAny(xmlNode* node, const std::vector<const char*>& names)
     return std::any_of(names.begin(), names.end(), [&](const char* name) { return isGiven(node, name); });
 }
 
-osg::Vec4 colourOf(xmlNode* node, const char* name)
+osg::Vec4 colorOf(xmlNode* node, const char* name)
 {
-    const std::array<double, 4> rgba = SceneXml::colour(node, name);
+    const std::array<double, 4> rgba = SceneXml::color(node, name);
     return osg::Vec4(osg::Vec4d(rgba[0], rgba[1], rgba[2], rgba[3]));
 }
 
@@ -38,8 +38,8 @@ void readTable(const SceneXml& xml, xmlNode* node, Named<ColorTable>& all, std::
     xmlNode* stop = SceneXml::child(node, "stop");
     const int sources = isGiven(node, "ready") + isGiven(node, "file") + (stop != nullptr);
     if (sources != 1)
-        xml.fail(node, std::string(sources == 0 ? "nothing says what the colours are"
-                                                : "too much says what the colours are") +
+        xml.fail(node, std::string(sources == 0 ? "nothing says what the colors are"
+                                                : "too much says what the colors are") +
                            "; expected: one of ready, file and <stop> elements.");
     else if (range && stop)
         xml.fail(node, "low and high are of no use with <stop> elements; remove them.");
@@ -52,12 +52,12 @@ void readTable(const SceneXml& xml, xmlNode* node, Named<ColorTable>& all, std::
     }
     ColorTable::Stops stops;
     for (; stop; stop = SceneXml::next(stop->next, "stop"))
-        stops.push_back({SceneXml::real(stop, "value"), colourOf(stop, "colour")});
+        stops.push_back({SceneXml::real(stop, "value"), colorOf(stop, "color")});
     if (!stops.empty()) table->setStops(stops);
     const std::vector<std::string> modes = {"linear", "nearest", "exact", "steps"};
     const auto mode = std::find(modes.begin(), modes.end(), attributeOf(node, "mode"));
     table->setMode(static_cast<ColorTable::Mode>(mode - modes.begin()));
-    table->setNoDataColor(colourOf(node, "noDataColour"));
+    table->setNoDataColor(colorOf(node, "noDataColor"));
     addNamed(xml, node, all, *table);
     if (isGiven(node, "file")) files.push_back({table, xml.path(node, "file"), range});
 }

@@ -9,10 +9,10 @@
 namespace osgGeoFX
 {
 
-// What elements of effects share: names by which they refer to each other, and colour tables.
+// What elements of effects share: names by which they refer to each other, and color tables.
 
 bool isGivenAny(xmlNode* node, const std::vector<const char*>& names);
-osg::Vec4 colourOf(xmlNode* node, const char* name);
+osg::Vec4 colorOf(xmlNode* node, const char* name);
 
 /// What has a name in an effect.
 template<typename Class>
@@ -48,7 +48,7 @@ Class* findNamed(const SceneXml& xml, xmlNode* node, const char* attribute, cons
     return nullptr;
 }
 
-/// Reads a <colorTable>; where its colours are in a file, they are left to be read from there.
+/// Reads a <colorTable>; where its colors are in a file, they are left to be read from there.
 void readTable(const SceneXml& xml, xmlNode* node, Named<ColorTable>& all, std::vector<SceneTable>& files);
 
 } // namespace osgGeoFX

@@ -64,7 +64,7 @@ bool sunPlace(const SceneFile& scene, const osg::Node& terrain, const Georeferen
     }
     double height = 0.0;
     if (reference.toGeodetic(center, longitude, latitude, height)) return true;
-    error = "The terrain's centre has no longitude and latitude; give the scene a <homeView>.";
+    error = "The terrain's center has no longitude and latitude; give the scene a <homeView>.";
     return false;
 }
 
@@ -87,9 +87,9 @@ std::optional<osg::Vec3d> sunDirection(const SceneFile& scene, const osg::Node& 
     return osg::Matrixd::transform3x3(local, frame);
 }
 
-osg::Vec4 opaque(const SceneColour& colour)
+osg::Vec4 opaque(const SceneColor& color)
 {
-    return osg::Vec4(osg::Vec3d(colour[0], colour[1], colour[2]), 1.0);
+    return osg::Vec4(osg::Vec3d(color[0], color[1], color[2]), 1.0);
 }
 
 void addSun(osg::Group& group, const SceneSun& sun, const osg::Vec3d& direction)
@@ -98,8 +98,8 @@ void addSun(osg::Group& group, const SceneSun& sun, const osg::Vec3d& direction)
     // wins.
     osg::ref_ptr<osg::Light> light = new osg::Light(0);
     light->setPosition(osg::Vec4d(direction, 0.0));
-    light->setDiffuse(opaque(sun.colour));
-    light->setSpecular(opaque(sun.colour));
+    light->setDiffuse(opaque(sun.color));
+    light->setSpecular(opaque(sun.color));
     light->setAmbient(opaque(sun.ambient));
     osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
     source->setName("sun");
@@ -158,7 +158,7 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
     {
         const SceneView& view = *scene.homeView;
         group->setUserValue("geofx.homeView",
-                            joined(std::array<double, 6>{view.longitude, view.latitude, view.altitude,
+                            joined(std::array<double, 6>{view.longitude, view.latitude, view.height,
                                                          view.heading, view.pitch, view.roll}));
         if (view.verticalFieldOfView) group->setUserValue("geofx.homeFov", *view.verticalFieldOfView);
     }

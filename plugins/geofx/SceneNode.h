@@ -13,7 +13,7 @@ namespace osgGeoFX
    with number 0, which takes the place of a viewer's headlight. Where the scene has effects, the group is an
    EffectScene.
 
-    For programs it carries user values: string "geofx.homeView" = "LON,LAT,ALT,HEADING,PITCH,ROLL" (degrees
+    For programs it carries user values: string "geofx.homeView" = "LON,LAT,HEIGHT,HEADING,PITCH,ROLL" (degrees
    and metres), double "geofx.homeFov" (vertical, degrees; only where the scene says it), string
    "geofx.background" = "R,G,B" (0…1), bool "geofx.hasLight" = true where there is a sun.
 

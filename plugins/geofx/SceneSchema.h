@@ -5,7 +5,7 @@
 namespace osgGeoFX
 {
 
-/// data/geofx.xsd as it was when the plugin was built.
+/// The schema of scene files: geofx.xsd.in with the properties of the classes (reference.cpp).
 extern const char* const sceneSchema;
 
 } // namespace osgGeoFX

@@ -58,7 +58,7 @@ int SceneXml::integer(xmlNode* node, const char* name)
     return number<int>(attributeOf(node, name));
 }
 
-std::array<double, 4> SceneXml::colour(xmlNode* node, const char* name)
+std::array<double, 4> SceneXml::color(xmlNode* node, const char* name)
 {
     std::string digits = attributeOf(node, name).substr(1);
     if (digits.size() == 6) digits += "ff";

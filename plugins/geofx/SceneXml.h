@@ -30,7 +30,7 @@ public:
     static int integer(xmlNode* node, const char* name);
 
     /// "#rrggbb" or "#rrggbbaa" as red, green, blue and alpha, 0…1.
-    static std::array<double, 4> colour(xmlNode* node, const char* name);
+    static std::array<double, 4> color(xmlNode* node, const char* name);
 
     ScenePlace place(xmlNode* node) const;
     std::string joined(const std::string& path) const;

@@ -169,7 +169,7 @@ private:
             return SurfaceRaster::addLayer(*request.data, surface.name, surface.kind, file, request.frame,
                                            error, request.maxSide);
         case SceneSurface::VECTORS:
-            return SurfaceRaster::addVectors(*request.data, surface.name, file, surface.width, surface.colour,
+            return SurfaceRaster::addVectors(*request.data, surface.name, file, surface.width, surface.color,
                                              request.frame, error, request.maxSide);
         case SceneSurface::DEM:
         case SceneSurface::DERIVED:

@@ -127,7 +127,7 @@ bool readLayers(osgDB::InputStream& stream, SurfaceData& data)
         stream >> kind;
         stream.readWrappedString(name);
         stream >> stream.BEGIN_BRACKET;
-        const osg::ref_ptr<osg::Image> image = stream.readImage();
+        const osg::ref_ptr<osg::Image> image = readImage(stream);
         stream >> stream.END_BRACKET;
         if (stream.getException()) return false;
         const auto* end = std::end(layerKinds);

@@ -176,7 +176,7 @@ PropertyAccess::PropertyAccess(const Property& property)
       _kind(property.kind)
 {
     for (std::size_t i = 0; i < property.choices.size(); ++i)
-        _choices.add(property.choices[i].c_str(), static_cast<int>(i));
+        _choices.add(property.choices[i].name.c_str(), static_cast<int>(i));
 }
 
 osgDB::BaseSerializer::Type PropertyAccess::type() const
@@ -184,6 +184,7 @@ osgDB::BaseSerializer::Type PropertyAccess::type() const
     switch (_kind)
     {
     case Property::Kind::Integer:
+    case Property::Kind::Color:
         return RW_INT;
     case Property::Kind::Flag:
         return RW_BOOL;

@@ -108,6 +108,12 @@ void addParts(osgDB::ObjectWrapper& wrapper, const char* name)
         });
 }
 
+/// Null where a file has ended before: OSG would take whatever is in memory for the image's size.
+inline osg::ref_ptr<osg::Image> readImage(osgDB::InputStream& stream)
+{
+    return stream.getException() ? nullptr : stream.readImage();
+}
+
 /// An image that an object has or has not.
 template<typename Owner, const osg::Image* (Owner::*Get)() const, auto Set>
 void addImage(osgDB::ObjectWrapper& wrapper, const char* name)
@@ -117,7 +123,7 @@ void addImage(osgDB::ObjectWrapper& wrapper, const char* name)
         [](osgDB::InputStream& stream, Owner& owner)
         {
             stream >> stream.BEGIN_BRACKET;
-            const osg::ref_ptr<osg::Image> image = stream.readImage();
+            const osg::ref_ptr<osg::Image> image = readImage(stream);
             stream >> stream.END_BRACKET;
             (owner.*Set)(image);
             return true;

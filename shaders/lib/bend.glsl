@@ -240,10 +240,10 @@ GEOFX_INLINE Profile geofx_unbendFromParabola(geofx_Bend bend, Profile point)
 GEOFX_INLINE Profile geofx_unbendFromArc(geofx_Bend bend, Profile point)
 {
     PerMetre curvature = bend.angle / bend.size;
-    Vector2 toCentre = Vector2(curvature * point.x, 1 - curvature * point.y);
-    Number radius = length(toCentre); // in units of the arc's own
-    Number scale = radius + toCentre.y;
-    Length s = 2 * point.x / scale * geofx_atanc(toCentre.x / scale);
+    Vector2 toCenter = Vector2(curvature * point.x, 1 - curvature * point.y);
+    Number radius = length(toCenter); // in units of the arc's own
+    Number scale = radius + toCenter.y;
+    Length s = 2 * point.x / scale * geofx_atanc(toCenter.x / scale);
     return Vector2(s, (2 * point.y - curvature * dot(point, point)) / (1 + radius));
 }
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Close-ups, after Section II of "Interactive close-ups for digital terrain models": where a vertex of the ground goes,
-// how a mask is read, and how colours are restyled.
+// how a mask is read, and how colors are restyled.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #endif
@@ -30,7 +30,7 @@ GEOFX_INLINE Position geofx_raise(Position ground, Position lifted, Number mask)
     return ground + (lifted - ground) * mask;
 }
 
-// A place of the region, -1 to 1, in texels of a picture, where whole numbers are the centres of texels.
+// A place of the region, -1 to 1, in texels of a picture, where whole numbers are the centers of texels.
 GEOFX_INLINE Vector2 geofx_maskTexel(Vector2 place, Number side)
 {
     return (place + Vector2(1, 1)) * (side / 2) - Vector2(Number(0.5), Number(0.5));
@@ -67,12 +67,12 @@ GEOFX_INLINE Number geofx_coverage(Number distance, Number pixel)
 }
 
 // Saturation about the grey of equal luma (ITU-R BT.709), contrast about middle grey, then brightness.
-GEOFX_INLINE Rgb geofx_restyle(Rgb colour, Number saturation, Number contrast, Number brightness)
+GEOFX_INLINE Rgb geofx_restyle(Rgb color, Number saturation, Number contrast, Number brightness)
 {
-    Number luma = dot(colour, Rgb(Number(0.2126), Number(0.7152), Number(0.0722)));
+    Number luma = dot(color, Rgb(Number(0.2126), Number(0.7152), Number(0.0722)));
     Rgb grey = Rgb(luma, luma, luma);
     Rgb middle = Rgb(Number(0.5), Number(0.5), Number(0.5));
-    Rgb result = (grey + (colour - grey) * saturation - middle) * contrast + middle;
+    Rgb result = (grey + (color - grey) * saturation - middle) * contrast + middle;
     return clamp(result + Rgb(brightness, brightness, brightness), Rgb(0, 0, 0), Rgb(1, 1, 1));
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// What lies on the ground, as the tiles of a terrain database carry it in a texture beside their colours: trees, towns,
-// bare ground and water, after Section 3.2.1 of Brown and Samavati (2017). A texel may be filtered like a colour: the
+// What lies on the ground, as the tiles of a terrain database carry it in a texture beside their colors: trees, towns,
+// bare ground and water, after Section 3.2.1 of Brown and Samavati (2017). A texel may be filtered like a color: the
 // shore is a signed distance, and so stays sharp however far it is magnified.
 //
 // Red is the share of trees, green that of buildings; blue is 0 for fields, 1/2 for bare ground, 1 for ice that stays;

@@ -38,7 +38,7 @@ GEOFX_INLINE Length geofx_exaggerationHeight(geofx_Exaggeration view, Position p
     Length value = 2 * (dot(position, view.up) + view.height) +
                    view.curvature * (dot(q, q) + view.flattening * along * along);
     Number gradient = length(geofx_exaggerationGradient(view, position));
-    // A point near the Earth's centre has no height worth exaggerating.
+    // A point near the Earth's center has no height worth exaggerating.
     Number surface = sqrt(max(1 + value * view.scale, Number(0.01)));
     return value / (max(gradient, Number(0.1)) * (1 + 1 / surface));
 }

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Projective mappings, after Sections 3.1 to 3.3 and 4.3 of Trapp and Doellner (2009): where a raster lies on the ground,
-// how strongly it shows, and how its colour meets the scene's.
+// how strongly it shows, and how its color meets the scene's.
 //
 // A place is a point of the mappings' frame: x and y on the reference plane and the height above it, metres. On a globe
 // the plane is the tangent plane at the frame's origin, onto which the ellipsoid is projected along the origin's normal
@@ -15,7 +15,7 @@
 // with d = P - O. The paper's printed matrices have the bias' sign and the scale the wrong way round.
 struct geofx_Projector
 {
-    Vector2 centre; // metres
+    Vector2 center; // metres
     Vector2 rowU;   // per metre
     Vector2 rowV;   // per metre
     Vector2 rowW;   // per metre; 0 unless M_T is projective
@@ -24,7 +24,7 @@ struct geofx_Projector
 // Raster coordinates of a place: 0 to 1 from the left and from the bottom. Far outside where the projection has no image.
 GEOFX_INLINE Vector2 geofx_projectPlane(geofx_Projector projector, Vector2 place)
 {
-    Vector2 d = place - projector.centre;
+    Vector2 d = place - projector.center;
     Number w = 1 + dot(projector.rowW, d);
     Vector2 uv = Vector2(dot(projector.rowU, d), dot(projector.rowV, d));
     return w > Number(1e-6) ? Number(0.5) + uv / w : Vector2(-1, -1);
@@ -34,7 +34,7 @@ GEOFX_INLINE Vector2 geofx_projectPlane(geofx_Projector projector, Vector2 place
 // horizon, there is no difference to take.
 GEOFX_INLINE Vector2 geofx_projectPlaneStep(geofx_Projector projector, Vector2 place, Vector2 step)
 {
-    Vector2 d = place - projector.centre;
+    Vector2 d = place - projector.center;
     Number w = max(1 + dot(projector.rowW, d), Number(1e-6));
     Vector2 uv = Vector2(dot(projector.rowU, d), dot(projector.rowV, d)) / w;
     return (Vector2(dot(projector.rowU, step), dot(projector.rowV, step)) - uv * dot(projector.rowW, step)) / w;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The painting of panorama maps, after Sections 3.2, 3.4 and 3.5 of Brown and Samavati (2017). Colours are coded as in
+// The painting of panorama maps, after Sections 3.2, 3.4 and 3.5 of Brown and Samavati (2017). Colors are coded as in
 // images (sRGB), as a painter's are: palettes, mixtures and HSV know no other. Heights are above the sea, slopes rise
 // over run. What is not a number is taken for the lower end of its range, so that a hole in the data does not spread.
 #ifndef __cplusplus
@@ -39,17 +39,17 @@ GEOFX_INLINE Number geofx_ease(Number value, Number low, Number high)
 
 // Hue (0 to 1, from red over green and blue), saturation and value, each 0 to 1. Greys have hue 0, black has
 // saturation 0.
-GEOFX_INLINE Vector3 geofx_toHsv(Rgb colour)
+GEOFX_INLINE Vector3 geofx_toHsv(Rgb color)
 {
-    Number value = max(colour.x, max(colour.y, colour.z));
-    Number chroma = value - min(colour.x, min(colour.y, colour.z));
+    Number value = max(color.x, max(color.y, color.z));
+    Number chroma = value - min(color.x, min(color.y, color.z));
     if (!(chroma > Number(1e-6)))
     {
         return Vector3(0, 0, value);
     }
-    Number sixths = value == colour.x   ? (colour.y - colour.z) / chroma
-                    : value == colour.y ? 2 + (colour.z - colour.x) / chroma
-                                        : 4 + (colour.x - colour.y) / chroma;
+    Number sixths = value == color.x   ? (color.y - color.z) / chroma
+                    : value == color.y ? 2 + (color.z - color.x) / chroma
+                                        : 4 + (color.x - color.y) / chroma;
     return Vector3(sixths < 0 ? sixths / 6 + 1 : sixths / 6, chroma / value, value);
 }
 
@@ -177,15 +177,15 @@ GEOFX_INLINE Number geofx_waterDepth(Length shore, Length deepShore)
     return (1 / (1 + exp(2 - 9 * t)) - low) / (high - low);
 }
 
-// Water of relative depth t, 0 to 1: from white over ever more saturated and darker colours to `deep`.
-GEOFX_INLINE Rgb geofx_waterColour(Rgb deep, Number t)
+// Water of relative depth t, 0 to 1: from white over ever more saturated and darker colors to `deep`.
+GEOFX_INLINE Rgb geofx_waterColor(Rgb deep, Number t)
 {
     Vector3 hsv = geofx_toHsv(deep);
     return geofx_fromHsv(Vector3(hsv.x, hsv.y * t, mix(Number(1), hsv.z, t)));
 }
 
 // A reflection on water: its hue, the lower saturation and the mean value, then `strength` (0 to 1) of that in the water's
-// own colour. The second step is one of RGB: no hues between the two appear.
+// own color. The second step is one of RGB: no hues between the two appear.
 GEOFX_INLINE Rgb geofx_waterMix(Rgb own, Rgb reflection, Number strength)
 {
     Vector3 hsv = geofx_toHsv(own);
@@ -197,13 +197,13 @@ GEOFX_INLINE Rgb geofx_waterMix(Rgb own, Rgb reflection, Number strength)
 
 // --- Air (Section 3.5) ---
 
-// The air's colour.
-GEOFX_INLINE Rgb geofx_airColour()
+// The air's color.
+GEOFX_INLINE Rgb geofx_airColor()
 {
     return Rgb(Number(0.47), Number(0.62), Number(0.86));
 }
 
-// How much of the air's colour is mixed in: `s` runs from 0 at the painting's base to 1 at the horizon, `strength` (0 to 1) is
+// How much of the air's color is mixed in: `s` runs from 0 at the painting's base to 1 at the horizon, `strength` (0 to 1) is
 // the amount there. Half-way it is a quarter of that.
 GEOFX_INLINE Number geofx_airAmount(Number s, Number strength)
 {
@@ -212,10 +212,10 @@ GEOFX_INLINE Number geofx_airAmount(Number s, Number strength)
 }
 
 // Far ground takes the air's hue and keeps its own value (V of HSV), and with it everything that light and shade draw.
-GEOFX_INLINE Rgb geofx_atmosphere(Rgb colour, Rgb air, Number amount)
+GEOFX_INLINE Rgb geofx_atmosphere(Rgb color, Rgb air, Number amount)
 {
-    Rgb mixed = mix(colour, air, amount);
-    Number value = max(colour.x, max(colour.y, colour.z));
+    Rgb mixed = mix(color, air, amount);
+    Number value = max(color.x, max(color.y, color.z));
     Number now = max(mixed.x, max(mixed.y, mixed.z));
-    return now > Number(1e-6) ? mixed * (value / now) : colour;
+    return now > Number(1e-6) ? mixed * (value / now) : color;
 }

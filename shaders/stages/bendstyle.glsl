@@ -4,10 +4,10 @@
 // PerspectiveBend in the fragment stage: the context's style (paper, Section 3.3).
 uniform vec4 SLOT_look; // saturation, brightness, whether there is a map
 
-vec4 SLOT_restyle(vec4 colour, vec4 map, float style)
+vec4 SLOT_restyle(vec4 color, vec4 map, float style)
 {
-    vec3 rgb = mix(colour.rgb, map.rgb, style * SLOT_look.z * map.a);
+    vec3 rgb = mix(color.rgb, map.rgb, style * SLOT_look.z * map.a);
     float grey = dot(rgb, vec3(0.2126, 0.7152, 0.0722));
     rgb = mix(rgb, (grey + (rgb - grey) * SLOT_look.x) * SLOT_look.y, style);
-    return vec4(rgb, colour.a);
+    return vec4(rgb, color.a);
 }

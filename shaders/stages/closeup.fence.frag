@@ -1,11 +1,11 @@
 #version 330 compatibility
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-vec4 SLOT_fenceColour(vec2 fence);
+vec4 SLOT_fenceColor(vec2 fence);
 
 in vec2 SLOT_fence;
 
 void main()
 {
-    gl_FragColor = SLOT_fenceColour(SLOT_fence);
+    gl_FragColor = SLOT_fenceColor(SLOT_fence);
 }

@@ -4,7 +4,7 @@
 // CloseUps in the fragment stage: what is cut away, and the close-up's own data, light and style.
 #pragma import_defines(SLOT_DATA)
 
-uniform sampler2D SLOT_tables;       // a row for each colour table and each anchor
+uniform sampler2D SLOT_tables;       // a row for each color table and each anchor
 uniform sampler2DArray SLOT_surfaces; // values times their weight, which is the alpha
 uniform vec4 SLOT_quality;           // samples along a pixel's side; the layer of normals or -1; tables' width and one over it
 
@@ -72,9 +72,9 @@ vec4 SLOT_rowAt(float row, float share, bool smoothly)
                texelFetch(SLOT_tables, ivec2(min(low + 1, int(SLOT_quality.z) - 1), line), 0), s - float(low));
 }
 
-// The close-up's layer of surface data as a colour with straight alpha. Kinds: 0 colours; values in a table, 1 a smooth one and
+// The close-up's layer of surface data as a color with straight alpha. Kinds: 0 colors; values in a table, 1 a smooth one and
 // 2 another one; 3 normals; 4 aspects; 5 classes.
-vec4 SLOT_surfaceColour(int item)
+vec4 SLOT_surfaceColor(int item)
 {
     vec4 data = SLOT_item(item, 10);
     vec4 range = SLOT_item(item, 11);
@@ -92,11 +92,11 @@ vec4 SLOT_surfaceColour(int item)
     if (kind == 0) return value;
     if (kind == 3) return vec4(0.5 * value.rgb + 0.5, value.a);
     float number = kind == 4 ? mod(atan(value.g, value.b), 6.28318531) : value.r;
-    vec4 colour = SLOT_rowAt(data.z, (number - range.x) * range.y, kind == 1 || kind == 4);
-    return vec4(colour.rgb, colour.a * value.a);
+    vec4 color = SLOT_rowAt(data.z, (number - range.x) * range.y, kind == 1 || kind == 4);
+    return vec4(color.rgb, color.a * value.a);
 }
 
-vec4 SLOT_finish(vec4 colour)
+vec4 SLOT_finish(vec4 color)
 {
     int item = SLOT_target / 2;
     vec4 kinds = SLOT_item(item, 9);
@@ -137,13 +137,13 @@ vec4 SLOT_finish(vec4 colour)
     if (cover <= 0.0) discard;
 
     vec4 style = SLOT_item(item, 12);
-    vec3 result = colour.rgb;
-    float opacity = colour.a;
+    vec3 result = color.rgb;
+    float opacity = color.a;
 #ifdef SLOT_DATA
     vec4 data = SLOT_item(item, 10);
     if (data.x >= 0.0)
     {
-        vec4 surface = SLOT_surfaceColour(item);
+        vec4 surface = SLOT_surfaceColor(item);
         result = mix(result, surface.rgb, surface.a * data.w);
         opacity = mix(opacity, 1.0, surface.a * data.w);
     }
@@ -155,13 +155,13 @@ vec4 SLOT_finish(vec4 colour)
     }
 #endif
     result = geofx_restyle(clamp(result, vec3(0.0), vec3(1.0)), style.x, style.y, style.z);
-    // The line around it, in the colour of its region.
+    // The line around it, in the color of its region.
     if (anchor.x > 0.0 && sharp) result = mix(result, tint.rgb, line);
     return vec4(result, opacity * cover * style.w);
 }
 
 // Of an anchor with a geometry of its own.
-vec4 SLOT_fenceColour(vec2 fence)
+vec4 SLOT_fenceColor(vec2 fence)
 {
     int item = SLOT_target / 2;
     vec3 tint = SLOT_item(item, 8).rgb;

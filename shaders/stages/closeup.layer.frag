@@ -1,7 +1,7 @@
 #version 330 compatibility
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-uniform sampler2DArray geofx_layerColours;
+uniform sampler2DArray geofx_layerColors;
 uniform sampler2DArray geofx_layerDepths;
 uniform ivec4 geofx_layerOrigin; // the layer's first pixel, the layer, and samples along a pixel's side
 uniform float geofx_layerOpacity;
@@ -29,9 +29,9 @@ vec4 geofx_layerAt(ivec3 origin, out float depth)
         for (int x = 0; x < samples; ++x)
         {
             ivec3 texel = ivec3(first + ivec2(x, y), origin.z);
-            vec4 colour = texelFetch(geofx_layerColours, texel, 0);
-            sum += vec4(colour.rgb * colour.a, colour.a);
-            if (colour.a > 0.0) depth = min(depth, texelFetch(geofx_layerDepths, texel, 0).r);
+            vec4 color = texelFetch(geofx_layerColors, texel, 0);
+            sum += vec4(color.rgb * color.a, color.a);
+            if (color.a > 0.0) depth = min(depth, texelFetch(geofx_layerDepths, texel, 0).r);
         }
     }
     return sum / float(samples * samples);

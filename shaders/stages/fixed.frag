@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// OpenGL's fixed fragment stage: texture environments, the separate specular colour and fog, OpenGL 2.1, Sections
+// OpenGL's fixed fragment stage: texture environments, the separate specular color and fog, OpenGL 2.1, Sections
 // 3.8 to 3.10, with the effects before the fog; and the lighting where a texture has the normals.
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP, GEOFX_PAINTED)
@@ -21,7 +21,7 @@
 #undef GEOFX_FOG
 #endif
 
-vec4 geofx_fragment(vec4 colour, vec4 map);
+vec4 geofx_fragment(vec4 color, vec4 map);
 
 #if defined(GEOFX_LIGHTS) && defined(GEOFX_NORMAL_MAP)
 #define GEOFX_LIT_HERE
@@ -42,24 +42,24 @@ vec4 tame(vec4 coordinates)
 
 // The environments of OpenGL 2.1, Tables 3.22 and 3.23. `code` is 1 modulate, 2 replace, 3 decal, 4 blend, 5 add; and, as
 // they depend on the texture's base format, 8 for those without alpha, 16 for alpha alone, 24 for intensity.
-vec4 environment(int code, vec4 colour, vec4 texel, vec4 constant)
+vec4 environment(int code, vec4 color, vec4 texel, vec4 constant)
 {
     int mode = code & 7;
     int format = code >> 3;
-    if (mode == 2) return vec4(format == 2 ? colour.rgb : texel.rgb, format == 1 ? colour.a : texel.a);
-    if (mode == 3) return vec4(mix(colour.rgb, texel.rgb, texel.a), colour.a);
-    float alpha = colour.a * texel.a;
+    if (mode == 2) return vec4(format == 2 ? color.rgb : texel.rgb, format == 1 ? color.a : texel.a);
+    if (mode == 3) return vec4(mix(color.rgb, texel.rgb, texel.a), color.a);
+    float alpha = color.a * texel.a;
     if (mode == 4)
     {
-        if (format == 3) alpha = mix(colour.a, constant.a, texel.a);
-        return vec4(mix(colour.rgb, constant.rgb, texel.rgb), alpha);
+        if (format == 3) alpha = mix(color.a, constant.a, texel.a);
+        return vec4(mix(color.rgb, constant.rgb, texel.rgb), alpha);
     }
     if (mode == 5)
     {
-        if (format == 3) alpha = colour.a + texel.a;
-        return clamp(vec4(colour.rgb + texel.rgb, alpha), 0.0, 1.0);
+        if (format == 3) alpha = color.a + texel.a;
+        return clamp(vec4(color.rgb + texel.rgb, alpha), 0.0, 1.0);
     }
-    return vec4(format == 2 ? colour.rgb : colour.rgb * texel.rgb, alpha);
+    return vec4(format == 2 ? color.rgb : color.rgb * texel.rgb, alpha);
 }
 
 #ifdef GEOFX_TEXTURE_0
@@ -93,33 +93,33 @@ void main()
 #endif
 #ifdef GEOFX_TWO_SIDED
     if (gl_FrontFacing)
-        illuminate(geofx_ground(), normal, coloured(gl_FrontMaterial), primary, secondary);
+        illuminate(geofx_ground(), normal, colored(gl_FrontMaterial), primary, secondary);
     else
-        illuminate(geofx_ground(), -normal, coloured(gl_BackMaterial), primary, secondary);
+        illuminate(geofx_ground(), -normal, colored(gl_BackMaterial), primary, secondary);
 #else
-    illuminate(geofx_ground(), normal, coloured(gl_FrontMaterial), primary, secondary);
+    illuminate(geofx_ground(), normal, colored(gl_FrontMaterial), primary, secondary);
 #endif
 #endif
-    vec4 colour = primary;
+    vec4 color = primary;
 #ifdef GEOFX_TEXTURE_0
-    colour = environment(GEOFX_TEXTURE_0, colour, texture2DProj(geofx_texture0, tame(gl_TexCoord[0])), gl_TextureEnvColor[0]);
+    color = environment(GEOFX_TEXTURE_0, color, texture2DProj(geofx_texture0, tame(gl_TexCoord[0])), gl_TextureEnvColor[0]);
 #endif
 #ifdef GEOFX_TEXTURE_1
-    colour = environment(GEOFX_TEXTURE_1, colour, texture2DProj(geofx_texture1, tame(gl_TexCoord[1])), gl_TextureEnvColor[1]);
+    color = environment(GEOFX_TEXTURE_1, color, texture2DProj(geofx_texture1, tame(gl_TexCoord[1])), gl_TextureEnvColor[1]);
 #endif
 #ifdef GEOFX_TEXTURE_2
-    colour = environment(GEOFX_TEXTURE_2, colour, texture2DProj(geofx_texture2, tame(gl_TexCoord[2])), gl_TextureEnvColor[2]);
+    color = environment(GEOFX_TEXTURE_2, color, texture2DProj(geofx_texture2, tame(gl_TexCoord[2])), gl_TextureEnvColor[2]);
 #endif
 #ifdef GEOFX_TEXTURE_3
-    colour = environment(GEOFX_TEXTURE_3, colour, texture2DProj(geofx_texture3, tame(gl_TexCoord[3])), gl_TextureEnvColor[3]);
+    color = environment(GEOFX_TEXTURE_3, color, texture2DProj(geofx_texture3, tame(gl_TexCoord[3])), gl_TextureEnvColor[3]);
 #endif
 #ifdef GEOFX_COLOR_SUM
-    colour.rgb = clamp(colour.rgb + secondary.rgb, 0.0, 1.0);
+    color.rgb = clamp(color.rgb + secondary.rgb, 0.0, 1.0);
 #endif
 #ifdef GEOFX_MAP
-    colour = geofx_fragment(colour, primary * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
+    color = geofx_fragment(color, primary * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
 #else
-    colour = geofx_fragment(colour, vec4(0.0));
+    color = geofx_fragment(color, vec4(0.0));
 #endif
 #ifdef GEOFX_FOG
     // 1 linear, 2 exp, 3 exp2; 4 more where the distance comes with the vertex.
@@ -128,7 +128,7 @@ void main()
     if ((GEOFX_FOG & 3) == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;
     if ((GEOFX_FOG & 3) == 2) clear = exp(-gl_Fog.density * distance);
     if ((GEOFX_FOG & 3) == 3) clear = exp(-gl_Fog.density * gl_Fog.density * distance * distance);
-    colour.rgb = mix(gl_Fog.color.rgb, clamp(colour.rgb, 0.0, 1.0), clamp(clear, 0.0, 1.0));
+    color.rgb = mix(gl_Fog.color.rgb, clamp(color.rgb, 0.0, 1.0), clamp(clear, 0.0, 1.0));
 #endif
-    gl_FragColor = colour;
+    gl_FragColor = color;
 }

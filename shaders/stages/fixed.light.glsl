@@ -17,7 +17,7 @@ struct Material
     float shininess;
 };
 
-Material coloured(gl_MaterialParameters given)
+Material colored(gl_MaterialParameters given)
 {
     Material material = Material(given.emission, given.ambient, given.diffuse, given.specular, given.shininess);
 #ifdef GEOFX_COLOR_MATERIAL

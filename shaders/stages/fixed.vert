@@ -93,7 +93,7 @@ void main()
     vec4 primary = gl_Color;
     vec4 secondary = gl_SecondaryColor;
 #ifdef GEOFX_LIGHTS
-    illuminate(eye.xyz, normal, coloured(gl_FrontMaterial), primary, secondary);
+    illuminate(eye.xyz, normal, colored(gl_FrontMaterial), primary, secondary);
 #endif
     gl_FrontColor = primary;
 #ifdef GEOFX_COLOR_SUM
@@ -101,7 +101,7 @@ void main()
 #endif
 #ifdef GEOFX_TWO_SIDED
 #ifdef GEOFX_LIGHTS
-    illuminate(eye.xyz, -normal, coloured(gl_BackMaterial), primary, secondary);
+    illuminate(eye.xyz, -normal, colored(gl_BackMaterial), primary, secondary);
 #endif
     gl_BackColor = primary;
 #ifdef GEOFX_COLOR_SUM

@@ -4,7 +4,7 @@
 //
 // The effects of a scene in the fragment stage. Declare and call this in a fragment shader of your own:
 //
-//     vec4 geofx_fragment(vec4 colour, vec4 map);    // `map`: what the context shows instead, or vec4(0.0)
+//     vec4 geofx_fragment(vec4 color, vec4 map);    // `map`: what the context shows instead, or vec4(0.0)
 //
 // EffectScene puts the code of its effects in the place of the words in capitals.
 #pragma import_defines(GEOFX_DEFORMATION)
@@ -47,10 +47,10 @@ GEOFX_NORMAL_CALLS
     return normal;
 }
 #endif
-vec4 geofx_fragment(vec4 colour, vec4 map)
+vec4 geofx_fragment(vec4 color, vec4 map)
 {
-    vec4 result = colour;
-GEOFX_COLOUR_CALLS
+    vec4 result = color;
+GEOFX_COLOR_CALLS
 GEOFX_FINISH_CALLS
     return result;
 }

@@ -8,7 +8,7 @@
 #pragma import_defines(GEOFX_MAPPING_CHANNELS)
 // What some of the mappings need; MappingRecord.h lists them. Code that none needs is left out: compilers of CPUs run
 // through all branches.
-#pragma import_defines(SLOT_COLOURS, SLOT_VALUES, SLOT_CLASSES)
+#pragma import_defines(SLOT_COLORS, SLOT_VALUES, SLOT_CLASSES)
 #pragma import_defines(SLOT_TABLES, SLOT_MATRICES, SLOT_MASKS)
 #pragma import_defines(SLOT_PROJECTIVE, SLOT_PINHOLES, SLOT_SYMBOLS)
 #pragma import_defines(SLOT_FADES, SLOT_HEIGHTS, SLOT_BLENDS)
@@ -68,9 +68,9 @@ struct SLOT_Fragment
 };
 
 #ifdef SLOT_LINEAR
-vec3 SLOT_linear(vec3 colour)
+vec3 SLOT_linear(vec3 color)
 {
-    return mix(colour / 12.92, pow((colour + 0.055) / 1.055, vec3(2.4)), greaterThan(colour, vec3(0.04045)));
+    return mix(color / 12.92, pow((color + 0.055) / 1.055, vec3(2.4)), greaterThan(color, vec3(0.04045)));
 }
 #endif
 
@@ -130,10 +130,10 @@ vec2 SLOT_valueOf(SLOT_Slot slot, vec2 at, float level, bool smoothly)
 }
 #endif
 
-// A colour with the share of the place that has data. Colours are averaged by their alphas.
+// A color with the share of the place that has data. Colors are averaged by their alphas.
 struct SLOT_Sample
 {
-    vec4 colour;
+    vec4 color;
     float value; // of value layers
     float cover;
 };
@@ -147,7 +147,7 @@ SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 at, geofx_Filter how)
     at -= how.step * (0.5 * (how.probes - 1.0));
     float left = how.probes;
     SLOT_Sample result = SLOT_Sample(vec4(1.0), 0.0, 0.0);
-#ifdef SLOT_COLOURS
+#ifdef SLOT_COLORS
     if (kind == 1u)
     {
         // Kept away from the borders of a level by half of its texel, so that nothing of the slots beside it comes in.
@@ -167,7 +167,7 @@ SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 at, geofx_Filter how)
             sum += vec4(found.rgb * found.a, found.a);
             at += how.step;
         } while (--left > 0.0);
-        result.colour = vec4(sum.rgb / max(sum.a, 1e-6), sum.a / how.probes);
+        result.color = vec4(sum.rgb / max(sum.a, 1e-6), sum.a / how.probes);
         result.cover = 1.0;
     }
 #endif
@@ -199,7 +199,7 @@ vec4 SLOT_entry(float value, vec4 range, float row, uint flags)
 }
 
 #ifdef SLOT_CLASSES
-// Classes have colours to average, but no values in between.
+// Classes have colors to average, but no values in between.
 SLOT_Sample SLOT_classes(SLOT_Slot slot, uint flags, vec2 at, geofx_Filter how, vec4 range, float row)
 {
     float level = floor(how.level + 0.5);
@@ -248,7 +248,7 @@ SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
 #ifdef SLOT_SYMBOLS
     if ((result.flags & 0x6c0u) != 0u) // fades by distance and size, size in pixels, turned to the camera
     {
-        vec4 symbol = uintBitsToFloat(texelFetch(SLOT_data, record + 10)); // centre, its height, half size
+        vec4 symbol = uintBitsToFloat(texelFetch(SLOT_data, record + 10)); // center, its height, half size
         vec3 way = fragment.eye - symbol.xyz;
         float metres = max(length(way) * SLOT_pixel.x + SLOT_pixel.y, 1e-9); // that a pixel spans there
         result.pixels = 2.0 * symbol.w / metres;
@@ -299,7 +299,7 @@ SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
         return result;
     }
 #endif
-    vec2 d = fragment.place.xy - projector.centre;
+    vec2 d = fragment.place.xy - projector.center;
     result.uv = 0.5 + vec2(dot(projector.rowU, d), dot(projector.rowV, d));
     result.across = vec2(dot(projector.rowU, fragment.across.xy), dot(projector.rowV, fragment.across.xy));
     result.up = vec2(dot(projector.rowU, fragment.up.xy), dot(projector.rowV, fragment.up.xy));
@@ -338,7 +338,7 @@ float SLOT_fade(SLOT_Mapping mapping, SLOT_Fragment fragment)
 }
 #endif
 
-vec4 SLOT_apply(SLOT_Mapping mapping, vec4 colour, SLOT_Fragment fragment)
+vec4 SLOT_apply(SLOT_Mapping mapping, vec4 color, SLOT_Fragment fragment)
 {
     int record = mapping.record;
     uint flags = mapping.flags;
@@ -350,7 +350,7 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 colour, SLOT_Fragment fragment)
     vec3 more = uintBitsToFloat(texelFetch(SLOT_data, record + 3).xyz);
 #endif
 #ifdef SLOT_HEIGHTS
-    if ((flags & 0x2000u) != 0u && !(fragment.place.z >= more.x && fragment.place.z <= more.y)) return colour;
+    if ((flags & 0x2000u) != 0u && !(fragment.place.z >= more.x && fragment.place.z <= more.y)) return color;
 #endif
     if ((flags & 0x1000u) != 0u)
     {
@@ -360,7 +360,7 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 colour, SLOT_Fragment fragment)
 #ifdef SLOT_FADES
     if ((flags & 0x1c0u) != 0u) strength *= SLOT_fade(mapping, fragment);
 #endif
-    if (strength <= 0.0) return colour;
+    if (strength <= 0.0) return color;
 
     uint sourceOf = (codes >> 12u) & 3u;
     uint alphaOf = (codes >> 14u) & 3u;
@@ -374,32 +374,32 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 colour, SLOT_Fragment fragment)
     }
 #endif
     uint kind = flags & 3u;
-    bool colouredClasses = kind == 3u && sourceOf == 1u;
+    bool coloredClasses = kind == 3u && sourceOf == 1u;
     SLOT_Sample found = SLOT_Sample(vec4(1.0), 0.0, 1.0);
-#if defined(SLOT_COLOURS) || defined(SLOT_VALUES) || defined(SLOT_CLASSES)
+#if defined(SLOT_COLORS) || defined(SLOT_VALUES) || defined(SLOT_CLASSES)
     if (kind != 0u)
     {
         SLOT_Slot slot = SLOT_slotOf(slotWords);
-        float probes = kind == 1u ? SLOT_quality.x : kind == 2u || colouredClasses ? min(SLOT_quality.x, 4.0) : 1.0;
+        float probes = kind == 1u ? SLOT_quality.x : kind == 2u || coloredClasses ? min(SLOT_quality.x, 4.0) : 1.0;
         geofx_Filter how = geofx_filter(mapping.across * slot.size, mapping.up * slot.size, probes, slot.last);
 #if defined(SLOT_CLASSES) && defined(SLOT_TABLES)
-        if (colouredClasses)
+        if (coloredClasses)
             found = SLOT_classes(slot, flags, uv * slot.size, how, range, more.z);
         else
 #endif
             found = SLOT_sample(slot, flags, uv * slot.size, how);
-        if (found.cover <= 0.0) return colour;
+        if (found.cover <= 0.0) return color;
     }
 #endif
-    vec4 source = found.colour;
+    vec4 source = found.color;
 #if defined(SLOT_RANGES) || defined(SLOT_TABLES)
-    float grey = kind == 1u ? dot(found.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) : found.value;
+    float grey = kind == 1u ? dot(found.color.rgb, vec3(0.2126, 0.7152, 0.0722)) : found.value;
 #endif
 #ifdef SLOT_TABLES
-    if (sourceOf == 1u && !colouredClasses)
+    if (sourceOf == 1u && !coloredClasses)
     {
         vec4 entry = SLOT_entry(grey, range, more.z, flags);
-        if (entry.a < 0.0) return colour;
+        if (entry.a < 0.0) return color;
         // The table speaks of what is drawn, the layer of where.
         source = vec4(entry.rgb, entry.a * (kind == 1u ? source.a : 1.0));
     }
@@ -408,7 +408,7 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 colour, SLOT_Fragment fragment)
     if (kind > 1u && sourceOf == 0u) source = vec4(vec3(clamp((grey - range.x) * range.y, 0.0, 1.0)), 1.0);
     if (sourceOf == 3u) source.rgb = constant.rgb;
 #endif
-    if (sourceOf == 2u) source = vec4(colour.rgb, 1.0);
+    if (sourceOf == 2u) source = vec4(color.rgb, 1.0);
 #ifdef SLOT_LINEAR
     if (sourceOf != 2u) source.rgb = SLOT_linear(source.rgb);
 #endif
@@ -432,7 +432,7 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 colour, SLOT_Fragment fragment)
         geofx_Filter how = geofx_filter(mapping.across * slot.size, mapping.up * slot.size, probes, slot.last);
         SLOT_Sample mask = SLOT_sample(slot, maskKind, uv * slot.size, how);
         float share = mask.value;
-        if ((maskKind & 3u) == 1u) share = dot(mask.colour.rgb, vec3(0.2126, 0.7152, 0.0722)) * mask.colour.a;
+        if ((maskKind & 3u) == 1u) share = dot(mask.color.rgb, vec3(0.2126, 0.7152, 0.0722)) * mask.color.a;
         source.a = mask.cover * geofx_ramp(share, range.z, range.w);
     }
 #endif
@@ -446,24 +446,24 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 colour, SLOT_Fragment fragment)
     if (equation == 8)
     {
         if (strength * source.a >= 0.5) discard;
-        return colour;
+        return color;
     }
     if ((codes & 0xfffu) != 0x076u)
     {
-        vec3 blended = geofx_blend(equation, int(codes & 15u), int((codes >> 4u) & 15u), source, colour, constant);
-        return vec4(mix(colour.rgb, blended, strength), colour.a);
+        vec3 blended = geofx_blend(equation, int(codes & 15u), int((codes >> 4u) & 15u), source, color, constant);
+        return vec4(mix(color.rgb, blended, strength), color.a);
     }
 #endif
     // The usual: source over destination.
-    return vec4(mix(colour.rgb, source.rgb, strength * source.a), colour.a);
+    return vec4(mix(color.rgb, source.rgb, strength * source.a), color.a);
 }
 
-vec4 SLOT_colour(vec4 colour)
+vec4 SLOT_color(vec4 color)
 {
     SLOT_Fragment fragment = SLOT_Fragment(SLOT_place, dFdx(SLOT_place), dFdy(SLOT_place), dFdx(SLOT_position),
                                            dFdy(SLOT_position), SLOT_toFrame[3].xyz);
     uint list = SLOT_start.y != 0 ? uint(SLOT_start.y) : SLOT_find(SLOT_place.xy);
-    if (list == 0u) return colour;
+    if (list == 0u) return color;
     uint count = texelFetch(SLOT_data, int(list)).x;
     uint i = 0u;
     do
@@ -484,7 +484,7 @@ vec4 SLOT_colour(vec4 colour)
 #ifndef SLOT_IN_TURN
         while (!met && i < count);
 #endif
-        if (met) colour = SLOT_apply(mapping, colour, fragment);
+        if (met) color = SLOT_apply(mapping, color, fragment);
     } while (i < count);
-    return colour;
+    return color;
 }

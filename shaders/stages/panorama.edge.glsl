@@ -63,34 +63,34 @@ float geofx_skyAbove(vec4 place, float x, float y)
     return y - place.x + place.y * (1.0 - cos(1.5707963 * x));
 }
 
-vec3 geofx_skyColour(sampler2D sky, vec4 place, float x, float above)
+vec3 geofx_skyColor(sampler2D sky, vec4 place, float x, float above)
 {
     float room = 1.0 - place.x + place.y;
     float across = place.z + 0.5 * place.w * x;
     float height = above / max(room, 0.02);
-    vec3 colour = texture(sky, vec2(across, clamp(height, 0.002, 0.998))).rgb;
+    vec3 color = texture(sky, vec2(across, clamp(height, 0.002, 0.998))).rgb;
     // Higher than it is painted, the sky is even: the mean of its upper edge.
     if (height > 0.75)
     {
         vec3 even = textureLod(sky, vec2(0.5, 0.95), 6.0).rgb;
-        colour = mix(colour, even, clamp(4.0 * height - 3.0, 0.0, 1.0));
+        color = mix(color, even, clamp(4.0 * height - 3.0, 0.0, 1.0));
     }
-    return colour;
+    return color;
 }
 
 // What a point of the picture shows where the land has gone.
-vec3 geofx_edgeColour(sampler2D sky, vec4 place, float x, float y, float paper)
+vec3 geofx_edgeColor(sampler2D sky, vec4 place, float x, float y, float paper)
 {
     float above = geofx_skyAbove(place, x, y);
-    vec3 colour = geofx_skyColour(sky, place, x, max(above, 0.0));
-    if (above >= 0.0) return colour;
+    vec3 color = geofx_skyColor(sky, place, x, max(above, 0.0));
+    if (above >= 0.0) return color;
     // Down from the horizon the sky's light runs into haze.
     vec3 low = textureLod(sky, vec2(place.z + 0.5 * place.w * x, 0.02), 5.0).rgb;
     float depth = -above / max(place.x, 0.05);
-    colour = mix(colour, low, smoothstep(0.0, 0.06, depth));
-    colour = mix(colour, geofx_haze, 0.65 * smoothstep(0.02, 0.35, depth));
-    colour = mix(colour, geofx_paper, paper * geofx_edgePaper(y));
+    color = mix(color, low, smoothstep(0.0, 0.06, depth));
+    color = mix(color, geofx_haze, 0.65 * smoothstep(0.02, 0.35, depth));
+    color = mix(color, geofx_paper, paper * geofx_edgePaper(y));
     // So even a wash would show the steps of its bytes.
     float grain = fract(52.9829189 * fract(dot(vec2(x, y), vec2(53.7, 41.9) * 1.9)));
-    return colour + (grain - 0.5) * (2.0 / 255.0);
+    return color + (grain - 0.5) * (2.0 / 255.0);
 }

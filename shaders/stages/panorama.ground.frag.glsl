@@ -40,15 +40,15 @@ vec3 SLOT_shade(float light, int row)
 
 vec3 SLOT_ground(geofx_Classes classes, float light)
 {
-    vec3 colour = vec3(0.0);
-    if (classes.field > 0.004) colour += classes.field * SLOT_shade(light, GEOFX_PALETTE_FIELD);
-    if (classes.hill > 0.004) colour += classes.hill * SLOT_shade(light, GEOFX_PALETTE_HILL);
-    if (classes.cliff > 0.004) colour += classes.cliff * SLOT_shade(light, GEOFX_PALETTE_CLIFF);
-    if (classes.snow > 0.004) colour += classes.snow * SLOT_shade(light, GEOFX_PALETTE_SNOW);
-    if (classes.forest > 0.004) colour += classes.forest * SLOT_shade(light, GEOFX_PALETTE_FOREST);
-    if (classes.town > 0.004) colour += classes.town * SLOT_shade(light, GEOFX_PALETTE_TOWN);
-    if (classes.bare > 0.004) colour += classes.bare * SLOT_shade(light, GEOFX_PALETTE_BARE);
-    return colour;
+    vec3 color = vec3(0.0);
+    if (classes.field > 0.004) color += classes.field * SLOT_shade(light, GEOFX_PALETTE_FIELD);
+    if (classes.hill > 0.004) color += classes.hill * SLOT_shade(light, GEOFX_PALETTE_HILL);
+    if (classes.cliff > 0.004) color += classes.cliff * SLOT_shade(light, GEOFX_PALETTE_CLIFF);
+    if (classes.snow > 0.004) color += classes.snow * SLOT_shade(light, GEOFX_PALETTE_SNOW);
+    if (classes.forest > 0.004) color += classes.forest * SLOT_shade(light, GEOFX_PALETTE_FOREST);
+    if (classes.town > 0.004) color += classes.town * SLOT_shade(light, GEOFX_PALETTE_TOWN);
+    if (classes.bare > 0.004) color += classes.bare * SLOT_shade(light, GEOFX_PALETTE_BARE);
+    return color;
 }
 
 vec3 SLOT_wet(float shore, vec2 picture, float far)
@@ -89,10 +89,10 @@ vec4 SLOT_facingHere()
 #endif
 }
 
-vec4 SLOT_colour(vec4 colour)
+vec4 SLOT_color(vec4 color)
 {
 #ifndef GEOFX_PAINTED
-    return colour;
+    return color;
 #else
     vec4 facing = SLOT_facingHere();
     vec4 texel = texture(SLOT_cover, SLOT_texels.xy);
@@ -123,7 +123,7 @@ vec4 SLOT_colour(vec4 colour)
     if (wet < 1.0)
         painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, facing.w, brush.z, style), light);
     if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far), wet);
-    painted = geofx_atmosphere(painted, geofx_airColour(), geofx_airAmount(far, SLOT_hand.z));
+    painted = geofx_atmosphere(painted, geofx_airColor(), geofx_airAmount(far, SLOT_hand.z));
     vec2 gone = SLOT_gone(brush.z, picture.y, wet, cover.shore);
 #ifdef GEOFX_MIRROR
     // What is below the water is not reflected, nor is water, nor what has gone.
@@ -135,7 +135,7 @@ vec4 SLOT_colour(vec4 colour)
     if (gone.x > 0.0)
     {
         float paper = SLOT_edgeKind.w < GEOFX_EDGE_LAND ? 1.0 : 0.0;
-        painted = mix(painted, geofx_edgeColour(SLOT_edgeSky, SLOT_edgePlace, 2.0 * picture.x - 1.0, picture.y, paper), gone.x);
+        painted = mix(painted, geofx_edgeColor(SLOT_edgeSky, SLOT_edgePlace, 2.0 * picture.x - 1.0, picture.y, paper), gone.x);
     }
     return vec4(painted, 1.0);
 #endif

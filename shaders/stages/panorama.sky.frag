@@ -45,14 +45,14 @@ float groundAt(float horizonDrop, out vec2 brush)
 vec3 sea(float s, vec2 brush)
 {
     float far = clamp(s / geofx_skyCurve.z, 0.0, 1.0);
-    vec3 colour = geofx_waterBody(2.0 * geofx_skyWater.x, geofx_skyWater.x);
+    vec3 color = geofx_waterBody(2.0 * geofx_skyWater.x, geofx_skyWater.x);
     if (geofx_skyClock.z > 0.5)
     {
         geofx_WaterPlace here = geofx_WaterPlace(2.0 * geofx_skyWater.x, 0.5 * place + 0.5, brush, 0.0,
                                                  s / geofx_skyCurve.w, far);
-        colour = geofx_water(here, geofx_skyWater, geofx_skyClock.x, geofx_skyBrush, geofx_skyMirror);
+        color = geofx_water(here, geofx_skyWater, geofx_skyClock.x, geofx_skyBrush, geofx_skyMirror);
     }
-    return geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(far, geofx_skyClock.y));
+    return geofx_atmosphere(color, geofx_airColor(), geofx_airAmount(far, geofx_skyClock.y));
 }
 
 // How much of what lies below is not known to be sea.
@@ -70,11 +70,11 @@ void main()
 {
     float above = geofx_skyAbove(geofx_skyPlace, place.x, 0.5 * place.y + 0.5);
 #ifdef GEOFX_MIRROR
-    gl_FragColor = vec4(geofx_skyColour(geofx_sky, geofx_skyPlace, place.x, -above), 1.0);
+    gl_FragColor = vec4(geofx_skyColor(geofx_sky, geofx_skyPlace, place.x, -above), 1.0);
 #else
     float edge = 0.5 * fwidth(above);
-    vec3 colour = vec3(0.0);
-    if (above > -edge) colour = geofx_skyColour(geofx_sky, geofx_skyPlace, place.x, max(above, 0.0));
+    vec3 color = vec3(0.0);
+    if (above > -edge) color = geofx_skyColor(geofx_sky, geofx_skyPlace, place.x, max(above, 0.0));
     if (above < edge)
     {
         vec2 brush;
@@ -85,11 +85,11 @@ void main()
         if (haze > 0.0)
         {
             float paper = geofx_skyEdgeKind.w < GEOFX_EDGE_LAND ? 1.0 : 0.0;
-            vec3 gone = geofx_edgeColour(geofx_sky, geofx_skyPlace, place.x, 0.5 * place.y + 0.5, paper);
+            vec3 gone = geofx_edgeColor(geofx_sky, geofx_skyPlace, place.x, 0.5 * place.y + 0.5, paper);
             below = mix(below, gone, haze);
         }
-        colour = mix(below, colour, clamp(0.5 + 0.5 * above / edge, 0.0, 1.0));
+        color = mix(below, color, clamp(0.5 + 0.5 * above / edge, 0.0, 1.0));
     }
-    gl_FragColor = vec4(colour, 1.0);
+    gl_FragColor = vec4(color, 1.0);
 #endif
 }

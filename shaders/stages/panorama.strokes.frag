@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Brush strokes of PanoramaMap: the mask of the brush and its two tones. Colours are premultiplied; depth is written, so strokes
+// Brush strokes of PanoramaMap: the mask of the brush and its two tones. Colors are premultiplied; depth is written, so strokes
 // need no order. What is less than half covered is left out there: a nearer stroke's soft edge would keep a farther one
 // from being drawn below it. With multisampling, GL_SAMPLE_ALPHA_TO_COVERAGE may take the place of blending.
 #include "lib/strokes.glsl"
@@ -23,22 +23,22 @@ void main()
     float cover = clamp(0.5 + inside / max(fwidth(inside), 1e-4), 0.0, 1.0);
     if (cover < 0.4) discard;
 
-    vec3 colour;
+    vec3 color;
     if (kind == GEOFX_STROKE_HOUSE)
     {
         float gable = SLOT_point.x * (SLOT_light.x < 0.0 ? -1.0 : 1.0) < -0.1 ? 0.8 : 1.0;
-        colour = gable * (SLOT_point.y > 0.0 ? SLOT_darkTone : SLOT_lightTone);
+        color = gable * (SLOT_point.y > 0.0 ? SLOT_darkTone : SLOT_lightTone);
     }
     else if (kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER)
     {
-        colour = mix(SLOT_lightTone, SLOT_darkTone, smoothstep(0.5, 0.85, abs(SLOT_point.x)));
+        color = mix(SLOT_lightTone, SLOT_darkTone, smoothstep(0.5, 0.85, abs(SLOT_point.x)));
     }
     else
     {
         // The light's direction as the stroke sees it.
         vec2 light = SLOT_light.xy / max(length(SLOT_light.xy), 0.25);
         light = vec2(dot(light, vec2(SLOT_stamp.w, -SLOT_stamp.z)), dot(light, SLOT_stamp.zw));
-        colour = mix(SLOT_darkTone, SLOT_lightTone, geofx_strokeLit(SLOT_point, light, seed));
+        color = mix(SLOT_darkTone, SLOT_lightTone, geofx_strokeLit(SLOT_point, light, seed));
     }
-    gl_FragColor = vec4(colour * cover, cover);
+    gl_FragColor = vec4(color * cover, cover);
 }

@@ -61,12 +61,12 @@ float SLOT_strokeShown(vec3 position)
     return left * geofx_panoramaFade(view, SLOT_placeOf(position).y);
 }
 
-vec3 SLOT_strokeAir(vec3 colour, vec3 position)
+vec3 SLOT_strokeAir(vec3 color, vec3 position)
 {
-    vec3 far = geofx_atmosphere(colour, geofx_airColour(), geofx_airAmount(SLOT_strokeFar(position), SLOT_hand.z));
+    vec3 far = geofx_atmosphere(color, geofx_airColor(), geofx_airAmount(SLOT_strokeFar(position), SLOT_hand.z));
     float gone = SLOT_strokeGone(position);
     if (gone <= 0.0) return far;
     bool map = SLOT_edgeKind.w < GEOFX_EDGE_LAND;
     vec2 picture = map ? geofx_panoramaPicture(SLOT_view(), SLOT_placeOf(position)).xy : vec2(0.0);
-    return mix(far, geofx_edgeColour(SLOT_edgeSky, SLOT_edgePlace, picture.x, 0.5 + 0.5 * picture.y, map ? 1.0 : 0.0), gone);
+    return mix(far, geofx_edgeColor(SLOT_edgeSky, SLOT_edgePlace, picture.x, 0.5 + 0.5 * picture.y, map ? 1.0 : 0.0), gone);
 }

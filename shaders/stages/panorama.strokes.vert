@@ -8,10 +8,10 @@
 
 vec4 geofx_vertex(vec4 eyePosition);
 // Of undeformed places in eye space: pixels for each metre of the ground, the mean of across and along; the light on the ground, -1
-// to 1, `y` the place's in the picture, 0 at the bottom to 1; what the air makes of a colour.
+// to 1, `y` the place's in the picture, 0 at the bottom to 1; what the air makes of a color.
 float SLOT_groundScale(vec3 eyePosition);
 float SLOT_strokeLight(vec3 eyePosition, vec3 eyeNormal, float y);
-vec3 SLOT_strokeAir(vec3 colour, vec3 eyePosition);
+vec3 SLOT_strokeAir(vec3 color, vec3 eyePosition);
 // 0 at the picture's base, 1 at the horizon.
 float SLOT_strokeFar(vec3 eyePosition);
 // What is left of it behind the horizon.
@@ -101,7 +101,7 @@ void main()
                   shape.tone * (1.0 - 0.6 * SLOT_strokeFar(eye.xyz));
     if (kind == GEOFX_STROKE_HOUSE)
     {
-        // Walls in the town's colour, roofs of tiles or slate.
+        // Walls in the town's color, roofs of tiles or slate.
         SLOT_lightTone_in = mix(SLOT_tone(6, light), vec3(1.0), 0.25);
         vec3 roof = geofx_strokeRandom(seed, 5.0) < 0.7 ? vec3(0.80, 0.42, 0.30) : vec3(0.58, 0.56, 0.60);
         SLOT_darkTone_in = roof * (0.75 + 0.3 * light);

@@ -18,12 +18,12 @@ struct geofx_WaterPlace
     float far;    // 0 at the base, 1 at the horizon
 };
 
-// The water's own colour by its depth.
+// The water's own color by its depth.
 vec3 geofx_waterBody(float shore, float deepShore)
 {
     // Not white at once: rivers and ponds are pale blue.
     float t = mix(0.16, 1.0, geofx_waterDepth(shore, deepShore));
-    return geofx_waterColour(mix(geofx_shallowWater, geofx_deepWater, t), t);
+    return geofx_waterColor(mix(geofx_shallowWater, geofx_deepWater, t), t);
 }
 
 // The same with what it reflects. `water`: where it is deep, the reflection's strength, the ripples'. The mirror's alpha is s of

@@ -5,13 +5,13 @@
 // A tile of a terrain database where there is no kit: part of the database. There is no vertex shader, so OpenGL's fixed
 // functions place, clip and light the vertices, by whatever is in force; this lights once more with the normals of the tile's
 // texture. Which modes are on a shader cannot see. What is used instead:
-// - Lighting: without it the vertices' colour arrives, whose alpha is 254/255; with it, the material's alpha. With
+// - Lighting: without it the vertices' color arrives, whose alpha is 254/255; with it, the material's alpha. With
 //   GL_COLOR_MATERIAL that, too, is the vertices', and what the fixed functions have found is good enough.
 // - Lamp 0, osgviewer's: it is taken to be on where no less light has arrived than it gives the vertices. Their normals arrive
 //   as generated coordinates, set 6. What other lamps give, and gloss, stays as the fixed functions have it: it has no detail,
 //   but it is true. So does all light where lamp 0 is out or has a place.
 // - Fog: osg::Fog gives back OpenGL's defaults where there is none.
-uniform sampler2D geofx_tileColours;
+uniform sampler2D geofx_tileColors;
 uniform sampler2D geofx_tileNormals;
 
 vec3 shine(vec3 normal)
@@ -32,7 +32,7 @@ vec3 light(vec3 normal, vec3 vertexNormal, vec3 fixedLight)
                   gl_FrontLightProduct[4].diffuse.rgb + gl_FrontLightProduct[5].diffuse.rgb +
                   gl_FrontLightProduct[6].diffuse.rgb + gl_FrontLightProduct[7].diffuse.rgb;
     bool alone = others.r + others.g + others.b == 0.0;
-    // OpenGL gives lamp 0 a colour in the beginning, and a place behind the eye.
+    // OpenGL gives lamp 0 a color in the beginning, and a place behind the eye.
     bool untouched = gl_LightSource[0].diffuse == vec4(1.0) && gl_LightSource[0].position == vec4(0.0, 0.0, 1.0, 0.0);
     bool out0 = max(max(missing.r, missing.g), missing.b) > 0.01 || gl_LightSource[0].position.w != 0.0 ||
                 (untouched && !alone);
@@ -47,21 +47,21 @@ vec2 tame(vec2 place)
 
 void main()
 {
-    vec4 colour = gl_Color;
-    bool lit = abs(colour.a * 255.0 - 254.0) > 0.25;
+    vec4 color = gl_Color;
+    bool lit = abs(color.a * 255.0 - 254.0) > 0.25;
     vec3 texel = texture2D(geofx_tileNormals, tame((gl_TextureMatrix[2] * gl_TexCoord[0]).xy)).rgb;
     vec3 normal = (255.0 * texel - 128.0) / 127.0;
     // A byte is 0 only in a channel that the texture does not have; the first is where there is no texture.
     if (texel.b < 0.002) normal.z = sqrt(max(1.0 - dot(normal.xy, normal.xy), 0.0));
-    vec3 relit = light(normalize(gl_NormalMatrix * normal), gl_TexCoord[6].xyz, colour.rgb);
-    if (lit && texel.r > 0.002) colour.rgb = relit;
-    if (!lit) colour.a = 1.0;
-    colour *= texture2D(geofx_tileColours, tame(gl_TexCoord[0].xy));
+    vec3 relit = light(normalize(gl_NormalMatrix * normal), gl_TexCoord[6].xyz, color.rgb);
+    if (lit && texel.r > 0.002) color.rgb = relit;
+    if (!lit) color.a = 1.0;
+    color *= texture2D(geofx_tileColors, tame(gl_TexCoord[0].xy));
     bool linear = gl_Fog.start != 0.0 || gl_Fog.end != 1.0;
     if (linear || gl_Fog.density != 1.0 || gl_Fog.color != vec4(0.0))
     {
         float clear = linear ? (gl_Fog.end - gl_FogFragCoord) * gl_Fog.scale : exp(-gl_Fog.density * gl_FogFragCoord);
-        colour.rgb = mix(gl_Fog.color.rgb, colour.rgb, clamp(clear, 0.0, 1.0));
+        color.rgb = mix(gl_Fog.color.rgb, color.rgb, clamp(clear, 0.0, 1.0));
     }
-    gl_FragColor = colour;
+    gl_FragColor = color;
 }

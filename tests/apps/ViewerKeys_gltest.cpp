@@ -36,7 +36,7 @@ namespace
 
 constexpr double longitude = -157.81;
 constexpr double latitude = 21.395;
-constexpr double altitude = 2500.0;
+constexpr double eyeHeight = 2500.0;
 constexpr double heading = 40.0;
 constexpr double pitch = -30.0;
 
@@ -460,7 +460,7 @@ TEST_F(ViewerKeys, EveryManipulatorComesHome)
     ASSERT_NO_FATAL_FAILURE(setUpViewer());
     const GeographicLib::Geocentric earth(GeographicLib::Constants::WGS84_a(),
                                           GeographicLib::Constants::WGS84_f());
-    const GeographicLib::LocalCartesian local(latitude, longitude, altitude, earth);
+    const GeographicLib::LocalCartesian local(latitude, longitude, eyeHeight, earth);
     const auto inWorld = [&](const osg::Vec3d& place)
     {
         double lat = 0.0;

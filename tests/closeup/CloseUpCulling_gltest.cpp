@@ -96,14 +96,14 @@ protected:
             osg::Matrixd frame;
             EXPECT_TRUE(_reference->localToWorld(longitude, latitude, 0.0, frame));
             pose.view = lookFrom(-ahead, frame, random);
-            pose.plan.centre.set(longitude, latitude);
-            if (!onGlobe()) pose.plan.centre.set(frame.getTrans().x(), frame.getTrans().y());
+            pose.plan.center.set(longitude, latitude);
+            if (!onGlobe()) pose.plan.center.set(frame.getTrans().x(), frame.getTrans().y());
         }
         else
         {
             const auto kind = onGlobe() ? PagedScene::Kind::Geocentric : PagedScene::Kind::Flat;
             pose.view = lookFrom(-ahead, PagedScene::placement(kind), random);
-            if (onGlobe()) pose.plan.centre.set(osg::DegreesToRadians(-157.8), osg::DegreesToRadians(21.4));
+            if (onGlobe()) pose.plan.center.set(osg::DegreesToRadians(-157.8), osg::DegreesToRadians(21.4));
             pose.plan.size = std::min(pose.plan.size, 1500.0);
             pose.plan.reach = 1500.0;
         }

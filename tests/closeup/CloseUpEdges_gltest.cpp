@@ -45,7 +45,7 @@ protected:
         camera.setViewMatrixAsLookAt(place + osg::Vec3d(0.0, 0.0, 3000.0), place, {0.0, 1.0, 0.0});
         camera.setProjectionMatrixAsOrtho(-200.0, 200.0, -150.0, 150.0, 1.0, 6000.0);
     }
-    static osg::Vec3d colourAt(const osg::Image& image, int x, int y)
+    static osg::Vec3d colorAt(const osg::Image& image, int x, int y)
     {
         const unsigned char* rgb = image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
         return osg::Vec3d(rgb[0], rgb[1], rgb[2]) / 255.0;
@@ -107,12 +107,12 @@ private:
 
 TEST_F(CloseUpEdges, OutlinesAreAsWideInTheCornersOfRectangles)
 {
-    const osg::Vec3d lineColour(1.0, 0.0, 1.0);
+    const osg::Vec3d lineColor(1.0, 0.0, 1.0);
     const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({0.0, 0.0}, 100.0, 100.0);
     // Apart from the line around its region.
     const osg::Vec3d aside(0.0, 260.0, 0.0);
     closeUp->setScale(2.0, 2.0, 2.0);
-    closeUp->setColor(osg::Vec3d(lineColour));
+    closeUp->setColor(osg::Vec3d(lineColor));
     closeUp->getAnchor()->setKind(Anchor::NONE);
     RegionOfInterest& region = *closeUp->getRegion();
     region.setShape(RegionOfInterest::RECTANGLE);
@@ -137,7 +137,7 @@ TEST_F(CloseUpEdges, OutlinesAreAsWideInTheCornersOfRectangles)
                     region.setHeading(turn);
                     closeUp->setOffset({-aside.y() * std::sin(turn), aside.y() * std::cos(turn), 100.0});
                     // Corners lie anywhere among the squares of four pixels that GPUs draw at once.
-                    region.setCentre({0.37 * i, 1.0 * (i % 2) + 0.21 * i});
+                    region.setCenter({0.37 * i, 1.0 * (i % 2) + 0.21 * i});
                     closeUp->getAnchor()->setLineWidth(width);
                     _closeUps->setPipeline(pipelines[i / 2]);
                     const osg::ref_ptr<osg::Image> image = draw();
@@ -165,10 +165,10 @@ TEST_F(CloseUpEdges, OutlinesAreAsWideInTheCornersOfRectangles)
                             for (int x = static_cast<int>(corner.x()) - 9;
                                  x <= static_cast<int>(corner.x()) + 9; ++x)
                             {
-                                const osg::Vec3d before = colourAt(*without, x, y);
+                                const osg::Vec3d before = colorAt(*without, x, y);
                                 // Pixels that the region covers in part mix with what is behind them.
-                                const osg::Vec3d way = lineColour - before;
-                                const double share = (colourAt(*image, x, y) - before) * way / way.length2();
+                                const osg::Vec3d way = lineColor - before;
+                                const double share = (colorAt(*image, x, y) - before) * way / way.length2();
                                 const double wanted = frame.shareOf(x, y);
                                 seen += share;
                                 expected += wanted;
@@ -224,15 +224,15 @@ TEST_F(CloseUpEdges, TheNearerOfTwoSoftEdgesLiesOverTheOther)
                 for (int x = 0; x < _width; ++x)
                 {
                     // Of white over the ground, and of black over it.
-                    const double white = colourAt(*onlyBright, x, y).x();
-                    const double black = colourAt(*onlyDark, x, y).x();
+                    const double white = colorAt(*onlyBright, x, y).x();
+                    const double black = colorAt(*onlyDark, x, y).x();
                     const double coverOfBright = (white - ground) / (1.0 - ground);
                     const double coverOfDark = 1.0 - black / ground;
                     const bool brightIsNearer = y > _height / 2;
                     const double expected = brightIsNearer ? black * (1.0 - coverOfBright) + coverOfBright
                                                            : white * (1.0 - coverOfDark);
                     mixed += coverOfBright > 0.1 && coverOfDark > 0.1 ? 1 : 0;
-                    wrong += std::abs(colourAt(*both, x, y).x() - expected) > 0.02 ? 1 : 0;
+                    wrong += std::abs(colorAt(*both, x, y).x() - expected) > 0.02 ? 1 : 0;
                 }
             }
             EXPECT_GT(mixed, 3000);
@@ -282,18 +282,18 @@ TEST_F(CloseUpEdges, AnchorsLieOverSoftEdgesThatAreFartherAway)
                 {
                     for (int x = 0; x < _width; ++x)
                     {
-                        const osg::Vec3d background = colourAt(*nothing, x, y);
-                        const osg::Vec3d rim = colourAt(*onlySoft, x, y);
+                        const osg::Vec3d background = colorAt(*nothing, x, y);
+                        const osg::Vec3d rim = colorAt(*onlySoft, x, y);
                         const double cover = (rim.x() - background.x()) / (1.0 - background.x());
                         const osg::Vec3d wall = background * 0.4 + magenta * 0.6;
                         // The wall alone: not its close-up, nor edges.
-                        if (distance(colourAt(*onlyWall, x, y), wall) > 0.01) continue;
+                        if (distance(colorAt(*onlyWall, x, y), wall) > 0.01) continue;
                         if (cover < 0.05 || cover > 0.95) continue;
                         const osg::Vec3d expected =
                             wallIsNearer ? rim * 0.4 + magenta * 0.6
                                          : wall * (1.0 - cover) + osg::Vec3d(1.0, 1.0, 1.0) * cover;
                         ++mixed;
-                        wrong += distance(colourAt(*both, x, y), expected) > 0.02 ? 1 : 0;
+                        wrong += distance(colorAt(*both, x, y), expected) > 0.02 ? 1 : 0;
                     }
                 }
                 EXPECT_GT(mixed, 500);

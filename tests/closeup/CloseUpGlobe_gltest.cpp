@@ -34,12 +34,12 @@ osg::Vec3d placeOf(double east, double north)
     return place;
 }
 
-/// Ground between two meridians and two parallels, degrees, in a checkerboard of two colours, about its own middle.
+/// Ground between two meridians and two parallels, degrees, in a checkerboard of two colors, about its own middle.
 osg::ref_ptr<osg::MatrixTransform> makeGround(double west, double south, double east, double north, int cells)
 {
     const osg::Vec3d middle = placeOf((west + east) / 2.0, (south + north) / 2.0);
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
     for (int j = 0; j < cells; ++j)
     {
         for (int i = 0; i < cells; ++i)
@@ -55,7 +55,7 @@ osg::ref_ptr<osg::MatrixTransform> makeGround(double west, double south, double 
             {
                 vertices->push_back(each);
                 const float shade = (i + j) % 2 ? 0.9f : 0.5f;
-                colours->push_back({shade, 0.8f, 1.0f - shade, 1.0f});
+                colors->push_back({shade, 0.8f, 1.0f - shade, 1.0f});
             }
         }
     }
@@ -63,7 +63,7 @@ osg::ref_ptr<osg::MatrixTransform> makeGround(double west, double south, double 
     geometry->setUseDisplayList(false);
     geometry->setUseVertexBufferObjects(true);
     geometry->setVertexArray(vertices);
-    geometry->setColorArray(colours);
+    geometry->setColorArray(colors);
     geometry->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, static_cast<int>(vertices->size())));
     osg::ref_ptr<osg::MatrixTransform> placed = new osg::MatrixTransform(osg::Matrixd::translate(middle));
     placed->addChild(geometry);
@@ -81,7 +81,7 @@ protected:
         _scene->removeChildren(0, _scene->getNumChildren());
         _scene->setTerrainFrame(EffectScene::GEOCENTRIC);
         osg::ref_ptr<CloseUp> closeUp = makeCloseUp({0.0, 0.0}, 2000.0, 1500.0);
-        closeUp->getRegion()->setGeodeticCentre(osg::DegreesToRadians(longitude),
+        closeUp->getRegion()->setGeodeticCenter(osg::DegreesToRadians(longitude),
                                                 osg::DegreesToRadians(latitude));
         _closeUps->addCloseUp(closeUp);
     }

@@ -27,7 +27,7 @@ protected:
         for (const double x : {-250.0, 250.0})
         {
             osg::ref_ptr<CloseUp> closeUp = new CloseUp;
-            closeUp->getRegion()->setCentre({x, -250.0});
+            closeUp->getRegion()->setCenter({x, -250.0});
             closeUp->getRegion()->setSize(200.0, 200.0);
             closeUp->setScale(1.0, 1.0, 1.0);
             closeUp->setOffset({0.0, 500.0, 100.0});

@@ -36,7 +36,7 @@ void randomize(Sample& sample, Random& random)
     sample.pose = randomCommonPose(random);
     CloseUpPlan plan;
     plan.globe = sample.pose.globe;
-    plan.centre.set(sample.pose.x, sample.pose.y);
+    plan.center.set(sample.pose.x, sample.pose.y);
     plan.size = random.logarithmic(10.0, 1e5);
     plan.reach = plan.globe && std::abs(sample.pose.y) > 1.3 ? 0.0 : 2.0 * plan.size;
     plan.rise = plan.size;
@@ -67,7 +67,7 @@ TEST(CloseUpItem, WhatIsOverTheRegionIsNeverOutside)
         const double radius = size * random.logarithmic(1e-3, 2.0);
         const Ball ball = {point + randomDirection(random) * (radius * random.uniform(0.0, 0.999)), radius};
         osg::Matrixd turned = osg::Matrixd::rotate(random.uniform(0.0, 6.0), randomDirection(random));
-        turned.setTrans(ball.centre);
+        turned.setTrans(ball.center);
         const auto half = static_cast<float>(radius);
         const EyeBox box = EyeBox::of(osg::BoundingBox(-half, -half, -half, half, half, half), turned);
         outside += item.outside(ball) ? 1 : 0;
@@ -214,7 +214,7 @@ TEST(CloseUpItem, CornersHoldTheCloseUp)
             ASSERT_LE(lifted * axis, most + 1e-7 * scale) << "sample " << i;
         }
         const EyeBox ground = item.groundBox(low, high);
-        const osg::Vec3d from = point * item.regionToEye() - ground.centre;
+        const osg::Vec3d from = point * item.regionToEye() - ground.center;
         for (const osg::Vec3d& half : ground.half)
             ASSERT_LE(std::abs(from * half), half * half * (1.0 + 1e-5) + 1e-5 * half.length())
                 << "sample " << i;
@@ -275,14 +275,14 @@ TEST(CloseUpItem, StartsWhereABendHasMovedItsRegion)
         const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
         bend->setFocusLine(0.3);
         bend->setHorizonLine(random.uniform(0.7, 0.9));
-        const auto frame = bend->frame(view);
+        const auto frame = bend->snapshot(view);
         if (!frame) continue;
         sample.chain->add(frame);
         sample.closeUp = new CloseUp;
         CloseUp& closeUp = *sample.closeUp;
         const double distance = sample.pose.height * random.uniform(1.0, 6.0);
         const double bearing = sample.pose.heading + random.uniform(-0.3, 0.3);
-        closeUp.getRegion()->setCentre({distance * std::sin(bearing), distance * std::cos(bearing)});
+        closeUp.getRegion()->setCenter({distance * std::sin(bearing), distance * std::cos(bearing)});
         closeUp.setOrientation(static_cast<CloseUp::Orientation>(random.integer(0, 1)));
         closeUp.setOffset(
             {random.uniform(-500.0, 500.0), random.uniform(-500.0, 500.0), random.uniform(0.0, 900.0)});
@@ -320,7 +320,7 @@ TEST(CloseUpItem, WithoutPerspectiveAllDepthsAreAsLarge)
     sample.closeUp->setScale(1.0, 1.0, 1.0);
     sample.closeUp->setTilt(0.0);
     sample.closeUp->setTurn(0.0);
-    sample.closeUp->getRegion()->setCentre({0.0, 5000.0});
+    sample.closeUp->getRegion()->setCenter({0.0, 5000.0});
     const CloseUpItem item = sample.item();
     ASSERT_TRUE(item.parallel());
     const auto pictureOf = [&](double x, double height)

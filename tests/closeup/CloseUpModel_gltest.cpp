@@ -33,7 +33,7 @@ protected:
             new osg::MatrixTransform(osg::Matrixd::inverse(frame) * closeUp.shape(0.0) * frame);
         moved->getOrCreateStateSet()->setMode(GL_NORMALIZE, osg::StateAttribute::ON);
         osg::ref_ptr<osg::ClipNode> cut = new osg::ClipNode;
-        const osg::Vec3d centre = frame.getTrans();
+        const osg::Vec3d center = frame.getTrans();
         const double half[2] = {region.getWidth() / 2.0, region.getDepth() / 2.0};
         for (unsigned int i = 0; i < 4; ++i)
         {
@@ -42,7 +42,7 @@ protected:
             const double side = i % 2 == 0 ? 1.0 : -1.0;
             osg::Vec3d normal(axis == 0 ? side : 0.0, axis == 1 ? side : 0.0, 0.0);
             normal = osg::Matrixd::transform3x3(normal, frame);
-            cut->addClipPlane(new osg::ClipPlane(i, osg::Vec4d(normal, half[axis] - normal * centre)));
+            cut->addClipPlane(new osg::ClipPlane(i, osg::Vec4d(normal, half[axis] - normal * center)));
         }
         cut->addChild(_scene->getChild(0));
         moved->addChild(cut);
@@ -78,7 +78,7 @@ TEST_F(CloseUpModel, IsTheGroundCutScaledAndLifted)
     expectSame(*closeUp);
     closeUp->getRegion()->setSize(700.0, 300.0);
     closeUp->getRegion()->setHeading(0.6);
-    closeUp->getRegion()->setBase(80.0);
+    closeUp->getRegion()->setBaseHeight(80.0);
     closeUp->setOffset({150.0, -60.0, 350.0});
     expectSame(*closeUp);
 }

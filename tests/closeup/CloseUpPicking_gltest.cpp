@@ -146,9 +146,9 @@ osg::ref_ptr<osg::Geometry> square(double west, double width, double height)
 {
     osg::ref_ptr<osg::Geometry> result = osg::createTexturedQuadGeometry(
         osg::Vec3d(west, -1000.0, height), osg::Vec3d(width, 0.0, 0.0), osg::Vec3d(0.0, 2000.0, 0.0));
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array(1);
-    (*colours)[0].set(0.9f, 0.5f, 0.2f, 1.0f);
-    result->setColorArray(colours, osg::Array::BIND_OVERALL);
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(1);
+    (*colors)[0].set(0.9f, 0.5f, 0.2f, 1.0f);
+    result->setColorArray(colors, osg::Array::BIND_OVERALL);
     return result;
 }
 
@@ -241,7 +241,7 @@ TEST_F(CloseUpPicking, OnAGlobe)
     const osg::Matrixd placement = PagedScene::placement(PagedScene::Kind::Geocentric);
     CloseUpPlan plan;
     plan.globe = true;
-    plan.centre.set(osg::DegreesToRadians(-157.8), osg::DegreesToRadians(21.4));
+    plan.center.set(osg::DegreesToRadians(-157.8), osg::DegreesToRadians(21.4));
     _scene->setTerrainFrame(EffectScene::GEOCENTRIC);
     osg::ref_ptr<osg::MatrixTransform> ground = new osg::MatrixTransform(placement);
     ground->addChild(_scene->getChild(0));
@@ -324,7 +324,7 @@ TEST_F(CloseUpPicking, PagedScenes)
         scene->effects->addEffect(closeUps);
         CloseUpPlan plan;
         plan.globe = kind == PagedScene::Kind::Geocentric;
-        if (plan.globe) plan.centre.set(osg::DegreesToRadians(-157.8), osg::DegreesToRadians(21.4));
+        if (plan.globe) plan.center.set(osg::DegreesToRadians(-157.8), osg::DegreesToRadians(21.4));
         CullHarness harness(context(), scene->effects, _width, _height);
         Tally tally;
         for (int i = 0; i < 10; ++i)
@@ -336,7 +336,7 @@ TEST_F(CloseUpPicking, PagedScenes)
                 const osg::ref_ptr<CloseUp> closeUp = randomCloseUp(random, plan);
                 paint(*closeUp, number);
                 closeUp->setEdge(CloseUp::FRAGMENTS);
-                closeUp->getRegion()->setBase(plan.globe ? 100.0 : 0.0);
+                closeUp->getRegion()->setBaseHeight(plan.globe ? 100.0 : 0.0);
                 closeUps->addCloseUp(closeUp);
             }
             lookAnyhow(random);

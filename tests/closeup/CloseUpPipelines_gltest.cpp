@@ -25,13 +25,13 @@ constexpr double most = 0.001;
 /// Where both pipelines draw the same pixels, how many of them are alike says little without how many there are.
 constexpr double drawnAtLeast = 0.01;
 
-osg::ref_ptr<ProjectiveMapping> makeSpot(const osg::Vec2d& centre, double half, const osg::Vec3d& colour,
+osg::ref_ptr<ProjectiveMapping> makeSpot(const osg::Vec2d& center, double half, const osg::Vec3d& color,
                                          int channels)
 {
     osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
-    mapping->setRectangle(centre, half, half);
+    mapping->setRectangle(center, half, half);
     mapping->getTransfer()->setSource(ColorTransfer::CONSTANT);
-    mapping->getTransfer()->setConstant(osg::Vec4d(colour, 0.8));
+    mapping->getTransfer()->setConstant(osg::Vec4d(color, 0.8));
     mapping->setChannels(channels);
     return mapping;
 }
@@ -78,7 +78,7 @@ protected:
         for (const double side : {-1.0, 1.0})
         {
             osg::ref_ptr<CloseUp> closeUp = new CloseUp;
-            closeUp->getRegion()->setCentre({2.0 * side, 0.0});
+            closeUp->getRegion()->setCenter({2.0 * side, 0.0});
             closeUp->getRegion()->setSize(3.0, 3.0);
             closeUp->setOffset({0.0, 1.0, 2.0});
             closeUp->setTilt(0.4 * side);
@@ -170,7 +170,7 @@ TEST_F(CloseUpPipelines, TessellatedWhereRegionsLieApart)
         _closeUps->removeCloseUps();
         for (const double x : {-700.0, 0.0, 700.0})
         {
-            plan.centre.set(x, random.uniform(-600.0, 600.0));
+            plan.center.set(x, random.uniform(-600.0, 600.0));
             const osg::ref_ptr<CloseUp> closeUp = randomCloseUp(random, plan);
             closeUp->setRoundness(random.uniform(0.0, 1.0));
             _closeUps->addCloseUp(closeUp);
@@ -370,7 +370,7 @@ TEST_F(CloseUpLooks, HandOnWhatOpenGlKnows)
                     model->setTwoSided(true);
                     place.state().setAttributeAndModes(model);
                 });
-    expectAlike("specular colour apart",
+    expectAlike("specular color apart",
                 [](const Place& place)
                 {
                     addSun(place);

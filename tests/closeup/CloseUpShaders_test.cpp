@@ -155,7 +155,7 @@ TEST(CloseUpShaders, CoverageIsOneHalfOnTheBorderAndAPixelWide)
     EXPECT_EQ(glsl::geofx_coverage(-1e-3, 0.0), 0.0);
 }
 
-TEST(CloseUpShaders, RestyledColours)
+TEST(CloseUpShaders, RestyledColors)
 {
     const int count = sampleCount();
     for (int i = 0; i < count; ++i)

@@ -51,7 +51,7 @@ TEST_F(CloseUpStates, NothingToDrawLeavesThePictureAlone)
         EXPECT_TRUE(same(*plain, *draw())) << "a region off the terrain";
         EXPECT_EQ(_closeUps->statistics().closeUps, 0);
 
-        closeUp->getRegion()->setCentre({0.0, 0.0});
+        closeUp->getRegion()->setCenter({0.0, 0.0});
         EXPECT_GT(shows(), 0.02);
         watch().messagesOf([&] { closeUp->getRegion()->setShape(RegionOfInterest::IMAGE); });
         watch().messagesOf([&] { EXPECT_TRUE(same(*plain, *draw())) << "an empty mask"; });
@@ -97,7 +97,7 @@ TEST_F(CloseUpStates, WhatMakesNoSenseIsRefused)
     refuses("no region", [&] { return closeUp->setRegion(nullptr); });
     refuses("no anchor", [&] { return closeUp->setAnchor(nullptr); });
     refuses("a region without a size", [&] { return closeUp->getRegion()->setSize(0.0, 100.0); });
-    refuses("no number for a centre", [&] { return closeUp->getRegion()->setCentre({nan, 0.0}); });
+    refuses("no number for a center", [&] { return closeUp->getRegion()->setCenter({nan, 0.0}); });
     refuses("no close-up", [&] { return _closeUps->addCloseUp(nullptr); });
     refuses("the same close-up again", [&] { return _closeUps->addCloseUp(closeUp); });
     refuses("two textures on a unit", [&] { return _closeUps->setUnits(11, 11, 12); });

@@ -67,16 +67,16 @@ protected:
         camera.setViewMatrixAsLookAt({0.0, -2000.0, 0.0}, osg::Vec3d(), {0.0, 0.0, 1.0});
         camera.setProjectionMatrixAsOrtho(-200.0, 200.0, -50.0, 250.0, 1.0, 6000.0);
     }
-    static osg::Vec3d colourAt(const osg::Image& image, int x, int y)
+    static osg::Vec3d colorAt(const osg::Image& image, int x, int y)
     {
         const unsigned char* rgb = image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
         return osg::Vec3d(rgb[0], rgb[1], rgb[2]) / 255.0;
     }
     /// Of the place on the ground that is (x, y) metres east and north of the origin.
-    osg::Vec3d colourOf(const osg::Image& image, double x, double y) const
+    osg::Vec3d colorOf(const osg::Image& image, double x, double y) const
     {
-        return colourAt(image, static_cast<int>(std::floor(x / 2.0)) + _width / 2,
-                        static_cast<int>(std::floor(y / 2.0)) + _height / 2);
+        return colorAt(image, static_cast<int>(std::floor(x / 2.0)) + _width / 2,
+                       static_cast<int>(std::floor(y / 2.0)) + _height / 2);
     }
 };
 
@@ -130,7 +130,7 @@ TEST_F(CloseUpStyles, TheSunShinesFromItsAzimuthAndTheRegionsHeading)
                 normal.normalize();
                 light[i] = normal * sun;
                 ASSERT_GT(light[i], 0.0) << "a side in the shade would say little";
-                seen[i] = colourOf(*image, 55.0 * sides[i].x(), 55.0 * sides[i].y()).y();
+                seen[i] = colorOf(*image, 55.0 * sides[i].x(), 55.0 * sides[i].y()).y();
             }
             const auto dark = static_cast<std::size_t>(std::min_element(light, light + 4) - light);
             const auto bright = static_cast<std::size_t>(std::max_element(light, light + 4) - light);
@@ -148,9 +148,9 @@ TEST_F(CloseUpStyles, LayersShowWhatTheirImagesBecame)
     constexpr double half = 200.0;
     const osg::ref_ptr<SurfaceData> data = new SurfaceData;
     data->setRectangle({-half, -half}, {half, half});
-    const auto paint = [](const osg::Vec4d& colour)
+    const auto paint = [](const osg::Vec4d& color)
     {
-        return makeValues(16, half, [&](double, double) { return colour; });
+        return makeValues(16, half, [&](double, double) { return color; });
     };
     const osg::ref_ptr<osg::Image> first = paint({1.0, 0.0, 0.0, 1.0});
     const osg::ref_ptr<osg::Image> second = paint({0.0, 0.0, 1.0, 1.0});
@@ -163,11 +163,11 @@ TEST_F(CloseUpStyles, LayersShowWhatTheirImagesBecame)
     const auto shown = [&](const char* layer)
     {
         closeUp->setSurface(layer);
-        return colourOf(*draw(), 0.0, 0.0);
+        return colorOf(*draw(), 0.0, 0.0);
     };
-    const auto repaint = [&](osg::Image& image, const osg::Vec4d& colour)
+    const auto repaint = [&](osg::Image& image, const osg::Vec4d& color)
     {
-        const osg::ref_ptr<osg::Image> other = paint(colour);
+        const osg::ref_ptr<osg::Image> other = paint(color);
         std::copy_n(other->data(), other->getTotalSizeInBytes(), image.data());
         image.dirty();
     };
@@ -217,7 +217,7 @@ TEST_F(CloseUpStyles, WideLinesAreWhole)
                     const auto isLine = [&](double beyond)
                     {
                         const osg::Vec2d at = side * (80.0 + 2.0 * beyond);
-                        return (colourOf(*image, at.x(), at.y()) - osg::Vec3d(1.0, 0.0, 1.0)).length() < 0.05;
+                        return (colorOf(*image, at.x(), at.y()) - osg::Vec3d(1.0, 0.0, 1.0)).length() < 0.05;
                     };
                     EXPECT_TRUE(isLine(width / 2.0 - 1.0)) << side.x() << ", " << side.y();
                     EXPECT_FALSE(isLine(width / 2.0 + 1.0)) << side.x() << ", " << side.y();
@@ -252,7 +252,7 @@ TEST_F(CloseUpStyles, MasksLieWhereTheirRegionDoes)
             {
                 for (int x = 0; x < _width; ++x)
                 {
-                    const double share = (colourAt(*image, x, y).x() - grey) / (1.0 - grey);
+                    const double share = (colorAt(*image, x, y).x() - grey) / (1.0 - grey);
                     cover += share;
                     middle += osg::Vec2d(x + 0.5, y + 0.5) * share;
                 }
@@ -298,8 +298,8 @@ TEST_F(CloseUpStyles, AnchorsAreAsOpaqueAsTheirTableSaysOfTheirHeight)
             {
                 const double share = (row + 0.5 - 25.0) / 100.0;
                 if (std::abs(share - 0.25) < 0.03) continue;
-                const bool opaque = (colourAt(*image, 100, row) - osg::Vec3d(1.0, 0.0, 1.0)).length() < 0.05;
-                const bool clear = (colourAt(*image, 100, row) - colourAt(*empty, 100, row)).length() < 0.02;
+                const bool opaque = (colorAt(*image, 100, row) - osg::Vec3d(1.0, 0.0, 1.0)).length() < 0.05;
+                const bool clear = (colorAt(*image, 100, row) - colorAt(*empty, 100, row)).length() < 0.02;
                 EXPECT_EQ(opaque, share < 0.25) << "at " << share << " of the way";
                 EXPECT_EQ(clear, share > 0.25) << "at " << share << " of the way";
             }
@@ -377,8 +377,8 @@ TEST_F(CloseUpStyles, RegionsOfInactiveCloseUpsKeepTheirLine)
             SCOPED_TRACE(::testing::Message() << "pipeline " << pipeline << ", activity " << activity);
             closeUp->setActivity(activity);
             const osg::ref_ptr<osg::Image> image = draw();
-            EXPECT_LT((colourOf(*image, 79.5, 0.0) - osg::Vec3d(1.0, 0.0, 1.0)).length(), 0.05);
-            EXPECT_LT((colourOf(*image, 0.0, -79.5) - osg::Vec3d(1.0, 0.0, 1.0)).length(), 0.05);
+            EXPECT_LT((colorOf(*image, 79.5, 0.0) - osg::Vec3d(1.0, 0.0, 1.0)).length(), 0.05);
+            EXPECT_LT((colorOf(*image, 0.0, -79.5) - osg::Vec3d(1.0, 0.0, 1.0)).length(), 0.05);
         }
     }
 }

@@ -38,7 +38,7 @@ struct Sample
 {
     osg::ref_ptr<CloseUp> closeUp;
     osg::ref_ptr<DeformationChain> chain = new DeformationChain;
-    std::vector<osg::ref_ptr<const DeformationFrame>> frames; ///< for each effect before the close-ups
+    std::vector<osg::ref_ptr<const DeformationSnapshot>> frames; ///< for each effect before the close-ups
     std::unique_ptr<CloseUpItem> item;
     std::vector<osg::Vec3d> points;
     std::string text;
@@ -80,16 +80,16 @@ Sample randomSample(int number, SampleEffects& effects)
     for (Deformation* each :
          {static_cast<Deformation*>(effects.high), static_cast<Deformation*>(effects.bend)})
     {
-        sample.frames.push_back(random.integer(0, 1) ? each->frame(view) : nullptr);
+        sample.frames.push_back(random.integer(0, 1) ? each->snapshot(view) : nullptr);
         if (sample.frames.back()) sample.chain->add(sample.frames.back());
     }
     CloseUpPlan plan;
     plan.globe = pose.globe;
     const double distance = pose.height * random.uniform(0.2, 2.0);
     const osg::Vec2d ahead(distance * std::sin(pose.heading), distance * std::cos(pose.heading));
-    plan.centre.set(pose.x, pose.y);
+    plan.center.set(pose.x, pose.y);
     constexpr double radius = 6.37e6;
-    plan.centre += pose.globe ? osg::Vec2d(ahead.x() / radius / std::cos(pose.y), ahead.y() / radius) : ahead;
+    plan.center += pose.globe ? osg::Vec2d(ahead.x() / radius / std::cos(pose.y), ahead.y() / radius) : ahead;
     plan.reach = 0.0;
     plan.size = pose.height * random.logarithmic(0.2, 1.0);
     plan.rise = 0.3 * pose.height;

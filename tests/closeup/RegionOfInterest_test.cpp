@@ -86,7 +86,7 @@ TEST(RegionOfInterest, AnImagesDistancesAreThoseOfItsBorder)
                 Random random(7);
                 for (int i = 0; i < 500; ++i)
                 {
-                    // Between the centres of texels; beyond, the last ones stay.
+                    // Between the centers of texels; beyond, the last ones stay.
                     const double last = 1.0 - 1.0 / side;
                     const Vec2d place(random.uniform(-last, last), random.uniform(-last, last));
                     EXPECT_NEAR(region->maskAt(place).y(), radius - place.length(), 0.2 * 2.0 / side);
@@ -144,7 +144,7 @@ TEST(RegionOfInterest, TexelsThatTouchAtACornerAreJoinedAsTheGreysBetweenThemSay
 
 TEST(RegionOfInterest, AnImageMayHaveAnyFormat)
 {
-    // White whose alpha falls to the right; colours; one channel.
+    // White whose alpha falls to the right; colors; one channel.
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(2, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     const unsigned char alpha[] = {255, 255, 255, 255, 255, 255, 255, 0};
@@ -201,9 +201,9 @@ TEST(RegionOfInterest, MasksAreMadeAnewWhenTheyChange)
     osg::ref_ptr<const osg::Image> mask = region->mask();
     EXPECT_EQ(region->mask(), mask);
     // None of these changes it.
-    region->setCentre({5, 6});
-    region->setGeodeticCentre(0.1, 0.2);
-    region->setBase(100.0);
+    region->setCenter({5, 6});
+    region->setGeodeticCenter(0.1, 0.2);
+    region->setBaseHeight(100.0);
     region->setHeading(1.0);
     region->setSize(500.0, 500.0);
     EXPECT_EQ(region->mask(), mask);
@@ -274,7 +274,7 @@ TEST(RegionOfInterest, WithoutAnImageItIsEmptyAndSaysSoOnce)
             region->setSoftness(0.5);
             EXPECT_TRUE(region->isEmpty());
             EXPECT_TRUE(region->contours(0.1).empty());
-            region->setCentre({1, 1});
+            region->setCenter({1, 1});
             EXPECT_NE(region->mask(), nullptr);
         });
     ASSERT_EQ(messages.size(), 1u);
@@ -307,14 +307,14 @@ TEST(RegionOfInterest, RefusesWhatMakesNoSense)
     deep->allocateImage(2, 2, 2, GL_RGB, GL_UNSIGNED_BYTE);
     const std::function<bool()> attempts[] = {
         [&] {
-            return region->setCentre({nan, 0});
+            return region->setCenter({nan, 0});
         },
         [&] {
-            return region->setCentre({0, infinity});
+            return region->setCenter({0, infinity});
         },
-        [&] { return region->setGeodeticCentre(0, 2.0); },
-        [&] { return region->setGeodeticCentre(nan, 0); },
-        [&] { return region->setBase(nan); },
+        [&] { return region->setGeodeticCenter(0, 2.0); },
+        [&] { return region->setGeodeticCenter(nan, 0); },
+        [&] { return region->setBaseHeight(nan); },
         [&] { return region->setSize(0.5, 100); },
         [&] { return region->setSize(100, 3e6); },
         [&] { return region->setSize(nan, 100); },
@@ -392,8 +392,8 @@ TEST(RegionOfInterest, CopiesHaveTheSameMask)
 TEST(RegionOfInterest, FramesLieWhereTheRegionIs)
 {
     const Region region = makeRegion(RegionOfInterest::ELLIPSE, 3000, 1000);
-    region->setCentre({500000, 4000000});
-    region->setBase(120);
+    region->setCenter({500000, 4000000});
+    region->setBaseHeight(120);
     const auto expectNear = [](const Vec3d& a, const Vec3d& b, double tolerance)
     {
         EXPECT_LT((a - b).length(), tolerance) << a.x() << " " << a.y() << " " << a.z();
@@ -407,7 +407,7 @@ TEST(RegionOfInterest, FramesLieWhereTheRegionIs)
 
     const osg::ref_ptr<osg::EllipsoidModel> wgs84 = new osg::EllipsoidModel;
     const double longitude = osg::DegreesToRadians(-157.9), latitude = osg::DegreesToRadians(21.4);
-    region->setGeodeticCentre(longitude, latitude);
+    region->setGeodeticCenter(longitude, latitude);
     const auto world = [&](double east, double north, double height)
     {
         Vec3d place;

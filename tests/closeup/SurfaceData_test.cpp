@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Layers of surface data: what is taken and what is refused, where it lies, and colours from images.
+// Layers of surface data: what is taken and what is refused, where it lies, and colors from images.
 #include <osgGeoFX/closeup/SurfaceData.h>
 #include <tools/NotifyWatch.h>
 #include <tools/SurfaceLayers.h>
@@ -155,7 +155,7 @@ TEST_F(SurfaceDataLayers, AreSharedOrCopiedWithTheirObject)
     EXPECT_NE(deep->getLayerImage(0), data->getLayerImage(0));
 }
 
-TEST_F(SurfaceDataLayers, OfColoursComeFromAnyPlainImage)
+TEST_F(SurfaceDataLayers, OfColorsComeFromAnyPlainImage)
 {
     struct Format
     {

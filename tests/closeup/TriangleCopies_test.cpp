@@ -68,10 +68,10 @@ TEST(TriangleCopies, FollowNewArrays)
     EXPECT_EQ(copy->getVertexArray(), wider.get());
     EXPECT_EQ(copy->getPrimitiveSet(0)->getNumIndices(), 6u);
     EXPECT_DOUBLE_EQ(copies.longestEdge(*row), std::sqrt(17.0));
-    const osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array(22);
-    row->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+    const osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(22);
+    row->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     copy = copies.of(*row, aroundFirst(), false);
-    EXPECT_EQ(copy->getColorArray(), colours.get());
+    EXPECT_EQ(copy->getColorArray(), colors.get());
 }
 
 TEST(TriangleCopies, AreDrawnAsOften)

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // What culling trusts: nothing that deformations make of a ball or a box lies outside of its bound.
 #include <osgGeoFX/effect/DeformationChain.h>
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <tools/RandomViews.h>
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using namespace geofx::test;
 using osg::Vec3d;
 using osgGeoFX::Ball;
 using osgGeoFX::DeformationChain;
-using osgGeoFX::DeformationFrame;
+using osgGeoFX::DeformationSnapshot;
 using osgGeoFX::EyeBox;
 using osgGeoFX::Hull;
 
@@ -42,12 +42,12 @@ Case randomCase(Random& random, int most)
         for (int i = random.integer(1, most); i > 0; --i)
         {
             const auto effect = randomDeformation(random);
-            const auto frame = effect->frame(found.view);
-            if (!frame) continue;
-            found.chain->add(frame);
+            const auto snapshot = effect->snapshot(found.view);
+            if (!snapshot) continue;
+            found.chain->add(snapshot);
             text << describe(*effect) << "; ";
             BendNumbers bend;
-            if (bendNumbers(*frame, bend))
+            if (bendNumbers(*snapshot, bend))
                 text << "start " << bend.start << ", size " << bend.size << ", angle " << bend.angle << "; ";
         }
         if (found.chain->empty()) continue;
@@ -61,27 +61,27 @@ Vec3d randomPointIn(const Ball& ball, Random& random)
 {
     // Most often on its surface, where bounds fail first.
     const double share = random.integer(0, 2) ? 1.0 : std::cbrt(random.uniform(0.0, 1.0));
-    return ball.centre + randomDirection(random) * (ball.radius * share);
+    return ball.center + randomDirection(random) * (ball.radius * share);
 }
 
 /// Of any size, most often across or near the first frame's zone.
 Ball randomBall(const Case& found, Random& random)
 {
-    return {randomPointFor(*found.chain->frames()[0], found.view, random), random.logarithmic(0.1, 1e5)};
+    return {randomPointFor(*found.chain->snapshots()[0], found.view, random), random.logarithmic(0.1, 1e5)};
 }
 
 /// A tile most often: wide, flat and level; else any box in any orientation.
 EyeBox randomBox(const Case& found, Random& random)
 {
     EyeBox box;
-    box.centre = randomPointFor(*found.chain->frames()[0], found.view, random);
+    box.center = randomPointFor(*found.chain->snapshots()[0], found.view, random);
     const double size = random.logarithmic(1.0, 3e4);
     const bool tile = random.integer(0, 3) != 0;
     Vec3d up = tile ? found.view.up : randomDirection(random);
     if (tile && found.view.ground.ellipsoid)
     {
         // A tile lies level where it is, not where the eye is.
-        up = up + (box.centre + up * found.view.eyeHeight) / 6.37e6;
+        up = up + (box.center + up * found.view.eyeHeight) / 6.37e6;
         up.normalize();
     }
     Vec3d east = up ^ randomDirection(random);
@@ -95,7 +95,7 @@ EyeBox randomBox(const Case& found, Random& random)
 
 Vec3d randomPointIn(const EyeBox& box, Random& random)
 {
-    Vec3d point = box.centre;
+    Vec3d point = box.center;
     for (const Vec3d& half : box.half)
     {
         // Corners, edges and faces more often than the inside.
@@ -149,7 +149,7 @@ void expectBallsHold(int most)
                        for (int i = 0; i < 10; ++i)
                        {
                            const Vec3d point = randomPointIn(ball, random);
-                           EXPECT_LE((found.chain->deform(point) - bound.centre).length(),
+                           EXPECT_LE((found.chain->deform(point) - bound.center).length(),
                                      bound.radius * (1.0 + 1e-9) + 1e-12 * scaleOf(found, point))
                                << "radius " << ball.radius;
                        }
@@ -167,7 +167,7 @@ void expectBoxesHold(int most)
                        std::vector<Vec3d> deformed;
                        for (int i = 0; i < 30; ++i)
                            deformed.push_back(found.chain->deform(randomPointIn(box, random)));
-                       const double allowed = hull.margin * (1.0 + 1e-9) + 1e-12 * scaleOf(found, box.centre);
+                       const double allowed = hull.margin * (1.0 + 1e-9) + 1e-12 * scaleOf(found, box.center);
                        for (int i = 0; i < 20; ++i)
                        {
                            // Any direction, and the box's own, in which it is thin.
@@ -205,33 +205,34 @@ TEST(DeformationBounds, HullsHoldWhatAChainMakesOfABox)
 TEST(DeformationBounds, ReachIsWhatItSays)
 {
     int counts[3] = {};
-    forRandomCases(sampleCount(), 1,
-                   [&](const Case& found, Random& random)
-                   {
-                       const DeformationFrame& frame = *found.chain->frames()[0];
-                       const Ball ball = randomBall(found, random);
-                       const DeformationFrame::Reach reach = frame.reach(ball);
-                       ++counts[static_cast<int>(reach)];
-                       const Vec3d a = randomPointIn(ball, random);
-                       const Vec3d b = randomPointIn(ball, random);
-                       const Vec3d middle = (a + b) * 0.5;
-                       if (reach == DeformationFrame::Reach::Identity)
-                       {
-                           EXPECT_EQ(frame.deform(a), a);
-                           EXPECT_TRUE(found.chain->leavesAlone(ball));
-                           EXPECT_EQ(frame.lipschitz(ball), 1.0);
-                       }
-                       else if (reach == DeformationFrame::Reach::Affine)
-                       {
-                           const double error =
-                               (frame.deform(middle) - (frame.deform(a) + frame.deform(b)) * 0.5).length();
-                           EXPECT_LT(error, 1e-9 * scaleOf(found, a));
-                       }
-                       else
-                       {
-                           EXPECT_FALSE(found.chain->leavesAlone(ball));
-                       }
-                   });
+    forRandomCases(
+        sampleCount(), 1,
+        [&](const Case& found, Random& random)
+        {
+            const DeformationSnapshot& snapshot = *found.chain->snapshots()[0];
+            const Ball ball = randomBall(found, random);
+            const DeformationSnapshot::Reach reach = snapshot.reach(ball);
+            ++counts[static_cast<int>(reach)];
+            const Vec3d a = randomPointIn(ball, random);
+            const Vec3d b = randomPointIn(ball, random);
+            const Vec3d middle = (a + b) * 0.5;
+            if (reach == DeformationSnapshot::Reach::Identity)
+            {
+                EXPECT_EQ(snapshot.deform(a), a);
+                EXPECT_TRUE(found.chain->leavesAlone(ball));
+                EXPECT_EQ(snapshot.lipschitz(ball), 1.0);
+            }
+            else if (reach == DeformationSnapshot::Reach::Affine)
+            {
+                const double error =
+                    (snapshot.deform(middle) - (snapshot.deform(a) + snapshot.deform(b)) * 0.5).length();
+                EXPECT_LT(error, 1e-9 * scaleOf(found, a));
+            }
+            else
+            {
+                EXPECT_FALSE(found.chain->leavesAlone(ball));
+            }
+        });
     for (const int count : counts)
         EXPECT_GT(count, sampleCount() / 50);
 }
@@ -241,12 +242,12 @@ TEST(DeformationBounds, NoPairOfPointsDriftsApartByMoreThanLipschitzSays)
     forRandomCases(sampleCount(), 1,
                    [](const Case& found, Random& random)
                    {
-                       const DeformationFrame& frame = *found.chain->frames()[0];
+                       const DeformationSnapshot& snapshot = *found.chain->snapshots()[0];
                        const Ball ball = randomBall(found, random);
-                       const double factor = frame.lipschitz(ball);
+                       const double factor = snapshot.lipschitz(ball);
                        const Vec3d a = randomPointIn(ball, random);
                        const Vec3d b = a + (randomPointIn(ball, random) - a) * random.logarithmic(1e-3, 1.0);
-                       EXPECT_LE((frame.deform(b) - frame.deform(a)).length(),
+                       EXPECT_LE((snapshot.deform(b) - snapshot.deform(a)).length(),
                                  factor * (b - a).length() * (1.0 + 1e-9) + 1e-12 * scaleOf(found, a));
                    });
 }
@@ -259,18 +260,18 @@ TEST(DeformationBounds, TheLevelOfDetailFollowsTheDeformedDistance)
                        const Ball ball = randomBall(found, random);
                        const Vec3d eye = randomDirection(random) * random.logarithmic(0.1, 1000.0);
                        const osg::ref_ptr<DeformationChain> none = new DeformationChain;
-                       EXPECT_EQ(none->lodDistance(ball, eye), (ball.centre - eye).length());
+                       EXPECT_EQ(none->lodDistance(ball, eye), (ball.center - eye).length());
                        EXPECT_EQ(none->detail(ball), 1.0);
                        const double distance = found.chain->lodDistance(ball, eye);
                        EXPECT_TRUE(std::isfinite(distance));
                        EXPECT_GE(distance, 0.0);
                        if (found.chain->leavesAlone(ball))
                        {
-                           EXPECT_EQ(distance, (ball.centre - eye).length());
+                           EXPECT_EQ(distance, (ball.center - eye).length());
                        }
                        const bool told = std::any_of(
-                           found.chain->frames().begin(), found.chain->frames().end(),
-                           [&](const auto& frame) { return frame->viewDistance(ball).has_value(); });
+                           found.chain->snapshots().begin(), found.chain->snapshots().end(),
+                           [&](const auto& snapshot) { return snapshot->viewDistance(ball).has_value(); });
                        if (told)
                        {
                            EXPECT_GT(distance, ball.radius);
@@ -278,11 +279,11 @@ TEST(DeformationBounds, TheLevelOfDetailFollowsTheDeformedDistance)
                        }
                        // Outside of the deformed ball, what lies between is divided by the detail.
                        const Ball bound = found.chain->bound(ball);
-                       const double gap = (bound.centre - eye).length() - bound.radius;
+                       const double gap = (bound.center - eye).length() - bound.radius;
                        if (gap > 0.0 && (found.chain->detail(ball) != 1.0 || bound.radius != ball.radius))
                        {
                            EXPECT_NEAR(distance, ball.radius + gap / found.chain->detail(ball),
-                                       1e-9 * (distance + bound.centre.length()));
+                                       1e-9 * (distance + bound.center.length()));
                        }
                    });
 }
@@ -297,10 +298,11 @@ TEST(DeformationBounds, HullsAreTight)
                    [&](const Case& found, Random& random)
                    {
                        EyeBox box = randomBox(found, random);
-                       const DeformationFrame::Reach reach = found.chain->frames()[0]->reach(box.ball());
-                       if (reach == DeformationFrame::Reach::Identity) return;
+                       const DeformationSnapshot::Reach reach =
+                           found.chain->snapshots()[0]->reach(box.ball());
+                       if (reach == DeformationSnapshot::Reach::Identity) return;
                        // A panorama map hides what its hulls would be wide for: tiles beside and behind its picture.
-                       if (dynamic_cast<const osgGeoFX::PanoramaFrame*>(found.chain->frames()[0].get()))
+                       if (dynamic_cast<const osgGeoFX::PanoramaSnapshot*>(found.chain->snapshots()[0].get()))
                            return;
                        found.chain->bound(box, hull);
                        std::vector<Vec3d> deformed;
@@ -314,7 +316,7 @@ TEST(DeformationBounds, HullsAreTight)
                            const double needed = support(deformed, direction) + support(deformed, -direction);
                            const double ratio = given / needed;
                            ratios.push_back(ratio);
-                           if (reach == DeformationFrame::Reach::Curved) curved.push_back(ratio);
+                           if (reach == DeformationSnapshot::Reach::Curved) curved.push_back(ratio);
                        }
                    });
     ASSERT_GT(curved.size(), 100u);

@@ -30,8 +30,8 @@ constexpr double pi = 3.14159265358979323846;
 /// By how much an effect moves a point.
 Vec3d displacement(const Deformation& effect, const osgGeoFX::ViewGeometry& view, const Vec3d& point)
 {
-    const auto frame = effect.frame(view);
-    return frame ? frame->deform(point) - point : Vec3d();
+    const auto snapshot = effect.snapshot(view);
+    return snapshot ? snapshot->deform(point) - point : Vec3d();
 }
 
 /// By how much the ray of a line of the picture falls, in the bend's profile.
@@ -92,9 +92,9 @@ struct Path
     {
         const CameraPose pose = between(from, to, share);
         double reach = (point * pose.modelView()).length() + std::abs(pose.height) + 1.0;
-        const auto frame = effect->frame(pose.view());
+        const auto snapshot = effect->snapshot(pose.view());
         BendNumbers numbers;
-        if (frame && bendNumbers(*frame, numbers)) reach += std::min(std::abs(numbers.start), 1e7);
+        if (snapshot && bendNumbers(*snapshot, numbers)) reach += std::min(std::abs(numbers.start), 1e7);
         return 2e-5 * reach;
     }
     /// The place of a jump between two places, found by halving where the change is larger; −1 where there is none.
@@ -234,7 +234,7 @@ TEST(DeformationLimits, TheBirdsEyeViewFadesTowardsTheReferencePlane)
         const osg::ref_ptr<Deformation> effect = randomDeformation("birdsEyeView", random);
         std::string error;
         effect->setProperty("planeReference", PerspectiveBend::GROUND, error);
-        const double plane = effect->getProperty("planeElevation");
+        const double plane = effect->getProperty("planeHeight");
         const Vec3d point =
             randomGroundPoint(random, pose.view(), 1e5) * osg::Matrixd::inverse(pose.modelView());
         SCOPED_TRACE(::testing::Message() << sample << ": " << describe(*effect));
@@ -299,9 +299,9 @@ TEST(DeformationLines, TheContextsHorizonIsAtTheHorizonLine)
         std::ostringstream text;
         text << sample << ": " << describe(*effect) << "; " << pose;
         SCOPED_TRACE(text.str());
-        const auto frame = effect->frame(pose.view());
+        const auto snapshot = effect->snapshot(pose.view());
         BendNumbers bend;
-        if (!frame || !bendNumbers(*frame, bend)) continue;
+        if (!snapshot || !bendNumbers(*snapshot, bend)) continue;
         const auto& view = static_cast<const BirdsEyeView&>(*effect);
         const double curvature = bendCurvature(bend, view.getCurve());
         // Nothing stands on the ground: the bend is whole unless the zone is as narrow as a metre.
@@ -318,7 +318,7 @@ TEST(DeformationLines, TheContextsHorizonIsAtTheHorizonLine)
             const osg::Matrixd projection = pose.projection();
             const Vec3d axis = bend.forward ^ bend.normal;
             const osg::Vec4d along = osg::Vec4d(axis, 0.0) * projection;
-            const osg::Vec4d place = osg::Vec4d(frame->deform(bend.point(s, 0.0, 0.0)), 1.0) * projection;
+            const osg::Vec4d place = osg::Vec4d(snapshot->deform(bend.point(s, 0.0, 0.0)), 1.0) * projection;
             const osg::Vec4d moved =
                 place - along * ((place.x() - column * place.w()) / (along.x() - column * along.w()));
             return moved.y() / moved.w() / 2.0 + 0.5;
@@ -352,9 +352,9 @@ TEST(DeformationLines, TheZoneBeginsAtTheFocusLine)
         const osg::ref_ptr<Deformation> effect = randomDeformation("birdsEyeView", random);
         SCOPED_TRACE(::testing::Message() << sample << ": " << describe(*effect));
         const osgGeoFX::ViewGeometry view = pose.view();
-        const auto frame = effect->frame(view);
+        const auto snapshot = effect->snapshot(view);
         BendNumbers bend;
-        if (!frame || !bendNumbers(*frame, bend)) continue;
+        if (!snapshot || !bendNumbers(*snapshot, bend)) continue;
         // Where the ray of the line meets the plane.
         Vec3d origin;
         Vec3d direction;
@@ -363,8 +363,8 @@ TEST(DeformationLines, TheZoneBeginsAtTheFocusLine)
         EXPECT_NEAR(bend.alongOf(point), 0.0, 1e-9 * (point.length() + origin.length()));
         if (bend.size < 1e-3 * point.length()) continue;
         ++seen;
-        EXPECT_EQ(frame->style(point - bend.forward * (bend.size * 1e-4)), 0.0);
-        EXPECT_GT(frame->style(point + bend.forward * (bend.size * 1e-4)), 0.0);
+        EXPECT_EQ(snapshot->style(point - bend.forward * (bend.size * 1e-4)), 0.0);
+        EXPECT_GT(snapshot->style(point + bend.forward * (bend.size * 1e-4)), 0.0);
         if (HasFailure()) return;
     }
     EXPECT_GT(seen, sampleCount() / 10);
@@ -382,9 +382,9 @@ TEST(DeformationFold, CurvatureTimesHeightStaysBelowOne)
         text << sample << ": " << describe(*effect) << "; " << pose;
         SCOPED_TRACE(text.str());
         const auto* bending = dynamic_cast<const PerspectiveBend*>(effect.get());
-        const auto frame = effect->frame(pose.view());
+        const auto snapshot = effect->snapshot(pose.view());
         BendNumbers bend;
-        if (!bending || !frame || !bendNumbers(*frame, bend)) continue;
+        if (!bending || !snapshot || !bendNumbers(*snapshot, bend)) continue;
         const double curvature = bendCurvature(bend, bending->getCurve());
         // Who says how tall things are: in the blend, the view whose side it bends to.
         const Deformation* part = effect.get();
@@ -406,7 +406,7 @@ TEST(DeformationFold, CurvatureTimesHeightStaysBelowOne)
         // And nothing up to there folds.
         const Vec3d point = bend.point(random.uniform(0.0, 1.0) * bend.size,
                                        bend.angle > 0.0 ? extent : -extent, random.uniform(-1e4, 1e4));
-        EXPECT_EQ(frame->complaint({point, {Vec3d(), Vec3d(), Vec3d()}}), "");
+        EXPECT_EQ(snapshot->complaint({point, {Vec3d(), Vec3d(), Vec3d()}}), "");
         if (HasFailure()) return;
     }
     RecordProperty("largest_curvature_times_height", std::to_string(worst));
@@ -444,9 +444,9 @@ TEST(DeformationInput, WhatIsNotFiniteMakesNoFrameThatIsNotFinite)
                 break;
             }
         }
-        const auto frame = effect->frame(osgGeoFX::ViewGeometry(modelView, projection, ground));
-        if (!frame) continue;
-        for (const auto& [name, value] : frame->uniforms())
+        const auto snapshot = effect->snapshot(osgGeoFX::ViewGeometry(modelView, projection, ground));
+        if (!snapshot) continue;
+        for (const auto& [name, value] : snapshot->uniforms())
         {
             for (int i = 0; i < 4; ++i)
                 EXPECT_TRUE(std::isfinite(static_cast<float>(value[i]))) << name << " " << value[i];

@@ -32,7 +32,7 @@ namespace
 /// A bend upwards before a camera on a plane, and the numbers that it has.
 struct Fold
 {
-    osg::ref_ptr<const osgGeoFX::DeformationFrame> frame;
+    osg::ref_ptr<const osgGeoFX::DeformationSnapshot> snapshot;
     BendNumbers bend;
     double curvature = 0.0;
 
@@ -46,9 +46,9 @@ struct Fold
         EXPECT_TRUE(effect->setFocusDistance(random.uniform(100.0, 5000.0)));
         EXPECT_TRUE(effect->setZoneWidth(random.logarithmic(200.0, 2e4)));
         EXPECT_TRUE(effect->setTransitionDetail(1.0));
-        frame = effect->frame(view);
-        EXPECT_TRUE(frame && bendNumbers(*frame, bend));
-        if (frame) curvature = bendCurvature(bend, curve);
+        snapshot = effect->snapshot(view);
+        EXPECT_TRUE(snapshot && bendNumbers(*snapshot, bend));
+        if (snapshot) curvature = bendCurvature(bend, curve);
     }
 };
 
@@ -64,7 +64,7 @@ osg::ref_ptr<VerticalExaggeration> exaggeration(double factor, double base = 0.0
 {
     osg::ref_ptr<VerticalExaggeration> effect = new VerticalExaggeration;
     EXPECT_TRUE(effect->setFactor(factor));
-    EXPECT_TRUE(effect->setBase(base));
+    EXPECT_TRUE(effect->setBaseHeight(base));
     return effect;
 }
 
@@ -126,9 +126,9 @@ TEST(DeformationMeasures, HullsHoldSteepStripsAndNeedTheirMargins)
                [&](Random& random)
                {
                    const Fold fold(random, randomView(random));
-                   ASSERT_TRUE(fold.frame);
+                   ASSERT_TRUE(fold.snapshot);
                    const osg::ref_ptr<DeformationChain> chain = new DeformationChain;
-                   chain->add(fold.frame);
+                   chain->add(fold.snapshot);
                    const double reach = fold.bend.size * random.uniform(0.02, 0.4);
                    const double start = random.uniform(0.0, fold.bend.size - reach);
                    const double room = 0.8 / fold.curvature;
@@ -136,7 +136,7 @@ TEST(DeformationMeasures, HullsHoldSteepStripsAndNeedTheirMargins)
                    const Vec3d from = fold.bend.point(start, random.uniform(-room, room), across);
                    const Vec3d to = fold.bend.point(start + reach, random.uniform(-room, room), across);
                    EyeBox box;
-                   box.centre = (from + to) * 0.5;
+                   box.center = (from + to) * 0.5;
                    box.half[0] = (to - from) * 0.5;
                    box.half[1] = (fold.bend.forward ^ fold.bend.normal) * 0.01;
                    box.half[2] = box.half[0] ^ box.half[1];
@@ -160,15 +160,15 @@ TEST(DeformationMeasures, DistancesGrowAsLipschitzSaysFarFromThePlane)
                [&](Random& random)
                {
                    const Fold fold(random, randomView(random));
-                   ASSERT_TRUE(fold.frame);
+                   ASSERT_TRUE(fold.snapshot);
                    // Below a bend upwards nothing folds, and everything is stretched.
                    const double below = random.uniform(0.0, 4.0) * fold.bend.size;
                    const double s = random.uniform(0.01, 0.99) * fold.bend.size;
                    const double step = 1e-4 * fold.bend.size;
                    const Vec3d from = fold.bend.point(s - step, -below, 0.0);
                    const Vec3d to = fold.bend.point(s + step, -below, 0.0);
-                   const double grown = (fold.frame->deform(to) - fold.frame->deform(from)).length();
-                   const double most = fold.frame->lipschitz({(from + to) * 0.5, step});
+                   const double grown = (fold.snapshot->deform(to) - fold.snapshot->deform(from)).length();
+                   const double most = fold.snapshot->lipschitz({(from + to) * 0.5, step});
                    EXPECT_LE(grown, most * 2.0 * step * (1.0 + 1e-6));
                    tightest = std::max(tightest, grown / (most * 2.0 * step));
                });
@@ -178,31 +178,31 @@ TEST(DeformationMeasures, DistancesGrowAsLipschitzSaysFarFromThePlane)
 
 TEST(DeformationMeasures, TheHeightsOfTheGroundAreThoseOfExaggeratedPoints)
 {
-    forSamples(200,
-               [](Random& random)
-               {
-                   CameraPose pose = randomCommonPose(random);
-                   pose.globe = random.integer(0, 1) == 1;
-                   const osgGeoFX::ViewGeometry view = pose.view();
-                   const auto effect =
-                       exaggeration(random.logarithmic(0.2, 5.0), random.uniform(-900.0, 900.0));
-                   const auto frame = effect->frame(view);
-                   ASSERT_TRUE(frame);
-                   osgGeoFX::Ground ground;
-                   ground.minHeight = random.uniform(-400.0, 500.0);
-                   ground.maxHeight = ground.minHeight + random.uniform(0.0, 8000.0);
-                   // Straight below the eye, heights are told without any map.
-                   const auto raised = [&](double height)
-                   {
-                       return view.eyeHeight + frame->deform(view.up * (height - view.eyeHeight)) * view.up;
-                   };
-                   const double lowest = raised(ground.minHeight);
-                   const double highest = raised(ground.maxHeight);
-                   effect->changeGround(ground);
-                   // On the globe the normal below the eye is known to a few millimetres.
-                   EXPECT_NEAR(ground.minHeight, lowest, 0.1);
-                   EXPECT_NEAR(ground.maxHeight, highest, 0.1);
-               });
+    forSamples(
+        200,
+        [](Random& random)
+        {
+            CameraPose pose = randomCommonPose(random);
+            pose.globe = random.integer(0, 1) == 1;
+            const osgGeoFX::ViewGeometry view = pose.view();
+            const auto effect = exaggeration(random.logarithmic(0.2, 5.0), random.uniform(-900.0, 900.0));
+            const auto snapshot = effect->snapshot(view);
+            ASSERT_TRUE(snapshot);
+            osgGeoFX::Ground ground;
+            ground.minHeight = random.uniform(-400.0, 500.0);
+            ground.maxHeight = ground.minHeight + random.uniform(0.0, 8000.0);
+            // Straight below the eye, heights are told without any map.
+            const auto raised = [&](double height)
+            {
+                return view.eyeHeight + snapshot->deform(view.up * (height - view.eyeHeight)) * view.up;
+            };
+            const double lowest = raised(ground.minHeight);
+            const double highest = raised(ground.maxHeight);
+            effect->changeGround(ground);
+            // On the globe the normal below the eye is known to a few millimetres.
+            EXPECT_NEAR(ground.minHeight, lowest, 0.1);
+            EXPECT_NEAR(ground.maxHeight, highest, 0.1);
+        });
 }
 
 /// A block of a tile: meshes for four distances, by the lengths of their longest edges, metres.
@@ -229,13 +229,13 @@ TEST(DeformationMeasures, BlocksTakeTheCoarsestMeshWhoseEdgesAreShortEnough)
         {
             const osgGeoFX::ViewGeometry view = randomView(random);
             const Fold fold(random, view);
-            ASSERT_TRUE(fold.frame);
+            ASSERT_TRUE(fold.snapshot);
             constexpr double tolerance = 1e-3;
             const osg::ref_ptr<DeformationChain> chain = new DeformationChain;
-            chain->add(fold.frame);
+            chain->add(fold.snapshot);
             chain->setTiles(0.125, tolerance);
             const Ball ball{fold.bend.point(0.5 * fold.bend.size, 0.0, 0.0), 0.05 * fold.bend.size};
-            const double longest = fold.frame->longestEdge(ball, tolerance);
+            const double longest = fold.snapshot->longestEdge(ball, tolerance);
             if (!(longest > 1e-3 && longest < 1e6)) return;
             ++limited;
             const auto limit = [&](double a, double b, double c, double d)
@@ -273,17 +273,17 @@ TEST(DeformationMeasures, EdgesThatAreShortEnoughMissTheirImagesByTheTolerance)
                {
                    const osgGeoFX::ViewGeometry view = randomView(random);
                    const Fold fold(random, view);
-                   const auto stretch = exaggeration(random.logarithmic(2.0, 8.0))->frame(view);
-                   ASSERT_TRUE(fold.frame && stretch);
+                   const auto stretch = exaggeration(random.logarithmic(2.0, 8.0))->snapshot(view);
+                   ASSERT_TRUE(fold.snapshot && stretch);
                    const osg::ref_ptr<DeformationChain> chain = new DeformationChain;
                    chain->add(stretch);
-                   chain->add(fold.frame);
+                   chain->add(fold.snapshot);
                    const double room = 0.2 / fold.curvature;
                    const double middle = random.uniform(0.1, 0.9) * fold.bend.size;
                    const Vec3d raised =
                        fold.bend.point(middle, random.uniform(-room, room), random.uniform(-2e3, 2e3));
                    Ball ball;
-                   ball.centre = stretch->undeform(raised);
+                   ball.center = stretch->undeform(raised);
                    ball.radius = random.uniform(0.01, 0.1) * fold.bend.size;
                    // The longest edge that passes, by halving.
                    double passes = 0.0;
@@ -301,7 +301,7 @@ TEST(DeformationMeasures, EdgesThatAreShortEnoughMissTheirImagesByTheTolerance)
                    for (int i = 0; i < 20; ++i)
                    {
                        const Vec3d half = randomDirection(random) * (0.5 * length);
-                       const Bulge bulge = bulgeOf(*chain, ball.centre - half, ball.centre + half);
+                       const Bulge bulge = bulgeOf(*chain, ball.center - half, ball.center + half);
                        const double share = bulge.length / (tolerance * bulge.point.length());
                        worst = std::max(worst, share);
                        // Curves are sharper below the plane than on it, by up to 0.4 here.
@@ -322,15 +322,15 @@ TEST(DeformationMeasures, TheLevelOfDetailFollowsHowLargeThingsAreDrawn)
                    const osgGeoFX::ViewGeometry view = randomView(random);
                    const osg::ref_ptr<DeformationChain> chain = new DeformationChain;
                    for (int i = random.integer(1, 2); i > 0; --i)
-                       chain->add(exaggeration(random.logarithmic(0.2, 5.0))->frame(view));
+                       chain->add(exaggeration(random.logarithmic(0.2, 5.0))->snapshot(view));
                    const Ball ball = {randomGroundPoint(random, view), random.logarithmic(1.0, 1000.0)};
-                   const Vec3d place = chain->deform(ball.centre);
+                   const Vec3d place = chain->deform(ball.center);
                    double stretch = 1.0;
                    Ball held = ball;
-                   for (const auto& frame : chain->frames())
+                   for (const auto& snapshot : chain->snapshots())
                    {
-                       const Vec3d next = frame->deform(held.centre);
-                       const Vec3d lifted = frame->deform(held.centre + view.up * held.radius);
+                       const Vec3d next = snapshot->deform(held.center);
+                       const Vec3d lifted = snapshot->deform(held.center + view.up * held.radius);
                        const double growth = std::max(1.0, (lifted - next).length() / held.radius);
                        stretch *= growth;
                        held = {next, held.radius * growth};
@@ -365,9 +365,9 @@ TEST(DeformationMeasures, NothingOfTheGlobesGroundFoldsBelowABend)
                    EXPECT_TRUE(effect->setFocusLine(horizon * random.uniform(0.8, 0.99)));
                    EXPECT_TRUE(effect->setContextTilt(random.uniform(0.5, 0.9)));
                    const osgGeoFX::ViewGeometry view = pose.view();
-                   const auto frame = effect->frame(view);
+                   const auto snapshot = effect->snapshot(view);
                    BendNumbers bend;
-                   if (!frame || !bendNumbers(*frame, bend)) return;
+                   if (!snapshot || !bendNumbers(*snapshot, bend)) return;
                    constexpr double radius = 6378137.0;
                    const double along = bend.start + bend.size * random.uniform(0.0, 1.0);
                    if (along > 0.4 * radius) return;

@@ -30,7 +30,8 @@ constexpr int columns = 256;
 struct Row
 {
     EffectProgram::Effects effects;
-    std::vector<osg::ref_ptr<const osgGeoFX::DeformationFrame>> frames; ///< null where an effect does nothing
+    std::vector<osg::ref_ptr<const osgGeoFX::DeformationSnapshot>>
+        snapshots; ///< null where an effect does nothing
     osg::ref_ptr<DeformationChain> chain;
     std::vector<osg::Vec3f> points;
     std::vector<osg::Vec3f> normals;
@@ -59,8 +60,8 @@ Row randomRow(int number)
         {
             const auto effect = randomDeformation(random);
             row.effects.emplace_back(effect);
-            row.frames.push_back(effect->frame(view));
-            if (row.frames.back()) row.chain->add(row.frames.back());
+            row.snapshots.push_back(effect->snapshot(view));
+            if (row.snapshots.back()) row.chain->add(row.snapshots.back());
             text << describe(*effect) << "; ";
         }
         if (row.chain->empty()) continue;
@@ -69,7 +70,7 @@ Row randomRow(int number)
         if (pose.lens == CameraPose::ORTHOGRAPHIC) row.least = pose.pictureSize;
         for (int i = 0; i < columns; ++i)
         {
-            const Vec3d point = randomPointFor(*row.chain->frames()[0], view, random);
+            const Vec3d point = randomPointFor(*row.chain->snapshots()[0], view, random);
             row.points.emplace_back(point);
             row.normals.emplace_back(randomDirection(random));
         }
@@ -81,10 +82,10 @@ Row randomRow(int number)
 double stretchAt(const DeformationChain& chain, Vec3d point)
 {
     double stretch = 1.0;
-    for (const auto& frame : chain.frames())
+    for (const auto& snapshot : chain.snapshots())
     {
-        stretch *= frame->lipschitz({point, 0.0});
-        point = frame->deform(point);
+        stretch *= snapshot->lipschitz({point, 0.0});
+        point = snapshot->deform(point);
     }
     return stretch;
 }
@@ -94,10 +95,10 @@ double stretchAt(const DeformationChain& chain, Vec3d point)
 double behindTheEye(const DeformationChain& chain)
 {
     double lost = 0.0;
-    for (const auto& frame : chain.frames())
+    for (const auto& snapshot : chain.snapshots())
     {
         BendNumbers bend;
-        if (bendNumbers(*frame, bend) && bend.start < 0.0) lost += 2e-7 * bend.size;
+        if (bendNumbers(*snapshot, bend) && bend.start < 0.0) lost += 2e-7 * bend.size;
     }
     return lost;
 }
@@ -110,13 +111,13 @@ void expectSameLook(const Row& row, std::size_t i, const Result& gpu)
     double style = 0.0;
     double allowed = 1e-5;
     const double start = point.length();
-    for (std::size_t k = 0; k < row.frames.size(); ++k)
+    for (std::size_t k = 0; k < row.snapshots.size(); ++k)
     {
-        const osgGeoFX::DeformationFrame* frame = row.frames[k];
-        if (!frame) continue;
-        style = std::max(style, frame->style(point));
+        const osgGeoFX::DeformationSnapshot* snapshot = row.snapshots[k];
+        if (!snapshot) continue;
+        style = std::max(style, snapshot->style(point));
         BendNumbers bend;
-        if (bendNumbers(*frame, bend))
+        if (bendNumbers(*snapshot, bend))
         {
             // The ground is lit as it lies. A style is a place along the zone, as a share of its width.
             const double scale = std::abs(bend.start) + bend.size + start + point.length();
@@ -124,9 +125,9 @@ void expectSameLook(const Row& row, std::size_t i, const Result& gpu)
         }
         else if (row.effects[k]->getProperty("relight") != 0.0)
         {
-            normal = frame->deformNormal(point, normal);
+            normal = snapshot->deformNormal(point, normal);
         }
-        point = frame->deform(point);
+        point = snapshot->deform(point);
     }
     EXPECT_NEAR(gpu.style, style, allowed * stretchAt(*row.chain, row.points[i]));
     EXPECT_LT((gpu.normal - normal).length(), 1e-4);
@@ -234,9 +235,9 @@ private:
         state->setDefine("GEOFX_DEFORMATION");
         for (std::size_t i = 0; i < row.effects.size(); ++i)
         {
-            if (!row.frames[i]) continue;
+            if (!row.snapshots[i]) continue;
             state->setDefine(EffectProgram::define(i));
-            for (const auto& [name, value] : row.frames[i]->uniforms())
+            for (const auto& [name, value] : row.snapshots[i]->uniforms())
             {
                 const std::string full = EffectProgram::prefix(i) + name;
                 state->addUniform(new osg::Uniform(full.c_str(), osg::Vec4f(value)));

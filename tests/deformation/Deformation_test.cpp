@@ -16,7 +16,7 @@
 namespace glsl = osgGeoFX::glsl;
 using namespace geofx::test;
 using osg::Vec3d;
-using osgGeoFX::DeformationFrame;
+using osgGeoFX::DeformationSnapshot;
 using osgGeoFX::PerspectiveBend;
 
 namespace
@@ -28,7 +28,7 @@ struct Case
     CameraPose pose;
     osg::ref_ptr<osgGeoFX::Deformation> effect;
     osgGeoFX::ViewGeometry view;
-    osg::ref_ptr<const DeformationFrame> frame;
+    osg::ref_ptr<const DeformationSnapshot> snapshot;
     BendNumbers bend;
     bool bends = false;
     int curve = 0;
@@ -63,9 +63,9 @@ Case randomCase(Random& random, bool painting = false)
         const auto effect = randomDeformation(random);
         if (paints(*effect) && !painting) continue;
         Case found{pose, effect, pose.view(), nullptr, {}, false, 0};
-        found.frame = effect->frame(found.view);
-        if (!found.frame) continue;
-        found.bends = bendNumbers(*found.frame, found.bend);
+        found.snapshot = effect->snapshot(found.view);
+        if (!found.snapshot) continue;
+        found.bends = bendNumbers(*found.snapshot, found.bend);
         if (found.bends) found.curve = static_cast<const PerspectiveBend&>(*effect).getCurve();
         return found;
     }
@@ -113,7 +113,7 @@ Vec3d unfoldedPoint(const Case& found, Random& random)
 {
     for (;;)
     {
-        const Vec3d point = randomPointFor(*found.frame, found.view, random);
+        const Vec3d point = randomPointFor(*found.snapshot, found.view, random);
         if (found.unfolded(point)) return point;
     }
 }
@@ -121,7 +121,7 @@ Vec3d unfoldedPoint(const Case& found, Random& random)
 /// What rounding errors are relative to.
 double scaleOf(const Case& found, const Vec3d& point)
 {
-    return point.length() + found.frame->deform(point).length() + std::abs(found.view.eyeHeight) +
+    return point.length() + found.snapshot->deform(point).length() + std::abs(found.view.eyeHeight) +
            std::abs(found.bend.start) + std::abs(found.bend.height) + found.bend.size;
 }
 
@@ -130,13 +130,14 @@ struct Jacobian
 {
     Vec3d columns[3];
 
-    Jacobian(const DeformationFrame& frame, const Vec3d& point, double step)
+    Jacobian(const DeformationSnapshot& snapshot, const Vec3d& point, double step)
     {
         for (int axis = 0; axis < 3; ++axis)
         {
             Vec3d offset;
             offset[axis] = step;
-            columns[axis] = (frame.deform(point + offset) - frame.deform(point - offset)) / (2.0 * step);
+            columns[axis] =
+                (snapshot.deform(point + offset) - snapshot.deform(point - offset)) / (2.0 * step);
         }
     }
     double determinant() const { return columns[0] * (columns[1] ^ columns[2]); }
@@ -182,10 +183,10 @@ TEST(Deformation, IsContinuousAtTheZonesBorders)
                       const Vec3d before = bend.point(border - step, h, across);
                       const Vec3d after = bend.point(border + step, h, across);
                       const double moved =
-                          (found.frame->deform(after) - found.frame->deform(before)).length();
-                      const double factor = found.frame->lipschitz({before, 2.0 * step});
+                          (found.snapshot->deform(after) - found.snapshot->deform(before)).length();
+                      const double factor = found.snapshot->lipschitz({before, 2.0 * step});
                       EXPECT_LT(moved, 2.5 * step * factor);
-                      EXPECT_NEAR(found.frame->style(before), found.frame->style(after),
+                      EXPECT_NEAR(found.snapshot->style(before), found.snapshot->style(after),
                                   1e-9 + 2.5 * step / std::max(bend.size, 1e-3));
                   }
               });
@@ -200,8 +201,9 @@ TEST(Deformation, IsUndoneByItsInverse)
                   const Vec3d point = unfoldedPoint(found, random);
                   // The wedge that a hinge opens has no original, and a hinge's fold no zone.
                   if (found.bends && found.bend.size < 1e-3) return;
-                  const double error = (found.frame->undeform(found.frame->deform(point)) - point).length() /
-                                       scaleOf(found, point);
+                  const double error =
+                      (found.snapshot->undeform(found.snapshot->deform(point)) - point).length() /
+                      scaleOf(found, point);
                   worst = std::max(worst, error);
                   EXPECT_LT(error, 1e-9) << point.x() << " " << point.y() << " " << point.z();
               });
@@ -216,7 +218,7 @@ TEST(Deformation, KeepsOrientation)
                   const Vec3d point = unfoldedPoint(found, random);
                   const double step = stepAt(found, point);
                   if (nearBorder(found, point, step)) return;
-                  const double determinant = Jacobian(*found.frame, point, step).determinant();
+                  const double determinant = Jacobian(*found.snapshot, point, step).determinant();
                   EXPECT_GT(determinant, 0.0);
                   if (found.bends)
                   {
@@ -236,15 +238,15 @@ TEST(Deformation, MovesFocusAndContextRigidly)
                       return bend.point(s, random.uniform(-400.0, 9000.0), random.uniform(-1e5, 1e5));
                   };
                   const Vec3d focus = pointAt(-random.logarithmic(1e-3, 3e5));
-                  EXPECT_EQ(found.frame->deform(focus), focus);
-                  EXPECT_EQ(found.frame->style(focus), 0.0);
+                  EXPECT_EQ(found.snapshot->deform(focus), focus);
+                  EXPECT_EQ(found.snapshot->style(focus), 0.0);
                   const Vec3d a = pointAt(bend.size + random.logarithmic(1e-3, 3e5));
                   const Vec3d b = pointAt(bend.size + random.logarithmic(1e-3, 3e5));
-                  const double distance = (found.frame->deform(b) - found.frame->deform(a)).length();
+                  const double distance = (found.snapshot->deform(b) - found.snapshot->deform(a)).length();
                   EXPECT_NEAR(distance, (b - a).length(), 1e-9 * scaleOf(found, a));
-                  EXPECT_NEAR(found.frame->style(a), 1.0, 1e-9);
-                  EXPECT_EQ(found.frame->reach({focus, 1e-4}), DeformationFrame::Reach::Identity);
-                  EXPECT_EQ(found.frame->reach({a, 1e-4}), DeformationFrame::Reach::Affine);
+                  EXPECT_NEAR(found.snapshot->style(a), 1.0, 1e-9);
+                  EXPECT_EQ(found.snapshot->reach({focus, 1e-4}), DeformationSnapshot::Reach::Identity);
+                  EXPECT_EQ(found.snapshot->reach({a, 1e-4}), DeformationSnapshot::Reach::Affine);
               });
 }
 
@@ -258,15 +260,15 @@ TEST(Deformation, TurnsNormalsAsItsDerivativeDoes)
                   const double step = stepAt(found, point);
                   if (nearBorder(found, point, step)) return;
                   const Vec3d normal = randomDirection(random);
-                  Vec3d expected = Jacobian(*found.frame, point, step).normal(normal);
+                  Vec3d expected = Jacobian(*found.snapshot, point, step).normal(normal);
                   expected.normalize();
-                  const Vec3d given = found.frame->deformNormal(point, normal);
+                  const Vec3d given = found.snapshot->deformNormal(point, normal);
                   EXPECT_NEAR(given.length(), 1.0, 1e-12);
                   double allowed = 1e-4;
                   if (!found.bends && found.pose.globe)
                   {
                       // The exaggeration leaves out how verticals spread: by lift / radius.
-                      allowed += 1.2 * (found.frame->deform(point) - point).length() / 6.3e6;
+                      allowed += 1.2 * (found.snapshot->deform(point) - point).length() / 6.3e6;
                   }
                   worst = std::max(worst, (given - expected).length() / allowed);
                   EXPECT_LT((given - expected).length(), allowed);
@@ -280,7 +282,7 @@ TEST(Deformation, TurnIsTheDerivativesRotation)
               [](const Case& found, Random& random)
               {
                   const Vec3d point = unfoldedPoint(found, random);
-                  const osg::Matrixd turn = found.frame->turn(point);
+                  const osg::Matrixd turn = found.snapshot->turn(point);
                   const auto turned = [&](const Vec3d& v)
                   {
                       return osg::Matrixd::transform3x3(v, turn);
@@ -294,7 +296,7 @@ TEST(Deformation, TurnIsTheDerivativesRotation)
                   const double step = stepAt(found, point);
                   if (nearBorder(found, point, step)) return;
                   // J = turn * stretch: what is left of J without the turn is symmetric.
-                  const Jacobian jacobian(*found.frame, point, step);
+                  const Jacobian jacobian(*found.snapshot, point, step);
                   const Vec3d a = randomDirection(random);
                   const Vec3d b = randomDirection(random);
                   const double size = (jacobian * a).length() + (jacobian * b).length();
@@ -310,13 +312,13 @@ TEST(Deformation, KeepsEverythingFinite)
               {
                   // Also what folds, and what is farther than anything on the Earth.
                   const Vec3d point = randomDirection(random) * random.logarithmic(1e-3, 1e8);
-                  const Vec3d deformed = found.frame->deform(point);
+                  const Vec3d deformed = found.snapshot->deform(point);
                   EXPECT_TRUE(deformed.valid());
-                  EXPECT_TRUE(found.frame->undeform(point).valid());
-                  EXPECT_TRUE(found.frame->deformNormal(point, randomDirection(random)).valid());
-                  EXPECT_GE(found.frame->lipschitz({point, 10.0}), 1.0);
-                  EXPECT_GT(found.frame->detail({point, 10.0}), 0.0);
-                  for (const auto& [name, value] : found.frame->uniforms())
+                  EXPECT_TRUE(found.snapshot->undeform(point).valid());
+                  EXPECT_TRUE(found.snapshot->deformNormal(point, randomDirection(random)).valid());
+                  EXPECT_GE(found.snapshot->lipschitz({point, 10.0}), 1.0);
+                  EXPECT_GT(found.snapshot->detail({point, 10.0}), 0.0);
+                  for (const auto& [name, value] : found.snapshot->uniforms())
                   {
                       for (int i = 0; i < 4; ++i)
                           EXPECT_TRUE(std::isfinite(static_cast<float>(value[i]))) << name;
@@ -339,7 +341,7 @@ TEST(DeformationChain, ActsInItsOrderAndIsUndoneInTheReverse)
         {
             effects.push_back(randomDeformation(random));
             folds = folds || paints(*effects.back());
-            if (const auto frame = effects.back()->frame(view)) chain->add(frame);
+            if (const auto snapshot = effects.back()->snapshot(view)) chain->add(snapshot);
         }
         const Vec3d point = randomGroundPoint(random, view);
         Vec3d expected = point;
@@ -347,14 +349,14 @@ TEST(DeformationChain, ActsInItsOrderAndIsUndoneInTheReverse)
         const Vec3d before = normal;
         double style = 0.0;
         double scale = point.length() + std::abs(view.eyeHeight);
-        for (const auto& frame : chain->frames())
+        for (const auto& snapshot : chain->snapshots())
         {
-            style = std::max(style, frame->style(expected));
-            normal = frame->deformNormal(expected, normal);
-            const Vec3d next = frame->deform(expected);
+            style = std::max(style, snapshot->style(expected));
+            normal = snapshot->deformNormal(expected, normal);
+            const Vec3d next = snapshot->deform(expected);
             BendNumbers numbers;
             // Only what is certainly not folded: a curve's curvature is at most 2 tan(π/4) / (d cos(π/4)).
-            if (bendNumbers(*frame, numbers))
+            if (bendNumbers(*snapshot, numbers))
             {
                 folds = folds || std::abs(numbers.heightOf(expected)) * 2.9 > 0.9 * numbers.size;
                 scale += std::abs(numbers.start) + numbers.size;
@@ -373,7 +375,7 @@ TEST(DeformationChain, ActsInItsOrderAndIsUndoneInTheReverse)
         EXPECT_EQ(chain->deform(point), expected);
         EXPECT_EQ(chain->deformNormal(point, before), normal);
         EXPECT_EQ(chain->style(point), style);
-        EXPECT_EQ(chain->empty(), chain->frames().empty());
+        EXPECT_EQ(chain->empty(), chain->snapshots().empty());
         if (!folds)
         {
             EXPECT_LT((chain->undeform(expected) - point).length(), 1e-8 * scale);

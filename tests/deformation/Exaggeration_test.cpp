@@ -16,7 +16,7 @@
 namespace glslf = osgGeoFX::glslf;
 using namespace geofx::test;
 using osg::Vec3d;
-using osgGeoFX::DeformationFrame;
+using osgGeoFX::DeformationSnapshot;
 using osgGeoFX::VerticalExaggeration;
 
 namespace
@@ -56,10 +56,10 @@ struct Errors
 Errors errorsAt(const VerticalExaggeration& effect, const CameraPose& pose, const Place& place)
 {
     const osg::Matrixd modelView = pose.modelView();
-    const auto frame = effect.frame(pose.view());
-    const Vec3d moved = frame->deform(pointOf(place) * modelView) * osg::Matrixd::inverse(modelView);
+    const auto snapshot = effect.snapshot(pose.view());
+    const Vec3d moved = snapshot->deform(pointOf(place) * modelView) * osg::Matrixd::inverse(modelView);
     Place expected = place;
-    expected.height = effect.getBase() + effect.getFactor() * (place.height - effect.getBase());
+    expected.height = effect.getBaseHeight() + effect.getFactor() * (place.height - effect.getBaseHeight());
     Place found = placeOf(moved);
     Errors errors;
     errors.lift = std::abs(expected.height - place.height);
@@ -97,7 +97,7 @@ osg::ref_ptr<VerticalExaggeration> exaggeration(double factor, double base)
 {
     osg::ref_ptr<VerticalExaggeration> effect = new VerticalExaggeration;
     EXPECT_TRUE(effect->setFactor(factor));
-    EXPECT_TRUE(effect->setBase(base));
+    EXPECT_TRUE(effect->setBaseHeight(base));
     return effect;
 }
 
@@ -106,7 +106,7 @@ osg::ref_ptr<VerticalExaggeration> exaggeration(double factor, double base)
 TEST(Exaggeration, IsNothingForAFactorOfOne)
 {
     Random random(0);
-    EXPECT_FALSE(exaggeration(1.0, 100.0)->frame(globePose(random).view()));
+    EXPECT_FALSE(exaggeration(1.0, 100.0)->snapshot(globePose(random).view()));
 }
 
 TEST(Exaggeration, IsExactOnAProjectedTerrain)
@@ -120,11 +120,11 @@ TEST(Exaggeration, IsExactOnAProjectedTerrain)
         const double factor = random.logarithmic(0.01, 100.0);
         const double base = random.uniform(-1000.0, 1000.0);
         const auto effect = exaggeration(factor, base);
-        const auto frame = effect->frame(pose.view());
+        const auto snapshot = effect->snapshot(pose.view());
         const osg::Matrixd modelView = pose.modelView();
         const Vec3d point(pose.x + random.uniform(-3e5, 3e5), pose.y + random.uniform(-3e5, 3e5),
                           random.uniform(-400.0, 9000.0));
-        const Vec3d moved = frame->deform(point * modelView) * osg::Matrixd::inverse(modelView);
+        const Vec3d moved = snapshot->deform(point * modelView) * osg::Matrixd::inverse(modelView);
         const Vec3d expected(point.x(), point.y(), base + factor * (point.z() - base));
         EXPECT_LT((moved - expected).length(), 1e-7 * std::max(1.0, factor));
         if (HasFailure()) return;
@@ -198,9 +198,9 @@ TEST(Exaggeration, LosesLittleInFloats)
         const CameraPose pose = randomPose(random);
         const auto effect = exaggeration(random.logarithmic(0.1, 10.0), random.uniform(-1000.0, 1000.0));
         const osgGeoFX::ViewGeometry view = pose.view();
-        const auto frame = effect->frame(view);
+        const auto snapshot = effect->snapshot(view);
         std::map<std::string, osg::Vec4f> uniforms;
-        for (const auto& [name, value] : frame->uniforms())
+        for (const auto& [name, value] : snapshot->uniforms())
             uniforms[name] = osg::Vec4f(value);
         const osg::Vec4f up = uniforms["up"];
         const osg::Vec4f axis = uniforms["axis"];
@@ -218,12 +218,12 @@ TEST(Exaggeration, LosesLittleInFloats)
         const glm::vec3 found = glslf::geofx_exaggerate(given, point);
         const Vec3d rounded(static_cast<double>(point.x), static_cast<double>(point.y),
                             static_cast<double>(point.z));
-        const Vec3d expected = frame->deform(rounded);
+        const Vec3d expected = snapshot->deform(rounded);
         const Vec3d error =
             Vec3d(static_cast<double>(found.x), static_cast<double>(found.y), static_cast<double>(found.z)) -
             expected;
         SCOPED_TRACE(::testing::Message()
-                     << sample << ": factor " << effect->getFactor() << ", base " << effect->getBase()
+                     << sample << ": factor " << effect->getFactor() << ", base " << effect->getBaseHeight()
                      << ", distance " << rounded.length() << "; " << pose);
         const double distance = std::max(rounded.length(), expected.length());
         worst = std::max(worst, error.length() / distance);

@@ -36,7 +36,7 @@ TEST_F(FreshBend, RefinesFirstWhatIsTooCoarseForItMost)
     ViewPoint point;
     point.longitude = osg::DegreesToRadians(-158.3);
     point.latitude = osg::DegreesToRadians(21.42);
-    point.altitude = 20000.0;
+    point.height = 20000.0;
     point.heading = osg::DegreesToRadians(80.0);
     point.pitch = osg::DegreesToRadians(-15.0);
     osg::Matrixd view;
@@ -55,7 +55,7 @@ TEST_F(FreshBend, RefinesFirstWhatIsTooCoarseForItMost)
     bend->setBendAngle(1.2);
     oahu->effects->addEffect(bend);
     const osg::ref_ptr<const DeformationChain> chain = oahu->effects->deformation(view, projection);
-    ASSERT_EQ(chain->frames().size(), 1u);
+    ASSERT_EQ(chain->snapshots().size(), 1u);
     struct Wish
     {
         double excess; ///< how many times an edge is longer than the bend allows
@@ -74,7 +74,7 @@ TEST_F(FreshBend, RefinesFirstWhatIsTooCoarseForItMost)
         // Those for which the bend is the stronger reason, but for the most urgent ones, which are all as urgent.
         if (chain->lodLimit(*request.group, ball) > chain->lodDistance(ball, osg::Vec3d())) continue;
         if (request.priority > 0.99f) continue;
-        wishes.push_back({ball.radius / chain->frames().front()->longestEdge(ball, tolerance),
+        wishes.push_back({ball.radius / chain->snapshots().front()->longestEdge(ball, tolerance),
                           static_cast<double>(request.priority)});
     }
     ASSERT_GT(wishes.size(), 8u);

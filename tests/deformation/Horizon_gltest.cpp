@@ -325,7 +325,7 @@ TEST_F(Horizon, BelowTheFocusLineNothingChanges)
         ViewPoint point;
         point.longitude = osg::DegreesToRadians(random.uniform(-158.2, -157.7));
         point.latitude = osg::DegreesToRadians(random.uniform(21.3, 21.7));
-        point.altitude = random.logarithmic(1500.0, 15000.0);
+        point.height = random.logarithmic(1500.0, 15000.0);
         point.heading = random.uniform(0.0, 2.0 * osg::PI);
         point.pitch = std::asin(osg::Matrixd::transform3x3(shot.view, osg::Vec3d(0.0, 0.0, -1.0)).z());
         osg::Matrixd view;
@@ -358,7 +358,7 @@ TEST_F(Horizon, BelowTheFocusLineNothingChanges)
 
         const int rows = static_cast<int>(std::floor(shot.effect->getFocusLine() * HEIGHT));
         // The same triangles in the same shaders give the same bytes, but for those that reach over the focus line. OSG's
-        // fixed functions may round a colour in another way.
+        // fixed functions may round a color in another way.
         std::size_t differing = 0;
         std::size_t differingAtLine = 0;
         int most = 0;

@@ -22,9 +22,7 @@ namespace
 
 using geofx::test::allProperties;
 using geofx::test::alteredEffect;
-using geofx::test::createHolder;
 using geofx::test::expectSame;
-using geofx::test::holderKinds;
 using geofx::test::isWhole;
 using geofx::test::NotifyWatch;
 using geofx::test::otherValues;
@@ -37,11 +35,13 @@ using geofx::test::typedSetters;
 using osgGeoFX::BirdsEyeView;
 using osgGeoFX::BlendedView;
 using osgGeoFX::createEffect;
+using osgGeoFX::createPropertyHolder;
 using osgGeoFX::Effect;
 using osgGeoFX::effectKinds;
 using osgGeoFX::PerspectiveBend;
 using osgGeoFX::Property;
 using osgGeoFX::PropertyHolder;
+using osgGeoFX::propertyHolderKinds;
 
 using Kind = Property::Kind;
 
@@ -52,7 +52,7 @@ constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();
 void expectSentence(const std::string& error, const PropertyHolder& holder, const Property& property)
 {
     EXPECT_EQ(error.rfind(std::string(holder.className()) + ": ", 0), 0u) << error;
-    EXPECT_NE(error.find(property.textName()), std::string::npos) << error;
+    EXPECT_NE(error.find(property.name), std::string::npos) << error;
     EXPECT_EQ(error.back(), '.') << error;
 }
 
@@ -142,7 +142,7 @@ TEST_P(EveryProperty, ComesBackFromItsText)
             EXPECT_EQ(parsed, value) << _property.text(value);
     }
     const double other = otherValues(GetParam()).at(0);
-    EXPECT_TRUE(_holder->setPropertyText(_property.textName(), _property.text(other), _error)) << _error;
+    EXPECT_TRUE(_holder->setPropertyText(_property.name, _property.text(other), _error)) << _error;
     EXPECT_DOUBLE_EQ(value(), other);
     const double last = value();
     for (const char* text : {"", " ", "x", "1 x", " 1", "0x1", "nan", "inf", "-inf", "1e999", "TRUE", "1,5"})
@@ -150,7 +150,7 @@ TEST_P(EveryProperty, ComesBackFromItsText)
         double untouched = 42.0;
         EXPECT_FALSE(_property.parse(text, untouched, _error)) << text;
         EXPECT_EQ(untouched, 42.0) << text;
-        EXPECT_FALSE(_holder->setPropertyText(_property.textName(), text, _error)) << text;
+        EXPECT_FALSE(_holder->setPropertyText(_property.name, text, _error)) << text;
         expectSentence(_error, *_holder, _property);
         EXPECT_EQ(value(), last) << text;
     }
@@ -193,21 +193,21 @@ TEST_P(EveryProperty, HasATypedSetterThatAgrees)
         watch.messagesOf([&] { EXPECT_FALSE(setter.set(*_holder, 2.0 * _property.maximum + 1.0)); });
     ASSERT_EQ(said.size(), 1u);
     EXPECT_NE(said[0].find("osgGeoFX: "), std::string::npos) << said[0];
-    EXPECT_NE(said[0].find(_property.textName()), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find(_property.name), std::string::npos) << said[0];
     EXPECT_EQ(value(), _property.defaultValue);
 }
 
 TEST(Holders, HaveNamesAndNoPropertyTwice)
 {
-    for (const std::string& kind : holderKinds())
+    for (const std::string& kind : propertyHolderKinds())
     {
-        const osg::ref_ptr<PropertyHolder> holder = createHolder(kind);
+        const osg::ref_ptr<PropertyHolder> holder = createPropertyHolder(kind);
         ASSERT_TRUE(holder) << kind;
         EXPECT_EQ(osgGeoFX::kindOf(*holder), kind);
         EXPECT_STREQ(holder->libraryName(), "osgGeoFX");
         std::set<std::string> names;
         for (const Property& property : holder->properties())
-            EXPECT_TRUE(names.insert(property.textName()).second) << kind << " " << property.name;
+            EXPECT_TRUE(names.insert(property.name).second) << kind << " " << property.name;
         std::string error;
         EXPECT_FALSE(holder->setProperty("nothing", 1.0, error));
         EXPECT_NE(error.find("has no property nothing."), std::string::npos) << error;
@@ -226,9 +226,9 @@ TEST(Holders, TellTheirListenersOfEachChange)
         void propertyChanged(PropertyHolder&) override { ++count; }
         int count = 0;
     };
-    for (const std::string& kind : holderKinds())
+    for (const std::string& kind : propertyHolderKinds())
     {
-        const osg::ref_ptr<PropertyHolder> holder = createHolder(kind);
+        const osg::ref_ptr<PropertyHolder> holder = createPropertyHolder(kind);
         Counter counter;
         holder->addListener(counter);
         int expected = 0;
@@ -377,13 +377,15 @@ public:
 
     const osgGeoFX::Properties& properties() const override
     {
-        static const osgGeoFX::Properties all = {
-            enabledProperty(),
-            Property::number("a", 1.0, 0.0, 100.0).of<&TwoPairs::_a>(),
-            Property::number("b", 2.0, 0.0, 100.0).of<&TwoPairs::_b>(),
-            Property::number("c", 1.0, 0.0, 100.0).of<&TwoPairs::_c>(),
-            Property::number("d", 2.0, 0.0, 100.0).of<&TwoPairs::_d>(),
-        };
+        static const osgGeoFX::Properties all = osgGeoFX::withDefaultsOf(
+            new TwoPairs,
+            {
+                enabledProperty(),
+                Property::number("a", "the less of the first pair", 0.0, 100.0).of<&TwoPairs::_a>(),
+                Property::number("b", "the more of the first pair", 0.0, 100.0).of<&TwoPairs::_b>(),
+                Property::number("c", "the less of the second pair", 0.0, 100.0).of<&TwoPairs::_c>(),
+                Property::number("d", "the more of the second pair", 0.0, 100.0).of<&TwoPairs::_d>(),
+            });
         return all;
     }
 
@@ -427,7 +429,7 @@ TEST(Effects, AreParsedFromALineInAnyOrder)
     EXPECT_EQ(view->getProperty("curve"), PerspectiveBend::BEZIER);
     const osg::ref_ptr<Effect> blended = osgGeoFX::parseEffect(
         "blendedView birdsEyeView.horizonLine=0.2 highHeight=10000 birdsEyeView.focusLine=0.1 "
-        "pedestrianView.bendAngleDegrees=45 lowHeight=5000 lowHeight=6000",
+        "pedestrianView.bendAngle=45 lowHeight=5000 lowHeight=6000",
         error);
     ASSERT_TRUE(blended) << error;
     auto& parts = static_cast<BlendedView&>(*blended);
@@ -440,7 +442,7 @@ TEST(Effects, AreParsedFromALineInAnyOrder)
          {"", "nothing", "birdsEyeView focusLine", "birdsEyeView focusLine=0.9",
           "birdsEyeView focusLine=0.95 horizonLine=0.9", "birdsEyeView lowHeight=1",
           "blendedView birdsEyeView.focusLine=0.9", "blendedView birdsEyeView.zoneWidth=1",
-          "blendedView birdsEyeView=1", "pedestrianView bendAngle=1", "pedestrianView bendAngleDegrees=91"})
+          "blendedView birdsEyeView=1", "pedestrianView bendAngleDegrees=1", "pedestrianView bendAngle=91"})
     {
         EXPECT_FALSE(osgGeoFX::parseEffect(wrong, error)) << wrong;
         EXPECT_GT(error.size(), 10u) << wrong;

@@ -50,7 +50,7 @@ TEST(ViewGeometry, FindsTheFootOfTheEyeOnTheEllipsoid)
     }
 }
 
-TEST(ViewGeometry, HasANormalAtThePolesAndAtTheCentre)
+TEST(ViewGeometry, HasANormalAtThePolesAndAtTheCenter)
 {
     const double polar = osg::EllipsoidModel().getRadiusPolar();
     for (const double sign : {1.0, -1.0})
@@ -59,7 +59,7 @@ TEST(ViewGeometry, HasANormalAtThePolesAndAtTheCentre)
         EXPECT_NEAR(view.up.z(), sign, 1e-12);
         EXPECT_NEAR(view.eyeHeight, 500.0, 1e-6);
     }
-    const ViewGeometry centre = cameraAt({0.0, 0.0, 0.0});
-    EXPECT_EQ(centre.up, osg::Vec3d(0.0, 0.0, 1.0));
-    EXPECT_NEAR(centre.eyeHeight, -polar, 1e-6);
+    const ViewGeometry center = cameraAt({0.0, 0.0, 0.0});
+    EXPECT_EQ(center.up, osg::Vec3d(0.0, 0.0, 1.0));
+    EXPECT_NEAR(center.eyeHeight, -polar, 1e-6);
 }

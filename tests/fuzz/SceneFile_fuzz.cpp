@@ -27,7 +27,7 @@ bool within(double value, double low, double high)
     return value >= low && value <= high;
 }
 
-bool isColour(const osgGeoFX::SceneColour& c)
+bool isColor(const osgGeoFX::SceneColor& c)
 {
     return within(c[0], 0.0, 1.0) && within(c[1], 0.0, 1.0) && within(c[2], 0.0, 1.0);
 }
@@ -66,9 +66,9 @@ void check(const osgGeoFX::SceneFile& scene)
     if (scene.sun)
     {
         require(within(scene.sun->elevation, -90.0, 90.0), "elevation in its range");
-        require(isColour(scene.sun->colour) && isColour(scene.sun->ambient), "colours in their range");
+        require(isColor(scene.sun->color) && isColor(scene.sun->ambient), "colors in their range");
     }
-    require(!scene.background || isColour(*scene.background), "background in its range");
+    require(!scene.background || isColor(*scene.background), "background in its range");
     for (const auto& effect : scene.effects)
     {
         require(effect.valid(), "an effect");

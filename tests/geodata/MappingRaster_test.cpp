@@ -92,7 +92,7 @@ osg::Vec2d applied(const Transform& t, double x, double y)
     return {t[0] + t[1] * x + t[2] * y, t[3] + t[4] * x + t[5] * y};
 }
 
-/// The value of a layer at a place of the frame, mixed between texels; nothing beyond their centres.
+/// The value of a layer at a place of the frame, mixed between texels; nothing beyond their centers.
 double valueAt(const MappingRaster& raster, const osg::Vec2d& place)
 {
     const osg::Image& image = *raster.layer->getImage();
@@ -369,7 +369,7 @@ protected:
         return readGood(source.write(_folder / "r.tif"), _frame, options);
     }
 
-    /// The centre of a pixel of raster() in the frame.
+    /// The center of a pixel of raster() in the frame.
     static osg::Vec2d pixel(int column, int row) { return {10.0 * column + 5.0, -10.0 * row - 5.0}; }
 
     double value(const MappingRaster& read, int column, int row) const
@@ -534,7 +534,7 @@ TEST_F(MappingRasterValues, ComeFromOverviewsWhereTexelsAreFew)
     EXPECT_EQ(readGood(file, _frame, {std::nullopt, 1}).layer->getImage()->s(), 1);
 }
 
-TEST_F(MappingRasterValues, OfSeveralBandsAreColours)
+TEST_F(MappingRasterValues, OfSeveralBandsAreColors)
 {
     for (const GDALDataType type : {GDT_Byte, GDT_UInt16})
     {
@@ -567,7 +567,7 @@ TEST_F(MappingRasterValues, OfSeveralBandsAreColours)
     EXPECT_EQ(colorAt(read, pixel(6, 1)), (std::array<int, 4>{200, 200, 200, 255}));
 }
 
-TEST_F(MappingRasterValues, OfAPaletteAreColours)
+TEST_F(MappingRasterValues, OfAPaletteAreColors)
 {
     TestRaster source = raster(8, 4, 1, GDT_Byte);
     GDALColorTable palette;
@@ -628,7 +628,7 @@ TEST_F(MappingRasterValues, OfNoUseAreToldWithFileAndMend)
           "gdal_translate -a_srs EPSG:N");
     holds(messageOf(raster(4, 4, 1, GDT_CFloat32).write(_folder / "c.tif"), _frame), "complex numbers");
     holds(messageOf(raster(4, 4, 3, GDT_Float32).write(_folder / "d.tif"), _frame),
-          "its pixels are not colours");
+          "its pixels are not colors");
     const std::string good = raster(4, 4).write(_folder / "e.tif");
     MappingFrame nowhere = _frame;
     nowhere.wkt = "";

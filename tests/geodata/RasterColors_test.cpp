@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Colours and classes of one raster on lattices: every kind of image that people have.
+// Colors and classes of one raster on lattices: every kind of image that people have.
 #include <osgGeoFX/geodata/detail/RasterSource.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
@@ -43,7 +43,7 @@ TestRaster halves(const std::vector<double>& west, const std::vector<double>& ea
     return raster;
 }
 
-/// Colours amid the western and the eastern half, far enough from the border between them.
+/// Colors amid the western and the eastern half, far enough from the border between them.
 std::vector<Texel> colorsOf(RasterSource& source)
 {
     const auto found = colors(source, {10.15, 49.55, 0.1, 0.1, 8, 1});
@@ -142,7 +142,7 @@ TEST(RasterClasses, NearestAndColored)
     colored.colorize(table);
     const auto texels = colorsOf(colored);
     EXPECT_EQ(texels[0], (Texel{200, 100, 50, 255}));
-    EXPECT_EQ(texels[1][3], 0) << "a value that the table does not name has a colour";
+    EXPECT_EQ(texels[1][3], 0) << "a value that the table does not name has a color";
 }
 
 TEST(RasterColors, GroundControlPoints)

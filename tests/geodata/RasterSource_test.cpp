@@ -91,7 +91,7 @@ TEST(RasterHeights, RandomLatticesOnRandomAffineRasters)
                 GDALApplyGeoTransform(inverse.data(), lattice.x0 + column * lattice.dx,
                                       lattice.y0 + row * lattice.dy, &px, &py);
                 const float h = found[static_cast<std::size_t>(row * lattice.columns + column)];
-                // From centre to centre of the outermost pixels; beyond their outer edges there is nothing.
+                // From center to center of the outermost pixels; beyond their outer edges there is nothing.
                 if (px < -0.03 || px > width + 0.03 || py < -0.03 || py > height + 0.03)
                 {
                     ASSERT_TRUE(std::isnan(h)) << "Random(" << sample << "), " << px << " " << py;

@@ -187,7 +187,7 @@ TEST_F(SurfaceRasterLayers, WithoutDataAreNothingAndDoNotBleed)
     }
 }
 
-TEST_F(SurfaceRasterLayers, AreColoursOrClasses)
+TEST_F(SurfaceRasterLayers, AreColorsOrClasses)
 {
     TestRaster palette = raster(60, 40, 1, GDT_Byte);
     GDALColorTable colors;
@@ -349,7 +349,7 @@ TEST_F(SurfaceRasterLayers, OfNoUseAreToldWithFileAndMend)
     holds(sentenceOf(TestRaster(4, 4).crs("EPSG:4326").write(_folder / "a.tif"), SurfaceData::HEIGHT),
           "gdal_translate -a_ullr");
     holds(sentenceOf(raster(4, 4, 3, GDT_Float32).write(_folder / "d.tif"), SurfaceData::COLOR),
-          "are not colours");
+          "are not colors");
     holds(sentenceOf(good, SurfaceData::NORMAL), "derive them");
     holds(sentenceOf(good, SurfaceData::ASPECT), "derive them");
     const auto addedTo = [&](const std::string& name, int side, const MappingFrame& frame)

@@ -28,12 +28,12 @@ protected:
         std::vector<osg::ref_ptr<ProjectiveMapping>> all;
         for (int i = 0; i < count; ++i)
         {
-            all.push_back(makeSolid(cell(i, columns), 0.3 * CELL, colourOf(i)));
+            all.push_back(makeSolid(cell(i, columns), 0.3 * CELL, colorOf(i)));
             _mappings->addMapping(all.back());
         }
         return all;
     }
-    /// Of the picture, each cell's colour and, at its corner, the ground's.
+    /// Of the picture, each cell's color and, at its corner, the ground's.
     void expectCells(const osg::Image& image, int count, int columns)
     {
         int seen = 0;
@@ -43,23 +43,23 @@ protected:
             const osg::Vec2d pixel = pixelOf(middle);
             if (!inside(pixel, 6.0)) continue;
             ++seen;
-            ASSERT_TRUE(alike(at(image, pixel), colourOf(i))) << "mapping " << i << " of " << count;
-            ASSERT_TRUE(alike(at(image, pixelOf(middle + osg::Vec2d(0.48, 0.48) * CELL)), groundColour()))
+            ASSERT_TRUE(alike(at(image, pixel), colorOf(i))) << "mapping " << i << " of " << count;
+            ASSERT_TRUE(alike(at(image, pixelOf(middle + osg::Vec2d(0.48, 0.48) * CELL)), groundColor()))
                 << "beside mapping " << i << " of " << count;
         }
         EXPECT_GE(seen, std::min(count, 200)) << count;
     }
 
-    /// Which of the mappings can be seen, by their colours.
+    /// Which of the mappings can be seen, by their colors.
     std::vector<bool> shown(int count, int columns)
     {
         const osg::ref_ptr<osg::Image> image = draw();
         std::vector<bool> result;
         for (int i = 0; i < count; ++i)
         {
-            const osg::Vec3d colour = at(*image, pixelOf(cell(i, columns)));
-            result.push_back(alike(colour, colourOf(i)));
-            EXPECT_TRUE(result.back() || alike(colour, groundColour())) << i;
+            const osg::Vec3d color = at(*image, pixelOf(cell(i, columns)));
+            result.push_back(alike(color, colorOf(i)));
+            EXPECT_TRUE(result.back() || alike(color, groundColor())) << i;
         }
         return result;
     }
@@ -107,21 +107,21 @@ TEST_F(MappingCounts, AnyOf65537IsThere)
             cell(random.integer(12, 244) * columns + random.integer(12, 244), columns) + osg::Vec2d(0.3, 0.3);
         lookDown(at, CELL / 7.0);
         // The one on top is not one of the grid's.
-        if ((at - last->getCentre()).length() < 200.0) continue;
+        if ((at - last->getCenter()).length() < 200.0) continue;
         expectCells(*draw(), count, columns);
     }
-    lookDown(last->getCentre(), CELL / 7.0);
-    EXPECT_TRUE(alike(at(*draw(), pixelOf(last->getCentre())), {1.0, 1.0, 1.0}));
+    lookDown(last->getCenter(), CELL / 7.0);
+    EXPECT_TRUE(alike(at(*draw(), pixelOf(last->getCenter())), {1.0, 1.0, 1.0}));
     // The first and the last.
     for (const int i : {0, count - 1})
     {
         lookDown(cell(i, columns), CELL / 7.0);
-        EXPECT_TRUE(alike(at(*draw(), pixelOf(cell(i, columns))), colourOf(i))) << i;
+        EXPECT_TRUE(alike(at(*draw(), pixelOf(cell(i, columns))), colorOf(i))) << i;
     }
     EXPECT_EQ(_mappings->capacity().mappingsLeftOut, 0);
     _mappings->removeMapping(all[0]);
     lookDown(cell(0, columns), CELL / 7.0);
-    EXPECT_TRUE(alike(at(*draw(), pixelOf(cell(0, columns))), groundColour()));
+    EXPECT_TRUE(alike(at(*draw(), pixelOf(cell(0, columns))), groundColor()));
 }
 
 TEST_F(MappingCounts, Stacked)
@@ -142,13 +142,13 @@ TEST_F(MappingCounts, Stacked)
         }
         lookDown({0.0, 0.0}, 1.0);
         const osg::ref_ptr<osg::Image> image = draw();
-        const osg::Vec3d expected = groundColour() + osg::Vec3d(0.6, 0.3, 0.0);
+        const osg::Vec3d expected = groundColor() + osg::Vec3d(0.6, 0.3, 0.0);
         for (int y = _height / 2 - 2; y < _height / 2 + 2; ++y)
         {
             for (int x = _width / 2 - 2; x < _width / 2 + 2; ++x)
                 EXPECT_LE(difference(at(*image, x, y), expected), tolerance) << count;
         }
-        EXPECT_TRUE(alike(at(*image, _width / 2 + 3, _height / 2), groundColour())) << count;
+        EXPECT_TRUE(alike(at(*image, _width / 2 + 3, _height / 2), groundColor())) << count;
     }
 }
 
@@ -169,7 +169,7 @@ TEST_F(MappingCounts, TheLeastImportantLayersHaveNoRoom)
     for (int i = 0; i < count; ++i)
     {
         const int which = byImportance[static_cast<std::size_t>(i)];
-        osg::ref_ptr<DataLayer> layer = new DataLayer(makeImage(32, colourOf(which)));
+        osg::ref_ptr<DataLayer> layer = new DataLayer(makeImage(32, colorOf(which)));
         layer->setImportance(1.0 - 0.04 * i);
         all[static_cast<std::size_t>(which)]->setLayer(layer);
     }
@@ -222,7 +222,7 @@ TEST_F(MappingCounts, LargeLayersTakeNoMoreThanTheirRoom)
         {
             const bool large = i == count - 1;
             const int which = large ? i : byImportance[static_cast<std::size_t>(i)];
-            osg::ref_ptr<DataLayer> layer = new DataLayer(makeImage(large ? 32 : 16, colourOf(which)));
+            osg::ref_ptr<DataLayer> layer = new DataLayer(makeImage(large ? 32 : 16, colorOf(which)));
             layer->setImportance(large ? 1.0 : 0.9 - 0.05 * i);
             ProjectiveMapping& mapping = *all[static_cast<std::size_t>(which)];
             mapping.setLayer(layer);
@@ -318,7 +318,7 @@ TEST_F(MappingCounts, OfEquallyImportantOnesTheSmallOnesGo)
     _mappings->setMaxDataSize(0.1);
     const auto all = addGrid(count, columns);
     for (std::size_t i = 0; i < count; ++i)
-        all[i]->setRectangle(all[i]->getCentre(), (i % 3 ? 0.3 : 0.45) * CELL, 0.4 * CELL);
+        all[i]->setRectangle(all[i]->getCenter(), (i % 3 ? 0.3 : 0.45) * CELL, 0.4 * CELL);
     lookDown({-0.5 * CELL, -0.5 * CELL}, CELL / 5.0);
     std::vector<std::string> said;
     const std::vector<bool> seen = shown(count, columns, said);

@@ -15,8 +15,8 @@ TEST_F(MappingFades, ByTheSizeThatACamerasRangeCovers)
     // Two metres a pixel; the camera looks straight down from 200 m, and reaches 500 m: 500 pixels.
     lookDown({0.0, 0.0}, 2.0);
     const osg::ref_ptr<osg::Image> nothing = draw();
-    const osg::Vec3d colour(0.9, 0.2, 0.1);
-    const osg::ref_ptr<ProjectiveMapping> mapping = makeSolid({0.0, 0.0}, 100.0, colour);
+    const osg::Vec3d color(0.9, 0.2, 0.1);
+    const osg::ref_ptr<ProjectiveMapping> mapping = makeSolid({0.0, 0.0}, 100.0, color);
     ProjectiveMapping::Camera camera;
     camera.eye = {0.0, 0.0, 200.0};
     camera.pitch = -osg::PI_2;
@@ -28,7 +28,7 @@ TEST_F(MappingFades, ByTheSizeThatACamerasRangeCovers)
     const osg::Vec2d middle = pixelOf(osg::Vec2d(0.0, 0.0));
     const auto shows = [&]
     {
-        return difference(at(*draw(), middle), colour) <= tolerance;
+        return difference(at(*draw(), middle), color) <= tolerance;
     };
     ASSERT_TRUE(shows()) << "without a fade";
     for (const auto& [none, full] : {std::pair(100.0, 200.0), {300.0, 450.0}})

@@ -37,7 +37,7 @@ osg::ref_ptr<osg::Image> values(double scale)
 class MappingFrames : public MappingStage
 {
 protected:
-    /// One of each: a picture, a picture with a mask, values with a table, a constant, the scene's own colour.
+    /// One of each: a picture, a picture with a mask, values with a table, a constant, the scene's own color.
     static std::vector<osg::ref_ptr<ProjectiveMapping>> makeSome()
     {
         std::vector<osg::ref_ptr<ProjectiveMapping>> all;
@@ -90,7 +90,7 @@ TEST_F(MappingFrames, ChangesAreInTheNextFrame)
         {"move",
          [](All& all, ProjectiveMappings&)
          {
-             all[0]->setCentre({-20.0, 10.0});
+             all[0]->setCenter({-20.0, 10.0});
          }},
         {"turn",
          [](All& all, ProjectiveMappings&)
@@ -100,12 +100,12 @@ TEST_F(MappingFrames, ChangesAreInTheNextFrame)
         {"far away",
          [](All& all, ProjectiveMappings&)
          {
-             all[3]->setCentre({5000.0, 5000.0});
+             all[3]->setCenter({5000.0, 5000.0});
          }},
         {"back",
          [](All& all, ProjectiveMappings&)
          {
-             all[3]->setCentre({20.0, -20.0});
+             all[3]->setCenter({20.0, -20.0});
          }},
         {"transform",
          [](All& all, ProjectiveMappings&)
@@ -314,17 +314,17 @@ TEST_F(MappingFrames, ChangesAreInTheNextFrame)
 TEST_F(MappingFrames, OneAfterTheOtherAndNothingInBetween)
 {
     lookDown({0.0, 0.0}, 1.0);
-    const osg::ref_ptr<ProjectiveMapping> solid = makeSolid({-30.0, 0.0}, 20.0, colourOf(0));
-    const osg::ref_ptr<ProjectiveMapping> picture = makePicture({30.0, 0.0}, 20.0, makeImage(4, colourOf(0)));
+    const osg::ref_ptr<ProjectiveMapping> solid = makeSolid({-30.0, 0.0}, 20.0, colorOf(0));
+    const osg::ref_ptr<ProjectiveMapping> picture = makePicture({30.0, 0.0}, 20.0, makeImage(4, colorOf(0)));
     _mappings->addMapping(solid);
     _mappings->addMapping(picture);
     for (int i = 0; i < 20; ++i)
     {
-        solid->getTransfer()->setConstant(osg::Vec4d(colourOf(i), 1.0));
-        picture->getLayer()->setImage(makeImage(4, colourOf(i + 100)));
+        solid->getTransfer()->setConstant(osg::Vec4d(colorOf(i), 1.0));
+        picture->getLayer()->setImage(makeImage(4, colorOf(i + 100)));
         const osg::ref_ptr<osg::Image> image = draw();
-        EXPECT_TRUE(alike(at(*image, pixelOf(osg::Vec2d(-30.0, 0.0))), colourOf(i))) << i;
-        EXPECT_TRUE(alike(at(*image, pixelOf(osg::Vec2d(30.0, 0.0))), colourOf(i + 100))) << i;
+        EXPECT_TRUE(alike(at(*image, pixelOf(osg::Vec2d(-30.0, 0.0))), colorOf(i))) << i;
+        EXPECT_TRUE(alike(at(*image, pixelOf(osg::Vec2d(30.0, 0.0))), colorOf(i + 100))) << i;
     }
 }
 
@@ -355,7 +355,7 @@ TEST_F(MappingFrames, UnitsAndPagesAndGlObjects)
     // As it is when a window is closed and another one opened.
     viewer().setSceneData(new osg::Group);
     EXPECT_TRUE(same(*render(scene), *expected));
-    all[0]->setCentre({0.0, 0.0});
+    all[0]->setCenter({0.0, 0.0});
     EXPECT_TRUE(same(*render(scene), *drawAnew(all)));
 }
 

@@ -102,18 +102,18 @@ TEST_F(MappingGeometry, Channels)
     lookDown({0.0, 0.0}, 1.0);
     for (int i = 0; i < 3; ++i)
     {
-        _mappings->addMapping(makeSolid({0.0, 0.0}, 60.0 - 15.0 * i, colourOf(i)));
+        _mappings->addMapping(makeSolid({0.0, 0.0}, 60.0 - 15.0 * i, colorOf(i)));
         _mappings->getMapping(static_cast<unsigned int>(i))->setChannels(1 << i);
     }
     // In the middle of each half lie all three.
     const auto seen = [&](const osg::Image& image, double x)
     {
-        const osg::Vec3d colour = at(image, pixelOf(osg::Vec2d(x, 0.0)));
+        const osg::Vec3d color = at(image, pixelOf(osg::Vec2d(x, 0.0)));
         for (int i = 0; i < 3; ++i)
         {
-            if (alike(colour, colourOf(i))) return i;
+            if (alike(color, colorOf(i))) return i;
         }
-        return alike(colour, groundColour()) ? -1 : -2;
+        return alike(color, groundColor()) ? -1 : -2;
     };
     const auto expectSeen = [&](int left, int right)
     {
@@ -147,9 +147,9 @@ TEST_F(MappingGeometry, Discard)
     osg::ref_ptr<osg::MatrixTransform> cellar =
         new osg::MatrixTransform(osg::Matrix::translate(0.0, 0.0, -50.0));
     cellar->addChild(makeGround(1000.0));
-    const osg::ref_ptr<ProjectiveMapping> paint = makeSolid({0.0, 0.0}, 60.0, colourOf(3));
+    const osg::ref_ptr<ProjectiveMapping> paint = makeSolid({0.0, 0.0}, 60.0, colorOf(3));
     paint->setHeights(-60.0, -40.0);
-    const osg::ref_ptr<ProjectiveMapping> hole = makeSolid({0.0, 0.0}, 30.0, colourOf(4));
+    const osg::ref_ptr<ProjectiveMapping> hole = makeSolid({0.0, 0.0}, 30.0, colorOf(4));
     hole->getTransfer()->setEquation(ColorTransfer::DISCARD);
     hole->setHeights(-10.0, 10.0);
     _mappings->addMapping(paint);
@@ -157,24 +157,24 @@ TEST_F(MappingGeometry, Discard)
     lookDown({0.0, 0.0}, 1.0);
     EXPECT_TRUE(alike(at(*draw(), 80, 80), {0.0, 0.0, 0.0}));
     EXPECT_TRUE(alike(at(*draw(), 80, 105), {0.0, 0.0, 0.0}));
-    EXPECT_TRUE(alike(at(*draw(), 80, 115), groundColour()));
+    EXPECT_TRUE(alike(at(*draw(), 80, 115), groundColor()));
     _scene->addChild(cellar);
-    EXPECT_TRUE(alike(at(*draw(), 80, 80), colourOf(3)));
-    EXPECT_TRUE(alike(at(*draw(), 80, 115), groundColour()));
+    EXPECT_TRUE(alike(at(*draw(), 80, 80), colorOf(3)));
+    EXPECT_TRUE(alike(at(*draw(), 80, 115), groundColor()));
     hole->setOpacity(0.4);
-    EXPECT_TRUE(alike(at(*draw(), 80, 80), groundColour()));
+    EXPECT_TRUE(alike(at(*draw(), 80, 80), groundColor()));
     hole->setOpacity(0.6);
-    EXPECT_TRUE(alike(at(*draw(), 80, 80), colourOf(3)));
+    EXPECT_TRUE(alike(at(*draw(), 80, 80), colorOf(3)));
 }
 
 TEST_F(MappingGeometry, RigidObjectsKeepTheirs)
 {
-    // A wall across the edge of a mapping; and the same wall painted in two colours.
+    // A wall across the edge of a mapping; and the same wall painted in two colors.
     const osg::Vec3d place(10.0, -40.0, 0.0);
     const auto wall = [&](const osg::Vec3d& left, const osg::Vec3d& right)
     {
         osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
-        osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array;
+        osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
         osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
         for (const bool isRight : {false, true})
         {
@@ -183,14 +183,14 @@ TEST_F(MappingGeometry, RigidObjectsKeepTheirs)
             {
                 vertices->push_back(osg::Vec3(
                     osg::Vec3d((isRight ? 15.0 : -15.0) * (corner & 1), 0.0, (corner & 2) ? 25.0 : 0.0)));
-                colours->push_back(osg::Vec4(osg::Vec3(isRight ? right : left), 1.0f));
+                colors->push_back(osg::Vec4(osg::Vec3(isRight ? right : left), 1.0f));
             }
             for (const unsigned int index : {0u, 1u, 2u, 1u, 3u, 2u})
                 triangles->push_back(first + index);
         }
         osg::ref_ptr<osg::Geometry> geometry = makeGround();
         geometry->setVertexArray(vertices);
-        geometry->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+        geometry->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
         geometry->setPrimitiveSet(0, triangles);
         return geometry;
     };
@@ -200,7 +200,7 @@ TEST_F(MappingGeometry, RigidObjectsKeepTheirs)
         osg::ref_ptr<EffectScene> scene = new EffectScene;
         const osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
         const osg::ref_ptr<ProjectiveMapping> mapping =
-            makeSolid(osg::Vec2d(place.x() - 50.0, place.y()), 50.0, colourOf(5));
+            makeSolid(osg::Vec2d(place.x() - 50.0, place.y()), 50.0, colorOf(5));
         if (mapped) mappings->addMapping(mapping);
         scene->addEffect(mappings);
         osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
@@ -220,7 +220,7 @@ TEST_F(MappingGeometry, RigidObjectsKeepTheirs)
     for (const bool bent : {true, false})
     {
         const osg::ref_ptr<osg::Image> actual = drawWall(wall(bare, bare), true, bent, true);
-        const osg::ref_ptr<osg::Image> expected = drawWall(wall(colourOf(5), bare), true, bent, false);
+        const osg::ref_ptr<osg::Image> expected = drawWall(wall(colorOf(5), bare), true, bent, false);
         EXPECT_GT(differing(*actual, *drawWall(wall(bare, bare), true, bent, false)), 100);
         // Pixels on the edge may fall to either side.
         EXPECT_LE(differing(*actual, *expected), 3);

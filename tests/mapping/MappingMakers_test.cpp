@@ -322,7 +322,7 @@ TEST_F(Symbols, comeMoveAndGo)
         EXPECT_EQ(symbols->symbolOf(one), all[3]);
 
         EXPECT_TRUE(symbols->move(all[3], {5.0, 6.0, 7.0}));
-        EXPECT_EQ(one.getCentre(), Vec2d(5.0, 6.0));
+        EXPECT_EQ(one.getCenter(), Vec2d(5.0, 6.0));
         EXPECT_TRUE(symbols->setEnabled(all[3], false));
         EXPECT_FALSE(one.getEnabled());
         EXPECT_TRUE(symbols->remove(all[3]));

@@ -76,15 +76,15 @@ protected:
     {
         constexpr int cells = 160;
         const osg::ref_ptr<osg::Geometry> ground = makeGround(1.0, cells);
-        const osg::Vec3d centre = world(middle);
+        const osg::Vec3d center = world(middle);
         for (osg::Vec3& vertex : static_cast<osg::Vec3Array&>(*ground->getVertexArray()))
         {
             const Place place = {middle.longitude + halfX * static_cast<double>(vertex.x()),
                                  middle.latitude + halfY * static_cast<double>(vertex.y())};
-            vertex = osg::Vec3(world(place) - centre);
+            vertex = osg::Vec3(world(place) - center);
         }
         ground->dirtyBound();
-        osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(osg::Matrix::translate(centre));
+        osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(osg::Matrix::translate(center));
         node->addChild(ground);
         return node;
     }
@@ -110,7 +110,7 @@ protected:
                 corners[c] = {x + halfX * size * std::cos(angle), y + halfY * size * std::sin(angle)};
                 projected[c] = project(corners[c]);
             }
-            const osg::ref_ptr<ProjectiveMapping> mapping = makeSolid({0.0, 0.0}, 1.0, colourOf(i));
+            const osg::ref_ptr<ProjectiveMapping> mapping = makeSolid({0.0, 0.0}, 1.0, colorOf(i));
             EXPECT_TRUE(mapping->setQuad(projected));
             _mappings->addMapping(mapping);
             all.push_back(corners);
@@ -173,9 +173,9 @@ protected:
                 {
                     if (!inside(osg::Vec2d(x, y))) continue;
                     const double depth = insideOf(outline, osg::Vec2d(x + 0.5, y + 0.5));
-                    const bool coloured = alike(at(*image, x, y), colourOf(static_cast<int>(i)));
+                    const bool colored = alike(at(*image, x, y), colorOf(static_cast<int>(i)));
                     within += depth > 1.0 ? 1 : 0;
-                    wrong += (depth > 1.0 && !coloured) || (depth < -1.0 && coloured) ? 1 : 0;
+                    wrong += (depth > 1.0 && !colored) || (depth < -1.0 && colored) ? 1 : 0;
                 }
             }
             seen += within > 20 ? 1 : 0;
@@ -302,16 +302,16 @@ namespace
 {
 
 /// What lies where: mixed from below.
-osg::Vec3d mixed(const ProjectiveMappings& mappings, const osg::Vec2d& place, osg::Vec3d colour)
+osg::Vec3d mixed(const ProjectiveMappings& mappings, const osg::Vec2d& place, osg::Vec3d color)
 {
     const std::vector<ProjectiveMapping*> over = mappings.mappingsAt(place);
     for (auto mapping = over.rbegin(); mapping != over.rend(); ++mapping)
     {
         const osg::Vec4d rgba = (*mapping)->getTransfer()->getConstant();
         const double share = (*mapping)->getOpacity();
-        colour = colour * (1.0 - share) + osg::Vec3d(rgba.x(), rgba.y(), rgba.z()) * share;
+        color = color * (1.0 - share) + osg::Vec3d(rgba.x(), rgba.y(), rgba.z()) * share;
     }
-    return colour;
+    return color;
 }
 
 } // namespace
@@ -321,7 +321,7 @@ TEST_F(MappingPlaces, TheOrderIsTheSameFromAllSides)
     Random random(7);
     for (int i = 0; i < 60; ++i)
     {
-        osg::ref_ptr<ProjectiveMapping> mapping = makeSolid({0.0, 0.0}, 1.0, colourOf(i));
+        osg::ref_ptr<ProjectiveMapping> mapping = makeSolid({0.0, 0.0}, 1.0, colorOf(i));
         mapping->setRectangle({random.uniform(-250.0, 250.0), random.uniform(-250.0, 250.0)},
                               random.uniform(50.0, 200.0), random.uniform(50.0, 200.0),
                               random.uniform(-3.0, 3.0));
@@ -357,21 +357,21 @@ TEST_F(MappingPlaces, TheOrderIsTheSameFromAllSides)
             else
                 look({-600.0 * std::sin(heading), -600.0 * std::cos(heading), 700.0}, {0.0, 0.0, 0.0});
             const osg::ref_ptr<osg::Image> image = draw();
-            std::vector<osg::Vec3d> colours;
+            std::vector<osg::Vec3d> colors;
             int seen = 0;
             for (std::size_t i = 0; i < places.size(); ++i)
             {
                 const osg::Vec2d pixel = pixelOf(places[i]);
                 ASSERT_TRUE(!down || inside(pixel));
-                colours.push_back(inside(pixel) ? at(*image, pixel) : first[i]);
+                colors.push_back(inside(pixel) ? at(*image, pixel) : first[i]);
                 if (!inside(pixel)) continue;
                 ++seen;
-                EXPECT_LE(difference(colours[i], mixed(*_mappings, places[i], groundColour())), tolerance)
+                EXPECT_LE(difference(colors[i], mixed(*_mappings, places[i], groundColor())), tolerance)
                     << "place " << i << ", step " << step;
-                EXPECT_TRUE(first.empty() || alike(colours[i], first[i]));
+                EXPECT_TRUE(first.empty() || alike(colors[i], first[i]));
             }
             EXPECT_GT(seen, 300);
-            if (first.empty()) first = colours;
+            if (first.empty()) first = colors;
             if (HasFailure()) return;
         }
     }
@@ -383,15 +383,15 @@ TEST_F(MappingPlaces, TheHigherOrderThenTheLaterIsOnTop)
     std::vector<osg::ref_ptr<ProjectiveMapping>> all;
     for (int i = 0; i < 5; ++i)
     {
-        all.push_back(makeSolid({4.0 * i, 0.0}, 50.0, colourOf(i)));
+        all.push_back(makeSolid({4.0 * i, 0.0}, 50.0, colorOf(i)));
         _mappings->addMapping(all.back());
     }
     const auto top = [&]
     {
-        const osg::Vec3d colour = at(*draw(), pixelOf(osg::Vec2d(8.0, 0.0)));
+        const osg::Vec3d color = at(*draw(), pixelOf(osg::Vec2d(8.0, 0.0)));
         for (int i = 0; i < 5; ++i)
         {
-            if (alike(colour, colourOf(i))) return i;
+            if (alike(color, colorOf(i))) return i;
         }
         return -1;
     };

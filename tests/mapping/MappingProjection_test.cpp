@@ -52,7 +52,7 @@ TEST(MappingProjection, StepsInThePlaneAreItsDerivative)
         const glsl::geofx_Projector projector = {
             glm::dvec2(randomVector(random, 1000.0)), glm::dvec2(randomVector(random, 1e-2)),
             glm::dvec2(randomVector(random, 1e-2)), glm::dvec2(randomVector(random, 1e-3))};
-        const glm::dvec2 place = projector.centre + glm::dvec2(randomVector(random, 400.0));
+        const glm::dvec2 place = projector.center + glm::dvec2(randomVector(random, 400.0));
         const glm::dvec2 step(randomVector(random, 5.0));
         expectDerivative([&](const glm::dvec2& at) { return glsl::geofx_projectPlane(projector, at); },
                          glsl::geofx_projectPlaneStep(projector, place, step), place, step);

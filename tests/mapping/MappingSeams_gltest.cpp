@@ -35,12 +35,12 @@ protected:
         place.set(hit.x(), hit.y());
         return true;
     }
-    osg::ref_ptr<ProjectiveMapping> makeTile(bool picture, const osg::Vec2d& centre, const osg::Vec2d& half,
+    osg::ref_ptr<ProjectiveMapping> makeTile(bool picture, const osg::Vec2d& center, const osg::Vec2d& half,
                                              double heading)
     {
         const osg::ref_ptr<ProjectiveMapping> tile =
-            picture ? makePicture(centre, 1.0, makeImage(8, WHITE)) : makeSolid(centre, 1.0, WHITE);
-        tile->setRectangle(centre, half.x(), half.y(), heading);
+            picture ? makePicture(center, 1.0, makeImage(8, WHITE)) : makeSolid(center, 1.0, WHITE);
+        tile->setRectangle(center, half.x(), half.y(), heading);
         return tile;
     }
 };
@@ -67,11 +67,11 @@ TEST_F(MappingSeams, NoGroundBetweenTiles)
         {
             for (std::size_t y = 1; y < cuts[1].size(); ++y)
             {
-                const osg::Vec2d centre =
+                const osg::Vec2d center =
                     east * (cuts[0][x] + cuts[0][x - 1]) / 2.0 + north * (cuts[1][y] + cuts[1][y - 1]) / 2.0;
                 const osg::Vec2d half((cuts[0][x] - cuts[0][x - 1]) / 2.0,
                                       (cuts[1][y] - cuts[1][y - 1]) / 2.0);
-                _mappings->addMapping(makeTile(i % 2 == 1, centre, half, heading));
+                _mappings->addMapping(makeTile(i % 2 == 1, center, half, heading));
             }
         }
         const double around = random.uniform(-3.0, 3.0);
@@ -110,9 +110,9 @@ TEST_F(MappingSeams, NoGroundOnEdgesThroughPixels)
             {
                 for (int y = -10; y < 10; ++y)
                 {
-                    const osg::Vec2d centre =
+                    const osg::Vec2d center =
                         at0 + osg::Vec2d((x + 0.5) * side + 0.5 * pixel, (y + 0.5) * side + 0.5 * pixel);
-                    _mappings->addMapping(makeTile((x + y) % 2 == 0, centre, {side / 2.0, side / 2.0}, 0.0));
+                    _mappings->addMapping(makeTile((x + y) % 2 == 0, center, {side / 2.0, side / 2.0}, 0.0));
                 }
             }
             lookDown(at0, pixel);
@@ -139,7 +139,7 @@ TEST_F(MappingSeams, NoneAtCells)
     _mappings->addMapping(large);
     look({0.0, -300.0, 250.0}, {0.0, 0.0, 0.0});
     const osg::ref_ptr<osg::Image> expected = draw();
-    // Thousands of small ones beside it, and on it, where they leave the colour as it is.
+    // Thousands of small ones beside it, and on it, where they leave the color as it is.
     Random random(3);
     for (int i = 0; i < 4000; ++i)
     {
@@ -148,7 +148,7 @@ TEST_F(MappingSeams, NoneAtCells)
             beside ? osg::Vec2d(random.uniform(-900.0, 900.0), random.uniform(700.0, 900.0))
                    : osg::Vec2d(random.uniform(-250.0, 250.0), random.uniform(-250.0, 250.0));
         const osg::ref_ptr<ProjectiveMapping> small =
-            makeSolid(place, random.logarithmic(0.5, 20.0), colourOf(i));
+            makeSolid(place, random.logarithmic(0.5, 20.0), colorOf(i));
         if (!beside) small->getTransfer()->setBlendFunction(ColorTransfer::ZERO, ColorTransfer::ONE);
         small->setOrder(random.integer(-1, 1));
         _mappings->addMapping(small);
@@ -162,7 +162,7 @@ TEST_F(MappingSeams, NoneAtCells)
         {
             osg::Vec2d place;
             if (!groundAt(x, y, place) || place.y() > 650.0) continue;
-            covered += alike(at(*expected, x, y), groundColour()) ? 0 : 1;
+            covered += alike(at(*expected, x, y), groundColor()) ? 0 : 1;
             off += at(*expected, x, y) == at(*image, x, y) ? 0 : 1;
         }
     }
@@ -247,7 +247,7 @@ TEST_F(MappingSeams, OddImages)
                     ASSERT_TRUE(alike(at(*picture, pixelOf(osg::Vec2d(x, 48.7))), grey))
                         << size[0] << " x " << size[1] << ", " << format << ", " << type;
                 }
-                ASSERT_TRUE(alike(at(*picture, pixelOf(osg::Vec2d(51.0, 0.0))), groundColour()));
+                ASSERT_TRUE(alike(at(*picture, pixelOf(osg::Vec2d(51.0, 0.0))), groundColor()));
             }
         }
     }
@@ -279,7 +279,7 @@ TEST_F(MappingSeams, NumbersThatAreNone)
         {
             mapping->getLayer()->setKind(kind);
             const osg::ref_ptr<osg::Image> picture = draw();
-            EXPECT_TRUE(alike(at(*picture, pixelOf(osg::Vec2d(-30.0, 10.0))), groundColour())) << kind;
+            EXPECT_TRUE(alike(at(*picture, pixelOf(osg::Vec2d(-30.0, 10.0))), groundColor())) << kind;
             const osg::Vec3d middle(0.5, 0.5, 0.5);
             EXPECT_TRUE(alike(at(*picture, pixelOf(osg::Vec2d(30.0, 10.0))), middle)) << kind;
         }
@@ -339,7 +339,7 @@ TEST_F(MappingSeams, WhatCannotBeDrawn)
             return mapping->setRectangle({nan, 0.0}, 10.0, 10.0);
         },
         [&] {
-            return mapping->setCentre({0.0, std::numeric_limits<double>::infinity()});
+            return mapping->setCenter({0.0, std::numeric_limits<double>::infinity()});
         },
         [&] { return mapping->setTransform(glm::dmat3(0.0)); },
         [&] { return mapping->setTransform(glm::dmat3(1, 0, 2, 0, 1, 0, 0, 0, -1)); },

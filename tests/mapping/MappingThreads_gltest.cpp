@@ -37,13 +37,13 @@ protected:
 
     static osg::ref_ptr<ProjectiveMapping> makeOne(Random& random)
     {
-        const osg::Vec2d centre(random.uniform(-150.0, 150.0), random.uniform(-150.0, 150.0));
+        const osg::Vec2d center(random.uniform(-150.0, 150.0), random.uniform(-150.0, 150.0));
         const double size = random.uniform(5.0, 60.0);
-        const osg::Vec3d colour = colourOf(random.integer(0, 1000));
+        const osg::Vec3d color = colorOf(random.integer(0, 1000));
         const int side = 1 << random.integer(2, 6);
         const osg::ref_ptr<ProjectiveMapping> mapping =
-            random.integer(0, 2) ? makePicture(centre, size, makeImage(side, colour))
-                                 : makeSolid(centre, size, colour);
+            random.integer(0, 2) ? makePicture(center, size, makeImage(side, color))
+                                 : makeSolid(center, size, color);
         mapping->setOpacity(random.uniform(0.4, 1.0));
         mapping->setOrder(random.integer(-1, 1));
         return mapping;
@@ -61,11 +61,11 @@ protected:
                       : nullptr;
             if (what == 0) mappings.addMapping(makeOne(random));
             if (what == 1) mappings.removeMapping(one);
-            if (what == 2) one->setCentre({random.uniform(-150.0, 150.0), random.uniform(-150.0, 150.0)});
+            if (what == 2) one->setCenter({random.uniform(-150.0, 150.0), random.uniform(-150.0, 150.0)});
             if (what == 3) one->setEnabled(!one->getEnabled());
             if (what == 4) one->getTransfer()->setHue(random.uniform(-3.0, 3.0));
             if (what == 5 && one->getLayer())
-                one->getLayer()->setImage(makeImage(1 << random.integer(2, 6), colourOf(i)));
+                one->getLayer()->setImage(makeImage(1 << random.integer(2, 6), colorOf(i)));
         }
         mappings.setWholeList(random.integer(0, 3) == 0);
     }

@@ -106,9 +106,9 @@ TEST(Lens, showsWhatIsBelowIt)
         lens->setContent(content(colorField()));
         EXPECT_EQ(mappings->getNumMappings(), 2u);
         EXPECT_EQ(mappings->mappingsAt({0, 0}).front(), &lens->rim());
-        for (const Vec2d& centre : {Vec2d(0, 0), Vec2d(200, -100), Vec2d(-260, 300)})
+        for (const Vec2d& center : {Vec2d(0, 0), Vec2d(200, -100), Vec2d(-260, 300)})
         {
-            ASSERT_TRUE(lens->place(centre, 100.0, 100.0, 0.4));
+            ASSERT_TRUE(lens->place(center, 100.0, 100.0, 0.4));
             const osg::Image& cut = *lens->inside().getLayer()->getImage();
             const glm::dmat3 back = glm::inverse(lens->inside().placeToRaster());
             for (int i = 60; i < 200; i += 9)
@@ -166,7 +166,7 @@ TEST(Lens, keepsValuesAndWhatTheyMean)
     };
     // Texels are 16 m, ten units each.
     EXPECT_NEAR(static_cast<double>(valueAt(128)), 1000.0 + 10.0 * (312.0 / 16.0 - 0.5), 0.5);
-    lens->setCentre({0, 0});
+    lens->setCenter({0, 0});
     EXPECT_FALSE(std::isnan(valueAt(100)));
     EXPECT_TRUE(std::isnan(valueAt(160)));
 
@@ -202,7 +202,7 @@ TEST(Lens, sceneColorsNeedNoPicture)
     style.rim = 2.0;
     EXPECT_TRUE(refused([&] { return static_cast<bool>(lens->setStyle(style)); }));
     EXPECT_TRUE(refused([&] { return static_cast<bool>(lens->setRadius(0.0)); }));
-    EXPECT_TRUE(refused([&] { return static_cast<bool>(lens->setCentre({std::nan(""), 0.0})); }));
+    EXPECT_TRUE(refused([&] { return static_cast<bool>(lens->setCenter({std::nan(""), 0.0})); }));
 }
 
 TEST_F(Pointer, leadsTheLens)
@@ -212,8 +212,8 @@ TEST_F(Pointer, leadsTheLens)
     osg::ref_ptr<LensFollowsPointer> handler =
         new LensFollowsPointer(*_scene, *_mappings, *lens, 90.0, 120.0);
     EXPECT_FALSE(send(*handler, Event::MOVE, 150.0f, 70.0f)) << "others may want it, too";
-    EXPECT_NEAR(lens->getCentre().x(), 250.0, 0.5);
-    EXPECT_NEAR(lens->getCentre().y(), 100.0, 0.5);
+    EXPECT_NEAR(lens->getCenter().x(), 250.0, 0.5);
+    EXPECT_NEAR(lens->getCenter().y(), 100.0, 0.5);
     EXPECT_FALSE(send(*handler, Event::SCROLL, 150.0f, 70.0f)) << "the wheel alone is the manipulator's";
     EXPECT_EQ(lens->getHalfWidth(), 100.0);
     EXPECT_TRUE(send(*handler, Event::SCROLL, 150.0f, 70.0f, Event::MODKEY_CTRL));
@@ -238,12 +238,12 @@ TEST_F(Pointer, lensFollowsANode)
     osg::ref_ptr<osg::MatrixTransform> root = new osg::MatrixTransform(osg::Matrix::translate(7000, 0, 0));
     root->addChild(_scene);
     root->accept(update);
-    EXPECT_NEAR(lens->getCentre().x(), 100.0, 1e-3);
-    EXPECT_NEAR(lens->getCentre().y(), 50.0, 1e-3);
+    EXPECT_NEAR(lens->getCenter().x(), 100.0, 1e-3);
+    EXPECT_NEAR(lens->getCenter().y(), 50.0, 1e-3);
     vehicle->setMatrix(osg::Matrix::translate(-30, 60, 5));
     root->accept(update);
-    EXPECT_NEAR(lens->getCentre().x(), 70.0, 1e-3);
-    EXPECT_NEAR(lens->getCentre().y(), 60.0, 1e-3);
+    EXPECT_NEAR(lens->getCenter().x(), 70.0, 1e-3);
+    EXPECT_NEAR(lens->getCenter().y(), 60.0, 1e-3);
 }
 
 TEST(MaskPainter, paintsSoftStrokesAndTakesThemBack)

@@ -35,9 +35,9 @@ void main()
 }
 )";
 
-// The colour, and all that it is computed from.
+// The color, and all that it is computed from.
 const char* const fragmentShader = R"(#version 330 compatibility
-vec4 geofx_fragment(vec4 colour, vec4 map);
+vec4 geofx_fragment(vec4 color, vec4 map);
 in vec3 geofx_0_place;
 in vec3 geofx_0_position;
 layout(location = 0) out vec4 results[8];
@@ -63,7 +63,7 @@ osg::ref_ptr<osg::Geometry> makeGround()
 {
     constexpr int cells = 80;
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array;
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     for (int j = 0; j <= cells; ++j)
     {
         for (int i = 0; i <= cells; ++i)
@@ -71,7 +71,7 @@ osg::ref_ptr<osg::Geometry> makeGround()
             const double x = SIDE * (2.0 * i / cells - 1.0);
             const double y = SIDE * (2.0 * j / cells - 1.0);
             vertices->push_back(osg::Vec3(osg::Vec3d(x, y, heightAt(x, y))));
-            colours->push_back(
+            colors->push_back(
                 osg::Vec4(osg::Vec4d(0.5 + 0.5 * std::sin(x / 90.0), 0.5 + 0.5 * std::cos(y / 70.0),
                                      0.5 + 0.5 * std::sin((x - y) / 110.0), 0.75)));
         }
@@ -89,7 +89,7 @@ osg::ref_ptr<osg::Geometry> makeGround()
     osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
     ground->setUseVertexBufferObjects(true);
     ground->setVertexArray(vertices);
-    ground->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+    ground->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     ground->addPrimitiveSet(triangles);
     ground->getOrCreateStateSet()->setMode(GL_BLEND, osg::StateAttribute::OFF);
     return ground;
@@ -116,7 +116,7 @@ osg::ref_ptr<osg::Image> randomPicture(Random& random)
             {
                 const double* wave = waves[c];
                 const double value = std::sin(wave[0] * x / width + wave[1] * y / height + wave[2]);
-                // What is fully transparent has no colour to speak of.
+                // What is fully transparent has no color to speak of.
                 const double shade = c < 3 ? 0.5 + 0.5 * value : 0.6 + 0.4 * value;
                 image->data(x, y)[c] = static_cast<unsigned char>(255.0 * shade);
             }
@@ -365,13 +365,13 @@ protected:
                 if (!fragment(x, y, found)) continue;
                 ++ground;
                 const glm::dvec4 scene = pixel(1, x, y);
-                const glm::dvec4 expected = evaluator.colour(found, scene);
+                const glm::dvec4 expected = evaluator.color(found, scene);
                 const glm::dvec4 drawn = pixel(0, x, y);
                 if (glm::distance(expected, scene) > 0.02) ++changed;
                 double error = difference(expected, drawn);
                 // At a jump of the functions, floats may find themselves on the other side.
                 for (int way = 0; way < 8 && error > allowed; ++way)
-                    error = std::min(error, difference(evaluator.colour(nudged(found, way), scene), drawn));
+                    error = std::min(error, difference(evaluator.color(nudged(found, way), scene), drawn));
                 if (error > allowed) ++off;
                 if (error <= worst) continue;
                 worst = error;

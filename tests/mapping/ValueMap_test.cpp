@@ -84,8 +84,8 @@ TEST(ValueMap, linesLieWhereTheValuesAre)
         EXPECT_GT(map->lines()->getTransfer()->getRampLow(), 4.0);
 
         // They follow the map, and are made anew where its size changes.
-        map->mapping().setCentre({50, 60});
-        EXPECT_EQ(map->lines()->getCentre(), Vec2d(50, 60));
+        map->mapping().setCenter({50, 60});
+        EXPECT_EQ(map->lines()->getCenter(), Vec2d(50, 60));
         map->mapping().setOpacity(0.5);
         EXPECT_NEAR(map->lines()->getOpacity(), 0.3, 1e-6);
         map->mapping().setRectangle({0, 0}, 640.0, 320.0);
@@ -135,7 +135,7 @@ TEST(ValueLegend, ticksAreRound)
     }
 }
 
-TEST(ValueLegend, hasTheMapsColoursAndTicksWhereTheyBelong)
+TEST(ValueLegend, hasTheMapsColorsAndTicksWhereTheyBelong)
 {
     const osg::ref_ptr<ColorTable> colors = ColorTable::named("viridis", 40.0, 85.0);
     LegendStyle style;

@@ -56,7 +56,7 @@ osg::Vec3i pixel(const osg::Image& image, int x, int y)
     return osg::Vec3i(p[0], p[1], p[2]);
 }
 
-/// Colours at the middles of the quadrants: south-west, south-east, north-west, north-east.
+/// Colors at the middles of the quadrants: south-west, south-east, north-west, north-east.
 std::vector<osg::Vec3i> quadrants(const osg::Image& image)
 {
     return {pixel(image, 48, 48), pixel(image, 80, 48), pixel(image, 48, 80), pixel(image, 80, 80)};

@@ -317,15 +317,15 @@ TEST(Painting, WaterIsPaleAtTheShoreAndDeepFarOff)
         ASSERT_GE(glsl::geofx_waterDepth(shore + random.uniform(0.0, 1.0) * deepShore, deepShore), t - 1e-12);
         const Rgb deep = randomColor(random);
         const glsl::Vector3 own = glsl::geofx_toHsv(deep);
-        const glsl::Vector3 shown = glsl::geofx_toHsv(glsl::geofx_waterColour(deep, t));
+        const glsl::Vector3 shown = glsl::geofx_toHsv(glsl::geofx_waterColor(deep, t));
         ASSERT_LE(shown.y, own.y + 1e-9);
         ASSERT_GE(shown.z, own.z - 1e-9);
         if (t > 0.01 && own.y > 0.01 && own.z > 0.01)
         {
             ASSERT_LT(hueDistance(shown.x, own.x), 1e-6);
         }
-        ASSERT_LT(glm::distance(glsl::geofx_waterColour(deep, 1.0), deep), 1e-12);
-        ASSERT_LT(glm::distance(glsl::geofx_waterColour(deep, 0.0), Rgb(1, 1, 1)), 1e-12);
+        ASSERT_LT(glm::distance(glsl::geofx_waterColor(deep, 1.0), deep), 1e-12);
+        ASSERT_LT(glm::distance(glsl::geofx_waterColor(deep, 0.0), Rgb(1, 1, 1)), 1e-12);
     }
     EXPECT_NEAR(glsl::geofx_waterDepth(0.0, 1000.0), 0.0, 1e-12);
     EXPECT_NEAR(glsl::geofx_waterDepth(-500.0, 1000.0), 0.0, 1e-12);

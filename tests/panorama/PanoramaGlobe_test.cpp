@@ -8,7 +8,7 @@
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/detail/PanoramaEdge.h>
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 #include <tools/RandomViews.h>
 #include <tools/StrokeTiles.h>
@@ -33,7 +33,7 @@ struct Case
 {
     CameraPose pose;
     osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
-    osg::ref_ptr<const PanoramaFrame> frame;
+    osg::ref_ptr<const PanoramaSnapshot> frame;
 
     explicit Case(Random& random)
     {
@@ -50,7 +50,7 @@ struct Case
             map->setCurveDistance(random.uniform(0.0, 0.9) * map->getHorizonDistance());
             map->setViewRadius(random.logarithmic(2e5, 2e6));
             map->setExaggeration(random.logarithmic(0.2, 20.0));
-            frame = dynamic_cast<const PanoramaFrame*>(map->frame(pose.view()).get());
+            frame = dynamic_cast<const PanoramaSnapshot*>(map->snapshot(pose.view()).get());
         } while (!frame);
     }
 
@@ -61,10 +61,10 @@ struct Case
         const double arc = random.integer(0, 2) ? random.uniform(1.2, 2.0) : random.uniform(0.0, 3.1);
         const double way = random.uniform(-osg::PI, osg::PI);
         const Vec3d right = toOsg(frame->view().right), forward = toOsg(frame->view().forward);
-        const Vec3d centre = view.up * (-view.eyeHeight - EARTH);
+        const Vec3d center = view.up * (-view.eyeHeight - EARTH);
         const Vec3d direction =
             view.up * std::cos(arc) + (right * std::cos(way) + forward * std::sin(way)) * std::sin(arc);
-        return centre + direction * (EARTH + random.uniform(-15000.0, 9000.0));
+        return center + direction * (EARTH + random.uniform(-15000.0, 9000.0));
     }
 };
 
@@ -93,10 +93,10 @@ TEST(PanoramaGlobe, BallsHoldWhatLiesBeyondAQuarterOfTheEarth)
             for (int i = 0; i < 30; ++i)
             {
                 const Vec3d a =
-                    ball.centre + randomDirection(random) * (ball.radius * random.uniform(0.5, 1.0));
+                    ball.center + randomDirection(random) * (ball.radius * random.uniform(0.5, 1.0));
                 const Vec3d b =
-                    random.integer(0, 1) ? ball.centre : a + randomDirection(random) * (1e-3 * ball.radius);
-                if ((b - ball.centre).length() > ball.radius) continue;
+                    random.integer(0, 1) ? ball.center : a + randomDirection(random) * (1e-3 * ball.radius);
+                if ((b - ball.center).length() > ball.radius) continue;
                 const double apart = (found.frame->deform(a) - found.frame->deform(b)).length();
                 EXPECT_LE(apart, grows * (a - b).length() * (1.0 + 1e-6) + 1e-2)
                     << "radius " << ball.radius << ", apart " << (a - b).length() << ", grows by "
@@ -112,8 +112,8 @@ TEST(PanoramaGlobe, HullsHoldWhatLiesBeyondAQuarterOfTheEarth)
         [&](const Case& found, Random& random)
         {
             EyeBox box;
-            box.centre = found.ground(random);
-            Vec3d up = box.centre - found.pose.view().up * (-found.pose.view().eyeHeight - EARTH);
+            box.center = found.ground(random);
+            Vec3d up = box.center - found.pose.view().up * (-found.pose.view().eyeHeight - EARTH);
             up.normalize();
             Vec3d east = up ^ randomDirection(random);
             east.normalize();
@@ -125,7 +125,7 @@ TEST(PanoramaGlobe, HullsHoldWhatLiesBeyondAQuarterOfTheEarth)
             found.frame->boundBox(box, hull, 1.0);
             for (int i = 0; i < 40; ++i)
             {
-                Vec3d point = box.centre;
+                Vec3d point = box.center;
                 for (const Vec3d& half : box.half)
                     point += half * (random.integer(0, 1) ? random.uniform(-1.0, 1.0) : random.sign());
                 const Vec3d deformed = found.frame->deform(point);
@@ -152,7 +152,7 @@ TEST(PanoramaGlobe, NothingIsHiddenThatThePictureShows)
             for (int i = 0; i < 20; ++i)
             {
                 const Vec3d point =
-                    ball.centre + randomDirection(random) * (ball.radius * random.uniform(0.0, 1.0));
+                    ball.center + randomDirection(random) * (ball.radius * random.uniform(0.0, 1.0));
                 const glm::dvec3 place = glsl::geofx_panoramaPlace(found.frame->view(), toGlm(point));
                 const glm::dvec3 picture = glsl::geofx_panoramaPicture(found.frame->view(), place);
                 // All that lies beyond the end is one point on the horizon.

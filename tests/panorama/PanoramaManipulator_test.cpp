@@ -103,7 +103,7 @@ protected:
         _hand->setWidth(random.logarithmic(3000.0, 12000.0));
         _hand->setHeading(random.uniform(-4.0, 4.0));
         _hand->setPitch(random.uniform(-1.6, 0.1));
-        EXPECT_TRUE(_hand->setCentre(_middle));
+        EXPECT_TRUE(_hand->setCenter(_middle));
         show();
         pixel = aim(random);
         return shownAt(pixel);
@@ -214,7 +214,7 @@ TEST_F(ByHand, TurnsAreAboutTheMiddle)
         {
             _map->setHorizonLine(horizon);
             _hand->setWidth(10000.0);
-            EXPECT_TRUE(_hand->setCentre(_middle));
+            EXPECT_TRUE(_hand->setCenter(_middle));
             show();
             const Vec2d middle(width / 2.0, horizon < 0.7 ? 0.7 * horizon * height : height / 2.0);
             expectAt(_middle, middle);
@@ -243,16 +243,16 @@ TEST_F(ByHand, TurnsAreAboutTheMiddle)
 TEST_F(ByHand, SkyIsNothingToHold)
 {
     _hand->setWidth(60000.0);
-    _hand->setCentre(_middle);
+    _hand->setCenter(_middle);
     show();
     ASSERT_FALSE(shownAt({400.0, 495.0}));
     EXPECT_TRUE(send(Event::PUSH, {400.0, 495.0}));
-    const osg::Vec3d before = _hand->getCentre();
+    const osg::Vec3d before = _hand->getCenter();
     EXPECT_TRUE(send(Event::DRAG, {400.0, 495.0}));
-    EXPECT_NEAR((_hand->getCentre() - before).length(), 0.0, 1e-3) << "and does not make the map jump";
+    EXPECT_NEAR((_hand->getCenter() - before).length(), 0.0, 1e-3) << "and does not make the map jump";
     EXPECT_TRUE(send(Event::DRAG, {440.0, 495.0}));
     // 40 of 800 pixels to the right.
-    EXPECT_NEAR((_hand->getCentre() - before).length(), 3000.0, 1.0);
+    EXPECT_NEAR((_hand->getCenter() - before).length(), 3000.0, 1.0);
 }
 
 TEST_F(ByHand, TheEyeStaysWithinItsLimits)
@@ -299,7 +299,7 @@ TEST_F(ByHand, TakesOverOtherManipulatorsViews)
 
 TEST_F(ByHand, HomeIsTheSceneUnlessOneIsSet)
 {
-    EXPECT_NEAR((_hand->getCentre() - _scene->getBound().center()).length(), 0.0, 5000.0);
+    EXPECT_NEAR((_hand->getCenter() - _scene->getBound().center()).length(), 0.0, 5000.0);
     EXPECT_NEAR(_hand->getWidth(), 2.0 * static_cast<double>(_scene->getBound().radius()), 1.0);
     _hand->setHomePosition({1000.0, -9000.0, 12000.0}, {1000.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
     EXPECT_TRUE(send(Event::KEYDOWN, {}, 0, Event::KEY_Space));
@@ -325,7 +325,7 @@ TEST_F(ByHand, WidthsOfTheMapItselfAreZoomedToo)
     send(Event::FRAME);
     EXPECT_NEAR(_hand->getWidth(), 8000.0, 1e-6);
     EXPECT_EQ(_map->getViewRadius(), 0.0);
-    EXPECT_TRUE(_hand->setCentre(_middle));
+    EXPECT_TRUE(_hand->setCenter(_middle));
     show();
     const Vec2d pixel(300.0, 150.0);
     const auto world = shownAt(pixel);

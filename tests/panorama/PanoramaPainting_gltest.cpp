@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The painting of a panorama map on grounds whose classes are known: the palette's colours in light and shade, air that keeps the
+// The painting of a panorama map on grounds whose classes are known: the palette's colors in light and shade, air that keeps the
 // value, and a picture of whatever terrain there is.
 #include <tools/GlFixture.h>
 #include <tools/RandomSamples.h>
@@ -201,7 +201,7 @@ TEST_F(PanoramaPainting, AirKeepsTheValue)
 {
     const osg::ref_ptr<PanoramaMap> map = makeMap();
     show(mixedLand(), map);
-    // Each colour keeps its value; a mixture of two of them, at a stroke's edge or in what water shows of the land, need not. And ripples
+    // Each color keeps its value; a mixture of two of them, at a stroke's edge or in what water shows of the land, need not. And ripples
     // move with the clock.
     map->setStrokes(false);
     map->setReflection(0.0);
@@ -227,7 +227,7 @@ TEST_F(PanoramaPainting, AirKeepsTheValue)
     EXPECT_LT(worst, 2.0 / 255.0);
     EXPECT_GT(changed, rows * WIDTH / 20);
     std::cout << "V changes by " << worst * 255.0 << "/255 at most; " << changed << " of " << rows * WIDTH
-              << " pixels have another colour\n";
+              << " pixels have another color\n";
 }
 
 namespace
@@ -249,7 +249,7 @@ class PaintedClass : public PanoramaPainting, public ::testing::WithParamInterfa
 
 } // namespace
 
-TEST_P(PaintedClass, LitAndShadedColoursAreThePalettes)
+TEST_P(PaintedClass, LitAndShadedColorsAreThePalettes)
 {
     const ClassCase& given = GetParam();
     Land land;
@@ -313,7 +313,7 @@ TEST_P(PaintedClass, LitAndShadedColoursAreThePalettes)
         }
     }
     // Along the ridges the ground is less steep, and of other classes.
-    EXPECT_GT(onRow, pixels * 3 / 4) << "of " << pixels << " pixels have a colour of the palette's row";
+    EXPECT_GT(onRow, pixels * 3 / 4) << "of " << pixels << " pixels have a color of the palette's row";
     ASSERT_GT(lit.size(), static_cast<std::size_t>(pixels / 5));
     ASSERT_GT(shaded.size(), static_cast<std::size_t>(pixels / 5));
     const auto byValue = [](const Pixel& a, const Pixel& b)
@@ -433,7 +433,7 @@ TEST_F(PanoramaPainting, AnyTerrainIsASensiblePicture)
                 {
                     const Pixel pixel = pixelOf(*image, column, row);
                     dark += pixel.value() < 0.08 ? 1 : 0;
-                    // No ground, water or sky is as pure a colour as a shader that went wrong.
+                    // No ground, water or sky is as pure a color as a shader that went wrong.
                     glaring += pixel.value() - std::min({pixel.red, pixel.green, pixel.blue}) > 0.92 ? 1 : 0;
                     sum += pixel.value();
                     squares += pixel.value() * pixel.value();
@@ -449,7 +449,7 @@ TEST_F(PanoramaPainting, AnyTerrainIsASensiblePicture)
             EXPECT_EQ(glaring, 0);
             EXPECT_GT(mean, 0.3);
             EXPECT_LT(mean, 0.97);
-            // A painting, neither one colour nor noise.
+            // A painting, neither one color nor noise.
             EXPECT_GT(squares / count - mean * mean, 1e-4);
             EXPECT_LT(steps / count, 0.12);
         }

@@ -150,7 +150,7 @@ TEST(PanoramaPalette, ImagesOfOtherSizesAreResampled)
     {
         for (const int height : {8, 12, 20, 64, 129})
         {
-            // Drawn as a user would: bands, with colours that belong to none where two of them meet.
+            // Drawn as a user would: bands, with colors that belong to none where two of them meet.
             osg::ref_ptr<osg::Image> drawn = new osg::Image;
             drawn->allocateImage(width, height, 1, GL_RGB, GL_UNSIGNED_BYTE);
             for (int y = 0; y < height; ++y)

@@ -87,10 +87,10 @@ protected:
                                                                                 local);
         const osg::Vec3d ahead(std::sin(heading), std::cos(heading), -1.0);
         const osg::Vec3d eye = osg::Vec3d(0.0, 0.0, 8000.0) * local;
-        const osg::Vec3d centre = (osg::Vec3d(0.0, 0.0, 8000.0) + ahead * 8000.0) * local;
+        const osg::Vec3d center = (osg::Vec3d(0.0, 0.0, 8000.0) + ahead * 8000.0) * local;
         const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, 1.0), local);
         osg::Camera& camera = *viewer().getCamera();
-        camera.setViewMatrixAsLookAt(eye, centre, up);
+        camera.setViewMatrixAsLookAt(eye, center, up);
         camera.setProjectionMatrixAsPerspective(40.0, static_cast<double>(WIDTH) / HEIGHT, 10.0, 1e5);
         return render(scene);
     }

@@ -60,7 +60,7 @@ protected:
         hand->setCameraProjection(viewer().getCamera()->getProjectionMatrix());
         hand->setWidth(width);
         hand->setHeading(heading);
-        EXPECT_TRUE(hand->setCentre(_hills.middle()));
+        EXPECT_TRUE(hand->setCenter(_hills.middle()));
         hand->updateCamera(*viewer().getCamera());
     }
 

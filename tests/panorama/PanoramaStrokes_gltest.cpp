@@ -118,9 +118,9 @@ osg::ref_ptr<osg::Texture2D> palette()
         for (int column = 0; column < 256; ++column)
         {
             const float t = static_cast<float>(column) / 127.5f;
-            const osg::Vec3 colour = t < 1.0f ? rows[row][0] * (1.0f - t) + rows[row][1] * t
-                                              : rows[row][1] * (2.0f - t) + rows[row][2] * (t - 1.0f);
-            image->setColor(osg::Vec4(colour, 1.0f), static_cast<unsigned int>(column),
+            const osg::Vec3 color = t < 1.0f ? rows[row][0] * (1.0f - t) + rows[row][1] * t
+                                             : rows[row][1] * (2.0f - t) + rows[row][2] * (t - 1.0f);
+            image->setColor(osg::Vec4(color, 1.0f), static_cast<unsigned int>(column),
                             static_cast<unsigned int>(row));
         }
     }
@@ -137,12 +137,12 @@ uniform vec4 SLOT_light;
 vec3 SLOT_move(vec3 located, vec3 bent) { return bent; }
 float SLOT_groundScale(vec3 eye) { return SLOT_scale; }
 float SLOT_strokeLight(vec3 eye, vec3 normal, float y) { return dot(normal, SLOT_light.xyz); }
-vec3 SLOT_strokeAir(vec3 colour, vec3 eye) { return colour; }
+vec3 SLOT_strokeAir(vec3 color, vec3 eye) { return color; }
 float SLOT_strokeFar(vec3 eye) { return 0.0; }
 float SLOT_strokeShown(vec3 eye) { return 1.0; }
 )";
 const char* const fragmentStandIns = R"(
-vec4 SLOT_finish(vec4 colour) { return colour; }
+vec4 SLOT_finish(vec4 color) { return color; }
 int SLOT_channels() { return 0; }
 )";
 
@@ -163,7 +163,7 @@ osg::ref_ptr<osg::Program> strokesProgram()
     return program;
 }
 
-/// The ground in the base colours below strokes.
+/// The ground in the base colors below strokes.
 osg::ref_ptr<osg::Program> groundProgram()
 {
     const char* vertex = R"(#version 330 compatibility
@@ -245,8 +245,8 @@ const double straightDown = 0.5 * osg::PI;
 /// Without ground, all that is not black.
 bool isStroke(const osg::Image& image, int x, int y)
 {
-    const osg::Vec4 colour = image.getColor(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
-    return colour.x() + colour.y() + colour.z() > 0.1f;
+    const osg::Vec4 color = image.getColor(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+    return color.x() + color.y() + color.z() > 0.1f;
 }
 
 class PanoramaStrokes : public GlFixture
@@ -350,7 +350,7 @@ TEST_F(PanoramaStrokes, StandOnTheirFeet)
     EXPECT_LT(hanging, feet / 8); // those that stand before others
 }
 
-TEST_F(PanoramaStrokes, TakeTheColoursOfLightAndShade)
+TEST_F(PanoramaStrokes, TakeTheColorsOfLightAndShade)
 {
     const Map map = makeMap(true, false);
     const auto mean = [&](const osg::Vec4& light)

@@ -106,7 +106,7 @@ protected:
             const double back = 0.7 * pair.viewHeight / EARTH;
             point.longitude = middleX - back * std::sin(point.heading) / std::cos(middleY);
             point.latitude = middleY - back * std::cos(point.heading);
-            point.altitude = pair.viewHeight;
+            point.height = pair.viewHeight;
             point.pitch = osg::DegreesToRadians(-40.0);
             osg::Matrixd view;
             ASSERT_TRUE(point.viewMatrix(*scene.reference, view));

@@ -107,8 +107,8 @@ Shot randomShot(Random& random)
 
 using Surface = std::function<MapPlace(double u, double v)>;
 
-/// Triangles over a surface with u and v from 0 to 1, in one colour.
-osg::ref_ptr<osg::Geometry> makeSurface(const Shot& shot, const osg::Vec4& colour, unsigned int columns,
+/// Triangles over a surface with u and v from 0 to 1, in one color.
+osg::ref_ptr<osg::Geometry> makeSurface(const Shot& shot, const osg::Vec4& color, unsigned int columns,
                                         unsigned int rows, const Surface& surface)
 {
     osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
@@ -128,9 +128,9 @@ osg::ref_ptr<osg::Geometry> makeSurface(const Shot& shot, const osg::Vec4& colou
         }
     }
     geometry->setVertexArray(vertices);
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array(osg::Array::BIND_OVERALL);
-    colours->push_back(colour);
-    geometry->setColorArray(colours);
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_OVERALL);
+    colors->push_back(color);
+    geometry->setColorArray(colors);
     geometry->addPrimitiveSet(triangles);
     // Each camera's own; a buffer object would be used again, of which Mesa complains.
     geometry->setUseDisplayList(false);
@@ -304,9 +304,9 @@ TEST_F(PanoramaTruth, TheGroundShownIsARectangle)
         // A rim of a twentieth inside the rectangle: left red, right green; blue where the ground begins and ends.
         const double r = shot.radius();
         const double end = shot.horizon();
-        const auto strip = [&](const osg::Vec4& colour, double x0, double x1, double s0, double s1)
+        const auto strip = [&](const osg::Vec4& color, double x0, double x1, double s0, double s1)
         {
-            return makeSurface(shot, colour, 40, 400,
+            return makeSurface(shot, color, 40, 400,
                                [=](double u, double v) {
                                    return MapPlace{(x0 + u * (x1 - x0)) * r, (s0 + v * (s1 - s0)) * end, 0.0};
                                });

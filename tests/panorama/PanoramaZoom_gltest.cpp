@@ -73,7 +73,7 @@ TEST_P(PanoramaZoom, NoStepChangesThePictureMuchMoreThanTheOthers)
         ViewPoint point;
         point.longitude = osg::DegreesToRadians(-157.93);
         point.latitude = osg::DegreesToRadians(21.36);
-        point.altitude = HIGHEST * std::pow(8.0, -static_cast<double>(i) / STEPS);
+        point.height = HIGHEST * std::pow(8.0, -static_cast<double>(i) / STEPS);
         point.heading = osg::DegreesToRadians(40.0);
         point.pitch = osg::DegreesToRadians(-40.0);
         osg::Matrixd view;

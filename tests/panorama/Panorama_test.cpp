@@ -4,7 +4,7 @@
 // nothing breaks at the ends of the Earth.
 #include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <tools/RandomViews.h>
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ namespace glsl = osgGeoFX::glsl;
 namespace glslf = osgGeoFX::glslf;
 using namespace geofx::test;
 using osg::Vec3d;
-using osgGeoFX::PanoramaFrame;
 using osgGeoFX::PanoramaMap;
+using osgGeoFX::PanoramaSnapshot;
 using osgGeoFX::toOsg;
 
 namespace
@@ -30,7 +30,7 @@ struct Case
 {
     CameraPose pose;
     osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
-    osg::ref_ptr<const PanoramaFrame> frame;
+    osg::ref_ptr<const PanoramaSnapshot> frame;
 
     const glsl::geofx_Panorama& panorama() const { return frame->view(); }
     double radius() const { return 1.0 / panorama().across; }
@@ -44,7 +44,7 @@ struct Case
     Vec3d seen(double x, double s, double height) const { return seen(at(x, s, height)); }
     bool update()
     {
-        frame = dynamic_cast<const PanoramaFrame*>(map->frame(pose.view()).get());
+        frame = dynamic_cast<const PanoramaSnapshot*>(map->snapshot(pose.view()).get());
         return frame.valid();
     }
     /// What rounding errors are relative to.
@@ -113,7 +113,7 @@ glm::vec3 narrowed(const osg::Vec4d& uniform)
 }
 
 /// What the GPU gets.
-glslf::geofx_Panorama inFloats(const PanoramaFrame& frame)
+glslf::geofx_Panorama inFloats(const PanoramaSnapshot& frame)
 {
     std::map<std::string, osg::Vec4d> all;
     for (const auto& [name, value] : frame.uniforms())
@@ -381,7 +381,7 @@ TEST(Panorama, ShowsNothingOfWhatItHides)
         {
             const glsl::geofx_Panorama& view = found.panorama();
             osgGeoFX::Ball ball;
-            ball.centre = found.at(random.sign() * random.logarithmic(0.1, 30.0) * found.radius(),
+            ball.center = found.at(random.sign() * random.logarithmic(0.1, 30.0) * found.radius(),
                                    random.uniform(-3.0, 3.0) * view.end, random.uniform(-400.0, 9000.0));
             ball.radius = random.logarithmic(1e-3, 1.0) * view.horizon;
             const osg::Vec2d room = random.integer(0, 1)
@@ -389,11 +389,11 @@ TEST(Panorama, ShowsNothingOfWhatItHides)
                                         : osg::Vec2d(random.uniform(0.0, 0.5), random.uniform(0.0, 0.5));
             if (found.frame->hides(ball, room))
                 expectHidden(
-                    found, room, [&](int) { return ball.centre + randomDirection(random) * ball.radius; },
+                    found, room, [&](int) { return ball.center + randomDirection(random) * ball.radius; },
                     balls);
             // A tile somewhere around the picture, turned any way.
             osgGeoFX::EyeBox box;
-            box.centre = found.at(random.uniform(-2.0, 2.0) * found.radius(),
+            box.center = found.at(random.uniform(-2.0, 2.0) * found.radius(),
                                   random.uniform(-0.5, 1.6) * view.end, random.uniform(-400.0, 9000.0));
             const double size = random.logarithmic(1e-3, 0.3) * view.horizon;
             const osg::Vec3d up = toOsg(view.globe.up);
@@ -408,7 +408,7 @@ TEST(Panorama, ShowsNothingOfWhatItHides)
                     [&](int i)
                     {
                         // Its corners first.
-                        osg::Vec3d at = box.centre;
+                        osg::Vec3d at = box.center;
                         for (int axis = 0; axis < 3; ++axis)
                             at += box.half[axis] *
                                   (i < 8 ? (i >> axis) % 2 * 2.0 - 1.0 : random.uniform(-1.0, 1.0));
@@ -431,7 +431,7 @@ TEST(Panorama, StillWaterMirrorsHeights)
         [](const Case& found, Random& random)
         {
             const double level = random.uniform(-100.0, 2000.0);
-            const osg::ref_ptr<const PanoramaFrame> mirror = found.frame->mirrored(level, 0.5);
+            const osg::ref_ptr<const PanoramaSnapshot> mirror = found.frame->mirrored(level, 0.5);
             const Vec3d place = randomPlace(found, random);
             const double up = place.z();
             const Vec3d above = mirror->deform(found.at(place.x(), place.y(), level + up));
@@ -471,7 +471,7 @@ TEST(Panorama, IsFiniteAtTheEndsOfTheEarth)
         ++frames;
         SCOPED_TRACE(::testing::Message()
                      << "sample " << sample << ": " << describe(*found.map) << "; " << found.pose);
-        const Vec3d points[] = {{}, // the eye, its foot, the Earth's centre, the other side, and anything
+        const Vec3d points[] = {{}, // the eye, its foot, the Earth's center, the other side, and anything
                                 toOsg(found.panorama().globe.up) * -found.pose.height,
                                 toOsg(found.panorama().globe.up) * (-6.4e6 - found.pose.height),
                                 toOsg(found.panorama().globe.up) * (-1.28e7 - found.pose.height),

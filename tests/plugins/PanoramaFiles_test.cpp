@@ -103,10 +103,10 @@ TEST_F(PanoramaFiles, ASceneNamesItsPictures)
     // Twice as large as a palette is in the end.
     osg::ref_ptr<osg::Image> wide = new osg::Image(*osgGeoFX::makePalette(0.0), osg::CopyOp::DEEP_COPY_ALL);
     wide->scaleImage(512, 16, 1);
-    writePicture("colours/winter.png", *wide);
+    writePicture("colors/winter.png", *wide);
     writePicture("sky.png", *byteImage());
     const osg::ref_ptr<osg::Node> node =
-        osgDB::readRefNodeFile(scene("palette='colours/winter.png' season='0' skyImage='sky.png'").string());
+        osgDB::readRefNodeFile(scene("palette='colors/winter.png' season='0' skyImage='sky.png'").string());
     auto* effects = dynamic_cast<EffectScene*>(node.get());
     ASSERT_TRUE(effects);
     auto* map = dynamic_cast<PanoramaMap*>(effects->getEffect(0));

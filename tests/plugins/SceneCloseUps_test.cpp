@@ -62,16 +62,16 @@ TEST(SceneCloseUps, AreReadWithAllThatTheyName)
         "<colorTable name='text' file='ramp.txt'/>\n"
         "<surfaceData west='-158.3' south='21.2' east='-157.6' north='21.8' maxSide='512' radius='900'>\n"
         "<dem file='dem.tif'/>\n"
-        "<vectors name='roads' file='/data/roads.gpkg' width='12.5' colour='#ff000080'/>\n"
+        "<vectors name='roads' file='/data/roads.gpkg' width='12.5' color='#ff000080'/>\n"
         "<surface name='cover' file='cover.tif' kind='class'/>\n"
         "<derived name='sky' kind='occlusion'/></surfaceData>\n"
         "<closeUp offsetHeight='4000' scaleHeight='0' orientation='billboard' surface='slope' table='ready' "
-        "turnDegrees='+90' activity='noAnchor'>\n"
-        "<region longitudeDegrees='-157.8' latitudeDegrees='21.26' width='3000' depth='2000.5' "
+        "turn='+90' activity='noAnchor'>\n"
+        "<region longitude='-157.8' latitude='21.26' width='3000' depth='2000.5' "
         "shape='star'/>\n"
         "<anchor kind='stretched' opacity='.5' lineWidth='0'/></closeUp>\n"
         "<closeUp surface='roads'><anchor table=' 1 0.5 +0\n.25'/>\n"
-        "<region centreX='12' image='mask.png'/></closeUp>\n"
+        "<region centerX='12' image='mask.png'/></closeUp>\n"
         "<closeUp><region><corner x='-1' y='-1'/><corner x='1' y='-0.5'/><corner x='0' y='1'/></region>"
         "</closeUp>",
         "pipeline='multiPass' supersampling='2'");
@@ -96,7 +96,7 @@ TEST(SceneCloseUps, AreReadWithAllThatTheyName)
     EXPECT_EQ(surfaces[1].name, "roads");
     EXPECT_EQ(surfaces[1].file.path, "/data/roads.gpkg");
     EXPECT_EQ(surfaces[1].width, 12.5);
-    EXPECT_EQ(surfaces[1].colour, osg::Vec4(osg::Vec4d(1.0, 0.0, 0.0, 128.0 / 255.0)));
+    EXPECT_EQ(surfaces[1].color, osg::Vec4(osg::Vec4d(1.0, 0.0, 0.0, 128.0 / 255.0)));
     EXPECT_EQ(surfaces[2].source, SceneSurface::RASTER);
     EXPECT_EQ(surfaces[2].kind, SurfaceData::CLASS);
     EXPECT_EQ(surfaces[3].source, SceneSurface::DERIVED);
@@ -121,14 +121,14 @@ TEST(SceneCloseUps, AreReadWithAllThatTheyName)
     EXPECT_EQ(first.getAnchor()->getKind(), Anchor::STRETCHED);
     EXPECT_EQ(first.getAnchor()->getOpacity(), 0.5);
     EXPECT_EQ(first.getAnchor()->getStyle(), Anchor::FALLING);
-    EXPECT_EQ(closeUps.closeUps[0].centre, SceneCloseUp::DEGREES);
+    EXPECT_EQ(closeUps.closeUps[0].center, SceneCloseUp::DEGREES);
     EXPECT_EQ(closeUps.closeUps[0].place.element, "region");
 
     const SceneCloseUp& second = closeUps.closeUps[1];
     EXPECT_EQ(second.closeUp->getAnchor()->getStyle(), Anchor::TABLE);
     EXPECT_EQ(second.closeUp->getAnchor()->getTable(), (std::vector<float>{1.0f, 0.5f, 0.0f, 0.25f}));
-    EXPECT_EQ(second.centre, SceneCloseUp::METRES);
-    EXPECT_EQ(second.closeUp->getRegion()->getCentre(), osg::Vec2d(12.0, 0.0));
+    EXPECT_EQ(second.center, SceneCloseUp::METRES);
+    EXPECT_EQ(second.closeUp->getRegion()->getCenter(), osg::Vec2d(12.0, 0.0));
     EXPECT_EQ(second.closeUp->getRegion()->getShape(), RegionOfInterest::IMAGE);
     ASSERT_TRUE(second.image);
     EXPECT_EQ(second.image->path, "/scenes/mask.png");
@@ -137,7 +137,7 @@ TEST(SceneCloseUps, AreReadWithAllThatTheyName)
     const RegionOfInterest& third = *closeUps.closeUps[2].closeUp->getRegion();
     EXPECT_EQ(third.getShape(), RegionOfInterest::POLYGON);
     EXPECT_EQ(third.getOutline(), (std::vector<osg::Vec2d>{{-1.0, -1.0}, {1.0, -0.5}, {0.0, 1.0}}));
-    EXPECT_EQ(closeUps.closeUps[2].centre, SceneCloseUp::NOTHING);
+    EXPECT_EQ(closeUps.closeUps[2].center, SceneCloseUp::NOTHING);
 
     EXPECT_FALSE(parsed("").surfaceData);
     EXPECT_FALSE(parsed("<surfaceData><dem file='a'/></surfaceData>").surfaceData->box);
@@ -247,13 +247,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "4: <corner>: an attribute is missing; expected: y (to the front", ""},
         Mistake{"ImageAndShape", "<closeUp><region shape='ellipse' image='a.png'/></closeUp>",
                 "3: <region>: an image is of no use with this shape; ", "shape=\"image\"."},
-        Mistake{"LongitudeAlone", "<closeUp><region longitudeDegrees='1'/></closeUp>",
-                "3: <region>: longitudeDegrees and latitudeDegrees belong together",
-                "remove one of the pairs."},
-        Mistake{"PointAndCentre",
-                "<closeUp><region longitudeDegrees='1' latitudeDegrees='2' centreY='0'/></closeUp>",
-                "3: <region>: longitudeDegrees and latitudeDegrees belong together",
-                "remove one of the pairs."}),
+        Mistake{"LongitudeAlone", "<closeUp><region longitude='1'/></closeUp>",
+                "3: <region>: longitude and latitude belong together", "remove one of the pairs."},
+        Mistake{"PointAndCenter", "<closeUp><region longitude='1' latitude='2' centerY='0'/></closeUp>",
+                "3: <region>: longitude and latitude belong together", "remove one of the pairs."}),
     [](const auto& mistake) { return std::string(mistake.param.name); });
 
 TEST(SceneCloseUps, UnitsMustDiffer)
@@ -381,9 +378,8 @@ TEST_F(SceneCloseUpsPlugin, ReadMasksAndTables)
         image->data()[i] = i < 16 ? 255 : 0;
     ASSERT_TRUE(osgDB::writeImageFile(*image, (_folder / "mask.png").string()));
     _folder.write("ramp.txt", "0 blue\n10 255 0 0\n");
-    CloseUps* closeUps =
-        read("<colorTable name='t' file='ramp.txt'/><closeUp table='t'>"
-             "<region longitudeDegrees='-157.8' latitudeDegrees='21.3' image='mask.png'/></closeUp>");
+    CloseUps* closeUps = read("<colorTable name='t' file='ramp.txt'/><closeUp table='t'>"
+                              "<region longitude='-157.8' latitude='21.3' image='mask.png'/></closeUp>");
     ASSERT_TRUE(closeUps);
     ASSERT_EQ(closeUps->getNumCloseUps(), 1u);
     CloseUp& closeUp = *closeUps->getCloseUp(0);
@@ -399,16 +395,16 @@ TEST_F(SceneCloseUpsPlugin, ReadMasksAndTables)
 TEST_F(SceneCloseUpsPlugin, APlaceOnAProjectedTerrainIsConverted)
 {
     setTerrain(32604);
-    CloseUps* closeUps = read("<closeUp><region longitudeDegrees='-157.9' latitudeDegrees='21.3'/></closeUp>"
-                              "<closeUp><region centreX='600000' centreY='2300000'/></closeUp>");
+    CloseUps* closeUps = read("<closeUp><region longitude='-157.9' latitude='21.3'/></closeUp>"
+                              "<closeUp><region centerX='600000' centerY='2300000'/></closeUp>");
     ASSERT_TRUE(closeUps);
     int zone = 0;
     bool north = false;
     double easting = 0.0, northing = 0.0;
     GeographicLib::UTMUPS::Forward(21.3, -157.9, zone, north, easting, northing);
-    EXPECT_NEAR(closeUps->getCloseUp(0)->getRegion()->getCentre().x(), easting, 1e-3);
-    EXPECT_NEAR(closeUps->getCloseUp(0)->getRegion()->getCentre().y(), northing, 1e-3);
-    EXPECT_EQ(closeUps->getCloseUp(1)->getRegion()->getCentre(), osg::Vec2d(600000.0, 2300000.0));
+    EXPECT_NEAR(closeUps->getCloseUp(0)->getRegion()->getCenter().x(), easting, 1e-3);
+    EXPECT_NEAR(closeUps->getCloseUp(0)->getRegion()->getCenter().y(), northing, 1e-3);
+    EXPECT_EQ(closeUps->getCloseUp(1)->getRegion()->getCenter(), osg::Vec2d(600000.0, 2300000.0));
 }
 
 TEST_F(SceneCloseUpsPlugin, SurfaceDataLieWhereTheirEdgesAre)
@@ -417,7 +413,7 @@ TEST_F(SceneCloseUpsPlugin, SurfaceDataLieWhereTheirEdgesAre)
     CloseUps* closeUps =
         read("<surfaceData west='-157.9' south='21.35' east='-157.7' north='21.45' maxSide='64'>"
              "<surface name='h' file='dem.tif' kind='height'/><derived name='s' kind='slope'/></surfaceData>"
-             "<closeUp surface='s'><region longitudeDegrees='-157.8' latitudeDegrees='21.4'/></closeUp>");
+             "<closeUp surface='s'><region longitude='-157.8' latitude='21.4'/></closeUp>");
     ASSERT_TRUE(closeUps);
     const SurfaceData* data = closeUps->getSurfaceData();
     ASSERT_TRUE(data);
@@ -451,10 +447,9 @@ TEST_F(SceneCloseUpsPlugin, SurfaceDataOfADemCoverIt)
     writeDem();
     _folder.write("roads.geojson",
                   R"({"type": "LineString", "coordinates": [[-158, 21.4], [-157.6, 21.4]]})");
-    const std::string somewhere =
-        "<closeUp><region longitudeDegrees='-157.8' latitudeDegrees='21.4'/></closeUp>";
+    const std::string somewhere = "<closeUp><region longitude='-157.8' latitude='21.4'/></closeUp>";
     CloseUps* closeUps = read("<surfaceData maxSide='16' radius='0'><dem file='dem.tif'/>"
-                              "<vectors name='roads' file='roads.geojson' width='9000' colour='#ff0000'/>"
+                              "<vectors name='roads' file='roads.geojson' width='9000' color='#ff0000'/>"
                               "<surface name='v' file='dem.tif' kind='value'/></surfaceData>" +
                               somewhere);
     ASSERT_TRUE(closeUps);
@@ -506,19 +501,19 @@ TEST_F(SceneCloseUpsPlugin, MistakesAreNamedWithPlaceAndMend)
                   "latitudes from -90 to 90");
     expectMistake("<surfaceData west='-90' south='2' east='90' north='4'/>", 3, "surfaceData",
                   "120 degrees at most");
-    expectMistake("<closeUp>\n<region centreX='1'/></closeUp>", 4, "region", "the terrain is a globe");
-    const std::string remedy = "longitudeDegrees and latitudeDegrees";
+    expectMistake("<closeUp>\n<region centerX='1'/></closeUp>", 4, "region", "the terrain is a globe");
+    const std::string remedy = "longitude and latitude";
     expectMistake("<closeUp>\n<region width='9'/></closeUp>", 4, "region", remedy);
     expectMistake("\n<closeUp/>", 4, "closeUp", remedy);
     expectMistake("<closeUp>\n<anchor/></closeUp>", 3, "closeUp", remedy);
     setTerrain(32604);
     expectMistake("<surfaceData west='3' south='2' east='1' north='4'/>", 3, "surfaceData",
                   "west must be less than east.");
-    expectMistake("<closeUp>\n<region longitudeDegrees='-69' latitudeDegrees='0'/></closeUp>", 4, "region",
+    expectMistake("<closeUp>\n<region longitude='-69' latitude='0'/></closeUp>", 4, "region",
                   "terrain's projection");
     const osg::ref_ptr<osg::Group> plain = new osg::Group;
     ASSERT_TRUE(osgDB::writeNodeFile(*plain, (_folder / "terrain.osgb").string()));
-    expectMistake("<closeUp>\n<region longitudeDegrees='1' latitudeDegrees='2'/></closeUp>", 4, "region",
+    expectMistake("<closeUp>\n<region longitude='1' latitude='2'/></closeUp>", 4, "region",
                   "no coordinate system");
     expectMistake("<surfaceData>\n<dem file='dem.tif'/></surfaceData>", 4, "dem",
                   "the terrain has no coordinate system");
@@ -543,26 +538,26 @@ TEST_F(SceneCloseUpsPlugin, RegionsOffTheTerrainAreSaid)
     };
     // A database says how far it reaches: here from 179° to 181°.
     writeTerrain(0, 179.0, -1.0, 181.0, 1.0);
-    EXPECT_EQ(warningsOf("<region longitudeDegrees='-179.5' latitudeDegrees='0'/>"), "");
-    EXPECT_EQ(warningsOf("<region longitudeDegrees='179.5' latitudeDegrees='0.9'/>"), "");
-    EXPECT_EQ(warningsOf("<region longitudeDegrees='-178.999' latitudeDegrees='0' width='500'/>"), "")
+    EXPECT_EQ(warningsOf("<region longitude='-179.5' latitude='0'/>"), "");
+    EXPECT_EQ(warningsOf("<region longitude='179.5' latitude='0.9'/>"), "");
+    EXPECT_EQ(warningsOf("<region longitude='-178.999' latitude='0' width='500'/>"), "")
         << "a part of it lies on the terrain";
-    expectOff("<region longitudeDegrees='-178.9' latitudeDegrees='0' width='500'/>",
+    expectOff("<region longitude='-178.9' latitude='0' width='500'/>",
               "from longitude 179 to 181 and from latitude -1 to 1.");
-    expectOff("<region longitudeDegrees='0' latitudeDegrees='0'/>", "from longitude 179");
-    expectOff("<region longitudeDegrees='180' latitudeDegrees='1.1'/>", "latitude -1 to 1");
+    expectOff("<region longitude='0' latitude='0'/>", "from longitude 179");
+    expectOff("<region longitude='180' latitude='1.1'/>", "latitude -1 to 1");
     // Swapped, as people write them.
     writeTerrain(0, -158.4, 21.1, -157.5, 21.85);
-    expectOff("<region longitudeDegrees='21.3' latitudeDegrees='-57.8'/>", "from longitude -158.4 to -157.5");
+    expectOff("<region longitude='21.3' latitude='-57.8'/>", "from longitude -158.4 to -157.5");
     writeTerrain(32604, 560000.0, 2330000.0, 650000.0, 2420000.0);
-    EXPECT_EQ(warningsOf("<region centreX='600000' centreY='2400000'/>"), "");
-    EXPECT_EQ(warningsOf("<region longitudeDegrees='-157.9' latitudeDegrees='21.3'/>"), "");
+    EXPECT_EQ(warningsOf("<region centerX='600000' centerY='2400000'/>"), "");
+    EXPECT_EQ(warningsOf("<region longitude='-157.9' latitude='21.3'/>"), "");
     expectOff("<region width='500'/>", "from x = 560000 to 650000 and from y = 2330000 to 2420000.");
-    expectOff("<region centreX='600000' centreY='2300000'/>", "from x = 560000");
+    expectOff("<region centerX='600000' centerY='2300000'/>", "from x = 560000");
     // Without a database's word, by its bounding sphere: 10 km about 0°, 0°.
     writeBall();
-    EXPECT_EQ(warningsOf("<region longitudeDegrees='0.05' latitudeDegrees='-0.05'/>"), "");
-    expectOff("<region longitudeDegrees='0.2' latitudeDegrees='0'/>", "correct its place.");
+    EXPECT_EQ(warningsOf("<region longitude='0.05' latitude='-0.05'/>"), "");
+    expectOff("<region longitude='0.2' latitude='0'/>", "correct its place.");
 }
 
 TEST_F(SceneCloseUpsPlugin, NoneAtAllIsSaid)

@@ -46,9 +46,9 @@ SceneFile parsed(const std::string& text)
 TEST(SceneFile, ReadsAllThatASceneSays)
 {
     const SceneFile scene = parsed(R"(<geofx version="1">
-  <background colour="#ff8000"/>
-  <sun azimuth="-115.5" elevation="35" colour="#ffffff" ambient="#003300"/>
-  <homeView longitude="-157.905" latitude="+21.245" altitude="1400" heading="25" pitch="-12" roll=".5"
+  <background color="#ff8000"/>
+  <sun azimuth="-115.5" elevation="35" color="#ffffff" ambient="#003300"/>
+  <homeView longitude="-157.905" latitude="+21.245" height="1400" heading="25" pitch="-12" roll=".5"
             verticalFieldOfView="35"/>
   <terrain>
     <rasters cache="cache" srs=" EPSG:32604 " vertical="egm96" tileSize="64" textureSize="256" pixelError="0.5"
@@ -86,16 +86,16 @@ TEST(SceneFile, ReadsAllThatASceneSays)
     EXPECT_EQ(scene.rasters->voidSmoothing, 0);
     EXPECT_EQ(scene.homeView->longitude, -157.905);
     EXPECT_EQ(scene.homeView->latitude, 21.245);
-    EXPECT_EQ(scene.homeView->altitude, 1400.0);
+    EXPECT_EQ(scene.homeView->height, 1400.0);
     EXPECT_EQ(scene.homeView->heading, 25.0);
     EXPECT_EQ(scene.homeView->pitch, -12.0);
     EXPECT_EQ(scene.homeView->roll, 0.5);
     EXPECT_EQ(scene.homeView->verticalFieldOfView, 35.0);
     EXPECT_EQ(scene.sun->azimuth, -115.5);
     EXPECT_EQ(scene.sun->elevation, 35.0);
-    EXPECT_EQ(scene.sun->colour, (osgGeoFX::SceneColour{1.0, 1.0, 1.0}));
-    EXPECT_EQ(scene.sun->ambient, (osgGeoFX::SceneColour{0.0, 0.2, 0.0}));
-    EXPECT_EQ(*scene.background, (osgGeoFX::SceneColour{1.0, 128.0 / 255.0, 0.0}));
+    EXPECT_EQ(scene.sun->color, (osgGeoFX::SceneColor{1.0, 1.0, 1.0}));
+    EXPECT_EQ(scene.sun->ambient, (osgGeoFX::SceneColor{0.0, 0.2, 0.0}));
+    EXPECT_EQ(*scene.background, (osgGeoFX::SceneColor{1.0, 128.0 / 255.0, 0.0}));
 }
 
 TEST(SceneFile, HasTheSchemasDefaults)
@@ -117,14 +117,14 @@ TEST(SceneFile, HasTheSchemasDefaults)
     EXPECT_FALSE(scene.rasters->landCover || scene.homeView || scene.sun || scene.background);
 
     const SceneFile other =
-        parsed(sceneWith("<homeView longitude='1' latitude='2' altitude='3' heading='4' pitch='5'/>"
+        parsed(sceneWith("<homeView longitude='1' latitude='2' height='3' heading='4' pitch='5'/>"
                          "<sun azimuth='1' elevation='2'/>"));
     ASSERT_TRUE(other.database && other.homeView && other.sun);
     EXPECT_EQ(other.database->path, "/scenes/terrain.osgb");
     EXPECT_EQ(other.homeView->roll, 0.0);
     EXPECT_FALSE(other.homeView->verticalFieldOfView);
-    EXPECT_EQ(other.sun->colour, (osgGeoFX::SceneColour{1.0, 244.0 / 255.0, 224.0 / 255.0}));
-    EXPECT_EQ(other.sun->ambient, (osgGeoFX::SceneColour{76.0 / 255.0, 85.0 / 255.0, 102.0 / 255.0}));
+    EXPECT_EQ(other.sun->color, (osgGeoFX::SceneColor{1.0, 244.0 / 255.0, 224.0 / 255.0}));
+    EXPECT_EQ(other.sun->ambient, (osgGeoFX::SceneColor{76.0 / 255.0, 85.0 / 255.0, 102.0 / 255.0}));
 }
 
 /// The effects of a scene, as someone types them, on line 3.
@@ -136,10 +136,10 @@ SceneFile withEffects(const std::string& effects)
 TEST(SceneFile, ReadsEffectsInTheirOrder)
 {
     const SceneFile scene = withEffects(R"(
-        <verticalExaggeration factor="2" base="-10" relight="false"/>
+        <verticalExaggeration factor="2" baseHeight="-10" relight="false"/>
         <birdsEyeView horizonLine="0.95" focusLine="0.9" contextTilt=".25" curve="bezier" mapUnit="2"/>
         <blendedView lowHeight="5000" highHeight="+6000" enabled="false">
-          <pedestrianView bendAngleDegrees="90" planeReference="eye" planeElevation="-2"/>
+          <pedestrianView bendAngle="90" planeReference="eye" planeHeight="-2"/>
           <birdsEyeView focusLine="0.1" horizonLine="0.2"/>
         </blendedView>
         <pedestrianView focusDistance="-5.5" zoneWidth="750" contextSaturation="0" contextBrightness="2"
@@ -152,7 +152,7 @@ TEST(SceneFile, ReadsEffectsInTheirOrder)
     };
     EXPECT_EQ(osgGeoFX::kindOf(*scene.effects[0]), "verticalExaggeration");
     EXPECT_EQ(value(0, "factor"), 2.0);
-    EXPECT_EQ(value(0, "base"), -10.0);
+    EXPECT_EQ(value(0, "baseHeight"), -10.0);
     EXPECT_EQ(value(0, "relight"), 0.0);
     EXPECT_EQ(value(0, "enabled"), 1.0);
     EXPECT_EQ(osgGeoFX::kindOf(*scene.effects[1]), "birdsEyeView");
@@ -168,7 +168,7 @@ TEST(SceneFile, ReadsEffectsInTheirOrder)
     EXPECT_FALSE(blended->getEnabled());
     EXPECT_EQ(blended->getPedestrianView()->getBendAngle(), osg::PI_2);
     EXPECT_EQ(blended->getPedestrianView()->getPlaneReference(), osgGeoFX::PerspectiveBend::EYE);
-    EXPECT_EQ(blended->getPedestrianView()->getPlaneElevation(), -2.0);
+    EXPECT_EQ(blended->getPedestrianView()->getPlaneHeight(), -2.0);
     EXPECT_EQ(blended->getBirdsEyeView()->getFocusLine(), 0.1);
     EXPECT_EQ(blended->getBirdsEyeView()->getHorizonLine(), 0.2);
     EXPECT_EQ(osgGeoFX::kindOf(*scene.effects[3]), "pedestrianView");
@@ -210,7 +210,7 @@ TEST_P(SceneMistake, IsNamedWithFileLineElementAndExpectation)
     EXPECT_NE(result.errors[0].find(GetParam().holds), std::string::npos) << result.errors[0];
 }
 
-const std::string view = "longitude='1' latitude='2' altitude='3' heading='4' ";
+const std::string view = "longitude='1' latitude='2' height='3' heading='4' ";
 
 INSTANTIATE_TEST_SUITE_P(
     All, SceneMistake,
@@ -229,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:1: <geofx>: ", "expected: version (the version of the scene format, 1)."},
         Mistake{"NewerVersion", "<geofx version='2'><future/></geofx>", "x.geofx:1: <geofx>: version=\"2\" ",
                 "expected: the version of the scene format, 1. A newer osgGeoFX may read this scene."},
-        Mistake{"NoTerrain", "<geofx version='1'><background colour='#000000'/></geofx>",
+        Mistake{"NoTerrain", "<geofx version='1'><background color='#000000'/></geofx>",
                 "x.geofx:1: <geofx>: ", "expected: <terrain>"},
         Mistake{"EmptyTerrain", "<geofx version='1'>\n<terrain/></geofx>",
                 "x.geofx:2: <terrain>: ", "expected: <database> or <rasters>."},
@@ -246,7 +246,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:3: <bathymetry>: this element is not known in <rasters>",
                 "expected: <dem> or <imagery> or <landCover> or <treeCover>."},
         Mistake{"UnknownAttribute", sceneWith("<background color='#000000' colour='#000000'/>"),
-                "x.geofx:2: <background>: the attribute \"color\" is not known here", "expected: colour."},
+                "x.geofx:2: <background>: the attribute \"colour\" is not known here", "expected: color."},
         Mistake{"Order", rastersWith("", "<imagery file='a'/><dem file='b'/>"),
                 "x.geofx:3: <imagery>: ", "expected: <dem>."},
         Mistake{"NoDem", rastersWith("", ""), "x.geofx:2: <rasters>: ", "expected: <dem>."},
@@ -254,7 +254,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"EmptyFile", rastersWith("", "<dem file=''/>"), "x.geofx:3: <dem>: file=\"\"",
                 "expected: a path; "},
         Mistake{"Text", sceneWith("hello"), "x.geofx:1: <geofx>: ", "expected: elements only."},
-        Mistake{"Inside", sceneWith("<background colour='#000000'>x</background>"),
+        Mistake{"Inside", sceneWith("<background color='#000000'>x</background>"),
                 "x.geofx:2: <background>: ", "expected: nothing"},
         Mistake{"Srs", rastersWith("srs='32604'", "<dem file='a'/>"), "x.geofx:2: <rasters>: srs=\"32604\" ",
                 "expected: \"geocentric\", or a projected coordinate system as \"EPSG:\" and its number."},
@@ -267,10 +267,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"Memory", rastersWith("memory='99999999999'", "<dem file='a'/>"),
                 "x.geofx:2: <rasters>: memory=", "a whole number from 128."},
         Mistake{"Longitude",
-                sceneWith("<homeView longitude='181' latitude='2' altitude='3' heading='4' pitch='5'/>"),
+                sceneWith("<homeView longitude='181' latitude='2' height='3' heading='4' pitch='5'/>"),
                 "x.geofx:2: <homeView>: longitude=\"181\" ", "expected: degrees east of Greenwich"},
         Mistake{"NotANumber",
-                sceneWith("<homeView longitude='NaN' latitude='2' altitude='3' heading='4' pitch='5'/>"),
+                sceneWith("<homeView longitude='NaN' latitude='2' height='3' heading='4' pitch='5'/>"),
                 "x.geofx:2: <homeView>: longitude=\"NaN\" ", "from -180 to 180."},
         Mistake{"Pitch", sceneWith("<homeView " + view + "pitch='-91'/>"),
                 "x.geofx:2: <homeView>: pitch=\"-91\" ", "from -90 (straight down) to 90."},
@@ -280,8 +280,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:2: <homeView>: verticalFieldOfView=\"180\" ", "from 1 to 170"},
         Mistake{"Elevation", sceneWith("<sun azimuth='0' elevation='91'/>"),
                 "x.geofx:2: <sun>: elevation=\"91\" ", "from -90 to 90."},
-        Mistake{"Colour", sceneWith("<sun azimuth='0' elevation='9' colour='red'/>"),
-                "x.geofx:2: <sun>: colour=\"red\" ", "two hexadecimal digits each"},
+        Mistake{"Color", sceneWith("<sun azimuth='0' elevation='9' color='red'/>"),
+                "x.geofx:2: <sun>: color=\"red\" ", "two hexadecimal digits each"},
         Mistake{"TwoEffects", sceneWith("<effects/>\n<effects/>"),
                 "x.geofx:3: <effects>: ", "expected: at most one each of <terrain>"},
         Mistake{"UnknownEffect", sceneWith("<effects>\n<fishEye/></effects>"),
@@ -290,14 +290,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "<projectiveMappings> or <closeUps> or <panoramaMap>."},
         Mistake{"UnknownProperty", sceneWith("<effects>\n<verticalExaggeration power='2'/></effects>"),
                 "x.geofx:3: <verticalExaggeration>: the attribute \"power\" is not known here",
-                "expected: enabled, factor, base, relight."},
+                "expected: enabled, factor, baseHeight, relight."},
         Mistake{"UnknownPropertyOfBend", sceneWith("<effects>\n<birdsEyeView bendAngle='2'/></effects>"),
                 "x.geofx:3: <birdsEyeView>: the attribute \"bendAngle\" is not known here",
-                "expected: enabled, curve, planeElevation, "},
-        Mistake{"PropertyOutOfRange",
-                sceneWith("<effects>\n<pedestrianView bendAngleDegrees='91'/></effects>"),
-                "x.geofx:3: <pedestrianView>: bendAngleDegrees=\"91\" ",
-                "expected: degrees by which the ground ahead is folded up, from 0 to 90."},
+                "expected: enabled, curve, planeHeight, "},
+        Mistake{"PropertyOutOfRange", sceneWith("<effects>\n<pedestrianView bendAngle='91'/></effects>"),
+                "x.geofx:3: <pedestrianView>: bendAngle=\"91\" ",
+                "expected: the angle by which the ground ahead is folded up, degrees, from 0 to 90."},
         Mistake{"PropertyOfAllBends", sceneWith("<effects>\n<pedestrianView curve='spline'/></effects>"),
                 "x.geofx:3: <pedestrianView>: curve=\"spline\" ", "\"arcLength\""},
         Mistake{"PropertyOfAllEffects", sceneWith("<effects>\n<pedestrianView enabled='1'/></effects>"),
@@ -305,7 +304,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"PropertyNotANumber", sceneWith("<effects>\n<verticalExaggeration factor='NaN'/></effects>"),
                 "x.geofx:3: <verticalExaggeration>: factor=\"NaN\" ", "from 0.01 to 100."},
         Mistake{"PropertyNotWhole", sceneWith("<effects>\n<birdsEyeView mapUnit='0.5'/></effects>"),
-                "x.geofx:3: <birdsEyeView>: mapUnit=\"0.5\" ", "a whole number from 0 to 3"},
+                "x.geofx:3: <birdsEyeView>: mapUnit=\"0.5\" ", "a whole number from -1 to 3; -1 is none."},
         Mistake{"LinesDoNotFit",
                 sceneWith("<effects>\n<birdsEyeView focusLine='0.9' horizonLine='0.5'/></effects>"),
                 "x.geofx:3: <birdsEyeView>: BirdsEyeView: focusLine must lie below horizonLine.", ""},
@@ -330,8 +329,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:3: <birdsEyeView>: something stands inside", "expected: nothing"},
         Mistake{"TextBetweenEffects", sceneWith("<effects>hello</effects>"),
                 "x.geofx:2: <effects>: ", "expected: elements only."},
-        Mistake{"ForeignAttribute", sceneWith("<background colour='#000000' xml:lang='de'/>"),
-                "x.geofx:2: <background>: the attribute ", "expected: colour."}),
+        Mistake{"ForeignAttribute", sceneWith("<background color='#000000' xml:lang='de'/>"),
+                "x.geofx:2: <background>: the attribute ", "expected: color."}),
     [](const auto& mistake) { return std::string(mistake.param.name); });
 
 TEST(SceneFile, NamesSeveralMistakesOfAScene)

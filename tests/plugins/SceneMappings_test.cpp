@@ -61,18 +61,18 @@ TEST(SceneMappings, AreReadWithAllThatTheyName)
         "<layer name='noise' file='noise.png' kind='value' smooth='false' sRgb='false' noData='-1' "
         "importance='.25'/>\n"
         "<layer name='mask' file='/data/mask.tif'/>\n"
-        "<colorTable name='ready' ready='magma' low='40' high='80' mode='steps' noDataColour='#ff000080'/>\n"
+        "<colorTable name='ready' ready='magma' low='40' high='80' mode='steps' noDataColor='#ff000080'/>\n"
         "<colorTable name='text' file='ramp.txt' low='-5' high='5'/>\n"
-        "<colorTable name='own' mode='exact'><stop value='2' colour='#00ff00'/><stop value='-1e3' "
-        "colour='#0000ff33'/>"
+        "<colorTable name='own' mode='exact'><stop value='2' color='#00ff00'/><stop value='-1e3' "
+        "color='#0000ff33'/>"
         "</colorTable>\n"
         "<transfer name='show' source='table' equation='multiply'/>\n"
         "<mapping layer='noise' mask='mask' table='ready' transfer='show' order='3' opacity='0.5' "
-        "centreX='7'/>\n"
+        "centerX='7'/>\n"
         "<raster file='r.tif' kind='class' maxSide='512' table='own' order='-2'/>\n"
         "<mapping layer='noise' west='-158' south='21' east='-157' north='22'/>\n"
-        "<mapping layer='mask' longitudeDegrees='-157.5' latitudeDegrees='21.5' uX='10'/>\n",
-        "latitudeDegrees='21.5'");
+        "<mapping layer='mask' longitude='-157.5' latitude='21.5' uX='10'/>\n",
+        "latitude='21.5'");
     EXPECT_TRUE(mappings.hasOrigin);
     ASSERT_EQ(mappings.layers.size(), 2u);
     DataLayer& noise = *mappings.layers[0].layer;
@@ -107,7 +107,7 @@ TEST(SceneMappings, AreReadWithAllThatTheyName)
     EXPECT_TRUE(mappings.mappings[0].hasTransfer);
     EXPECT_EQ(first.getOrder(), 3);
     EXPECT_EQ(first.getOpacity(), 0.5);
-    EXPECT_EQ(first.getCentre(), osg::Vec2d(7.0, 0.0));
+    EXPECT_EQ(first.getCenter(), osg::Vec2d(7.0, 0.0));
     EXPECT_FALSE(mappings.mappings[0].box || mappings.mappings[0].point || mappings.mappings[0].raster);
 
     const SceneMapping& raster = mappings.mappings[1];
@@ -133,7 +133,7 @@ TEST(SceneMappings, AreReadWithAllThatTheyName)
     EXPECT_EQ(mappings.mappings[3].point->longitude, -157.5);
     EXPECT_EQ(mappings.mappings[3].mapping->getU(), osg::Vec2d(10.0, 0.0));
     EXPECT_FALSE(parsed("").hasOrigin);
-    for (const char* name : {"originX", "originY", "longitudeDegrees"})
+    for (const char* name : {"originX", "originY", "longitude"})
         EXPECT_TRUE(parsed("", std::string(name) + "='0'").hasOrigin) << "zero is an origin, too";
 }
 
@@ -213,51 +213,49 @@ INSTANTIATE_TEST_SUITE_P(
                 "<raster>, in this order."},
         Mistake{"UnknownElement", "<decal/>", "3: <decal>: this element is not known in <projectiveMappings>",
                 "<mapping>"},
-        Mistake{"UnknownAttribute", "<mapping centerX='2'/>",
-                "3: <mapping>: the attribute \"centerX\" is not known here", "centreX"},
-        Mistake{"RasterHasAPlace", "<raster file='a' centreX='2'/>",
-                "3: <raster>: the attribute \"centreX\" is not known here", "maxSide"},
+        Mistake{"UnknownAttribute", "<mapping centreX='2'/>",
+                "3: <mapping>: the attribute \"centreX\" is not known here", "centerX"},
+        Mistake{"RasterHasAPlace", "<raster file='a' centerX='2'/>",
+                "3: <raster>: the attribute \"centerX\" is not known here", "maxSide"},
         Mistake{"RasterSide", "<raster file='a' maxSide='0'/>", "3: <raster>: maxSide=\"0\" ",
                 "from 1 to 16384."},
-        Mistake{"NoColours", "<colorTable name='a'/>", "3: <colorTable>: nothing says what the colours are; ",
+        Mistake{"NoColors", "<colorTable name='a'/>", "3: <colorTable>: nothing says what the colors are; ",
                 "expected: one of ready, file and <stop> elements."},
-        Mistake{"TwoColours",
-                "<colorTable name='a' ready='magma'><stop value='1' colour='#000000'/></colorTable>",
+        Mistake{"TwoColors",
+                "<colorTable name='a' ready='magma'><stop value='1' color='#000000'/></colorTable>",
                 "3: <colorTable>: too much says", "expected: one of ready"},
         Mistake{"Ready", "<colorTable name='a' ready='jet'/>", "3: <colorTable>: ready=\"jet\" ",
                 "\"viridis\""},
         Mistake{"LowHigh", "<colorTable name='a' ready='magma' low='2'/>",
                 "3: <colorTable>: low must be less than high.", ""},
-        Mistake{"LowOfStops", "<colorTable name='a' low='0'><stop value='1' colour='#000000'/></colorTable>",
+        Mistake{"LowOfStops", "<colorTable name='a' low='0'><stop value='1' color='#000000'/></colorTable>",
                 "3: <colorTable>: low and high are of no use with <stop> elements; ", "remove them."},
-        Mistake{"StopColour", "<colorTable name='a'>\n<stop value='1' colour='#00000'/></colorTable>",
-                "4: <stop>: colour=\"#00000\" ", "two hexadecimal digits each"},
-        Mistake{"StopValue", "<colorTable name='a'>\n<stop value='INF' colour='#000000'/></colorTable>",
+        Mistake{"StopColor", "<colorTable name='a'>\n<stop value='1' color='#00000'/></colorTable>",
+                "4: <stop>: color=\"#00000\" ", "two hexadecimal digits each"},
+        Mistake{"StopValue", "<colorTable name='a'>\n<stop value='INF' color='#000000'/></colorTable>",
                 "4: <stop>: value=\"INF\" ", "from -1e30 to 1e30."},
         Mistake{"ValuesDoNotFit", "<transfer name='a' lowValue='2'/>",
                 "3: <transfer>: ColorTransfer: lowValue must be less than highValue.", ""},
         Mistake{"NoArea", "<mapping uX='0'/>", "3: <mapping>: ProjectiveMapping: U and V must span an area",
                 ""},
         Mistake{"EdgesMissing", "<mapping west='1' south='2' east='3'/>",
-                "3: <mapping>: west, south, east and north belong", "remove centreX"},
-        Mistake{"EdgesAndCentre", "<mapping west='1' south='2' east='3' north='4' centreY='0'/>",
+                "3: <mapping>: west, south, east and north belong", "remove centerX"},
+        Mistake{"EdgesAndCenter", "<mapping west='1' south='2' east='3' north='4' centerY='0'/>",
                 "3: <mapping>: west, south, east and north belong", "or the edges."},
         Mistake{"EdgesAndAxes", "<mapping west='1' south='2' east='3' north='4' m22='1'/>",
                 "3: <mapping>: west, south, east and north belong", "or the edges."},
-        Mistake{"EdgesAndPoint", "<mapping west='1' south='2' east='3' north='4' latitudeDegrees='3'/>",
+        Mistake{"EdgesAndPoint", "<mapping west='1' south='2' east='3' north='4' latitude='3'/>",
                 "3: <mapping>: west, south, east and north belong", "or the edges."},
         Mistake{"SouthAndNorth", "<mapping west='1' south='4' east='3' north='4'/>",
                 "3: <mapping>: south must be less than north.", ""},
         Mistake{"WestAndEast", "<mapping west='1' south='2' east='1' north='4'/>",
                 "3: <mapping>: west and east must differ.", ""},
-        Mistake{"LongitudeAlone", "<mapping longitudeDegrees='1'/>",
-                "3: <mapping>: longitudeDegrees and latitudeDegrees belong together",
-                "remove one of the pairs."},
-        Mistake{"PointAndCentre", "<mapping longitudeDegrees='1' latitudeDegrees='2' centreX='0'/>",
-                "3: <mapping>: longitudeDegrees and latitudeDegrees belong together",
-                "remove one of the pairs."},
-        Mistake{"Latitude", "<mapping longitudeDegrees='1' latitudeDegrees='91'/>",
-                "3: <mapping>: latitudeDegrees=\"91\" ", "from -90 to 90."}),
+        Mistake{"LongitudeAlone", "<mapping longitude='1'/>",
+                "3: <mapping>: longitude and latitude belong together", "remove one of the pairs."},
+        Mistake{"PointAndCenter", "<mapping longitude='1' latitude='2' centerX='0'/>",
+                "3: <mapping>: longitude and latitude belong together", "remove one of the pairs."},
+        Mistake{"Latitude", "<mapping longitude='1' latitude='91'/>", "3: <mapping>: latitude=\"91\" ",
+                "from -90 to 90."}),
     [](const auto& mistake) { return std::string(mistake.param.name); });
 
 TEST(SceneMappings, NameFilesThatAreNotThere)
@@ -380,7 +378,7 @@ TEST_F(SceneMappingsPlugin, EdgesOnAGlobeAreWhereTheyAre)
         read("<layer name='a' file='a.png'/>"
              "<mapping layer='a' west='-158' south='21' east='-157.5' north='21.25'/>"
              "<mapping layer='a' west='-157' south='20.5' east='-156.5' north='20.75'/>"
-             "<mapping layer='a' longitudeDegrees='-158.25' latitudeDegrees='22' uX='50' vY='20'/>");
+             "<mapping layer='a' longitude='-158.25' latitude='22' uX='50' vY='20'/>");
     ASSERT_TRUE(mappings);
     EXPECT_DOUBLE_EQ(mappings->getLongitude(), DegreesToRadians(-157.75));
     EXPECT_DOUBLE_EQ(mappings->getLatitude(), DegreesToRadians(21.125));
@@ -392,13 +390,13 @@ TEST_F(SceneMappingsPlugin, EdgesOnAGlobeAreWhereTheyAre)
     expectCorner(*mappings->getMapping(1), 2, -156.5, 20.75, frame);
     double x = 0.0, y = 0.0, z = 0.0;
     frame.Forward(22.0, -158.25, 0.0, x, y, z);
-    EXPECT_NEAR(mappings->getMapping(2)->getCentre().x(), x, 1e-3);
-    EXPECT_NEAR(mappings->getMapping(2)->getCentre().y(), y, 1e-3);
+    EXPECT_NEAR(mappings->getMapping(2)->getCenter().x(), x, 1e-3);
+    EXPECT_NEAR(mappings->getMapping(2)->getCenter().y(), y, 1e-3);
     EXPECT_EQ(mappings->getMapping(2)->getU(), osg::Vec2d(50.0, 0.0));
 
     // An origin of one's own stays, and the antimeridian is no border.
     mappings = read("<mapping west='179.5' south='-17' east='-179' north='-16'/>",
-                    "longitudeDegrees='179' latitudeDegrees='-17.5'");
+                    "longitude='179' latitude='-17.5'");
     ASSERT_TRUE(mappings);
     EXPECT_DOUBLE_EQ(mappings->getLongitude(), DegreesToRadians(179.0));
     const GeographicLib::LocalCartesian fiji(-17.5, 179.0, 0.0);
@@ -407,12 +405,12 @@ TEST_F(SceneMappingsPlugin, EdgesOnAGlobeAreWhereTheyAre)
     mappings = read("<mapping west='179.5' south='-17' east='-179' north='-16'/>");
     ASSERT_TRUE(mappings);
     EXPECT_NEAR(mappings->getLongitude(), DegreesToRadians(-179.75), 1e-12);
-    mappings = read("<mapping longitudeDegrees='10' latitudeDegrees='-60'/>");
+    mappings = read("<mapping longitude='10' latitude='-60'/>");
     ASSERT_TRUE(mappings);
     EXPECT_DOUBLE_EQ(mappings->getLongitude(), DegreesToRadians(10.0));
-    EXPECT_NEAR(mappings->getMapping(0)->getCentre().length(), 0.0, 1e-6);
+    EXPECT_NEAR(mappings->getMapping(0)->getCenter().length(), 0.0, 1e-6);
     // The first mapping decides, though it be one in metres.
-    mappings = read("<mapping centreX='5'/><mapping longitudeDegrees='1' latitudeDegrees='1'/>");
+    mappings = read("<mapping centerX='5'/><mapping longitude='1' latitude='1'/>");
     ASSERT_TRUE(mappings);
     EXPECT_EQ(mappings->getLongitude(), 0.0);
 }
@@ -422,7 +420,7 @@ TEST_F(SceneMappingsPlugin, EdgesOnAProjectedTerrainAreItsCoordinates)
     setTerrain(32604);
     const ProjectiveMappings* mappings =
         read("<mapping west='600000' south='2300000' east='601000' north='2300500'/>"
-             "<mapping longitudeDegrees='-157.9' latitudeDegrees='21.3'/>");
+             "<mapping longitude='-157.9' latitude='21.3'/>");
     ASSERT_TRUE(mappings);
     EXPECT_EQ(mappings->getOrigin(), osg::Vec2d(600500.0, 2300250.0));
     const auto outline = mappings->getMapping(0)->outline();
@@ -433,8 +431,8 @@ TEST_F(SceneMappingsPlugin, EdgesOnAProjectedTerrainAreItsCoordinates)
     bool north = false;
     double easting = 0.0, northing = 0.0;
     GeographicLib::UTMUPS::Forward(21.3, -157.9, zone, north, easting, northing);
-    EXPECT_NEAR(mappings->getMapping(1)->getCentre().x(), easting - 600500.0, 1e-3);
-    EXPECT_NEAR(mappings->getMapping(1)->getCentre().y(), northing - 2300250.0, 1e-3);
+    EXPECT_NEAR(mappings->getMapping(1)->getCenter().x(), easting - 600500.0, 1e-3);
+    EXPECT_NEAR(mappings->getMapping(1)->getCenter().y(), northing - 2300250.0, 1e-3);
 }
 
 TEST_F(SceneMappingsPlugin, RastersLieWhereTheirGeoreferenceSays)
@@ -463,7 +461,7 @@ TEST_F(SceneMappingsPlugin, RastersLieWhereTheirGeoreferenceSays)
     double x = 0.0, y = 0.0, z = 0.0;
     GeographicLib::LocalCartesian(21.4, -157.8, 0.0).Forward(21.4, -157.6, 0.0, x, y, z);
     EXPECT_NEAR(mapping.getU().x(), x, 30.0); // the southern edge is a little longer
-    EXPECT_NEAR(mapping.getCentre().length(), 0.0, 100.0);
+    EXPECT_NEAR(mapping.getCenter().length(), 0.0, 100.0);
     ProjectiveMapping& other = *mappings->getMapping(1);
     EXPECT_EQ(other.getLayer()->getKind(), DataLayer::CLASS);
     EXPECT_EQ(other.getLayer()->getImage()->s(), 16);
@@ -479,7 +477,7 @@ TEST_F(SceneMappingsPlugin, RastersLieWhereTheirGeoreferenceSays)
     GeographicLib::UTMUPS::Forward(21.4, -157.8, zone, north, easting, northing);
     EXPECT_NEAR(mappings->getOrigin().x(), easting, 1e-3);
     EXPECT_NEAR(mappings->getOrigin().y(), northing, 1e-3);
-    EXPECT_NEAR(mappings->getMapping(0)->getCentre().length(), 0.0, 100.0);
+    EXPECT_NEAR(mappings->getMapping(0)->getCenter().length(), 0.0, 100.0);
 }
 
 TEST_F(SceneMappingsPlugin, WhatGdalReadsIsALayer)
@@ -495,8 +493,8 @@ TEST_F(SceneMappingsPlugin, WhatGdalReadsIsALayer)
     geofx::test::TestRaster(3, 2, 1, GDT_Int16)
         .fill([](int column, int row, int) { return -10.0 * column - row; })
         .write(_folder / "below.tif");
-    geofx::test::TestRaster colours(20, 10, 3, GDT_Byte);
-    colours.fill([](int column, int row, int band) { return 10.0 * column + row + 60.0 * band; })
+    geofx::test::TestRaster colors(20, 10, 3, GDT_Byte);
+    colors.fill([](int column, int row, int band) { return 10.0 * column + row + 60.0 * band; })
         .write(_folder / "c.tif", {"TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16", "PHOTOMETRIC=RGB"});
 
     const ProjectiveMappings* mappings =
@@ -533,11 +531,11 @@ TEST_F(SceneMappingsPlugin, WhatGdalReadsIsALayer)
     image = imageOf(2);
     ASSERT_TRUE(image);
     ASSERT_EQ(image->s(), 20);
-    const osg::Vec4 colour = image->getColor(3, 8); // row 1 from the north
-    EXPECT_NEAR(static_cast<double>(colour.r()), 31.0 / 255.0, 1e-6);
-    EXPECT_NEAR(static_cast<double>(colour.g()), 91.0 / 255.0, 1e-6);
-    EXPECT_NEAR(static_cast<double>(colour.b()), 151.0 / 255.0, 1e-6);
-    EXPECT_EQ(colour.a(), 1.0f);
+    const osg::Vec4 color = image->getColor(3, 8); // row 1 from the north
+    EXPECT_NEAR(static_cast<double>(color.r()), 31.0 / 255.0, 1e-6);
+    EXPECT_NEAR(static_cast<double>(color.g()), 91.0 / 255.0, 1e-6);
+    EXPECT_NEAR(static_cast<double>(color.b()), 151.0 / 255.0, 1e-6);
+    EXPECT_EQ(color.a(), 1.0f);
 }
 
 TEST_F(SceneMappingsPlugin, TheElevationOfOahuIsALayer)
@@ -608,10 +606,10 @@ TEST_F(SceneMappingsPlugin, MistakesAreNamedWithPlaceAndMend)
     expect(message, "layer", "convert it to PNG");
     expect(messageWith("<colorTable name='a' file='broken.txt'/>"), "colorTable", "broken.txt:1");
     expect(messageWith("<raster file='broken.tif'/>"), "raster", "is not a raster that GDAL can read");
-    expect(messageWith("<mapping west='1' south='2' east='3' north='4'/>", "longitudeDegrees='150'"),
-           "mapping", "on the other side of the globe");
-    expect(messageWith("<mapping longitudeDegrees='100' latitudeDegrees='0'/>", "longitudeDegrees='0'"),
-           "mapping", "on the other side of the globe");
+    expect(messageWith("<mapping west='1' south='2' east='3' north='4'/>", "longitude='150'"), "mapping",
+           "on the other side of the globe");
+    expect(messageWith("<mapping longitude='100' latitude='0'/>", "longitude='0'"), "mapping",
+           "on the other side of the globe");
     expect(messageWith("<mapping west='500000' south='2' east='600000' north='4'/>"), "mapping",
            "latitudes from -90 to 90");
     _watch.messagesOf([&]
@@ -620,12 +618,10 @@ TEST_F(SceneMappingsPlugin, MistakesAreNamedWithPlaceAndMend)
     setTerrain(32604);
     expect(messageWith("<mapping west='3' south='2' east='1' north='4'/>"), "mapping",
            "west must be less than east.");
-    expect(messageWith("<mapping longitudeDegrees='-69' latitudeDegrees='0'/>"), "mapping",
-           "terrain's projection");
+    expect(messageWith("<mapping longitude='-69' latitude='0'/>"), "mapping", "terrain's projection");
     const osg::ref_ptr<osg::Group> plain = new osg::Group;
     ASSERT_TRUE(osgDB::writeNodeFile(*plain, (_folder / "terrain.osgb").string()));
-    expect(messageWith("<mapping longitudeDegrees='1' latitudeDegrees='2'/>"), "mapping",
-           "no coordinate system");
+    expect(messageWith("<mapping longitude='1' latitude='2'/>"), "mapping", "no coordinate system");
     geofx::test::TestRaster(4, 4).placed(1.0, 2.0, 0.1, 0.1).crs("EPSG:4326").write(_folder / "r.tif");
     expect(messageWith("<raster file='r.tif'/>"), "raster", "the terrain has no coordinate system");
 }

@@ -74,9 +74,9 @@ TEST_F(ScenePlugin, SceneTellsProgramsWhatItSays)
     const TempDir folder;
     writeTerrain(folder, geocentricRoot(), osg::Vec3d(6378137.0, 0.0, 0.0));
     const auto file = folder.write(
-        "a.geofx", sceneWith("<homeView longitude='-157.905' latitude='21.25' altitude='1400' heading='25' "
-                             "pitch='-12' verticalFieldOfView='35'/><background colour='#ff0033'/>"
-                             "<sun azimuth='0' elevation='0' colour='#00ff00' ambient='#0000ff'/>"));
+        "a.geofx", sceneWith("<homeView longitude='-157.905' latitude='21.25' height='1400' heading='25' "
+                             "pitch='-12' verticalFieldOfView='35'/><background color='#ff0033'/>"
+                             "<sun azimuth='0' elevation='0' color='#00ff00' ambient='#0000ff'/>"));
     const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(file.string());
     ASSERT_TRUE(scene);
     EXPECT_EQ(scene->getName(), "osgGeoFX scene");
@@ -94,7 +94,7 @@ TEST_F(ScenePlugin, SceneTellsProgramsWhatItSays)
     ASSERT_TRUE(sun);
     EXPECT_EQ(sun->getLightNum(), 0);
     EXPECT_EQ(sun->getDiffuse(), osg::Vec4(0, 1, 0, 1));
-    EXPECT_EQ(sun->getSpecular(), osg::Vec4(0, 1, 0, 1)) << "glints have the sun's colour";
+    EXPECT_EQ(sun->getSpecular(), osg::Vec4(0, 1, 0, 1)) << "glints have the sun's color";
     EXPECT_EQ(sun->getAmbient(), osg::Vec4(0, 0, 1, 1));
 
     const auto bare = folder.write("b.geofx", sceneWith(""));
@@ -114,7 +114,7 @@ TEST_F(ScenePlugin, EffectsStandAboveTerrainAndSun)
     const auto file = folder.write(
         "a.geofx",
         sceneWith("<effects><verticalExaggeration factor='2'/><birdsEyeView focusLine='0.3'/></effects>"
-                  "<sun azimuth='0' elevation='0'/><background colour='#ff0033'/>"));
+                  "<sun azimuth='0' elevation='0'/><background color='#ff0033'/>"));
     const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file.string());
     auto* effects = dynamic_cast<osgGeoFX::EffectScene*>(node.get());
     ASSERT_TRUE(effects);
@@ -210,7 +210,7 @@ TEST_F(ScenePlugin, SunStandsWhereTheSceneSays)
     const osg::Vec3d world = (tip - origin) / 1000.0;
     const std::string sun = "<sun azimuth='245' elevation='35'/>";
 
-    // At the terrain's centre, and at the home view's place, which is where the terrain is not.
+    // At the terrain's center, and at the home view's place, which is where the terrain is not.
     writeTerrain(folder, geocentricRoot(), origin);
     osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(folder.write("a.geofx", sceneWith(sun)).string());
     ASSERT_TRUE(sunOf(scene));
@@ -220,7 +220,7 @@ TEST_F(ScenePlugin, SunStandsWhereTheSceneSays)
     ASSERT_TRUE(sunOf(scene));
     EXPECT_GT((directionOf(sunOf(scene)) - world).length(), 0.5);
     const std::string view =
-        "<homeView longitude='-157.8' latitude='21.4' altitude='0' heading='0' pitch='0'/>";
+        "<homeView longitude='-157.8' latitude='21.4' height='0' heading='0' pitch='0'/>";
     scene = osgDB::readRefNodeFile(folder.write("c.geofx", sceneWith(sun + view)).string());
     ASSERT_TRUE(sunOf(scene));
     EXPECT_LT((directionOf(sunOf(scene)) - world).length(), 1e-5);

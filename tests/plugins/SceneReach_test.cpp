@@ -374,7 +374,7 @@ TEST(SceneExtremes, EndInOneSentenceEach)
     {
         SCOPED_TRACE(number);
         const std::string view =
-            "<homeView longitude='1' latitude='2' altitude='" + number + "' heading='0' pitch='0'/>";
+            "<homeView longitude='1' latitude='2' height='" + number + "' heading='0' pitch='0'/>";
         EXPECT_EQ(errorsOf(with(view)).size(), 1u);
         EXPECT_EQ(errorsOf(with("<effects><projectiveMappings originX='" + number + "'/></effects>")).size(),
                   1u);
@@ -382,7 +382,7 @@ TEST(SceneExtremes, EndInOneSentenceEach)
                                 "' south='2' east='3' north='4'/></projectiveMappings></effects>"))
                       .size(),
                   1u);
-        EXPECT_EQ(errorsOf(with("<effects><closeUps><closeUp><region centreX='" + number +
+        EXPECT_EQ(errorsOf(with("<effects><closeUps><closeUp><region centerX='" + number +
                                 "'/></closeUp></closeUps></effects>"))
                       .size(),
                   1u);
@@ -395,7 +395,7 @@ TEST(SceneExtremes, EndInOneSentenceEach)
     const auto stop = [&](const std::string& value)
     {
         return errorsOf(with("<effects><projectiveMappings><colorTable name='a'><stop value='" + value +
-                             "' colour='#000000'/></colorTable></projectiveMappings></effects>"))
+                             "' color='#000000'/></colorTable></projectiveMappings></effects>"))
             .size();
     };
     for (const std::string& number : {nines, std::string("1e31"), std::string("1e400"), std::string("-INF"),

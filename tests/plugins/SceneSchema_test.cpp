@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// What data/geofx.xsd says of effects, against the classes' own tables of properties.
+// What the schema of scene files, which the build makes, says of effects, against the classes' own tables of properties.
 #include <geofx/SceneFile.h>
 #include <tools/PropertySamples.h>
 
@@ -47,7 +47,7 @@ class SceneSchema : public testing::Test
 protected:
     void SetUp() override
     {
-        std::ifstream stream(GEOFX_SOURCE_DIR "/data/geofx.xsd");
+        std::ifstream stream(GEOFX_BUILD_DIR "/share/geofx.xsd");
         _document = osgDB::readXmlStream(stream);
         ASSERT_TRUE(_document);
         for (const osg::ref_ptr<XmlNode>& node : _document->children)
@@ -142,11 +142,17 @@ protected:
         EXPECT_NE(words, "");
         if (property.kind == Kind::Choice || property.kind == Kind::Flag)
         {
-            const std::vector<std::string> choices =
-                property.kind == Kind::Flag ? std::vector<std::string>{"false", "true"} : property.choices;
+            std::vector<std::string> choices;
+            for (double each = property.minimum; each <= property.maximum; each += 1.0)
+                choices.push_back(property.text(each));
             EXPECT_EQ(facets(*restriction, "xs:enumeration"), choices);
             for (const std::string& choice : choices)
                 EXPECT_NE(words.find(choice), std::string::npos) << choice << " is not explained: " << words;
+            return;
+        }
+        if (property.kind == Kind::Color)
+        {
+            EXPECT_EQ(facets(*restriction, "xs:pattern"), std::vector<std::string>{"#[0-9A-Fa-f]{6}"});
             return;
         }
         EXPECT_EQ(attributeOf(*restriction, "base"), property.kind == Kind::Integer ? "xs:int"
@@ -164,6 +170,7 @@ protected:
         }
         const std::string unit = property.kind == Kind::Angle ? "degrees"
                                  : property.unit == "m"       ? "metres"
+                                 : property.unit == "px"      ? "pixels"
                                                               : "";
         EXPECT_NE(words.find(unit), std::string::npos) << unit << " is not told: " << words;
     }
@@ -205,8 +212,8 @@ TEST_F(SceneSchema, HasThePropertiesOfEachEffect)
         for (std::size_t i = 0; i < attributes.size(); ++i)
         {
             const Property& property = effect->properties()[i];
-            SCOPED_TRACE(kind + "." + property.textName());
-            EXPECT_EQ(attributeOf(*attributes[i], "name"), property.textName()) << "the same order, too";
+            SCOPED_TRACE(kind + "." + property.name);
+            EXPECT_EQ(attributeOf(*attributes[i], "name"), property.name) << "the same order, too";
             expectAttribute(*attributes[i], property);
         }
         std::map<std::string, std::string> parts;
@@ -236,7 +243,7 @@ const std::vector<PartElement>& partElements()
         {"Mapping", "projectiveMapping", {}},
         {"MappingRaster",
          "projectiveMapping",
-         {"centreX", "centreY",   "uX",     "uY",      "vX",    "vY",   "m00",         "m01",
+         {"centerX", "centerY",   "uX",     "uY",      "vX",    "vY",   "m00",         "m01",
           "m02",     "m10",       "m11",    "m12",     "m20",   "m21",  "m22",         "sizeInPixels",
           "turned",  "projector", "height", "heading", "pitch", "roll", "fieldOfView", "aspectRatio",
           "k1",      "k2",        "k3",     "p1",      "p2",    "range"}},
@@ -251,19 +258,19 @@ TEST_F(SceneSchema, HasThePropertiesOfWhatEffectsAreMadeOf)
         const XmlNode* type = named("xs:complexType", element.type);
         ASSERT_TRUE(type) << element.type;
         EXPECT_NE(documentation(type), "") << element.type;
-        const osg::ref_ptr<osgGeoFX::PropertyHolder> holder = geofx::test::createHolder(element.kind);
+        const osg::ref_ptr<osgGeoFX::PropertyHolder> holder = osgGeoFX::createPropertyHolder(element.kind);
         std::vector<std::string> expected;
         std::set<std::string> missing = element.missing;
         for (const Property& property : holder->properties())
-            if (missing.erase(property.name) == 0) expected.push_back(property.textName());
+            if (missing.erase(property.name) == 0) expected.push_back(property.name);
         EXPECT_TRUE(missing.empty()) << element.type;
         std::vector<std::string> found;
         for (const XmlNode* attribute : attributesOf(*type))
         {
             const std::string name = attributeOf(*attribute, "name");
             const auto& all = holder->properties();
-            const auto property = std::find_if(all.begin(), all.end(),
-                                               [&](const Property& each) { return each.textName() == name; });
+            const auto property =
+                std::find_if(all.begin(), all.end(), [&](const Property& each) { return each.name == name; });
             SCOPED_TRACE(std::string(element.type) + "." + name);
             if (property == all.end())
             {
@@ -290,7 +297,7 @@ TEST_F(SceneSchema, HasThePropertiesOfWhatEffectsAreMadeOf)
 /// The classes that elements are of. Surface data is not: an element says its place by its edges or its files.
 std::vector<std::string> elementKinds()
 {
-    std::vector<std::string> kinds = geofx::test::holderKinds();
+    std::vector<std::string> kinds = osgGeoFX::propertyHolderKinds();
     kinds.erase(std::remove(kinds.begin(), kinds.end(), "surfaceData"), kinds.end());
     return kinds;
 }
@@ -317,7 +324,7 @@ SceneResult sceneOf(const std::string& kind, const std::string& settings = {})
 
 std::string setting(const Property& property, const std::string& value)
 {
-    return " " + property.textName() + "='" + value + "'";
+    return " " + property.name + "='" + value + "'";
 }
 
 /// The object that such a scene has.
@@ -344,7 +351,7 @@ TEST(SceneEffects, HaveTheDefaultsOfTheirClasses)
         const SceneResult result = sceneOf(kind);
         ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
         ASSERT_EQ(result.scene->effects.size(), 1u);
-        expectSame(objectOf(*result.scene, kind), *geofx::test::createHolder(kind));
+        expectSame(objectOf(*result.scene, kind), *osgGeoFX::createPropertyHolder(kind));
     }
 }
 
@@ -357,8 +364,8 @@ TEST(SceneEffects, TakeWhatTheTableTakesAndNameTheRest)
         const Property& property = row.property();
         std::string before;
         // Longitude and latitude belong together.
-        if (row.kind == "regionOfInterest" && row.name == "longitude") before = " latitudeDegrees='1'";
-        if (row.kind == "regionOfInterest" && row.name == "latitude") before = " longitudeDegrees='1'";
+        if (row.kind == "regionOfInterest" && row.name == "longitude") before = " latitude='1'";
+        if (row.kind == "regionOfInterest" && row.name == "latitude") before = " longitude='1'";
         const auto companion = geofx::test::companions().find(row.name);
         if (companion != geofx::test::companions().end())
         {
@@ -383,7 +390,7 @@ TEST(SceneEffects, TakeWhatTheTableTakesAndNameTheRest)
             ASSERT_EQ(result.errors.size(), 1u) << text;
             const std::string& error = result.errors[0];
             EXPECT_EQ(error.rfind("x.geofx:2: <", 0), 0u) << error;
-            EXPECT_NE(error.find(">: " + property.textName()), std::string::npos) << error;
+            EXPECT_NE(error.find(">: " + property.name), std::string::npos) << error;
             EXPECT_EQ(error.back(), '.') << error;
         }
         if (property.maximum >= 9e7) continue;

@@ -48,8 +48,8 @@ protected:
                                                     osg::Vec3d(0, 0, 1));
         viewer().getCamera()->setProjectionMatrixAsPerspective(30.0, 1.0, 1e3, 1e6);
         const osg::ref_ptr<osg::Image> image = render(scene);
-        const osg::Vec4 colour = image->getColor(image->s() / 2, image->t() / 2) * 255.0f;
-        return osg::Vec3(colour.r(), colour.g(), colour.b());
+        const osg::Vec4 color = image->getColor(image->s() / 2, image->t() / 2) * 255.0f;
+        return osg::Vec3(color.r(), color.g(), color.b());
     }
 
 private:
@@ -66,7 +66,7 @@ TEST_F(SceneSun, TakesThePlaceOfTheHeadlight)
         (middle("<sun azimuth='0' elevation='-30' ambient='#204060'/>") - osg::Vec3(32, 64, 96)).length(),
         2.0f);
     // One at 30 degrees gives sin 30° of its light.
-    EXPECT_LT((middle("<sun azimuth='123' elevation='30' colour='#ff8040' ambient='#000000'/>") -
+    EXPECT_LT((middle("<sun azimuth='123' elevation='30' color='#ff8040' ambient='#000000'/>") -
                osg::Vec3(127.5f, 64, 32))
                   .length(),
               2.0f);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Pictures and colour tables that go through files, and what is left of them.
+// Pictures and color tables that go through files, and what is left of them.
 #pragma once
 
 #include <osgGeoFX/raster/ColorTable.h>

@@ -264,7 +264,7 @@ TEST_F(SerializersCloseUps, AChangeOfWhatWasReadIsOneOfTheCloseUp)
     ASSERT_TRUE(read);
     CloseUp& closeUp = *read->getCloseUp(0);
     unsigned int before = closeUp.revision();
-    EXPECT_TRUE(closeUp.getRegion()->setBase(12.5));
+    EXPECT_TRUE(closeUp.getRegion()->setBaseHeight(12.5));
     EXPECT_GT(closeUp.revision(), before);
     before = closeUp.revision();
     EXPECT_TRUE(closeUp.getAnchor()->setOpacity(0.25));

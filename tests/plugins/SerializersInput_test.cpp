@@ -12,13 +12,13 @@ namespace
 
 using geofx::test::allProperties;
 using geofx::test::contentOf;
-using geofx::test::createHolder;
 using geofx::test::expectFullScene;
 using geofx::test::expectSame;
 using geofx::test::formats;
 using geofx::test::fullScene;
 using geofx::test::nameInFiles;
 using geofx::test::PropertyRow;
+using osgGeoFX::createPropertyHolder;
 using osgGeoFX::effectKinds;
 using osgGeoFX::EffectScene;
 using osgGeoFX::PerspectiveBend;
@@ -49,7 +49,7 @@ TEST_F(SerializersInput, WrongValuesLeaveTheDefaultWithAWarning)
     for (const PropertyRow& row : allProperties())
     {
         const Property& property = row.property();
-        const osg::ref_ptr<PropertyHolder> plain = createHolder(row.kind);
+        const osg::ref_ptr<PropertyHolder> plain = createPropertyHolder(row.kind);
         for (const char* text : {"1e39", "-1e39", "nan", "inf", "spline", "1x"})
         {
             SCOPED_TRACE(row.kind + "." + row.name + " " + text);

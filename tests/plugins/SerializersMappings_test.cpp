@@ -77,7 +77,7 @@ osg::ref_ptr<ProjectiveMappings> threeMappings()
     alter(*mappings);
     const osg::ref_ptr<ProjectiveMapping> first = fullMapping();
     const osg::ref_ptr<ProjectiveMapping> second = new ProjectiveMapping;
-    second->setCentre({123.4567890123456789, -1e6 / 3.0});
+    second->setCenter({123.4567890123456789, -1e6 / 3.0});
     second->setLayer(first->getMask());
     second->setMask(first->getLayer());
     second->setTable(first->getTable());
@@ -350,7 +350,7 @@ TEST_F(SerializersMappings, AreThereForEachClassThatOsgCouldWrite)
         const osg::ref_ptr<osg::Object> object = wrapper->createInstance();
         ASSERT_TRUE(object) << name;
         // And each one with properties is in the tests of properties.
-        const std::vector<std::string> kinds = geofx::test::holderKinds();
+        const std::vector<std::string> kinds = osgGeoFX::propertyHolderKinds();
         const bool listed = std::find(kinds.begin(), kinds.end(), osgGeoFX::kindOf(*object)) != kinds.end();
         EXPECT_EQ(listed, dynamic_cast<osgGeoFX::PropertyHolder*>(object.get()) != nullptr) << name;
     }

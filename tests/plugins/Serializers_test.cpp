@@ -20,12 +20,10 @@ namespace
 using geofx::test::allProperties;
 using geofx::test::alteredHolder;
 using geofx::test::contentOf;
-using geofx::test::createHolder;
 using geofx::test::expectFullScene;
 using geofx::test::expectSame;
 using geofx::test::formats;
 using geofx::test::fullScene;
-using geofx::test::holderKinds;
 using geofx::test::nameInFiles;
 using geofx::test::otherValues;
 using geofx::test::PropertyRow;
@@ -34,18 +32,20 @@ using geofx::test::Serializers;
 using osgGeoFX::BirdsEyeView;
 using osgGeoFX::BlendedView;
 using osgGeoFX::createEffect;
+using osgGeoFX::createPropertyHolder;
 using osgGeoFX::Effect;
 using osgGeoFX::EffectScene;
 using osgGeoFX::Property;
 using osgGeoFX::PropertyHolder;
+using osgGeoFX::propertyHolderKinds;
 using osgGeoFX::RigidReference;
 
 TEST_F(Serializers, ThereIsAWrapperForEachClass)
 {
     auto* wrappers = osgDB::Registry::instance()->getObjectWrapperManager();
     std::vector<osg::ref_ptr<osg::Object>> objects = {new EffectScene, new RigidReference};
-    for (const std::string& kind : holderKinds())
-        objects.emplace_back(createHolder(kind));
+    for (const std::string& kind : propertyHolderKinds())
+        objects.emplace_back(createPropertyHolder(kind));
     for (const auto& object : objects)
     {
         const std::string name = object->getCompoundClassName();
@@ -93,7 +93,7 @@ TEST_F(Serializers, KeepEveryPropertyOfEveryClass)
 
 TEST_F(Serializers, KeepWholeObjects)
 {
-    for (const std::string& kind : holderKinds())
+    for (const std::string& kind : propertyHolderKinds())
     {
         for (const std::string& format : formats)
         {
@@ -105,7 +105,7 @@ TEST_F(Serializers, KeepWholeObjects)
             EXPECT_EQ(read->getName(), "an object");
             expectSame(*read, *altered);
             // And a file of defaults stays one, without a word about them.
-            const osg::ref_ptr<PropertyHolder> plain = createHolder(kind);
+            const osg::ref_ptr<PropertyHolder> plain = createPropertyHolder(kind);
             const osg::ref_ptr<PropertyHolder> other = throughFile<PropertyHolder>(*plain, format);
             ASSERT_TRUE(other);
             expectSame(*other, *plain);
@@ -125,7 +125,7 @@ TEST_F(Serializers, KeepRandomNumbersToTheLastDigit)
         const osg::ref_ptr<Effect> effect = createEffect("pedestrianView");
         std::map<std::string, double> values;
         for (const char* name :
-             {"bendAngle", "focusDistance", "zoneWidth", "planeElevation", "contextSaturation"})
+             {"bendAngle", "focusDistance", "zoneWidth", "planeHeight", "contextSaturation"})
         {
             const Property& property = *effect->property(name);
             values[name] = random.uniform(property.minimum, property.maximum) * random.logarithmic(1e-9, 1.0);
@@ -302,7 +302,7 @@ TEST_F(Serializers, ScriptsReachEveryProperty)
             bool value = false;
             if (access.getProperty(holder.get(), name, value)) found = value;
         }
-        else if (property.kind == Property::Kind::Choice || property.kind == Property::Kind::Integer)
+        else if (geofx::test::isWhole(property))
         {
             set = access.setProperty(holder.get(), name, static_cast<int>(wanted));
             int value = 0;

@@ -35,7 +35,7 @@ osg::ref_ptr<ColorTable> makeTable(const Stops& stops, Mode mode = ColorTable::L
     return table;
 }
 
-/// The largest difference of a colour's parts from bytes, in 1/255.
+/// The largest difference of a color's parts from bytes, in 1/255.
 double difference(const osg::Vec4ub& bytes, const osg::Vec4& color)
 {
     double most = 0.0;
@@ -98,14 +98,14 @@ TEST(ColorRampFile, GmtTables)
     EXPECT_EQ(table->at(99), red);
     EXPECT_EQ(table->getNoDataColor(), color255(128, 128, 128));
 
-    // By its name, with colours below, above and for no data.
+    // By its name, with colors below, above and for no data.
     const auto outside = readText("0 red 1024 red\nB 0/255/0\nF 0 0 255\nN -\n", "t.CPT");
     EXPECT_EQ(outside->at(-1), red);
     EXPECT_EQ(outside->at(-3), green);
     EXPECT_EQ(outside->at(1024), red);
     EXPECT_EQ(outside->at(1027), blue);
     EXPECT_EQ(outside->getNoDataColor(), clear);
-    // A row over the table's range has them, too, and the ends' own colours.
+    // A row over the table's range has them, too, and the ends' own colors.
     std::vector<osg::Vec4ub> row(1024);
     const auto [low, high] = outside->range();
     EXPECT_TRUE(outside->row(low, high, row.data(), 1024));
@@ -135,13 +135,13 @@ std::string refusal(const std::string& text, const std::string& name = "ramp.txt
 TEST(ColorRampFile, RefusesWithFileLineAndMend)
 {
     EXPECT_EQ(refusal("0 red\nx 1 2 3\n"), ":2: the value is \"x\"; write a number, a percentage or nv.");
-    EXPECT_EQ(refusal("\n\n5\n"), ":3: \"5\" has no colour; write value, red, green, blue.");
-    EXPECT_EQ(refusal("5 1 2\n"), ":1: the colour is not complete; write value, red, green, blue.");
-    EXPECT_EQ(refusal("5 1 2 256\n"), ":1: the colour has \"256\"; write a number from 0 to 255.");
-    EXPECT_EQ(refusal("5 1 -2 3\n"), ":1: the colour has \"-2\"; write a number from 0 to 255.");
-    EXPECT_EQ(refusal("5 1 2 3 solid\n"), ":1: the colour has \"solid\"; write a number from 0 to 255.");
+    EXPECT_EQ(refusal("\n\n5\n"), ":3: \"5\" has no color; write value, red, green, blue.");
+    EXPECT_EQ(refusal("5 1 2\n"), ":1: the color is not complete; write value, red, green, blue.");
+    EXPECT_EQ(refusal("5 1 2 256\n"), ":1: the color has \"256\"; write a number from 0 to 255.");
+    EXPECT_EQ(refusal("5 1 -2 3\n"), ":1: the color has \"-2\"; write a number from 0 to 255.");
+    EXPECT_EQ(refusal("5 1 2 3 solid\n"), ":1: the color has \"solid\"; write a number from 0 to 255.");
     EXPECT_NE(refusal("5 pink\n")
-                  .find(":1: the colour \"pink\" is not known; write red, green and blue as numbers, or "
+                  .find(":1: the color \"pink\" is not known; write red, green and blue as numbers, or "
                         "one of white, black, red,"),
               std::string::npos);
     EXPECT_EQ(refusal("101% red\n"), ":1: the percentage is \"101%\"; write 0% to 100%.");
@@ -151,8 +151,8 @@ TEST(ColorRampFile, RefusesWithFileLineAndMend)
         EXPECT_NE(refusal(std::string(value) + " 1 2 3\n").find(":1: the value is "), std::string::npos)
             << value;
     EXPECT_EQ(refusal("# only a comment\n"),
-              ": there are no colours; write a line for each value, such as 100 0 128 0.");
-    EXPECT_EQ(refusal(""), ": there are no colours; write a line for each value, such as 100 0 128 0.");
+              ": there are no colors; write a line for each value, such as 100 0 128 0.");
+    EXPECT_EQ(refusal(""), ": there are no colors; write a line for each value, such as 100 0 128 0.");
     EXPECT_NE(refusal(std::string("\x89PNG\r\n\x1a\n\0\0\0", 11)).find(":1: "), std::string::npos);
     EXPECT_LT(refusal(std::string(100000, 'x') + " red").size(), 150u);
 }
@@ -165,9 +165,9 @@ TEST(ColorRampFile, RefusesGmtTablesWithFileLineAndMend)
     EXPECT_EQ(refusal("0 red 1 red\n0.5 red 2 red\n", "t.cpt"),
               ":2: the slice begins below the end of the one before; put the lines in order.");
     EXPECT_EQ(refusal("0 red 1\n", "t.cpt"),
-              ":1: the line is not z0 colour z1 colour; write the colours as R G B or R/G/B.");
-    EXPECT_EQ(refusal("0 1/2 1 1/2/3\n", "t.cpt"), ":1: the colour is not complete; write R G B or R/G/B.");
-    EXPECT_EQ(refusal("B\n", "t.cpt"), ":1: the colour is not complete; write R G B or R/G/B.");
+              ":1: the line is not z0 color z1 color; write the colors as R G B or R/G/B.");
+    EXPECT_EQ(refusal("0 1/2 1 1/2/3\n", "t.cpt"), ":1: the color is not complete; write R G B or R/G/B.");
+    EXPECT_EQ(refusal("B\n", "t.cpt"), ":1: the color is not complete; write R G B or R/G/B.");
 }
 
 TEST(ColorRampFile, MissingFilesAndFolders)
@@ -248,7 +248,7 @@ TEST(ColorRampFile, TheModeIsACommentForGdaldem)
     EXPECT_EQ(comment(ColorTable::LINEAR).find(" -"), std::string::npos);
 }
 
-/// The colours that gdaldem gives for values, by GDAL's own reading of the file.
+/// The colors that gdaldem gives for values, by GDAL's own reading of the file.
 std::vector<osg::Vec4ub> gdaldemColors(const std::string& file, Mode mode, const std::vector<float>& values)
 {
     GDALAllRegister();
@@ -276,7 +276,7 @@ std::vector<osg::Vec4ub> gdaldemColors(const std::string& file, Mode mode, const
     return colors;
 }
 
-// GDAL's reading of a file is the reference: its colours are rounded to bytes (at 0.45), hence the 1. Its exact mode
+// GDAL's reading of a file is the reference: its colors are rounded to bytes (at 0.45), hence the 1. Its exact mode
 // is left out: that of 3.6 misses stops.
 TEST(ColorRampFile, AgreesWithGdaldem)
 {

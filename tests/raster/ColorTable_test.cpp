@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Color tables: the colour of a value, and the row that a shader looks into.
+// Color tables: the color of a value, and the row that a shader looks into.
 #include <osgGeoFX/raster/ColorTable.h>
 #include <tools/RandomSamples.h>
 
@@ -47,7 +47,7 @@ osg::Vec4d lookUp(const std::vector<osg::Vec4ub>& row, Mode mode, double low, do
     return texel(static_cast<int>(s)) * (1.0 - fraction) + texel(static_cast<int>(s) + 1) * fraction;
 }
 
-/// The largest difference of two colours' parts, in 1/255.
+/// The largest difference of two colors' parts, in 1/255.
 double difference(const osg::Vec4d& bytes, const osg::Vec4& color)
 {
     double most = 0.0;
@@ -90,7 +90,7 @@ TEST(ColorTable, DoubledStopsAreAJump)
     table->setMode(ColorTable::STEPS);
     EXPECT_EQ(table->at(9.99), red);
     EXPECT_EQ(table->at(10), blue);
-    // Doubled ends: a colour for what lies outside.
+    // Doubled ends: a color for what lies outside.
     const auto ends = makeTable({{0, red}, {0, green}, {1, green}, {1, blue}});
     EXPECT_EQ(ends->at(-0.001), red);
     EXPECT_EQ(ends->at(0), green);
@@ -213,7 +213,7 @@ TEST(ColorTableRow, EndsAreExact)
     EXPECT_EQ(rowOf(*table, -0.1, 0.7, 1)[0], osg::Vec4ub(255, 0, 0, 255));
 }
 
-/// A colour of its own for each class.
+/// A color of its own for each class.
 osg::Vec4 classColor(int number)
 {
     return osg::Vec4(static_cast<float>(number * 37 % 256), static_cast<float>(number),

@@ -108,8 +108,8 @@ float valueAt(const LayerPixels& pixels, int level, int x, int y)
     return LayerPixels::value(at(pixels, level, x, y));
 }
 
-/// The colour that a format shows, byteOf() giving a channel's byte.
-Texel expectedColour(const Format& format, const std::function<unsigned(char)>& byteOf)
+/// The color that a format shows, byteOf() giving a channel's byte.
+Texel expectedColor(const Format& format, const std::function<unsigned(char)>& byteOf)
 {
     const std::string channels = format.channels;
     const auto has = [&](char c)
@@ -122,7 +122,7 @@ Texel expectedColour(const Format& format, const std::function<unsigned(char)>& 
     return rgba(byteOf('R'), has('G') ? byteOf('G') : 0, has('B') ? byteOf('B') : 0, alpha);
 }
 
-/// Every format with every packing as colours and as values; `share` is a number's part of full intensity.
+/// Every format with every packing as colors and as values; `share` is a number's part of full intensity.
 template<typename T>
 void checkType(GLenum type, const std::function<T(Random&)>& draw, const std::function<double(T)>& share)
 {
@@ -139,19 +139,19 @@ void checkType(GLenum type, const std::function<T(Random&)>& draw, const std::fu
                 const auto image =
                     makeImage<T>(format, type, width, 5, packing,
                                  [&](int x, int y, char c) { return numbers[key(x, y, c)] = draw(random); });
-                const LayerPixels colours = make(*image), values = make(*image, optionsOf(Kind::Value));
+                const LayerPixels colors = make(*image), values = make(*image, optionsOf(Kind::Value));
                 for (int y = 0; y < 5; ++y)
                     for (int x = 0; x < width; ++x)
                     {
                         const Texel expected =
-                            expectedColour(format,
-                                           [&](char c)
-                                           {
-                                               const double part =
-                                                   std::clamp(share(numbers[key(x, y, c)]), 0.0, 1.0);
-                                               return static_cast<unsigned>(std::lround(part * 255.0));
-                                           });
-                        ASSERT_EQ(at(colours, 0, x, y), expected) << format.channels << " type " << type;
+                            expectedColor(format,
+                                          [&](char c)
+                                          {
+                                              const double part =
+                                                  std::clamp(share(numbers[key(x, y, c)]), 0.0, 1.0);
+                                              return static_cast<unsigned>(std::lround(part * 255.0));
+                                          });
+                        ASSERT_EQ(at(colors, 0, x, y), expected) << format.channels << " type " << type;
                         const char first = std::strchr(format.channels, 'R') ? 'R' : format.channels[0];
                         ASSERT_EQ(valueAt(values, 0, x, y), static_cast<float>(numbers[key(x, y, first)]))
                             << format.channels << " type " << type;
@@ -306,7 +306,7 @@ Texel average(const std::array<Texel, 4>& four, bool sRGB)
         .at(0);
 }
 
-TEST(LayerPixels, AveragesOfColoursByHand)
+TEST(LayerPixels, AveragesOfColorsByHand)
 {
     const Texel black = rgba(0, 0, 0), white = rgba(255, 255, 255), grey = rgba(100, 100, 100);
     // Half the light of white is 0.7354 in sRGB, 187.5 of 255.
@@ -320,7 +320,7 @@ TEST(LayerPixels, AveragesOfColoursByHand)
               rgba(255, 0, 0, 64));
     EXPECT_EQ(average({rgba(90, 0, 0, 200), rgba(0, 0, 0, 100), rgba(0, 9, 0, 0), rgba(0, 9, 0, 0)}, false),
               rgba(60, 0, 0, 75));
-    // All transparent: their colour is kept.
+    // All transparent: their color is kept.
     EXPECT_EQ(average({rgba(10, 0, 0, 0), rgba(30, 0, 0, 0), rgba(10, 0, 0, 0), rgba(30, 0, 0, 0)}, false),
               rgba(20, 0, 0, 0));
 }
@@ -360,7 +360,7 @@ double fromLight(double c)
     return c <= 0.0031308 ? c * 12.92 : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
 }
 
-TEST(LayerPixels, LevelsOfColoursAgainstPlainLoops)
+TEST(LayerPixels, LevelsOfColorsAgainstPlainLoops)
 {
     for (const bool sRGB : {true, false})
         for (int sample = 0; sample < 20; ++sample)

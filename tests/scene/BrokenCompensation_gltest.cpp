@@ -25,11 +25,11 @@ enum class Lie
     Detail  ///< no ball deserves more detail than without the deformation
 };
 
-/// A frame that tells the truth but for one lie.
-class LyingFrame : public DeformationFrame
+/// A snapshot that tells the truth but for one lie.
+class LyingSnapshot : public DeformationSnapshot
 {
 public:
-    LyingFrame(const DeformationFrame* honest, Lie lie) : _honest(honest), _lie(lie) {}
+    LyingSnapshot(const DeformationSnapshot* honest, Lie lie) : _honest(honest), _lie(lie) {}
 
     osg::Vec3d deform(const osg::Vec3d& position) const override { return _honest->deform(position); }
     osg::Vec3d roughly(const osg::Vec3d& position) const override { return _honest->roughly(position); }
@@ -60,11 +60,11 @@ public:
     Uniforms uniforms() const override { return _honest->uniforms(); }
 
 private:
-    const osg::ref_ptr<const DeformationFrame> _honest;
+    const osg::ref_ptr<const DeformationSnapshot> _honest;
     const Lie _lie;
 };
 
-/// An effect whose frames lie.
+/// An effect whose snapshots lie.
 class LyingEffect : public Deformation, public NormalTurner
 {
 public:
@@ -81,10 +81,10 @@ public:
         static const Properties all = {enabledProperty()};
         return all;
     }
-    osg::ref_ptr<const DeformationFrame> frame(const ViewGeometry& view) const override
+    osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override
     {
-        osg::ref_ptr<const DeformationFrame> honest = _honest->frame(view);
-        return honest ? new LyingFrame(honest, _lie) : nullptr;
+        osg::ref_ptr<const DeformationSnapshot> honest = _honest->snapshot(view);
+        return honest ? new LyingSnapshot(honest, _lie) : nullptr;
     }
     void changeGround(Ground& ground) const override { _honest->changeGround(ground); }
     std::string vertexFile() const override { return _honest->vertexFile(); }

@@ -15,6 +15,7 @@
 #include <osg/LOD>
 #include <osg/MatrixTransform>
 #include <osg/Transform>
+#include <osg/TriangleIndexFunctor>
 #include <osg/UserDataContainer>
 #include <osgDB/ReadFile>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
@@ -23,6 +24,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -45,14 +47,24 @@ struct Depths
     double farthestDrawn = 0.0; ///< in the picture or not
 };
 
+/// The vertices that are drawn: the blocks of a tile may share an array.
+struct UsedVertices
+{
+    std::set<unsigned int> indices;
+    void operator()(unsigned int a, unsigned int b, unsigned int c) { indices.insert({a, b, c}); }
+};
+
 Depths depthsOf(const Culled& culled, const DeformationChain& chain)
 {
     Depths depths;
     for (const Culled::Leaf& leaf : culled.leaves)
     {
-        for (const osg::Vec3& vertex : verticesOf(*leaf.drawable))
+        osg::TriangleIndexFunctor<UsedVertices> used;
+        leaf.drawable->accept(used);
+        for (const unsigned int index : used.indices)
         {
-            const osg::Vec3d eye = chain.deform(osg::Vec3d(vertex) * leaf.modelView);
+            const osg::Vec3d vertex(verticesOf(*leaf.drawable).at(index));
+            const osg::Vec3d eye = chain.deform(vertex * leaf.modelView);
             const osg::Vec4d clip = osg::Vec4d(eye, 1.0) * culled.projection;
             depths.farthestDrawn = std::max(depths.farthestDrawn, -eye.z());
             if (eye.z() >= 0.0 || std::abs(clip.x()) > clip.w() || std::abs(clip.y()) > clip.w()) continue;
@@ -243,7 +255,7 @@ Tiles settledTiles(osg::GraphicsContext& context, const char* name, double trans
     ViewPoint point;
     point.longitude = osg::DegreesToRadians(-158.3);
     point.latitude = osg::DegreesToRadians(21.42);
-    point.altitude = 9000.0;
+    point.height = 9000.0;
     point.heading = osg::DegreesToRadians(80.0);
     point.pitch = osg::DegreesToRadians(-15.0);
     osg::Matrixd view;

@@ -35,17 +35,17 @@ protected:
         const std::string fragment =
             "#version 330 compatibility\n"
             "#pragma import_defines(GEOFX_DEFORMATION, SHOW_DEFINE)\n"
-            "vec4 geofx_fragment(vec4 colour, vec4 map);\n"
+            "vec4 geofx_fragment(vec4 color, vec4 map);\n"
             "uniform float blue;\n"
             "void main()\n{\n" +
-            std::string(calls ? "    vec4 colour = geofx_fragment(gl_Color, vec4(0.0));\n"
-                              : "    vec4 colour = gl_Color;\n") +
+            std::string(calls ? "    vec4 color = geofx_fragment(gl_Color, vec4(0.0));\n"
+                              : "    vec4 color = gl_Color;\n") +
             "#if defined(SHOW_DEFINE) && defined(GEOFX_DEFORMATION)\n"
-            "    colour = vec4(1.0, 0.0, blue, 1.0);\n"
+            "    color = vec4(1.0, 0.0, blue, 1.0);\n"
             "#elif defined(SHOW_DEFINE)\n"
-            "    colour = vec4(0.0, 1.0, blue, 1.0);\n"
+            "    color = vec4(0.0, 1.0, blue, 1.0);\n"
             "#endif\n"
-            "    gl_FragColor = colour;\n}\n";
+            "    gl_FragColor = color;\n}\n";
         osg::ref_ptr<osg::Program> program = new osg::Program;
         program->addShader(new osg::Shader(osg::Shader::VERTEX, vertex));
         program->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
@@ -368,10 +368,10 @@ TEST_F(EffectSceneTest, TheContextTurnsGrey)
 {
     const osg::ref_ptr<EffectScene> scene = makeScene({makeGround()});
     auto* bend = static_cast<BirdsEyeView*>(scene->getEffect(0));
-    const osg::ref_ptr<osg::Image> coloured = render(scene);
+    const osg::ref_ptr<osg::Image> colored = render(scene);
     bend->setContextSaturation(0);
     const osg::ref_ptr<osg::Image> grey = render(scene);
-    EXPECT_TRUE(differing(*coloured, *grey, 0, focusRow() - 3) == 0);
+    EXPECT_TRUE(differing(*colored, *grey, 0, focusRow() - 3) == 0);
     // The ground's last 60 m are context: just below the highest row that it covers, in the middle.
     int top = HEIGHT - 1;
     const auto background = [&](int row)
@@ -391,7 +391,7 @@ TEST_F(EffectSceneTest, TheContextTurnsGrey)
     bend->setContextBrightness(0);
     const osg::ref_ptr<osg::Image> black = render(scene);
     EXPECT_EQ(black->data(WIDTH / 2, top - 3)[1], 0);
-    EXPECT_TRUE(differing(*coloured, *black, 0, focusRow() - 3) == 0);
+    EXPECT_TRUE(differing(*colored, *black, 0, focusRow() - 3) == 0);
 }
 
 TEST_F(EffectSceneTest, TheContextShowsTheMap)

@@ -45,7 +45,7 @@ osg::Matrixd viewOver(const Georeference& reference, double longitude, double he
     ViewPoint point;
     point.longitude = osg::DegreesToRadians(longitude);
     point.latitude = osg::DegreesToRadians(21.42);
-    point.altitude = 4000.0;
+    point.height = 4000.0;
     point.heading = heading;
     point.pitch = pitch;
     osg::Matrixd view;

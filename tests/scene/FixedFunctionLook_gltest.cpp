@@ -28,20 +28,20 @@ class FixedFunctionLook : public geofx::test::LookFixture
 
 TEST_F(FixedFunctionLook, Unlit)
 {
-    compare("vertex colours", [](const Place& place) { place.scene.addChild(makeWaves()); });
-    compare("one colour",
+    compare("vertex colors", [](const Place& place) { place.scene.addChild(makeWaves()); });
+    compare("one color",
             [](const Place& place)
             {
                 osg::ref_ptr<osg::Geometry> waves = makeWaves();
-                osg::ref_ptr<osg::Vec4Array> colour = new osg::Vec4Array;
-                colour->push_back({0.3f, 1.7f, 0.2f, 1});
+                osg::ref_ptr<osg::Vec4Array> color = new osg::Vec4Array;
+                color->push_back({0.3f, 1.7f, 0.2f, 1});
                 osg::ref_ptr<osg::Vec3Array> normal = new osg::Vec3Array;
                 normal->push_back({0, 0, 1});
-                waves->setColorArray(colour, osg::Array::BIND_OVERALL);
+                waves->setColorArray(color, osg::Array::BIND_OVERALL);
                 waves->setNormalArray(normal, osg::Array::BIND_OVERALL);
                 place.scene.addChild(waves);
             });
-    compare("no colour",
+    compare("no color",
             [](const Place& place)
             {
                 osg::ref_ptr<osg::Geometry> waves = makeWaves();
@@ -56,7 +56,7 @@ TEST_F(FixedFunctionLook, Unlit)
                 place.state().setAttribute(new osg::ShadeModel(osg::ShadeModel::FLAT));
                 place.scene.addChild(makeWaves());
             });
-    compare("secondary colour",
+    compare("secondary color",
             [](const Place& place)
             {
                 osg::ref_ptr<osg::Geometry> waves = makeWaves();
@@ -147,11 +147,11 @@ TEST_F(FixedFunctionLook, Materials)
     // pow() of the shininess: two of 255.
     compare("shining", lit(40, osg::Material::OFF, nullptr), 2);
     compare("shininess 0", lit(0, osg::Material::OFF, nullptr), 2);
-    compare("colour is ambient", lit(8, osg::Material::AMBIENT, nullptr), 2);
-    compare("colour is diffuse", lit(8, osg::Material::DIFFUSE, nullptr), 2);
-    compare("colour is ambient and diffuse", lit(8, osg::Material::AMBIENT_AND_DIFFUSE, nullptr), 2);
-    compare("colour is specular", lit(8, osg::Material::SPECULAR, nullptr), 2);
-    compare("colour is emission", lit(8, osg::Material::EMISSION, nullptr), 2);
+    compare("color is ambient", lit(8, osg::Material::AMBIENT, nullptr), 2);
+    compare("color is diffuse", lit(8, osg::Material::DIFFUSE, nullptr), 2);
+    compare("color is ambient and diffuse", lit(8, osg::Material::AMBIENT_AND_DIFFUSE, nullptr), 2);
+    compare("color is specular", lit(8, osg::Material::SPECULAR, nullptr), 2);
+    compare("color is emission", lit(8, osg::Material::EMISSION, nullptr), 2);
 
     osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
     model->setAmbientIntensity({0.4f, 0.1f, 0.3f, 1});
@@ -358,10 +358,10 @@ TEST_F(FixedFunctionLook, Shapes)
             addSun(place);
             place.state().setAttribute(makeMaterial(30, osg::Material::AMBIENT_AND_DIFFUSE));
             osg::ref_ptr<osg::Geode> geode = new osg::Geode;
-            const auto add = [&](osg::Shape* shape, const osg::Vec4& colour)
+            const auto add = [&](osg::Shape* shape, const osg::Vec4& color)
             {
                 osg::ref_ptr<osg::ShapeDrawable> drawable = new osg::ShapeDrawable(shape);
-                drawable->setColor(colour);
+                drawable->setColor(color);
                 geode->addDrawable(drawable);
             };
             add(new osg::Box({-2, 0, 0}, 1.5f), {1, 0.4f, 0.3f, 1});

@@ -18,7 +18,7 @@ using namespace geofx::test;
 namespace
 {
 
-/// Draws colours as they are.
+/// Draws colors as they are.
 osg::ref_ptr<osg::Program> makeCalling(EffectScene& scene)
 {
     osg::ref_ptr<osg::Program> program = new osg::Program;
@@ -33,7 +33,7 @@ osg::ref_ptr<osg::Program> makeCalling(EffectScene& scene)
                         "    gl_FrontColor = gl_Color;\n}\n"));
     program->addShader(new osg::Shader(osg::Shader::FRAGMENT,
                                        "#version 330 compatibility\n"
-                                       "vec4 geofx_fragment(vec4 colour, vec4 map);\n"
+                                       "vec4 geofx_fragment(vec4 color, vec4 map);\n"
                                        "void main() { gl_FragColor = geofx_fragment(gl_Color, "
                                        "vec4(0.0)); }\n"));
     scene.addFunctions(*program);

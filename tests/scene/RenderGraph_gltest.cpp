@@ -33,14 +33,14 @@ using namespace geofx::test;
 namespace
 {
 
-/// Pixels of a colour: how many, and where.
+/// Pixels of a color: how many, and where.
 struct Patch
 {
     int count = 0;
     int left = 10000, right = -1, low = 10000, high = -1;
-    osg::Vec2d centre;
+    osg::Vec2d center;
 
-    Patch(const osg::Image& image, const osg::Vec3ub& colour)
+    Patch(const osg::Image& image, const osg::Vec3ub& color)
     {
         for (int y = 0; y < image.t(); ++y)
         {
@@ -48,8 +48,8 @@ struct Patch
             {
                 const unsigned char* pixel =
                     image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
-                if (std::abs(pixel[0] - colour.r()) + std::abs(pixel[1] - colour.g()) +
-                        std::abs(pixel[2] - colour.b()) >
+                if (std::abs(pixel[0] - color.r()) + std::abs(pixel[1] - color.g()) +
+                        std::abs(pixel[2] - color.b()) >
                     60)
                     continue;
                 ++count;
@@ -57,10 +57,10 @@ struct Patch
                 right = std::max(right, x);
                 low = std::min(low, y);
                 high = std::max(high, y);
-                centre += osg::Vec2d(x + 0.5, y + 0.5);
+                center += osg::Vec2d(x + 0.5, y + 0.5);
             }
         }
-        if (count > 0) centre /= count;
+        if (count > 0) center /= count;
     }
 };
 
@@ -168,7 +168,7 @@ TEST_F(RenderGraph, BillboardsAreBent)
         ASSERT_GT(patch.count, 20);
         // Its foot's middle is its place, and it faces the eye from where it stands.
         EXPECT_NEAR(patch.low, foot.y(), 1.5);
-        EXPECT_NEAR(patch.centre.x(), foot.x(), 1.5);
+        EXPECT_NEAR(patch.center.x(), foot.x(), 1.5);
         const double width = patch.right - patch.left + 1;
         const double height = patch.high - patch.low + 1;
         if (mode == osg::Billboard::POINT_ROT_EYE)
@@ -177,9 +177,9 @@ TEST_F(RenderGraph, BillboardsAreBent)
         }
         // Elsewhere than without the bend.
         const Patch plain(*render(makePlain({billboard})), magenta);
-        EXPECT_GT((plain.centre - patch.centre).length(), 4.0);
+        EXPECT_GT((plain.center - patch.center).length(), 4.0);
         // It is picked where it is seen.
-        const auto hit = DeformedView(*scene, *viewer().getCamera()).pick(patch.centre.x(), patch.centre.y());
+        const auto hit = DeformedView(*scene, *viewer().getCamera()).pick(patch.center.x(), patch.center.y());
         ASSERT_TRUE(hit);
         EXPECT_EQ(hit->drawable, billboard->getDrawable(0));
     }
@@ -215,7 +215,7 @@ TEST_F(RenderGraph, LightPointsAreBent)
             const osg::Vec2d expected = pixelOf(*scene, place);
             const Patch patch(*render(scene), magenta);
             EXPECT_GT(patch.count, 5);
-            EXPECT_LT((patch.centre - expected).length(), 1.0) << patch.centre.x() << ' ' << patch.centre.y();
+            EXPECT_LT((patch.center - expected).length(), 1.0) << patch.center.x() << ' ' << patch.center.y();
         }
     }
     // All together, of two nodes that share their state, beside other geometry, frame after frame.
@@ -339,13 +339,13 @@ namespace
 {
 
 /// A sky behind all else, in the place of clearing: what a ClearNode that clears nothing is for.
-osg::ref_ptr<osg::Projection> makeSky(const osg::Vec4& colour)
+osg::ref_ptr<osg::Projection> makeSky(const osg::Vec4& color)
 {
     const osg::ref_ptr<osg::Geometry> square =
         osg::createTexturedQuadGeometry({-1.0f, -1.0f, 0.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 2.0f, 0.0f});
-    const osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array(1);
-    colours->front() = colour;
-    square->setColorArray(colours, osg::Array::BIND_OVERALL);
+    const osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(1);
+    colors->front() = color;
+    square->setColorArray(colors, osg::Array::BIND_OVERALL);
     square->setCullingActive(false);
     osg::StateSet* state = square->getOrCreateStateSet();
     state->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 1.0, 1.0));
@@ -448,11 +448,11 @@ TEST_F(RenderGraph, DrawablesAreNotTooSmallByThemselves)
     {
         osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array(1);
         vertices->front().set(10.0f, -80.0f, 4.0f);
-        osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array(1);
-        colours->front().set(1.0f, 0.0f, 1.0f, 1.0f);
+        osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(1);
+        colors->front().set(1.0f, 0.0f, 1.0f, 1.0f);
         osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
         geometry->setVertexArray(vertices);
-        geometry->setColorArray(colours, osg::Array::BIND_OVERALL);
+        geometry->setColorArray(colors, osg::Array::BIND_OVERALL);
         geometry->addPrimitiveSet(new osg::DrawArrays(GL_POINTS, 0, 1));
         return geometry;
     }();
@@ -546,14 +546,14 @@ TEST_F(LiftedGraph, NewArraysAreSeen)
         _closeUps->setPipeline(pipeline);
         draw();
         const osg::ref_ptr<osg::Image> before = draw();
-        // Another colour.
+        // Another color.
         const osg::ref_ptr<osg::Array> white = hills.getColorArray();
         osg::ref_ptr<osg::Vec4Array> red = new osg::Vec4Array(1);
         red->front().set(1.0f, 0.1f, 0.1f, 1.0f);
         apart(*red);
         hills.setColorArray(red, osg::Array::BIND_OVERALL);
         draw();
-        const osg::ref_ptr<osg::Image> coloured = draw();
+        const osg::ref_ptr<osg::Image> colored = draw();
         // Other heights.
         const osg::ref_ptr<osg::Array> former = hills.getVertexArray();
         const osg::ref_ptr<osg::Vec3Array> steeper =
@@ -579,9 +579,9 @@ TEST_F(LiftedGraph, NewArraysAreSeen)
         EXPECT_TRUE(same(*draw(), *moved));
         copy->setVertexArray(former);
         draw();
-        EXPECT_TRUE(same(*draw(), *coloured));
-        EXPECT_GT(differing(*before, *coloured), 0.1);
-        EXPECT_GT(differing(*moved, *coloured), 0.1);
+        EXPECT_TRUE(same(*draw(), *colored));
+        EXPECT_GT(differing(*before, *colored), 0.1);
+        EXPECT_GT(differing(*moved, *colored), 0.1);
         _scene->removeEffect(fresh);
         _scene->addEffect(_closeUps);
         _scene->setChild(0, &hills);

@@ -102,7 +102,7 @@ protected:
         return scene;
     }
 
-    /// The colour of the geometry where it is lit, much darker elsewhere; `lit` is GLSL, the share of the sun that shows.
+    /// The color of the geometry where it is lit, much darker elsewhere; `lit` is GLSL, the share of the sun that shows.
     static void paint(EffectScene& scene, const std::string& declarations, const std::string& lit)
     {
         const std::string vertex = "#version 330 compatibility\n"
@@ -119,7 +119,7 @@ protected:
                                    "    gl_Position = gl_ProjectionMatrix * geofx_vertex(eye);\n"
                                    "    gl_FrontColor = gl_Color;\n}\n";
         const std::string fragment = "#version 330 compatibility\n"
-                                     "vec4 geofx_fragment(vec4 colour, vec4 map);\n"
+                                     "vec4 geofx_fragment(vec4 color, vec4 map);\n"
                                      "uniform vec3 toLight;\n"
                                      "in vec4 inMap;\n"
                                      "in vec3 inWorld, normal;\n" +
@@ -128,8 +128,8 @@ protected:
                                      "    float sun = dot(normal, toLight) > 0.0 ? " +
                                      lit +
                                      " : 0.0;\n"
-                                     "    vec3 colour = gl_Color.rgb * (0.2 + 0.8 * sun);\n"
-                                     "    gl_FragColor = geofx_fragment(vec4(colour, 1.0), vec4(0.0));\n}\n";
+                                     "    vec3 color = gl_Color.rgb * (0.2 + 0.8 * sun);\n"
+                                     "    gl_FragColor = geofx_fragment(vec4(color, 1.0), vec4(0.0));\n}\n";
         osg::ref_ptr<osg::Program> program = new osg::Program;
         program->addShader(new osg::Shader(osg::Shader::VERTEX, vertex));
         program->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));

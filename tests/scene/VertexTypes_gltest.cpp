@@ -74,17 +74,17 @@ osg::ref_ptr<osg::DrawElementsUShort> makeStrips()
 
 osg::ref_ptr<osg::Geometry> makeGrid(osg::Array* vertices)
 {
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array;
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     for (int i = 0; i < (cells + 1) * (cells + 1); ++i)
     {
         const auto share = static_cast<float>(i % 97) / 96.0f;
-        colours->push_back({share, 1.0f - share, 0.3f + 0.5f * share, 1.0f});
+        colors->push_back({share, 1.0f - share, 0.3f + 0.5f * share, 1.0f});
     }
     osg::ref_ptr<osg::Geometry> grid = new osg::Geometry;
     grid->setUseDisplayList(false);
     grid->setUseVertexBufferObjects(true);
     grid->setVertexArray(vertices);
-    grid->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+    grid->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     grid->addPrimitiveSet(makeTriangles());
     grid->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
     return grid;

@@ -48,8 +48,8 @@ protected:
     static osg::ref_ptr<DeformationChain> chainOf(const Deformation& deformation, const ViewGeometry& view)
     {
         osg::ref_ptr<DeformationChain> chain = new DeformationChain;
-        const osg::ref_ptr<const DeformationFrame> frame = deformation.frame(view);
-        if (frame) chain->add(frame);
+        const osg::ref_ptr<const DeformationSnapshot> snapshot = deformation.snapshot(view);
+        if (snapshot) chain->add(snapshot);
         return chain;
     }
 
@@ -90,7 +90,7 @@ TEST_F(VisibilityTest, SmallThingsAreOutOfSightWhereTheyMayBe)
     const Ball small = {osg::Vec3d(0, 0, -1000), 1.9 * pixel};
     EXPECT_TRUE(_sight.outOfSight(small, mask));
     EXPECT_FALSE(_sight.outOfSight(small, mask, true));
-    EXPECT_FALSE(_sight.outOfSight({small.centre, 2.1 * pixel}, mask));
+    EXPECT_FALSE(_sight.outOfSight({small.center, 2.1 * pixel}, mask));
 }
 
 TEST_F(VisibilityTest, WhatReachesIntoThePictureIsInSight)
@@ -133,7 +133,7 @@ TEST_F(VisibilityTest, BoxesOutOfSightHaveNoPointInThePicture)
         int seen = 0, seenBefore = 0;
         for (int k = 0; k < 60; ++k)
         {
-            const osg::Vec3d point = box.centre + box.half[0] * random.uniform(-1.0, 1.0) +
+            const osg::Vec3d point = box.center + box.half[0] * random.uniform(-1.0, 1.0) +
                                      box.half[1] * random.uniform(-1.0, 1.0) +
                                      box.half[2] * random.uniform(-1.0, 1.0);
             seen += inPicture(chain->deform(point)) ? 1 : 0;

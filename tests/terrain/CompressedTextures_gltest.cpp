@@ -120,7 +120,7 @@ protected:
         const Difference difference = differenceOf(*small, *plain);
         EXPECT_LE(difference.mean, 1.5) << name;
         EXPECT_LE(difference.most, 24.0) << name;
-        // Blocks were decoded, and colours of many kinds are in sight.
+        // Blocks were decoded, and colors of many kinds are in sight.
         EXPECT_GT(difference.mean, 0.05) << name;
         RecordProperty(name, std::to_string(difference.mean) + " " + std::to_string(difference.most));
     }

@@ -21,7 +21,7 @@ using namespace geofx::test;
 namespace
 {
 
-// OSG keeps the centres of its bounding spheres in float: 0.25 m off along each axis, at geocentric
+// OSG keeps the centers of its bounding spheres in float: 0.25 m off along each axis, at geocentric
 // coordinates.
 constexpr double CENTER_ROUNDING = 0.44;
 
@@ -38,7 +38,7 @@ BuildOptions options(const std::vector<std::string>& dems, const std::filesystem
     return result;
 }
 
-/// Radius of the ball around the centre of a PagedLOD that holds its tile.
+/// Radius of the ball around the center of a PagedLOD that holds its tile.
 double radiusOf(const DatabaseTile& tile, const osg::Vec3d& center)
 {
     double radius = 0.0;

@@ -248,7 +248,7 @@ TEST(DatabaseNormals, CoarserLevelsAreSmooth)
     }
 }
 
-/// At the posts of a finest tile the texels say what its vertices do, also where colours are denser than posts.
+/// At the posts of a finest tile the texels say what its vertices do, also where colors are denser than posts.
 TEST(DatabaseNormals, LieWhereVerticesDo)
 {
     const TempDir folder;

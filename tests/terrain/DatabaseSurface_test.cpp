@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The textures of a built database: colours and classes at known places, and no seams between tiles.
+// The textures of a built database: colors and classes at known places, and no seams between tiles.
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <tools/DatabaseTexels.h>
@@ -49,7 +49,7 @@ TEST(DatabaseSurface, ImageryAtItsPlaces)
 {
     const TempDir folder;
     const auto dem = writeRelief(folder / "dem.tif", 100, 80, 10.0, 50.0, 0.001);
-    // Twice as fine as the elevation, over its western half; colours tell where they are.
+    // Twice as fine as the elevation, over its western half; colors tell where they are.
     const auto image = TestRaster(100, 160, 3, GDT_Byte)
                            .placed(10.0, 50.0, 0.0005, 0.0005)
                            .crs("EPSG:4326")
@@ -73,7 +73,7 @@ TEST(DatabaseSurface, ImageryAtItsPlaces)
                          ASSERT_NEAR(found[1], 1.5 * py, 2.1) << x << " " << y;
                          ASSERT_EQ(found[2], 5);
                      });
-    // East of the image the relief's own colours show.
+    // East of the image the relief's own colors show.
     forEachTexel(o.output, finest, 0,
                  [&](double x, double, const osg::Image& picture, int column, int row)
                  { ASSERT_TRUE(x < 10.0505 || colorAt(picture, column, row)[2] != 5) << x; });
@@ -180,8 +180,8 @@ TEST(DatabaseSurface, LandCover)
                  });
 }
 
-/// Colours of heights are smooth; those of pictures have detail that is seen from its edge.
-TEST(DatabaseSurface, AnisotropyFollowsTheColours)
+/// Colors of heights are smooth; those of pictures have detail that is seen from its edge.
+TEST(DatabaseSurface, AnisotropyFollowsTheColors)
 {
     const TempDir folder;
     const auto dem = writeRelief(folder / "dem.tif", 40, 40, 10.0, 50.0, 0.001);
@@ -234,7 +234,7 @@ TEST(DatabaseSurface, ReliefIsTintedByHeight)
                      const int pixel = static_cast<int>((x - 10.0) / 0.001);
                      const auto [place, fresh] = byColumn.emplace(pixel, color);
                      ASSERT_LE(distance(place->second, color), 60)
-                         << "the colour depends on more than the height";
+                         << "the color depends on more than the height";
                      ASSERT_TRUE(x > 10.0485 || color[2] > color[0]) << "the sea is not blue at " << x;
                      ASSERT_TRUE(x < 10.0515 || x > 10.06 || color[1] > color[2])
                          << "the lowland is not green at " << x;

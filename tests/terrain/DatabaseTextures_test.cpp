@@ -142,7 +142,7 @@ protected:
             .string();
 };
 
-TEST_F(DatabaseTextures, ColoursAndNormalsAreCompressedWithAllMipmaps)
+TEST_F(DatabaseTextures, ColorsAndNormalsAreCompressedWithAllMipmaps)
 {
     for (const int size : {0, 17, 19})
     {
@@ -300,7 +300,7 @@ TEST_F(DatabaseTextures, SizesAndErrorsAreThoseOfTheFiles)
               osg::Vec3d(color[0].largest, color[1].largest, color[2].largest));
 }
 
-/// Each mipmap's texels are means of those that they stand for, at the original's colours: none are lost, and none grow darker.
+/// Each mipmap's texels are means of those that they stand for, at the original's colors: none are lost, and none grow darker.
 TEST_F(DatabaseTextures, MipmapsAreMeans)
 {
     buildDatabase(options("plain", 41));
@@ -341,7 +341,7 @@ TEST_F(DatabaseTextures, MipmapsAreMeans)
                                 sum += off;
                             }
                     ++levels;
-                    // A block of a small mipmap has the colours of a large part of the tile.
+                    // A block of a small mipmap has the colors of a large part of the tile.
                     const bool large = mipmap->s() >= 16;
                     ASSERT_LT(error.rootMeanSquare(), large ? 4.0 : 12.0) << unit << ", level " << level;
                     ASSERT_NEAR(sum / error.texels, 0.0, large ? 0.3 : 5.0) << unit << ", level " << level;

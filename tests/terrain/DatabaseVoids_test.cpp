@@ -406,7 +406,7 @@ TEST_F(DatabaseVoids, AreNoWaterOfTheirOwn)
     EXPECT_GT(onLand, 300);
 }
 
-TEST_F(DatabaseVoids, GetTheColoursOfTheirHeights)
+TEST_F(DatabaseVoids, GetTheColorsOfTheirHeights)
 {
     Dem dem(100, 100, [](int c, int r) { return 300.0 + relief(c, r); });
     twentyAcross(50, 50).cut(dem);

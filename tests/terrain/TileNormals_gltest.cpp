@@ -95,18 +95,18 @@ osg::ref_ptr<osg::Geometry> makeMesh(int step)
     mesh->setTexCoordArray(0, coordinates);
     mesh->addPrimitiveSet(triangles);
 
-    osg::ref_ptr<osg::Image> colours = new osg::Image;
-    colours->allocateImage(posts + 1, posts + 1, 1, GL_RGB, GL_UNSIGNED_BYTE);
+    osg::ref_ptr<osg::Image> colors = new osg::Image;
+    colors->allocateImage(posts + 1, posts + 1, 1, GL_RGB, GL_UNSIGNED_BYTE);
     for (int row = 0; row <= posts; ++row)
         for (int column = 0; column <= posts; ++column)
         {
             unsigned char* texel =
-                colours->data(static_cast<unsigned int>(column), static_cast<unsigned int>(row));
+                colors->data(static_cast<unsigned int>(column), static_cast<unsigned int>(row));
             texel[0] = static_cast<unsigned char>(150 + 50 * std::sin(0.1 * column));
             texel[1] = static_cast<unsigned char>(170 + 40 * std::cos(0.08 * row));
             texel[2] = 140;
         }
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(colours);
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(colors);
     texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
     texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
     texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
@@ -138,7 +138,7 @@ void addNormals(osg::StateSet& state, int channels = 2, int reach = 1, const osg
     texture->setResizeNonPowerOfTwoHint(false);
     state.setTextureAttribute(2, texture);
     if (reach == 1) return;
-    // Texel by texel, the coordinates of the colours become those of more texels.
+    // Texel by texel, the coordinates of the colors become those of more texels.
     const double scale = (posts + 1.0) / texels;
     state.setTextureAttribute(2, new osg::TexMat(osg::Matrix::scale(scale, scale, 1.0)));
 }
@@ -355,7 +355,7 @@ TEST_F(TileLight, WhatTheDatabaseProgramSeesOfModes)
     EXPECT_TRUE(geofx::test::imagesMatch(*draw(Coarse, unlit), *draw(CoarseBare, unlit),
                                          {1.1f / 255, 0.0, 1.1f / 255}, "unlit"));
 
-    // A lamp that has been on keeps its colours in OpenGL.
+    // A lamp that has been on keeps its colors in OpenGL.
     draw(Full, sun);
     const auto dark = [](osg::Group&, osg::Group& scene)
     {
@@ -444,7 +444,7 @@ TEST_F(TileLight, UnderEffectsModesAreKnown)
 {
     const osg::ref_ptr<VerticalExaggeration> still = new VerticalExaggeration;
     still->setFactor(1.0000001);
-    // A lamp with a place, and one that is off though it has colours: the kit sees what is in force.
+    // A lamp with a place, and one that is off though it has colors: the kit sees what is in force.
     const auto bulb = [](osg::Group& above, osg::Group& scene)
     {
         addLamp(above, scene, 1, {1, -1, 2, 1});

@@ -14,14 +14,14 @@ namespace
 {
 
 osg::ref_ptr<osg::Geometry> makeMesh(osg::Vec3Array* vertices, osg::Vec3Array* normals,
-                                     osg::Vec4Array* colours, osg::DrawElements* triangles)
+                                     osg::Vec4Array* colors, osg::DrawElements* triangles)
 {
     osg::ref_ptr<osg::Geometry> mesh = new osg::Geometry;
     mesh->setUseDisplayList(false);
     mesh->setUseVertexBufferObjects(false);
     mesh->setVertexArray(vertices);
     mesh->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
-    mesh->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+    mesh->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     mesh->addPrimitiveSet(triangles);
     return mesh;
 }
@@ -45,7 +45,7 @@ osg::ref_ptr<osg::Geometry> BentGround::makeGround()
     constexpr int cells = 150;
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
     osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array;
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     osg::ref_ptr<osg::Vec2Array> coordinates = new osg::Vec2Array;
     osg::ref_ptr<osg::Vec2Array> more = new osg::Vec2Array;
     osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
@@ -60,8 +60,8 @@ osg::ref_ptr<osg::Geometry> BentGround::makeGround()
                              1.0f / 17 * std::sin(x / 13) * std::sin(y / 17), 1);
             normal.normalize();
             normals->push_back(normal);
-            colours->push_back({0.5f + 0.4f * std::sin(x / 9), 0.5f + 0.4f * std::sin(y / 7),
-                                0.4f + 0.3f * std::cos((x + y) / 11), 1});
+            colors->push_back({0.5f + 0.4f * std::sin(x / 9), 0.5f + 0.4f * std::sin(y / 7),
+                               0.4f + 0.3f * std::cos((x + y) / 11), 1});
             coordinates->push_back({x / 50 + 3, y / 50 + 3});
             more->push_back({x / 20 + 7, y / 20 + 7});
             if (i == cells || j == cells) continue;
@@ -71,7 +71,7 @@ osg::ref_ptr<osg::Geometry> BentGround::makeGround()
                 triangles->push_back(index);
         }
     }
-    osg::ref_ptr<osg::Geometry> ground = makeMesh(vertices, normals, colours, triangles);
+    osg::ref_ptr<osg::Geometry> ground = makeMesh(vertices, normals, colors, triangles);
     ground->setTexCoordArray(0, coordinates);
     ground->setTexCoordArray(1, more);
     return ground;
@@ -81,7 +81,7 @@ osg::ref_ptr<osg::Geometry> BentGround::makeBox(float size)
 {
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
     osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array;
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
     for (unsigned int face = 0; face < 6; ++face)
     {
@@ -98,13 +98,13 @@ osg::ref_ptr<osg::Geometry> BentGround::makeBox(float size)
             normal[axis] = sign;
             vertices->push_back({place.x() * size / 2, place.y() * size / 2, (place.z() + 1) * size});
             normals->push_back(normal);
-            colours->push_back(
+            colors->push_back(
                 {face < 2 ? 0.9f : 0.3f, face < 4 ? 0.7f : 0.9f, 0.2f + 0.15f * static_cast<float>(face), 1});
         }
         for (const int index : {0, 1, 2, 1, 3, 2})
             triangles->push_back(static_cast<GLushort>(first + index));
     }
-    return makeMesh(vertices, normals, colours, triangles);
+    return makeMesh(vertices, normals, colors, triangles);
 }
 
 osg::ref_ptr<osg::MatrixTransform> BentGround::makeBox(float size, const osg::Vec3d& place)

@@ -22,9 +22,9 @@ protected:
     BentGround() : GlFixture(WIDTH, HEIGHT) {}
     void SetUp() override;
 
-    /// A wavy ground in many colours; texture coordinates 0 … 6 on unit 0 and unit 1.
+    /// A wavy ground in many colors; texture coordinates 0 … 6 on unit 0 and unit 1.
     static osg::ref_ptr<osg::Geometry> makeGround();
-    /// A box with faces in different colours and its reference at the origin, `size` wide and twice as high.
+    /// A box with faces in different colors and its reference at the origin, `size` wide and twice as high.
     static osg::ref_ptr<osg::Geometry> makeBox(float size);
     /// The same somewhere.
     static osg::ref_ptr<osg::MatrixTransform> makeBox(float size, const osg::Vec3d& place);

@@ -27,7 +27,7 @@ inline int valueOfRgtc(const unsigned char* block, int texel)
     return code == 6 ? 0 : 255;
 }
 
-/// A colour of DXT1 (BC1): two ends of 5, 6 and 5 bits and two bits for each texel, as GL_EXT_texture_compression_s3tc has it.
+/// A color of DXT1 (BC1): two ends of 5, 6 and 5 bits and two bits for each texel, as GL_EXT_texture_compression_s3tc has it.
 inline std::array<int, 3> colorOfDxt1(const unsigned char* block, int texel)
 {
     const int ends[] = {block[0] | block[1] << 8, block[2] | block[3] << 8};

@@ -56,7 +56,7 @@ void randomizeStyle(CloseUp& closeUp, Random& random)
 {
     closeUp.setColor(
         osg::Vec3(osg::Vec3d(random.uniform(0.2, 1.0), random.uniform(0.2, 1.0), random.uniform(0.2, 1.0))));
-    const char* const layers[] = {"", "", "colour", "height", "normal", "class", "none of that name"};
+    const char* const layers[] = {"", "", "color", "height", "normal", "class", "none of that name"};
     closeUp.setSurface(layers[random.integer(0, 6)]);
     closeUp.setSurfaceOpacity(random.integer(0, 1) ? 1.0 : random.uniform(0.2, 1.0));
     closeUp.setLighting(static_cast<CloseUp::Lighting>(random.integer(0, 2)));
@@ -78,16 +78,16 @@ osg::ref_ptr<RegionOfInterest> randomRegion(Random& random, const CloseUpPlan& p
     constexpr double metresPerRadian = 6.37e6;
     if (plan.globe)
     {
-        const double east = off.x() / metresPerRadian / std::cos(plan.centre.y());
-        region->setGeodeticCentre(std::remainder(plan.centre.x() + east, 2.0 * osg::PI),
-                                  plan.centre.y() + off.y() / metresPerRadian);
+        const double east = off.x() / metresPerRadian / std::cos(plan.center.y());
+        region->setGeodeticCenter(std::remainder(plan.center.x() + east, 2.0 * osg::PI),
+                                  plan.center.y() + off.y() / metresPerRadian);
     }
     else
-        region->setCentre(plan.centre + off);
+        region->setCenter(plan.center + off);
     const double width = plan.size * random.logarithmic(0.4, 2.0);
     region->setSize(width, random.integer(0, 1) ? width : width * random.logarithmic(0.5, 2.0));
     region->setHeading(random.integer(0, 1) ? random.uniform(-3.0, 3.0) : 0.0);
-    region->setBase(random.integer(0, 1) ? 0.0 : random.uniform(-0.1, 0.1) * plan.size);
+    region->setBaseHeight(random.integer(0, 1) ? 0.0 : random.uniform(-0.1, 0.1) * plan.size);
     const auto shape = static_cast<RegionOfInterest::Shape>(random.integer(0, 5));
     if (shape == RegionOfInterest::IMAGE) region->setImage(makeMaskImage(random));
     if (shape == RegionOfInterest::POLYGON)
@@ -128,16 +128,16 @@ osg::ref_ptr<SurfaceData> makeSurfaceData(const CloseUpPlan& plan, double half, 
 {
     osg::ref_ptr<SurfaceData> data = new SurfaceData;
     if (plan.globe)
-        data->setGeodeticOrigin(plan.centre.x(), plan.centre.y());
+        data->setGeodeticOrigin(plan.center.x(), plan.center.y());
     else
-        data->setOrigin(plan.centre);
+        data->setOrigin(plan.center);
     data->setRectangle({-half, -half}, {half, half});
     const auto value = [](double amount)
     {
         const auto rounded = static_cast<float>(amount);
         return osg::Vec4(rounded, rounded, rounded, 1.0f);
     };
-    data->addLayer("colour", SurfaceData::COLOR,
+    data->addLayer("color", SurfaceData::COLOR,
                    makeLayer(side, [](double u, double v)
                              { return osg::Vec4(osg::Vec4d(u, v, 0.5 + 0.5 * std::sin(20.0 * u), 1.0)); }));
     data->addLayer("height", SurfaceData::HEIGHT,

@@ -12,8 +12,8 @@ namespace geofx::test
 struct CloseUpPlan
 {
     bool globe = false;
-    osg::Vec2d centre;    ///< metres; longitude and latitude, radians, on a globe
-    double reach = 800.0; ///< of the regions' centres to all four sides, metres
+    osg::Vec2d center;    ///< metres; longitude and latitude, radians, on a globe
+    double reach = 800.0; ///< of the regions' centers to all four sides, metres
     double size = 500.0;  ///< of a region as a rule, metres
     double rise = 400.0;  ///< of a close-up above its region as a rule, metres
     bool anchors = true;
@@ -25,7 +25,7 @@ osg::ref_ptr<osgGeoFX::RegionOfInterest> randomRegion(Random& random, const Clos
 /// Every orientation, edge, anchor and style; most have sensible numbers.
 osg::ref_ptr<osgGeoFX::CloseUp> randomCloseUp(Random& random, const CloseUpPlan& plan);
 
-/// "colour", "height", "normal" and "class" over ± half metres about an origin as the plan has it.
+/// "color", "height", "normal" and "class" over ± half metres about an origin as the plan has it.
 osg::ref_ptr<osgGeoFX::SurfaceData> makeSurfaceData(const CloseUpPlan& plan, double half, int side = 64);
 
 } // namespace geofx::test

@@ -102,7 +102,7 @@ osg::ref_ptr<osg::Geometry> CloseUpStage::makeHills(double half, int cells)
     hills->setVertexArray(vertices);
     hills->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
     hills->setTexCoordArray(0, coordinates);
-    // OSG's default material takes the colour, and without one that of whatever was drawn last.
+    // OSG's default material takes the color, and without one that of whatever was drawn last.
     osg::ref_ptr<osg::Vec4Array> white = new osg::Vec4Array(1);
     white->front().set(1.0f, 1.0f, 1.0f, 1.0f);
     hills->setColorArray(white, osg::Array::BIND_OVERALL);
@@ -113,16 +113,16 @@ osg::ref_ptr<osg::Geometry> CloseUpStage::makeHills(double half, int cells)
 osg::ref_ptr<osg::Geometry> CloseUpStage::makeHouses()
 {
     TownPlan plan;
-    plan.centre = osg::Vec2d(-200.0, 100.0);
+    plan.center = osg::Vec2d(-200.0, 100.0);
     plan.blocksAcross = plan.blocksAlong = 5;
     plan.height = groundHeight;
     return makeTown(plan);
 }
 
-osg::ref_ptr<CloseUp> CloseUpStage::makeCloseUp(const osg::Vec2d& centre, double size, double rise)
+osg::ref_ptr<CloseUp> CloseUpStage::makeCloseUp(const osg::Vec2d& center, double size, double rise)
 {
     osg::ref_ptr<CloseUp> closeUp = new CloseUp;
-    closeUp->getRegion()->setCentre(centre);
+    closeUp->getRegion()->setCenter(center);
     closeUp->getRegion()->setSize(size, size);
     closeUp->getRegion()->setMaskSide(64);
     closeUp->setOffset({0.0, 0.0, rise});

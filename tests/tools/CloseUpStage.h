@@ -28,7 +28,7 @@ protected:
     static osg::ref_ptr<osg::Geometry> makeHills(double half = 1000.0, int cells = 40);
     /// Houses on a part of the ground.
     static osg::ref_ptr<osg::Geometry> makeHouses();
-    static osg::ref_ptr<osgGeoFX::CloseUp> makeCloseUp(const osg::Vec2d& centre, double size = 400.0,
+    static osg::ref_ptr<osgGeoFX::CloseUp> makeCloseUp(const osg::Vec2d& center, double size = 400.0,
                                                        double rise = 300.0);
 
     void look(const osg::Vec3d& eye, const osg::Vec3d& at, double angle = 45.0);

@@ -36,7 +36,7 @@ struct DatabaseTile
     {
         osg::ref_ptr<osg::LOD> block;
         osg::ref_ptr<osg::Geometry> geometry;
-        double from = 0.0, to = 0.0; ///< metres from the block's centre
+        double from = 0.0, to = 0.0; ///< metres from the block's center
         bool smallest = false;       ///< of a block that no finer ones stand in for
         std::vector<Triangle> ground;
         std::vector<Wall> walls;
@@ -61,7 +61,7 @@ struct DatabaseTile
     osg::Vec3d world(const osg::Vec3d& place) const { return place * transform->getMatrix(); }
     /// Where a texture coordinate lies on the tile, 0 to 1 from its south-west; nothing without a texture.
     osg::Vec2d share(const osg::Vec2& place) const;
-    /// Image of a texture unit: 0 colour, 1 land cover, 2 normals, 7 what lies on the ground; null without.
+    /// Image of a texture unit: 0 color, 1 land cover, 2 normals, 7 what lies on the ground; null without.
     const osg::Image* image(unsigned int unit) const;
 };
 

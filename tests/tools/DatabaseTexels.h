@@ -71,9 +71,9 @@ inline void expectNoSeams(const std::string& folder, unsigned int unit)
                     ASSERT_EQ(place->second, color)
                         << tile.transform->getName() << ", texel " << column << " " << row;
                 }
-            // Texel centres lie on the tile's edges.
+            // Texel centers lie on the tile's edges.
             float low = 1.0f, high = 0.0f;
-            // The unit's coordinates are those of the colours, or follow from them by a matrix.
+            // The unit's coordinates are those of the colors, or follow from them by a matrix.
             const auto* matrix = dynamic_cast<const osg::TexMat*>(
                 tile.geometry->getStateSet()->getTextureAttribute(unit, osg::StateAttribute::TEXMAT));
             for (const osg::Vec2& color : tile.places)

@@ -32,7 +32,7 @@ protected:
     void SetUp() override;
     void TearDown() override;
 
-    /// Draws with its camera: view, projection and clear colour are the test's to set.
+    /// Draws with its camera: view, projection and clear color are the test's to set.
     osgViewer::Viewer& viewer() { return *_viewer; }
     osgGeoFX::EglGraphicsContext& context() { return *_context; }
     NotifyWatch& watch() { return *_watch; }

@@ -27,7 +27,7 @@ osg::ref_ptr<osg::Program> makeProgram(const std::string& body)
     program->addShader(new osg::Shader(osg::Shader::VERTEX, "#version 330 compatibility\n"
                                                             "void main() { gl_Position = gl_Vertex; }\n"));
     program->addShader(new osg::Shader(osg::Shader::FRAGMENT, "#version 330 compatibility\n"
-                                                              "out vec4 colour;\n"
+                                                              "out vec4 color;\n"
                                                               "void main() { " +
                                                                   body + " }\n"));
     return program;
@@ -40,7 +40,7 @@ using GlMessages = geofx::test::GlFixture;
 TEST_F(GlMessages, NoneForACorrectScene)
 {
     const osg::ref_ptr<osg::Geometry> quad = makeQuad();
-    quad->getOrCreateStateSet()->setAttributeAndModes(makeProgram("colour = vec4(1.0, 0.5, 0.0, 1.0);"));
+    quad->getOrCreateStateSet()->setAttributeAndModes(makeProgram("color = vec4(1.0, 0.5, 0.0, 1.0);"));
     const osg::ref_ptr<osg::Image> image = render(quad);
     ASSERT_TRUE(image.valid());
     osg::ref_ptr<osg::Image> expected = new osg::Image;
@@ -69,7 +69,7 @@ TEST_F(GlMessages, NoticesAnErrorOfOpenGl)
 TEST_F(GlMessages, NoticesAShaderThatDoesNotCompile)
 {
     const osg::ref_ptr<osg::Geometry> quad = makeQuad();
-    quad->getOrCreateStateSet()->setAttributeAndModes(makeProgram("colour = no_such_function();"));
+    quad->getOrCreateStateSet()->setAttributeAndModes(makeProgram("color = no_such_function();"));
     const std::vector<std::string> messages = watch().messagesOf([&] { render(quad); });
     ASSERT_FALSE(messages.empty());
     std::string all;
@@ -90,7 +90,7 @@ TEST_F(GlMessages, NoticesAWarningOfOsgWhileItDraws)
         texture->setImage(texture->getNumImages(), image);
     }
     const osg::ref_ptr<osg::Geometry> quad = makeQuad();
-    quad->getOrCreateStateSet()->setAttributeAndModes(makeProgram("colour = vec4(1.0);"));
+    quad->getOrCreateStateSet()->setAttributeAndModes(makeProgram("color = vec4(1.0);"));
     quad->getOrCreateStateSet()->setTextureAttribute(0, texture);
     EXPECT_NONFATAL_FAILURE(render(quad), "OSG: ");
 }

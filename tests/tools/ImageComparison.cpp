@@ -65,8 +65,8 @@ public:
     {
         const std::string path = _folder / (_prefix + what + ".png");
         // PNG has 8 or 16 bits; alpha of a difference would hide it, and that of a picture matters little.
-        const int colours = std::min(image.nchannels(), 3);
-        ImageBuf picture = ImageBufAlgo::channels(image, colours == 2 ? 1 : colours, {});
+        const int colors = std::min(image.nchannels(), 3);
+        ImageBuf picture = ImageBufAlgo::channels(image, colors == 2 ? 1 : colors, {});
         picture.set_write_format(OIIO::TypeUInt8);
         const bool written = picture.write(path);
         _result << "\n  " << what << ": " << path

@@ -113,7 +113,7 @@ osg::ref_ptr<osg::Geometry> LookFixture::makeWaves()
     constexpr int cells = 24;
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
     osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4Array> colours = new osg::Vec4Array;
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     osg::ref_ptr<osg::Vec2Array> coordinates = new osg::Vec2Array;
     osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
     for (int j = 0; j <= cells; ++j)
@@ -126,7 +126,7 @@ osg::ref_ptr<osg::Geometry> LookFixture::makeWaves()
             osg::Vec3 normal(-0.8f * std::cos(x) * std::cos(y) - 0.05f, 0.8f * std::sin(x) * std::sin(y), 1);
             normal.normalize();
             normals->push_back(normal);
-            colours->push_back({0.5f + x / 8, 0.5f + y / 8, 0.5f - x / 16, 0.6f + y / 12});
+            colors->push_back({0.5f + x / 8, 0.5f + y / 8, 0.5f - x / 16, 0.6f + y / 12});
             coordinates->push_back({0.3f * x, 0.3f * y});
             if (i == cells || j == cells) continue;
             const auto a = static_cast<GLushort>(j * (cells + 1) + i);
@@ -140,7 +140,7 @@ osg::ref_ptr<osg::Geometry> LookFixture::makeWaves()
     waves->setUseVertexBufferObjects(false);
     waves->setVertexArray(vertices);
     waves->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
-    waves->setColorArray(colours, osg::Array::BIND_PER_VERTEX);
+    waves->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     for (unsigned int unit = 0; unit < 4; ++unit)
         waves->setTexCoordArray(unit, coordinates);
     waves->addPrimitiveSet(triangles);

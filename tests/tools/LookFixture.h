@@ -45,7 +45,7 @@ protected:
     static void expectSame(const osg::Image& actual, const osg::Image& expected, int tolerance,
                            const std::string& name);
 
-    /// The square, with normals, colours and coordinates for four textures.
+    /// The square, with normals, colors and coordinates for four textures.
     static osg::ref_ptr<osg::Geometry> makeWaves();
     /// The same vertices as another primitive.
     static osg::ref_ptr<osg::Geometry> makeWaves(GLenum primitive);

@@ -51,14 +51,14 @@ glm::dvec2 slope(const Projection& project, const Vector& at, const Vector& step
 
 constexpr double weights = 256.0; // of filters in bytes
 
-/// Between two colours; those of filters in bytes are bytes again.
+/// Between two colors; those of filters in bytes are bytes again.
 glm::dvec4 between(const glm::dvec4& a, const glm::dvec4& b, double weight, bool inBytes)
 {
     const glm::dvec4 result = glm::mix(a, b, weight);
     return inBytes ? glm::floor(result + 0.5) : result;
 }
 
-/// A colour between four texels of one level, at texel coordinates of level 0; 0 to 255.
+/// A color between four texels of one level, at texel coordinates of level 0; 0 to 255.
 glm::dvec4 bilinear(const LayerPixels& pixels, int level, const glm::dvec2& at, bool inBytes)
 {
     const glm::dvec2 there = at / std::exp2(level) - 0.5;
@@ -117,16 +117,16 @@ MappingEvaluator::Sample MappingEvaluator::sample(const Layer& layer, const glm:
     const glm::dvec2 size(pixels.width, pixels.height);
     const glsl::geofx_Filter how = glsl::geofx_filter(across * size, up * size, mostProbes,
                                                       static_cast<double>(pixels.levels.size() - 1));
-    const bool colour = layer.data->getKind() == DataLayer::COLOR;
+    const bool color = layer.data->getKind() == DataLayer::COLOR;
     const bool smooth = layer.data->getSmooth() && layer.data->getKind() != DataLayer::CLASS;
     const double level = smooth ? how.level : std::floor(how.level + 0.5);
     const glm::dvec2 first = uv * size - how.step * (0.5 * (how.probes - 1.0));
-    glm::dvec4 colours(0.0);
+    glm::dvec4 colors(0.0);
     glm::dvec2 values(0.0);
     for (double i = 0.0; i < how.probes; ++i)
     {
         glm::dvec2 at = glm::clamp(first + i * how.step, glm::dvec2(0.0), size);
-        if (colour)
+        if (color)
         {
             if (!smooth) at = (glm::floor(at * std::exp2(-level)) + 0.5) * std::exp2(level);
             const glm::dvec2 inset(0.5 * std::exp2(std::ceil(level)));
@@ -138,7 +138,7 @@ MappingEvaluator::Sample MappingEvaluator::sample(const Layer& layer, const glm:
             const glm::dvec4 texel =
                 between(bilinear(pixels, low, there, _filtersInBytes),
                         bilinear(pixels, high, there, _filtersInBytes), weight, _filtersInBytes);
-            colours += glm::dvec4(glm::dvec3(texel) * texel.a / 255.0, texel.a) / 255.0;
+            colors += glm::dvec4(glm::dvec3(texel) * texel.a / 255.0, texel.a) / 255.0;
             continue;
         }
         const int whole = static_cast<int>(std::floor(level + 0.5));
@@ -156,9 +156,9 @@ MappingEvaluator::Sample MappingEvaluator::sample(const Layer& layer, const glm:
         }
     }
     Sample result;
-    if (colour)
+    if (color)
     {
-        result.colour = glm::dvec4(glm::dvec3(colours) / std::max(colours.a, 1e-6), colours.a / how.probes);
+        result.color = glm::dvec4(glm::dvec3(colors) / std::max(colors.a, 1e-6), colors.a / how.probes);
     }
     else
     {
@@ -192,7 +192,7 @@ MappingEvaluator::Sample MappingEvaluator::sampleClasses(const Layer& layer, con
         count += 1.0;
     }
     Sample result;
-    result.colour = glm::dvec4(glm::dvec3(sum) / std::max(sum.a, 1e-6), sum.a / std::max(count, 1.0));
+    result.color = glm::dvec4(glm::dvec3(sum) / std::max(sum.a, 1e-6), sum.a / std::max(count, 1.0));
     result.cover = count / how.probes;
     return result;
 }
@@ -201,8 +201,8 @@ bool MappingEvaluator::coordinates(const ProjectiveMapping& mapping, const Fragm
                                    glm::dvec2& across, glm::dvec2& up, double& pixels) const
 {
     const bool pinhole = mapping.getProjector() == ProjectiveMapping::PINHOLE;
-    const osg::Vec2d centre = mapping.getCentre();
-    const glm::dvec2 o(centre.x(), centre.y());
+    const osg::Vec2d center = mapping.getCenter();
+    const glm::dvec2 o(center.x(), center.y());
     const glm::dvec3 way = fragment.eye - glm::dvec3(o, mapping.getHeight());
     const double metres = std::max(glm::length(way) * _pixel, 1e-9);
     // Of a camera, what its range covers.
@@ -304,38 +304,38 @@ glm::dvec4 MappingEvaluator::apply(const ProjectiveMapping& mapping, const Fragm
     if (strength <= 0.0) return scene;
 
     const Layer* layer = layerOf(mapping.getLayer());
-    const bool colours = layer && layer->data->getKind() == DataLayer::COLOR;
+    const bool colors = layer && layer->data->getKind() == DataLayer::COLOR;
     Sample found;
     const bool classes = layer && layer->data->getKind() == DataLayer::CLASS;
-    const bool colouredClasses = classes && transfer.getSource() == ColorTransfer::TABLE;
-    if (colouredClasses)
+    const bool coloredClasses = classes && transfer.getSource() == ColorTransfer::TABLE;
+    if (coloredClasses)
         found = sampleClasses(*layer, *mapping.getTable(), uv, across, up);
     else if (layer)
         found = sample(*layer, uv, across, up,
-                       colours   ? _anisotropy
+                       colors    ? _anisotropy
                        : classes ? 1.0
                                  : std::min(_anisotropy, 4.0));
     if (found.cover <= 0.0) return scene;
     const double low = transfer.getLowValue();
     const double high = transfer.getHighValue();
-    const double value = layer && !colours ? found.value : grey(glm::dvec3(found.colour));
+    const double value = layer && !colors ? found.value : grey(glm::dvec3(found.color));
     const osg::Vec4d given = transfer.getConstant();
     const glm::dvec4 constant(given.x(), given.y(), given.z(), given.w());
-    glm::dvec4 source = found.colour;
+    glm::dvec4 source = found.color;
     switch (transfer.getSource())
     {
     case ColorTransfer::LAYER:
-        if (layer && !colours)
+        if (layer && !colors)
             source = glm::dvec4(glm::dvec3(glm::clamp((value - low) / (high - low), 0.0, 1.0)), 1.0);
         break;
     case ColorTransfer::TABLE:
     {
-        if (colouredClasses) break;
+        if (coloredClasses) break;
         // As the table has it, without the texels between.
         const bool exact = mapping.getTable()->getMode() == ColorTable::EXACT;
         if (exact && (value < low || value > high)) return scene;
         const osg::Vec4 entry = mapping.getTable()->at(std::clamp(value, low, high));
-        const double alpha = colours ? source.a : 1.0;
+        const double alpha = colors ? source.a : 1.0;
         source = {entry.r(), entry.g(), entry.b(), static_cast<double>(entry.a()) * alpha};
         break;
     }
@@ -363,7 +363,7 @@ glm::dvec4 MappingEvaluator::apply(const ProjectiveMapping& mapping, const Fragm
         const bool maskOfClasses = mask->data->getKind() == DataLayer::CLASS;
         const Sample share = sample(*mask, uv, across, up, maskOfClasses ? 1.0 : std::min(_anisotropy, 4.0));
         const double shown = mask->data->getKind() == DataLayer::COLOR
-                                 ? grey(glm::dvec3(share.colour)) * share.colour.a
+                                 ? grey(glm::dvec3(share.color)) * share.color.a
                                  : share.value;
         source.a = share.cover * glsl::geofx_ramp(shown, transfer.getRampLow(), transfer.getRampHigh());
         break;
@@ -380,7 +380,7 @@ glm::dvec4 MappingEvaluator::apply(const ProjectiveMapping& mapping, const Fragm
     return glm::dvec4(glm::mix(glm::dvec3(scene), blended, strength), scene.a);
 }
 
-glm::dvec4 MappingEvaluator::colour(const Fragment& fragment, const glm::dvec4& scene) const
+glm::dvec4 MappingEvaluator::color(const Fragment& fragment, const glm::dvec4& scene) const
 {
     glm::dvec4 result = scene;
     for (const ProjectiveMapping* mapping : _mappings)

@@ -29,13 +29,13 @@ public:
         double, a stack of pictures that each amplify what is below them is off by more than its rounding. */
     MappingEvaluator(const osgGeoFX::ProjectiveMappings& mappings, double pixel, bool filtersInBytes);
 
-    /// The scene's colour under all mappings. Negative red where the fragment is discarded.
-    glm::dvec4 colour(const Fragment& fragment, const glm::dvec4& scene) const;
+    /// The scene's color under all mappings. Negative red where the fragment is discarded.
+    glm::dvec4 color(const Fragment& fragment, const glm::dvec4& scene) const;
 
 private:
     struct Sample
     {
-        glm::dvec4 colour{1.0};
+        glm::dvec4 color{1.0};
         double value = 0.0;
         double cover = 1.0;
     };

@@ -45,40 +45,40 @@ osg::ref_ptr<osg::Geometry> MappingStage::makeGround(double half, int cells)
                 triangles->push_back(index);
         }
     }
-    osg::ref_ptr<osg::Vec4Array> colour = new osg::Vec4Array;
-    colour->push_back(osg::Vec4(osg::Vec3(groundColour()), 1.0f));
+    osg::ref_ptr<osg::Vec4Array> color = new osg::Vec4Array;
+    color->push_back(osg::Vec4(osg::Vec3(groundColor()), 1.0f));
     osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
     ground->setUseDisplayList(false);
     ground->setUseVertexBufferObjects(false);
     ground->setVertexArray(vertices);
-    ground->setColorArray(colour, osg::Array::BIND_OVERALL);
+    ground->setColorArray(color, osg::Array::BIND_OVERALL);
     ground->addPrimitiveSet(triangles);
     return ground;
 }
 
-osg::ref_ptr<ProjectiveMapping> MappingStage::makeSolid(const osg::Vec2d& centre, double half,
-                                                        const osg::Vec3d& colour)
+osg::ref_ptr<ProjectiveMapping> MappingStage::makeSolid(const osg::Vec2d& center, double half,
+                                                        const osg::Vec3d& color)
 {
     osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
-    mapping->setRectangle(centre, half, half);
+    mapping->setRectangle(center, half, half);
     mapping->setSoftEdges(false);
     mapping->getTransfer()->setSource(ColorTransfer::CONSTANT);
-    mapping->getTransfer()->setConstant(osg::Vec4d(colour, 1.0));
+    mapping->getTransfer()->setConstant(osg::Vec4d(color, 1.0));
     return mapping;
 }
 
-osg::ref_ptr<ProjectiveMapping> MappingStage::makePicture(const osg::Vec2d& centre, double half,
+osg::ref_ptr<ProjectiveMapping> MappingStage::makePicture(const osg::Vec2d& center, double half,
                                                           osg::Image* image)
 {
     osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
-    mapping->setRectangle(centre, half, half);
+    mapping->setRectangle(center, half, half);
     mapping->setSoftEdges(false);
     mapping->setLayer(new DataLayer(image));
     return mapping;
 }
 
 osg::ref_ptr<osg::Image> MappingStage::makeImage(int width, int height,
-                                                 const std::function<osg::Vec4d(double u, double v)>& colour)
+                                                 const std::function<osg::Vec4d(double u, double v)>& color)
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(width, height, 1, GL_RGBA, GL_UNSIGNED_BYTE);
@@ -86,7 +86,7 @@ osg::ref_ptr<osg::Image> MappingStage::makeImage(int width, int height,
     {
         for (int x = 0; x < width; ++x)
         {
-            const osg::Vec4d rgba = colour((x + 0.5) / width, (y + 0.5) / height);
+            const osg::Vec4d rgba = color((x + 0.5) / width, (y + 0.5) / height);
             unsigned char* texel = image->data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
             for (int c = 0; c < 4; ++c)
                 texel[c] = static_cast<unsigned char>(std::lround(255.0 * rgba[c]));
@@ -95,12 +95,12 @@ osg::ref_ptr<osg::Image> MappingStage::makeImage(int width, int height,
     return image;
 }
 
-osg::ref_ptr<osg::Image> MappingStage::makeImage(int side, const osg::Vec3d& colour)
+osg::ref_ptr<osg::Image> MappingStage::makeImage(int side, const osg::Vec3d& color)
 {
-    return makeImage(side, side, [&](double, double) { return osg::Vec4d(colour, 1.0); });
+    return makeImage(side, side, [&](double, double) { return osg::Vec4d(color, 1.0); });
 }
 
-osg::Vec3d MappingStage::colourOf(int number)
+osg::Vec3d MappingStage::colorOf(int number)
 {
     // Steps that have no factor in common with the numbers of shades.
     return {(60 + (number * 37) % 190) / 255.0, (90 + (number * 53) % 160) / 255.0,

@@ -22,20 +22,20 @@ protected:
     void SetUp() override;
 
     static osg::ref_ptr<osg::Geometry> makeGround(double half = 1000.0, int cells = 8);
-    static osg::Vec3d groundColour() { return {51 / 255.0, 26 / 255.0, 26 / 255.0}; }
+    static osg::Vec3d groundColor() { return {51 / 255.0, 26 / 255.0, 26 / 255.0}; }
 
-    /// A square of one colour with hard edges.
-    static osg::ref_ptr<osgGeoFX::ProjectiveMapping> makeSolid(const osg::Vec2d& centre, double half,
-                                                               const osg::Vec3d& colour);
+    /// A square of one color with hard edges.
+    static osg::ref_ptr<osgGeoFX::ProjectiveMapping> makeSolid(const osg::Vec2d& center, double half,
+                                                               const osg::Vec3d& color);
     /// A square with a picture and hard edges.
-    static osg::ref_ptr<osgGeoFX::ProjectiveMapping> makePicture(const osg::Vec2d& centre, double half,
+    static osg::ref_ptr<osgGeoFX::ProjectiveMapping> makePicture(const osg::Vec2d& center, double half,
                                                                  osg::Image* image);
     /// RGBA bytes; the function gets the texels' middles, 0…1.
     static osg::ref_ptr<osg::Image> makeImage(int width, int height,
-                                              const std::function<osg::Vec4d(double u, double v)>& colour);
-    static osg::ref_ptr<osg::Image> makeImage(int side, const osg::Vec3d& colour);
-    /// A colour of its own for each number, far from the ground's.
-    static osg::Vec3d colourOf(int number);
+                                              const std::function<osg::Vec4d(double u, double v)>& color);
+    static osg::ref_ptr<osg::Image> makeImage(int side, const osg::Vec3d& color);
+    /// A color of its own for each number, far from the ground's.
+    static osg::Vec3d colorOf(int number);
 
     /// Straight down and without perspective; a pixel spans so many metres, the heading is clockwise from north.
     void lookDown(const osg::Vec2d& at, double pixel, double heading = 0.0);

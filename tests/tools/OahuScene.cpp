@@ -22,7 +22,7 @@ namespace
 void randomizeBend(PerspectiveBend& bend, Random& random)
 {
     bend.setCurve(static_cast<PerspectiveBend::Curve>(random.integer(0, 2)));
-    bend.setPlaneElevation(random.integer(0, 2) == 0 ? random.uniform(-100.0, 800.0) : 0.0);
+    bend.setPlaneHeight(random.integer(0, 2) == 0 ? random.uniform(-100.0, 800.0) : 0.0);
     bend.setTransitionDetail(random.uniform(1.0, 4.0));
     bend.setContextDetail(random.uniform(0.5, 1.5));
 }
@@ -88,7 +88,7 @@ osg::Matrixd randomOahuView(Random& random, const Georeference& reference)
     ViewPoint point;
     point.longitude = osg::DegreesToRadians(random.uniform(-158.3, -157.6));
     point.latitude = osg::DegreesToRadians(random.uniform(21.2, 21.75));
-    point.altitude = random.logarithmic(100.0, 30000.0);
+    point.height = random.logarithmic(100.0, 30000.0);
     point.heading = random.uniform(0.0, 2.0 * osg::PI);
     point.pitch = osg::DegreesToRadians(random.integer(0, 9) == 0 ? -90.0 : random.uniform(-80.0, 5.0));
     point.roll = random.integer(0, 4) == 0 ? random.uniform(-1.0, 1.0) : 0.0;

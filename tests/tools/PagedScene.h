@@ -11,7 +11,7 @@ namespace geofx::test
 
 /** A small paged quadtree as osggeofx_build writes one, for tests of paging that need no rasters.
 
-    A flat square of 4 × 4 km around the origin of a local frame, each level in a colour of its own: level 0 red
+    A flat square of 4 × 4 km around the origin of a local frame, each level in a color of its own: level 0 red
     (one tile), 1 green (2 × 2), 2 blue (4 × 4), unlit. Level 1 comes nearer than 100 km, level 2 nearer than
     20 km. The files below the folder: terrain.osgb, tiles/0_0_0.osgb (the four tiles of level 1) and
     tiles/1_X_Y.osgb (four tiles of level 2 each), X eastwards and Y northwards. */

@@ -17,28 +17,6 @@
 namespace geofx::test
 {
 
-/// The classes with properties, by the names of elements in scene files; effects come first.
-inline std::vector<std::string> holderKinds()
-{
-    std::vector<std::string> kinds = osgGeoFX::effectKinds();
-    kinds.insert(kinds.end(), {"projectiveMapping", "dataLayer", "colorTransfer", "closeUp",
-                               "regionOfInterest", "anchor", "surfaceData"});
-    return kinds;
-}
-
-/// An object with its defaults.
-inline osg::ref_ptr<osgGeoFX::PropertyHolder> createHolder(const std::string& kind)
-{
-    if (kind == "projectiveMapping") return new osgGeoFX::ProjectiveMapping;
-    if (kind == "dataLayer") return new osgGeoFX::DataLayer;
-    if (kind == "colorTransfer") return new osgGeoFX::ColorTransfer;
-    if (kind == "closeUp") return new osgGeoFX::CloseUp;
-    if (kind == "regionOfInterest") return new osgGeoFX::RegionOfInterest;
-    if (kind == "anchor") return new osgGeoFX::Anchor;
-    if (kind == "surfaceData") return new osgGeoFX::SurfaceData;
-    return osgGeoFX::createEffect(kind);
-}
-
 /// What a property needs beside it to take any value but its default: another one's value.
 inline const std::map<std::string, std::pair<std::string, double>>& companions()
 {
@@ -53,7 +31,7 @@ inline const std::map<std::string, std::pair<std::string, double>>& companions()
 inline osg::ref_ptr<osgGeoFX::PropertyHolder> createHolder(const std::string& kind,
                                                            const std::string& property)
 {
-    osg::ref_ptr<osgGeoFX::PropertyHolder> holder = createHolder(kind);
+    osg::ref_ptr<osgGeoFX::PropertyHolder> holder = osgGeoFX::createPropertyHolder(kind);
     const auto companion = companions().find(property);
     if (companion == companions().end()) return holder;
     std::string error;
@@ -70,7 +48,7 @@ struct PropertyRow
     const osgGeoFX::Property& property() const
     {
         // The table is a static one of the class.
-        return *createHolder(kind)->property(name);
+        return *osgGeoFX::createPropertyHolder(kind)->property(name);
     }
     osg::ref_ptr<osgGeoFX::PropertyHolder> create() const { return createHolder(kind, name); }
 };
@@ -84,8 +62,8 @@ inline std::ostream& operator<<(std::ostream& stream, const PropertyRow& row)
 inline std::vector<PropertyRow> allProperties()
 {
     std::vector<PropertyRow> rows;
-    for (const std::string& kind : holderKinds())
-        for (const osgGeoFX::Property& property : createHolder(kind)->properties())
+    for (const std::string& kind : osgGeoFX::propertyHolderKinds())
+        for (const osgGeoFX::Property& property : osgGeoFX::createPropertyHolder(kind)->properties())
             rows.push_back({kind, property.name});
     return rows;
 }
@@ -93,7 +71,7 @@ inline std::vector<PropertyRow> allProperties()
 inline bool isWhole(const osgGeoFX::Property& property)
 {
     using Kind = osgGeoFX::Property::Kind;
-    return property.kind == Kind::Flag || property.kind == Kind::Choice || property.kind == Kind::Integer;
+    return property.kind != Kind::Number && property.kind != Kind::Angle;
 }
 
 /// Numbers to try, the default perhaps among them; those that are not whole have as many digits as a double holds.
@@ -162,7 +140,7 @@ inline void alter(osgGeoFX::PropertyHolder& holder)
 
 inline osg::ref_ptr<osgGeoFX::PropertyHolder> alteredHolder(const std::string& kind)
 {
-    osg::ref_ptr<osgGeoFX::PropertyHolder> holder = createHolder(kind);
+    osg::ref_ptr<osgGeoFX::PropertyHolder> holder = osgGeoFX::createPropertyHolder(kind);
     alter(*holder);
     return holder;
 }

@@ -33,7 +33,7 @@ const osg::EllipsoidModel* wgs84()
 double sensibleValue(const std::string& name, Random& random)
 {
     const int die = random.integer(0, 9);
-    if (name == "planeElevation") return die < 5 ? 0.0 : random.uniform(-300.0, 3000.0);
+    if (name == "planeHeight") return die < 5 ? 0.0 : random.uniform(-300.0, 3000.0);
     if (name == "tallest") return die < 5 ? -1.0 : random.logarithmic(1.0, 9000.0);
     if (name == "contextTilt") return die < 5 ? 0.0 : random.uniform(0.0, 0.9);
     if (name == "focusDistance") return random.sign() * random.logarithmic(1.0, 2e4);
@@ -41,7 +41,7 @@ double sensibleValue(const std::string& name, Random& random)
     if (name == "lowHeight") return random.uniform(0.0, 1000.0);
     if (name == "highHeight") return random.uniform(500.0, 5000.0);
     if (name == "factor") return die < 7 ? random.logarithmic(0.2, 5.0) : random.logarithmic(0.01, 100.0);
-    if (name == "base") return die < 5 ? 0.0 : random.uniform(-100.0, 4000.0);
+    if (name == "baseHeight") return die < 5 ? 0.0 : random.uniform(-100.0, 4000.0);
     if (name == "viewRadius") return die < 6 ? 0.0 : random.logarithmic(100.0, 3e5);
     if (name == "curveDistance") return die == 0 ? 0.0 : random.logarithmic(0.05, 5.0);
     if (name == "horizonDistance") return random.logarithmic(0.3, 20.0);
@@ -197,7 +197,7 @@ void randomizeProperties(osgGeoFX::PropertyHolder& effect, Random& random)
             effect.setProperty(property.name, randomValue(property, random), refusal);
     }
     if (effect.getProperty("planeReference") == osgGeoFX::PerspectiveBend::EYE)
-        effect.setProperty("planeElevation", -random.logarithmic(1.0, 1e4), refusal);
+        effect.setProperty("planeHeight", -random.logarithmic(1.0, 1e4), refusal);
     for (const osgGeoFX::PropertyHolder::Part& part : effect.parts())
         randomizeProperties(*part.object, random);
 }
@@ -234,7 +234,7 @@ std::string describe(osgGeoFX::PropertyHolder& effect)
     for (const Property& property : effect.properties())
     {
         const double value = property.get(effect);
-        if (value != property.defaultValue) text << " " << property.textName() << "=" << property.text(value);
+        if (value != property.defaultValue) text << " " << property.name << "=" << property.text(value);
     }
     for (const osgGeoFX::PropertyHolder::Part& part : effect.parts())
         text << " {" << part.name << ": " << describe(*part.object) << "}";
@@ -262,10 +262,10 @@ osg::Vec3d randomGroundPoint(Random& random, const osgGeoFX::ViewGeometry& view,
     return across * distance + view.up * (height - view.eyeHeight);
 }
 
-bool bendNumbers(const osgGeoFX::DeformationFrame& frame, BendNumbers& numbers)
+bool bendNumbers(const osgGeoFX::DeformationSnapshot& snapshot, BendNumbers& numbers)
 {
     std::map<std::string, osg::Vec4d> uniforms;
-    for (const auto& [name, value] : frame.uniforms())
+    for (const auto& [name, value] : snapshot.uniforms())
         uniforms[name] = value;
     if (!uniforms.count("bend")) return false;
     const osg::Vec4d plane = uniforms["plane"];
@@ -285,11 +285,11 @@ double bendCurvature(const BendNumbers& numbers, int curve)
         osgGeoFX::glsl::geofx_makeBend(curve, numbers.size, numbers.angle));
 }
 
-osg::Vec3d randomPointFor(const osgGeoFX::DeformationFrame& frame, const osgGeoFX::ViewGeometry& view,
+osg::Vec3d randomPointFor(const osgGeoFX::DeformationSnapshot& snapshot, const osgGeoFX::ViewGeometry& view,
                           Random& random)
 {
     BendNumbers numbers;
-    if (random.integer(0, 3) == 0 || !bendNumbers(frame, numbers)) return randomGroundPoint(random, view);
+    if (random.integer(0, 3) == 0 || !bendNumbers(snapshot, numbers)) return randomGroundPoint(random, view);
     const double s = random.uniform(-1.0, 2.0) * std::min(numbers.size, 3e5);
     const double across = random.sign() * random.logarithmic(1.0, 1e5);
     return numbers.point(s, random.uniform(-400.0, 9000.0), across);

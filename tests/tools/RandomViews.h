@@ -91,12 +91,12 @@ struct BendNumbers
 };
 
 /// False where the frame is no bend.
-bool bendNumbers(const osgGeoFX::DeformationFrame& frame, BendNumbers& numbers);
+bool bendNumbers(const osgGeoFX::DeformationSnapshot& snapshot, BendNumbers& numbers);
 /// The largest curvature of a bend, with the angle's sign; `curve` as PerspectiveBend has it.
 double bendCurvature(const BendNumbers& numbers, int curve);
 
 /// A point whose place in a bend's profile is random, before, in or behind the zone; else a ground point.
-osg::Vec3d randomPointFor(const osgGeoFX::DeformationFrame& frame, const osgGeoFX::ViewGeometry& view,
+osg::Vec3d randomPointFor(const osgGeoFX::DeformationSnapshot& snapshot, const osgGeoFX::ViewGeometry& view,
                           Random& random);
 
 } // namespace geofx::test

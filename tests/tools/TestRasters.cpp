@@ -165,7 +165,7 @@ std::string writeCrop(const std::string& from, const std::filesystem::path& file
 std::vector<float> warpedHeights(const std::vector<std::string>& files, const std::string& crs, double x0,
                                  double y0, double dx, double dy, int columns, int rows)
 {
-    // The warp utility's pixels are centred on the points.
+    // The warp utility's pixels are centered on the points.
     CPLStringList arguments =
         listOf({"-of", "MEM",           "-ot", "Float32",  "-t_srs",     crs,
                 "-r",  "bilinear",      "-et", "0",        "-dstnodata", "nan",

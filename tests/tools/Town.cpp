@@ -29,7 +29,7 @@ osg::Vec2d half(const TownPlan& plan)
 /// How far a place is from the middle of the river, which winds from south to north.
 double fromRiver(const TownPlan& plan, const osg::Vec2d& place)
 {
-    const osg::Vec2d from = place - plan.centre;
+    const osg::Vec2d from = place - plan.center;
     const double size = std::max(half(plan).y(), 1.0);
     return std::abs(from.x() - 0.22 * size - 0.16 * size * std::sin(2.6 * from.y() / size));
 }
@@ -51,7 +51,7 @@ std::vector<House> housesOf(const TownPlan& plan, const osg::Vec2d& block, std::
     Random random(plan.seed * 100003 + number);
     std::vector<House> houses;
     const double middle =
-        1.0 - std::min((block - plan.centre).length() / std::max(half(plan).length(), 1.0), 1.0);
+        1.0 - std::min((block - plan.center).length() / std::max(half(plan).length(), 1.0), 1.0);
     const int columns = random.integer(2, 3);
     const int rows = random.integer(2, 3);
     const double width = plan.block / columns;
@@ -159,7 +159,7 @@ std::vector<osg::Vec2d> townBlocks(const TownPlan& plan)
     {
         const int row = i / plan.blocksAcross;
         const osg::Vec2d block =
-            plan.centre - half(plan) + osg::Vec2d(i % plan.blocksAcross + 0.5, row + 0.5) * pitch;
+            plan.center - half(plan) + osg::Vec2d(i % plan.blocksAcross + 0.5, row + 0.5) * pitch;
         if (plan.river <= 0.0 || fromRiver(plan, block) > (plan.river + plan.block) / 2.0 + 4.0)
             blocks.push_back(block);
     }
@@ -204,7 +204,7 @@ osg::ref_ptr<osg::Geometry> makeTownGround(const TownPlan& plan, double margin)
     // Fine enough for the river banks to look round.
     const double cell = std::max(plan.street / 5.0, 1.0);
     const osg::Vec2d reach = half(plan) + osg::Vec2d(margin, margin);
-    const osg::Vec2d low = plan.centre - reach;
+    const osg::Vec2d low = plan.center - reach;
     const int columns = static_cast<int>(std::ceil(2.0 * reach.x() / cell));
     const int rows = static_cast<int>(std::ceil(2.0 * reach.y() / cell));
     const auto corner = [&](int column, int row)
@@ -218,7 +218,7 @@ osg::ref_ptr<osg::Geometry> makeTownGround(const TownPlan& plan, double margin)
         const int column = i % columns;
         const int row = i / columns;
         const osg::Vec2d place = low + osg::Vec2d(column + 0.5, row + 0.5) * cell;
-        const osg::Vec2d within = place - plan.centre + half(plan);
+        const osg::Vec2d within = place - plan.center + half(plan);
         const auto inBlock = [&](double along)
         {
             return std::abs(along / pitch - std::floor(along / pitch) - 0.5) * pitch < plan.block / 2.0;

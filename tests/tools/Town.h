@@ -12,10 +12,10 @@ namespace geofx::test
 {
 
 /** A small made-up town: streets on a grid, a river through it, and houses with flat and gabled roofs, higher towards the
-    middle. The same town for the same seed. x, y and z are metres about the given centre; z is up. */
+    middle. The same town for the same seed. x, y and z are metres about the given center; z is up. */
 struct TownPlan
 {
-    osg::Vec2d centre;
+    osg::Vec2d center;
     int blocksAcross = 8; ///< along x
     int blocksAlong = 8;
     double block = 90.0; ///< side, without the street
@@ -29,11 +29,11 @@ struct TownPlan
 /// Where the blocks are that are not in the river.
 std::vector<osg::Vec2d> townBlocks(const TownPlan& plan);
 
-/// All houses, 4 to 9 of them in a block, in one geometry with normals and colours.
+/// All houses, 4 to 9 of them in a block, in one geometry with normals and colors.
 osg::ref_ptr<osg::Geometry> makeTown(const TownPlan& plan);
 /// The same town generalised: a flat prism for each block, as high as its houses are on average.
 osg::ref_ptr<osg::Geometry> makeGeneralisedTown(const TownPlan& plan);
-/// The ground: blocks, streets and the river as flat colours, `margin` metres around, on the heights of the plan.
+/// The ground: blocks, streets and the river as flat colors, `margin` metres around, on the heights of the plan.
 osg::ref_ptr<osg::Geometry> makeTownGround(const TownPlan& plan, double margin);
 
 } // namespace geofx::test

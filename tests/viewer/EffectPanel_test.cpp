@@ -97,10 +97,10 @@ TEST_F(EffectPanelTest, ListsEveryPropertyOfEveryEffect)
     EXPECT_EQ(_panel->lines().at(0), "1 of " + std::to_string(count));
     EXPECT_EQ(_panel->lines().at(1), "birdsEyeView\ttrue\t");
     EXPECT_EQ(_panel->lines().at(2), "  curve\tarcLength\t");
-    EXPECT_EQ(_panel->lines().at(3), "  planeElevation\t0\tm");
+    EXPECT_EQ(_panel->lines().at(3), "  planeHeight\t0\tmetres");
     EXPECT_EQ(_panel->lines().size(), 1 + PanelPicture::rows);
     select("  birdsEyeView");
-    select("  lightAzimuthDegrees");
+    select("  lightAzimuth");
     // What others change is shown, and what is selected stays so.
     const std::string before = _panel->lines().at(0);
     _scene->removeEffect(_scene->getEffect(0));

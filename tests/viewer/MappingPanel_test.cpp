@@ -204,7 +204,7 @@ TEST_F(MappingPanelTest, ListsTheTopmostFirst)
     EXPECT_EQ(_panel->lines(), (Lines{"3 of 3", "on\ta\t2\t100 %\tnormal", "on\tb\t0\t100 %\tnormal",
                                       "on\tc\t-7\t100 %\tnormal"}))
         << "c stays selected";
-    // Of two effects the later one colours over the other.
+    // Of two effects the later one colors over the other.
     osg::ref_ptr<ProjectiveMappings> later = new ProjectiveMappings;
     later->addMapping(new ProjectiveMapping);
     later->getMapping(0)->setOrder(-1000);

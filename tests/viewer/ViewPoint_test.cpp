@@ -77,7 +77,7 @@ osg::Vec3d seen(const Georeference& reference, const ViewPoint& point, const osg
 {
     osg::Matrixd frame;
     osg::Matrixd view;
-    EXPECT_TRUE(reference.localToWorld(point.longitude, point.latitude, point.altitude, frame));
+    EXPECT_TRUE(reference.localToWorld(point.longitude, point.latitude, point.height, frame));
     EXPECT_TRUE(point.viewMatrix(reference, view));
     return eastNorthUp * frame * view;
 }
@@ -126,7 +126,7 @@ TEST_P(ViewPointOn, PositiveRollPutsTheRightWingDown)
     expectNear(seen(*_reference, parsed("3,40,1000,0,0,90"), {0.0, 0.0, 100.0}), {-100.0, 0.0, 0.0});
 }
 
-TEST_P(ViewPointOn, AGroundPointLooksIntoTheImageCentre)
+TEST_P(ViewPointOn, AGroundPointLooksIntoTheImageCenter)
 {
     const ViewPoint point = parsed("-2.5,51,5000,123,-37,11");
     // The camera's axis meets the plane 5000 m below it here:
@@ -213,12 +213,12 @@ TEST(CameraPath, InterpolatesEvenlyInTimeAndAlongTheShorterArc)
     const ViewPoint middle = path->at(15.0);
     EXPECT_NEAR(osg::RadiansToDegrees(middle.longitude), 180.0, 1e-9);
     EXPECT_NEAR(osg::RadiansToDegrees(middle.latitude), 21.0, 1e-9);
-    EXPECT_NEAR(middle.altitude, 1500.0, 1e-9);
+    EXPECT_NEAR(middle.height, 1500.0, 1e-9);
     EXPECT_NEAR(osg::RadiansToDegrees(middle.heading), 365.0, 1e-9);
     EXPECT_NEAR(osg::RadiansToDegrees(middle.pitch), -15.0, 1e-9);
     EXPECT_NEAR(osg::RadiansToDegrees(middle.roll), 5.0, 1e-9);
-    EXPECT_NEAR(path->at(0.0).altitude, 1000.0, 1e-9);
-    EXPECT_NEAR(path->at(99.0).altitude, 2000.0, 1e-9);
+    EXPECT_NEAR(path->at(0.0).height, 1000.0, 1e-9);
+    EXPECT_NEAR(path->at(99.0).height, 2000.0, 1e-9);
     EXPECT_DOUBLE_EQ(path->timeOfFrame(0, 4), 10.0);
     EXPECT_DOUBLE_EQ(path->timeOfFrame(1, 4), 20.0);
     EXPECT_DOUBLE_EQ(path->timeOfFrame(3, 4), 40.0);

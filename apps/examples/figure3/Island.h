@@ -95,7 +95,7 @@ public:
 
     /// A mapping of a grid's values, added.
     osgGeoFX::ProjectiveMapping& show(const Grid& values, int order);
-    /// A mapping with the scene's own colours, over all that is seen, added.
+    /// A mapping with the scene's own colors, over all that is seen, added.
     osgGeoFX::ProjectiveMapping& tone(double brightness, double saturation, int order);
     /// Keeps what a figure needs while it is drawn.
     template<class T>

@@ -17,7 +17,7 @@ double sunGlyph(double x, double y);
 double crossGlyph(double x, double y);
 double flagGlyph(double x, double y);
 
-/// A round sign: the figure in white on a colour.
+/// A round sign: the figure in white on a color.
 osg::ref_ptr<osg::Image> makeSign(Glyph glyph, const osg::Vec4& color);
 /// A pin; its tip is the image's middle.
 osg::ref_ptr<osg::Image> makePin(const osg::Vec4& color);

@@ -88,7 +88,7 @@ Shot textures(Island& island)
 {
     const Grid& heights = island.heights();
     const Grid& cover = island.landCover();
-    // Everywhere: a relief without colours. Within the masks: heights in colours, and the terrain's own land cover.
+    // Everywhere: a relief without colors. Within the masks: heights in colors, and the terrain's own land cover.
     const auto greys = [&](int column, int row)
     {
         return isWater(cover.nearest(heights.middle(column, row))) ? Color{168.0f, 182.0f, 196.0f}
@@ -115,7 +115,7 @@ Shot textures(Island& island)
             {island.place(-157.862, 21.392), island.place(-157.822, 21.362), island.place(-157.785, 21.335)}},
            {2600.0, {island.place(-157.840, 21.352), island.place(-157.800, 21.318)}}});
 
-    // The terrain's own colours come back where the relief is taken away.
+    // The terrain's own colors come back where the relief is taken away.
     MaskPainter* painter = island.keep(new MaskPainter(*grey, 2048, 2048));
     painter->fill(1.0);
     const std::vector<Stroke> taken = {

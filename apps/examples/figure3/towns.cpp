@@ -131,7 +131,7 @@ void Town::makeHouses()
         return low + (high - low) * static_cast<double>(engine() - 1) / 2147483646.0;
     };
     // Where it is high: downtown, Kakaʻako and Waikīkī.
-    const std::array<osg::Vec2d, 3> centres = {
+    const std::array<osg::Vec2d, 3> centers = {
         _island.place(-157.860, 21.3085), _island.place(-157.846, 21.2945), _island.place(-157.829, 21.2805)};
     constexpr double lot = 27.0;
     for (double y = _low.y(); y < _high.y(); y += lot)
@@ -142,8 +142,8 @@ void Town::makeHouses()
             house.middle = osg::Vec2d(x + random(-2.0, 2.0), y + random(-2.0, 2.0));
             house.half = osg::Vec2d(random(6.5, 11.0), random(6.5, 11.0));
             double rise = 0.0;
-            for (const osg::Vec2d& centre : centres)
-                rise = std::max(rise, std::exp(-(house.middle - centre).length2() / (620.0 * 620.0)));
+            for (const osg::Vec2d& center : centers)
+                rise = std::max(rise, std::exp(-(house.middle - center).length2() / (620.0 * 620.0)));
             const bool flat = random(0.0, 1.0) < 0.15 + rise;
             house.wall =
                 random(5.0, 9.0) + (flat ? 6.0 * rise + 85.0 * rise * std::pow(random(0.0, 1.0), 3.0) : 0.0);

@@ -85,14 +85,14 @@ CloseUpItem::CloseUpItem(const CloseUp& closeUp, const ViewGeometry& view, const
 
 bool CloseUpItem::outside(const Ball& ball) const
 {
-    const osg::Vec3d place = ball.centre * _toRegion;
+    const osg::Vec3d place = ball.center * _toRegion;
     return std::abs(place.x()) > slack + ball.radius / _halfWidth ||
            std::abs(place.y()) > slack + ball.radius / _halfDepth || place.z() + ball.radius < _otherSide;
 }
 
 bool CloseUpItem::outside(const EyeBox& box) const
 {
-    const osg::Vec3d place = box.centre * _toRegion;
+    const osg::Vec3d place = box.center * _toRegion;
     osg::Vec3d reach(slack, slack, 0.0);
     for (const osg::Vec3d& half : box.half)
     {
@@ -105,7 +105,7 @@ bool CloseUpItem::outside(const EyeBox& box) const
 
 void CloseUpItem::includeHeights(const EyeBox& box, double& lowest, double& highest) const
 {
-    const osg::Vec3d middle = box.centre * _toRegion;
+    const osg::Vec3d middle = box.center * _toRegion;
     osg::Vec3d half[3], reach;
     for (std::size_t i = 0; i < 3; ++i)
     {

@@ -76,7 +76,7 @@ public:
         int anchorRow = 0;            ///< of the tables
         int tableRow = -1;            ///< of the tables; −1 for none
         int surfaceLayer = -1;        ///< −1 for none
-        int surfaceKind = 0;          ///< see SLOT_surfaceColour in stages/closeup.frag.glsl
+        int surfaceKind = 0;          ///< see SLOT_surfaceColor in stages/closeup.frag.glsl
         double low = 0.0, high = 1.0; ///< range of the table
         osg::Vec3d sun;               ///< in the frame of the surface data
     };

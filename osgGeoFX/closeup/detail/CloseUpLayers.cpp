@@ -3,9 +3,9 @@
 #include <osgGeoFX/closeup/detail/CloseUpLayers.h>
 
 #include <osgGeoFX/closeup/detail/ArrayStorage.h>
+#include <osgGeoFX/scene/detail/PassStage.h>
 
 #include <osg/BlendFunc>
-#include <osg/ColorMask>
 #include <osg/Depth>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace
 constexpr int layerBin = 9;
 /// The layers are drawn before the application's own textures would be.
 constexpr int stageOrder = -10;
-constexpr unsigned int colourUnit = 0, depthUnit = 1;
+constexpr unsigned int colorUnit = 0, depthUnit = 1;
 
 osg::ref_ptr<osg::Texture2DArray> createTexture(GLint internalFormat, GLenum format, GLenum type, int width,
                                                 int height, int layers)
@@ -37,12 +37,12 @@ osg::ref_ptr<osg::Texture2DArray> createTexture(GLint internalFormat, GLenum for
     return texture;
 }
 
-osg::ref_ptr<osg::FrameBufferObject> createTarget(osg::Texture2DArray& colours, osg::Texture2DArray& depths,
+osg::ref_ptr<osg::FrameBufferObject> createTarget(osg::Texture2DArray& colors, osg::Texture2DArray& depths,
                                                   unsigned int layer)
 {
     osg::ref_ptr<osg::FrameBufferObject> target = new osg::FrameBufferObject;
     // Both must be layered, or neither.
-    target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(&colours, layer, 0));
+    target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(&colors, layer, 0));
     target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(&depths, layer, 0));
     return target;
 }
@@ -56,18 +56,7 @@ int rounded(int texels)
 
 } // namespace
 
-CloseUpLayers::CloseUpLayers() : _square(new osg::Geometry)
-{
-    osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
-    for (const osg::Vec3& corner :
-         {osg::Vec3(0, 0, 0), osg::Vec3(1, 0, 0), osg::Vec3(0, 1, 0), osg::Vec3(1, 1, 0)})
-        corners->push_back(corner);
-    _square->setVertexArray(corners);
-    _square->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_STRIP, 0, 4));
-    _square->setCullingActive(false);
-    _square->setUseDisplayList(false);
-    _square->setUseVertexBufferObjects(true);
-}
+CloseUpLayers::CloseUpLayers() : _square(createSquare(0.0f)) {}
 
 void CloseUpLayers::resize(int layers, int width, int height, int perArray)
 {
@@ -86,14 +75,14 @@ void CloseUpLayers::resize(int layers, int width, int height, int perArray)
     {
         const int count = std::min(perArray, layers - first);
         Array array;
-        array.colours = createTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height, count);
+        array.colors = createTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height, count);
         array.depths =
             createTexture(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, width, height, count);
         array.all =
-            createTarget(*array.colours, *array.depths, osg::Camera::FACE_CONTROLLED_BY_GEOMETRY_SHADER);
+            createTarget(*array.colors, *array.depths, osg::Camera::FACE_CONTROLLED_BY_GEOMETRY_SHADER);
         for (int layer = 0; layer < count; ++layer)
             array.single.push_back(
-                createTarget(*array.colours, *array.depths, static_cast<unsigned int>(layer)));
+                createTarget(*array.colors, *array.depths, static_cast<unsigned int>(layer)));
         _arrays.push_back(array);
     }
 }
@@ -108,18 +97,8 @@ osgUtil::RenderStage* CloseUpLayers::newStage(osgUtil::CullVisitor& outer)
 {
     if (_stagesUsed == _stages.size()) _stages.push_back(new osgUtil::RenderStage);
     osgUtil::RenderStage& stage = *_stages[_stagesUsed++];
-    stage.reset();
-    osgUtil::RenderStage& camera = *outer.getCurrentRenderBin()->getStage();
     // The scene's lights shine in the layers, too.
-    stage.setInheritedPositionalStateContainerMatrix(osg::Matrixd());
-    stage.setInheritedPositionalStateContainer(camera.getPositionalStateContainer());
-    stage.setInitialViewMatrix(camera.getInitialViewMatrix());
-    stage.setDrawBuffer(GL_NONE, false);
-    stage.setReadBuffer(GL_NONE, false);
-    stage.setColorMask(new osg::ColorMask);
-    stage.setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    stage.setClearColor(osg::Vec4(0.0f, 0.0f, 0.0f, 0.0f));
-    stage.setClearDepth(1.0);
+    startStage(stage, outer, osg::Vec4(0.0f, 0.0f, 0.0f, 0.0f));
     return &stage;
 }
 
@@ -161,9 +140,9 @@ void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, con
     state.setMode(GL_DEPTH_TEST, on);
     state.setMode(GL_CULL_FACE, off);
     state.setMode(GL_ALPHA_TEST, off);
-    state.setTextureAttribute(colourUnit, array.colours, forced);
+    state.setTextureAttribute(colorUnit, array.colors, forced);
     state.setTextureAttribute(depthUnit, array.depths, forced);
-    state.getOrCreateUniform("geofx_layerColours", osg::Uniform::INT)->set(static_cast<int>(colourUnit));
+    state.getOrCreateUniform("geofx_layerColors", osg::Uniform::INT)->set(static_cast<int>(colorUnit));
     state.getOrCreateUniform("geofx_layerDepths", osg::Uniform::INT)->set(static_cast<int>(depthUnit));
     const osg::Viewport& viewport = *outer.getViewport();
     state.getOrCreateUniform("geofx_layerOrigin", osg::Uniform::INT_VEC4)
@@ -213,7 +192,7 @@ void CloseUpLayers::resizeGLObjectBuffers(unsigned int size)
     _square->resizeGLObjectBuffers(size);
     for (const Array& array : _arrays)
     {
-        array.colours->resizeGLObjectBuffers(size);
+        array.colors->resizeGLObjectBuffers(size);
         array.depths->resizeGLObjectBuffers(size);
         array.all->resizeGLObjectBuffers(size);
         for (const auto& target : array.single)
@@ -226,7 +205,7 @@ void CloseUpLayers::releaseGLObjects(osg::State* state) const
     _square->releaseGLObjects(state);
     for (const Array& array : _arrays)
     {
-        array.colours->releaseGLObjects(state);
+        array.colors->releaseGLObjects(state);
         array.depths->releaseGLObjects(state);
         array.all->releaseGLObjects(state);
         for (const auto& target : array.single)

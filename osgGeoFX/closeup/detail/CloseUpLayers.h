@@ -91,7 +91,7 @@ public:
 private:
     struct Array
     {
-        osg::ref_ptr<osg::Texture2DArray> colours, depths;
+        osg::ref_ptr<osg::Texture2DArray> colors, depths;
         osg::ref_ptr<osg::FrameBufferObject> all;
         std::vector<osg::ref_ptr<osg::FrameBufferObject>> single;
     };

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/detail/MultiPass.h>
 
-#include <osgGeoFX/closeup/detail/LiftFrame.h>
+#include <osgGeoFX/closeup/detail/LiftSnapshot.h>
 
 namespace osgGeoFX
 {
@@ -21,7 +21,7 @@ void MultiPass::draw(VisibleCloseUp& visible, RegionContents& found)
     {
         visible.stages[0] = _regions.newStage();
         osg::ref_ptr<DeformationChain> lift = new DeformationChain;
-        lift->add(new LiftFrame(item));
+        lift->add(new LiftSnapshot(item));
         _regions.draw(visible, 0, *lift, found);
     }
     visible.stages[1] = _regions.newStage();

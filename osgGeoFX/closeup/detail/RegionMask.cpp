@@ -157,7 +157,7 @@ std::vector<double> crossings(const Line& corners, double y)
 
 /** The lines where a field changes its sign: marching squares over a picture and one ring of texels beyond.
 
-    Places of the field are the texels' centres. A place on the line is named by the edge between two neighbours that it
+    Places of the field are the texels' centers. A place on the line is named by the edge between two neighbours that it
     lies on. */
 class Marching
 {
@@ -410,7 +410,7 @@ std::vector<Line> borders(const Picture& distances)
             const osg::Vec2d place = marching.place(part->first);
             const osg::Vec2d shared(std::clamp(place.x() / distances.half.x(), -1.0, 1.0),
                                     std::clamp(place.y() / distances.half.y(), -1.0, 1.0));
-            // Lines through a texel's very centre meet several edges there.
+            // Lines through a texel's very center meet several edges there.
             constexpr double same = 1e-6;
             if (line.empty() || (shared - line.back()).length() * side > same) line.push_back(shared);
             const int end = part->second;

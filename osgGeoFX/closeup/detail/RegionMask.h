@@ -36,12 +36,12 @@ struct Picture
     float at(int column, int row) const { return values[static_cast<std::size_t>(row) * side + column]; }
     /// Width and height of a texel.
     osg::Vec2d texel() const { return half * (2.0 / side); }
-    /// The centre of a texel, of those beside the picture too.
+    /// The center of a texel, of those beside the picture too.
     osg::Vec2d place(int column, int row) const
     {
         return {(2.0 * column + 1.0 - side) / side * half.x(), (2.0 * row + 1.0 - side) / side * half.y()};
     }
-    /// How far the centre of a texel is from the region's border.
+    /// How far the center of a texel is from the region's border.
     double toBorder(int column, int row) const;
 };
 

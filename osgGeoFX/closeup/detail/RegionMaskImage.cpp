@@ -36,13 +36,13 @@ void smooth(std::vector<double>& line, double radius)
 std::vector<std::pair<int, double>> weights(int texel, int side, int source)
 {
     const double scale = static_cast<double>(source) / side;
-    const double centre = (texel + 0.5) * scale - 0.5;
+    const double center = (texel + 0.5) * scale - 0.5;
     const double reach = std::max(1.0, scale);
     std::vector<std::pair<int, double>> found;
     double sum = 0.0;
-    for (int i = static_cast<int>(std::ceil(centre - reach)); i <= centre + reach; ++i)
+    for (int i = static_cast<int>(std::ceil(center - reach)); i <= center + reach; ++i)
     {
-        const double weight = reach - std::abs(i - centre);
+        const double weight = reach - std::abs(i - center);
         if (weight > 0.0) found.emplace_back(std::clamp(i, 0, source - 1), weight);
         sum += std::max(weight, 0.0);
     }

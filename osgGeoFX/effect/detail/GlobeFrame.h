@@ -16,7 +16,7 @@ inline void setGlobe(glsl::geofx_Exaggeration& frame, const osg::EllipsoidModel&
 {
     const double a = ellipsoid.getRadiusEquator();
     const double b = ellipsoid.getRadiusPolar();
-    // The support function: distance of the tangent plane from the centre, 1/|gradient| of the ellipsoid's equation.
+    // The support function: distance of the tangent plane from the center, 1/|gradient| of the ellipsoid's equation.
     const double support = std::sqrt(a * a * (1.0 - sine * sine) + b * b * sine * sine);
     frame.curvature = support / (a * a);
     frame.scale = 1.0 / support;

@@ -6,7 +6,7 @@ namespace osgGeoFX
 {
 
 /** What a database's tiles have for light and shade: a texture of normals, bound but not enabled, in the frame of the tile's
-    geometry (x east, y north, z up at the tile's centre).
+    geometry (x east, y north, z up at the tile's center).
 
     A byte b of it means (255 b − 128) / 127, with b from 0 to 1 as shaders have it. With two channels z is what is left, and
     never below 0. Its coordinates are those of unit 0, by the texture matrix of its own unit. */

@@ -324,8 +324,8 @@ void FrameRaster::makeColors()
         return translate({"-expand", "rgba"});
     }
     if (type != GDT_Byte && type != GDT_UInt16)
-        fail("its pixels are not colours (" + std::string(GDALGetDataTypeName(type)) +
-             "); show them as values, or colour them with gdaldem color-relief");
+        fail("its pixels are not colors (" + std::string(GDALGetDataTypeName(type)) +
+             "); show them as values, or color them with gdaldem color-relief");
     const bool grey = top().GetRasterCount() < 3;
     Arguments arguments{"-b", "1",      "-b",  grey ? "1" : "2", "-b",        grey ? "1" : "3",
                         "-b", "mask,1", "-ot", "Byte",           "-a_nodata", "none"};

@@ -32,7 +32,7 @@ struct FrameCrs
 /// Throws BuildError, naming `file`, where a projected terrain's coordinate system is none.
 FrameCrs crsOf(const MappingFrame& frame, const std::string& file);
 
-/** A raster file to be warped into a frame, with the virtual datasets on top of it that make colours or values of its
+/** A raster file to be warped into a frame, with the virtual datasets on top of it that make colors or values of its
     bands. All of it throws BuildError, naming file and remedy. */
 class FrameRaster
 {
@@ -65,10 +65,10 @@ public:
                       int height) const;
     /// A row of values that were warped, from the north, scaled; NaN where there is none that a float can hold.
     void readValues(GDALDataset& warped, int row, std::vector<double>& values) const;
-    /// Colours that were warped, four bytes each, in rows from the south.
+    /// Colors that were warped, four bytes each, in rows from the south.
     void readColors(GDALDataset& warped, unsigned char* colors) const;
 
-    /// The raster's own pixels, in rows from the south: colours as RGBA bytes, else floats with NaN where there is none. One
+    /// The raster's own pixels, in rows from the south: colors as RGBA bytes, else floats with NaN where there is none. One
     /// with more than `maxSide` pixels on a side is reduced to it, by area, or of classes and palettes by the nearest pixel.
     osg::ref_ptr<osg::Image> picture(int maxSide) const;
     osg::Vec2d size() const { return osg::Vec2d(top().GetRasterXSize(), top().GetRasterYSize()); }

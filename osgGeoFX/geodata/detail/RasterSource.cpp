@@ -151,8 +151,8 @@ void RasterSource::openAs(RasterKind kind)
         if (band->GetColorTable())
             translate({"-expand", "rgba"});
         else if (type != GDT_Byte && type != GDT_UInt16)
-            fail("its pixels are not colours (" + std::string(GDALGetDataTypeName(type)) +
-                 "); make bytes of them with gdal_translate -ot Byte -scale, or colour them with gdaldem "
+            fail("its pixels are not colors (" + std::string(GDALGetDataTypeName(type)) +
+                 "); make bytes of them with gdal_translate -ot Byte -scale, or color them with gdaldem "
                  "color-relief");
         else
         {
@@ -169,7 +169,7 @@ void RasterSource::openAs(RasterKind kind)
     else if (kind == RasterKind::TreeCover)
     {
         if (band->GetColorTable())
-            fail("its values are colours of a palette, not percent; give a raster of percent");
+            fail("its values are colors of a palette, not percent; give a raster of percent");
         if (band->GetScale() != 1.0 || band->GetOffset() != 0.0)
             translate({"-b", "1", "-ot", "Float32", "-unscale"});
     }
@@ -244,7 +244,7 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
     xml += "</VRTDataset>";
     GdalErrorScope errors;
     DatasetPtr colored(GDALDataset::Open(xml.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-    if (!colored) fail("its classes cannot be drawn in colours (" + errors.message() + ")");
+    if (!colored) fail("its classes cannot be drawn in colors (" + errors.message() + ")");
     _chain.push_back(std::move(colored));
     _colorized = true;
 }
@@ -255,7 +255,7 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
     const int width = dataset.GetRasterXSize(), height = dataset.GetRasterYSize();
     const TransformationPtr toGrid = createTransformation(_srs, crs.srs, _file);
 
-    // A mesh of pixel centres, its borders on the outermost pixels.
+    // A mesh of pixel centers, its borders on the outermost pixels.
     constexpr int side = 33;
     const auto pixel = [](int index, int size)
     {
@@ -479,7 +479,7 @@ void RasterSource::sampleColors(const GridCrs& crs, const Lattice& lattice, unsi
     request.planes = planes;
     request.bands = 4;
     request.alpha = true;
-    // Colours of classes meet in steps of whole pixels; a B-spline rounds them off, as a map's draughtsman would.
+    // Colors of classes meet in steps of whole pixels; a B-spline rounds them off, as a map's draughtsman would.
     if (_colorized) request.resampling = GRA_CubicSpline;
     warp(crs, lattice, request);
 }

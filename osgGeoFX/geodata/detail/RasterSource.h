@@ -32,7 +32,7 @@ struct Lattice
     int columns = 0, rows = 0; ///< points
 };
 
-/// What a raster covers, from centre to centre of its outermost pixels, in the grid's CRS.
+/// What a raster covers, from center to center of its outermost pixels, in the grid's CRS.
 struct Footprint
 {
     double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
@@ -68,8 +68,8 @@ public:
     /// leaves it elsewhere. Points that are 1 already cost nothing.
     void markCovered(const GridCrs& crs, const Lattice& lattice, unsigned char* covered);
 
-    /// Colours, four planes (red, green, blue, alpha) of columns × rows bytes, averaged where the lattice is
-    /// coarser than the raster. Points without data keep their alpha and colour.
+    /// Colors, four planes (red, green, blue, alpha) of columns × rows bytes, averaged where the lattice is
+    /// coarser than the raster. Points without data keep their alpha and color.
     void sampleColors(const GridCrs& crs, const Lattice& lattice, unsigned char* planes);
 
     /// Values, averaged where the lattice is coarser than the raster. Points without data are left as they are.
@@ -78,7 +78,7 @@ public:
     /// Nearest class values. Points without data keep their value.
     void sampleClasses(const GridCrs& crs, const Lattice& lattice, unsigned char* out);
 
-    /// For a LandCover source: draws it in colours from now on (as Imagery), 256 × RGBA by class value.
+    /// For a LandCover source: draws it in colors from now on (as Imagery), 256 × RGBA by class value.
     void colorize(const std::array<std::array<unsigned char, 4>, 256>& colors);
 
     const std::string& file() const { return _file; }

@@ -65,7 +65,7 @@ private:
     double _scaleX, _scaleY;
 };
 
-/// Colours by their alphas, so that what is transparent does not bleed.
+/// Colors by their alphas, so that what is transparent does not bleed.
 void mixColors(const Level::Four& four, double alpha, unsigned char* rgba)
 {
     std::array<double, 4> sum = {};

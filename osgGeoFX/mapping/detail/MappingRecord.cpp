@@ -117,8 +117,8 @@ void writeProjector(const ProjectiveMapping& mapping, double opacity, std::uint3
     const glm::dmat3 there = mapping.placeToRaster();
     // The place that comes to lie in the raster's middle, and what the projection does about it.
     const glm::dvec3 middle = glm::inverse(there) * glm::dvec3(0.5, 0.5, 1.0);
-    const glm::dvec2 centre(middle.x / middle.z, middle.y / middle.z);
-    const double scale = (there * glm::dvec3(centre, 1.0)).z;
+    const glm::dvec2 center(middle.x / middle.z, middle.y / middle.z);
+    const double scale = (there * glm::dvec3(center, 1.0)).z;
     const glm::dvec2 w(there[0][2] / scale, there[1][2] / scale);
     glm::dvec2 u = glm::dvec2(there[0][0], there[1][0]) / scale - 0.5 * w;
     glm::dvec2 v = glm::dvec2(there[0][1], there[1][1]) / scale - 0.5 * w;
@@ -126,13 +126,13 @@ void writeProjector(const ProjectiveMapping& mapping, double opacity, std::uint3
     {
         // So that a pixel on the edge of two tiles is within one of them, whatever floats make of their places.
         const double size = 1.0 / glm::length(u) + 1.0 / glm::length(v);
-        const double rounding = 2.5e-7 * (std::abs(centre.x) + std::abs(centre.y) + size);
+        const double rounding = 2.5e-7 * (std::abs(center.x) + std::abs(center.y) + size);
         u /= 1.0 + 2.0 * rounding * glm::length(u);
         v /= 1.0 + 2.0 * rounding * glm::length(v);
     }
     if (w != glm::dvec2(0.0)) flags |= PROJECTIVE;
     record[0] = numbers(u.x, u.y, v.x, v.y);
-    record[1] = {bits(centre.x), bits(centre.y), bits(opacity), 0u};
+    record[1] = {bits(center.x), bits(center.y), bits(opacity), 0u};
     record[9] = numbers(w.x, w.y);
 }
 

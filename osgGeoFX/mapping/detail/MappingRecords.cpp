@@ -131,11 +131,11 @@ bool MappingRecords::writeRecord(Item& item, const PositionOf& positionOf)
     }
     if (item.record == 0) return false;
     const Sources& sources = item.sources;
-    const osg::Vec2d centre = mapping.getCentre();
+    const osg::Vec2d center = mapping.getCenter();
     TexelArena::Texel* record = _arena->edit(item.record, texels);
     MappingRecord::write(mapping, _layers.placed(sources.layers.layer), _layers.placed(sources.layers.mask),
                          _tables.row(sources.table),
-                         positionOf(osg::Vec3d(centre.x(), centre.y(), mapping.getHeight())), record);
+                         positionOf(osg::Vec3d(center.x(), center.y(), mapping.getHeight())), record);
     _features |= MappingRecord::featuresOf(record);
     return true;
 }

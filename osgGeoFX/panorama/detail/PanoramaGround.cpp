@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/panorama/detail/PanoramaEdge.h>
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 
 #include <osg/Math>
@@ -84,7 +84,7 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
     if (!_map.getProjection())
     {
         // The projection itself is not in force, and what it would do is still asked for.
-        const osg::ref_ptr<const PanoramaFrame> frame = new PanoramaFrame(*panorama, 1.0);
+        const osg::ref_ptr<const PanoramaSnapshot> frame = new PanoramaSnapshot(*panorama, 1.0);
         for (const auto& [name, value] : frame->uniforms())
             set(state, prefix + name, value);
     }

@@ -6,11 +6,11 @@
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/panorama/detail/PanoramaEdge.h>
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 #include <osgGeoFX/panorama/detail/StrokeCompanion.h>
+#include <osgGeoFX/scene/detail/PassStage.h>
 
-#include <osg/ColorMask>
 #include <osg/Depth>
 #include <osg/FrameBufferObject>
 #include <osg/Notify>
@@ -40,21 +40,6 @@ constexpr int mirrorOrder = -5;
 /// Over what is opaque, so that it is drawn where nothing else is.
 constexpr int skyBin = 8;
 
-osg::ref_ptr<osg::Geometry> createSquare()
-{
-    osg::ref_ptr<osg::Geometry> square = new osg::Geometry;
-    osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
-    for (const osg::Vec3& corner :
-         {osg::Vec3(-1, -1, 0), osg::Vec3(1, -1, 0), osg::Vec3(-1, 1, 0), osg::Vec3(1, 1, 0)})
-        corners->push_back(corner);
-    square->setVertexArray(corners);
-    square->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_STRIP, 0, 4));
-    square->setCullingActive(false);
-    square->setUseDisplayList(false);
-    square->setUseVertexBufferObjects(true);
-    return square;
-}
-
 osg::ref_ptr<osg::Texture2D> createTarget(int width, int height, bool depth)
 {
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
@@ -80,54 +65,44 @@ public:
         const osg::Viewport& viewport = *outer.getViewport();
         const int width = std::max(1, static_cast<int>(viewport.width()) / mirrorShrink);
         const int height = std::max(1, static_cast<int>(viewport.height()) / mirrorShrink);
-        if (!_colours || _colours->getTextureWidth() != width || _colours->getTextureHeight() != height)
+        if (!_colors || _colors->getTextureWidth() != width || _colors->getTextureHeight() != height)
         {
-            _colours = createTarget(width, height, false);
+            _colors = createTarget(width, height, false);
             _depths = createTarget(width, height, true);
             _target = new osg::FrameBufferObject;
-            _target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(_colours));
+            _target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(_colors));
             _target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(_depths));
             _viewport = new osg::Viewport(0, 0, width, height);
         }
         if (!_stage) _stage = new osgUtil::RenderStage;
-        _stage->reset();
-        osgUtil::RenderStage& camera = *outer.getCurrentRenderBin()->getStage();
-        _stage->setInheritedPositionalStateContainerMatrix(osg::Matrixd());
-        _stage->setInheritedPositionalStateContainer(camera.getPositionalStateContainer());
-        _stage->setInitialViewMatrix(camera.getInitialViewMatrix());
-        _stage->setDrawBuffer(GL_NONE, false);
-        _stage->setReadBuffer(GL_NONE, false);
-        _stage->setColorMask(new osg::ColorMask);
-        _stage->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        _stage->setClearColor(osg::Vec4(0.6f, 0.7f, 0.85f, 1.0f));
-        _stage->setClearDepth(1.0);
+        startStage(*_stage, outer, osg::Vec4(0.6f, 0.7f, 0.85f, 1.0f));
         _stage->setViewport(_viewport);
         _stage->setFrameBufferObject(_target);
-        camera.addPreRenderStage(_stage, mirrorOrder);
+        outer.getCurrentRenderBin()->getStage()->addPreRenderStage(_stage, mirrorOrder);
         return *_stage;
     }
 
     void resizeGLObjectBuffers(unsigned int size)
     {
-        osg::resizeGLObjectBuffers(_colours, size);
+        osg::resizeGLObjectBuffers(_colors, size);
         osg::resizeGLObjectBuffers(_depths, size);
         osg::resizeGLObjectBuffers(_target, size);
     }
 
-    osg::Texture2D* colours() const { return _colours; }
+    osg::Texture2D* colors() const { return _colors; }
     osg::Viewport* viewport() const { return _viewport; }
     osg::StateSet& state() { return *_state; }
     osg::StateSet& skyState(bool mirrored) { return *(mirrored ? _mirroredSky : _sky); }
 
     void releaseGLObjects(osg::State* state) const
     {
-        if (_colours) _colours->releaseGLObjects(state);
+        if (_colors) _colors->releaseGLObjects(state);
         if (_depths) _depths->releaseGLObjects(state);
         if (_target) _target->releaseGLObjects(state);
     }
 
 private:
-    osg::ref_ptr<osg::Texture2D> _colours, _depths;
+    osg::ref_ptr<osg::Texture2D> _colors, _depths;
     osg::ref_ptr<osg::FrameBufferObject> _target;
     osg::ref_ptr<osg::Viewport> _viewport;
     osg::ref_ptr<osgUtil::RenderStage> _stage;
@@ -138,11 +113,132 @@ private:
 
 constexpr auto forced = osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
 
-/// Uniforms whose names begin with the prefix, by what is in a frame of the projection.
-void setFrame(osg::StateSet& state, const std::string& prefix, const PanoramaFrame& frame)
+/// Uniforms whose names begin with the prefix, by what is in a snapshot of the projection.
+void setUniforms(osg::StateSet& state, const std::string& prefix, const PanoramaSnapshot& snapshot)
 {
-    for (const auto& [name, value] : frame.uniforms())
+    for (const auto& [name, value] : snapshot.uniforms())
         state.getOrCreateUniform(prefix + name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
+}
+
+bool reflects(const PanoramaMap& map)
+{
+    return map.getWater() && map.getReflection() > 0.0 && map.getPaint();
+}
+
+/// What the sky of one traversal is drawn with.
+struct Sky
+{
+    const PanoramaMap& map;
+    PanoramaTextures& textures;
+    const ScenePass& pass;
+    const glsl::geofx_Panorama& panorama;
+    Mirror& mirror;
+    osg::Program* program;
+
+    /// That of the camera's picture, or of the one in the water.
+    osg::StateSet& state(bool mirrored) const
+    {
+        osg::StateSet& state = mirror.skyState(mirrored);
+        state.setRenderBinDetails(skyBin, "RenderBin");
+        state.setAttributeAndModes(program, osg::StateAttribute::ON | forced);
+        state.setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
+                                   osg::StateAttribute::ON | forced);
+        state.setMode(GL_DEPTH_TEST, osg::StateAttribute::ON | forced);
+        state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
+        state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
+        const bool showsMirror = reflects(map) && !mirrored;
+        setTexture(state, 0, "geofx_sky", textures.sky(map));
+        setTexture(state, 1, "geofx_skyMirror", showsMirror ? mirror.colors() : textures.noCover().get());
+        setTexture(state, 2, "geofx_skyBrush", textures.brush());
+        setEdge(state);
+        put(state, "geofx_skyCurve", panorama.along, panorama.curve, panorama.horizon, panorama.end);
+        setWater(state);
+        return state;
+    }
+
+private:
+    static void put(osg::StateSet& state, const char* name, double x, double y, double z, double w)
+    {
+        state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4(osg::Vec4d(x, y, z, w)));
+    }
+    static void put(osg::StateSet& state, const char* name, const osg::Vec4d& value)
+    {
+        put(state, name, value.x(), value.y(), value.z(), value.w());
+    }
+    static void setTexture(osg::StateSet& state, int unit, const char* name, osg::Texture* texture)
+    {
+        state.setTextureAttribute(static_cast<unsigned int>(unit), texture, forced);
+        state.getOrCreateUniform(name, osg::Uniform::SAMPLER_2D)->set(unit);
+    }
+
+    /// What lies behind where the terrain ends.
+    void setEdge(osg::StateSet& state) const
+    {
+        const PanoramaEdge edge(map, textures, pass.view, *pass.outer.getModelViewMatrix(), panorama);
+        put(state, "geofx_skyPlace", edge.sky);
+        put(state, "geofx_skyEdgeEye", edge.eye);
+        put(state, "geofx_skyEdgeWays", edge.ways);
+        put(state, "geofx_skyEdgeKind", edge.kind);
+        setTexture(state, 3, "geofx_skyEdge", edge.map);
+    }
+
+    void setWater(osg::StateSet& state) const
+    {
+        // Where the water's ripples lie on the ground, also where there is none.
+        const auto axis = [&](const char* name, const std::string& ground)
+        {
+            const osg::Uniform* uniform = pass.state.getUniform(pass.prefix + ground);
+            osg::Vec4f row;
+            if (uniform) uniform->get(row);
+            const osg::Vec3d along(osg::Vec3f(row.x(), row.y(), row.z()));
+            put(state, name, toOsg(panorama.right) * along / panorama.across, toOsg(panorama.forward) * along,
+                static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along),
+                1.0 / panorama.across);
+        };
+        axis("geofx_skyAxisX", "brushX");
+        axis("geofx_skyAxisY", "brushY");
+        put(state, "geofx_skyWater", map.getDeepShore(), map.getReflection(), map.getRipples(), 0.0);
+        const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
+        put(state, "geofx_skyClock", stamp ? std::fmod(stamp->getSimulationTime(), 3600.0) : 0.0,
+            map.getAtmosphere(), reflects(map) ? 1.0 : 0.0, 0.0);
+    }
+};
+
+/// The deformations of a pass as they are in the water. `turned`: whether there is a panorama's among them.
+osg::ref_ptr<DeformationChain> mirroredChain(const ScenePass& pass, osg::StateSet& state, bool& turned)
+{
+    osg::ref_ptr<DeformationChain> chain = new DeformationChain;
+    for (const auto& snapshot : pass.chain.snapshots())
+    {
+        const auto* own = dynamic_cast<const PanoramaSnapshot*>(snapshot.get());
+        if (!own)
+        {
+            chain->add(snapshot);
+            continue;
+        }
+        const osg::ref_ptr<const PanoramaSnapshot> mirrored = own->mirrored(0.0, mirrorDetail);
+        setUniforms(state, pass.prefix, *mirrored);
+        chain->add(mirrored);
+        turned = true;
+    }
+    return chain;
+}
+
+void setMirrorState(Mirror& mirror, const ScenePass& pass, unsigned int unit, PanoramaTextures& textures)
+{
+    osg::StateSet& state = mirror.state();
+    state.setDefine("GEOFX_MIRROR", osg::StateAttribute::ON);
+    state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
+    state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
+    state.setAttribute(mirror.viewport(), forced);
+    // Another effect may have its texture now where this was.
+    for (unsigned int former = 0; former < state.getNumTextureAttributeLists(); ++former)
+        state.removeTextureAttribute(former, osg::StateAttribute::TEXTURE);
+    state.setTextureAttribute(unit, textures.noCover(), forced);
+    const osg::Viewport& size = *mirror.viewport();
+    state.getOrCreateUniform(pass.prefix + "window", osg::Uniform::FLOAT_VEC4)
+        ->set(osg::Vec4(0.0f, 0.0f, static_cast<float>(1.0 / size.width()),
+                        static_cast<float>(1.0 / size.height())));
 }
 
 } // namespace
@@ -262,7 +358,7 @@ private:
     mutable std::mutex _mutex;
     std::vector<osg::ref_ptr<StrokeMaker>> _makers;
     osg::ref_ptr<osg::Program> _skyProgram;
-    osg::ref_ptr<osg::Geometry> _square = createSquare();
+    osg::ref_ptr<osg::Geometry> _square = createSquare(-1.0f);
 };
 
 PanoramaMap::Scenery::Scenery(const PanoramaMap& map, PanoramaTextures& textures)
@@ -286,113 +382,32 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     if (!pass.outer.getViewport()) return;
     const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(_map, pass.view);
     if (!panorama) return;
-    const bool reflects = _map.getWater() && _map.getReflection() > 0.0 && _map.getPaint();
+    osgUtil::RenderStage* stage = reflects(_map) ? &mirror.begin(pass.outer) : nullptr;
     osg::Program* skyProgram = _map.getSky() ? _cameras->skyProgram() : nullptr;
-    const auto fillSky = [&](bool mirrored) -> osg::StateSet&
+    const Sky sky{_map, _textures, pass, *panorama, mirror, skyProgram};
+    if (skyProgram)
     {
-        osg::StateSet& state = mirror.skyState(mirrored);
-        state.setRenderBinDetails(skyBin, "RenderBin");
-        state.setAttributeAndModes(skyProgram, osg::StateAttribute::ON | forced);
-        state.setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
-                                   osg::StateAttribute::ON | forced);
-        state.setMode(GL_DEPTH_TEST, osg::StateAttribute::ON | forced);
-        state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
-        state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
-        state.setTextureAttribute(0, _textures.sky(_map), forced);
-        state.setTextureAttribute(1, reflects && !mirrored ? mirror.colours() : _textures.noCover().get(),
-                                  forced);
-        state.setTextureAttribute(2, _textures.brush(), forced);
-        state.getOrCreateUniform("geofx_sky", osg::Uniform::SAMPLER_2D)->set(0);
-        state.getOrCreateUniform("geofx_skyMirror", osg::Uniform::SAMPLER_2D)->set(1);
-        state.getOrCreateUniform("geofx_skyBrush", osg::Uniform::SAMPLER_2D)->set(2);
-        const auto put = [&](const char* name, double x, double y, double z, double w)
-        {
-            state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4(osg::Vec4d(x, y, z, w)));
-        };
-        const auto putAll = [&](const char* name, const osg::Vec4d& v)
-        {
-            put(name, v.x(), v.y(), v.z(), v.w());
-        };
-        const PanoramaEdge edge(_map, _textures, pass.view, *pass.outer.getModelViewMatrix(), *panorama);
-        putAll("geofx_skyPlace", edge.sky);
-        putAll("geofx_skyEdgeEye", edge.eye);
-        putAll("geofx_skyEdgeWays", edge.ways);
-        putAll("geofx_skyEdgeKind", edge.kind);
-        state.setTextureAttribute(3, edge.map, forced);
-        state.getOrCreateUniform("geofx_skyEdge", osg::Uniform::SAMPLER_2D)->set(3);
-        put("geofx_skyCurve", panorama->along, panorama->curve, panorama->horizon, panorama->end);
-        // Where the water's ripples lie on the ground, also where there is none.
-        const auto axis = [&](const char* name, const std::string& ground)
-        {
-            const osg::Uniform* uniform = pass.state.getUniform(pass.prefix + ground);
-            osg::Vec4f row;
-            if (uniform) uniform->get(row);
-            const osg::Vec3d along(osg::Vec3f(row.x(), row.y(), row.z()));
-            put(name, toOsg(panorama->right) * along / panorama->across, toOsg(panorama->forward) * along,
-                static_cast<double>(row.w()) - pass.view.eyeHeight * (pass.view.up * along),
-                1.0 / panorama->across);
-        };
-        axis("geofx_skyAxisX", "brushX");
-        axis("geofx_skyAxisY", "brushY");
-        put("geofx_skyWater", _map.getDeepShore(), _map.getReflection(), _map.getRipples(), 0.0);
-        const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
-        put("geofx_skyClock", stamp ? std::fmod(stamp->getSimulationTime(), 3600.0) : 0.0,
-            _map.getAtmosphere(), reflects ? 1.0 : 0.0, 0.0);
-        return state;
-    };
-    const auto drawSky = [&](osgUtil::CullVisitor& visitor, bool mirrored)
-    {
-        visitor.pushStateSet(&fillSky(mirrored));
-        visitor.addDrawableAndDepth(_cameras->square(), visitor.getModelViewMatrix(), 0.0f);
-        visitor.popStateSet();
-    };
-    if (!reflects)
-    {
-        if (skyProgram) drawSky(pass.outer, false);
-        return;
+        pass.outer.pushStateSet(&sky.state(false));
+        pass.outer.addDrawableAndDepth(_cameras->square(), pass.outer.getModelViewMatrix(), 0.0f);
+        pass.outer.popStateSet();
     }
-    osgUtil::RenderStage& stage = mirror.begin(pass.outer);
-    if (skyProgram) drawSky(pass.outer, false);
-    osg::ref_ptr<DeformationChain> chain = new DeformationChain;
-    osg::StateSet& state = mirror.state();
-    bool turned = false;
-    for (const auto& frame : pass.chain.frames())
-    {
-        const auto* own = dynamic_cast<const PanoramaFrame*>(frame.get());
-        osg::ref_ptr<const DeformationFrame> seen = frame;
-        if (own)
-        {
-            const osg::ref_ptr<const PanoramaFrame> mirrored = own->mirrored(0.0, mirrorDetail);
-            setFrame(state, pass.prefix, *mirrored);
-            seen = mirrored;
-            turned = true;
-        }
-        chain->add(seen);
-    }
-    state.setDefine("GEOFX_MIRROR", osg::StateAttribute::ON);
-    state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
-    state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
-    state.setAttribute(mirror.viewport(), forced);
-    const auto unit = static_cast<unsigned int>(pass.units[MirrorUnit]);
-    // Another effect may have its texture now where this was.
-    for (unsigned int former = 0; former < state.getNumTextureAttributeLists(); ++former)
-        state.removeTextureAttribute(former, osg::StateAttribute::TEXTURE);
-    state.setTextureAttribute(unit, _textures.noCover(), forced);
-    const osg::Viewport& size = *mirror.viewport();
-    state.getOrCreateUniform(pass.prefix + "window", osg::Uniform::FLOAT_VEC4)
-        ->set(osg::Vec4(0.0f, 0.0f, static_cast<float>(1.0 / size.width()),
-                        static_cast<float>(1.0 / size.height())));
+    if (!stage) return;
 
+    const auto unit = static_cast<unsigned int>(pass.units[MirrorUnit]);
+    setMirrorState(mirror, pass, unit, _textures);
+    bool turned = false;
+    const osg::ref_ptr<DeformationChain> chain = mirroredChain(pass, mirror.state(), turned);
     const osg::ref_ptr<osg::Program> program = pass.sceneProgram();
-    const ScenePass::Drawing drawing = {program, &state, &stage, chain};
+    const ScenePass::Drawing drawing = {program, &mirror.state(), stage, chain};
     // It is the projection that turns the ground over; without it there is the sky to reflect.
     if (turned) pass.draw(drawing);
     if (skyProgram)
     {
-        const ScenePass::Piece sky = {_cameras->square(), *pass.outer.getModelViewMatrix(), &fillSky(true)};
-        pass.draw({sky}, drawing);
+        const ScenePass::Piece piece = {_cameras->square(), *pass.outer.getModelViewMatrix(),
+                                        &sky.state(true)};
+        pass.draw({piece}, drawing);
     }
-    pass.state.setTextureAttribute(unit, mirror.colours());
+    pass.state.setTextureAttribute(unit, mirror.colors());
 }
 
 DrawableCompanion* PanoramaMap::Scenery::companion(const ScenePass& pass)

@@ -12,7 +12,7 @@
 namespace osgGeoFX
 {
 
-/// Numbers or colours on a strip that repeats in x and ends in y. Within the library only.
+/// Numbers or colors on a strip that repeats in x and ends in y. Within the library only.
 template<class Value>
 class SkyStrip
 {
@@ -47,7 +47,7 @@ private:
 
 using SkyCanvas = SkyStrip<glm::vec3>;
 
-/// Paints cumulus clouds, the far ones first, and wisps onto a sky. `haze` is the horizon's colour.
+/// Paints cumulus clouds, the far ones first, and wisps onto a sky. `haze` is the horizon's color.
 void paintClouds(SkyCanvas& canvas, std::uint32_t seed, const glm::vec3& haze);
 
 /// Paints a canvas again in strokes of a brush, which follow what is painted.

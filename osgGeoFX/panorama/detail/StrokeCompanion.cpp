@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/detail/StrokeCompanion.h>
 
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 
 #include <osg/BlendFunc>
 #include <osg/Viewport>
@@ -61,7 +61,7 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
     if (_state->getAttribute(osg::StateAttribute::PROGRAM) != program)
     {
         _state->setAttributeAndModes(program, osg::StateAttribute::ON | forced);
-        // Colours are premultiplied, and depth is written.
+        // Colors are premultiplied, and depth is written.
         _state->setAttributeAndModes(new osg::BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA),
                                      osg::StateAttribute::ON | forced);
         _state->setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);

@@ -12,17 +12,17 @@ namespace osgGeoFX
 void BoundsPicture::begin()
 {
     _lines = new osg::Vec3Array;
-    _colours = new osg::Vec4Array;
+    _colors = new osg::Vec4Array;
 }
 
 void BoundsPicture::add(const EyeBox& box, const DeformationChain& chain)
 {
     const Ball ball = box.ball();
-    const auto& frames = chain.frames();
-    const bool curved =
-        std::any_of(frames.begin(), frames.end(),
-                    [&](const auto& frame) { return frame->reach(ball) == DeformationFrame::Reach::Curved; });
-    const osg::Vec4 colour = curved ? osg::Vec4(1, 0.2f, 0.1f, 1) : osg::Vec4(1, 0.9f, 0.2f, 1);
+    const auto& snapshots = chain.snapshots();
+    const bool curved = std::any_of(snapshots.begin(), snapshots.end(),
+                                    [&](const auto& snapshot)
+                                    { return snapshot->reach(ball) == DeformationSnapshot::Reach::Curved; });
+    const osg::Vec4 color = curved ? osg::Vec4(1, 0.2f, 0.1f, 1) : osg::Vec4(1, 0.9f, 0.2f, 1);
     // What the box's twelve edges became.
     constexpr int pieces = 8;
     std::vector<osg::Vec3d> corners;
@@ -40,7 +40,7 @@ void BoundsPicture::add(const EyeBox& box, const DeformationChain& chain)
                 for (const osg::Vec3d& end : {from, to})
                 {
                     _lines->push_back(end);
-                    _colours->push_back(colour);
+                    _colors->push_back(color);
                 }
                 from = to;
             }
@@ -61,7 +61,7 @@ osg::Geometry& BoundsPicture::geometry()
         state->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
     }
     _geometry->setVertexArray(_lines);
-    _geometry->setColorArray(_colours, osg::Array::BIND_PER_VERTEX);
+    _geometry->setColorArray(_colors, osg::Array::BIND_PER_VERTEX);
     _geometry->removePrimitiveSet(0, _geometry->getNumPrimitiveSets());
     _geometry->addPrimitiveSet(new osg::DrawArrays(GL_LINES, 0, static_cast<GLsizei>(_lines->size())));
     return *_geometry;

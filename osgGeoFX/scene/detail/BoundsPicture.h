@@ -22,7 +22,7 @@ public:
 private:
     osg::ref_ptr<osg::Geometry> _geometry;
     osg::ref_ptr<osg::Vec3Array> _lines;
-    osg::ref_ptr<osg::Vec4Array> _colours;
+    osg::ref_ptr<osg::Vec4Array> _colors;
 };
 
 } // namespace osgGeoFX

@@ -21,7 +21,7 @@ void setDefine(osg::StateSet& state, const std::string& name, bool on)
     state.setDefine(name, on ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
 }
 
-bool finite(const DeformationFrame::Uniforms& uniforms)
+bool finite(const DeformationSnapshot::Uniforms& uniforms)
 {
     return std::all_of(uniforms.begin(), uniforms.end(),
                        [](const auto& uniform)
@@ -36,7 +36,7 @@ bool finite(const DeformationFrame::Uniforms& uniforms)
 
 } // namespace
 
-CameraFrames::CameraFrames(const EffectProgram::Effects& effects, const ViewGeometry& first)
+CameraSnapshots::CameraSnapshots(const EffectProgram::Effects& effects, const ViewGeometry& first)
     : _all(effects.size())
 {
     ViewGeometry view = first;
@@ -44,22 +44,22 @@ CameraFrames::CameraFrames(const EffectProgram::Effects& effects, const ViewGeom
     {
         const Deformation* deformation = effects[i]->asDeformation();
         if (!deformation || !effects[i]->getEnabled()) continue;
-        const osg::ref_ptr<const DeformationFrame> frame = deformation->frame(view);
-        if (!frame) continue;
-        DeformationFrame::Uniforms uniforms = frame->uniforms();
+        const osg::ref_ptr<const DeformationSnapshot> snapshot = deformation->snapshot(view);
+        if (!snapshot) continue;
+        DeformationSnapshot::Uniforms uniforms = snapshot->uniforms();
         if (!finite(uniforms)) continue;
-        _all[i] = {frame, std::move(uniforms)};
+        _all[i] = {snapshot, std::move(uniforms)};
         deformation->changeGround(view.ground);
     }
 }
 
-osg::ref_ptr<DeformationChain> CameraFrames::chain(const Ground& ground) const
+osg::ref_ptr<DeformationChain> CameraSnapshots::chain(const Ground& ground) const
 {
     osg::ref_ptr<DeformationChain> result = new DeformationChain;
     result->setTiles(ground.tileEdge, ground.tileError);
     for (const Placed& placed : _all)
     {
-        if (placed.frame) result->add(placed.frame);
+        if (placed.snapshot) result->add(placed.snapshot);
     }
     return result;
 }
@@ -90,15 +90,15 @@ osg::Uniform& CameraState::uniformAt(std::size_t effect, std::size_t place, cons
     return *uniform;
 }
 
-void CameraState::fill(const CameraFrames& frames, int mapUnit)
+void CameraState::fill(const CameraSnapshots& snapshots, int mapUnit)
 {
     _set->getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(mapUnit, 0));
     setDefine(*_set, "GEOFX_DEFORMATION", true);
-    const std::vector<CameraFrames::Placed>& all = frames.all();
+    const std::vector<CameraSnapshots::Placed>& all = snapshots.all();
     _uniforms.resize(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
     {
-        setDefine(*_set, EffectProgram::define(i), all[i].frame.valid());
+        setDefine(*_set, EffectProgram::define(i), all[i].snapshot.valid());
         for (std::size_t place = 0; place < all[i].uniforms.size(); ++place)
         {
             const auto& [name, value] = all[i].uniforms[place];

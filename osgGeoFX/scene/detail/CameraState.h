@@ -18,10 +18,10 @@ namespace osgGeoFX
 {
 
 /// The deformations of a camera, by the effects of its scene.
-class CameraFrames
+class CameraSnapshots
 {
 public:
-    CameraFrames(const EffectProgram::Effects& effects, const ViewGeometry& view);
+    CameraSnapshots(const EffectProgram::Effects& effects, const ViewGeometry& view);
 
     /// All of them, one after the other.
     osg::ref_ptr<DeformationChain> chain(const Ground& ground) const;
@@ -29,8 +29,8 @@ public:
     /// What a deformation does for the camera; no frame where it does nothing.
     struct Placed
     {
-        osg::ref_ptr<const DeformationFrame> frame;
-        DeformationFrame::Uniforms uniforms;
+        osg::ref_ptr<const DeformationSnapshot> snapshot;
+        DeformationSnapshot::Uniforms uniforms;
     };
     const std::vector<Placed>& all() const { return _all; }
 
@@ -48,8 +48,8 @@ public:
     /// Of the effects that it was made for.
     const std::shared_ptr<const TextureUnits>& units() const { return _units; }
     osg::StateSet& set() const { return *_set; }
-    void fill(const CameraFrames& frames, int mapUnit);
-    /// Of the effects that colour surfaces; whether there are any at work.
+    void fill(const CameraSnapshots& snapshots, int mapUnit);
+    /// Of the effects that color surfaces; whether there are any at work.
     bool fillSurfaces(const EffectProgram::Effects& effects, const ViewGeometry& geometry,
                       osgUtil::CullVisitor& outer);
 

@@ -251,7 +251,7 @@ bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
     if (!out)
     {
         const Ball ball = _mode.chain->bound(undeformed);
-        _middle = ball.centre;
+        _middle = ball.center;
         out = _sight.outOfSight(ball, _mode.planes, _mayBeSmall);
     }
     return out && !partsInSight(node, undeformed);
@@ -265,7 +265,7 @@ bool CompensatingCullVisitor::partsInSight(const osg::Node& node, const Ball& un
         !_undeformedParts.below(node, _programs, _frame))
         return false;
     _mode.planes = _sight.all();
-    _middle = undeformed.centre;
+    _middle = undeformed.center;
     return true;
 }
 

@@ -136,7 +136,7 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
     const Ball deformed = _mode.chain->bound(ball);
     const double undeformedSize = static_cast<double>(clampedPixelSize(node.getBound()));
     const double deformedSize =
-        std::abs(ball.radius / _sight.radiusOfPixel(deformed.centre)) * _mode.chain->detail(ball);
+        std::abs(ball.radius / _sight.radiusOfPixel(deformed.center)) * _mode.chain->detail(ball);
     if (deformedSize > 0.0 && std::isfinite(undeformedSize / deformedSize))
     {
         setLODScale(static_cast<float>(static_cast<double>(former) * undeformedSize / deformedSize));

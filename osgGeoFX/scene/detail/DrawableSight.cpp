@@ -29,22 +29,22 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
         const osg::BoundingSphere& sphere = drawable.getBound();
         const Ball roughly = place.chain.bound({osg::Vec3d(sphere.center()) * place.modelView,
                                                 static_cast<double>(sphere.radius()) * place.scale});
-        depth = -roughly.centre.z();
+        depth = -roughly.center.z();
         if (!_wishes.depths || _depths.covers(roughly)) return true;
     }
     const EyeBox box = EyeBox::of(bounds, place.modelView);
     const Ball deformed = place.chain.bound(box.ball());
-    depth = -deformed.centre.z();
+    depth = -deformed.center.z();
     if (test && _wishes.hides && _sight.hides(place.chain, box)) return false;
     if (small && _sight.tooSmall(deformed)) return false;
     if (planes && _sight.outOfSight(deformed, planes, true)) return false;
     // Where the box's middle shows there is no more to be found out; nor where the part does that showed last time.
-    if (planes && !_sight.holds(deformed.centre, planes) && !witnessInSight(drawable, place, planes) &&
+    if (planes && !_sight.holds(deformed.center, planes) && !witnessInSight(drawable, place, planes) &&
         (_sight.misses(place.chain, box, planes) || meshOutside(drawable, place, planes)))
         return false;
-    for (const auto& frame : place.chain.frames())
+    for (const auto& snapshot : place.chain.snapshots())
     {
-        if (_complaint.empty()) _complaint = frame->complaint(box);
+        if (_complaint.empty()) _complaint = snapshot->complaint(box);
     }
     if (_wishes.depths) _depths.add(box, deformed, place.chain);
     if (_wishes.bounds) _bounds.add(box, place.chain);

@@ -36,7 +36,7 @@ std::string normalFile(const Deformation& deformation)
 /// What stands in the place of the words in capitals in stages/functions.*.
 struct Parts
 {
-    std::string imports, functions, locate, face, deform, normal, turn, colour, move, finish;
+    std::string imports, functions, locate, face, deform, normal, turn, color, move, finish;
 
     std::string fill(std::string text) const
     {
@@ -46,7 +46,7 @@ struct Parts
         text = replaced(std::move(text), "GEOFX_FACE_CALLS", face);
         text = replaced(std::move(text), "GEOFX_DEFORM_CALLS", deform);
         text = replaced(std::move(text), "GEOFX_NORMAL_CALLS", normal);
-        text = replaced(std::move(text), "GEOFX_COLOUR_CALLS", colour);
+        text = replaced(std::move(text), "GEOFX_COLOR_CALLS", color);
         text = replaced(std::move(text), "GEOFX_MOVE_CALLS", move);
         return replaced(std::move(text), "GEOFX_FINISH_CALLS", finish);
     }
@@ -78,8 +78,8 @@ void addDeformation(Parts& parts, const Deformation& deformation, const std::str
         parts.turn += conditional("defined(" + define + ")",
                                   "    normal = " + prefix + "normal(geofx_groundPlace, normal);\n");
     if (deformation.fragmentFile().empty()) return;
-    parts.colour += conditional("defined(GEOFX_DEFORMATION) && defined(" + define + ")",
-                                "    result = " + prefix + "restyle(result, map, geofx_styleBlend);\n");
+    parts.color += conditional("defined(GEOFX_DEFORMATION) && defined(" + define + ")",
+                               "    result = " + prefix + "restyle(result, map, geofx_styleBlend);\n");
 }
 
 void addSurface(Parts& parts, const SurfaceEffect& surface, const std::string& prefix,
@@ -88,7 +88,7 @@ void addSurface(Parts& parts, const SurfaceEffect& surface, const std::string& p
     if (surface.looksAtNormals())
         parts.face += conditional("defined(" + define + ")", "    " + prefix + "face(eyeNormal);\n");
     parts.locate += conditional("defined(" + define + ")", "    " + prefix + "locate(located);\n");
-    parts.colour += conditional("defined(" + define + ")", "    result = " + prefix + "colour(result);\n");
+    parts.color += conditional("defined(" + define + ")", "    result = " + prefix + "color(result);\n");
 }
 
 /// The code of all effects for one stage.

@@ -16,7 +16,7 @@ namespace osgGeoFX
 /** The shaders of a scene's effects, put together.
 
     Effect i of the scene has the prefix geofx_<i>_ and the defines GEOFX_EFFECT_<i>, which is set where it deforms, and
-    GEOFX_SURFACE_<i>, where it colours, so that switching effects changes defines and nothing else. */
+    GEOFX_SURFACE_<i>, where it colors, so that switching effects changes defines and nothing else. */
 class EffectProgram
 {
 public:

@@ -69,11 +69,11 @@ void EyeFrustum::set(const osg::Polytope* planes, const osg::Matrixd& projection
 
 EyeFrustum::Side EyeFrustum::side(const Ball& ball, Mask& mask) const
 {
-    const double radius = ball.radius + rounding(ball.centre);
+    const double radius = ball.radius + rounding(ball.center);
     for (std::size_t i = 0; i < _planes.size(); ++i)
     {
         if (!(mask & (1u << i))) continue;
-        const double distance = planeDistance(_planes[i], ball.centre);
+        const double distance = planeDistance(_planes[i], ball.center);
         if (distance < -radius) return Side::Outside;
         if (distance >= radius) mask &= ~(1u << i);
     }
@@ -165,12 +165,12 @@ void DepthRange::include(double nearest, double farthest)
 
 void DepthRange::include(const Ball& ball)
 {
-    include(-ball.centre.z() - ball.radius, -ball.centre.z() + ball.radius);
+    include(-ball.center.z() - ball.radius, -ball.center.z() + ball.radius);
 }
 
 void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain)
 {
-    const double depth = -deformed.centre.z();
+    const double depth = -deformed.center.z();
     if (!std::isfinite(depth) || !std::isfinite(deformed.radius)) return;
     // The middle is for sure within; most of the others then lie between what is certain.
     include(depth, depth);

@@ -62,7 +62,7 @@ public:
     /// Whether a ball lies between what is certain so far, and need not be added.
     bool covers(const Ball& ball) const
     {
-        return -ball.centre.z() - ball.radius >= _nearest && -ball.centre.z() + ball.radius <= _farthest;
+        return -ball.center.z() - ball.radius >= _nearest && -ball.center.z() + ball.radius <= _farthest;
     }
     void settle();
 

@@ -198,9 +198,9 @@ bool shines(const osg::StateAttribute* attribute)
     const auto* material = static_cast<const osg::Material*>(attribute);
     if (!material) return false;
     if (material->getColorMode() == osg::Material::SPECULAR) return true;
-    const auto dark = [](const osg::Vec4& colour)
+    const auto dark = [](const osg::Vec4& color)
     {
-        return colour.r() == 0.0f && colour.g() == 0.0f && colour.b() == 0.0f;
+        return color.r() == 0.0f && color.g() == 0.0f && color.b() == 0.0f;
     };
     return !dark(material->getSpecular(osg::Material::FRONT)) ||
            !dark(material->getSpecular(osg::Material::BACK));
@@ -457,7 +457,7 @@ osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* prog
     constexpr unsigned int always =
         osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
     set->setAttributeAndModes(program, always);
-    // Off, too: the shader has no colours for the back then.
+    // Off, too: the shader has no colors for the back then.
     set->setMode(programTwoSideMode, twoSided ? always : always & ~osg::StateAttribute::ON);
     if (pointSize) set->setMode(programPointSizeMode, always);
     const auto define = [&](const std::string& name, bool there, int value)

@@ -23,12 +23,12 @@ struct FixedFunctionLook
     int lights = -1;         ///< a bit for each of eight; −1 without lighting
     bool twoSided = false;
     bool localViewer = false;
-    bool colorSum = false; ///< the secondary colour is added after the textures
+    bool colorSum = false; ///< the secondary color is added after the textures
     bool specular = false; ///< the material shines
     bool normalize = false;
     bool rescale = false;
     bool pointSize = false;   ///< points get smaller with the distance
-    int colorMaterial = 0;    ///< OSG's colour modes, 1 ambient … 5 emission
+    int colorMaterial = 0;    ///< OSG's color modes, 1 ambient … 5 emission
     int fog = 0;              ///< 1 linear, 2 exp, 3 exp2; 4 more with the vertices' fog coordinates
     int texture[units] = {};  ///< the code of an environment, as stages/fixed.frag has it; 0 for none
     int texGen[units] = {};   ///< the code of generated coordinates, as stages/fixed.vert has it; 0 for none

@@ -47,7 +47,7 @@ void PassCullVisitor::place(osg::Drawable& drawable)
     for (osg::StateSet* state : states)
     {
         pushStateSet(state);
-        addLeaf(*copy, drawable.getStateSet(), look, -box.centre.z());
+        addLeaf(*copy, drawable.getStateSet(), look, -box.center.z());
         popStateSet();
     }
 }

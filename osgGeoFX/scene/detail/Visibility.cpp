@@ -40,7 +40,7 @@ double Visibility::radiusOfPixel(const osg::Vec3d& point) const
 
 bool Visibility::tooSmall(const Ball& deformed) const
 {
-    return _smallPixels > 0.0 && radiusOfPixel(deformed.centre) * _smallPixels > deformed.radius;
+    return _smallPixels > 0.0 && radiusOfPixel(deformed.center) * _smallPixels > deformed.radius;
 }
 
 bool Visibility::outOfSight(const Ball& deformed, Mask& planes, bool mayBeSmall) const
@@ -61,7 +61,7 @@ bool Visibility::outOfSight(const DeformationChain& chain, const EyeBox& box, Ma
     const Ball deformed = chain.bound(box.ball());
     const EyeFrustum::Side side = _frustum.side(deformed, planes);
     if (side != EyeFrustum::Side::Crossing) return side == EyeFrustum::Side::Outside;
-    return !_frustum.holds(deformed.centre, planes) && misses(chain, box, planes);
+    return !_frustum.holds(deformed.center, planes) && misses(chain, box, planes);
 }
 
 } // namespace osgGeoFX

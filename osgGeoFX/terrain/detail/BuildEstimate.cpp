@@ -142,7 +142,7 @@ std::string TextureSummary::text() const
     };
     const char* const channels[] = {"red", "green", "blue"};
     const char* const axes[] = {"x", "y"};
-    line("Root mean square errors of colours, of 255:", channels, colors.data(), colors.size());
+    line("Root mean square errors of colors, of 255:", channels, colors.data(), colors.size());
     line("The same of normals:", axes, normals.data(), normals.size());
     return result;
 }

@@ -122,7 +122,7 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
     require(options.pixelError > 0.0 && options.texelError > 0.0 && options.pixelsPerRadian > 0.0,
             "The pixel error, the texel error and the pixels per radian must be greater than 0.");
     require(options.anisotropy == 0.0 || (options.anisotropy >= 1.0 && options.anisotropy <= 16.0),
-            "The anisotropy must be 1 to 16, or 0 for a default by what the colours are.");
+            "The anisotropy must be 1 to 16, or 0 for a default by what the colors are.");
     require(options.memoryMiB >= 128,
             "At least 128 MiB of memory are needed (--memory is " + std::to_string(options.memoryMiB) + ").");
     require(options.landCover.empty() || !options.landCoverTable.empty(),
@@ -184,7 +184,7 @@ void BuildPlan::chooseGrid()
             options.dems.front() +
                 ": the elevation is a single row, column or pixel; a terrain needs at least 2 × 2.");
 
-    // The colours ask for a resolution of their own.
+    // The colors ask for a resolution of their own.
     const bool fromImagery = !options.imagery.empty();
     std::vector<std::string> colorFiles = options.imagery;
     if (!options.landCover.empty()) colorFiles.push_back(options.landCover);
@@ -229,7 +229,7 @@ void BuildPlan::chooseGrid()
     while ((scheme.intervals << scheme.finestLevel) < std::max(scheme.lastColumn, scheme.lastRow))
         ++scheme.finestLevel;
 
-    // Finest tiles have as many texels as the colours' source has pixels, by default up to four for each interval;
+    // Finest tiles have as many texels as the colors' source has pixels, by default up to four for each interval;
     // tiles above them keep these texels until there are, by default, two for each interval: where a tile's relief asks for
     // finer ones, its texels do, too.
     const int limit = options.textureSize > 0 ? options.textureSize : 4 * options.tileSize;

@@ -146,7 +146,7 @@ public:
     /// Classes on a lattice; 0 where there are none. Empty without land cover.
     std::vector<unsigned char> classes(const Lattice& lattice);
 
-    /// Base colours on a lattice, red, green, blue for each texel.
+    /// Base colors on a lattice, red, green, blue for each texel.
     std::vector<unsigned char> colors(const Lattice& lattice);
 
     /// What lies on the ground, four bytes for each texel as shaders/lib/cover.glsl codes them. `ground` is the plan's

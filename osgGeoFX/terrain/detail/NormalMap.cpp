@@ -130,7 +130,7 @@ void addNormalMap(osg::StateSet& state, TileTextures& textures, const TilingSche
     normals->setResizeNonPowerOfTwoHint(false);
     state.setTextureAttribute(TileNormals::unit, normals);
 
-    // Coordinates put the first and the last texel's centres on the borders, which depends on how many there are.
+    // Coordinates put the first and the last texel's centers on the borders, which depends on how many there are.
     const int colors = scheme.textureIntervals(key.level), n = scheme.normalIntervals(key.level);
     if (colors == n) return;
     const double each = static_cast<double>(n) / colors, size = scheme.textureSize(n);
@@ -155,7 +155,7 @@ void addTileProgram(osg::StateSet& state)
     state.setTextureAttribute(VERTEX_NORMAL_SET, generator);
     for (const GLenum mode : {GL_TEXTURE_GEN_S, GL_TEXTURE_GEN_T, GL_TEXTURE_GEN_R})
         state.setTextureMode(VERTEX_NORMAL_SET, mode, osg::StateAttribute::ON);
-    state.addUniform(new osg::Uniform("geofx_tileColours", 0));
+    state.addUniform(new osg::Uniform("geofx_tileColors", 0));
     state.addUniform(new osg::Uniform("geofx_tileNormals", static_cast<int>(TileNormals::unit)));
 }
 

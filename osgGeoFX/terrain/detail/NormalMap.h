@@ -19,7 +19,7 @@ void addNormalMap(osg::StateSet& state, TileTextures& textures, const TilingSche
     their lighting once more for each fragment. For a state set that stands above tiles and nothing else. */
 void addTileProgram(osg::StateSet& state);
 
-/// The alpha of a tile's colour. Lighting replaces it by the material's, so a fragment sees whether there is any.
+/// The alpha of a tile's color. Lighting replaces it by the material's, so a fragment sees whether there is any.
 constexpr float UNLIT_ALPHA = 254.0f / 255.0f;
 
 } // namespace osgGeoFX

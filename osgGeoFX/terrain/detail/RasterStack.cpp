@@ -169,7 +169,7 @@ std::vector<unsigned char> RasterStack::colors(const Lattice& lattice)
     const std::size_t count =
         static_cast<std::size_t>(lattice.columns) * static_cast<std::size_t>(lattice.rows);
     std::vector<unsigned char> planes(4 * count, 0);
-    // From the ground up: the hypsometric ramp, the land cover's colours, the imagery. Each where it has data.
+    // From the ground up: the hypsometric ramp, the land cover's colors, the imagery. Each where it has data.
     if (_landCover.empty())
     {
         const TileFacts& whole = _plan.facts[0][0];

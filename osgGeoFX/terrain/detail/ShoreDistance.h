@@ -21,8 +21,8 @@ struct CellMetres
 
 /** Distances from the shore in metres, over water; negative over land; ±1,000 km where there is no shore.
 
-    Exact between the centres of cells on a plane with the metres of each row (Felzenszwalb and Huttenlocher: Distance
-    transforms of sampled functions, 2012), less half a cell: the shore lies between the centres. `visit` gets all
+    Exact between the centers of cells on a plane with the metres of each row (Felzenszwalb and Huttenlocher: Distance
+    transforms of sampled functions, 2012), less half a cell: the shore lies between the centers. `visit` gets all
     rows, from the northernmost on. `workFile` takes two bytes for each cell. Up to 65,535 rows. Throws BuildError. */
 void findShoreDistances(const CellMask& water, const CellMetres& metres, const std::string& workFile,
                         const std::function<void(int row, const std::vector<float>& distances)>& visit);

@@ -34,12 +34,12 @@ struct LevelArrays
 };
 
 /** Makes the scene graph of a tile: a tree of levels of detail of its blocks (TileBlocks), each mesh an osg::Geometry over
-    vertices that it shares with others, with normals of vertices and of texels, base colour, land cover, and what lies on
+    vertices that it shares with others, with normals of vertices and of texels, base color, land cover, and what lies on
     the ground.
 
     A smallest block of a finest tile has vertices of its own; all other meshes of a tile have theirs in common. The
-    transform's user value "geofx.cells" tells how many cells the tile's lattice has along an edge. Where the texture of colours
-    is wider than the colours, "geofx.texels" tells how many intervals between texels those have along an edge. An osg::LOD of a
+    transform's user value "geofx.cells" tells how many cells the tile's lattice has along an edge. Where the texture of colors
+    is wider than the colors, "geofx.texels" tells how many intervals between texels those have along an edge. An osg::LOD of a
     block has as its user data an osg::Vec2Array, which TileInfo::meshesOf() explains. Not thread-safe. */
 class TileNodeFactory
 {

@@ -24,7 +24,7 @@ namespace osgGeoFX
 namespace
 {
 
-// A difference of colour that an eye would miss, of 255.
+// A difference of color that an eye would miss, of 255.
 constexpr int VISIBLE_DIFFERENCE = 10;
 
 /// Every second point of a lattice, smoothed by 1-2-1 in each direction. Points on the lattice's border are smoothed

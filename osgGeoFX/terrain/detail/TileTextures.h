@@ -17,7 +17,7 @@ struct TextureFigures
 {
     std::uint64_t bytes = 0, uncompressedBytes = 0; ///< as TextureSummary has them
     std::uint64_t colorTexels = 0, normalTexels = 0;
-    /// Squares of differences and the largest ones: red, green, blue of colours, x and y of normals.
+    /// Squares of differences and the largest ones: red, green, blue of colors, x and y of normals.
     std::array<std::uint64_t, 5> squares{}, largest{};
 
     void add(const TextureFigures& other);
@@ -36,7 +36,7 @@ public:
     /// Texels along a compressed texture's edges come in as many.
     static constexpr int BLOCK = 4;
 
-    /// Three channels are colours, two are normals: both can be compressed, to BC1 and BC5 (RGTC2), with their mipmaps.
+    /// Three channels are colors, two are normals: both can be compressed, to BC1 and BC5 (RGTC2), with their mipmaps.
     osg::ref_ptr<osg::Image> picture(const osg::ref_ptr<osg::Image>& image);
     /// What must stay as it is. OpenGL makes its mipmaps, or it has none.
     osg::ref_ptr<osg::Image> data(const osg::ref_ptr<osg::Image>& image, bool mipmaps);

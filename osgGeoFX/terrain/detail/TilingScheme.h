@@ -85,7 +85,7 @@ struct TilingScheme
     double tileMetres(int level) const;
 };
 
-/** Local frame of a tile: origin on the ellipsoid (or the plane's zero) at the tile's centre, x east, y north, z up.
+/** Local frame of a tile: origin on the ellipsoid (or the plane's zero) at the tile's center, x east, y north, z up.
     Not thread-safe. */
 class TileFrame
 {

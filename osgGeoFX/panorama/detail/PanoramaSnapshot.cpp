@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/panorama/detail/PanoramaFrame.h>
+#include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 
 #include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/effect/detail/GlobeFrame.h>
@@ -24,6 +24,8 @@ constexpr double beside = 1.0 + 1e-4;
 constexpr double mostTurned = 1.3;
 /// By how much x and s grow there at most: 20 for what lies behind, the rest for the projection itself, which goes on.
 constexpr double stretchBehind = 30.0;
+/// From the Earth's center, of its radius. Verticals that meet are followed no deeper.
+constexpr double leastDepth = 0.1;
 /// Without any exaggeration heights could not be told from the picture.
 constexpr double leastExaggeration = 1e-6;
 /// Of what is seen from the eye, of that of the picture's base.
@@ -106,19 +108,19 @@ std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const Vie
     return panorama;
 }
 
-PanoramaFrame::PanoramaFrame(const glsl::geofx_Panorama& view, double viewDistance)
+PanoramaSnapshot::PanoramaSnapshot(const glsl::geofx_Panorama& view, double viewDistance)
     : _view(view), _viewDistance(viewDistance)
 {
 }
 
-PanoramaFrame::~PanoramaFrame() = default;
+PanoramaSnapshot::~PanoramaSnapshot() = default;
 
-osg::Vec3d PanoramaFrame::deform(const osg::Vec3d& position) const
+osg::Vec3d PanoramaSnapshot::deform(const osg::Vec3d& position) const
 {
     return toOsg(glsl::geofx_panoramaDeform(_view, toGlm(position)));
 }
 
-osg::Vec3d PanoramaFrame::undeform(const osg::Vec3d& position) const
+osg::Vec3d PanoramaSnapshot::undeform(const osg::Vec3d& position) const
 {
     // Nothing is seen at the eye and behind it.
     osg::Vec3d before = position;
@@ -127,7 +129,7 @@ osg::Vec3d PanoramaFrame::undeform(const osg::Vec3d& position) const
 }
 
 /// What bounds need of a ball: its place, and how the place changes at most over a metre within it.
-struct PanoramaFrame::Extent
+struct PanoramaSnapshot::Extent
 {
     glm::dvec3 place;  ///< of the middle
     double reach;      ///< of x and s, metres: the radius, stretched
@@ -144,16 +146,19 @@ struct PanoramaFrame::Extent
     double turned;     ///< share of the ground's radius that the ball reaches to from the eye
 };
 
-PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
+PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
 {
     Extent extent;
-    extent.place = glsl::geofx_panoramaPlace(_view, toGlm(ball.centre));
+    extent.place = glsl::geofx_panoramaPlace(_view, toGlm(ball.center));
     const double k = _view.globe.curvature;
     const double tallest = std::abs(extent.place.z) + ball.radius;
     // The angle of arc that the ball reaches to; the equidistant projection stretches by it over its sine.
     const double arc = k * (std::hypot(extent.place.x, extent.place.y) + ball.radius);
-    extent.turned = k * (glm::length(toGlm(ball.centre)) + ball.radius);
+    extent.turned = k * (glm::length(toGlm(ball.center)) + ball.radius);
     extent.stretch = 1.0 + 0.5 * arc * arc;
+    // Feet are farther apart than what lies deep below them.
+    const double deepest = std::min(extent.place.z - ball.radius, 0.0);
+    extent.stretch /= std::max(1.0 + k * deepest, leastDepth);
     if (extent.turned > mostTurned) extent.stretch = std::max(extent.stretch, stretchBehind);
     extent.reach = ball.radius * extent.stretch;
     extent.curvature = 2.1 * (4.0 * k + 3.0 * k * k * tallest) * extent.stretch;
@@ -173,7 +178,7 @@ PanoramaFrame::Extent PanoramaFrame::extentOf(const Ball& ball) const
     return extent;
 }
 
-double PanoramaFrame::lipschitz(const Ball& ball) const
+double PanoramaSnapshot::lipschitz(const Ball& ball) const
 {
     const Extent extent = extentOf(ball);
     const double x = (_view.across + extent.x * extent.fadeRate) * extent.stretch;
@@ -191,7 +196,7 @@ double PanoramaFrame::lipschitz(const Ball& ball) const
     return std::max(1.0, std::hypot(acrossEye, upEye) + awayEye);
 }
 
-DeformationFrame::Sag PanoramaFrame::sag(const Ball& ball, const osg::Vec3d& edge) const
+DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3d& edge) const
 {
     const Extent extent = extentOf(ball);
     const double length = edge.length();
@@ -244,15 +249,15 @@ DeformationFrame::Sag PanoramaFrame::sag(const Ball& ball, const osg::Vec3d& edg
     return {curve, 0.0, most};
 }
 
-osg::ref_ptr<const PanoramaFrame> PanoramaFrame::mirrored(double level, double detail) const
+osg::ref_ptr<const PanoramaSnapshot> PanoramaSnapshot::mirrored(double level, double detail) const
 {
     glsl::geofx_Panorama view = _view;
     view.lift = -view.lift;
     view.base = 2.0 * level - view.base;
-    return new PanoramaFrame(view, _viewDistance / detail);
+    return new PanoramaSnapshot(view, _viewDistance / detail);
 }
 
-double PanoramaFrame::longestEdge(const Ball& ball, double tolerance) const
+double PanoramaSnapshot::longestEdge(const Ball& ball, double tolerance) const
 {
     const Extent extent = extentOf(ball);
     if (extent.place.y - extent.reach > _view.end) return HUGE_VAL;
@@ -262,7 +267,7 @@ double PanoramaFrame::longestEdge(const Ball& ball, double tolerance) const
     return std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
 }
 
-bool PanoramaFrame::hides(const Ball& ball, const osg::Vec2d& room) const
+bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
 {
     const Extent extent = extentOf(ball);
     const double nearS = extent.place.y - extent.reach;
@@ -275,7 +280,7 @@ bool PanoramaFrame::hides(const Ball& ball, const osg::Vec2d& room) const
     return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside - room.y();
 }
 
-bool PanoramaFrame::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
+bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
 {
     const Ball ball = box.ball();
     if (hides(ball, room)) return true;
@@ -288,7 +293,7 @@ bool PanoramaFrame::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
     for (int corner = 0; corner < 8; ++corner)
     {
-        osg::Vec3d position = box.centre;
+        osg::Vec3d position = box.center;
         for (int axis = 0; axis < 3; ++axis)
             position += box.half[axis] * (corner & (1 << axis) ? 1.0 : -1.0);
         const glm::dvec3 place = glsl::geofx_panoramaPlace(_view, toGlm(position));
@@ -317,12 +322,12 @@ bool PanoramaFrame::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     return foot > beside + room.y();
 }
 
-std::optional<double> PanoramaFrame::viewDistance(const Ball&) const
+std::optional<double> PanoramaSnapshot::viewDistance(const Ball&) const
 {
     return _viewDistance;
 }
 
-DeformationFrame::Uniforms PanoramaFrame::uniforms() const
+DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
 {
     const glsl::geofx_Exaggeration& globe = _view.globe;
     return {

@@ -9,10 +9,10 @@ namespace osgGeoFX
 {
 
 /// A close-up's lift as a deformation: what levels of detail go by where it is drawn by itself.
-class LiftFrame : public DeformationFrame
+class LiftSnapshot : public DeformationSnapshot
 {
 public:
-    explicit LiftFrame(const CloseUpItem& item);
+    explicit LiftSnapshot(const CloseUpItem& item);
 
     osg::Vec3d deform(const osg::Vec3d& position) const override { return position * _lift; }
     osg::Vec3d undeform(const osg::Vec3d& position) const override { return position * _back; }
@@ -23,7 +23,7 @@ public:
     Uniforms uniforms() const override { return {}; }
 
 protected:
-    ~LiftFrame() override;
+    ~LiftSnapshot() override;
 
 private:
     osg::Matrixd _lift, _back;

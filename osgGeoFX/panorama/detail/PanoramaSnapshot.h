@@ -22,12 +22,12 @@ inline double treeLineAt(double latitude)
 }
 
 /** The projection of a panorama map for one camera and frame (shaders/lib/panorama.glsl). Immutable. */
-class PanoramaFrame : public DeformationFrame
+class PanoramaSnapshot : public DeformationSnapshot
 {
 public:
     /// `viewDistance`: the distance at which the camera's own projection would show ground as large as the picture's base does,
     /// metres.
-    PanoramaFrame(const glsl::geofx_Panorama& view, double viewDistance);
+    PanoramaSnapshot(const glsl::geofx_Panorama& view, double viewDistance);
 
     osg::Vec3d deform(const osg::Vec3d& position) const override;
     osg::Vec3d undeform(const osg::Vec3d& position) const override;
@@ -45,10 +45,10 @@ public:
     const glsl::geofx_Panorama& view() const { return _view; }
     /// The picture in a still water's surface at a height, metres: what stands `h` above it stands `h` below. `detail`: levels of
     /// detail are that much finer.
-    osg::ref_ptr<const PanoramaFrame> mirrored(double level, double detail) const;
+    osg::ref_ptr<const PanoramaSnapshot> mirrored(double level, double detail) const;
 
 protected:
-    ~PanoramaFrame() override;
+    ~PanoramaSnapshot() override;
 
 private:
     struct Extent;

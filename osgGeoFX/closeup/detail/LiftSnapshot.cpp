@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/closeup/detail/LiftFrame.h>
+#include <osgGeoFX/closeup/detail/LiftSnapshot.h>
 
 #include <algorithm>
 
 namespace osgGeoFX
 {
 
-LiftFrame::LiftFrame(const CloseUpItem& item) : _lift(item.lift())
+LiftSnapshot::LiftSnapshot(const CloseUpItem& item) : _lift(item.lift())
 {
     const CloseUp& closeUp = item.closeUp();
     _stretch = std::max({closeUp.getScaleX(), closeUp.getScaleY(), closeUp.getScaleHeight()});
@@ -15,6 +15,6 @@ LiftFrame::LiftFrame(const CloseUpItem& item) : _lift(item.lift())
     if (closeUp.getScaleHeight() > 0.0) _back = osg::Matrixd::inverse(_lift);
 }
 
-LiftFrame::~LiftFrame() = default;
+LiftSnapshot::~LiftSnapshot() = default;
 
 } // namespace osgGeoFX

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-// Colours of mappings that random scenes against the CPU do not tell of: linear light, and neighbours on a page.
+// Colors of mappings that random scenes against the CPU do not tell of: linear light, and neighbours on a page.
 #include <tools/MappingStage.h>
 
 #include <cmath>
@@ -9,11 +9,11 @@
 using namespace geofx::test;
 using namespace osgGeoFX;
 
-class MappingColours : public MappingStage
+class MappingColors : public MappingStage
 {
 };
 
-TEST_F(MappingColours, AreMadeLinearAsSRgbSays)
+TEST_F(MappingColors, AreMadeLinearAsSRgbSays)
 {
     lookDown({0.0, 0.0}, 2.0);
     _mappings->setLinear(true);
@@ -33,15 +33,15 @@ TEST_F(MappingColours, AreMadeLinearAsSRgbSays)
     }
 }
 
-TEST_F(MappingColours, OfNeighboursOnAPageDoNotMix)
+TEST_F(MappingColors, OfNeighboursOnAPageDoNotMix)
 {
     // Four pictures fill a page; each seen at levels between two, to its very edges.
     _mappings->setPageSide(256);
-    const osg::Vec3d colours[4] = {{0.9, 0.1, 0.1}, {0.1, 0.9, 0.1}, {0.1, 0.1, 0.9}, {0.9, 0.9, 0.9}};
+    const osg::Vec3d colors[4] = {{0.9, 0.1, 0.1}, {0.1, 0.9, 0.1}, {0.1, 0.1, 0.9}, {0.9, 0.9, 0.9}};
     const double half = 450.0;
     for (int i = 0; i < 4; ++i)
         _mappings->addMapping(
-            makePicture({i % 2 ? 480.0 : -480.0, i / 2 ? 480.0 : -480.0}, half, makeImage(128, colours[i])));
+            makePicture({i % 2 ? 480.0 : -480.0, i / 2 ? 480.0 : -480.0}, half, makeImage(128, colors[i])));
     for (const double level : {0.3, 0.8, 1.2, 1.5, 1.9})
     {
         const double pixel = std::exp2(level) * 2.0 * half / 128.0;
@@ -57,7 +57,7 @@ TEST_F(MappingColours, OfNeighboursOnAPageDoNotMix)
                 for (int x = static_cast<int>(std::ceil(low.x())); x < std::floor(high.x()); ++x)
                 {
                     if (!inside({x + 0.5, y + 0.5})) continue;
-                    ASSERT_LE(difference(at(*drawn, x, y), colours[i]), tolerance)
+                    ASSERT_LE(difference(at(*drawn, x, y), colors[i]), tolerance)
                         << "picture " << i << ", level " << level << ", pixel " << x << ", " << y;
                 }
             }
@@ -66,7 +66,7 @@ TEST_F(MappingColours, OfNeighboursOnAPageDoNotMix)
     EXPECT_EQ(_mappings->capacity().pagesUsed, 1);
 }
 
-TEST_F(MappingColours, OfAnImageThatGrowsInPlaceAreIts)
+TEST_F(MappingColors, OfAnImageThatGrowsInPlaceAreIts)
 {
     const osg::Vec3d before(0.9, 0.2, 0.1), after(0.2, 0.8, 0.3), other(0.1, 0.2, 0.9);
     lookDown({0.0, 0.0}, 2.0);
@@ -85,7 +85,7 @@ TEST_F(MappingColours, OfAnImageThatGrowsInPlaceAreIts)
     EXPECT_TRUE(alike(at(*drawn, there), other)) << at(*drawn, there).x();
 }
 
-TEST_F(MappingColours, OfALayerThatHadToGoAreNoOtherLayers)
+TEST_F(MappingColors, OfALayerThatHadToGoAreNoOtherLayers)
 {
     const osg::Vec3d lesser(0.9, 0.2, 0.1), better(0.1, 0.2, 0.9);
     lookDown({0.0, 0.0}, 2.0);
@@ -102,6 +102,6 @@ TEST_F(MappingColours, OfALayerThatHadToGoAreNoOtherLayers)
     _mappings->addMapping(second);
     osg::ref_ptr<osg::Image> drawn;
     EXPECT_EQ(watch().messagesOf([&] { drawn = draw(); }).size(), 1u);
-    EXPECT_TRUE(alike(at(*drawn, here), groundColour())) << at(*drawn, here).x();
+    EXPECT_TRUE(alike(at(*drawn, here), groundColor())) << at(*drawn, here).x();
     EXPECT_TRUE(alike(at(*drawn, there), better)) << at(*drawn, there).x();
 }

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osg/Geometry>
+#include <osgUtil/CullVisitor>
+#include <osgUtil/RenderStage>
+
+namespace osgGeoFX
+{
+
+/// A square in the plane z = 0 from (low, low) to (1, 1), for a program that fills the viewport or a part of it.
+osg::ref_ptr<osg::Geometry> createSquare(float low);
+
+/// Empties a stage that draws into images of its own: it has the camera's lights and view, and clears color and depth.
+void startStage(osgUtil::RenderStage& stage, osgUtil::CullVisitor& outer, const osg::Vec4& clearColor);
+
+} // namespace osgGeoFX
