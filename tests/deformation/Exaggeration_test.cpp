@@ -234,3 +234,52 @@ TEST(Exaggeration, LosesLittleInFloats)
     RecordProperty("worst_share_of_distance", std::to_string(worst * 1e6) + "e-6");
     RecordProperty("worst_metres_of_height", std::to_string(worstHeight));
 }
+
+// What another deformation has thrown deep below the ground: verticals meet there, and derivatives bound nothing.
+TEST(Exaggeration, BoundsHoldDeepInTheEarth)
+{
+    osgGeoFX::Hull hull;
+    for (int sample = 0; sample < 2000; ++sample)
+    {
+        Random random(static_cast<std::uint64_t>(sample));
+        CameraPose pose = randomCommonPose(random);
+        pose.globe = true;
+        const osg::ref_ptr<VerticalExaggeration> effect = new VerticalExaggeration;
+        effect->setFactor(random.logarithmic(1.5, 80.0));
+        const osgGeoFX::ViewGeometry view = pose.view();
+        const auto snapshot = effect->snapshot(view);
+        ASSERT_TRUE(snapshot);
+        SCOPED_TRACE(::testing::Message() << sample << ": factor " << effect->getFactor() << "; " << pose);
+        osgGeoFX::EyeBox box;
+        const double depth = random.uniform(0.05, 1.3) * 6.4e6;
+        box.center =
+            view.up * (-view.eyeHeight - depth) + randomDirection(random) * random.logarithmic(1e3, 2e6);
+        const double size = random.logarithmic(1e3, 2e6);
+        const Vec3d east = randomDirection(random);
+        Vec3d north = east ^ randomDirection(random);
+        north.normalize();
+        box.half[0] = east * size;
+        box.half[1] = north * (size * random.uniform(0.1, 1.0));
+        box.half[2] = (east ^ north) * (size * random.uniform(0.1, 1.0));
+        const osgGeoFX::Ball ball = box.ball(), bound = snapshot->bound(ball);
+        const double grows = snapshot->lipschitz(ball);
+        snapshot->boundBox(box, hull, 0.02);
+        for (int i = 0; i < 20; ++i)
+        {
+            Vec3d point = box.center;
+            for (const Vec3d& half : box.half)
+                point += half * random.uniform(-1.0, 1.0);
+            const Vec3d deformed = snapshot->deform(point);
+            EXPECT_LE((deformed - bound.center).length(), bound.radius * (1.0 + 1e-9));
+            const Vec3d beside = point + randomDirection(random) * (1e-3 * size);
+            EXPECT_LE((snapshot->deform(beside) - deformed).length(),
+                      grows * 1e-3 * size * (1.0 + 1e-6) + 1e-6);
+            const Vec3d direction = randomDirection(random);
+            double most = -HUGE_VAL;
+            for (const Vec3d& corner : hull.points)
+                most = std::max(most, corner * direction);
+            EXPECT_LE(deformed * direction, most + hull.margin * (1.0 + 1e-9) + 1e-3);
+        }
+        if (::testing::Test::HasFailure()) return;
+    }
+}

@@ -283,3 +283,22 @@ TEST(PanoramaGlobe, OnAPlaneATerrainsEdgeLiesWhereItsMetresAre)
         EXPECT_NEAR((at.y - 0.5) / EdgeMap::inner() + 0.5, (north - 2380000.0) / 30000.0, 1e-6);
     }
 }
+
+// A ball of half the Earth's radius has places deep below others: their feet lie farther apart than they do.
+TEST(PanoramaGlobe, BallsHoldWhatLiesDeepInThem)
+{
+    int stretched = 0;
+    forRandom(
+        [&](const Case& found, Random& random)
+        {
+            const ViewGeometry view = found.pose.view();
+            const Ball ball = {view.up * -view.eyeHeight, random.uniform(1e6, 3e6)};
+            const Vec3d a = ball.center - view.up * (0.95 * ball.radius);
+            const Vec3d b = a + toOsg(found.frame->view().right) * 1000.0;
+            const double grown =
+                (found.frame->deform(a) - found.frame->deform(b)).length() / (a - b).length();
+            EXPECT_LE(grown, found.frame->lipschitz(ball) * (1.0 + 1e-6));
+            stretched += grown > 1.2 ? 1 : 0;
+        });
+    EXPECT_GT(stretched, 0);
+}

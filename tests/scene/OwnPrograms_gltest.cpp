@@ -265,3 +265,40 @@ TEST_F(OwnProgramsTest, AreCulledAsWhatTheyAre)
     EXPECT_GT(undeformedOnly, count / 3);
     EXPECT_GT(hits, count / 2);
 }
+
+// OSG's intersection visitor does not traverse a geode's drawables as nodes: what their own state says was passed over.
+TEST_F(OwnProgramsTest, OfADrawableInAGeodeIsPickedWhereItIsDrawn)
+{
+    const osg::Camera& camera = *viewer().getCamera();
+    int moved = 0;
+    for (const bool own : {false, true})
+    {
+        const osg::ref_ptr<osg::MatrixTransform> box = makeBox(8, {10, 60, 0});
+        const osg::ref_ptr<osg::Geode> geode = new osg::Geode;
+        geode->addChild(box->getChild(0));
+        box->setChild(0, geode);
+        if (own) geode->getDrawable(0)->getOrCreateStateSet()->setAttribute(makeStranger("the post"));
+        const osg::ref_ptr<EffectScene> scene = makeScene({box});
+        osg::ref_ptr<osg::Image> drawn;
+        watch().messagesOf([&] { drawn = render(scene); });
+        const DeformedView picture(*scene, camera);
+        int missed = 0;
+        int hits = 0;
+        for (int y = 1; y < HEIGHT - 1; ++y)
+        {
+            for (int x = 1; x < WIDTH - 1; ++x)
+            {
+                constexpr unsigned char background[] = {26, 51, 77};
+                const bool covers = std::memcmp(drawn->data(x, y), background, 3) != 0;
+                const bool picked = picture.pick(x + 0.5, y + 0.5).has_value();
+                hits += covers ? 1 : 0;
+                missed += covers != picked ? 1 : 0;
+            }
+        }
+        EXPECT_GT(hits, 50);
+        // Along its edges by half a pixel.
+        EXPECT_LT(missed, hits / 5) << (own ? "with" : "without") << " a program of its own";
+        moved += own ? hits : -hits;
+    }
+    EXPECT_NE(moved, 0) << "the program makes no difference";
+}
