@@ -40,6 +40,28 @@ public:
             if (gpu) gpu->release(list);
             gpu = others;
         }
+        /// Binds the textures of a frame.
+        void setTextures(const GpuMappings::Frame& frame, osg::StateSet& state, const std::string& prefix,
+                         const std::vector<int>& units)
+        {
+            if (store != frame.store)
+            {
+                store = frame.store;
+                for (auto& each : textures)
+                    each = {new StoreTexture(store, GpuStore::Part::Data),
+                            new StoreTexture(store, GpuStore::Part::Layers),
+                            new StoreTexture(store, GpuStore::Part::Tables)};
+            }
+            turn = 1 - turn;
+            const char* const names[3] = {"data", "layers", "tables"};
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                StoreTexture* texture = textures[turn][i];
+                texture->show(frame.number);
+                state.setTextureAttribute(static_cast<unsigned int>(units[i]), texture);
+                state.getOrCreateUniform(prefix + names[i], osg::Uniform::INT)->set(units[i]);
+            }
+        }
 
         std::shared_ptr<GpuMappings> gpu;
         /// Two of each, in turn: OSG does not apply anew what it has applied last.
@@ -375,26 +397,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     const auto start = static_cast<int>(camera.list.offset());
     if (root.block == 0 || (_wholeList && start == 0)) return false;
 
-    if (camera.store != frame.store)
-    {
-        camera.store = frame.store;
-        for (auto& textures : camera.textures)
-        {
-            textures = {new StoreTexture(camera.store, GpuStore::Part::Data),
-                        new StoreTexture(camera.store, GpuStore::Part::Layers),
-                        new StoreTexture(camera.store, GpuStore::Part::Tables)};
-        }
-    }
-    camera.turn = 1 - camera.turn;
-    const std::vector<int>& units = view.units;
-    const char* const names[3] = {"data", "layers", "tables"};
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-        StoreTexture* texture = camera.textures[camera.turn][i];
-        texture->show(frame.number);
-        state.setTextureAttribute(static_cast<unsigned int>(units[i]), texture);
-        setUniform(state, prefix + names[i], osg::Uniform::INT, units[i]);
-    }
+    camera.setTextures(frame, state, prefix, view.units);
     const auto define = [&](const char* name, bool on)
     {
         state.setDefine(prefix + name, on ? osg::StateAttribute::ON : osg::StateAttribute::OFF);

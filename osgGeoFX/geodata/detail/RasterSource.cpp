@@ -249,6 +249,30 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
     _colorized = true;
 }
 
+void RasterSource::takePoles(const GridCrs& crs, Footprint& result) const
+{
+    auto& dataset = *_chain.back();
+    const TransformationPtr toSource = createTransformation(crs.srs, _srs, _file);
+    std::array<double, 6> inverse{};
+    if (!GDALInvGeoTransform(const_cast<double*>(_geoTransform.data()), inverse.data()))
+        fail("its geotransform is singular; repair it with gdal_translate -a_ullr");
+    for (const double pole : {-90.0, 90.0})
+    {
+        double x = result.west, y = pole, px = 0.0, py = 0.0;
+        int success = 0;
+        toSource->Transform(1, &x, &y, nullptr, &success);
+        if (!success || !_srs.IsProjected()) continue;
+        GDALApplyGeoTransform(inverse.data(), x, y, &px, &py);
+        if (px >= 0.0 && px <= dataset.GetRasterXSize() && py >= 0.0 && py <= dataset.GetRasterYSize())
+        {
+            result.wholeCircle = true;
+            (pole > 0.0 ? result.north : result.south) = pole;
+        }
+    }
+    if (result.east - result.west + 1.5 * result.stepX >= 360.0) result.wholeCircle = true;
+    if (result.wholeCircle) result.east = result.west + 360.0;
+}
+
 Footprint RasterSource::footprint(const GridCrs& crs) const
 {
     auto& dataset = *_chain.back();
@@ -321,29 +345,7 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
         fail("no part of it can be brought into the CRS \"" + std::string(crs.srs.GetName()) +
              "\"; choose another CRS, or --geocentric");
 
-    if (crs.geographic)
-    {
-        // Rasters around a pole, or all around the globe: every longitude.
-        const TransformationPtr toSource = createTransformation(crs.srs, _srs, _file);
-        std::array<double, 6> inverse{};
-        if (!GDALInvGeoTransform(const_cast<double*>(_geoTransform.data()), inverse.data()))
-            fail("its geotransform is singular; repair it with gdal_translate -a_ullr");
-        for (const double pole : {-90.0, 90.0})
-        {
-            double x = result.west, y = pole, px = 0.0, py = 0.0;
-            int success = 0;
-            toSource->Transform(1, &x, &y, nullptr, &success);
-            if (!success || !_srs.IsProjected()) continue;
-            GDALApplyGeoTransform(inverse.data(), x, y, &px, &py);
-            if (px >= 0.0 && px <= width && py >= 0.0 && py <= height)
-            {
-                result.wholeCircle = true;
-                (pole > 0.0 ? result.north : result.south) = pole;
-            }
-        }
-        if (result.east - result.west + 1.5 * result.stepX >= 360.0) result.wholeCircle = true;
-        if (result.wholeCircle) result.east = result.west + 360.0;
-    }
+    if (crs.geographic) takePoles(crs, result);
     return result;
 }
 

@@ -84,6 +84,8 @@ public:
     const std::string& file() const { return _file; }
 
 private:
+    /// Widens the footprint of a raster around a pole, or all around the globe, to every longitude.
+    void takePoles(const GridCrs& crs, Footprint& result) const;
     struct WarpRequest;
     void openAs(RasterKind kind);
     void warpByControlPoints(RasterKind kind);

@@ -476,16 +476,6 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     _mode = former;
 }
 
-void CompensatingCullVisitor::place(osg::Drawable& drawable)
-{
-    double depth = 0.0;
-    const DrawableSight::Place where = {*_mode.chain, *_modelviewStack.back(), _scale, _mode.planes,
-                                        _mode.tile};
-    if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
-    addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
-    drawCompanions(drawable, depth);
-}
-
 void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, double depth)
 {
     for (DrawableCompanion* each : _task.companions)

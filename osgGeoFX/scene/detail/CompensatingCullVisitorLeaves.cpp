@@ -79,6 +79,16 @@ void CompensatingCullVisitor::put(osgUtil::RenderBin& bin, osgUtil::StateGraph& 
     to.addLeaf(leaf);
 }
 
+void CompensatingCullVisitor::place(osg::Drawable& drawable)
+{
+    double depth = 0.0;
+    const DrawableSight::Place where = {*_mode.chain, *_modelviewStack.back(), _scale, _mode.planes,
+                                        _mode.tile};
+    if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
+    addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
+    drawCompanions(drawable, depth);
+}
+
 void CompensatingCullVisitor::noteStranger()
 {
     // Where nothing is to be moved it is at home.

@@ -37,6 +37,17 @@ public:
 private:
     void sample(RasterStack& rasters, const Unit& unit);
     void find();
+    /// What GDAL sees of a unit and around it.
+    struct Window
+    {
+        int west = 0, south = 0, width = 0, height = 0; ///< posts
+        std::vector<float> heights;
+        std::vector<Post> posts;
+    };
+    bool hasVoids(const Unit& unit);
+    Window windowOf(const Unit& unit);
+    /// Heights for all posts that have none, UNFILLED where there is no data near enough.
+    void interpolate(Window& window) const;
     void fill(const Unit& unit);
     void finish();
     int firstColumn(const Unit& unit) const { return _plan.scheme.firstColumn(unit.root); }
@@ -134,89 +145,99 @@ void VoidPass::find()
     }
 }
 
-void VoidPass::fill(const Unit& unit)
+bool VoidPass::hasVoids(const Unit& unit)
 {
-    const int column = firstColumn(unit), row = firstRow(unit), ownWidth = ownColumns(unit),
-              ownHeight = ownRows(unit);
-    std::vector<Post> line(static_cast<std::size_t>(ownWidth));
-    bool any = false;
-    for (int j = 0; j < ownHeight && !any; ++j)
+    std::vector<Post> line(static_cast<std::size_t>(ownColumns(unit)));
+    for (int j = 0; j < ownRows(unit); ++j)
     {
-        _posts.read(row + j, static_cast<std::size_t>(column), line.size(), line.data());
-        any = std::find(line.begin(), line.end(), Post::FILLED) != line.end();
+        _posts.read(firstRow(unit) + j, static_cast<std::size_t>(firstColumn(unit)), line.size(),
+                    line.data());
+        if (std::find(line.begin(), line.end(), Post::FILLED) != line.end()) return true;
     }
-    if (!any) return;
+    return false;
+}
 
+VoidPass::Window VoidPass::windowOf(const Unit& unit)
+{
     // Around the globe a window goes on beyond the seam; the last column is the first one again.
     const bool circle = _scheme.wholeCircle();
-    const int west = circle ? column - _margin : std::max(column - _margin, 0);
-    const int east = circle ? column + ownWidth + _margin : std::min(column + ownWidth + _margin, _columns);
-    const int south = std::max(row - _margin, 0), north = std::min(row + ownHeight + _margin, _rows);
-    const int width = east - west, height = north - south;
-    const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    std::vector<float> heights(count);
-    std::vector<Post> posts(count);
-    for (int j = 0; j < height; ++j)
+    const int column = firstColumn(unit), row = firstRow(unit);
+    const int last = column + ownColumns(unit) + _margin;
+    Window window;
+    window.west = circle ? column - _margin : std::max(column - _margin, 0);
+    window.south = std::max(row - _margin, 0);
+    window.width = (circle ? last : std::min(last, _columns)) - window.west;
+    window.height = std::min(row + ownRows(unit) + _margin, _rows) - window.south;
+    const auto count = static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
+    window.heights.resize(count);
+    window.posts.resize(count);
+    for (int j = 0; j < window.height; ++j)
     {
-        const std::size_t start = static_cast<std::size_t>(j) * static_cast<std::size_t>(width);
-        for (int i = 0; i < width;)
+        const std::size_t start = static_cast<std::size_t>(j) * static_cast<std::size_t>(window.width);
+        for (int i = 0; i < window.width;)
         {
             const int lap = _columns - 1;
-            const int from = circle ? ((west + i) % lap + lap) % lap : west + i;
-            const int run = std::min(width - i, (circle ? lap : _columns) - from);
+            const int from = circle ? ((window.west + i) % lap + lap) % lap : window.west + i;
+            const int run = std::min(window.width - i, (circle ? lap : _columns) - from);
             const auto first = static_cast<std::size_t>(from), size = static_cast<std::size_t>(run);
             const std::size_t target = start + static_cast<std::size_t>(i);
-            _posts.read(south + j, first, size, posts.data() + target);
-            _heights.read(south + j, first * sizeof(float), size * sizeof(float), heights.data() + target);
+            _posts.read(window.south + j, first, size, window.posts.data() + target);
+            _heights.read(window.south + j, first * sizeof(float), size * sizeof(float),
+                          window.heights.data() + target);
             i += run;
         }
     }
-    std::vector<unsigned char> valid(count);
-    for (std::size_t i = 0; i < count; ++i)
+    return window;
+}
+
+void VoidPass::interpolate(Window& window) const
+{
+    std::vector<unsigned char> valid(window.posts.size());
+    for (std::size_t i = 0; i < valid.size(); ++i)
     {
-        valid[i] = posts[i] == Post::DATA ? 255 : 0;
-        if (!valid[i]) heights[i] = UNFILLED;
+        valid[i] = window.posts[i] == Post::DATA ? 255 : 0;
+        if (!valid[i]) window.heights[i] = UNFILLED;
     }
-    {
-        const GdalErrorScope errors;
-        const DatasetPtr values = wrap(heights.data(), width, height, GDT_Float32);
-        const DatasetPtr mask = wrap(valid.data(), width, height, GDT_Byte);
-        CPLStringList options;
-        options.SetNameValue("TEMP_FILE_DRIVER", "MEM");
-        if (GDALFillNodata(values->GetRasterBand(1), mask->GetRasterBand(1), _search, 0,
-                           _plan.options.voidSmoothing, options.List(), nullptr, nullptr) != CE_None)
-            throw BuildError(_plan.options.dems.front() + ": its voids cannot be filled (" +
-                             errors.message() + "); build with --voids keep.");
-    }
-    for (int j = 0; j < ownHeight; ++j)
+    const GdalErrorScope errors;
+    const DatasetPtr values = wrap(window.heights.data(), window.width, window.height, GDT_Float32);
+    const DatasetPtr mask = wrap(valid.data(), window.width, window.height, GDT_Byte);
+    CPLStringList options;
+    options.SetNameValue("TEMP_FILE_DRIVER", "MEM");
+    if (GDALFillNodata(values->GetRasterBand(1), mask->GetRasterBand(1), _search, 0,
+                       _plan.options.voidSmoothing, options.List(), nullptr, nullptr) != CE_None)
+        throw BuildError(_plan.options.dems.front() + ": its voids cannot be filled (" + errors.message() +
+                         "); build with --voids keep.");
+}
+
+void VoidPass::fill(const Unit& unit)
+{
+    if (!hasVoids(unit)) return;
+    Window window = windowOf(unit);
+    interpolate(window);
+    const int column = firstColumn(unit), row = firstRow(unit), columns = ownColumns(unit);
+    for (int j = 0; j < ownRows(unit); ++j)
     {
         const std::size_t start =
-            static_cast<std::size_t>(row + j - south) * static_cast<std::size_t>(width) +
-            static_cast<std::size_t>(column - west);
-        for (int i = 0; i < ownWidth;)
+            static_cast<std::size_t>(row + j - window.south) * static_cast<std::size_t>(window.width) +
+            static_cast<std::size_t>(column - window.west);
+        const auto is = [&](int k, bool filled)
         {
-            const auto at = [&](int k)
-            {
-                return start + static_cast<std::size_t>(k);
-            };
-            const auto isFilled = [&](int k)
-            {
-                return posts[at(k)] == Post::FILLED && heights[at(k)] != UNFILLED;
-            };
-            const auto isOpen = [&](int k)
-            {
-                return posts[at(k)] == Post::FILLED && heights[at(k)] == UNFILLED;
-            };
+            const std::size_t at = start + static_cast<std::size_t>(k);
+            return window.posts[at] == Post::FILLED && (window.heights[at] != UNFILLED) == filled;
+        };
+        for (int i = 0; i < columns;)
+        {
             int end = i;
-            while (end < ownWidth && isFilled(end))
+            while (end < columns && is(end, true))
                 ++end;
             if (end > i)
                 _filled.write(row + j, static_cast<std::size_t>(column + i) * sizeof(float),
-                              static_cast<std::size_t>(end - i) * sizeof(float), heights.data() + at(i));
+                              static_cast<std::size_t>(end - i) * sizeof(float),
+                              window.heights.data() + start + static_cast<std::size_t>(i));
             // Where GDAL has found no data near enough, the post stays as it was.
-            for (i = end; i < ownWidth && isOpen(i); ++i)
+            for (i = end; i < columns && is(i, false); ++i)
                 flushPosts(row + j, column + i, 1, Post::VOID);
-            while (i < ownWidth && !isFilled(i) && !isOpen(i))
+            while (i < columns && !is(i, true) && !is(i, false))
                 ++i;
         }
     }
