@@ -144,7 +144,10 @@ bool PropertyHolder::setPropertyTexts(const Texts& texts, std::string& error)
                          [&, &wanted = name](const Property& each) { return each.name == wanted; });
         if (found == all.end())
         {
-            error = std::string(className()) + " has no property " + name + ".";
+            error = std::string(className()) + " has no property " + name + "; it has ";
+            for (const Property& each : all)
+                error += (&each == &all.front() ? "" : ", ") + each.name;
+            error += ".";
             return false;
         }
         if (!found->parse(text, values[found->name], error))

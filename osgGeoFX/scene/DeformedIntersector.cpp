@@ -17,9 +17,6 @@ namespace osgGeoFX
 namespace
 {
 
-/// How far what is undeformed may lie from the triangle, of its edge's square: a tenth of the edge.
-constexpr double mostBesides = 0.01;
-
 /// Where a ray meets a triangle: the distance in units of the direction, negative where it misses, and the shares of the
 /// second and third corner.
 struct Meeting
@@ -165,7 +162,7 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         const osg::Vec3d flat = a + ab * met.u + ac * met.v;
         osg::Vec3d eye = _chain->undeform(hit.deformed);
         // Where a deformation gathers ground in one point, the flat triangle that is drawn may lie where no ground goes.
-        if (!((eye - flat).length2() <= mostBesides * std::max(ab.length2(), ac.length2()))) eye = flat;
+        if (!((eye - flat).length2() <= std::max(ab.length2(), ac.length2()))) eye = flat;
         hit.world = eye * toLocal * model;
         hit.normal = (first[corner[1]] - first[corner[0]]) ^ (first[corner[2]] - first[corner[0]]);
         hit.normal = osg::Matrixd::transform3x3(hit.normal, model);

