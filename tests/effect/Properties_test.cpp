@@ -483,3 +483,34 @@ TEST(Effects, ThatALineCannotSayAllOfAreRefusedWithTheRemedy)
 }
 
 } // namespace
+
+namespace
+{
+
+TEST(Effects, AreExplainedByTheProgramsHelp)
+{
+    const std::string help = osgGeoFX::effectsHelp();
+    for (const std::string& kind : effectKinds())
+    {
+        const std::string head = kind + ": " + osgGeoFX::describeKind(kind) + "\n";
+        const std::size_t begin = help.find(head);
+        ASSERT_NE(begin, std::string::npos) << kind;
+        const std::string own = help.substr(begin, help.find("\n\n", begin) - begin);
+        const osg::ref_ptr<Effect> effect = createEffect(kind);
+        for (const Property& property : effect->properties())
+            EXPECT_NE(own.find("\n  " + property.name + "=" + property.text(property.defaultValue) + "  " +
+                               property.description.substr(0, property.description.find(';'))),
+                      std::string::npos)
+                << kind << "." << property.name;
+    }
+    for (const std::string& kind : propertyHolderKinds())
+    {
+        EXPECT_FALSE(osgGeoFX::describeKind(kind).empty()) << kind;
+        for (const Property& property : createPropertyHolder(kind)->properties())
+            EXPECT_FALSE(property.description.empty()) << kind << "." << property.name;
+    }
+    EXPECT_EQ(osgGeoFX::describeKind("nothing"), "");
+    EXPECT_FALSE(createPropertyHolder("nothing"));
+}
+
+} // namespace
