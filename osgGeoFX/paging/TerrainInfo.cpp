@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <typeinfo>
 #include <unordered_map>
 #include <utility>
@@ -252,6 +253,15 @@ const osg::Vec2Array* TileInfo::meshesOf(const osg::LOD& block)
     const auto* meshes =
         data && typeid(*data) == typeid(osg::Vec2Array) ? static_cast<const osg::Vec2Array*>(data) : nullptr;
     return meshes && meshes->size() == block.getNumChildren() ? meshes : nullptr;
+}
+
+unsigned int TileInfo::groundIndices(const osg::Geometry& geometry)
+{
+    constexpr unsigned int all = std::numeric_limits<unsigned int>::max();
+    const osg::LOD* block =
+        geometry.getNumParents() > 0 ? dynamic_cast<const osg::LOD*>(geometry.getParent(0)) : nullptr;
+    const osg::Vec2Array* meshes = block ? meshesOf(*block) : nullptr;
+    return meshes ? static_cast<unsigned int>((*meshes)[block->getChildIndex(&geometry)].y()) : all;
 }
 
 const osg::Transform* TileInfo::tileOf(const osg::Geometry& mesh)

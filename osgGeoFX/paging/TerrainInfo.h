@@ -95,6 +95,9 @@ struct OSGGEOFX_EXPORT TileInfo
     /// number of its mesh's indices that belong to the ground. The indices of walls follow them. Both numbers are 0 for
     /// a child that holds finer blocks. Null if the node is not a block of a tile.
     static const osg::Vec2Array* meshesOf(const osg::LOD& block);
+    /// How many of a geometry's indices, from the first, belong to the ground. If it is the mesh of a block, the others
+    /// belong to walls; all indices of any other geometry belong to the ground, and the result is the largest number.
+    static unsigned int groundIndices(const osg::Geometry& geometry);
 };
 
 /** The LOD scale at which a database keeps its error bound on a screen. It is never above 1, which would make the

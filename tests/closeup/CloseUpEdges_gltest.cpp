@@ -4,6 +4,7 @@
 // Borders of close-ups pixel by pixel: outlines in corners against the areas that plane geometry gives, and soft edges and anchors
 // of two close-ups against pictures of each alone, laid over each other in the order of their distance.
 #include <tools/CloseUpStage.h>
+#include <tools/TileBlock.h>
 
 #include <osg/Math>
 
@@ -189,6 +190,48 @@ TEST_F(CloseUpEdges, OutlinesAreAsWideInTheCornersOfRectangles)
     }
     std::cout << "a pixel's share is off by " << worst << " at most, a corner's by " << 100.0 * worstOfCorner
               << " %\n";
+}
+
+TEST_F(CloseUpEdges, WallsOfTilesDoNotHangOutBelowThem)
+{
+    // Level ground like that of a tile, with walls along lines 50 m apart.
+    const auto draw = [&](bool walls, bool culling, CloseUps::Pipeline pipeline)
+    {
+        _scene->removeChildren(0, _scene->getNumChildren());
+        const osg::ref_ptr<osg::Geometry> ground = makeHills(1000.0, 40);
+        auto& vertices = dynamic_cast<osg::Vec3Array&>(*ground->getVertexArray());
+        for (osg::Vec3& vertex : vertices)
+            vertex.z() = 0.0f;
+        _scene->addChild(makeTileBlock(*ground));
+        auto& triangles = dynamic_cast<osg::DrawElementsUInt&>(*ground->getPrimitiveSet(0));
+        for (unsigned int i = 0; walls && i + 42 < 41 * 41; ++i)
+        {
+            if (i % 41 == 40) continue;
+            for (const unsigned int next : {i + 1, i + 41})
+            {
+                vertices.push_back(vertices[i] - osg::Vec3(0.0f, 0.0f, 25.0f));
+                const auto low = static_cast<unsigned int>(vertices.size() - 1);
+                for (const unsigned int corner : {i, low, next})
+                    triangles.push_back(corner);
+            }
+        }
+        for (osg::Array* array : {ground->getNormalArray(), ground->getTexCoordArray(0)})
+            array->resizeArray(static_cast<unsigned int>(vertices.size()));
+        _scene->setCullingActive(culling);
+        _closeUps->setPipeline(pipeline);
+        return CloseUpStage::draw();
+    };
+    const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({10.0, 20.0}, 400.0, 300.0);
+    closeUp->getRegion()->setShape(RegionOfInterest::ELLIPSE);
+    _closeUps->addCloseUp(closeUp);
+    look({100.0, -1500.0, 1000.0}, {0.0, 0.0, 300.0}, 30.0);
+    for (const CloseUps::Pipeline pipeline : pipelines)
+    {
+        const osg::ref_ptr<osg::Image> expected = draw(false, true, pipeline);
+        EXPECT_EQ(differing(*draw(true, true, pipeline), *expected), 0.0) << "pipeline " << pipeline;
+        EXPECT_EQ(differing(*draw(true, false, pipeline), *expected), 0.0)
+            << "without culling, pipeline " << pipeline;
+    }
 }
 
 TEST_F(CloseUpEdges, TheNearerOfTwoSoftEdgesLiesOverTheOther)

@@ -4,6 +4,7 @@
 // Copies of the triangles over a region have what lies there, are drawn as often, and follow the geometry.
 #include <gtest/gtest.h>
 #include <osgGeoFX/closeup/detail/TriangleCopies.h>
+#include <tools/TileBlock.h>
 
 #include <cmath>
 
@@ -37,7 +38,77 @@ std::vector<TriangleCopies::Region> aroundFirst()
     return {{0, osg::Matrixd::translate(-0.5, -0.5, 0.0)}};
 }
 
+/// A wall of one triangle, `depth` below y from 0.4 to 0.6 of the row.
+void addWall(osg::Geometry& row, float x, float depth)
+{
+    auto& vertices = dynamic_cast<osg::Vec3Array&>(*row.getVertexArray());
+    auto& triangles = dynamic_cast<osg::DrawElementsUShort&>(*row.getPrimitiveSet(0));
+    for (const osg::Vec3& corner :
+         {osg::Vec3(x, 0.4f, 0.0f), osg::Vec3(x, 0.5f, -depth), osg::Vec3(x, 0.6f, 0.0f)})
+    {
+        triangles.push_back(static_cast<GLushort>(vertices.size()));
+        vertices.push_back(corner);
+    }
+}
+
 } // namespace
+
+TEST(TriangleCopies, HaveNoWallsNearARegionsBorder)
+{
+    // A region 8 wide and deep, around x = 5, whose base is the ground.
+    const osg::Matrixd toPlaces =
+        osg::Matrixd::translate(-5.0, -0.5, 0.0) * osg::Matrixd::scale(0.25, 0.25, 1.0);
+    const osg::ref_ptr<RegionOfInterest> shape = new RegionOfInterest;
+    shape->setShape(RegionOfInterest::RECTANGLE);
+    shape->setSize(8.0, 8.0);
+    for (const auto extent : {TriangleCopies::OVER_REGIONS, TriangleCopies::EVERYWHERE})
+    {
+        const auto walls = [&](float x, float depth, bool shaped, bool block)
+        {
+            const osg::ref_ptr<osg::Geometry> row = makeRow();
+            const osg::ref_ptr<osg::LOD> node = geofx::test::makeTileBlock(*row);
+            addWall(*row, x, depth);
+            if (!block) node->removeChildren(0, 1);
+            TriangleCopies copies;
+            TriangleCopies::Region region{0, toPlaces};
+            if (shaped) region.shape = shape;
+            const osg::Geometry* copy = copies.of(*row, {region}, false, extent);
+            return copy->getPrimitiveSet(0)->getNumIndices() / 3 - 20;
+        };
+        // 1 from the border, at x = 9: a wall that is 0.4 deep could be seen.
+        EXPECT_EQ(walls(8.0f, 0.4f, true, true), 0u);
+        EXPECT_EQ(walls(8.0f, 0.3f, true, true), 1u);
+        EXPECT_EQ(walls(5.0f, 0.4f, true, true), 1u);
+        EXPECT_EQ(walls(8.5f, 0.3f, true, true), 0u);
+        // Not a wall, or no border.
+        EXPECT_EQ(walls(8.0f, 0.4f, true, false), 1u);
+        EXPECT_EQ(walls(8.0f, 0.4f, false, true), 1u);
+    }
+}
+
+TEST(TriangleCopies, FollowTheShapeOfARegion)
+{
+    const osg::ref_ptr<osg::Geometry> row = makeRow();
+    const osg::ref_ptr<osg::LOD> node = geofx::test::makeTileBlock(*row);
+    addWall(*row, 5.0f, 0.2f);
+    const osg::ref_ptr<RegionOfInterest> shape = new RegionOfInterest;
+    shape->setShape(RegionOfInterest::RECTANGLE);
+    shape->setSize(40.0, 40.0);
+    TriangleCopies copies;
+    const auto indices = [&]
+    {
+        const osg::Matrixd toPlaces =
+            osg::Matrixd::translate(-5.0, -0.5, 0.0) * osg::Matrixd::scale(0.05, 0.05, 1.0);
+        return copies.of(*row, {{0, toPlaces, -1e9, shape, shape->revision()}}, false)
+            ->getPrimitiveSet(0)
+            ->getNumIndices();
+    };
+    EXPECT_EQ(indices(), 63u);
+    // Its border runs beside the wall.
+    shape->setOutline({{-1.0, -1.0}, {0.01, -1.0}, {0.01, 1.0}, {-1.0, 1.0}});
+    shape->setShape(RegionOfInterest::POLYGON);
+    EXPECT_EQ(indices(), 60u);
+}
 
 TEST(TriangleCopies, HaveWhatLiesOverARegion)
 {

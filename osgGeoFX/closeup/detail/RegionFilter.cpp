@@ -52,7 +52,9 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
             continue;
         }
         _touched.push_back(item);
-        if (_culls) _places.push_back({item, modelView * _items[item].toRegion(), _items[item].otherSide()});
+        const RegionOfInterest* shape = _items[item].closeUp().getRegion();
+        _places.push_back(
+            {item, modelView * _items[item].toRegion(), _items[item].otherSide(), shape, shape->revision()});
         RegionContents& region = found.contents[item];
         _items[item].includeHeights(box, region.lowest, region.highest);
         const osg::Geometry* geometry = _items[item].stretched() ? drawable.asGeometry() : nullptr;
@@ -73,8 +75,9 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
 osg::Drawable* RegionFilter::drawn(osg::Drawable& drawable)
 {
     osg::Geometry* geometry = drawable.asGeometry();
-    const bool copied = geometry && (_patches || _culls) && isTriangles(drawable);
-    return copied ? _copies.of(*geometry, _places, _patches) : &drawable;
+    if (!geometry || !isTriangles(drawable)) return &drawable;
+    return _copies.of(*geometry, _places, _patches,
+                      _culls ? TriangleCopies::OVER_REGIONS : TriangleCopies::EVERYWHERE);
 }
 
 } // namespace osgGeoFX

@@ -2,7 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/detail/TriangleCopies.h>
 
+#include <osgGeoFX/paging/TerrainInfo.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace osgGeoFX
@@ -41,6 +44,32 @@ bool wanted(const unsigned int* corners, const std::vector<Sides>& regions)
                        { return (sides[corners[0]] & sides[corners[1]] & sides[corners[2]]) == 0; });
 }
 
+/// Whether a triangle of a wall is so near to the border of a region that it can be seen below the ground's end there.
+bool hangsOut(const std::vector<osg::Vec3d>& vertices, const unsigned int* corners,
+              const TriangleCopies::Region& region)
+{
+    if (!region.shape) return false;
+    std::array<osg::Vec3d, 7> places;
+    for (std::size_t i = 0; i < 3; ++i)
+        places[i] = vertices[corners[i]] * region.toPlaces;
+    for (std::size_t i = 0; i < 3; ++i)
+        places[3 + i] = (places[i] + places[(i + 1) % 3]) * 0.5;
+    places[6] = (places[0] + places[1] + places[2]) / 3.0;
+    const auto [low, high] = std::minmax({places[0].z(), places[1].z(), places[2].z()});
+    const double half = 0.5 * std::min(region.shape->getWidth(), region.shape->getDepth());
+    // Where one looks down by more than 18 degrees, the ground in front of a wall hides as much of it.
+    const double margin = 3.0 * (high - low) / half;
+    double nearest = std::numeric_limits<double>::infinity();
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const osg::Vec3d& place : places)
+    {
+        const double inside = region.shape->maskAt({place.x(), place.y()}).y();
+        nearest = std::min(nearest, inside);
+        farthest = std::max(farthest, inside);
+    }
+    return nearest < margin && farthest > -margin;
+}
+
 /// Whether what is in a box is in the same place of the regions, but for what a camera's matrices round.
 bool same(const std::vector<TriangleCopies::Region>& some, const std::vector<TriangleCopies::Region>& others,
           const osg::BoundingBox& box)
@@ -48,6 +77,7 @@ bool same(const std::vector<TriangleCopies::Region>& some, const std::vector<Tri
     return std::equal(some.begin(), some.end(), others.begin(), others.end(),
                       [&](const TriangleCopies::Region& one, const TriangleCopies::Region& other)
                       {
+                          if (one.shape != other.shape || one.revision != other.revision) return false;
                           for (unsigned int i = 0; i < 8; ++i)
                           {
                               const osg::Vec3d corner(box.corner(i));
@@ -66,9 +96,12 @@ void TriangleCopies::build(Entry& entry, bool patches)
     const DrawableTriangles mesh(geometry);
     std::vector<Sides> sides;
     // Instances, and what a shader moves, lie elsewhere than the vertices say.
-    for (std::size_t i = 0; mesh.tellAll() && i < entry.regions.size(); ++i)
+    const bool cuts = mesh.tellAll() && entry.extent == OVER_REGIONS;
+    for (std::size_t i = 0; cuts && i < entry.regions.size(); ++i)
         sides.push_back(sidesOf(mesh.positions(), entry.regions[i]));
     std::vector<osg::ref_ptr<osg::DrawElementsUInt>> copies;
+    const std::size_t ground = TileInfo::groundIndices(geometry);
+    bool leftOut = false;
     std::size_t count = 0;
     std::size_t corner = 0;
     for (const DrawableTriangles::Part& part : mesh.parts())
@@ -79,7 +112,13 @@ void TriangleCopies::build(Entry& entry, bool patches)
         for (; corner < part.end; corner += 3)
         {
             const unsigned int* corners = &mesh.corners()[corner];
-            if (wanted(corners, sides)) indices->insert(indices->end(), corners, corners + 3);
+            if (!wanted(corners, sides)) continue;
+            const bool visible =
+                corner >= ground && std::any_of(entry.regions.begin(), entry.regions.end(),
+                                                [&](const Region& region)
+                                                { return hangsOut(mesh.positions(), corners, region); });
+            leftOut = leftOut || visible;
+            if (!visible) indices->insert(indices->end(), corners, corners + 3);
         }
         count += indices->size();
         if (!indices->empty()) copies.push_back(indices);
@@ -90,7 +129,7 @@ void TriangleCopies::build(Entry& entry, bool patches)
     entry.copy = nullptr;
     constexpr double most = 0.8;
     const bool worthIt =
-        patches || static_cast<double>(count) < most * static_cast<double>(mesh.corners().size());
+        patches || leftOut || static_cast<double>(count) < most * static_cast<double>(mesh.corners().size());
     if (entry.empty || unread || !worthIt) return;
     entry.copy = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
     // The arrays are another's, who may be drawing them: their buffers stay as they are.
@@ -105,19 +144,21 @@ void TriangleCopies::build(Entry& entry, bool patches)
     }
 }
 
-osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches)
+osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches,
+                                  Extent extent)
 {
     Key key = {&geometry, {}};
     for (const Region& region : regions)
         key.second.push_back(region.item);
     Entry& entry = (patches ? _patches : _triangles)[key];
-    const bool known = entry.geometry.valid() && entry.stamp.matches(geometry) &&
+    const bool known = entry.geometry.valid() && entry.stamp.matches(geometry) && entry.extent == extent &&
                        same(entry.regions, regions, geometry.getBoundingBox());
     if (!known)
     {
         entry.geometry = &geometry;
         entry.stamp = GeometryStamp(geometry, GeometryStamp::ALL_ARRAYS);
         entry.regions = regions;
+        entry.extent = extent;
         build(entry, patches);
     }
     if (entry.empty) return nullptr;
