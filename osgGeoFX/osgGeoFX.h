@@ -32,6 +32,8 @@
 #include <osgGeoFX/raster/ColorTable.h>
 #include <osgGeoFX/raster/LayerPixels.h>
 
+#include <osgGeoFX/scene/CameraEffects.h>
+#include <osgGeoFX/scene/CameraRole.h>
 #include <osgGeoFX/scene/DeformedIntersector.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectScene.h>

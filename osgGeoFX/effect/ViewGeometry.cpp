@@ -37,10 +37,11 @@ osg::Vec3d normalBelow(const osg::EllipsoidModel& ellipsoid, const osg::Vec3d& p
 
 } // namespace
 
-ViewGeometry::ViewGeometry(const osg::Matrixd& modelView, const osg::Matrixd& projectionMatrix,
+ViewGeometry::ViewGeometry(const osg::Matrixd& modelViewMatrix, const osg::Matrixd& projectionMatrix,
                            const Ground& theGround)
-    : ground(theGround), projection(projectionMatrix)
+    : ground(theGround), modelView(modelViewMatrix), projection(projectionMatrix)
 {
+    image.projection = projection;
     inverseProjection.invert(projection);
     osg::Matrixd toWorld;
     toWorld.invert(modelView);
@@ -56,6 +57,18 @@ ViewGeometry::ViewGeometry(const osg::Matrixd& modelView, const osg::Matrixd& pr
         polarAxis = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, 1.0), modelView);
         polarAxis.normalize();
     }
+}
+
+void ViewGeometry::setImage(const osg::Matrixd& cameraModelView, const osg::Matrixd& cameraProjection)
+{
+    image.ofView = false;
+    image.projection = cameraProjection;
+    image.toEye.makeIdentity();
+    image.toView.makeIdentity();
+    // A part of the picture from the same eye gets the same positions, to the last bit.
+    if (cameraModelView == modelView) return;
+    image.toEye = osg::Matrixd::inverse(modelView) * cameraModelView;
+    image.toView = osg::Matrixd::inverse(cameraModelView) * modelView;
 }
 
 void ViewGeometry::ray(double x, double y, osg::Vec3d& origin, osg::Vec3d& direction) const

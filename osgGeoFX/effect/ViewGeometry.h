@@ -32,10 +32,14 @@ struct OSGGEOFX_EXPORT Ground
     osg::observer_ptr<const osg::Node> terrain; ///< the root of the kit's database; null for other databases
 };
 
-/** One camera over a terrain, in double precision and in eye space (x right, y up, −z forward, metres).
+/** One view of a terrain, in double precision and in its eye space (x right, y up, −z forward, metres).
 
     Coordinates in eye space are small compared with those of a geocentric world. A modelview matrix that scales is
     not supported.
+
+    Effects belong to a view. Most often one camera draws it. Other cameras may draw the same view from elsewhere or in
+    part: a channel of a wall of screens, the left eye of a stereo pair, a tile of a print, a shadow map (CameraRole).
+    All members but `image` are then those of the view, so that every image shows the same deformed world.
 
     @ingroup effect */
 struct OSGGEOFX_EXPORT ViewGeometry
@@ -43,12 +47,29 @@ struct OSGGEOFX_EXPORT ViewGeometry
     /// `modelView`: from the frame of the EffectScene's children to eye space.
     ViewGeometry(const osg::Matrixd& modelView, const osg::Matrixd& projection, const Ground& ground);
 
+    /// The camera that draws an image of the view.
+    struct Image
+    {
+        bool ofView = true;      ///< whether it is the view's own camera; then both matrices are the identity
+        osg::Matrixd toEye;      ///< from the view's eye space to the camera's
+        osg::Matrixd toView;     ///< from the camera's eye space to the view's
+        osg::Matrixd projection; ///< the camera's
+        /// The matrix from the view's eye space to the camera's clip coordinates.
+        osg::Matrixd toClip() const { return ofView ? projection : toEye * projection; }
+    };
+
     Ground ground;
+    osg::Matrixd modelView; ///< from the frame of the EffectScene's children to eye space
     osg::Matrixd projection;
     osg::Matrixd inverseProjection;
     osg::Vec3d up;          ///< the unit normal of the ground below the eye
     osg::Vec3d polarAxis;   ///< a unit vector along the ellipsoid's axis; equals `up` on a projected terrain
     double eyeHeight = 0.0; ///< height of the eye above the ellipsoid or above z = 0, metres
+    Image image;            ///< by default that of the view's own camera
+
+    /// Sets `image` to that of another camera. `cameraModelView`: from the frame of the EffectScene's children to the
+    /// camera's eye space.
+    void setImage(const osg::Matrixd& cameraModelView, const osg::Matrixd& cameraProjection);
 
     /// The ray through a point of the viewport, x and y from −1 to 1. It begins on the near plane; the direction is not
     /// normalised. It works with any projection.

@@ -368,7 +368,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     const osg::Matrixd frameToEye = frameToWorld(ellipsoid) * view.modelView;
     const osg::Matrixd eyeToFrame = osg::Matrixd::inverse(frameToEye);
     // What a pixel spans, metres: at a metre from the eye, and whatever the distance.
-    const osg::Matrixd& projection = view.geometry.projection;
+    const osg::Matrixd& projection = view.geometry.image.projection;
     const double span =
         2.0 / std::max(std::abs(projection(1, 1)) * std::max(view.viewportHeight, 1.0), 1e-30);
     const bool parallel = projection(3, 3) != 0.0;

@@ -6,7 +6,9 @@
 #include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/paging/TileGuard.h>
+#include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/detail/CameraPasses.h>
+#include <osgGeoFX/scene/detail/CameraRoles.h>
 #include <osgGeoFX/scene/detail/CameraState.h>
 #include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
 #include <osgGeoFX/scene/detail/GroundFinder.h>
@@ -129,7 +131,8 @@ EffectScene::EffectScene() : _drawing(std::make_unique<Drawing>())
 EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
-      _terrainFrame(other._terrainFrame), _drawing(std::make_unique<Drawing>())
+      _roleCallback(other._roleCallback), _terrainFrame(other._terrainFrame),
+      _drawing(std::make_unique<Drawing>())
 {
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
     {
@@ -216,31 +219,44 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformation(const osg::Matrixd
     return CameraSnapshots(_effects, ViewGeometry(modelView, projection, known)).chain(known);
 }
 
+std::optional<CameraRole> EffectScene::roleOf(osgUtil::CullVisitor& outer, const CameraEffects* own) const
+{
+    CameraRole role = defaultRole(outer);
+    if (_nestedCameras && role.getKind() == CameraRole::UNDEFORMED) role = CameraRole::view();
+    const osg::Camera& camera = *outer.getCurrentCamera();
+    if (own && own->getRole()) role = *own->getRole();
+    if (_roleCallback) role = _roleCallback->role(camera, outer, role);
+    if (role.getKind() == CameraRole::UNDEFORMED) return std::nullopt;
+    return role;
+}
+
 namespace
 {
 
-/** Whether it is not the view's own camera that is being culled for.
-
-    OSG never puts the view's camera, or a slave's, on the node path, and the stage that culling begins with is that
-    camera's. Parents tell nothing: the cameras of osgShadow and of other techniques have none, and a slave of a view may
-    have some. */
-bool isNested(osgUtil::CullVisitor& outer)
+/// The effects that a camera draws in the places of a scene's.
+EffectProgram::Effects effectsFor(const EffectProgram::Effects& effects, const CameraEffects& camera)
 {
-    const osg::NodePath& path = outer.getNodePath();
-    return outer.getCurrentCamera() != outer.getRenderStage()->getCamera() ||
-           std::any_of(path.begin(), path.end(), [](osg::Node* node) { return node->asCamera() != nullptr; });
+    EffectProgram::Effects result = effects;
+    for (osg::ref_ptr<Effect>& effect : result)
+        effect = camera.effectFor(*effect);
+    return result;
 }
 
 } // namespace
 
 bool EffectScene::cull(osgUtil::CullVisitor& outer)
 {
-    const bool wanted =
-        std::any_of(_effects.begin(), _effects.end(), [](const auto& each) { return each->getEnabled(); });
-    if (!wanted || dynamic_cast<CompensatingCullVisitor*>(&outer)) return false;
+    if (dynamic_cast<CompensatingCullVisitor*>(&outer)) return false;
     if (!outer.getRenderStage() || !outer.getCurrentCamera()) return false;
+    const CameraEffects* const special = CameraEffects::find(*outer.getCurrentCamera());
+    EffectProgram::Effects replaced;
+    if (special) replaced = effectsFor(_effects, *special);
+    const EffectProgram::Effects& effects = special ? replaced : _effects;
+    const bool wanted =
+        std::any_of(effects.begin(), effects.end(), [](const auto& each) { return each->getEnabled(); });
+    const std::optional<CameraRole> role = wanted ? roleOf(outer, special) : std::nullopt;
+    if (!role) return false;
     const osg::NodePath& path = outer.getNodePath();
-    if (!_nestedCameras && isNested(outer)) return false;
 
     // Two threads may be about to cull what a pager has brought, here or in another scene.
     if (_compensation)
@@ -249,8 +265,8 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         const std::lock_guard<std::mutex> lock(mutex);
         getBound();
     }
-    const ViewGeometry view(*outer.getModelViewMatrix(), *outer.getProjectionMatrix(), ground(path));
-    const CameraSnapshots snapshots(_effects, view);
+    const ViewGeometry view = viewOf(outer, *role, ground(path));
+    const CameraSnapshots snapshots(effects, view);
     Drawing::Camera& own = _drawing->cameras.of(outer);
     if (own.visitor->startsFrame(outer))
     {
@@ -258,25 +274,26 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         own.passes.startFrame(outer);
     }
     const std::shared_ptr<const TextureUnits> units = _drawing->unitsOf(_effects);
-    const int mapUnit = mapUnitOf(_effects);
+    const int mapUnit = mapUnitOf(effects);
     if (own.used == own.states.size()) own.states.emplace_back();
     std::unique_ptr<CameraState>& now = own.states[own.used];
     // Made anew for other effects, which would find the uniforms and textures of the former ones under their names.
-    if (!now || now->units() != units) now = std::make_unique<CameraState>(_effects, mapUnit, units);
+    if (!now || now->units() != units) now = std::make_unique<CameraState>(effects, mapUnit, units);
     osg::StateSet& state = now->set();
-    now->fill(snapshots, mapUnit);
-    const bool surfaces = now->fillSurfaces(_effects, view, outer);
+    now->fill(snapshots, view, mapUnit);
+    const bool surfaces = now->fillSurfaces(effects, view, outer);
 
     CompensatingCullVisitor::Task task;
     task.chain = snapshots.chain(view.ground);
     task.mapUnit = mapUnit;
+    if (!view.image.ofView) task.image = &view.image;
     task.untouched = _drawing->untouched;
     task.tileError = view.ground.tileError;
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
     const bool draws = surfaces || _debugBounds || !task.chain->empty();
-    const bool passes = drawsPasses(_effects);
-    task.compensate = _compensation && (_debugBounds || deforms(_effects));
+    const bool passes = drawsPasses(effects);
+    task.compensate = _compensation && (_debugBounds || deforms(effects));
     if (!draws && !task.compensate && !passes) return false;
 
     ++own.used;
@@ -288,10 +305,10 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
                                              _effects};
     const auto forPasses = [&](const auto& action)
     {
-        for (std::size_t i = 0; i < _effects.size(); ++i)
+        for (std::size_t i = 0; i < effects.size(); ++i)
         {
-            PassEffect* effect = _effects[i]->asPassEffect();
-            if (!effect || !_effects[i]->getEnabled() || !units->complete[i]) continue;
+            PassEffect* effect = effects[i]->asPassEffect();
+            if (!effect || !effects[i]->getEnabled() || !units->complete[i]) continue;
             const std::string prefix = EffectProgram::prefix(i);
             action(*effect, CameraPass(traversal, prefix, units->ofEffects[i]));
         }

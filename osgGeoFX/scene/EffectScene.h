@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/DeformationChain.h>
 #include <osgGeoFX/effect/Effect.h>
 #include <osgGeoFX/effect/ViewGeometry.h>
+#include <osgGeoFX/scene/CameraRole.h>
 
 #include <osg/Group>
 #include <osg/Program>
@@ -13,11 +14,13 @@
 #include <osgUtil/CullVisitor>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace osgGeoFX
 {
 
+class CameraEffects;
 class TileGuard;
 
 /** The group that a program puts above its terrain to use the kit's effects.
@@ -38,10 +41,16 @@ class TileGuard;
     - `stateSet->setDefine("GEOFX_DEFORMATION", OFF)` leaves a subgraph undeformed.
     - A change of programs or defines below a node that is out of sight takes effect after some frames. It takes
       effect at once if the node has `setCullingActive(false)`.
-    - Cameras and projections below the group (render to texture, head-up displays) are drawn without effects. So is
-      everything in cameras above it that are not the view's own or its slaves', such as a shadow map's, unless
-      nestedCameras is on. Shadows are therefore those of the undeformed world. A program finds them if it looks them
-      up by the position that it passes to geofx_vertex().
+    - Cameras and projections below the group (render to texture, head-up displays) are drawn without effects.
+
+    **Cameras.** Each camera that meets the group has a role (CameraRole):
+    - The camera of a view, and its slaves with absolute matrices, are VIEWs. Each is deformed for itself.
+    - Slaves with relative matrices are LIKE their view's camera, so the channels of a wall of screens show one deformed
+      world. So do the two eyes of a stereo pair.
+    - Cameras above the group, and cameras of techniques such as osgShadow's and osgSim's, are UNDEFORMED. Shadows are
+      therefore those of the undeformed world. A program finds them if it looks them up by the position that it passes to
+      geofx_vertex(). osgEarth's cameras for picking are LIKE the view's camera.
+    - CameraEffects, attached to a camera, and setRoleCallback() decide otherwise.
 
     **Culling.** The group does not change the terrain's nodes. Any loader may make them, and other scenes may share
     them. Below the group, a cull visitor of the kit replaces the camera's. It culls deformed bounds and chooses
@@ -91,10 +100,13 @@ public:
     /// False by default.
     void setDebugBounds(bool on) { _debugBounds = on; }
     bool getDebugBounds() const { return _debugBounds; }
-    /// Whether other cameras that stand above in the graph, such as a shadow map's, are deformed, too. False by
-    /// default.
+    /// Whether cameras that would be UNDEFORMED by default are VIEWs: cameras above the group other than the view's own,
+    /// such as a shadow map's. False by default.
     void setNestedCameras(bool on) { _nestedCameras = on; }
     bool getNestedCameras() const { return _nestedCameras; }
+    /// Decides on the role of each camera, after CameraEffects; null, the default, for none.
+    void setRoleCallback(const CameraRoleCallback* callback) { _roleCallback = callback; }
+    const CameraRoleCallback* getRoleCallback() const { return _roleCallback.get(); }
     /// AUTOMATIC by default.
     void setTerrainFrame(TerrainFrame frame) { _terrainFrame = frame; }
     TerrainFrame getTerrainFrame() const { return _terrainFrame; }
@@ -126,11 +138,14 @@ protected:
 private:
     struct Drawing;
     bool cull(osgUtil::CullVisitor& outer);
+    /// Empty where the camera shows the scene without effects.
+    std::optional<CameraRole> roleOf(osgUtil::CullVisitor& outer, const CameraEffects* own) const;
 
     std::vector<osg::ref_ptr<Effect>> _effects;
     bool _compensation = true;
     bool _debugBounds = false;
     bool _nestedCameras = false;
+    osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     TerrainFrame _terrainFrame = AUTOMATIC;
     std::unique_ptr<Drawing> _drawing;
 };

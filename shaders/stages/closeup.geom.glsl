@@ -13,6 +13,7 @@ out vec2 SLOT_surface;
 out vec3 SLOT_place;
 flat out int SLOT_target;
 GEOFX_VARYINGS
+#include "stages/view.glsl"
 
 uniform ivec4 SLOT_targets; // up to three items, and how many they are
 uniform int SLOT_only;      // the layer that is drawn where they are drawn one by one, 0 the close-up's and 1 its anchor's; or -1
@@ -24,10 +25,11 @@ void SLOT_emit(int target, vec3 positions[3], vec3 places[3])
     vec4 shift = SLOT_only < 0 ? SLOT_item(item, 14) : vec4(0.0);
     for (int i = 0; i < 3; ++i)
     {
+        vec3 eye = geofx_inEye(positions[i]);
         gl_Layer = int(target == 2 * item ? shift.z : shift.w);
-        gl_Position = gl_ProjectionMatrix * vec4(positions[i], 1.0);
+        gl_Position = gl_ProjectionMatrix * vec4(eye, 1.0);
         gl_Position.xy += shift.xy * gl_Position.w;
-        gl_ClipVertex = vec4(SLOT_located_in[i], 1.0); // clip planes cut the ground as it lies
+        gl_ClipVertex = vec4(geofx_inEye(SLOT_located_in[i]), 1.0); // clip planes cut the ground as it lies
         gl_FrontColor = gl_in[i].gl_FrontColor;
 #ifdef GEOFX_COLOR_SUM
         gl_FrontSecondaryColor = gl_in[i].gl_FrontSecondaryColor;
@@ -48,7 +50,7 @@ void SLOT_emit(int target, vec3 positions[3], vec3 places[3])
         gl_TexCoord[3] = gl_in[i].gl_TexCoord[3];
 #endif
 #ifdef GEOFX_FOG
-        gl_FogFragCoord = GEOFX_FOG >= 4 ? gl_in[i].gl_FogFragCoord : abs(positions[i].z);
+        gl_FogFragCoord = GEOFX_FOG >= 4 ? gl_in[i].gl_FogFragCoord : abs(eye.z);
 #endif
         SLOT_surface = SLOT_surface_in[i];
         SLOT_place = places[i];

@@ -13,6 +13,7 @@ out vec2 SLOT_surface_in;
 out vec3 SLOT_located_in;
 out vec3 SLOT_bent_in;
 GEOFX_VARYINGS
+#include "stages/view.glsl"
 
 uniform float SLOT_roundness;
 
@@ -34,7 +35,7 @@ void main()
                                   w.z * SLOT_toPlane(2, SLOT_located_in));
     SLOT_located_in += rise;
     SLOT_bent_in += rise;
-    gl_Position = gl_ProjectionMatrix * vec4(SLOT_bent_in, 1.0);
+    gl_Position = gl_ProjectionMatrix * vec4(geofx_inEye(SLOT_bent_in), 1.0);
     gl_FrontColor = w.x * gl_in[0].gl_FrontColor + w.y * gl_in[1].gl_FrontColor + w.z * gl_in[2].gl_FrontColor;
 #ifdef GEOFX_COLOR_SUM
     gl_FrontSecondaryColor = w.x * gl_in[0].gl_FrontSecondaryColor + w.y * gl_in[1].gl_FrontSecondaryColor +

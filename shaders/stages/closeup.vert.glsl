@@ -60,7 +60,7 @@ vec3 SLOT_move(vec3 located, vec3 bent)
     SLOT_located = located;
     SLOT_bent = bent;
 #ifdef GEOFX_TESSELLATE
-    SLOT_normal_vertex = gl_NormalMatrix * gl_Normal;
+    SLOT_normal_vertex = geofx_directionInView(gl_NormalMatrix * gl_Normal);
 #endif
     return bent;
 #else

@@ -10,6 +10,7 @@
 #pragma import_defines(GEOFX_DEFORMATION)
 #pragma import_defines(GEOFX_NORMAL_MAP)
 GEOFX_IMPORTED_EFFECTS
+#include "stages/view.glsl"
 in float geofx_styleBlend;
 #ifdef GEOFX_NORMAL_MAP
 // What lies on the ground is lit by the normals of a texture, in the frame of the geometry: effect/detail/TileNormals.h.
@@ -23,12 +24,12 @@ vec3 geofx_eyeNormal()
     vec3 normal = (255.0 * texel - 128.0) / 127.0;
     // Without a third channel; no byte is 0.
     if (texel.b < 0.002) normal.z = sqrt(max(1.0 - dot(normal.xy, normal.xy), 0.0));
-    return gl_NormalMatrix * normalize(normal);
+    return geofx_directionInView(gl_NormalMatrix * normalize(normal));
 }
 
 vec3 geofx_ground()
 {
-    return geofx_groundPlace;
+    return geofx_inEye(geofx_groundPlace);
 }
 
 float geofx_normalSize()
@@ -44,7 +45,7 @@ vec3 geofx_turnedNormal()
 #ifdef GEOFX_DEFORMATION
 GEOFX_NORMAL_CALLS
 #endif
-    return normal;
+    return geofx_directionInEye(normal);
 }
 #endif
 vec4 geofx_fragment(vec4 color, vec4 map)

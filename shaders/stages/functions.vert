@@ -12,10 +12,11 @@
 #pragma import_defines(GEOFX_PLACED)
 #pragma import_defines(GEOFX_NORMAL_MAP)
 GEOFX_IMPORTED_EFFECTS
+#include "stages/view.glsl"
 out float geofx_styleBlend;
 #ifdef GEOFX_NORMAL_MAP
 out vec2 geofx_normalPlace;  // in the texture of normals
-out vec3 geofx_groundPlace; // undeformed, in eye space
+out vec3 geofx_groundPlace; // undeformed, in the view's eye space
 #endif
 #ifdef GEOFX_PLACED
 uniform mat4 geofx_unplaced; // of an object that was moved as a whole: back to where it stands
@@ -26,34 +27,43 @@ vec4 geofx_vertex(vec4 eyePosition)
     geofx_styleBlend = 0.0;
 #ifdef GEOFX_NORMAL_MAP
     geofx_normalPlace = (gl_TextureMatrix[2] * gl_MultiTexCoord0).xy;
-    geofx_groundPlace = eyePosition.xyz / eyePosition.w;
+    geofx_groundPlace = geofx_inView(eyePosition.xyz / eyePosition.w);
 #endif
     vec3 located = eyePosition.xyz / eyePosition.w;
 #ifdef GEOFX_PLACED
     located = (geofx_unplaced * vec4(located, 1.0)).xyz;
 #endif
+    located = geofx_inView(located);
 GEOFX_LOCATE_CALLS
-    vec3 position = eyePosition.xyz / eyePosition.w;
+    vec3 position = geofx_inView(eyePosition.xyz / eyePosition.w);
+#ifdef GEOFX_IMAGE
+    vec3 former = position;
+#endif
 #ifdef GEOFX_DEFORMATION
 GEOFX_DEFORM_CALLS
 #endif
 GEOFX_MOVE_CALLS
+#ifdef GEOFX_IMAGE
+    // Not by way of the view: what stays where it is goes exactly where others put it.
+    if (position == former) return eyePosition;
+#endif
 #ifdef GEOFX_DEFORMATION
-    return vec4(position, 1.0);
+    return vec4(geofx_inEye(position), 1.0);
 #else
     return eyePosition;
 #endif
 }
 
-vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal)
+vec3 geofx_normal(vec4 cameraPosition, vec3 cameraNormal)
 {
+    vec3 eyeNormal = geofx_directionInView(cameraNormal);
 GEOFX_FACE_CALLS
 #ifdef GEOFX_DEFORMATION
-    vec3 position = eyePosition.xyz / eyePosition.w;
+    vec3 position = geofx_inView(cameraPosition.xyz / cameraPosition.w);
     vec3 normal = eyeNormal;
 GEOFX_NORMAL_CALLS
-    return normal;
+    return geofx_directionInEye(normal);
 #else
-    return eyeNormal;
+    return cameraNormal;
 #endif
 }

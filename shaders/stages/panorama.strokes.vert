@@ -5,9 +5,10 @@
 // Brush strokes of PanoramaMap, one point each (osgGeoFX/panorama/detail/TileStrokes.h tells the arrays): where a stroke goes and what
 // it looks like, all of it flat. SLOT_ stands for the effect's prefix.
 #include "lib/strokes.glsl"
+#include "stages/view.glsl"
 
 vec4 geofx_vertex(vec4 eyePosition);
-// Of undeformed places in eye space: pixels for each metre of the ground, the mean of across and along; the light on the ground, -1
+// Of undeformed places in the view's eye space: pixels for each metre of the ground, the mean of across and along; the light on the ground, -1
 // to 1, `y` the place's in the picture, 0 at the bottom to 1; what the air makes of a color.
 float SLOT_groundScale(vec3 eyePosition);
 float SLOT_strokeLight(vec3 eyePosition, vec3 eyeNormal, float y);
@@ -25,7 +26,7 @@ out vec3 SLOT_lightTone_in;
 out vec3 SLOT_darkTone_in;
 out vec4 SLOT_stamp_in;  // half its width and its height in pixels, and the direction of its height
 out vec2 SLOT_traits_in; // kind and seed
-out vec3 SLOT_ground_in; // where it stands on the undeformed ground, in eye space
+out vec3 SLOT_ground_in; // where it stands on the undeformed ground, in the view's eye space
 
 vec3 SLOT_tone(int row, float light)
 {
@@ -43,21 +44,22 @@ vec2 SLOT_pixel(vec4 clip)
 void main()
 {
     vec4 eye = gl_ModelViewMatrix * gl_Vertex;
-    SLOT_ground_in = eye.xyz;
+    vec3 ground = geofx_inView(eye.xyz);
+    SLOT_ground_in = ground;
     float seed = gl_MultiTexCoord0.x / 32767.0;
     float level = 0.5 * gl_MultiTexCoord0.y;
     int kind = int(gl_MultiTexCoord0.z + 0.5);
     float threshold = gl_MultiTexCoord0.w / 32767.0;
     bool isLine = kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER;
 
-    float groundScale = SLOT_groundScale(eye.xyz);
+    float groundScale = SLOT_groundScale(ground);
     float wanted = geofx_strokeWanted(SLOT_stroke.y, SLOT_stroke.z, groundScale);
     float size = SLOT_stroke.x * geofx_strokeGrowth(wanted);
     if (isLine)
-        size *= geofx_strokeOfLine(level, wanted) ? 1.0 - 0.4 * SLOT_strokeFar(eye.xyz) : 0.0;
+        size *= geofx_strokeOfLine(level, wanted) ? 1.0 - 0.4 * SLOT_strokeFar(ground) : 0.0;
     else
         size *= geofx_strokeScale(level, threshold, wanted);
-    float shown = SLOT_strokeShown(eye.xyz);
+    float shown = SLOT_strokeShown(ground);
     size *= shown;
 
     geofx_StrokeShape shape = geofx_strokeShape(kind, seed);
@@ -96,9 +98,10 @@ void main()
     nearer = gl_ProjectionMatrix * nearer;
     gl_Position = gl_ProjectionMatrix * moved;
     if (nearer.w > 0.0) gl_Position.z = nearer.z / nearer.w * gl_Position.w;
-    float y = 0.5 + 0.5 * gl_Position.y / max(gl_Position.w, 1e-6);
-    float light = SLOT_strokeLight(eye.xyz, normalize(gl_NormalMatrix * gl_Normal), y) +
-                  shape.tone * (1.0 - 0.6 * SLOT_strokeFar(eye.xyz));
+    vec4 picture = geofx_inPicture(moved);
+    float y = 0.5 + 0.5 * picture.y / max(picture.w, 1e-6);
+    float light = SLOT_strokeLight(ground, geofx_directionInView(normalize(gl_NormalMatrix * gl_Normal)), y) +
+                  shape.tone * (1.0 - 0.6 * SLOT_strokeFar(ground));
     if (kind == GEOFX_STROKE_HOUSE)
     {
         // Walls in the town's color, roofs of tiles or slate.
@@ -120,10 +123,10 @@ void main()
     {
         int row = kind == GEOFX_STROKE_CLIFF ? 2 : 5;
         // Far away, light and shade come nearer to each other.
-        float contrast = (kind == GEOFX_STROKE_CLIFF ? 0.35 : 0.24) * (1.0 - 0.6 * SLOT_strokeFar(eye.xyz));
+        float contrast = (kind == GEOFX_STROKE_CLIFF ? 0.35 : 0.24) * (1.0 - 0.6 * SLOT_strokeFar(ground));
         SLOT_lightTone_in = SLOT_tone(row, light + contrast);
         SLOT_darkTone_in = SLOT_tone(row, light - contrast);
     }
-    SLOT_lightTone_in = SLOT_strokeAir(SLOT_lightTone_in, eye.xyz);
-    SLOT_darkTone_in = SLOT_strokeAir(SLOT_darkTone_in, eye.xyz);
+    SLOT_lightTone_in = SLOT_strokeAir(SLOT_lightTone_in, ground);
+    SLOT_darkTone_in = SLOT_strokeAir(SLOT_darkTone_in, ground);
 }

@@ -21,9 +21,10 @@ std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& i
     double low[2] = {1e30, 1e30};
     double high[2] = {-1e30, -1e30};
     bool behind = false;
+    const osg::Matrixd toClip = pass.view.image.toClip();
     const auto include = [&](const osg::Vec3d& point)
     {
-        const osg::Vec4d clip = osg::Vec4d(point, 1.0) * pass.view.projection;
+        const osg::Vec4d clip = osg::Vec4d(point, 1.0) * toClip;
         // Near planes are found later; what lies beside the eye may be anywhere.
         if (!(clip.w() > 1e-3)) behind = true;
         const double place[2] = {clip.x() / clip.w(), clip.y() / clip.w()};

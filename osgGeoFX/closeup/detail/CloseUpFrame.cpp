@@ -46,7 +46,7 @@ std::vector<CloseUpItem> itemsOf(const ScenePass& pass, const CloseUpTask& task)
     const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
     const double time = stamp ? stamp->getSimulationTime() : 0.0;
     for (const osg::ref_ptr<CloseUp>& closeUp : task.closeUps)
-        items.emplace_back(*closeUp, pass.view, *pass.outer.getModelViewMatrix(), pass.chain, time);
+        items.emplace_back(*closeUp, pass.view, pass.view.modelView, pass.chain, time);
     return items;
 }
 

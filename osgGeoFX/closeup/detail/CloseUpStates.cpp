@@ -67,9 +67,10 @@ void CloseUpStates::setTextures(const CloseUpTask& task)
 void CloseUpStates::setTessellation(const ScenePass& pass, const CloseUpTask& task,
                                     const std::vector<CloseUpItem>& items)
 {
-    const bool perspective = pass.view.projection(3, 3) == 0.0;
-    const double pixels = (perspective ? 1.0 : -1.0) * pass.outer.getViewport()->height() *
-                          std::abs(pass.view.projection(1, 1)) / 2.0;
+    const osg::Matrixd& projection = pass.view.image.projection;
+    const bool perspective = projection(3, 3) == 0.0;
+    const double pixels =
+        (perspective ? 1.0 : -1.0) * pass.outer.getViewport()->height() * std::abs(projection(1, 1)) / 2.0;
     const double roundness = std::accumulate(items.begin(), items.end(), 0.0,
                                              [](double most, const CloseUpItem& item)
                                              { return std::max(most, item.closeUp().getRoundness()); });
@@ -103,7 +104,7 @@ void CloseUpStates::setSurface(const ScenePass& pass, const SurfaceData* data)
     if (data)
     {
         const osg::EllipsoidModel* ellipsoid = pass.view.ground.ellipsoid;
-        toSurface = osg::Matrixd::inverse(data->frameToWorld(ellipsoid) * *pass.outer.getModelViewMatrix());
+        toSurface = osg::Matrixd::inverse(data->frameToWorld(ellipsoid) * pass.view.modelView);
         const osg::Vec2d size = data->getHigh() - data->getLow();
         area.set(data->getLow().x(), data->getLow().y(), 1.0 / size.x(), 1.0 / size.y());
         if (ellipsoid)

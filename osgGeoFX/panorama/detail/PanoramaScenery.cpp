@@ -174,7 +174,7 @@ private:
     /// What lies behind where the terrain ends.
     void setEdge(osg::StateSet& state) const
     {
-        const PanoramaEdge edge(map, textures, pass.view, *pass.outer.getModelViewMatrix(), panorama);
+        const PanoramaEdge edge(map, textures, pass.view, pass.view.modelView, panorama);
         put(state, "geofx_skyPlace", edge.sky);
         put(state, "geofx_skyEdgeEye", edge.eye);
         put(state, "geofx_skyEdgeWays", edge.ways);

@@ -54,7 +54,7 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
     if (!program) return false;
     forgetGone();
     _maker = &maker;
-    _toWorld.invert(*pass.outer.getModelViewMatrix());
+    _toWorld.invert(pass.view.modelView);
     _coverUnit = static_cast<unsigned int>(map.getCoverUnit());
 
     const auto forced = osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
@@ -79,8 +79,8 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
     put("viewport", viewport->width(), viewport->height(), 1.0 / viewport->width(), 1.0 / viewport->height());
     put("stroke", map.getStrokeSize(), map.getStrokeSpacing(), map.getStrokeStep(), 0.0);
     put("strokeView",
-        map.getProjection() ? 0.0 : 0.5 * viewport->height() * std::abs(pass.view.projection(1, 1)), 0.0, 0.0,
-        0.0);
+        map.getProjection() ? 0.0 : 0.5 * viewport->height() * std::abs(pass.view.image.projection(1, 1)),
+        0.0, 0.0, 0.0);
     return true;
 }
 

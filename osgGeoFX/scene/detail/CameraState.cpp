@@ -90,8 +90,23 @@ osg::Uniform& CameraState::uniformAt(std::size_t effect, std::size_t place, cons
     return *uniform;
 }
 
-void CameraState::fill(const CameraSnapshots& snapshots, int mapUnit)
+/// Where the camera stands that draws the view.
+void CameraState::fillImage(const ViewGeometry& view)
 {
+    setDefine(*_set, "GEOFX_IMAGE", !view.image.ofView);
+    if (view.image.ofView) return;
+    const auto put = [&](const char* name, const osg::Matrixd& matrix)
+    {
+        _set->getOrCreateUniform(name, osg::Uniform::FLOAT_MAT4)->set(osg::Matrixf(matrix));
+    };
+    put("geofx_toView", view.image.toView);
+    put("geofx_toEye", view.image.toEye);
+    put("geofx_viewProjection", view.projection);
+}
+
+void CameraState::fill(const CameraSnapshots& snapshots, const ViewGeometry& view, int mapUnit)
+{
+    fillImage(view);
     _set->getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(mapUnit, 0));
     setDefine(*_set, "GEOFX_DEFORMATION", true);
     const std::vector<CameraSnapshots::Placed>& all = snapshots.all();
@@ -119,7 +134,7 @@ bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const View
         SurfaceEffect* surface = effects[i]->asSurfaceEffect();
         if (!surface) continue;
         const SurfaceView view = {geometry,
-                                  *outer.getModelViewMatrix(),
+                                  geometry.modelView,
                                   viewport ? viewport->x() : 0.0,
                                   viewport ? viewport->y() : 0.0,
                                   viewport ? viewport->width() : 0.0,

@@ -48,12 +48,13 @@ public:
     /// Of the effects that it was made for.
     const std::shared_ptr<const TextureUnits>& units() const { return _units; }
     osg::StateSet& set() const { return *_set; }
-    void fill(const CameraSnapshots& snapshots, int mapUnit);
+    void fill(const CameraSnapshots& snapshots, const ViewGeometry& view, int mapUnit);
     /// Of the effects that color surfaces; whether there are any at work.
     bool fillSurfaces(const EffectProgram::Effects& effects, const ViewGeometry& geometry,
                       osgUtil::CullVisitor& outer);
 
 private:
+    void fillImage(const ViewGeometry& view);
     osg::Uniform& uniformAt(std::size_t effect, std::size_t place, const std::string& name);
 
     osg::ref_ptr<osg::StateSet> _set = new osg::StateSet;

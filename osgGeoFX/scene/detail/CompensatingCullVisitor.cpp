@@ -151,6 +151,7 @@ void CompensatingCullVisitor::setVisibility(const osgUtil::CullVisitor& outer)
     const bool culls = cullsByPicture();
     Visibility::Camera camera;
     camera.projection = *getProjectionMatrix();
+    camera.image = _task.image;
     camera.viewport = getViewport();
     if (culls && (_outerCullingMode & VIEW_FRUSTUM_CULLING))
         camera.planes = &getProjectionCullingStack().back().getFrustum();
@@ -222,7 +223,7 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const std::vector
     for (const ScenePass::Piece& piece : pieces)
     {
         if (piece.state) pushStateSet(piece.state);
-        addLeaf(*piece.drawable, createOrReuseMatrix(piece.modelView), 0.0);
+        addLeaf(*piece.drawable, createOrReuseMatrix(inEye(piece.modelView)), 0.0);
         if (piece.state) popStateSet();
     }
     if (task.passState) popStateSet();
@@ -232,8 +233,7 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const std::vector
 
 Ball CompensatingCullVisitor::eyeBall(const osg::BoundingSphere& sphere) const
 {
-    const auto* modelView = _modelviewStack.back().get();
-    return {osg::Vec3d(sphere.center()) * *modelView, static_cast<double>(sphere.radius()) * _scale};
+    return {inView(osg::Vec3d(sphere.center())), static_cast<double>(sphere.radius()) * _scale};
 }
 
 bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
@@ -319,8 +319,9 @@ void CompensatingCullVisitor::apply(RigidReference& node)
     const Mode former = _mode;
     meet(node.getStateSet());
     const osg::Matrixd& modelView = *getModelViewMatrix();
-    const osg::Vec3d reference = node.referencePoint() * modelView;
-    const osg::Matrixd placement = rigidPlacement(definedChain(), reference, node.getTurn());
+    osg::Matrixd placement =
+        rigidPlacement(definedChain(), inView(osg::Vec3d(node.referencePoint())), node.getTurn());
+    if (_task.image) placement = _task.image->toView * placement * _task.image->toEye;
     pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
     meet(_task.untouched);
     pushStateSet(_task.untouched);
@@ -480,7 +481,7 @@ void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, double dep
 {
     for (DrawableCompanion* each : _task.companions)
     {
-        osg::Drawable* companion = each->companion(drawable, *getModelViewMatrix());
+        osg::Drawable* companion = each->companion(drawable, viewMatrix());
         if (!companion) continue;
         pushStateSet(each->state());
         addLeaf(*companion, getModelViewMatrix(), depth);

@@ -53,6 +53,8 @@ public:
         FollowingPrograms* following =
             nullptr; ///< for what has one of the application's with the effects' functions
         osg::StateSet* untouched = nullptr; ///< takes the deformation away
+        /// The camera's image, where it draws another camera's view; null where it draws its own.
+        const ViewGeometry::Image* image = nullptr;
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;
@@ -137,6 +139,22 @@ protected:
     /// By which billboards turn to the eye.
     virtual const DeformationChain& turningChain() const { return *_mode.chain; }
 
+    /// From the current node to the eye space of the view, which is the camera's own unless it draws another one's.
+    osg::Matrixd viewMatrix() const { return inView(*_modelviewStack.back()); }
+    osg::Matrixd inView(const osg::Matrixd& modelView) const
+    {
+        return _task.image ? modelView * _task.image->toView : modelView;
+    }
+    osg::Vec3d inView(const osg::Vec3d& position) const
+    {
+        const osg::Vec3d eye = position * *_modelviewStack.back();
+        return _task.image ? eye * _task.image->toView : eye;
+    }
+    /// The other way: a matrix to the view's eye space, changed to lead to the camera's.
+    osg::Matrixd inEye(const osg::Matrixd& viewMatrix) const
+    {
+        return _task.image ? viewMatrix * _task.image->toEye : viewMatrix;
+    }
     Ball eyeBall(const osg::BoundingSphere& sphere) const;
     /// Puts a drawable into the graph below a look, its own state and a copy of its program, and remembers that it was done here.
     void addLeaf(osg::Drawable& drawable, osg::StateSet* own, osg::StateSet* look, double depth);
@@ -192,6 +210,8 @@ private:
     static std::size_t graphsIn(osgUtil::RenderBin& bin);
     bool isForeign(const osgUtil::StateGraph& graph) const;
     void setVisibility(const osgUtil::CullVisitor& outer);
+    /// From where levels of detail are chosen, in the view's eye space.
+    osg::Vec3d viewPoint() const;
     /// Whether parts of a node that is out of sight, deformed, are in sight since they are not.
     bool partsInSight(const osg::Node& node, const Ball& undeformed);
     /// Whether a paged tile of the kit's databases, with all that is finer, is out of sight.

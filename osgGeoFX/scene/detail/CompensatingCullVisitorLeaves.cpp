@@ -82,8 +82,8 @@ void CompensatingCullVisitor::put(osgUtil::RenderBin& bin, osgUtil::StateGraph& 
 void CompensatingCullVisitor::place(osg::Drawable& drawable)
 {
     double depth = 0.0;
-    const DrawableSight::Place where = {*_mode.chain, *_modelviewStack.back(), _scale, _mode.planes,
-                                        _mode.tile};
+    const osg::Matrixd matrix = viewMatrix();
+    const DrawableSight::Place where = {*_mode.chain, matrix, _scale, _mode.planes, _mode.tile};
     if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
     addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
     drawCompanions(drawable, depth);
@@ -174,7 +174,7 @@ void CompensatingCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph
     if (_task.compensate && bounds.valid() && _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR)
     {
         const EyeBox box =
-            EyeBox::of(bounds, leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd());
+            EyeBox::of(bounds, inView(leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd()));
         _drawables.depths().add(box, _mode.chain->bound(box.ball()), *_mode.chain);
     }
     put(bin, graph, above ? *graph.find_or_insert(above) : graph, &leaf);
@@ -196,7 +196,7 @@ void CompensatingCullVisitor::apply(osg::Billboard& node)
         osg::Drawable* drawable = node.getDrawable(i);
         if (!drawable) continue;
         osg::RefMatrix* matrix =
-            createOrReuseMatrix(billboardModelView(turningChain(), node, i, *getModelViewMatrix()));
+            createOrReuseMatrix(inEye(billboardModelView(turningChain(), node, i, viewMatrix())));
         if (_task.compensate)
             _modelviewStack.push_back(matrix);
         else

@@ -79,7 +79,7 @@ void CompensatingCullVisitor::applyBlock(osg::LOD& block)
         formerPlanes && (_sight.hides(*_mode.chain, ball) || _sight.outOfSight(deformed, _mode.planes, true));
     if (!out || partsInSight(block, ball))
     {
-        const double distance = _mode.chain->lodDistance(ball, getReferenceViewPoint(), &deformed);
+        const double distance = _mode.chain->lodDistance(ball, viewPoint(), &deformed);
         const auto told = static_cast<float>(
             std::min(distance * static_cast<double>(getLODScale()), _mode.chain->lodLimit(block, ball)));
         for (unsigned int i = 0; i < block.getNumChildren(); ++i)
@@ -153,6 +153,7 @@ bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
     if (!tile || !TileInfo::readBox(*tile, tileBox)) return false;
     osg::Matrixd matrix = *getModelViewMatrix();
     tile->computeLocalToWorldMatrix(matrix, this);
+    matrix = inView(matrix);
     const double range = static_cast<double>(node.getMaxRange(1));
     const auto radius = static_cast<double>(node.getBound().radius());
     const double error = std::max(0.0, range - radius) * _task.tileError;
@@ -163,12 +164,18 @@ bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
     return _sight.outOfSight(*_mode.chain, EyeBox::of(bounds, matrix), _mode.planes);
 }
 
+osg::Vec3d CompensatingCullVisitor::viewPoint() const
+{
+    // In eye space: the origin but for cameras that inherit another one's. All images of a view have the view's own
+    // levels of detail.
+    return _task.image ? osg::Vec3d() : osg::Vec3d(getReferenceViewPoint());
+}
+
 float CompensatingCullVisitor::getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const
 {
     if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceToViewPoint(position, withLodScale);
-    const Ball ball = {osg::Vec3d(position) * *_modelviewStack.back(), _mode.lodRadius};
-    // The reference view point is in eye space: the origin but for cameras that inherit another one's.
-    const double distance = _mode.chain->lodDistance(ball, getReferenceViewPoint());
+    const Ball ball = {inView(osg::Vec3d(position)), _mode.lodRadius};
+    const double distance = _mode.chain->lodDistance(ball, viewPoint());
     return static_cast<float>(
         std::min(withLodScale ? distance * static_cast<double>(getLODScale()) : distance, _mode.lodLimit));
 }
@@ -176,7 +183,7 @@ float CompensatingCullVisitor::getDistanceToViewPoint(const osg::Vec3& position,
 float CompensatingCullVisitor::getDistanceToEyePoint(const osg::Vec3& position, bool withLodScale) const
 {
     if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceToEyePoint(position, withLodScale);
-    const Ball ball = {osg::Vec3d(position) * *_modelviewStack.back(), _mode.lodRadius};
+    const Ball ball = {inView(osg::Vec3d(position)), _mode.lodRadius};
     const double distance = _mode.chain->lodDistance(ball, osg::Vec3d());
     return static_cast<float>(withLodScale ? distance * static_cast<double>(getLODScale()) : distance);
 }
@@ -184,7 +191,7 @@ float CompensatingCullVisitor::getDistanceToEyePoint(const osg::Vec3& position, 
 float CompensatingCullVisitor::getDistanceFromEyePoint(const osg::Vec3& position, bool withLodScale) const
 {
     if (!_mode.ours || !_task.compensate) return CullVisitor::getDistanceFromEyePoint(position, withLodScale);
-    const osg::Vec3d deformed = _mode.chain->deform(osg::Vec3d(position) * *_modelviewStack.back());
+    const osg::Vec3d deformed = _mode.chain->deform(inView(osg::Vec3d(position)));
     return static_cast<float>(withLodScale ? -deformed.z() * static_cast<double>(getLODScale())
                                            : -deformed.z());
 }

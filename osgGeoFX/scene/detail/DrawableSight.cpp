@@ -10,7 +10,7 @@ namespace osgGeoFX
 void DrawableSight::begin(const Wishes& wishes)
 {
     _wishes = wishes;
-    _depths.clear();
+    _depths.clear(_sight.depths());
     _complaint.clear();
     if (wishes.bounds) _bounds.begin();
 }
@@ -29,12 +29,12 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
         const osg::BoundingSphere& sphere = drawable.getBound();
         const Ball roughly = place.chain.bound({osg::Vec3d(sphere.center()) * place.modelView,
                                                 static_cast<double>(sphere.radius()) * place.scale});
-        depth = -roughly.center.z();
+        depth = _depths.depthOf(roughly.center);
         if (!_wishes.depths || _depths.covers(roughly)) return true;
     }
     const EyeBox box = EyeBox::of(bounds, place.modelView);
     const Ball deformed = place.chain.bound(box.ball());
-    depth = -deformed.center.z();
+    depth = _depths.depthOf(deformed.center);
     if (test && _wishes.hides && _sight.hides(place.chain, box)) return false;
     if (small && _sight.tooSmall(deformed)) return false;
     if (planes && _sight.outOfSight(deformed, planes, true)) return false;

@@ -33,10 +33,10 @@ public:
     struct Place
     {
         const DeformationChain& chain;
-        const osg::Matrixd& modelView;
-        double scale;            ///< of that
-        Visibility::Mask planes; ///< that it may cross
-        bool smallCounts;        ///< whether its size tells
+        const osg::Matrixd& modelView; ///< to the view's eye space
+        double scale;                  ///< of that
+        Visibility::Mask planes;       ///< that it may cross
+        bool smallCounts;              ///< whether its size tells
     };
     /// False where it is out of sight; `depth` of its middle otherwise, metres.
     bool inSight(const osg::Drawable& drawable, const Place& place, double& depth);

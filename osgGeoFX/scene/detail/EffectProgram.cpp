@@ -178,7 +178,7 @@ void addMove(Parts& parts, const ShaderLibrary& library, const PassShaders& pass
                 "#define " + varying.name + " " + varying.name + (tessellated ? "_vertex\n" : "_in\n");
     }
     parts.functions += joined(library, pass.vertex, prefix);
-    parts.move = "    return vec4(" + prefix + "move(located, position), 1.0);\n";
+    parts.move = "    return vec4(geofx_inEye(" + prefix + "move(located, position)), 1.0);\n";
 }
 
 /// Adds what a pass has in the fragment stage.

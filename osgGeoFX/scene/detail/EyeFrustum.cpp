@@ -116,13 +116,15 @@ bool EyeFrustum::missesPicture(const Hull& hull)
 {
     // A hull beside a corner of the picture crosses planes and yet misses the picture. Where all of it lies before the
     // eye, its outline in the picture tells.
-    const bool perspective = _projection(3, 3) == 0.0;
+    const osg::Vec3d away(_projection(0, 3), _projection(1, 3), _projection(2, 3));
+    const double w = away.length();
+    const bool perspective = w > 0.0;
     double nearest = DBL_MAX;
     double widest = 0.0;
     _points.clear();
     for (const osg::Vec3d& point : hull.points)
     {
-        const double depth = perspective ? -point.z() : 1.0;
+        const double depth = perspective ? (away * point + _projection(3, 3)) / w : 1.0;
         nearest = std::min(nearest, depth);
         if (nearest <= 0.0) return false;
         const osg::Vec3d projected = point * _projection;
@@ -132,9 +134,11 @@ bool EyeFrustum::missesPicture(const Hull& hull)
     // What the margin is at most in the picture.
     const double margin = hull.margin + 1e-6 * nearest;
     if (perspective && nearest <= 2.0 * margin) return false;
-    const double zoom = std::max(std::abs(_projection(0, 0)), std::abs(_projection(1, 1)));
-    const double skew = std::max(std::abs(_projection(2, 0)), std::abs(_projection(2, 1)));
-    const double slack = perspective ? margin * (zoom + skew + widest) / (nearest - margin) : margin * zoom;
+    // By how much the picture's x and y change for each metre, before they are divided by the depth.
+    const osg::Vec3d x(_projection(0, 0), _projection(1, 0), _projection(2, 0));
+    const osg::Vec3d y(_projection(0, 1), _projection(1, 1), _projection(2, 1));
+    const double zoom = std::max(x.length(), y.length()) / (perspective ? w : 1.0);
+    const double slack = perspective ? margin * (zoom + widest) / (nearest - margin) : margin * zoom;
     const double edge = 1.0 + 2.0 * slack + 1e-5 * (1.0 + widest);
     const std::vector<osg::Vec2d> outline = convexOutline(_points);
     for (std::size_t i = 0; i < outline.size(); ++i)
@@ -148,8 +152,9 @@ bool EyeFrustum::missesPicture(const Hull& hull)
     return false;
 }
 
-void DepthRange::clear()
+void DepthRange::clear(const osg::Vec4d& depths)
 {
+    _depths = depths;
     _candidates.clear();
     _nearest = DBL_MAX;
     _farthest = -DBL_MAX;
@@ -165,19 +170,21 @@ void DepthRange::include(double nearest, double farthest)
 
 void DepthRange::include(const Ball& ball)
 {
-    include(-ball.center.z() - ball.radius, -ball.center.z() + ball.radius);
+    include(depthOf(ball.center) - ball.radius, depthOf(ball.center) + ball.radius);
 }
 
 void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain)
 {
-    const double depth = -deformed.center.z();
+    const double depth = depthOf(deformed.center);
     if (!std::isfinite(depth) || !std::isfinite(deformed.radius)) return;
     // The middle is for sure within; most of the others then lie between what is certain.
     include(depth, depth);
     if (depth - deformed.radius >= _nearest && depth + deformed.radius <= _farthest) return;
     if (chain.leavesAlone(box.ball()))
     {
-        const double half = std::abs(box.half[0].z()) + std::abs(box.half[1].z()) + std::abs(box.half[2].z());
+        const osg::Vec3d along(_depths.x(), _depths.y(), _depths.z());
+        const double half =
+            std::abs(box.half[0] * along) + std::abs(box.half[1] * along) + std::abs(box.half[2] * along);
         include(depth - half, depth + half);
         return;
     }
@@ -191,8 +198,8 @@ void DepthRange::measure(Candidate& candidate)
     double farthest = -DBL_MAX;
     for (const osg::Vec3d& point : _hull.points)
     {
-        nearest = std::min(nearest, -point.z());
-        farthest = std::max(farthest, -point.z());
+        nearest = std::min(nearest, depthOf(point));
+        farthest = std::max(farthest, depthOf(point));
     }
     include(nearest - _hull.margin, farthest + _hull.margin);
     // It has had its say.

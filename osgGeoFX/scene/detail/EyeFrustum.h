@@ -15,7 +15,7 @@
 namespace osgGeoFX
 {
 
-/// A camera's frustum in eye space, and what misses it. For one thread at a time.
+/// A camera's frustum in the view's eye space, and what misses it. For one thread at a time.
 class EyeFrustum
 {
 public:
@@ -28,7 +28,8 @@ public:
         Inside
     };
 
-    /// No `planes`: nothing misses it. `sides`: whether the picture's border culls.
+    /// No `planes`: nothing misses it. `projection`: from the view's eye space to clip coordinates. `sides`: whether the
+    /// picture's border culls.
     void set(const osg::Polytope* planes, const osg::Matrixd& projection, bool sides);
     Mask all() const { return (1u << _planes.size()) - 1u; }
 
@@ -53,7 +54,12 @@ private:
 class DepthRange
 {
 public:
-    void clear();
+    /// `depths`: what a depth is, as Visibility::depths() has it.
+    void clear(const osg::Vec4d& depths = {0.0, 0.0, -1.0, 0.0});
+    double depthOf(const osg::Vec3d& point) const
+    {
+        return _depths.x() * point.x() + _depths.y() * point.y() + _depths.z() * point.z() + _depths.w();
+    }
     /// Depths that are certain.
     void include(const Ball& ball);
     void include(double nearest, double farthest);
@@ -62,7 +68,8 @@ public:
     /// Whether a ball lies between what is certain so far, and need not be added.
     bool covers(const Ball& ball) const
     {
-        return -ball.center.z() - ball.radius >= _nearest && -ball.center.z() + ball.radius <= _farthest;
+        const double depth = depthOf(ball.center);
+        return depth - ball.radius >= _nearest && depth + ball.radius <= _farthest;
     }
     void settle();
 
@@ -80,6 +87,7 @@ private:
 
     std::vector<Candidate> _candidates;
     Hull _hull;
+    osg::Vec4d _depths = osg::Vec4d(0.0, 0.0, -1.0, 0.0);
     double _nearest = DBL_MAX;
     double _farthest = -DBL_MAX;
 };

@@ -37,7 +37,7 @@ void PassCullVisitor::place(osg::Drawable& drawable)
 {
     const osg::BoundingBox& bounds = drawable.getBoundingBox();
     if (!bounds.valid()) return;
-    const osg::Matrixd& modelView = *_modelviewStack.back();
+    const osg::Matrixd modelView = viewMatrix();
     const EyeBox box = EyeBox::of(bounds, modelView);
     if (_filter->outside(box.ball())) return;
     osg::StateSet* look = _looks.lookFor(drawable, *_currentStateGraph);
@@ -57,7 +57,7 @@ void PassCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph,
 {
     if (!bounds.valid()) return;
     osg::Drawable& drawable = *leaf._drawable;
-    const osg::Matrixd modelView = leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd();
+    const osg::Matrixd modelView = inView(leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd());
     const EyeBox box = EyeBox::of(bounds, modelView);
     if (_filter->outside(box.ball())) return;
     const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, look == nullptr);

@@ -11,12 +11,14 @@ void Visibility::set(const Camera& camera)
 {
     const osg::Viewport* viewport = camera.viewport;
     const bool sized = viewport && viewport->width() >= 1.0 && viewport->height() >= 1.0;
+    const osg::Matrixd toEye = camera.image ? camera.image->toEye : osg::Matrixd();
+    const osg::Matrixd toClip = camera.image ? toEye * camera.projection : camera.projection;
     if (camera.reach > 0.0 && sized)
     {
         // A wider picture, so that what stands beside the camera's is drawn while it still reaches into it.
         _room.set(2.0 * camera.reach / viewport->width(), 2.0 * camera.reach / viewport->height());
         const osg::Matrixd wider =
-            camera.projection * osg::Matrixd::scale(1.0 / (1.0 + _room.x()), 1.0 / (1.0 + _room.y()), 1.0);
+            toClip * osg::Matrixd::scale(1.0 / (1.0 + _room.x()), 1.0 / (1.0 + _room.y()), 1.0);
         osg::Polytope planes;
         planes.setToUnitFrustum(camera.nearPlane, camera.farPlane);
         planes.transformProvidingInverse(wider);
@@ -25,11 +27,20 @@ void Visibility::set(const Camera& camera)
     else
     {
         _room.set(0.0, 0.0);
-        _frustum.set(camera.planes, camera.projection, camera.sides);
+        osg::Polytope planes;
+        if (camera.planes && camera.image)
+        {
+            planes = *camera.planes;
+            planes.transformProvidingInverse(toEye);
+        }
+        _frustum.set(camera.planes && camera.image ? &planes : camera.planes, toClip, camera.sides);
     }
+    _depths.set(-toEye(0, 2), -toEye(1, 2), -toEye(2, 2), -toEye(3, 2));
+    // What a view hides can be seen from elsewhere, or its shadow can. In a part of the picture the room has other lengths.
+    _hides = !camera.image || (toEye.getTrans().length2() == 0.0 && camera.reach <= 0.0);
     _smallPixels = viewport && viewport->height() > 0.0 ? camera.smallPixels : 0.0;
     if (viewport && viewport->height() > 0.0)
-        _pixelSize = osg::CullingSet::computePixelSizeVector(*viewport, camera.projection, osg::Matrix());
+        _pixelSize = osg::CullingSet::computePixelSizeVector(*viewport, camera.projection, toEye);
 }
 
 double Visibility::radiusOfPixel(const osg::Vec3d& point) const

@@ -15,7 +15,7 @@ namespace osgGeoFX
 {
 
 /** What one camera sees of balls and boxes once they are deformed: by the planes of its frustum, by hulls in its picture, and by
-    their size in pixels. Knows nothing of a scene graph. Everything is in eye space, metres. For one thread at a time. */
+    their size in pixels. Knows nothing of a scene graph. Everything is in the view's eye space, metres. For one thread at a time. */
 class Visibility
 {
 public:
@@ -24,8 +24,10 @@ public:
     struct Camera
     {
         osg::Matrixd projection;
-        const osg::Viewport* viewport = nullptr;              ///< null: sizes in pixels are unknown
-        const osg::Polytope* planes = nullptr;                ///< of the frustum; null: they cull nothing
+        const ViewGeometry::Image* image = nullptr; ///< where it draws another camera's view; null: its own
+        const osg::Viewport* viewport = nullptr;    ///< null: sizes in pixels are unknown
+        const osg::Polytope* planes =
+            nullptr; ///< of the frustum, in the camera's eye space; null: they cull nothing
         bool sides = true, nearPlane = true, farPlane = true; ///< which of them there are
         double smallPixels = 0.0; ///< what is smaller is out of sight; 0: nothing is too small
         double reach = 0.0;       ///< how far beyond its own part of the picture a thing may draw, pixels
@@ -37,13 +39,21 @@ public:
     bool cullsSmall() const { return _smallPixels > 0.0; }
     /// The radius, metres, of a ball at a point that is one pixel wide as OSG counts it.
     double radiusOfPixel(const osg::Vec3d& point) const;
+    /// What a depth in front of the camera's eye is, metres: the product with (x, y, z, 1).
+    const osg::Vec4d& depths() const { return _depths; }
 
     /// Of a deformed ball. Takes the planes that it is wholly inside of out of the mask. `mayBeSmall`: its size does not count.
     bool outOfSight(const Ball& deformed, Mask& planes, bool mayBeSmall = false) const;
     bool tooSmall(const Ball& deformed) const;
     /// Whether nothing of a ball, still undeformed, is to be drawn, wherever it goes.
-    bool hides(const DeformationChain& chain, const Ball& ball) const { return chain.hides(ball, _room); }
-    bool hides(const DeformationChain& chain, const EyeBox& box) const { return chain.hides(box, _room); }
+    bool hides(const DeformationChain& chain, const Ball& ball) const
+    {
+        return _hides && chain.hides(ball, _room);
+    }
+    bool hides(const DeformationChain& chain, const EyeBox& box) const
+    {
+        return _hides && chain.hides(box, _room);
+    }
     /// Whether a point is inside of the planes of a mask.
     bool holds(const osg::Vec3d& deformed, Mask planes) const { return _frustum.holds(deformed, planes); }
     /// Whether what becomes of a box misses the picture, by its hull. Slow.
@@ -56,6 +66,8 @@ private:
     osg::Vec2d _room; ///< for the reach, in the picture's x and y (−1…1)
     double _smallPixels = 0.0;
     osg::Vec4d _pixelSize;
+    osg::Vec4d _depths = osg::Vec4d(0.0, 0.0, -1.0, 0.0);
+    bool _hides = true; ///< what the view hides is not in this image, either
     Hull _hull;
 };
 

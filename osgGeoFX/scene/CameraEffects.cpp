@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/CameraEffects.h>
+
+#include <osgGeoFX/effect/TextureUnits.h>
+#include <osgGeoFX/scene/detail/EffectProgram.h>
+
+#include <osg/Notify>
+#include <osg/UserDataContainer>
+
+#include <string>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Whether the programs and the texture units of a scene serve for either effect.
+bool interchangeable(const Effect& one, const osg::ref_ptr<Effect>& second)
+{
+    const osg::ref_ptr<Effect> first = const_cast<Effect*>(&one);
+    return std::string(one.className()) == second->className() &&
+           EffectProgram::key({first}) == EffectProgram::key({second}) &&
+           TextureUnits::of({first}).ofEffects == TextureUnits::of({second}).ofEffects;
+}
+
+} // namespace
+
+CameraEffects::CameraEffects(const CameraEffects& other, const osg::CopyOp& copy)
+    : osg::Object(other, copy), _role(other._role), _replacements(other._replacements)
+{
+}
+
+CameraEffects::~CameraEffects() = default;
+
+CameraEffects& CameraEffects::of(osg::Camera& camera)
+{
+    if (const CameraEffects* known = find(camera)) return const_cast<CameraEffects&>(*known);
+    const osg::ref_ptr<CameraEffects> made = new CameraEffects;
+    camera.getOrCreateUserDataContainer()->addUserObject(made);
+    return *made;
+}
+
+const CameraEffects* CameraEffects::find(const osg::Camera& camera)
+{
+    const osg::UserDataContainer* data = camera.getUserDataContainer();
+    for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
+    {
+        if (const auto* found = dynamic_cast<const CameraEffects*>(data->getUserObject(i))) return found;
+    }
+    return nullptr;
+}
+
+void CameraEffects::setEnabled(const Effect& effect, bool on)
+{
+    _replacements.erase(&effect);
+    if (on) return;
+    // A copy that is off: it needs what the effect needs, and draws nothing.
+    const osg::ref_ptr<Effect> off = osg::clone(&effect, osg::CopyOp::SHALLOW_COPY);
+    off->setEnabled(false);
+    _replacements.emplace(&effect, off);
+}
+
+bool CameraEffects::setReplacement(const Effect& effect, Effect* replacement)
+{
+    const osg::ref_ptr<Effect> other = replacement; // it may be no one else's
+    if (other && !interchangeable(effect, other))
+    {
+        OSG_WARN << "osgGeoFX: CameraEffects::setReplacement: a " << other->className()
+                 << " cannot be drawn in the place of a " << effect.className()
+                 << ", since it needs other shaders or texture units; nothing changes. Use an effect of the "
+                    "same class with the same texture units, or add it to the scene and switch it by "
+                    "CameraEffects::setEnabled."
+                 << std::endl;
+        return false;
+    }
+    _replacements.erase(&effect);
+    if (other) _replacements.emplace(&effect, other);
+    return true;
+}
+
+Effect* CameraEffects::effectFor(Effect& effect) const
+{
+    const auto found = _replacements.find(&effect);
+    return found == _replacements.end() ? &effect : found->second.get();
+}
+
+} // namespace osgGeoFX

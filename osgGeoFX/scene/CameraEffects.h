@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/Effect.h>
+#include <osgGeoFX/scene/CameraRole.h>
+
+#include <osg/Camera>
+#include <osg/Object>
+
+#include <map>
+#include <optional>
+
+namespace osgGeoFX
+{
+
+/** What EffectScenes do differently for one camera: its role, and effects that are off or have other values.
+
+    The object is attached to the camera itself, so whoever owns the camera says it, without knowing the scenes.
+
+    @code
+    osgGeoFX::CameraEffects& left = osgGeoFX::CameraEffects::of(*leftCamera);
+    left.setRole(osgGeoFX::CameraRole::like(*centerCamera));
+    left.setEnabled(*closeUps, false);
+    @endcode
+
+    Change it between frames. It is not written to files.
+
+    @ingroup scene */
+class OSGGEOFX_EXPORT CameraEffects : public osg::Object
+{
+public:
+    CameraEffects() = default;
+    CameraEffects(const CameraEffects& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
+    META_Object(osgGeoFX, CameraEffects);
+
+    /// The object of a camera. A camera that has none gets one.
+    static CameraEffects& of(osg::Camera& camera);
+    /// The object of a camera; null if it has none.
+    static const CameraEffects* find(const osg::Camera& camera);
+
+    /// The role of the camera in all scenes. A CameraRoleCallback of a scene may still decide otherwise.
+    void setRole(const CameraRole& role) { _role = role; }
+    /// Lets the scenes find the role again, as they do by default.
+    void clearRole() { _role.reset(); }
+    const std::optional<CameraRole>& getRole() const { return _role; }
+
+    /// Draws an effect of a scene for this camera, or leaves it out. An effect that is not enabled stays off. True, the
+    /// default, also takes a replacement away.
+    void setEnabled(const Effect& effect, bool on);
+    /** Draws another effect in the place of an effect of a scene, such as a bend with other values.
+
+        Both must be of one class, and must need the same shaders and texture units; the scene then needs no other
+        program. A `replacement` that differs is refused: false, after a warning. Null takes a replacement away. */
+    bool setReplacement(const Effect& effect, Effect* replacement);
+    /// What is drawn for this camera in the place of an effect: the effect itself, or another one.
+    Effect* effectFor(Effect& effect) const;
+
+protected:
+    ~CameraEffects() override;
+
+private:
+    std::optional<CameraRole> _role;
+    std::map<osg::ref_ptr<const Effect>, osg::ref_ptr<Effect>> _replacements;
+};
+
+} // namespace osgGeoFX
