@@ -89,6 +89,9 @@ public:
         /// the near and far planes cull, and cameras below the scene are left out. A filter that returns no states only
         /// looks at the scene and draws nothing.
         PassFilter* filter = nullptr;
+        /// Whether the pass has the image of the view's own camera, although another one may draw a part of it, or see it
+        /// from elsewhere (ViewGeometry::image). Its state needs the define GEOFX_IMAGE, OFF with OVERRIDE.
+        bool ofView = false;
     };
     /** Culls the scene again and draws what it finds. Compensation, paging and levels of detail are as for the scene
         itself. Near and far planes stay as they are. Everything that is passed must live until the frame has been

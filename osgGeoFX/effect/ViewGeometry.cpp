@@ -71,6 +71,23 @@ void ViewGeometry::setImage(const osg::Matrixd& cameraModelView, const osg::Matr
     image.toView = osg::Matrixd::inverse(cameraModelView) * modelView;
 }
 
+void ViewGeometry::picturePart(osg::Vec2d& low, osg::Vec2d& high) const
+{
+    low.set(-1.0, -1.0);
+    high.set(1.0, 1.0);
+    if (image.ofView) return;
+    const osg::Matrixd toPicture = osg::Matrixd::inverse(image.projection) * image.toView * projection;
+    // The far plane stands for infinity.
+    const osg::Vec4d first = osg::Vec4d(-1.0, -1.0, 1.0, 1.0) * toPicture;
+    const osg::Vec4d last = osg::Vec4d(1.0, 1.0, 1.0, 1.0) * toPicture;
+    if (!(first.w() > 0.0) || !(last.w() > 0.0)) return;
+    const osg::Vec2d from(first.x() / first.w(), first.y() / first.w());
+    const osg::Vec2d to(last.x() / last.w(), last.y() / last.w());
+    if (!(from.x() < to.x()) || !(from.y() < to.y())) return;
+    low = from;
+    high = to;
+}
+
 void ViewGeometry::ray(double x, double y, osg::Vec3d& origin, osg::Vec3d& direction) const
 {
     origin = osg::Vec3d(x, y, -1.0) * inverseProjection;

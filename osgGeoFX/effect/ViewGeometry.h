@@ -7,6 +7,7 @@
 #include <osg/CoordinateSystemNode>
 #include <osg/Math>
 #include <osg/Matrixd>
+#include <osg/Vec2d>
 #include <osg/Vec3d>
 #include <osg/observer_ptr>
 
@@ -70,6 +71,11 @@ struct OSGGEOFX_EXPORT ViewGeometry
     /// Sets `image` to that of another camera. `cameraModelView`: from the frame of the EffectScene's children to the
     /// camera's eye space.
     void setImage(const osg::Matrixd& cameraModelView, const osg::Matrixd& cameraProjection);
+
+    /// The part of the view's picture that the image shows: its lower left and upper right corners in the picture, x and y
+    /// from −1 to 1. It is the whole picture if the view's own camera draws. From elsewhere it is the part that has the
+    /// same corners at infinity; if there is none, the whole picture.
+    void picturePart(osg::Vec2d& low, osg::Vec2d& high) const;
 
     /// The ray through a point of the viewport, x and y from −1 to 1. It begins on the near plane; the direction is not
     /// normalised. It works with any projection.

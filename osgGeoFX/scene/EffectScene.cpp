@@ -286,6 +286,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     CompensatingCullVisitor::Task task;
     task.chain = snapshots.chain(view.ground);
     task.mapUnit = mapUnit;
+    task.view = &view;
     if (!view.image.ofView) task.image = &view.image;
     task.untouched = _drawing->untouched;
     task.tileError = view.ground.tileError;

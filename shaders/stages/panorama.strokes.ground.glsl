@@ -5,8 +5,7 @@
 #include "lib/painting.glsl"
 #include "stages/panorama.edge.glsl"
 
-uniform vec4 SLOT_viewport;
-uniform vec4 SLOT_strokeView; // without the projection: the pixels of a metre at a distance of one; else 0
+uniform vec4 SLOT_strokeView; // without the projection: the pixels of a metre at a distance of one, else 0; the picture's width and height in pixels
 uniform vec4 SLOT_slopes;
 uniform vec4 SLOT_hand;
 uniform sampler2D SLOT_edgeMap;
@@ -27,7 +26,7 @@ float SLOT_groundScale(vec3 position)
     if (SLOT_strokeView.x > 0.0) return SLOT_strokeView.x / max(length(position), 1e-3);
     geofx_Panorama view = SLOT_view();
     float slope = geofx_panoramaSlope(view, SLOT_placeOf(position).y);
-    return 0.5 * sqrt(SLOT_viewport.x * view.across * SLOT_viewport.y * view.along * max(slope, 0.06));
+    return 0.5 * sqrt(SLOT_strokeView.y * view.across * SLOT_strokeView.z * view.along * max(slope, 0.06));
 }
 
 float SLOT_strokeLight(vec3 position, vec3 normal, float y)

@@ -9,31 +9,13 @@ uniform mat4 geofx_toView; // from the camera's eye space to the view's; it does
 uniform mat4 geofx_toEye;  // and back
 uniform mat4 geofx_viewProjection;
 
-vec3 geofx_inView(vec3 position)
-{
-    return (geofx_toView * vec4(position, 1.0)).xyz;
-}
-
-vec3 geofx_inEye(vec3 position)
-{
-    return (geofx_toEye * vec4(position, 1.0)).xyz;
-}
-
-vec3 geofx_directionInView(vec3 direction)
-{
-    return mat3(geofx_toView) * direction;
-}
-
-vec3 geofx_directionInEye(vec3 direction)
-{
-    return mat3(geofx_toEye) * direction;
-}
-
+// Not functions: a program may have this text in several shaders of one stage.
+#define geofx_inView(position) ((geofx_toView * vec4(position, 1.0)).xyz)
+#define geofx_inEye(position) ((geofx_toEye * vec4(position, 1.0)).xyz)
+#define geofx_directionInView(direction) (mat3(geofx_toView) * (direction))
+#define geofx_directionInEye(direction) (mat3(geofx_toEye) * (direction))
 // Where a position in the camera's eye space is in the view's picture, in clip coordinates.
-vec4 geofx_inPicture(vec4 position)
-{
-    return geofx_viewProjection * vec4(geofx_inView(position.xyz / position.w), 1.0);
-}
+#define geofx_inPicture(position) (geofx_viewProjection * vec4(geofx_inView((position).xyz / (position).w), 1.0))
 #else
 #define geofx_inView(position) (position)
 #define geofx_inEye(position) (position)

@@ -7,6 +7,7 @@
 #include <tools/GlFixture.h>
 #include <tools/ImageComparison.h>
 #include <tools/PanoramaHills.h>
+#include <tools/PictureTiles.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 #include <tools/ThreadedViews.h>
@@ -313,5 +314,29 @@ TEST_F(PanoramaStates, OneTerrainMayHaveTwoMapsInAllThreadingModels)
         for (std::size_t i = 0; i < again.size(); ++i)
             EXPECT_TRUE(imagesMatch(*again[i], *expected[i], {},
                                     "again" + std::to_string(model) + std::to_string(i)));
+    }
+}
+
+TEST_F(PanoramaStates, TilesAreThePictureInParts)
+{
+    // Tiles of even sides: GPUs find slopes in squares of four pixels.
+    viewer().getCamera()->setViewport(0, 0, 240, 144);
+    struct Painting
+    {
+        const char* name;
+        bool strokes, water, projection;
+        double most;
+    };
+    for (const Painting& painting :
+         {Painting{"plain", false, false, true, 0.0005}, Painting{"water", false, true, true, 0.0005},
+          Painting{"strokes", true, true, true, 0.002}, Painting{"perspective", true, true, false, 0.002}})
+    {
+        SCOPED_TRACE(painting.name);
+        _map->setStrokes(painting.strokes);
+        _map->setWater(painting.water);
+        _map->setProjection(painting.projection);
+        const osg::ref_ptr<osg::Image> whole = draw();
+        const osg::ref_ptr<osg::Image> parts = drawTiles(*viewer().getCamera(), 4, [this] { return draw(); });
+        EXPECT_TRUE(imagesMatch(*parts, *whole, {2.1f / 255.0f, painting.most, 1.0f}, painting.name));
     }
 }

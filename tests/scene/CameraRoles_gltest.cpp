@@ -163,45 +163,6 @@ TEST_F(CameraRoles, TheDefaultNearAndFarPlanesHoldWhatIsSeenFromElsewhere)
     }
 }
 
-TEST_F(CameraRoles, TilesAreThePictureInParts)
-{
-    const osg::Matrixd view = camera().getViewMatrix();
-    const osg::Matrixd projection = camera().getProjectionMatrix();
-    for (const auto& effects : {&bend, &pedestrian, &bentAndHigher})
-    {
-        const osg::ref_ptr<EffectScene> scene = sceneWith(effects());
-        camera().setProjectionMatrix(projection);
-        camera().setViewport(0, 0, WIDTH, HEIGHT);
-        const osg::ref_ptr<osg::Image> whole = render(scene);
-        scene->setRoleCallback(new Role(CameraRole::like(view, projection)));
-        constexpr int tiles = 4;
-        camera().setViewport(0, 0, WIDTH / tiles, HEIGHT / tiles);
-        int off = 0;
-        for (int y = 0; y < tiles; ++y)
-        {
-            for (int x = 0; x < tiles; ++x)
-            {
-                camera().setProjectionMatrix(
-                    projection * osg::Matrixd::scale(tiles, tiles, 1.0) *
-                    osg::Matrixd::translate(tiles - 1 - 2 * x, tiles - 1 - 2 * y, 0.0));
-                const osg::ref_ptr<osg::Image> tile = render(scene);
-                for (int row = 0; row < HEIGHT / tiles; ++row)
-                {
-                    for (int column = 0; column < WIDTH / tiles * 4; ++column)
-                    {
-                        const unsigned char* there =
-                            whole->data(0, static_cast<unsigned int>(y * HEIGHT / tiles + row));
-                        off += std::abs(tile->data(0, static_cast<unsigned int>(row))[column] -
-                                        there[x * WIDTH / tiles * 4 + column]) > 2;
-                    }
-                }
-            }
-        }
-        // Where an edge runs through the middle of a pixel, rounding decides whose it is.
-        EXPECT_LE(off, 2 * 3);
-    }
-}
-
 TEST_F(CameraRoles, SlavesShowOneWallOfScreens)
 {
     // The middle one as the wide camera has it, the others turned aside, each with a third of the picture.

@@ -4,13 +4,12 @@
 // The tiles of a picture, each drawn by a camera in the role LIKE, are the picture in parts, whatever the effects.
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
-#include <osgGeoFX/scene/CameraEffects.h>
 #include <tools/CloseUpStage.h>
 #include <tools/ImageComparison.h>
+#include <tools/PictureTiles.h>
 
 #include <osg/Math>
 
-#include <cstring>
 #include <iostream>
 
 using namespace osgGeoFX;
@@ -19,7 +18,7 @@ using namespace geofx::test;
 namespace
 {
 
-constexpr int width = 240, height = 160, tiles = 4;
+constexpr int width = 240, height = 160;
 
 class PictureTiles : public CloseUpStage
 {
@@ -35,41 +34,11 @@ protected:
         viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
     }
 
-    /// The picture put together of tiles.
-    osg::ref_ptr<osg::Image> drawTiles()
-    {
-        osg::Camera& camera = *viewer().getCamera();
-        const osg::Matrixd projection = camera.getProjectionMatrix();
-        CameraEffects::of(camera).setRole(CameraRole::like(camera.getViewMatrix(), projection));
-        osg::ref_ptr<osg::Image> all = new osg::Image;
-        all->allocateImage(width, height, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-        constexpr int columns = width / tiles, rows = height / tiles;
-        camera.setViewport(0, 0, columns, rows);
-        for (int y = 0; y < tiles; ++y)
-        {
-            for (int x = 0; x < tiles; ++x)
-            {
-                camera.setProjectionMatrix(
-                    projection * osg::Matrixd::scale(tiles, tiles, 1.0) *
-                    osg::Matrixd::translate(tiles - 1 - 2 * x, tiles - 1 - 2 * y, 0.0));
-                const osg::ref_ptr<osg::Image> tile = draw();
-                for (int row = 0; row < rows; ++row)
-                    std::memcpy(all->data(static_cast<unsigned int>(x * columns),
-                                          static_cast<unsigned int>(y * rows + row)),
-                                tile->data(0, static_cast<unsigned int>(row)), 4 * columns);
-            }
-        }
-        CameraEffects::of(camera).clearRole();
-        camera.setProjectionMatrix(projection);
-        camera.setViewport(0, 0, width, height);
-        return all;
-    }
-
     /// Where an edge runs through the middle of a pixel, rounding decides whose it is.
     void expectTheWhole(const std::string& name, double most = 0.0005)
     {
         const osg::ref_ptr<osg::Image> whole = draw();
-        const osg::ref_ptr<osg::Image> parts = drawTiles();
+        const osg::ref_ptr<osg::Image> parts = drawTiles(*viewer().getCamera(), 4, [this] { return draw(); });
         const double off = differing(*whole, *parts);
         std::cout << name << ": " << 100.0 * off << " % of the pixels are off by more than 2 of 255\n";
         EXPECT_TRUE(imagesMatch(*parts, *whole, {2.1f / 255.0f, most, 1.0f}, name));

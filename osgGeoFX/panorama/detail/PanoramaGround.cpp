@@ -116,8 +116,13 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
     put("hand", {_map.getBrush(), octave - std::floor(octave), _map.getAtmosphere(),
                  _map.getSceneLight() ? 1.0 : 0.0});
     put("water", {_map.getDeepShore(), _map.getReflection(), _map.getRipples(), _map.getWater() ? 1.0 : 0.0});
-    put("window", {view.viewportX, view.viewportY, 1.0 / std::max(view.viewportWidth, 1.0),
-                   1.0 / std::max(view.viewportHeight, 1.0)});
+    osg::Vec2d low, high;
+    view.geometry.picturePart(low, high);
+    const osg::Vec2d share = (high - low) * 0.5; // of the picture
+    const osg::Vec2d pixel(share.x() / std::max(view.viewportWidth, 1.0),
+                           share.y() / std::max(view.viewportHeight, 1.0));
+    put("window", {view.viewportX - (0.5 + 0.5 * low.x()) / pixel.x(),
+                   view.viewportY - (0.5 + 0.5 * low.y()) / pixel.y(), pixel.x(), pixel.y()});
     put("clock", {std::fmod(view.time, 3600.0), 0.0, 0.0, 0.0});
 
     setTexture(state, prefix + "palette", view.units[PaletteUnit], _textures.palette(_map));

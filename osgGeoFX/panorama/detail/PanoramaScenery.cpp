@@ -31,6 +31,7 @@ namespace
 
 /// The picture in the water is as many times smaller than the camera's: what is blurred needs no more.
 constexpr int mirrorShrink = 4;
+constexpr int mostMirrorPixels = 4096;
 /// Over so many grounds one map may hang at a time, with strokes that stay.
 constexpr std::size_t mostGrounds = 8;
 /// Its levels of detail are as many times coarser.
@@ -60,11 +61,20 @@ class Mirror
 {
 public:
     /// The stage of this frame, cleared, with a picture of the camera's proportions.
-    osgUtil::RenderStage& begin(osgUtil::CullVisitor& outer)
+    osgUtil::RenderStage& begin(const ScenePass& pass)
     {
+        osgUtil::CullVisitor& outer = pass.outer;
         const osg::Viewport& viewport = *outer.getViewport();
-        const int width = std::max(1, static_cast<int>(viewport.width()) / mirrorShrink);
-        const int height = std::max(1, static_cast<int>(viewport.height()) / mirrorShrink);
+        // Of the whole picture, whatever part of it the camera draws: reflections lie beside what they show.
+        osg::Vec2d low, high;
+        pass.view.picturePart(low, high);
+        const auto side = [](double pixels, double share)
+        {
+            return std::clamp(static_cast<int>(std::lround(pixels / share)) / mirrorShrink, 1,
+                              mostMirrorPixels);
+        };
+        const int width = side(viewport.width(), 0.5 * (high.x() - low.x()));
+        const int height = side(viewport.height(), 0.5 * (high.y() - low.y()));
         if (!_colors || _colors->getTextureWidth() != width || _colors->getTextureHeight() != height)
         {
             _colors = createTarget(width, height, false);
@@ -151,6 +161,9 @@ struct Sky
         setTexture(state, 1, "geofx_skyMirror", showsMirror ? mirror.colors() : textures.noCover().get());
         setTexture(state, 2, "geofx_skyBrush", textures.brush());
         setEdge(state);
+        osg::Vec2d low(-1.0, -1.0), high(1.0, 1.0);
+        if (!mirrored) pass.view.picturePart(low, high);
+        put(state, "geofx_skyPart", low.x(), low.y(), high.x(), high.y());
         put(state, "geofx_skyCurve", panorama.along, panorama.curve, panorama.horizon, panorama.end);
         setWater(state);
         return state;
@@ -228,6 +241,7 @@ void setMirrorState(Mirror& mirror, const ScenePass& pass, unsigned int unit, Pa
 {
     osg::StateSet& state = mirror.state();
     state.setDefine("GEOFX_MIRROR", osg::StateAttribute::ON);
+    state.setDefine("GEOFX_IMAGE", osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
     state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
     state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
     state.setAttribute(mirror.viewport(), forced);
@@ -382,7 +396,7 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     if (!pass.outer.getViewport()) return;
     const std::optional<glsl::geofx_Panorama> panorama = panoramaOf(_map, pass.view);
     if (!panorama) return;
-    osgUtil::RenderStage* stage = reflects(_map) ? &mirror.begin(pass.outer) : nullptr;
+    osgUtil::RenderStage* stage = reflects(_map) ? &mirror.begin(pass) : nullptr;
     osg::Program* skyProgram = _map.getSky() ? _cameras->skyProgram() : nullptr;
     const Sky sky{_map, _textures, pass, *panorama, mirror, skyProgram};
     if (skyProgram)
@@ -398,7 +412,7 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
     bool turned = false;
     const osg::ref_ptr<DeformationChain> chain = mirroredChain(pass, mirror.state(), turned);
     const osg::ref_ptr<osg::Program> program = pass.sceneProgram();
-    const ScenePass::Drawing drawing = {program, &mirror.state(), stage, chain};
+    const ScenePass::Drawing drawing = {program, &mirror.state(), stage, chain, nullptr, true};
     // It is the projection that turns the ground over; without it there is the sky to reflect.
     if (turned) pass.draw(drawing);
     if (skyProgram)

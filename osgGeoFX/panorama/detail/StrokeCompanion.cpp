@@ -28,14 +28,13 @@ PassShaders strokeShaders()
 }
 
 /// How many times larger than wanted the strokes of a picture are, where there are too few of them.
-double growthOf(const ScenePass& pass, const PanoramaMap& map, const osg::Viewport& viewport)
+double growthOf(const ScenePass& pass, const PanoramaMap& map, const osg::Vec2d& picture)
 {
     double groundScale = HUGE_VAL; // near the eye of a perspective picture
     if (map.getProjection())
     {
         const std::optional<glsl::geofx_Panorama> view = panoramaOf(map, pass.view);
-        if (view)
-            groundScale = 0.5 * std::sqrt(viewport.width() * view->across * viewport.height() * view->along);
+        if (view) groundScale = 0.5 * std::sqrt(picture.x() * view->across * picture.y() * view->along);
     }
     return glsl::geofx_strokeGrowth(
         glsl::geofx_strokeWanted(map.getStrokeSpacing(), map.getStrokeStep(), groundScale));
@@ -69,7 +68,12 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
         _state->setRenderBinDetails(2, "TraversalOrderBin",
                                     osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
     }
-    _reach = longestStroke * map.getStrokeSize() * growthOf(pass, map, *viewport) +
+    // In pixels, whatever part of it the camera draws.
+    osg::Vec2d low, high;
+    pass.view.picturePart(low, high);
+    const osg::Vec2d picture(2.0 * viewport->width() / (high.x() - low.x()),
+                             2.0 * viewport->height() / (high.y() - low.y()));
+    _reach = longestStroke * map.getStrokeSize() * growthOf(pass, map, picture) +
              longestLine * map.getStrokeSpacing() + 2.0;
     const auto put = [&](const char* name, double x, double y, double z, double w)
     {
@@ -80,7 +84,7 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
     put("stroke", map.getStrokeSize(), map.getStrokeSpacing(), map.getStrokeStep(), 0.0);
     put("strokeView",
         map.getProjection() ? 0.0 : 0.5 * viewport->height() * std::abs(pass.view.image.projection(1, 1)),
-        0.0, 0.0, 0.0);
+        picture.x(), picture.y(), 0.0);
     return true;
 }
 

@@ -20,6 +20,11 @@ CompensatingCullVisitor::Task taskOf(const CompensatingCullVisitor::Task& scene,
     task.passState = drawing.state;
     if (drawing.chain) task.chain = drawing.chain;
     if (drawing.filter) task.compensate = true;
+    if (drawing.ofView && task.image)
+    {
+        task.image = nullptr;
+        task.ownView = task.view;
+    }
     return task;
 }
 

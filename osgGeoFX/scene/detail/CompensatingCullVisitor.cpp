@@ -115,22 +115,13 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _entry = _currentStateGraph;
 
     _outerCullingMode = outer.getCullingMode();
-    _outerNearFar = task.findsNearAndFar ? outer.getComputeNearFarMode() : DO_NOT_COMPUTE_NEAR_FAR;
+    const bool findsDepths = task.findsNearAndFar || task.ownView;
+    _outerNearFar = findsDepths ? outer.getComputeNearFarMode() : DO_NOT_COMPUTE_NEAR_FAR;
     if (task.compensate)
     {
         setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
     }
-    pushViewport(outer.getViewport());
-    pushProjectionMatrix(outer.getProjectionMatrix());
-    setVisibility(outer);
-    // OSG's own tests, which the base class makes, pass everything.
-    if (task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
-    pushReferenceViewPoint(outer.getReferenceViewPoint());
-    // OSG knows a matrix by its address, and each stage loads another one behind its back: stages must not share any.
-    osg::RefMatrix* modelView =
-        task.stage ? createOrReuseMatrix(*outer.getModelViewMatrix()) : outer.getModelViewMatrix();
-    pushModelViewMatrix(modelView, osg::Transform::RELATIVE_RF);
-    if (task.compensate) getCurrentCullingSet().setCullingMask(NO_CULLING);
+    pushMatrices(outer);
 
     _mode = Mode();
     _mode.chain = task.chain;
@@ -144,6 +135,23 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _scale = largestScale(*getModelViewMatrix());
     _drawables.begin(
         {_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR, _outerCullingMode != NO_CULLING, task.debugBounds});
+}
+
+void CompensatingCullVisitor::pushMatrices(osgUtil::CullVisitor& outer)
+{
+    const ViewGeometry* own = _task.ownView;
+    pushViewport(outer.getViewport());
+    pushProjectionMatrix(own ? createOrReuseMatrix(own->projection) : outer.getProjectionMatrix());
+    setVisibility(outer);
+    // OSG's own tests, which the base class makes, pass everything.
+    if (_task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
+    pushReferenceViewPoint(outer.getReferenceViewPoint());
+    // OSG knows a matrix by its address, and each stage loads another one behind its back: stages must not share any.
+    osg::RefMatrix* modelView =
+        _task.stage ? createOrReuseMatrix(own ? own->modelView : osg::Matrixd(*outer.getModelViewMatrix()))
+                    : outer.getModelViewMatrix();
+    pushModelViewMatrix(modelView, osg::Transform::RELATIVE_RF);
+    if (_task.compensate) getCurrentCullingSet().setCullingMask(NO_CULLING);
 }
 
 void CompensatingCullVisitor::setVisibility(const osgUtil::CullVisitor& outer)
@@ -180,7 +188,14 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
     }
     DepthRange& depths = _drawables.depths();
     depths.settle();
-    if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && depths.farthest() >= depths.nearest())
+    const bool found = _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && depths.farthest() >= depths.nearest();
+    if (found && _task.ownView)
+    {
+        // The camera's own is clamped when all has been culled; no one else does it for this one.
+        value_type nearest = depths.nearest(), farthest = depths.farthest();
+        outer.clampProjectionMatrix(*getProjectionMatrix(), nearest, farthest);
+    }
+    else if (found)
     {
         outer.setCalculatedNearPlane(std::min(outer.getCalculatedNearPlane(), depths.nearest()));
         outer.setCalculatedFarPlane(std::max(outer.getCalculatedFarPlane(), depths.farthest()));

@@ -55,6 +55,9 @@ public:
         osg::StateSet* untouched = nullptr; ///< takes the deformation away
         /// The camera's image, where it draws another camera's view; null where it draws its own.
         const ViewGeometry::Image* image = nullptr;
+        const ViewGeometry* view = nullptr; ///< that is drawn
+        const ViewGeometry* ownView =
+            nullptr; ///< the view whose own image is drawn in the place of the camera's
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;
@@ -210,6 +213,7 @@ private:
     static std::size_t graphsIn(osgUtil::RenderBin& bin);
     bool isForeign(const osgUtil::StateGraph& graph) const;
     void setVisibility(const osgUtil::CullVisitor& outer);
+    void pushMatrices(osgUtil::CullVisitor& outer);
     /// From where levels of detail are chosen, in the view's eye space.
     osg::Vec3d viewPoint() const;
     /// Whether parts of a node that is out of sight, deformed, are in sight since they are not.
