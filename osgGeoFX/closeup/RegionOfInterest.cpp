@@ -163,15 +163,15 @@ const Properties& RegionOfInterest::properties() const
         new Self,
         {
             Property::number("centerX", "the center on a projected terrain, to the east", -5e7, 5e7, "m")
-                .of<&Self::_centerX>(),
+                .of<&Self::_center, &LocalOrigin::x>(),
             Property::number("centerY", "the center on a projected terrain, to the north", -5e7, 5e7, "m")
-                .of<&Self::_centerY>(),
+                .of<&Self::_center, &LocalOrigin::y>(),
             Property::angle("longitude", "the longitude of the center on a globe, to the east", -osg::PI,
                             osg::PI)
-                .of<&Self::_longitude>(),
+                .of<&Self::_center, &LocalOrigin::longitude>(),
             Property::angle("latitude", "the latitude of the center on a globe, to the north", -osg::PI_2,
                             osg::PI_2)
-                .of<&Self::_latitude>(),
+                .of<&Self::_center, &LocalOrigin::latitude>(),
             Property::number("baseHeight", "the height that heights are scaled about", -12000.0, 1e7, "m")
                 .of<&Self::_baseHeight>(),
             Property::number("width", "the whole width of the region", 1.0, 2e6, "m").of<&Self::_width>(),
@@ -312,11 +312,9 @@ std::vector<std::vector<osg::Vec2d>> RegionOfInterest::contours(double step) con
 
 osg::Matrixd RegionOfInterest::frameToWorld(const osg::EllipsoidModel* ellipsoid) const
 {
-    osg::Matrixd place = osg::Matrixd::translate(_centerX, _centerY, _baseHeight);
-    if (ellipsoid)
-        ellipsoid->computeLocalToWorldTransformFromLatLongHeight(_latitude, _longitude, _baseHeight, place);
     // A heading is clockwise.
-    return osg::Matrixd::rotate(-_heading, osg::Vec3d(0.0, 0.0, 1.0)) * place;
+    return osg::Matrixd::rotate(-_heading, osg::Vec3d(0.0, 0.0, 1.0)) *
+           _center.toWorld(ellipsoid, _baseHeight);
 }
 
 osg::Matrixd RegionOfInterest::worldToRegion(const osg::EllipsoidModel* ellipsoid) const

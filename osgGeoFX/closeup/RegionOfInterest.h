@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/effect/PropertyHolder.h>
 
 #include <osg/CoordinateSystemNode>
@@ -43,14 +44,14 @@ public:
     {
         return assign({{"centerX", center.x()}, {"centerY", center.y()}});
     }
-    osg::Vec2d getCenter() const { return {_centerX, _centerY}; }
+    osg::Vec2d getCenter() const { return _center.place(); }
     /// The center on a globe, radians. Default: (0, 0).
     bool setGeodeticCenter(double longitude, double latitude)
     {
         return assign({{"longitude", longitude}, {"latitude", latitude}});
     }
-    double getLongitude() const { return _longitude; }
-    double getLatitude() const { return _latitude; }
+    double getLongitude() const { return _center.longitude; }
+    double getLatitude() const { return _center.latitude; }
     /// The height of the frame's origin, metres above the ellipsoid or above z = 0, −12 000…1e7. Heights are scaled
     /// about it. Default: 0.
     bool setBaseHeight(double height) { return assign("baseHeight", height); }
@@ -135,7 +136,8 @@ protected:
 
 private:
     struct Cache; ///< the mask as it was made last, under a mutex
-    double _centerX = 0.0, _centerY = 0.0, _longitude = 0.0, _latitude = 0.0, _baseHeight = 0.0;
+    LocalOrigin _center;
+    double _baseHeight = 0.0;
     double _width = 2000.0, _depth = 2000.0, _heading = 0.0;
     int _shape = ELLIPSE;
     double _rounding = 0.3;

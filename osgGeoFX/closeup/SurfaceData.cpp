@@ -155,8 +155,7 @@ osg::ref_ptr<osg::Image> resampled(const osg::Image& image, int width, int heigh
 } // namespace
 
 SurfaceData::SurfaceData(const SurfaceData& other, const osg::CopyOp& copy)
-    : PropertyHolder(other, copy), _originX(other._originX), _originY(other._originY),
-      _longitude(other._longitude), _latitude(other._latitude), _lowX(other._lowX), _lowY(other._lowY),
+    : PropertyHolder(other, copy), _origin(other._origin), _lowX(other._lowX), _lowY(other._lowY),
       _highX(other._highX), _highY(other._highY), _layers(other._layers)
 {
     for (Layer& layer : _layers)
@@ -286,38 +285,21 @@ osg::ref_ptr<osg::Image> SurfaceData::derive(Kind kind, const osg::Image& height
     return nullptr;
 }
 
-osg::Matrixd SurfaceData::frameToWorld(const osg::EllipsoidModel* ellipsoid) const
-{
-    osg::Matrixd result = osg::Matrixd::translate(_originX, _originY, 0.0);
-    if (ellipsoid)
-        ellipsoid->computeLocalToWorldTransformFromLatLongHeight(_latitude, _longitude, 0.0, result);
-    return result;
-}
-
 const Properties& SurfaceData::properties() const
 {
     using Self = SurfaceData;
     constexpr double far = 5e7;
     static const Properties all = withDefaultsOf(
-        new Self,
-        {
-            Property::number("originX", "the frame's origin on a projected terrain, to the east", -far, far,
-                             "m")
-                .of<&Self::_originX>(),
-            Property::number("originY", "the frame's origin on a projected terrain, to the north", -far, far,
-                             "m")
-                .of<&Self::_originY>(),
-            Property::angle("longitude", "the longitude of the frame's origin on a globe, to the east",
-                            -osg::PI, osg::PI)
-                .of<&Self::_longitude>(),
-            Property::angle("latitude", "the latitude of the frame's origin on a globe, to the north",
-                            -osg::PI_2, osg::PI_2)
-                .of<&Self::_latitude>(),
-            Property::number("lowX", "the western edge", -far, far, "m").of<&Self::_lowX>(),
-            Property::number("lowY", "the southern edge", -far, far, "m").of<&Self::_lowY>(),
-            Property::number("highX", "the eastern edge", -far, far, "m").of<&Self::_highX>(),
-            Property::number("highY", "the northern edge", -far, far, "m").of<&Self::_highY>(),
-        });
+        new Self, {
+                      LocalOrigin::originX().of<&Self::_origin, &LocalOrigin::x>(),
+                      LocalOrigin::originY().of<&Self::_origin, &LocalOrigin::y>(),
+                      LocalOrigin::originLongitude().of<&Self::_origin, &LocalOrigin::longitude>(),
+                      LocalOrigin::originLatitude().of<&Self::_origin, &LocalOrigin::latitude>(),
+                      Property::number("lowX", "the western edge", -far, far, "m").of<&Self::_lowX>(),
+                      Property::number("lowY", "the southern edge", -far, far, "m").of<&Self::_lowY>(),
+                      Property::number("highX", "the eastern edge", -far, far, "m").of<&Self::_highX>(),
+                      Property::number("highY", "the northern edge", -far, far, "m").of<&Self::_highY>(),
+                  });
     return all;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/effect/PropertyHolder.h>
 
 #include <osg/CoordinateSystemNode>
@@ -55,14 +56,23 @@ public:
     {
         return assign({{"originX", origin.x()}, {"originY", origin.y()}});
     }
-    osg::Vec2d getOrigin() const { return {_originX, _originY}; }
+    osg::Vec2d getOrigin() const { return _origin.place(); }
     /// The frame's origin on a globe, radians. Default: (0, 0).
     bool setGeodeticOrigin(double longitude, double latitude)
     {
         return assign({{"longitude", longitude}, {"latitude", latitude}});
     }
-    double getLongitude() const { return _longitude; }
-    double getLatitude() const { return _latitude; }
+    double getLongitude() const { return _origin.longitude; }
+    double getLatitude() const { return _origin.latitude; }
+    /// The same in one value, for both kinds of terrain.
+    bool setLocalOrigin(const LocalOrigin& origin)
+    {
+        return assign({{"originX", origin.x},
+                       {"originY", origin.y},
+                       {"longitude", origin.longitude},
+                       {"latitude", origin.latitude}});
+    }
+    const LocalOrigin& getLocalOrigin() const { return _origin; }
     /// The rectangle that the images cover, metres in the frame. `low` must be less than `high` in x and in y.
     /// Default: ±1000.
     bool setRectangle(const osg::Vec2d& low, const osg::Vec2d& high);
@@ -111,7 +121,10 @@ public:
                                            double radius = 2000.0);
 
     /// The matrix from the frame to world coordinates. `ellipsoid` is null on a projected terrain.
-    osg::Matrixd frameToWorld(const osg::EllipsoidModel* ellipsoid) const;
+    osg::Matrixd frameToWorld(const osg::EllipsoidModel* ellipsoid) const
+    {
+        return _origin.toWorld(ellipsoid);
+    }
 
     const Properties& properties() const override;
 
@@ -126,7 +139,7 @@ private:
         Kind kind;
         osg::ref_ptr<osg::Image> image;
     };
-    double _originX = 0.0, _originY = 0.0, _longitude = 0.0, _latitude = 0.0;
+    LocalOrigin _origin;
     double _lowX = -1000.0, _lowY = -1000.0, _highX = 1000.0, _highY = 1000.0;
     std::vector<Layer> _layers;
 };

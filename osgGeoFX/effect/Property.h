@@ -9,6 +9,8 @@
 #include <osg/ref_ptr>
 
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -65,8 +67,9 @@ struct OSGGEOFX_EXPORT Property
     static Property choice(std::string name, std::string description, std::vector<Choice> choices);
     static Property color(std::string name, std::string description);
 
-    /// Binds a member variable: `Property::number(...).of<&Class::_member>()`.
-    template<auto Member>
+    /// Binds a member variable: `Property::number(...).of<&Class::_member>()`. More parameters lead on to a member of that
+    /// member: `of<&Class::_origin, &LocalOrigin::x>()`.
+    template<auto Member, auto... Parts>
     Property of() &&;
     /// Lets keys (EffectKeys) change the property by a step: `Property::number(...).of<...>().turnedBy(0.02)`.
     Property turnedBy(double step) &&;
@@ -109,22 +112,30 @@ namespace detail
 {
 template<typename Class, typename Value>
 Class ownerOf(Value Class::*);
-template<typename Class, typename Value>
-Value valueOf(Value Class::*);
+
+/// The member that a path of members leads to.
+template<auto Member, auto... Parts, typename Object>
+auto& memberOf(Object& object)
+{
+    if constexpr (sizeof...(Parts) == 0)
+        return object.*Member;
+    else
+        return memberOf<Parts...>(object.*Member);
+}
 } // namespace detail
 
-template<auto Member>
+template<auto Member, auto... Parts>
 Property Property::of() &&
 {
     using Class = decltype(detail::ownerOf(Member));
-    using Value = decltype(detail::valueOf(Member));
+    using Value = std::decay_t<decltype(detail::memberOf<Member, Parts...>(std::declval<Class&>()))>;
     get = [](const osg::Object& object)
     {
-        return static_cast<double>(static_cast<const Class&>(object).*Member);
+        return static_cast<double>(detail::memberOf<Member, Parts...>(static_cast<const Class&>(object)));
     };
     put = [](osg::Object& object, double value)
     {
-        static_cast<Class&>(object).*Member = static_cast<Value>(value);
+        detail::memberOf<Member, Parts...>(static_cast<Class&>(object)) = static_cast<Value>(value);
     };
     return std::move(*this);
 }

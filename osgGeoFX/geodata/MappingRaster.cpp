@@ -83,14 +83,10 @@ void move(const std::string& file, MappingFrame& frame)
         crs = crsOf(frame, file);
     const osg::Vec2d middle = raster.middle(crs);
     if (frame.globe)
-    {
-        frame.longitude = std::remainder(osg::DegreesToRadians(middle.x()), 2.0 * osg::PI);
-        frame.latitude = osg::DegreesToRadians(middle.y());
-    }
+        frame.origin =
+            LocalOrigin::onGlobe(osg::DegreesToRadians(middle.x()), osg::DegreesToRadians(middle.y()));
     else
-    {
-        frame.origin = middle * crs.metresPerUnit;
-    }
+        frame.origin = LocalOrigin::onPlane(middle * crs.metresPerUnit);
 }
 
 } // namespace

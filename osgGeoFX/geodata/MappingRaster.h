@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
+#include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
 
 #include <osg/Vec2d>
@@ -18,10 +19,8 @@ namespace osgGeoFX
 struct MappingFrame
 {
     bool globe = true;
-    double longitude = 0.0; ///< the origin on a globe, radians
-    double latitude = 0.0;
-    osg::Vec2d origin; ///< the origin on a projected terrain, metres
-    std::string wkt;   ///< the coordinate system of the projected terrain
+    LocalOrigin origin;
+    std::string wkt; ///< the coordinate system of the projected terrain
 };
 
 /** A georeferenced raster, warped into the frame of a mapping so that it lies exactly, with its rectangle in that

@@ -54,9 +54,7 @@ void checkName(const SurfaceData& data, const std::string& name, const std::stri
 MappingFrame frameOf(const SurfaceData& data, const MappingFrame& frame)
 {
     MappingFrame result = frame;
-    result.origin = data.getOrigin();
-    result.longitude = data.getLongitude();
-    result.latitude = data.getLatitude();
+    result.origin = data.getLocalOrigin();
     return result;
 }
 
@@ -181,9 +179,8 @@ osg::ref_ptr<SurfaceData> readDem(const std::string& file, const MappingFrame& f
     const osg::Vec2d high = whole ? extent.high * unit - crs.origin : options.high;
 
     osg::ref_ptr<SurfaceData> data = new SurfaceData;
-    const bool placed = data->setOrigin(frame.origin) &&
-                        data->setGeodeticOrigin(frame.longitude, frame.latitude) && low.x() < high.x() &&
-                        low.y() < high.y() && data->setRectangle(low, high);
+    const bool placed = data->setLocalOrigin(frame.origin) && low.x() < high.x() && low.y() < high.y() &&
+                        data->setRectangle(low, high);
     if (!placed) fail(file, "the rectangle or its origin is none; give metres, the lower corner first");
 
     // With a margin as wide as what hides the sky, up to half the rectangle; beyond the whole raster there is nothing.

@@ -182,18 +182,10 @@ const Properties& ProjectiveMappings::properties() const
         new Self,
         {
             enabledProperty(),
-            Property::number("originX", "the frame's origin on a projected terrain, to the east", -5e7, 5e7,
-                             "m")
-                .of<&Self::_originX>(),
-            Property::number("originY", "the frame's origin on a projected terrain, to the north", -5e7, 5e7,
-                             "m")
-                .of<&Self::_originY>(),
-            Property::angle("longitude", "the longitude of the frame's origin on a globe, to the east",
-                            -osg::PI, osg::PI)
-                .of<&Self::_longitude>(),
-            Property::angle("latitude", "the latitude of the frame's origin on a globe, to the north",
-                            -osg::PI_2, osg::PI_2)
-                .of<&Self::_latitude>(),
+            LocalOrigin::originX().of<&Self::_origin, &LocalOrigin::x>(),
+            LocalOrigin::originY().of<&Self::_origin, &LocalOrigin::y>(),
+            LocalOrigin::originLongitude().of<&Self::_origin, &LocalOrigin::longitude>(),
+            LocalOrigin::originLatitude().of<&Self::_origin, &LocalOrigin::latitude>(),
             Property::number("opacity", "the opacity of all mappings together", 0.0, 1.0)
                 .of<&Self::_opacity>()
                 .turnedBy(0.05),
@@ -235,19 +227,11 @@ std::vector<TextureUnitWish> ProjectiveMappings::textureUnits() const
     return {{"dataUnit", _dataUnit, 8}, {"layerUnit", _layerUnit, 9}, {"tableUnit", _tableUnit, 10}};
 }
 
-osg::Matrixd ProjectiveMappings::frameToWorld(const osg::EllipsoidModel* ellipsoid) const
-{
-    osg::Matrixd result = osg::Matrixd::translate(_originX, _originY, 0.0);
-    if (ellipsoid)
-        ellipsoid->computeLocalToWorldTransformFromLatLongHeight(_latitude, _longitude, 0.0, result);
-    return result;
-}
-
 osg::Vec3d ProjectiveMappings::placeOf(const osg::Vec3d& world, const osg::EllipsoidModel* ellipsoid) const
 {
     const osg::Vec3d position = world * osg::Matrixd::inverse(frameToWorld(ellipsoid));
     if (!ellipsoid) return position;
-    const glsl::geofx_Exaggeration globe = globeOf(*ellipsoid, _latitude);
+    const glsl::geofx_Exaggeration globe = globeOf(*ellipsoid, _origin.latitude);
     const glm::dvec3 p(position.x(), position.y(), position.z());
     const glm::dvec3 foot = glsl::geofx_exaggerate(globe, p);
     return {foot.x, foot.y, glsl::geofx_exaggerationHeight(globe, p)};
@@ -256,7 +240,7 @@ osg::Vec3d ProjectiveMappings::placeOf(const osg::Vec3d& world, const osg::Ellip
 osg::Vec3d ProjectiveMappings::positionOf(const osg::Vec3d& place, const osg::EllipsoidModel* ellipsoid) const
 {
     if (!ellipsoid) return place;
-    const glsl::geofx_Exaggeration globe = globeOf(*ellipsoid, _latitude);
+    const glsl::geofx_Exaggeration globe = globeOf(*ellipsoid, _origin.latitude);
     // Newton's method for the height at which the ellipsoid lies below the tangent plane.
     glm::dvec3 p(place.x(), place.y(), 0.0);
     for (int i = 0; i < 20; ++i)
@@ -346,8 +330,8 @@ MappingSettings ProjectiveMappings::settings(const osg::EllipsoidModel* ellipsoi
     settings.maxTexels = static_cast<int>(std::min(_maxDataSize * texelsInMegabyte, 2147483647.0));
     if (ellipsoid)
     {
-        settings.longitude = _longitude;
-        settings.latitude = _latitude;
+        settings.longitude = _origin.longitude;
+        settings.latitude = _origin.latitude;
     }
     return settings;
 }
@@ -420,7 +404,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     osg::Vec4d globe, curve;
     if (ellipsoid)
     {
-        const glsl::geofx_Exaggeration globeFrame = globeOf(*ellipsoid, _latitude);
+        const glsl::geofx_Exaggeration globeFrame = globeOf(*ellipsoid, _origin.latitude);
         globe.set(globeFrame.axis.x, globeFrame.axis.y, globeFrame.axis.z, globeFrame.flattening);
         curve.set(globeFrame.curvature, globeFrame.scale, 0.0, 0.0);
     }

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/effect/SurfaceEffect.h>
 #include <osgGeoFX/effect/TextureUnits.h>
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
@@ -64,16 +65,28 @@ public:
     {
         return assign({{"originX", origin.x()}, {"originY", origin.y()}});
     }
-    osg::Vec2d getOrigin() const { return {_originX, _originY}; }
+    osg::Vec2d getOrigin() const { return _origin.place(); }
     /// The frame's origin on a globe, radians. Default: (0, 0).
     bool setGeodeticOrigin(double longitude, double latitude)
     {
         return assign({{"longitude", longitude}, {"latitude", latitude}});
     }
-    double getLongitude() const { return _longitude; }
-    double getLatitude() const { return _latitude; }
+    double getLongitude() const { return _origin.longitude; }
+    double getLatitude() const { return _origin.latitude; }
+    /// The same in one value, for both kinds of terrain.
+    bool setLocalOrigin(const LocalOrigin& origin)
+    {
+        return assign({{"originX", origin.x},
+                       {"originY", origin.y},
+                       {"longitude", origin.longitude},
+                       {"latitude", origin.latitude}});
+    }
+    const LocalOrigin& getLocalOrigin() const { return _origin; }
     /// The matrix from the frame to world coordinates. `ellipsoid` is null on a projected terrain.
-    osg::Matrixd frameToWorld(const osg::EllipsoidModel* ellipsoid) const;
+    osg::Matrixd frameToWorld(const osg::EllipsoidModel* ellipsoid) const
+    {
+        return _origin.toWorld(ellipsoid);
+    }
     /// The place of a world position: x and y on the plane and the height, metres.
     osg::Vec3d placeOf(const osg::Vec3d& world, const osg::EllipsoidModel* ellipsoid) const;
     /// The position of a place, in the frame, metres. It is the inverse of the shader's computation.
@@ -159,7 +172,7 @@ private:
     void propertyChanged(PropertyHolder& mapping) override;
     MappingSettings settings(const osg::EllipsoidModel* ellipsoid) const;
 
-    double _originX = 0.0, _originY = 0.0, _longitude = 0.0, _latitude = 0.0;
+    LocalOrigin _origin;
     double _opacity = 1.0;
     bool _wholeList = false;
     int _anisotropy = 8;

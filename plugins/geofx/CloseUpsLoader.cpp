@@ -64,14 +64,8 @@ private:
         _terrain.straighten(scene.place, box);
         const osg::Vec2d middle((box.west + box.east) / 2.0, (box.south + box.north) / 2.0);
         SurfaceData& data = *request.data;
-        if (_terrain.ellipsoid())
-            data.setGeodeticOrigin(std::remainder(osg::DegreesToRadians(middle.x()), 2.0 * osg::PI),
-                                   osg::DegreesToRadians(middle.y()));
-        else
-            data.setOrigin(middle);
-        request.frame.origin = data.getOrigin();
-        request.frame.longitude = data.getLongitude();
-        request.frame.latitude = data.getLatitude();
+        data.setLocalOrigin(_terrain.originAt(middle));
+        request.frame.origin = data.getLocalOrigin();
         includeEdges(scene.place, box, request);
         if (!data.setRectangle(request.low, request.high))
             fail(scene.place, "it covers no area on the ground; move its edges apart.");

@@ -85,12 +85,7 @@ private:
 
     void setOrigin(const osg::Vec2d& middle)
     {
-        if (_hasOrigin) return;
-        if (_ellipsoid)
-            _effect.setGeodeticOrigin(std::remainder(osg::DegreesToRadians(middle.x()), 2.0 * osg::PI),
-                                      osg::DegreesToRadians(middle.y()));
-        else
-            _effect.setOrigin(middle);
+        if (!_hasOrigin) _effect.setLocalOrigin(_terrain.originAt(middle));
     }
 
     void place(const SceneMapping& mapping, SceneBox box)
@@ -124,16 +119,11 @@ private:
         request.options.maxSide = raster.maxSide;
         request.hasOrigin = _hasOrigin;
         request.frame = _terrain.frame();
-        request.frame.longitude = _effect.getLongitude();
-        request.frame.latitude = _effect.getLatitude();
-        request.frame.origin = _effect.getOrigin();
+        request.frame.origin = _effect.getLocalOrigin();
         const std::string fault =
             SceneTerrain::ask(mapping.place, "mappingRaster", &request, "use a <layer> with a <mapping>");
         if (!request.raster.layer) fail(mapping.place, fault);
-        if (_ellipsoid)
-            _effect.setGeodeticOrigin(request.frame.longitude, request.frame.latitude);
-        else
-            _effect.setOrigin(request.frame.origin);
+        _effect.setLocalOrigin(request.frame.origin);
         if (!request.raster.apply(*mapping.mapping))
             fail(mapping.place, "the raster covers no area on the ground; check it with gdalinfo.");
         const bool plainColors =

@@ -193,6 +193,13 @@ osg::Vec3d SceneTerrain::worldOfMap(const ScenePlace& place, const osg::Vec2d& p
     return _ellipsoid ? worldOf(place, point.x(), point.y()) : osg::Vec3d(point, 0.0);
 }
 
+LocalOrigin SceneTerrain::originAt(const osg::Vec2d& point) const
+{
+    return _ellipsoid
+               ? LocalOrigin::onGlobe(osg::DegreesToRadians(point.x()), osg::DegreesToRadians(point.y()))
+               : LocalOrigin::onPlane(point);
+}
+
 MappingFrame SceneTerrain::frame() const
 {
     MappingFrame result;

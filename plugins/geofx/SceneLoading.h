@@ -64,6 +64,8 @@ public:
     void warnIfOff(const ScenePlace& place, const osg::Vec2d& point, double reach);
     /// Of a point of the map: degrees on a globe, else metres.
     osg::Vec3d worldOfMap(const ScenePlace& place, const osg::Vec2d& point);
+    /// The origin of a frame at a point of the map.
+    LocalOrigin originAt(const osg::Vec2d& point) const;
     /// A frame without its origin.
     MappingFrame frame() const;
     /// Asks osgdb_geofxdata to answer a request; without it, `instead` is what a person may do. Its sentence, empty as a

@@ -56,8 +56,7 @@ private:
 MappingFrame globeAt(double longitude, double latitude)
 {
     MappingFrame frame;
-    frame.longitude = DegreesToRadians(longitude);
-    frame.latitude = DegreesToRadians(latitude);
+    frame.origin = osgGeoFX::LocalOrigin::onGlobe(DegreesToRadians(longitude), DegreesToRadians(latitude));
     return frame;
 }
 
@@ -66,7 +65,7 @@ MappingFrame projected(int epsg, const osg::Vec2d& origin)
     MappingFrame frame;
     frame.globe = false;
     frame.wkt = geofx::test::wktOf(epsg);
-    frame.origin = origin;
+    frame.origin = osgGeoFX::LocalOrigin::onPlane(origin);
     return frame;
 }
 
@@ -155,10 +154,10 @@ protected:
     {
         const Sample& sample = GetParam();
         const osg::Vec2d there = applied(sample.transform, column, row);
-        if (!sample.frame.globe) return (*_toTerrain)(there)-sample.frame.origin;
+        if (!sample.frame.globe) return (*_toTerrain)(there)-sample.frame.origin.place();
         const osg::Vec2d geodetic = (*_toGeodetic)(there);
-        const GeographicLib::LocalCartesian frame(osg::RadiansToDegrees(sample.frame.latitude),
-                                                  osg::RadiansToDegrees(sample.frame.longitude), 0.0);
+        const GeographicLib::LocalCartesian frame(osg::RadiansToDegrees(sample.frame.origin.latitude),
+                                                  osg::RadiansToDegrees(sample.frame.origin.longitude), 0.0);
         double x = 0.0, y = 0.0, z = 0.0;
         frame.Forward(geodetic.y(), geodetic.x(), 0.0, x, y, z);
         return {x, y};
@@ -339,15 +338,15 @@ TEST_P(MappingRasterPlace, ValuesLieWhereOtherLibrariesSay)
     if (frame.globe)
     {
         double x = 0.0, y = 0.0, z = 0.0;
-        GeographicLib::LocalCartesian(osg::RadiansToDegrees(sample.frame.latitude),
-                                      osg::RadiansToDegrees(sample.frame.longitude), 0.0)
-            .Forward(osg::RadiansToDegrees(frame.latitude), osg::RadiansToDegrees(frame.longitude), 0.0, x, y,
-                     z);
+        GeographicLib::LocalCartesian(osg::RadiansToDegrees(sample.frame.origin.latitude),
+                                      osg::RadiansToDegrees(sample.frame.origin.longitude), 0.0)
+            .Forward(osg::RadiansToDegrees(frame.origin.latitude),
+                     osg::RadiansToDegrees(frame.origin.longitude), 0.0, x, y, z);
         EXPECT_LT((osg::Vec2d(x, y) - middle).length(), 1e-3);
     }
     else
     {
-        EXPECT_LT((frame.origin - sample.frame.origin - middle).length(), 1e-3);
+        EXPECT_LT((frame.origin.place() - sample.frame.origin.place() - middle).length(), 1e-3);
     }
 }
 

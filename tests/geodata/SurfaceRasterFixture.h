@@ -29,8 +29,8 @@ using osgGeoFX::SurfaceRaster;
 inline MappingFrame globeAt(double longitude, double latitude)
 {
     MappingFrame frame;
-    frame.longitude = osg::DegreesToRadians(longitude);
-    frame.latitude = osg::DegreesToRadians(latitude);
+    frame.origin =
+        osgGeoFX::LocalOrigin::onGlobe(osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude));
     return frame;
 }
 
@@ -38,8 +38,8 @@ inline MappingFrame globeAt(double longitude, double latitude)
 inline osg::Vec2d placeOf(const MappingFrame& frame, double longitude, double latitude)
 {
     double x = 0.0, y = 0.0, z = 0.0;
-    GeographicLib::LocalCartesian(osg::RadiansToDegrees(frame.latitude),
-                                  osg::RadiansToDegrees(frame.longitude), 0.0)
+    GeographicLib::LocalCartesian(osg::RadiansToDegrees(frame.origin.latitude),
+                                  osg::RadiansToDegrees(frame.origin.longitude), 0.0)
         .Forward(latitude, longitude, 0.0, x, y, z);
     return {x, y};
 }
@@ -61,8 +61,8 @@ protected:
         GDALAllRegister();
         _frame.globe = false;
         _frame.wkt = wktOf(32604);
-        _frame.origin = osg::Vec2d(600000.0, 2300000.0);
-        _data->setOrigin(_frame.origin);
+        _frame.origin = osgGeoFX::LocalOrigin::onPlane(osg::Vec2d(600000.0, 2300000.0));
+        _data->setLocalOrigin(_frame.origin);
         _data->setRectangle(osg::Vec2d(0.0, -400.0), osg::Vec2d(600.0, 0.0));
     }
 

@@ -120,7 +120,7 @@ TEST_F(SurfaceRasterLayers, LieWhereOtherLibrariesSayOnAGlobe)
                 .fill([&](int column, int row, int) { return field(column + 0.5, row + 0.5); })
                 .write(_folder / "r.tif");
         const osg::ref_ptr<SurfaceData> data = new SurfaceData;
-        data->setGeodeticOrigin(frame.longitude, frame.latitude);
+        data->setLocalOrigin(frame.origin);
         const osg::Vec2d middle = placeOf(frame, -157.955, 21.47);
         data->setRectangle(middle - osg::Vec2d(6000.0, 4500.0), middle + osg::Vec2d(6000.0, 4500.0));
         std::string error;
@@ -232,7 +232,7 @@ TEST_F(SurfaceRasterLayers, FromHeightsAreAllThatFollowsFromThem)
         raster(60, 40).fill([](int column, int, int) { return -5.0 * column; }).write(_folder / "r.tif");
     const osg::ref_ptr<SurfaceData> data = dem(file);
     ASSERT_TRUE(data);
-    EXPECT_EQ(data->getOrigin(), _frame.origin);
+    EXPECT_EQ(data->getOrigin(), _frame.origin.place());
     EXPECT_EQ(data->getLow(), osg::Vec2d(0.0, -400.0));
     EXPECT_EQ(data->getHigh(), osg::Vec2d(600.0, 0.0));
     ASSERT_EQ(data->getNumLayers(), 5);

@@ -44,7 +44,7 @@ TEST_F(SurfaceVectors, AreAsLongAndAsWideAsTheyAre)
     const auto drawn = [&](const std::string& geometry, double width)
     {
         osg::ref_ptr<SurfaceData> data = new SurfaceData;
-        data->setGeodeticOrigin(_frame.longitude, _frame.latitude);
+        data->setLocalOrigin(_frame.origin);
         data->setRectangle(osg::Vec2d(-3000.0, -2000.0), osg::Vec2d(3000.0, 2000.0));
         std::string error;
         EXPECT_TRUE(SurfaceRaster::addVectors(*data, "roads", writeLines("a.geojson", geometry), width,
@@ -101,7 +101,7 @@ TEST_F(SurfaceVectors, ThatBendInTheFrameFollowThem)
     // Along a parallel in the north, one segment of 4 degrees: it bends 1.7 km off the straight way.
     _frame = globeAt(10.0, 60.0);
     const osg::ref_ptr<SurfaceData> data = new SurfaceData;
-    data->setGeodeticOrigin(_frame.longitude, _frame.latitude);
+    data->setLocalOrigin(_frame.origin);
     data->setRectangle(osg::Vec2d(-120000.0, -5000.0), osg::Vec2d(120000.0, 5000.0));
     // The one on the other side of the globe is left out.
     const std::string file =

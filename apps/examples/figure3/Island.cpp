@@ -109,8 +109,7 @@ Island::Island(const std::string& terrain, const std::string& dataFolder) : scen
 Grid Island::read(const std::string& file, DataLayer::Kind kind) const
 {
     MappingFrame frame;
-    frame.longitude = mappings->getLongitude();
-    frame.latitude = mappings->getLatitude();
+    frame.origin = mappings->getLocalOrigin();
     MappingRaster::Options options;
     options.kind = kind;
     options.maxSide = 3400; // all cells of the rasters

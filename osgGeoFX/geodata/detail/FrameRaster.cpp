@@ -52,9 +52,9 @@ FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
     FrameCrs crs;
     if (frame.globe)
     {
-        crs.definition =
-            CPLSPrintf("+proj=ortho +lat_0=%.17g +lon_0=%.17g +datum=WGS84 +units=m +no_defs",
-                       osg::RadiansToDegrees(frame.latitude), osg::RadiansToDegrees(frame.longitude));
+        crs.definition = CPLSPrintf("+proj=ortho +lat_0=%.17g +lon_0=%.17g +datum=WGS84 +units=m +no_defs",
+                                    osg::RadiansToDegrees(frame.origin.latitude),
+                                    osg::RadiansToDegrees(frame.origin.longitude));
         return crs;
     }
     OGRSpatialReference srs;
@@ -65,7 +65,7 @@ FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
                          "the terrain with osggeofx_build.");
     srs.StripVertical();
     crs.definition = wktOf(srs);
-    crs.origin = frame.origin;
+    crs.origin = frame.origin.place();
     crs.metresPerUnit = srs.GetLinearUnits();
     return crs;
 }
