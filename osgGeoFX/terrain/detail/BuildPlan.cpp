@@ -158,13 +158,21 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
 
 void BuildPlan::chooseGrid()
 {
+    const Spacing posts = chooseExtent();
+    const Spacing colors = checkColors();
+    chooseLevels(posts);
+    chooseTexels(colors);
+}
+
+BuildPlan::Spacing BuildPlan::chooseExtent()
+{
     for (const auto& file : options.dems)
         if (!scheme.crs.geographic) requireWithin(scheme.crs, file);
     auto dems = footprints(options.dems, RasterKind::Elevation, scheme.crs);
     if (scheme.crs.geographic) gatherLongitudes(dems);
     scheme.west = scheme.south = std::numeric_limits<double>::max();
     scheme.east = scheme.north = std::numeric_limits<double>::lowest();
-    double stepX = scheme.west, stepY = scheme.west;
+    Spacing finest{scheme.west, scheme.west};
     bool wholeCircle = false;
     for (const auto& print : dems)
     {
@@ -172,26 +180,34 @@ void BuildPlan::chooseGrid()
         scheme.east = std::max(scheme.east, print.east);
         scheme.south = std::min(scheme.south, print.south);
         scheme.north = std::max(scheme.north, print.north);
-        stepX = std::min(stepX, print.stepX);
-        stepY = std::min(stepY, print.stepY);
+        finest = {std::min(finest.x, print.stepX), std::min(finest.y, print.stepY)};
         wholeCircle = wholeCircle || print.wholeCircle;
     }
-    groundStepX = stepX;
-    groundStepY = stepY;
+    groundStepX = finest.x;
+    groundStepY = finest.y;
     if (scheme.crs.geographic && (wholeCircle || scheme.east - scheme.west > 360.0))
         scheme.east = scheme.west + 360.0;
     require(scheme.east > scheme.west && scheme.north > scheme.south,
             options.dems.front() +
                 ": the elevation is a single row, column or pixel; a terrain needs at least 2 × 2.");
+    return finest;
+}
 
-    // The colors ask for a resolution of their own.
+std::vector<std::string> BuildPlan::colorFiles() const
+{
+    std::vector<std::string> files = options.imagery;
+    if (!options.landCover.empty()) files.push_back(options.landCover);
+    return files;
+}
+
+BuildPlan::Spacing BuildPlan::checkColors()
+{
     const bool fromImagery = !options.imagery.empty();
-    std::vector<std::string> colorFiles = options.imagery;
-    if (!options.landCover.empty()) colorFiles.push_back(options.landCover);
-    double colorStepX = std::numeric_limits<double>::max(), colorStepY = colorStepX;
-    for (const auto& file : colorFiles)
+    const std::vector<std::string> files = colorFiles();
+    Spacing finest{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+    for (const auto& file : files)
     {
-        const bool imagery = &file != &colorFiles.back() || options.landCover.empty();
+        const bool imagery = &file != &files.back() || options.landCover.empty();
         const Footprint print =
             RasterSource(file, imagery ? RasterKind::Imagery : RasterKind::LandCover).footprint(scheme.crs);
         require(overlaps(print, scheme), outside(file));
@@ -201,23 +217,23 @@ void BuildPlan::chooseGrid()
             groundStepY = print.stepY;
         }
         if (imagery == fromImagery)
-        {
-            colorStepX = std::min(colorStepX, print.stepX);
-            colorStepY = std::min(colorStepY, print.stepY);
-        }
+            finest = {std::min(finest.x, print.stepX), std::min(finest.y, print.stepY)};
     }
-
     if (!options.treeCover.empty())
         require(
             overlaps(RasterSource(options.treeCover, RasterKind::TreeCover).footprint(scheme.crs), scheme),
             outside(options.treeCover));
+    return finest;
+}
 
+void BuildPlan::chooseLevels(const Spacing& posts)
+{
     const auto count = [](double extent, double step)
     {
         return std::ceil(extent / step - 1e-4);
     };
-    const double columns = count(scheme.east - scheme.west, stepX),
-                 rows = count(scheme.north - scheme.south, stepY);
+    const double columns = count(scheme.east - scheme.west, posts.x),
+                 rows = count(scheme.north - scheme.south, posts.y);
     scheme.intervals = options.tileSize;
     if (options.compressTextures) scheme.texelBlock = TileTextures::BLOCK;
     require(std::max(columns, rows) <= static_cast<double>(scheme.intervals << MAX_LEVEL),
@@ -228,21 +244,25 @@ void BuildPlan::chooseGrid()
     scheme.finestLevel = 0;
     while ((scheme.intervals << scheme.finestLevel) < std::max(scheme.lastColumn, scheme.lastRow))
         ++scheme.finestLevel;
+}
 
+void BuildPlan::chooseTexels(const Spacing& colors)
+{
     // Finest tiles have as many texels as the colors' source has pixels, by default up to four for each interval;
     // tiles above them keep these texels until there are, by default, two for each interval: where a tile's relief asks for
     // finer ones, its texels do, too.
     const int limit = options.textureSize > 0 ? options.textureSize : 4 * options.tileSize;
+    const std::vector<std::string> files = colorFiles();
     for (;; ++scheme.finestLevel, scheme.lastColumn *= 2, scheme.lastRow *= 2)
     {
         require(scheme.finestLevel <= MAX_LEVEL,
-                (colorFiles.empty() ? options.dems.front() : colorFiles.front()) +
+                (files.empty() ? options.dems.front() : files.front()) +
                     ": at its resolution the terrain would need more than " + std::to_string(MAX_LEVEL) +
                     " levels; give coarser rasters, a smaller region, or a larger --texture-size.");
         double texels = std::min(scheme.intervals, limit);
-        if (!colorFiles.empty())
-            texels = scheme.intervals * std::max((scheme.east - scheme.west) / colorStepX / scheme.lastColumn,
-                                                 (scheme.north - scheme.south) / colorStepY / scheme.lastRow);
+        if (!files.empty())
+            texels = scheme.intervals * std::max((scheme.east - scheme.west) / colors.x / scheme.lastColumn,
+                                                 (scheme.north - scheme.south) / colors.y / scheme.lastRow);
         scheme.texels = std::max(2, static_cast<int>(std::ceil(texels - 1e-3)));
         if (scheme.texels <= limit) break;
     }

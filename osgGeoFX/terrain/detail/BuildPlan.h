@@ -110,7 +110,17 @@ public:
     std::uint64_t unitsDone = 0, unitsTotal = 0;
 
 private:
+    /// Along x and y, in the grid's CRS.
+    struct Spacing
+    {
+        double x, y;
+    };
     void chooseGrid();
+    Spacing chooseExtent();                      ///< that of the elevation; its finest spacing
+    std::vector<std::string> colorFiles() const; ///< what asks for a resolution of its own
+    Spacing checkColors();                       ///< and the ground's spacing; the finest one of the colors
+    void chooseLevels(const Spacing& posts);
+    void chooseTexels(const Spacing& colors);
     void chooseEstimate();
     void chooseUnits();
     void chooseFingerprint();

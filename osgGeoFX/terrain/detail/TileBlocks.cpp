@@ -79,6 +79,15 @@ struct TileBlocks::Side
     }
 };
 
+/// The meshes of a block while they have no vertices: the nearest one first.
+struct TileBlocks::Draft
+{
+    std::vector<BlockMesh> meshes;
+    std::vector<double> from; ///< metres from the block's middle
+    double tolerance = -1.0;  ///< of the nearest one, metres; negative where it leaves out no post
+    bool dense = false;       ///< whether the nearest one has all posts of the block
+};
+
 TileBlocks::TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetwork& network,
                        const LevelArrays& arrays, int x, int y)
     : _plan(plan), _key(key), _network(network), _lattice(network.lattice()), _arrays(arrays), _x(x), _y(y)
@@ -155,8 +164,7 @@ TileBlocks::Block TileBlocks::make(const TileBlock& block)
     result.middle = box.center();
     result.radius = box.radius();
 
-    const int smallest = smallestBlock(_plan.scheme, _key.level, _lattice.intervals);
-    if (block.size > smallest)
+    if (!isSmallest(block))
     {
         const int half = block.size / 2;
         for (int quarter = 0; quarter < 4; ++quarter)
@@ -168,62 +176,81 @@ TileBlocks::Block TileBlocks::make(const TileBlock& block)
             result.finer.push_back(_blocks.size() - 1);
         }
         // Not before its own error is small enough, where it is smaller than others: at the end of the ground.
-        const double perMetre = _plan.options.pixelsPerRadian / _plan.options.pixelError;
         if (!result.finer.empty())
             result.finerWithin = std::max(FINER_WITHIN * result.radius,
-                                          result.radius + _plan.tolerance(_key.level) * perMetre);
+                                          result.radius + _plan.tolerance(_key.level) * perMetre());
     }
     makeMeshes(block, result);
     return result;
 }
 
+bool TileBlocks::isSmallest(const TileBlock& block) const
+{
+    return block.size == smallestBlock(_plan.scheme, _key.level, _lattice.intervals);
+}
+
 void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
 {
-    const double perMetre = _plan.options.pixelsPerRadian / _plan.options.pixelError;
-    const bool smallest = block.size == smallestBlock(_plan.scheme, _key.level, _lattice.intervals);
-    const bool finest = _key.level == _plan.scheme.finestLevel;
-    const bool own = smallest && finest;
-    double tolerance = -1.0;
-    bool dense = false;
+    Draft draft = nearest(block, result);
+    if (draft.meshes.front().corners.empty()) return;
+    addCoarser(block, result, draft);
+    // A plain is off by rounding alone, which is no reason to load finer tiles.
+    if (isSmallest(block) && draft.meshes.front().deviation > NEGLIGIBLE_METRES)
+        _error = std::max(_error, draft.meshes.front().deviation + rounding());
+    addShortEdges(block, draft);
+    if (isSmallest(block) && isFinest()) result.vertices = addVertices(block);
+    if (draft.dense) _vertices[result.vertices]->addAll();
+    for (std::size_t i = 0; i < draft.meshes.size(); ++i)
+        result.meshes.push_back(made(block, result, draft, i));
+}
+
+TileBlocks::Draft TileBlocks::nearest(const TileBlock& block, const Block& result) const
+{
+    const bool smallest = isSmallest(block);
+    const bool own = smallest && isFinest();
+    Draft draft;
     if (own)
     {
         // Where hardly a post can be left out, all are there.
         const double negligible = std::min(NEGLIGIBLE * metres(), NEGLIGIBLE_METRES);
         const auto posts =
             static_cast<std::size_t>(block.size + 1) * static_cast<std::size_t>(block.size + 1);
-        dense = 2 * _network.errors(block, negligible).size() > posts;
-        if (!dense) tolerance = negligible;
+        draft.dense = 2 * _network.errors(block, negligible).size() > posts;
+        if (!draft.dense) draft.tolerance = negligible;
     }
     else
-        tolerance = std::max(_plan.tolerance(_key.level), (result.finerWithin - result.radius) / perMetre);
+        draft.tolerance =
+            std::max(_plan.tolerance(_key.level), (result.finerWithin - result.radius) / perMetre());
     // What the finest meshes may be off by is part of what neighbours' walls reach down to.
     const double most = own        ? HUGE_VAL
                         : smallest ? _plan.finestError(_key.level)
-                                   : std::min(_plan.largestError(_key.level), ACCUMULATION * tolerance);
-    const int all = block.size;
-    std::vector<BlockMesh> meshes{_network.triangulate(block, tolerance, all)};
-    while (tolerance > 0.0 && meshes.front().deviation > most)
-        meshes.front() = _network.triangulate(block, tolerance *= 0.7, all);
-    if (meshes.front().corners.empty()) return;
+                                   : std::min(_plan.largestError(_key.level), ACCUMULATION * draft.tolerance);
+    BlockMesh mesh = _network.triangulate(block, draft.tolerance, block.size);
+    while (draft.tolerance > 0.0 && mesh.deviation > most)
+        mesh = _network.triangulate(block, draft.tolerance *= 0.7, block.size);
     // With all posts what is left is rounding.
-    if (tolerance < 0.0) meshes.front().deviation = 0.0;
-    std::vector<double> from{result.finerWithin};
+    if (draft.tolerance < 0.0) mesh.deviation = 0.0;
+    draft.meshes.push_back(std::move(mesh));
+    draft.from.push_back(result.finerWithin);
+    return draft;
+}
 
-    // Of these vertices, and of those of the finest level.
-    const double rounding = 2.0 * _vertices.front()->rounding();
+void TileBlocks::addCoarser(const TileBlock& block, const Block& result, Draft& draft) const
+{
+    auto& [meshes, from, tolerance, dense] = draft;
     const std::vector<float> errors = _network.errors(block, tolerance);
     for (auto count = errors.size(); count > 0;)
     {
         count = static_cast<std::size_t>(STEP * static_cast<double>(count));
         const auto coarser = static_cast<double>(errors[count]);
-        BlockMesh mesh = _network.triangulate(block, coarser, all);
+        BlockMesh mesh = _network.triangulate(block, coarser, block.size);
         if (mesh.deviation > _plan.largestError(_key.level)) break;
         if (static_cast<double>(mesh.corners.size()) >
             LEAST_GAIN * static_cast<double>(meshes.back().corners.size()))
             continue;
         const double error = std::max(coarser, mesh.deviation / ACCUMULATION) +
-                             static_cast<double>(_plan.fact(_key).latticeError) + rounding;
-        const double distance = result.radius + error * perMetre;
+                             static_cast<double>(_plan.fact(_key).latticeError) + rounding();
+        const double distance = result.radius + error * perMetre();
         // Where the nearer one would hardly ever be seen, this one takes its place; the nearest one goes only where it never
         // would.
         const bool replaces = distance <= (meshes.size() > 1 ? LEAST_STEP : 1.0) * from.back();
@@ -238,37 +265,36 @@ void TileBlocks::makeMeshes(const TileBlock& block, Block& result)
             from.push_back(distance);
         }
     }
-    // A plain is off by rounding alone, which is no reason to load finer tiles.
-    if (smallest && meshes.front().deviation > NEGLIGIBLE_METRES)
-        _error = std::max(_error, meshes.front().deviation + rounding);
+}
 
-    // What bends a plain asks for edges that are short, wherever it is.
-    const int longest = finest ? PLAIN_CELLS : _lattice.intervals / leastCells(_plan.scheme.intervals);
-    if (smallest && longestEdge(meshes.front()) > 1.5 * longest)
-    {
-        meshes.insert(meshes.begin(), _network.triangulate(block, tolerance, longest));
-        from.insert(from.begin(), 0.0);
-        from[1] = std::max(from[1], NEARER_THAN_ANY_CAMERA);
-    }
-    if (own) result.vertices = addVertices(block);
+void TileBlocks::addShortEdges(const TileBlock& block, Draft& draft) const
+{
+    const int longest = isFinest() ? PLAIN_CELLS : _lattice.intervals / leastCells(_plan.scheme.intervals);
+    if (!isSmallest(block) || longestEdge(draft.meshes.front()) <= 1.5 * longest) return;
+    draft.meshes.insert(draft.meshes.begin(), _network.triangulate(block, draft.tolerance, longest));
+    draft.from.insert(draft.from.begin(), 0.0);
+    draft.from[1] = std::max(draft.from[1], NEARER_THAN_ANY_CAMERA);
+}
+
+TileBlocks::Mesh TileBlocks::made(const TileBlock& block, const Block& result, const Draft& draft,
+                                  std::size_t mesh)
+{
+    const BlockMesh& surface = draft.meshes[mesh];
     TileVertices& vertices = *_vertices[result.vertices];
-    if (dense) vertices.addAll();
-    for (std::size_t i = 0; i < meshes.size(); ++i)
-    {
-        Mesh made;
-        made.from = from[i];
-        made.longestEdge = longestEdge(meshes[i]) * metres();
-        for (const Post& corner : meshes[i].corners)
-            made.triangles.push_back(vertices.post(corner));
-        made.ground = made.triangles.size();
-        // A neighbour of the same tile, or of its level, is hardly farther away than the farthest place where this mesh
-        // is drawn; twice that, since deformations stretch distances.
-        double other = _plan.largestError(_key.level);
-        if (i + 1 < meshes.size()) other = std::min(other, 2.0 * (from[i + 1] + result.radius) / perMetre);
-        other += static_cast<double>(_plan.fact(_key).latticeError);
-        addWalls(block, result.vertices, meshes[i], meshes[i].deviation + other, made.triangles);
-        result.meshes.push_back(std::move(made));
-    }
+    Mesh made;
+    made.from = draft.from[mesh];
+    made.longestEdge = longestEdge(surface) * metres();
+    for (const Post& corner : surface.corners)
+        made.triangles.push_back(vertices.post(corner));
+    made.ground = made.triangles.size();
+    // A neighbour of the same tile, or of its level, is hardly farther away than the farthest place where this mesh
+    // is drawn; twice that, since deformations stretch distances.
+    double other = _plan.largestError(_key.level);
+    if (mesh + 1 < draft.meshes.size())
+        other = std::min(other, 2.0 * (draft.from[mesh + 1] + result.radius) / perMetre());
+    other += static_cast<double>(_plan.fact(_key).latticeError);
+    addWalls(block, result.vertices, surface, surface.deviation + other, made.triangles);
+    return made;
 }
 
 /// In cells.

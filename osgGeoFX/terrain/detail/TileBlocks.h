@@ -62,9 +62,22 @@ public:
 private:
     using Post = BlockMesh::Post;
     struct Side;
+    struct Draft;
 
     Block make(const TileBlock& block);
     void makeMeshes(const TileBlock& block, Block& result);
+    bool isSmallest(const TileBlock& block) const;
+    bool isFinest() const { return _key.level == _plan.scheme.finestLevel; }
+    /// The distance from which an error of a metre is as small as the pixel error, metres.
+    double perMetre() const { return _plan.options.pixelsPerRadian / _plan.options.pixelError; }
+    double rounding() const { return 2.0 * _vertices.front()->rounding(); }
+    /// A draft of the block's nearest mesh alone.
+    Draft nearest(const TileBlock& block, const Block& result) const;
+    void addCoarser(const TileBlock& block, const Block& result, Draft& draft) const;
+    /// Makes the edges of a smallest block's nearest mesh short enough for what bends it.
+    void addShortEdges(const TileBlock& block, Draft& draft) const;
+    /// A mesh of a draft with its vertices and walls.
+    Mesh made(const TileBlock& block, const Block& result, const Draft& draft, std::size_t mesh);
     /// Makes one for a block, or for the whole tile.
     std::size_t addVertices(const TileBlock& block);
     static double longestEdge(const BlockMesh& mesh);
