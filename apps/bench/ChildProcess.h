@@ -2,25 +2,19 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include "process/RunProgram.h"
+
 #include <string>
 #include <vector>
 
 namespace geofx::bench
 {
 
-/// What a program took.
-struct ChildUsage
-{
-    double seconds = 0.0;    ///< wall-clock time
-    double cpuSeconds = 0.0; ///< of all its threads, in user and system mode
-    double peakMiB = 0.0;    ///< largest resident size
-};
-
 /** Runs a program to its end; its messages are shown only if it fails.
 
     Throws BenchError where it cannot be started, fails, or we are interrupted. The kernel counts our own size
    at the start into the child's peak, so what a child's memory is must be measured before we grow large
    ourselves. */
-ChildUsage runChild(const std::vector<std::string>& arguments);
+ProgramResult runChild(const std::vector<std::string>& arguments);
 
 } // namespace geofx::bench

@@ -49,7 +49,7 @@ std::string inSeconds(double seconds)
 
 struct Build
 {
-    ChildUsage usage;
+    ProgramResult usage;
     double bytesPerSample = 0.0;
     double secondsPerMillion = 0.0;
 };

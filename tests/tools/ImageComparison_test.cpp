@@ -4,7 +4,6 @@
 // result is what a shell would report.
 #include <tools/ImageComparison.h>
 #include <tools/NotifyWatch.h>
-#include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 
 #include <gtest/gtest-spi.h>
@@ -18,8 +17,6 @@
 
 using geofx::test::imagesMatch;
 using geofx::test::ImageTolerance;
-using geofx::test::ProgramOptions;
-using geofx::test::runProgram;
 
 namespace
 {
@@ -115,32 +112,6 @@ TEST(ImageComparison, ReadsFiles)
     EXPECT_TRUE(imagesMatch(folder / "a.png", folder / "a.png"));
     EXPECT_FALSE(imagesMatch(folder / "a.png", folder / "b.png"));
     EXPECT_FALSE(imagesMatch(folder / "a.png", folder / "none.png"));
-}
-
-TEST(RunProgram, CapturesBothStreamsAndTheExitCode)
-{
-    ProgramOptions options;
-    options.input = "in";
-    options.environment = {"GEOFX_TEST_VALUE=with spaces"};
-    options.folder = "/";
-    const auto result = runProgram({"sh", "-c", "cat; pwd; echo \"$GEOFX_TEST_VALUE\" >&2; exit 3"}, options);
-    EXPECT_EQ(result.exitCode, 3);
-    EXPECT_FALSE(result.timedOut);
-    EXPECT_EQ(result.standardOutput, "in/\n");
-    EXPECT_EQ(result.standardError, "with spaces\n");
-    EXPECT_EQ(runProgram({"sh", "-c", "kill -SEGV $$"}).exitCode, 128 + SIGSEGV);
-    EXPECT_EQ(runProgram({"no-such-program-of-ours"}).exitCode, 127);
-}
-
-TEST(RunProgram, EndsAProgramAfterItsTime)
-{
-    ProgramOptions options;
-    options.seconds = 0.2;
-    EXPECT_TRUE(runProgram({"sleep", "60"}, options).timedOut);
-    options.signal = SIGKILL;
-    const auto result = runProgram({"sleep", "60"}, options);
-    EXPECT_TRUE(result.timedOut);
-    EXPECT_EQ(result.exitCode, 128 + SIGKILL);
 }
 
 TEST(TempDir, IsGoneAfterwards)
