@@ -3,25 +3,11 @@
 // When changes of mappings are seen: always in the next frame. MappingThreads_gltest has threads and views.
 #include <tools/MappingStage.h>
 
-#include <cmath>
-
 using namespace geofx::test;
 using namespace osgGeoFX;
 
 namespace
 {
-
-osg::Vec4d waves(double u, double v)
-{
-    return {0.5 + 0.5 * std::sin(9.0 * u), 0.5 + 0.5 * std::cos(7.0 * v), 0.5 + 0.5 * std::sin(5.0 * (u + v)),
-            0.4 + 0.6 * u};
-}
-
-osg::Vec4d stripes(double u, double v)
-{
-    const bool on = std::fmod(6.0 * u + 2.0 * v, 1.0) < 0.5;
-    return on ? osg::Vec4d(1.0, 0.8, 0.0, 1.0) : osg::Vec4d(0.0, 0.3, 0.9, 0.5);
-}
 
 osg::ref_ptr<osg::Image> values(double scale)
 {

@@ -8,8 +8,6 @@
 #include <osg/CoordinateSystemNode>
 #include <osg/MatrixTransform>
 
-#include <cmath>
-
 using namespace geofx::test;
 using namespace osgGeoFX;
 
@@ -17,12 +15,6 @@ namespace
 {
 
 using MappingList = std::vector<osg::ref_ptr<ProjectiveMapping>>;
-
-osg::Vec4d waves(double u, double v)
-{
-    return {0.5 + 0.5 * std::sin(9.0 * u), 0.5 + 0.5 * std::cos(7.0 * v), 0.5 + 0.5 * std::sin(5.0 * (u + v)),
-            0.4 + 0.6 * u};
-}
 
 osg::ref_ptr<osg::Image> values(int side)
 {

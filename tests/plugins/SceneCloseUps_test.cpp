@@ -2,11 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // <closeUps> of the scene file: the parser alone, then with files and terrain through the plugin osgdb_geofx.
-#include <geofx/SceneFile.h>
-#include <osgGeoFX/scene/EffectScene.h>
-#include <tools/GeofxPlugins.h>
-#include <tools/NotifyWatch.h>
-#include <tools/TempDir.h>
+#include <plugins/SceneFixture.h>
+
 #include <tools/TestRasters.h>
 
 #include <GeographicLib/LocalCartesian.hpp>
@@ -23,9 +20,7 @@
 namespace
 {
 
-using geofx::test::NotifyWatch;
 using geofx::test::TempDir;
-using geofx::test::wktOf;
 using osg::DegreesToRadians;
 using osgGeoFX::Anchor;
 using osgGeoFX::CloseUp;
@@ -37,6 +32,8 @@ using osgGeoFX::SceneCloseUps;
 using osgGeoFX::SceneResult;
 using osgGeoFX::SceneSurface;
 using osgGeoFX::SurfaceData;
+
+using Mistake = geofx::test::SceneMistake;
 
 /// A scene whose close-ups begin on line 3.
 std::string sceneWith(const std::string& inside, const std::string& attributes = {})
@@ -145,34 +142,13 @@ TEST(SceneCloseUps, AreReadWithAllThatTheyName)
     parsed("<closeUp><region shape='image' image='a.png'/><anchor style='table' table='0 1'/></closeUp>");
 }
 
-struct Mistake
-{
-    const char* name;
-    std::string inside;
-    std::string begins; ///< behind the file's name: line and element
-    std::string holds;
-};
-
-std::ostream& operator<<(std::ostream& stream, const Mistake& mistake)
-{
-    return stream << mistake.inside;
-}
-
 class CloseUpMistake : public testing::TestWithParam<Mistake>
 {
 };
 
 TEST_P(CloseUpMistake, IsNamedWithFileLineElementAndMend)
 {
-    NotifyWatch watch;
-    SceneResult result;
-    watch.messagesOf([&] { result = parseScene(sceneWith(GetParam().inside), "x.geofx", "/scenes"); });
-    EXPECT_FALSE(result.scene);
-    ASSERT_EQ(result.errors.size(), 1u) << testing::PrintToString(result.errors);
-    const std::string& error = result.errors[0];
-    EXPECT_EQ(error.rfind("x.geofx:" + GetParam().begins, 0), 0u) << error;
-    EXPECT_NE(error.find(GetParam().holds), std::string::npos) << error;
-    EXPECT_EQ(error.back(), '.') << error;
+    expectMistake(sceneWith(GetParam().inside), GetParam());
 }
 
 constexpr const char* edges = "<surfaceData west='1' south='2' east='3' north='4'>";
@@ -283,62 +259,31 @@ TEST(SceneCloseUps, NameFilesThatAreNotThere)
 }
 
 /// Scenes with files, on a globe unless the test asks for another terrain.
-class SceneCloseUpsPlugin : public geofx::test::GeofxPlugins
+class SceneCloseUpsPlugin : public geofx::test::SceneFiles
 {
 protected:
     void SetUp() override { setTerrain(0); }
 
-    /// With a projected coordinate system; 0: geocentric.
-    void setTerrain(int epsg)
-    {
-        const osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
-        if (epsg == 0)
-            root->setEllipsoidModel(new osg::EllipsoidModel);
-        else
-            root->setCoordinateSystem(wktOf(epsg));
-        root->setFormat("WKT");
-        ASSERT_TRUE(osgDB::writeNodeFile(*root, (_folder / "terrain.osgb").string()));
-    }
-
     /// A database that says how far it reaches, in its own coordinates.
     void writeTerrain(int epsg, double west, double south, double east, double north)
     {
-        const osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
-        if (epsg == 0)
-            root->setEllipsoidModel(new osg::EllipsoidModel);
-        else
-            root->setCoordinateSystem(wktOf(epsg));
-        root->setFormat("WKT");
+        const osg::ref_ptr<osg::CoordinateSystemNode> root = terrainOf(epsg);
         geofx::test::describeTerrain(*root, epsg == 0, west, south, east, north);
-        ASSERT_TRUE(osgDB::writeNodeFile(*root, (_folder / "terrain.osgb").string()));
+        saveTerrain(*root);
     }
 
     /// Some other file, 10 km about 0°, 0° on a globe.
     void writeBall()
     {
-        const osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
-        root->setEllipsoidModel(new osg::EllipsoidModel);
+        const osg::ref_ptr<osg::CoordinateSystemNode> root = terrainOf(0);
         const osg::ref_ptr<osg::Geode> geode = new osg::Geode;
         geode->addDrawable(
             new osg::ShapeDrawable(new osg::Sphere(osg::Vec3(6378137.0f, 0.0f, 0.0f), 10000.0f)));
         root->addChild(geode);
-        ASSERT_TRUE(osgDB::writeNodeFile(*root, (_folder / "terrain.osgb").string()));
+        saveTerrain(*root);
     }
 
-    CloseUps* read(const std::string& inside)
-    {
-        const auto file = _folder.write("x.geofx", sceneWith(inside));
-        osgDB::ReaderWriter::ReadResult result =
-            osgDB::Registry::instance()->readNode(file.string(), nullptr);
-        _scene = result.getNode();
-        auto* scene = dynamic_cast<osgGeoFX::EffectScene*>(_scene.get());
-        if (!scene)
-        {
-            ADD_FAILURE() << result.message();
-            return nullptr;
-        }
-        return dynamic_cast<CloseUps*>(scene->getEffect(0));
-    }
+    CloseUps* read(const std::string& inside) { return effectOf<CloseUps>(sceneWith(inside)); }
 
     /// The message about a scene whose mistake is on a line, in an element.
     void expectMistake(const std::string& inside, int line, const std::string& element,
@@ -364,10 +309,6 @@ protected:
             .fill([](int column, int, int) { return 100.0 * column; })
             .write(_folder / "dem.tif");
     }
-
-    const TempDir _folder;
-    NotifyWatch _watch;
-    osg::ref_ptr<osg::Node> _scene;
 };
 
 TEST_F(SceneCloseUpsPlugin, ReadMasksAndTables)

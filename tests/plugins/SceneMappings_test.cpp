@@ -2,12 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // <projectiveMappings> of the scene file: the parser alone, then with files and terrain through the plugin osgdb_geofx.
-#include <geofx/SceneFile.h>
+#include <plugins/SceneFixture.h>
+
 #include <osgGeoFX/raster/LayerPixels.h>
-#include <osgGeoFX/scene/EffectScene.h>
-#include <tools/GeofxPlugins.h>
-#include <tools/NotifyWatch.h>
-#include <tools/TempDir.h>
 #include <tools/TestRasters.h>
 
 #include <GeographicLib/LocalCartesian.hpp>
@@ -23,9 +20,7 @@
 namespace
 {
 
-using geofx::test::NotifyWatch;
 using geofx::test::TempDir;
-using geofx::test::wktOf;
 using osg::DegreesToRadians;
 using osgGeoFX::ColorTable;
 using osgGeoFX::ColorTransfer;
@@ -36,6 +31,8 @@ using osgGeoFX::ProjectiveMappings;
 using osgGeoFX::SceneMapping;
 using osgGeoFX::SceneMappings;
 using osgGeoFX::SceneResult;
+
+using Mistake = geofx::test::SceneMistake;
 
 /// A scene whose mappings begin on line 3.
 std::string sceneWith(const std::string& inside, const std::string& attributes = {})
@@ -164,32 +161,13 @@ TEST(SceneMappings, SetsOfOneSceneHaveUnitsOfTheirOwn)
     EXPECT_TRUE(given.sentences.empty());
 }
 
-struct Mistake
-{
-    const char* name;
-    std::string inside;
-    std::string begins; ///< behind the file's name: line and element
-    std::string holds;
-};
-
-std::ostream& operator<<(std::ostream& stream, const Mistake& mistake)
-{
-    return stream << mistake.inside;
-}
-
 class MappingMistake : public testing::TestWithParam<Mistake>
 {
 };
 
 TEST_P(MappingMistake, IsNamedWithFileLineElementAndMend)
 {
-    const SceneResult result = parseScene(sceneWith(GetParam().inside), "x.geofx", "/scenes");
-    EXPECT_FALSE(result.scene);
-    ASSERT_EQ(result.errors.size(), 1u) << testing::PrintToString(result.errors);
-    const std::string& error = result.errors[0];
-    EXPECT_EQ(error.rfind("x.geofx:" + GetParam().begins, 0), 0u) << error;
-    EXPECT_NE(error.find(GetParam().holds), std::string::npos) << error;
-    EXPECT_EQ(error.back(), '.') << error;
+    expectMistake(sceneWith(GetParam().inside), GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -278,7 +256,7 @@ TEST(SceneMappings, NameFilesThatAreNotThere)
 }
 
 /// Scenes with files, on a globe unless the test asks for another terrain.
-class SceneMappingsPlugin : public geofx::test::GeofxPlugins
+class SceneMappingsPlugin : public geofx::test::SceneFiles
 {
 protected:
     void SetUp() override
@@ -291,31 +269,9 @@ protected:
         setTerrain(0);
     }
 
-    /// With a projected coordinate system; 0: geocentric.
-    void setTerrain(int epsg)
-    {
-        const osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode;
-        if (epsg == 0)
-            root->setEllipsoidModel(new osg::EllipsoidModel);
-        else
-            root->setCoordinateSystem(wktOf(epsg));
-        root->setFormat("WKT");
-        ASSERT_TRUE(osgDB::writeNodeFile(*root, (_folder / "terrain.osgb").string()));
-    }
-
     ProjectiveMappings* read(const std::string& inside, const std::string& attributes = {})
     {
-        const auto file = _folder.write("x.geofx", sceneWith(inside, attributes));
-        osgDB::ReaderWriter::ReadResult result =
-            osgDB::Registry::instance()->readNode(file.string(), nullptr);
-        _scene = result.getNode();
-        auto* scene = dynamic_cast<osgGeoFX::EffectScene*>(_scene.get());
-        if (!scene)
-        {
-            ADD_FAILURE() << result.message();
-            return nullptr;
-        }
-        return dynamic_cast<ProjectiveMappings*>(scene->getEffect(0));
+        return effectOf<ProjectiveMappings>(sceneWith(inside, attributes));
     }
 
     std::string messageWith(const std::string& inside, const std::string& attributes = {})
@@ -334,10 +290,6 @@ protected:
         EXPECT_NEAR(outline->corners[corner].x(), x, 1e-3);
         EXPECT_NEAR(outline->corners[corner].y(), y, 1e-3);
     }
-
-    const TempDir _folder;
-    NotifyWatch _watch;
-    osg::ref_ptr<osg::Node> _scene;
 };
 
 TEST_F(SceneMappingsPlugin, ReadPicturesAndTables)

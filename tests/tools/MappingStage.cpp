@@ -100,6 +100,18 @@ osg::ref_ptr<osg::Image> MappingStage::makeImage(int side, const osg::Vec3d& col
     return makeImage(side, side, [&](double, double) { return osg::Vec4d(color, 1.0); });
 }
 
+osg::Vec4d MappingStage::waves(double u, double v)
+{
+    return {0.5 + 0.5 * std::sin(9.0 * u), 0.5 + 0.5 * std::cos(7.0 * v), 0.5 + 0.5 * std::sin(5.0 * (u + v)),
+            0.4 + 0.6 * u};
+}
+
+osg::Vec4d MappingStage::stripes(double u, double v)
+{
+    const bool on = std::fmod(6.0 * u + 2.0 * v, 1.0) < 0.5;
+    return on ? osg::Vec4d(1.0, 0.8, 0.0, 1.0) : osg::Vec4d(0.0, 0.3, 0.9, 0.5);
+}
+
 osg::Vec3d MappingStage::colorOf(int number)
 {
     // Steps that have no factor in common with the numbers of shades.

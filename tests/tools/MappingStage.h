@@ -34,6 +34,9 @@ protected:
     static osg::ref_ptr<osg::Image> makeImage(int width, int height,
                                               const std::function<osg::Vec4d(double u, double v)>& color);
     static osg::ref_ptr<osg::Image> makeImage(int side, const osg::Vec3d& color);
+    /// Two patterns for makeImage(): one that varies in all four channels, and one with sharp borders.
+    static osg::Vec4d waves(double u, double v);
+    static osg::Vec4d stripes(double u, double v);
     /// A color of its own for each number, far from the ground's.
     static osg::Vec3d colorOf(int number);
 
