@@ -39,6 +39,7 @@ public:
     }
     std::string vertexFile() const override { return "example/contours.vert.glsl"; }
     std::string fragmentFile() const override { return "example/contours.frag.glsl"; }
+    std::vector<osgGeoFX::Varying> varyings() const override { return {{"float", "height"}}; }
 
     bool fill(osg::StateSet& state, const std::string& prefix, const osgGeoFX::SurfaceView& view) override
     {

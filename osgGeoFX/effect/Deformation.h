@@ -170,6 +170,9 @@ public:
     /// The fragment shader file with `vec4 SLOT_restyle(vec4 color, vec4 map, float style)`; empty, the default, for
     /// none.
     virtual std::string fragmentFile() const { return {}; }
+    /// The varyings that the vertex shader file declares with `out`; none by default. Some passes draw with a geometry or
+    /// a tessellation stage, which copies what is named here. Such a pass cannot draw with a varying that is missing.
+    virtual std::vector<Varying> varyings() const { return {}; }
     /// Text that is put before the files, such as constants that are worth compiling in.
     virtual std::string constants() const { return {}; }
     /// The texture unit of a map that the context shows instead of its colors; −1, the default, for none.

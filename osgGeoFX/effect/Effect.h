@@ -6,12 +6,24 @@
 
 #include <osg/ref_ptr>
 
+#include <string>
+#include <vector>
+
 namespace osgGeoFX
 {
 
 class Deformation;
 class PassEffect;
 class SurfaceEffect;
+
+/// A variable that an effect's vertex shader file hands to its fragment shader file.
+/// @ingroup effect
+struct Varying
+{
+    std::string type;  ///< its type in GLSL: "float", "vec3", "int"
+    std::string name;  ///< its name without `SLOT_`
+    bool flat = false; ///< whether the files declare it `flat`
+};
 
 /** An effect of an EffectScene: it changes how everything below the scene is drawn.
 

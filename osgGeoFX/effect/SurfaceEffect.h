@@ -32,6 +32,7 @@ struct SurfaceView
     To write a new surface effect, derive a class from this one:
     - Name a vertex shader file with `void SLOT_locate(vec3 eyePosition)`. This function writes the effect's own
       varyings for an undeformed position in eye space.
+    - List these varyings in varyings().
     - Name a fragment shader file with `vec4 SLOT_color(vec4 color)`.
     - Fill the state of a camera in fill().
 
@@ -48,6 +49,9 @@ public:
     /// The shader files. `SLOT_` in them stands for the prefix of names.
     virtual std::string vertexFile() const = 0;
     virtual std::string fragmentFile() const = 0;
+    /// The varyings that the vertex shader file declares with `out`; none by default. Some passes draw with a geometry or
+    /// a tessellation stage, which copies what is named here. Such a pass cannot draw with a varying that is missing.
+    virtual std::vector<Varying> varyings() const { return {}; }
     /// Whether the vertex file has `void SLOT_face(vec3 eyeNormal)`. This function gets the undeformed normal of length
     /// 1. False by default.
     virtual bool looksAtNormals() const { return false; }

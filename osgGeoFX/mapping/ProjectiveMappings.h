@@ -158,6 +158,7 @@ public:
     const Properties& properties() const override;
     std::string vertexFile() const override { return "stages/mappings.vert.glsl"; }
     std::string fragmentFile() const override { return "stages/mappings.frag.glsl"; }
+    std::vector<Varying> varyings() const override { return {{"vec3", "position"}, {"vec3", "place"}}; }
     std::vector<TextureUnitWish> textureUnits() const override;
     bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) override;
     void releaseGLObjects(osg::State* state) const override;

@@ -2,8 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Light, data, lines, anchors and movement of close-ups, against what their documentation and plain geometry say of single pixels.
+#include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/SurfaceEffect.h>
 #include <tools/CloseUpStage.h>
 
+#include <osg/GLExtensions>
 #include <osg/Geometry>
 #include <osg/Math>
 
@@ -32,6 +35,36 @@ osg::ref_ptr<osg::Image> makeValues(int side, double half,
                 texel(half * ((2.0 * column + 1.0) / side - 1.0), half * ((2.0 * row + 1.0) / side - 1.0)));
     return image;
 }
+
+/// Colors the ground by its place, red and green by a varying, and blue by a flat one: 1 east of the origin, else 0.
+class PlaceColors : public SurfaceEffect
+{
+public:
+    PlaceColors()
+    {
+        ShaderLibrary::add("test/placecolors.vert.glsl",
+                           "out vec2 SLOT_place;\n"
+                           "flat out int SLOT_east;\n"
+                           "void SLOT_locate(vec3 p) { SLOT_place = p.xy / 400.0 + 0.5;"
+                           " SLOT_east = p.x > 0.0 ? 1 : 0; }\n");
+        ShaderLibrary::add(
+            "test/placecolors.frag.glsl",
+            "in vec2 SLOT_place;\n"
+            "flat in int SLOT_east;\n"
+            "vec4 SLOT_color(vec4 color) { return vec4(SLOT_place, float(SLOT_east), 1.0); }\n");
+    }
+    PlaceColors(const PlaceColors& other, const osg::CopyOp& copy) : SurfaceEffect(other, copy) {}
+    META_Object(test, PlaceColors);
+    const Properties& properties() const override
+    {
+        static const Properties all = {enabledProperty()};
+        return all;
+    }
+    std::string vertexFile() const override { return "test/placecolors.vert.glsl"; }
+    std::string fragmentFile() const override { return "test/placecolors.frag.glsl"; }
+    std::vector<Varying> varyings() const override { return {{"vec2", "place"}, {"int", "east", true}}; }
+    bool fill(osg::StateSet&, const std::string&, const SurfaceView&) override { return true; }
+};
 
 /// Level grey ground without light, two metres to a pixel from straight above: north is up.
 class CloseUpStyles : public CloseUpStage
@@ -186,6 +219,43 @@ TEST_F(CloseUpStyles, LayersShowWhatTheirImagesBecame)
         EXPECT_LT((shown("second") - osg::Vec3d(1.0, 1.0, 0.0)).length(), 0.02);
         repaint(*second, {0.0, 0.0, 1.0, 1.0});
         EXPECT_LT((shown("second") - osg::Vec3d(0.0, 0.0, 1.0)).length(), 0.02);
+    }
+}
+
+TEST_F(CloseUpStyles, VaryingsOfOtherEffectsReachTheFragmentsOfCloseUps)
+{
+    _scene->addEffect(new PlaceColors);
+    const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({0.0, 0.0}, 160.0, 300.0);
+    closeUp->getRegion()->setShape(RegionOfInterest::RECTANGLE);
+    closeUp->setScale(2.0, 2.0, 2.0);
+    closeUp->setRoundness(0.5); // asks for tessellation, and does not change level ground
+    closeUp->getAnchor()->setKind(Anchor::NONE);
+    _closeUps->addCloseUp(closeUp);
+    float version = 0.0f;
+    withContext([&](osg::State& state) { version = state.get<osg::GLExtensions>()->glVersion; });
+    for (const CloseUps::Pipeline pipeline : pipelines)
+    {
+        for (const int tessellation : {1, 16})
+        {
+            SCOPED_TRACE(::testing::Message()
+                         << "pipeline " << pipeline << ", tessellation " << tessellation);
+            _closeUps->setPipeline(pipeline);
+            _closeUps->setTessellation(tessellation);
+            const osg::ref_ptr<osg::Image> image = draw();
+            EXPECT_EQ(_closeUps->statistics().pipeline, pipeline);
+            EXPECT_EQ(_closeUps->statistics().tessellated, tessellation > 1 && version >= 4.0f);
+            // The close-up shows the ground twice as large, and beside it lies the ground itself.
+            for (const auto& [x, y, scale] : {std::array<double, 3>{100.0, 60.0, 2.0},
+                                              {-100.0, -60.0, 2.0},
+                                              {190.0, 100.0, 1.0},
+                                              {-190.0, 20.0, 1.0}})
+            {
+                // Of the pixel's middle.
+                const osg::Vec3d expected((x + 1.0) / scale / 400.0 + 0.5, (y + 1.0) / scale / 400.0 + 0.5,
+                                          x > 0.0 ? 1.0 : 0.0);
+                EXPECT_LT((colorOf(*image, x, y) - expected).length(), 0.01) << x << ", " << y;
+            }
+        }
     }
 }
 

@@ -22,6 +22,10 @@ public:
 
     std::string vertexFile() const override { return "stages/panorama.ground.vert.glsl"; }
     std::string fragmentFile() const override { return "stages/panorama.ground.frag.glsl"; }
+    std::vector<Varying> varyings() const override
+    {
+        return {{"vec3", "place"}, {"vec4", "facing"}, {"vec4", "texels"}};
+    }
     bool looksAtNormals() const override { return true; }
     bool repaints() const override { return true; }
     bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) override;

@@ -9,8 +9,6 @@
 
 #include <osg/Notify>
 
-#include <regex>
-
 namespace osgGeoFX
 {
 
@@ -136,35 +134,36 @@ std::string joined(const ShaderLibrary& library, const std::vector<std::string>&
     return replaced(text, "SLOT_", prefix);
 }
 
-/// A variable that goes from the vertex stage to the fragment stage.
-struct Varying
+/// A varying under its whole name.
+struct Handed
 {
-    std::string qualifiers, type, name;
+    Varying varying;
     std::string define = {}; ///< without which it is not there
 };
 
-std::vector<Varying> varyingsOf(const std::string& text)
+/// What effects and stages/functions.vert hand to the fragment stage.
+std::vector<Handed> allVaryings(const EffectProgram::Effects& effects)
 {
-    static const std::regex declaration(
-        R"((?:^|\n)\s*((?:flat\s+|noperspective\s+)?)out\s+(\w+)\s+(\w+)\s*;)");
-    std::vector<Varying> varyings;
-    for (std::sregex_iterator each(text.begin(), text.end(), declaration), end; each != end; ++each)
-        varyings.push_back({(*each)[1], (*each)[2], (*each)[3]});
-    return varyings;
-}
-
-/// What the other effects hand to the fragment stage, and their own style.
-std::vector<Varying> allVaryings(const Parts& vertexParts)
-{
-    std::vector<Varying> all = varyingsOf(vertexParts.functions);
-    all.push_back({"", "float", "geofx_styleBlend"});
-    all.push_back({"", "vec2", "geofx_normalPlace", "GEOFX_NORMAL_MAP"});
-    all.push_back({"", "vec3", "geofx_groundPlace", "GEOFX_NORMAL_MAP"});
+    std::vector<Handed> all;
+    const auto add = [&](const std::vector<Varying>& varyings, std::size_t effect)
+    {
+        for (const Varying& each : varyings)
+            all.push_back({{each.type, EffectProgram::prefix(effect) + each.name, each.flat}});
+    };
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        if (const Deformation* deformation = effects[i]->asDeformation()) add(deformation->varyings(), i);
+        if (const SurfaceEffect* surface = effects[i]->asSurfaceEffect()) add(surface->varyings(), i);
+    }
+    all.push_back({{"float", "geofx_styleBlend"}});
+    all.push_back({{"vec2", "geofx_normalPlace"}, "GEOFX_NORMAL_MAP"});
+    all.push_back({{"vec3", "geofx_groundPlace"}, "GEOFX_NORMAL_MAP"});
     return all;
 }
 
 /// Adds what a pass has in the vertex stage.
-void addMove(Parts& parts, const ShaderLibrary& library, const PassShaders& pass, const std::string& prefix)
+void addMove(Parts& parts, const EffectProgram::Effects& effects, const ShaderLibrary& library,
+             const PassShaders& pass, const std::string& prefix)
 {
     const bool amplified = !pass.geometry.empty();
     const bool tessellated = !pass.tessellationControl.empty();
@@ -173,9 +172,9 @@ void addMove(Parts& parts, const ShaderLibrary& library, const PassShaders& pass
         // Later stages hand the values on under the names that the fragment stage knows.
         parts.imports += "#define GEOFX_AMPLIFY\n";
         if (tessellated) parts.imports += "#define GEOFX_TESSELLATE\n";
-        for (const Varying& varying : allVaryings(parts))
-            parts.imports +=
-                "#define " + varying.name + " " + varying.name + (tessellated ? "_vertex\n" : "_in\n");
+        for (const Handed& each : allVaryings(effects))
+            parts.imports += "#define " + each.varying.name + " " + each.varying.name +
+                             (tessellated ? "_vertex\n" : "_in\n");
     }
     parts.functions += joined(library, pass.vertex, prefix);
     parts.move = "    return vec4(geofx_inEye(" + prefix + "move(located, position)), 1.0);\n";
@@ -215,7 +214,7 @@ std::string copyOf(const Varying& varying, const Relay& relay)
     const std::string to = varying.name + relay.to;
     if (*relay.toArray) return to + "[gl_InvocationID] = " + from + "[gl_InvocationID];";
     if (std::string(relay.place) == "GEOFX_COPY(i)") return to + " = " + from + "[i];";
-    if (!varying.qualifiers.empty()) return to + " = " + from + "[0];";
+    if (varying.flat) return to + " = " + from + "[0];";
     return to + " = w.x * " + from + "[0] + w.y * " + from + "[1] + w.z * " + from + "[2];";
 }
 
@@ -226,13 +225,15 @@ std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary
 {
     const Parts parts = partsOf(effects, library, true);
     std::string declarations, copies;
-    for (const Varying& each : allVaryings(parts))
+    for (const Handed& each : allVaryings(effects))
     {
+        const Varying& varying = each.varying;
+        const std::string qualifier = varying.flat ? "flat " : "";
         std::string declaration =
-            each.qualifiers + "in " + each.type + " " + each.name + relay.from + relay.fromArray + ";\n";
+            qualifier + "in " + varying.type + " " + varying.name + relay.from + relay.fromArray + ";\n";
         declaration +=
-            each.qualifiers + "out " + each.type + " " + each.name + relay.to + relay.toArray + ";\n";
-        const std::string copy = copyOf(each, relay) + "\n";
+            qualifier + "out " + varying.type + " " + varying.name + relay.to + relay.toArray + ";\n";
+        const std::string copy = copyOf(varying, relay) + "\n";
         const std::string condition = "defined(" + each.define + ")";
         declarations += each.define.empty() ? declaration : conditional(condition, declaration);
         // A condition begins a line.
@@ -309,6 +310,8 @@ std::string EffectProgram::key(const Effects& effects)
             key += surface->vertexFile() + surface->fragmentFile();
         key += ';';
     }
+    for (const Handed& each : allVaryings(effects))
+        key += (each.varying.flat ? "flat " : "") + each.varying.type + " " + each.varying.name + ";";
     return key;
 }
 
@@ -332,7 +335,7 @@ std::string EffectProgram::passFunctions(const Effects& effects, const PassShade
     }
     const std::string file = fileOf(stage);
     Parts parts = partsOf(effects, library, stage == osg::Shader::VERTEX);
-    if (stage == osg::Shader::VERTEX && !pass.vertex.empty()) addMove(parts, library, pass, prefix);
+    if (stage == osg::Shader::VERTEX && !pass.vertex.empty()) addMove(parts, effects, library, pass, prefix);
     if (stage == osg::Shader::FRAGMENT && !pass.fragment.empty()) addFinish(parts, library, pass, prefix);
     return library.assemble(parts.fill(library.read(file)), file);
 }
