@@ -23,7 +23,7 @@ void BoundsPicture::add(const EyeBox& box, const DeformationChain& chain)
                                     [&](const auto& snapshot)
                                     { return snapshot->reach(ball) == DeformationSnapshot::Reach::Curved; });
     const osg::Vec4 color = curved ? osg::Vec4(1, 0.2f, 0.1f, 1) : osg::Vec4(1, 0.9f, 0.2f, 1);
-    // What the box's twelve edges became.
+    // The lines show what the deformation makes of the box's twelve edges.
     constexpr int pieces = 8;
     std::vector<osg::Vec3d> corners;
     box.corners(corners);

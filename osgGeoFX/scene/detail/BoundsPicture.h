@@ -9,14 +9,15 @@
 namespace osgGeoFX
 {
 
-/// Lines around what the deformation makes of boxes, in eye space: red where it bends them, yellow elsewhere. For one thread at a time.
+/// Draws boxes as the deformation leaves them, in eye space. Lines are red where the deformation is curved, yellow
+/// elsewhere. For one thread at a time.
 class BoundsPicture
 {
 public:
-    /// Forgets all boxes, but not what is still to be drawn of them.
+    /// Forgets all boxes. Lines that are still to be drawn stay valid.
     void begin();
     void add(const EyeBox& box, const DeformationChain& chain);
-    /// Of all boxes since begin().
+    /// The lines of all boxes since begin().
     osg::Geometry& geometry();
 
 private:

@@ -82,7 +82,7 @@ void CameraPasses::draw(osgUtil::CullVisitor& outer, const std::vector<ScenePass
                         const CompensatingCullVisitor::Task& task, const ScenePass::Drawing& drawing)
 {
     CompensatingCullVisitor::Task pass = taskOf(task, drawing);
-    // Nothing is culled, and OSG would look for near and far.
+    // This pass culls nothing. Without compensation OSG would compute near and far planes from it.
     pass.compensate = true;
     of(_wholes, drawing.program, outer).run(outer, pieces, pass);
 }

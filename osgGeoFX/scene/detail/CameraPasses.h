@@ -12,17 +12,18 @@
 namespace osgGeoFX
 {
 
-/** The visitors that cull the passes of one camera: one for each program, since what a visitor remembers of looks is for its program
-    until the frame has been drawn; and others for those that a PassFilter guides. For one thread at a time. */
+/** The visitors that cull the passes of one camera. Each program has a visitor of its own, because a visitor keeps
+    the looks of its program until the frame has been drawn. Passes with a PassFilter have visitors of another class.
+    For one thread at a time. */
 class CameraPasses
 {
 public:
-    /// What was drawn in the last frame has been drawn.
+    /// Tells all visitors that the last frame has been drawn.
     void startFrame(osgUtil::CullVisitor& outer);
-    /// Changes with startFrame().
+    /// The number of the frame; it grows with each startFrame().
     unsigned int frame() const { return _frame; }
 
-    /// The state of affairs of one traversal, in which passes are drawn: `task` is the scene's.
+    /// Draws a pass within one traversal. `task` is what the scene itself was culled with.
     void draw(osgUtil::CullVisitor& outer, osg::Group& scene, const CompensatingCullVisitor::Task& task,
               const ScenePass::Drawing& drawing);
     void draw(osgUtil::CullVisitor& outer, const std::vector<ScenePass::Piece>& pieces,
@@ -49,7 +50,7 @@ private:
     unsigned int _frame = 0;
 };
 
-/// The door for an effect's passes, in one traversal of one camera.
+/// What an effect's passes use, in one traversal of one camera.
 class CameraPass final : public ScenePass
 {
 public:
@@ -58,7 +59,8 @@ public:
         osgUtil::CullVisitor& outer;
         osg::Group& scene;
         const ViewGeometry& view;
-        const CompensatingCullVisitor::Task& task; ///< of all passes, before they say what they draw
+        const CompensatingCullVisitor::Task&
+            task; ///< what all passes start from, before they say what they draw
         CameraPasses& passes;
         ProgramCache& programs;
         const ProgramCache::Effects& effects;

@@ -75,13 +75,14 @@ CameraState::CameraState(const EffectProgram::Effects& effects, int mapUnit,
     _set->setAttribute(new ContextWatch(effects));
 }
 
-/// The uniform in a place of an effect's list.
+/// The uniform at one place of an effect's list.
 osg::Uniform& CameraState::uniformAt(std::size_t effect, std::size_t place, const std::string& name)
 {
     std::vector<osg::ref_ptr<osg::Uniform>>& known = _uniforms[effect];
     if (known.size() <= place) known.resize(place + 1);
     osg::ref_ptr<osg::Uniform>& uniform = known[place];
-    // Another effect may have taken the former one's place; what comes before the name is the place's.
+    // Another effect may have taken the former one's index. The prefix depends on the index alone, so only the rest
+    // of the name is compared.
     const bool same =
         uniform && uniform->getName().size() > name.size() &&
         uniform->getName().compare(uniform->getName().size() - name.size(), name.size(), name) == 0;

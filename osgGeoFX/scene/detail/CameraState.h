@@ -17,16 +17,16 @@
 namespace osgGeoFX
 {
 
-/// The deformations of a camera, by the effects of its scene.
+/// The deformations of one camera, one entry for each effect of its scene.
 class CameraSnapshots
 {
 public:
     CameraSnapshots(const EffectProgram::Effects& effects, const ViewGeometry& view);
 
-    /// All of them, one after the other.
+    /// The chain of all deformations, in their order.
     osg::ref_ptr<DeformationChain> chain(const Ground& ground) const;
 
-    /// What a deformation does for the camera; no frame where it does nothing.
+    /// What one deformation does for the camera. The snapshot is null where it does nothing.
     struct Placed
     {
         osg::ref_ptr<const DeformationSnapshot> snapshot;
@@ -38,14 +38,14 @@ private:
     std::vector<Placed> _all;
 };
 
-/// Uniforms, defines and textures of all effects for one traversal of one camera. For one thread at a time.
+/// The uniforms, defines and textures of all effects, for one traversal of one camera. For one thread at a time.
 class CameraState
 {
 public:
     CameraState(const EffectProgram::Effects& effects, int mapUnit,
                 const std::shared_ptr<const TextureUnits>& units);
 
-    /// Of the effects that it was made for.
+    /// The texture units of the effects that this state was made for.
     const std::shared_ptr<const TextureUnits>& units() const { return _units; }
     osg::StateSet& set() const { return *_set; }
     void fill(const CameraSnapshots& snapshots, const ViewGeometry& view, int mapUnit);
@@ -59,7 +59,7 @@ private:
 
     osg::ref_ptr<osg::StateSet> _set = new osg::StateSet;
     std::shared_ptr<const TextureUnits> _units;
-    /// Those of each effect, in the order of its list: to look for them by name takes longer than to set them.
+    /// The uniforms of each effect, in the order of its list. Finding them by name takes longer than setting them.
     std::vector<std::vector<osg::ref_ptr<osg::Uniform>>> _uniforms;
 };
 

@@ -16,7 +16,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Of a context's own data. OSG has it delete what it knows while the closing context is still there.
+/// An object of one graphics context. OSG calls it while a closing context is still current.
 class Closing : public osg::GraphicsObjectManager
 {
 public:
@@ -53,7 +53,7 @@ private:
             const std::lock_guard<std::mutex> lock(_mutex);
             effects.swap(_effects);
         }
-        // The context's own is not known here; effects ask it for its number only.
+        // The context's own osg::State is not known here. Effects ask a state only for the number of its context.
         const osg::ref_ptr<osg::State> state = new osg::State;
         state->setContextID(_contextID);
         for (const auto& [address, watched] : effects)
@@ -90,7 +90,7 @@ int ContextWatch::compare(const osg::StateAttribute& other) const
 
 void ContextWatch::apply(osg::State& state) const
 {
-    // OSG applies an empty one where there is no scene.
+    // OSG also applies a watch without effects, where there is no scene.
     if (!_effects.empty()) osg::get<Closing>(state.getContextID())->add(_effects);
 }
 

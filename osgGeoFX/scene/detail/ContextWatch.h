@@ -12,15 +12,15 @@
 namespace osgGeoFX
 {
 
-/** Part of the state that a scene draws with: when a graphics context closes that it has been applied in, the effects release what
-    they have there, wherever they are by then.
+/** A part of the state that a scene draws with. When a graphics context closes in which it was applied, the effects
+    release what they have in this context, wherever they are by then.
 
-    When a context closes, OSG tells the scene graphs of its cameras. An effect that has been taken out of its scene hears nothing
-    of it, and would go on with programs and frame buffers whose names the next context has given to others. */
+    When a context closes, OSG tells the scene graphs of its cameras. An effect that was taken out of its scene is not
+    told. It would go on with programs and frame buffers whose names the next context gives to other objects. */
 class ContextWatch : public osg::StateAttribute
 {
 public:
-    /// OSG tells attributes apart by such numbers; its own are small.
+    /// OSG tells attributes apart by this number. OSG's own numbers are small.
     static constexpr Type watchType = static_cast<Type>(0x67656f46);
 
     ContextWatch() = default;

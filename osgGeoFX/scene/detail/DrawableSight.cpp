@@ -23,7 +23,7 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     const bool test = drawable.isCullingActive();
     const bool small = test && place.smallCounts && _sight.cullsSmall();
     Visibility::Mask planes = test ? place.planes : 0;
-    // Most are in the middle of the picture, and of what is near and far in it: their spheres say so.
+    // Most drawables lie in the middle of the picture and between near and far. Their bounding spheres settle it.
     if (!planes && !small && !place.chain.looksAtBoxes() && !_wishes.bounds)
     {
         const osg::BoundingSphere& sphere = drawable.getBound();
@@ -38,7 +38,8 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     if (test && _wishes.hides && _sight.hides(place.chain, box)) return false;
     if (small && _sight.tooSmall(deformed)) return false;
     if (planes && _sight.outOfSight(deformed, planes, true)) return false;
-    // Where the box's middle shows there is no more to be found out; nor where the part does that showed last time.
+    // The hull and the smaller boxes are tested only where no point is known to show: neither the box's middle nor
+    // the small box that showed last time.
     if (planes && !_sight.holds(deformed.center, planes) && !witnessInSight(drawable, place, planes) &&
         (_sight.misses(place.chain, box, planes) || meshOutside(drawable, place, planes)))
         return false;
@@ -57,7 +58,7 @@ bool DrawableSight::meshOutside(const osg::Drawable& drawable, const Place& plac
     const std::size_t count = mesh.boxes.size();
     const std::size_t former = mesh.witness;
     if (former < count && !misses(mesh.boxes[former], place, planes)) return false;
-    // The middles are quick to test, and most often one of them settles it.
+    // Middles are quick to test, and most often one of them shows.
     for (const bool wholly : {false, true})
     {
         for (mesh.witness = 0; mesh.witness < count; ++mesh.witness)

@@ -13,8 +13,8 @@
 namespace osgGeoFX
 {
 
-/** Whether drawables are in sight once they are deformed, by their boxes and by the smaller ones within, and between which depths
-    they lie. For one thread at a time. */
+/** Finds out whether drawables are in sight after their deformation, and between which depths they lie. It goes by
+    their boxes and by the smaller boxes within. For one thread at a time. */
 class DrawableSight
 {
 public:
@@ -22,14 +22,14 @@ public:
 
     struct Wishes
     {
-        bool depths = true;  ///< near and far are to be found
-        bool hides = true;   ///< what a deformation hides is left out
-        bool bounds = false; ///< all boxes are to be shown
+        bool depths = true;  ///< whether near and far are wanted
+        bool hides = true;   ///< whether things that a deformation hides are left out
+        bool bounds = false; ///< whether all boxes are to be shown
     };
-    /// For one traversal.
+    /// Starts a traversal.
     void begin(const Wishes& wishes);
 
-    /// What is in force for a drawable.
+    /// What applies to a drawable.
     struct Place
     {
         const DeformationChain& chain;
@@ -38,21 +38,21 @@ public:
         Visibility::Mask planes;       ///< that it may cross
         bool smallCounts;              ///< whether its size tells
     };
-    /// False where it is out of sight; `depth` of its middle otherwise, metres.
+    /// False if the drawable is out of sight. Otherwise `depth` is the depth of its middle, metres.
     bool inSight(const osg::Drawable& drawable, const Place& place, double& depth);
 
     DepthRange& depths() { return _depths; }
     BoundsPicture& bounds() { return _bounds; }
-    /// What is to be said once, from this traversal; empty as a rule.
+    /// A sentence from this traversal that should be printed once; empty as a rule.
     const std::string& complaint() const { return _complaint; }
-    /// Forgets what has been deleted.
+    /// Forgets deleted drawables.
     void purge() { _meshBoxes.purge(); }
 
 private:
-    /// Whether all smaller boxes of a drawable miss the picture; false where it has none.
+    /// Whether all smaller boxes of a drawable miss the picture. False for a drawable without such boxes.
     bool meshOutside(const osg::Drawable& drawable, const Place& place, Visibility::Mask planes);
     bool misses(const osg::BoundingBox& box, const Place& place, Visibility::Mask planes);
-    /// Whether the middle of one of them shows; of that one which showed last time.
+    /// Whether a box's middle shows; whether the middle of the box that showed last time shows.
     bool middleInSight(const osg::BoundingBox& box, const Place& place, Visibility::Mask planes) const;
     bool witnessInSight(const osg::Drawable& drawable, const Place& place, Visibility::Mask planes);
 

@@ -21,7 +21,7 @@ double cross(const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c)
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// The convex hull of points, counter-clockwise; Andrew's monotone chain. The points are sorted.
+/// The convex hull of points, counter-clockwise, by Andrew's monotone chain. Sorts the points.
 std::vector<osg::Vec2d> convexOutline(std::vector<osg::Vec2d>& points)
 {
     std::sort(points.begin(), points.end());
@@ -44,13 +44,13 @@ std::vector<osg::Vec2d> convexOutline(std::vector<osg::Vec2d>& points)
     return outline;
 }
 
-/// What rounding of positions on the GPU may add at a distance.
+/// The error that rounding on the GPU may add to a position.
 double rounding(const osg::Vec3d& point)
 {
     return 1e-6 * (std::abs(point.x()) + std::abs(point.y()) + std::abs(point.z())) + 1e-4;
 }
 
-/// Near and far may lie that much farther apart, as a share of a box's radius.
+/// The share of a box's radius by which near and far may lie farther apart than needed.
 constexpr double coarse = 0.1;
 
 } // namespace
@@ -108,7 +108,7 @@ bool EyeFrustum::misses(const Hull& hull, Mask mask)
         if (outside) return true;
         if (!inside) ++crossed;
     }
-    // What crosses one plane alone is on its inner side, too, and that is in the picture.
+    // A hull that crosses one plane only is also on the inner side of it, and so in the picture.
     return crossed > 1 && _sides && missesPicture(hull);
 }
 
@@ -131,7 +131,7 @@ bool EyeFrustum::missesPicture(const Hull& hull)
         _points.emplace_back(projected.x(), projected.y());
         widest = std::max({widest, std::abs(projected.x()), std::abs(projected.y())});
     }
-    // What the margin is at most in the picture.
+    // The largest size of the margin in the picture.
     const double margin = hull.margin + 1e-6 * nearest;
     if (perspective && nearest <= 2.0 * margin) return false;
     // By how much the picture's x and y change for each metre, before they are divided by the depth.
@@ -162,7 +162,7 @@ void DepthRange::clear(const osg::Vec4d& depths)
 
 void DepthRange::include(double nearest, double farthest)
 {
-    // What is behind the eye has no say, as in OSG.
+    // As in OSG, things behind the eye do not count.
     if (farthest < 0.0) return;
     _nearest = std::min(_nearest, nearest);
     _farthest = std::max(_farthest, farthest);
@@ -177,7 +177,7 @@ void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationC
 {
     const double depth = depthOf(deformed.center);
     if (!std::isfinite(depth) || !std::isfinite(deformed.radius)) return;
-    // The middle is for sure within; most of the others then lie between what is certain.
+    // The middle is certain. After a few boxes, most others lie between the depths that are certain.
     include(depth, depth);
     if (depth - deformed.radius >= _nearest && depth + deformed.radius <= _farthest) return;
     if (chain.leavesAlone(box.ball()))
@@ -202,14 +202,14 @@ void DepthRange::measure(Candidate& candidate)
         farthest = std::max(farthest, depthOf(point));
     }
     include(nearest - _hull.margin, farthest + _hull.margin);
-    // It has had its say.
+    // The candidate is done.
     candidate.nearest = DBL_MAX;
     candidate.farthest = -DBL_MAX;
 }
 
 void DepthRange::settle()
 {
-    // The most promising one first: after it, few others can still change anything.
+    // The farthest-reaching candidates come first. After them few others can still change the result.
     const auto nearer = [](const Candidate& a, const Candidate& b)
     {
         return a.nearest < b.nearest;

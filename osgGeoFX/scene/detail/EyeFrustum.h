@@ -19,7 +19,7 @@ namespace osgGeoFX
 class EyeFrustum
 {
 public:
-    /// A bit for each plane that something may still cross.
+    /// A set of planes, one bit each: those that a thing may still cross.
     using Mask = unsigned int;
     enum class Side
     {
@@ -33,7 +33,7 @@ public:
     void set(const osg::Polytope* planes, const osg::Matrixd& projection, bool sides);
     Mask all() const { return (1u << _planes.size()) - 1u; }
 
-    /// Takes the planes that the ball is wholly inside of out of the mask.
+    /// Removes the planes from the mask that have the whole ball on their inner side.
     Side side(const Ball& ball, Mask& mask) const;
     bool holds(const osg::Vec3d& point, Mask mask) const;
     /// Whether a hull lies beyond a plane of the mask, or misses the picture.
@@ -42,15 +42,15 @@ public:
 private:
     bool missesPicture(const Hull& hull);
 
-    std::vector<osg::Vec4d> _planes; ///< inside positive
+    std::vector<osg::Vec4d> _planes; ///< positive on the inner side
     osg::Matrixd _projection;
     bool _sides = false;
     std::vector<osg::Vec2d> _points;
 };
 
-/** The depths between near and far, of all that is drawn in one traversal.
+/** The range of depths of all that is drawn in one traversal.
 
-    What a box really takes up is found out only for those that the answer depends on, a few in a frame. */
+    The exact range of a box is computed only where the result depends on it, for a few boxes in a frame. */
 class DepthRange
 {
 public:
@@ -63,9 +63,9 @@ public:
     /// Depths that are certain.
     void include(const Ball& ball);
     void include(double nearest, double farthest);
-    /// A box, which becomes something within a ball. The chain must live until settle().
+    /// Adds a box whose deformed shape lies within a ball. The chain must live until settle().
     void add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain);
-    /// Whether a ball lies between what is certain so far, and need not be added.
+    /// Whether a ball lies between the depths that are certain so far. It need not be added then.
     bool covers(const Ball& ball) const
     {
         const double depth = depthOf(ball.center);

@@ -24,12 +24,12 @@ namespace osgGeoFX
 namespace
 {
 
-// Names of OpenGL that OSG's headers lack.
+// OpenGL's names for these numbers are not in OSG's headers.
 constexpr GLenum colorSumMode = 0x8458;         // GL_COLOR_SUM
 constexpr GLenum programTwoSideMode = 0x8643;   // GL_VERTEX_PROGRAM_TWO_SIDE
 constexpr GLenum programPointSizeMode = 0x8642; // GL_VERTEX_PROGRAM_POINT_SIZE
 
-/// What OpenGL calls the base format, as far as texture environments tell them apart.
+/// OpenGL's base formats, as far as texture environments treat them differently.
 enum class BaseFormat
 {
     Full, ///< or luminance with alpha
@@ -114,7 +114,7 @@ BaseFormat baseFormat(GLint format)
     }
 }
 
-/// The base format that a texture gets, also before it is uploaded, when OSG settles it.
+/// The base format of a texture. OSG settles it at the upload; this is known before.
 BaseFormat baseFormat(const osg::Texture& texture)
 {
     const osg::Image* image = texture.getImage(0);
@@ -129,7 +129,7 @@ BaseFormat baseFormat(const osg::Texture& texture)
     }
 }
 
-/// A texture that OpenGL would draw with where GL_TEXTURE_2D is on. Without pixels it is as if it were off.
+/// The texture that OpenGL draws with where GL_TEXTURE_2D is on. A texture without pixels counts as off.
 const osg::Texture* texture2D(const osg::StateAttribute* attribute)
 {
     const auto* texture = static_cast<const osg::Texture*>(attribute);
@@ -215,8 +215,8 @@ enum FixedFunctionState::ModeBit : unsigned int
     Rescale,
     FogMode,
     ColorSum,
-    Light0, ///< eight of them
-    // From here on each texture unit has eight.
+    Light0, ///< eight lights
+    // From here on each texture unit has eight bits.
     Texture2D = 16,
     OtherTexture,
     Generates ///< s, t, r, q
@@ -229,7 +229,7 @@ enum FixedFunctionState::Attribute : unsigned int
     Model,
     Fog,
     Point,
-    // From here on each texture unit has three.
+    // From here on each texture unit has three attributes.
     Image,
     Environment,
     Gen
@@ -387,7 +387,7 @@ int FixedFunctionState::texGen(unsigned int unit) const
     case osg::TexGen::REFLECTION_MAP:
         return coordinates + 5;
     default:
-        // As OpenGL has it by itself, which is what an osg::TexGenNode leaves too.
+        // OpenGL's default, which an osg::TexGenNode leaves in force, too.
         return coordinates + 2;
     }
 }
@@ -453,11 +453,11 @@ FixedFunctionLook::Key FixedFunctionLook::key() const
 osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* program) const
 {
     osg::ref_ptr<osg::StateSet> set = new osg::StateSet;
-    // Whatever says that there is no program, an OVERRIDE too, means the fixed functions, which this is.
+    // Even an OVERRIDE that sets no program means the fixed functions, and this program stands for them.
     constexpr unsigned int always =
         osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
     set->setAttributeAndModes(program, always);
-    // Off, too: the shader has no colors for the back then.
+    // Switched off where it is not needed: the shader writes no colors for the back then.
     set->setMode(programTwoSideMode, twoSided ? always : always & ~osg::StateAttribute::ON);
     if (pointSize) set->setMode(programPointSizeMode, always);
     const auto define = [&](const std::string& name, bool there, int value)

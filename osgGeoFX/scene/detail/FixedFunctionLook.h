@@ -12,15 +12,15 @@
 namespace osgGeoFX
 {
 
-/** Which of OpenGL's fixed functions are in force for a drawable, so that a shader can do the same.
+/** The fixed functions of OpenGL that are in force for a drawable, so that a shader can do the same.
 
-    Found while culling, from the state sets between the root and the drawable, by OSG's rules of inheritance. */
+    Culling finds them in the state sets between the root and the drawable, by OSG's rules of inheritance. */
 struct FixedFunctionLook
 {
     static constexpr int units = 4;
 
-    bool ownProgram = false; ///< the drawable has a shader of its own: nothing else is set
-    int lights = -1;         ///< a bit for each of eight; −1 without lighting
+    bool ownProgram = false; ///< the drawable has a shader of its own; no other member is set
+    int lights = -1;         ///< one bit for each of eight lights; −1 without lighting
     bool twoSided = false;
     bool localViewer = false;
     bool colorSum = false; ///< the secondary color is added after the textures
@@ -29,25 +29,25 @@ struct FixedFunctionLook
     bool rescale = false;
     bool pointSize = false;   ///< points get smaller with the distance
     int colorMaterial = 0;    ///< OSG's color modes, 1 ambient … 5 emission
-    int fog = 0;              ///< 1 linear, 2 exp, 3 exp2; 4 more with the vertices' fog coordinates
-    int texture[units] = {};  ///< the code of an environment, as stages/fixed.frag has it; 0 for none
-    int texGen[units] = {};   ///< the code of generated coordinates, as stages/fixed.vert has it; 0 for none
+    int fog = 0;              ///< 1 linear, 2 exp, 3 exp2; plus 4 with the vertices' fog coordinates
+    int texture[units] = {};  ///< the code of an environment in stages/fixed.frag; 0 for none
+    int texGen[units] = {};   ///< the code of generated coordinates in stages/fixed.vert; 0 for none
     bool normalMap = false;   ///< fragments have normals of their own (TileNormals)
-    bool map = false;         ///< there is a texture on the map's unit
+    bool map = false;         ///< the map's unit has a texture
     bool unsupported = false; ///< something is in force that the shaders do not know
 
     using Key = std::array<int, 4 + 2 * units>;
     Key key() const;
-    /// The defines of stages/fixed.vert and .frag, with the program.
+    /// A state set with the program and with the defines of stages/fixed.vert and .frag.
     osg::ref_ptr<osg::StateSet> createStateSet(osg::Program* program) const;
 };
 
-/// What state sets set on the way down to a drawable, as far as the look depends on it; by OSG's rules of inheritance.
+/// The state between the root and a drawable, as far as the look depends on it, by OSG's rules of inheritance.
 class FixedFunctionState
 {
 public:
     void meet(const osg::StateSet& set);
-    /// The state sets from the root down to a node of the state graph.
+    /// Takes in the state sets from the root down to a node of the state graph.
     void meetAll(const osgUtil::StateGraph& state);
     FixedFunctionLook look(int mapUnit) const;
 
@@ -64,11 +64,11 @@ private:
     int environment(unsigned int unit, bool& unsupported) const;
     int texGen(unsigned int unit) const;
 
-    // Copied for every drawable, and so small.
-    std::uint64_t _on = 0, _onOverridden = 0; ///< a bit for each mode
+    // Every drawable copies this object, so it is small.
+    std::uint64_t _on = 0, _onOverridden = 0; ///< one bit for each mode
     std::array<const osg::StateAttribute*, attributes> _attributes{};
     std::uint32_t _attributesOverridden = 0;
-    bool _beyond = false; ///< a texture on a unit that the shaders do not have
+    bool _beyond = false; ///< a unit that the shaders do not have has a texture
 };
 
 } // namespace osgGeoFX

@@ -33,7 +33,7 @@ osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const osgUtil::
         _state = FixedFunctionState();
         _state.meetAll(graph);
     }
-    // The meshes of a tile share theirs.
+    // The meshes of a tile share one state set.
     if (otherGraph || drawable.getStateSet() != _ownState)
     {
         _ownState = drawable.getStateSet();

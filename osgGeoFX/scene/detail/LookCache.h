@@ -17,19 +17,20 @@ namespace osgGeoFX
 
 class FollowingPrograms;
 
-/** With which state sets drawables are drawn below effects: those without a program with a look that stands in for OpenGL's
-    fixed functions, those with one of the application's with a copy of that. What it hands out stays the same for as long as the
-    program does. For one thread at a time. */
+/** The state sets that drawables below effects are drawn with. A drawable without a program gets a look, which stands
+    in for OpenGL's fixed functions. A drawable with a program of the application gets a copy of that program. These
+    state sets stay the same as long as the scene's program does. For one thread at a time. */
 class LookCache
 {
 public:
-    /// For one traversal. Another program forgets all looks. No program: nothing has a look. `mapUnit`: −1 for none.
+    /// Starts a traversal. A new program clears all looks; without a program nothing has a look. `mapUnit`: −1 for
+    /// none.
     void begin(osg::Program* program, FollowingPrograms* following, int mapUnit);
 
-    /// Null for what is drawn by a program of its own.
+    /// The look of a drawable. Null for one that a program of its own draws.
     osg::StateSet* lookFor(const osg::Drawable& drawable, const osgUtil::StateGraph& graph);
     osg::StateSet* lookFor(const FixedFunctionState& state);
-    /// The copy of the program in force that has the effects' functions; null where that draws by itself.
+    /// The copy of the program in force that has the effects' functions. Null for a program that draws without them.
     osg::StateSet* followingOf(const osg::StateAttribute* program);
 
 private:
@@ -40,10 +41,10 @@ private:
     FixedFunctionLook::Key _lookKey{};
     FollowingPrograms* _following = nullptr;
     std::map<const osg::StateAttribute*, osg::ref_ptr<osg::StateSet>>
-        _copies;                                 ///< by programs, of this traversal
-    const osgUtil::StateGraph* _graph = nullptr; ///< whose state is gathered
+        _copies;                                 ///< by program, in this traversal
+    const osgUtil::StateGraph* _graph = nullptr; ///< the node whose state _state has
     FixedFunctionState _state;
-    const osg::StateSet* _ownState = nullptr; ///< of the drawable that was looked for last
+    const osg::StateSet* _ownState = nullptr; ///< that of the last drawable
     osg::StateSet* _ownLook = nullptr;
     bool _warned = false;
 };

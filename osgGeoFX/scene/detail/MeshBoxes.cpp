@@ -13,7 +13,7 @@ namespace
 
 constexpr int mostOnSide = 6;
 
-/// Sorts triangles into the cells of a grid over the two longer sides of a box.
+/// Sorts triangles into the cells of a grid. The grid spans the two longer sides of a box.
 struct Sorter
 {
     void add(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c)
@@ -39,7 +39,7 @@ struct Sorter
     MeshBoxes::Boxes boxes;
 };
 
-/// Whether what was found out of a drawable still holds. One that is no geometry has no boxes, whatever becomes of it.
+/// Whether an entry still holds. A drawable that is no geometry has no boxes at any time.
 bool isCurrent(const MeshBoxes::Entry& entry, const osg::Drawable& drawable)
 {
     if (!entry.drawable.valid()) return false;
@@ -59,10 +59,10 @@ MeshBoxes::Entry& MeshBoxes::of(const osg::Drawable& drawable)
     entry.boxes.clear();
     entry.witness = 0;
     if (!geometry) return entry;
-    // Where it may draw what its vertices do not tell, the whole box is all that is known.
+    // The mesh may draw something that its vertices do not tell. Then only the whole box is known.
     const DrawableTriangles mesh(drawable);
     if (!mesh.tellAll()) return entry;
-    // For a handful of triangles the whole box is as good.
+    // For a few triangles the whole box is as good.
     constexpr double trianglesInCell = 2.0;
     const double triangles = static_cast<double>(mesh.corners().size()) / 3.0;
     Sorter sorter;

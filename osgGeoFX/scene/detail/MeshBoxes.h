@@ -14,11 +14,12 @@
 namespace osgGeoFX
 {
 
-/** Smaller boxes within a drawable's: a few on each side, each around the triangles whose middle is in its cell.
+/** Smaller boxes within a drawable's box, a few along each side. Each box encloses the triangles whose middle lies in
+    its cell.
 
-    A terrain tile's box is as high as its highest peak everywhere. Where it crosses the border of the picture, the
-    smaller ones tell whether the terrain does. Made when first asked for, and kept while the drawable lives. For one
-    thread at a time. */
+    The box of a terrain tile is as high as its highest peak everywhere. Where this box crosses the border of the
+    picture, the smaller boxes tell whether the terrain itself does. They are made on demand, and kept while the
+    drawable lives. For one thread at a time. */
 class MeshBoxes
 {
 public:
@@ -29,13 +30,13 @@ public:
         osg::observer_ptr<const osg::Drawable> drawable;
         GeometryStamp stamp;
         Boxes boxes;
-        std::size_t witness = 0; ///< a box that was in sight when last asked, for who asks to remember
+        std::size_t witness = 0; ///< the box that showed last time; the caller sets it
     };
 
     Entry& of(const osg::Drawable& drawable);
-    /// Null where it has not been made yet or may be out of date.
+    /// The entry of a drawable. Null if there is none yet, or if it may be out of date.
     const Entry* find(const osg::Drawable& drawable) const;
-    /// Forgets what has been deleted; to be called now and then.
+    /// Forgets deleted drawables; call it now and then.
     void purge();
 
 private:

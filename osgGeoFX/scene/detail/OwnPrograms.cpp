@@ -22,7 +22,7 @@ bool placesVertices(const osg::Shader& shader)
            shader.getType() == osg::Shader::GEOMETRY;
 }
 
-/// A text with a space in the place of each comment.
+/// The text with a space in place of each comment.
 std::string withoutComments(const std::string& text)
 {
     std::string result;
@@ -47,7 +47,7 @@ bool isPartOfName(char letter)
     return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_';
 }
 
-/// Whether a name that begins there is declared or defined: its type stands before it.
+/// Whether the name that begins at this place is declared or defined. Its type stands before it then.
 bool followsType(const std::string& text, std::size_t at)
 {
     while (at > 0 && std::isspace(static_cast<unsigned char>(text[at - 1])) != 0)
@@ -100,7 +100,7 @@ bool OwnPrograms::callsFunctions(const osg::StateAttribute& program)
     known.current = true;
     const auto* shaders = dynamic_cast<const osg::Program*>(&program);
     if (!shaders) return known.calls = false;
-    // A shader does not count its changes.
+    // OSG does not count the changes of a shader, so the texts are compared.
     const unsigned int count = shaders->getNumShaders();
     bool same = known.sources.size() == count;
     for (unsigned int i = 0; same && i < count; ++i)

@@ -14,27 +14,29 @@
 namespace osgGeoFX
 {
 
-/** What an application's own programs make of the kit's functions: one that places vertices without geofx_vertex() draws where
-    nothing is deformed. For one thread at a time. */
+/** Finds out how an application's own programs use the kit's functions. A program that places vertices without
+    geofx_vertex() draws its geometry undeformed. For one thread at a time. */
 class OwnPrograms
 {
 public:
-    /// Whether what has the type PROGRAM in a state set draws by itself; null and an osg::Program without shaders leave it to
-    /// OpenGL's fixed functions, and that of a database's tiles (TileNormals) does what those would. Other engines have classes of their own for programs.
+    /// Whether an attribute of type PROGRAM draws by itself. Null and an osg::Program without shaders leave the
+    /// drawing to OpenGL's fixed functions. The program of a database's tiles (TileNormals) does the same as these
+    /// functions, so it is none of its own either. Other engines have other classes for programs.
     static bool isOwn(const osg::StateAttribute* program);
-    /// Whether a stage that places vertices calls geofx_vertex(). A class that is no osg::Program does not tell, and so does not.
+    /// Whether a stage that places vertices calls geofx_vertex(). False for any class but osg::Program, since its
+    /// shaders are not known.
     bool callsFunctions(const osg::StateAttribute& program);
-    /// Whether it is one that draws by itself and does not call them.
+    /// Whether a program draws by itself and does not call the functions.
     bool isStranger(const osg::StateAttribute* program)
     {
         return isOwn(program) && !callsFunctions(*program);
     }
-    /// Looks again, once, at programs that have been looked at.
+    /// Starts a frame. Each program is looked at once in a frame.
     void startFrame();
 
-    /// For messages: its name, else those of its shaders, else the place where it draws.
+    /// A description for messages: the program's name, else its shaders' names, with the node where it draws.
     static std::string describe(const osg::StateAttribute& program, const osg::NodePath& path);
-    /// Whether a shader's text calls geofx_vertex(), comments and declarations apart.
+    /// Whether a shader's text calls geofx_vertex(). Comments and declarations do not count.
     static bool calls(const std::string& source);
 
 private:
@@ -44,7 +46,7 @@ private:
         osg::observer_ptr<const osg::StateAttribute> program;
         Sources sources;
         bool calls = false;
-        bool current = false; ///< looked at in this frame
+        bool current = false; ///< whether this frame has looked at it
     };
     std::map<const osg::StateAttribute*, Known> _known;
 };

@@ -29,7 +29,7 @@ void PassCullVisitor::meetLevels(const osg::LOD& node)
 
 osg::Drawable* PassCullVisitor::drawn(osg::Drawable& drawable, const std::vector<osg::StateSet*>& states)
 {
-    // What does not call the functions would stand in the pass where it stands on the ground.
+    // A stranger does not call the functions. The pass would draw it where it stands on the ground.
     return states.empty() || _mode.stranger ? nullptr : _filter->drawn(drawable);
 }
 

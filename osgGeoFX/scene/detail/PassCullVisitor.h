@@ -9,8 +9,8 @@ namespace osgGeoFX
 
 class PassFilter;
 
-/** Culls for a pass that draws parts of the scene again: a PassFilter says which, whatever is in the picture. Cameras below are left out,
-    and so is what is drawn by a program that does not call the effects' functions. */
+/** Culls for a pass that draws parts of the scene again. A PassFilter chooses the parts, wherever they are in the
+    picture. Cameras below are left out, and so are drawables whose program does not call the effects' functions. */
 class PassCullVisitor : public CompensatingCullVisitor
 {
 public:
@@ -29,13 +29,13 @@ protected:
     void place(osg::Drawable& drawable) override;
     void adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph, osgUtil::RenderLeaf& leaf,
                const osg::BoundingBox& bounds, osg::StateSet* look, osg::StateSet* above) override;
-    /// A pass lifts what stands on the ground, undeformed.
+    /// A pass lifts what stands on the ground. Its billboards turn to the eye as they do there, undeformed.
     const DeformationChain& turningChain() const override { return *_nothing; }
 
 private:
     using CompensatingCullVisitor::run;
 
-    /// What is drawn in a drawable's place; null for nothing.
+    /// The drawable that is drawn in place of another one; null for none.
     osg::Drawable* drawn(osg::Drawable& drawable, const std::vector<osg::StateSet*>& states);
 
     PassFilter* _filter = nullptr;

@@ -9,10 +9,11 @@
 namespace osgGeoFX
 {
 
-/// A square in the plane z = 0 from (low, low) to (1, 1), for a program that fills the viewport or a part of it.
+/// A square in the plane z = 0 from (low, low) to (1, 1). A program can fill the viewport, or a part of it, with it.
 osg::ref_ptr<osg::Geometry> createSquare(float low);
 
-/// Empties a stage that draws into images of its own: it has the camera's lights and view, and clears color and depth.
+/// Empties a stage that draws into images of its own. The stage gets the camera's lights and view. It clears color
+/// and depth.
 void startStage(osgUtil::RenderStage& stage, osgUtil::CullVisitor& outer, const osg::Vec4& clearColor);
 
 } // namespace osgGeoFX

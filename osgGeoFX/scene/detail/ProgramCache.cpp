@@ -38,7 +38,8 @@ osg::ref_ptr<osg::Program> ProgramCache::programOf(const Effects& effects)
     _made = true;
     retire(_program);
     _program = EffectProgram::create(effects);
-    // An application's programs keep the last functions that were well; tried again when something changes.
+    // If the program cannot be made, the application's programs keep the last functions that worked. The next change
+    // tries again.
     if (_program)
         _following.follow(*_program);
     else

@@ -17,20 +17,21 @@
 namespace osgGeoFX
 {
 
-/// The programs that a scene's effects are drawn with: made anew where effects or shaders change, and never changed. Thread-safe.
+/// The programs that draw a scene's effects. A program is made anew when effects or shaders change, and is never
+/// changed itself. Thread-safe.
 class ProgramCache
 {
 public:
     using Effects = EffectProgram::Effects;
 
-    /// For geometry that has none. Null, after a warning, where a shader file is missing.
+    /// The program for geometry that has none. Null, after a warning, if a shader file is missing.
     osg::ref_ptr<osg::Program> programOf(const Effects& effects);
-    /// Of an effect, with that prefix, that draws the scene again.
+    /// The program of a pass of the effect with this prefix.
     osg::ref_ptr<osg::Program> passProgramOf(const Effects& effects, const PassShaders& shaders,
                                              const std::string& prefix);
-    /// For what has programs of the application's.
+    /// The copies of the application's programs.
     FollowingPrograms& following() { return _following; }
-    /// The list of effects has changed.
+    /// Notes that the list of effects has changed.
     void dirty();
     /// All programs that may have GL objects.
     std::vector<osg::ref_ptr<osg::Program>> all();
@@ -39,16 +40,17 @@ private:
     struct PassProgram
     {
         bool made = false;
-        std::string effects; ///< the key of those that it was made for
+        std::string effects; ///< the key of the effects that it was made for
         osg::ref_ptr<osg::Program> program;
     };
-    /// Whether an effect has changed, or the list of them, since the last call.
+    /// Whether an effect or the list of effects has changed since the last call.
     bool changed(const Effects& effects);
-    /// One that is in use no more; state sets of frames and of cameras that have gone may hold it for a while.
+    /// Remembers a program that is no longer in use. State sets of frames on their way, or of cameras that are gone,
+    /// may keep it for a while.
     void retire(const osg::ref_ptr<osg::Program>& former);
 
     std::mutex _mutex;
-    Effects _effects; ///< those that the program was made for, and
+    Effects _effects; ///< the effects at the last call of changed(); their revisions come next
     std::vector<unsigned int> _revisions;
     std::string _key;
     bool _made = false;

@@ -14,7 +14,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Frames after which changes of state are noticed: nothing tells of them.
+/// Nothing tells of a change of state. It is noticed after so many frames.
 constexpr unsigned int patience = 30;
 
 class Finder : public osg::NodeVisitor

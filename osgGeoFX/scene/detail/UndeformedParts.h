@@ -12,15 +12,15 @@
 namespace osgGeoFX
 {
 
-/** Whether a subgraph has parts that stay where they are while the rest is deformed: left out by GEOFX_DEFORMATION, or with a program
-    that does not call the functions. What the deformation makes of the subgraph's bound says nothing of those. For one
-    thread at a time. */
+/** Finds out whether a subgraph has parts that are not deformed. GEOFX_DEFORMATION leaves such parts out, or their
+    program does not call the functions. The deformed bound of the subgraph says nothing of them. For one thread at a
+    time. */
 class UndeformedParts
 {
 public:
-    /// Looks at all that is below now.
+    /// Looks at everything below a node now.
     static bool search(const osg::Node& node, OwnPrograms& programs);
-    /// The same, remembered for some frames.
+    /// The same. The result is kept for some frames.
     bool below(const osg::Node& node, OwnPrograms& programs, unsigned int frame);
 
 private:
@@ -31,7 +31,7 @@ private:
         bool parts = false;
     };
     std::unordered_map<const osg::Node*, Known> _known;
-    std::size_t _most = 64; ///< entries before those of deleted nodes are forgotten
+    std::size_t _most = 64; ///< the number of entries at which those of deleted nodes go
 };
 
 } // namespace osgGeoFX

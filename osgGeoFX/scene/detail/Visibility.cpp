@@ -15,7 +15,8 @@ void Visibility::set(const Camera& camera)
     const osg::Matrixd toClip = camera.image ? toEye * camera.projection : camera.projection;
     if (camera.reach > 0.0 && sized)
     {
-        // A wider picture, so that what stands beside the camera's is drawn while it still reaches into it.
+        // The picture is made wider, so that an object beside it is drawn as long as it reaches into the camera's
+        // picture.
         _room.set(2.0 * camera.reach / viewport->width(), 2.0 * camera.reach / viewport->height());
         const osg::Matrixd wider =
             toClip * osg::Matrixd::scale(1.0 / (1.0 + _room.x()), 1.0 / (1.0 + _room.y()), 1.0);

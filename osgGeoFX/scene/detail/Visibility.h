@@ -34,7 +34,7 @@ public:
     };
     void set(const Camera& camera);
 
-    /// All planes: for what may cross any of them.
+    /// All planes.
     Mask all() const { return _frustum.all(); }
     bool cullsSmall() const { return _smallPixels > 0.0; }
     /// The radius, metres, of a ball at a point that is one pixel wide as OSG counts it.
@@ -42,7 +42,8 @@ public:
     /// What a depth in front of the camera's eye is, metres: the product with (x, y, z, 1).
     const osg::Vec4d& depths() const { return _depths; }
 
-    /// Of a deformed ball. Takes the planes that it is wholly inside of out of the mask. `mayBeSmall`: its size does not count.
+    /// Whether a deformed ball is out of sight. Removes the planes from the mask that have the whole ball on their
+    /// inner side. `mayBeSmall`: its size does not count.
     bool outOfSight(const Ball& deformed, Mask& planes, bool mayBeSmall = false) const;
     bool tooSmall(const Ball& deformed) const;
     /// Whether nothing of a ball, still undeformed, is to be drawn, wherever it goes.
@@ -56,14 +57,14 @@ public:
     }
     /// Whether a point is inside of the planes of a mask.
     bool holds(const osg::Vec3d& deformed, Mask planes) const { return _frustum.holds(deformed, planes); }
-    /// Whether what becomes of a box misses the picture, by its hull. Slow.
+    /// Whether the hull of a deformed box misses the picture. Slow.
     bool misses(const DeformationChain& chain, const EyeBox& box, Mask planes);
-    /// The same, where a ball around it does not tell.
+    /// The same, with a test of a ball around the box first.
     bool outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes);
 
 private:
     EyeFrustum _frustum;
-    osg::Vec2d _room; ///< for the reach, in the picture's x and y (−1…1)
+    osg::Vec2d _room; ///< the reach in the picture's x and y (−1…1)
     double _smallPixels = 0.0;
     osg::Vec4d _pixelSize;
     osg::Vec4d _depths = osg::Vec4d(0.0, 0.0, -1.0, 0.0);
