@@ -7,14 +7,14 @@
 namespace osgGeoFX
 {
 
-/** Makes a texture array's storage and fills it with all of its images at once.
+/** Makes the storage of a texture array and loads all of its images at once.
 
-    OSG by itself makes storage that cannot change, and gives it to the next array of the same size and format, where it fails
-    (osg#935). And it leaves layers empty that it has loaded into a former storage. */
+    OSG's own storage has a fixed size. OSG gives it to the next array of the same size and format, and fails there
+    (osg#935). OSG also leaves layers empty that it loaded into a former storage. */
 class ArrayStorage final : public osg::Texture2DArray::SubloadCallback
 {
 public:
-    /// Of what is loaded, if anything.
+    /// The format and the type of the images, if there are any.
     ArrayStorage(GLenum format, GLenum type) : _format(format), _type(type) {}
 
     void load(const osg::Texture2DArray& texture, osg::State& state) const override;

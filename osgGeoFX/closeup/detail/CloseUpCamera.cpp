@@ -14,7 +14,8 @@ CloseUpTraversal& CloseUpCamera::freeTraversal(const ScenePass& pass, const Clos
     CloseUpTraversal& traversal = *_traversals[_used++];
     traversal.states.use(pass.prefix, task);
     traversal.layers.startFrame();
-    // What was drawn in the last frame is no longer on its way, and copies keep the arrays of what has been deleted.
+    // The last frame has been drawn, so deleted drawables need their copies no longer. Copies hold the arrays of
+    // these drawables.
     for (std::size_t i = 0; starts && i < _traversals.size(); ++i)
         _traversals[i]->copies.purge();
     return traversal;

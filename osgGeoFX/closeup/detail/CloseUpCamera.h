@@ -11,19 +11,18 @@
 namespace osgGeoFX
 {
 
-/** The close-ups of one camera, in one of the frames that are on their way: what stays from one cull to the next. A CloseUpFrame
-    culls. */
+/** What the close-ups of one camera keep from one cull to the next. A CloseUpFrame does the culling. */
 class CloseUpCamera
 {
 public:
-    /// A sentence that is to be said once; empty as a rule.
+    /// Culls. The result is a sentence that should be printed once; empty as a rule.
     std::string cull(const ScenePass& pass, const CloseUpTask& task);
     const CloseUps::Statistics& statistics() const { return _statistics; }
     void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;
 
 private:
-    /// One that nothing on its way to the screen needs.
+    /// A traversal that no frame on its way to the screen needs.
     CloseUpTraversal& freeTraversal(const ScenePass& pass, const CloseUpTask& task);
 
     unsigned int _frame = 0; ///< ScenePass::frame

@@ -19,8 +19,8 @@ using AllVisible = std::vector<VisibleCloseUp>;
 enum class What
 {
     All,
-    Covered, // what hides all that lies behind it
-    Edges    // what is behind them shows
+    Covered, // fragments that hide everything behind them
+    Edges    // fragments with something behind them that shows
 };
 
 /// One camera's picture while layers are put into it.
@@ -42,7 +42,8 @@ struct Composition
     std::vector<Others> overlapping(const AllVisible& sorted) const;
 };
 
-/// But for rounding to 255 values: the edges' cover is between none and all.
+/// The alpha above which a fragment covers what is behind it. The edges' alpha lies below; alpha is rounded to 255
+/// steps.
 double Composition::coverOf(const VisibleCloseUp& visible) const
 {
     return 0.985 * items[visible.item].closeUp().getOpacity();
@@ -76,7 +77,7 @@ void Composition::putInOrder(const AllVisible& all) const
     }
 }
 
-/// As far as one is farther than another as a whole.
+/// Sorts by the depth of the close-ups' centers.
 AllVisible Composition::farthestFirst(const AllVisible& all) const
 {
     AllVisible sorted = all;
@@ -91,7 +92,7 @@ AllVisible Composition::farthestFirst(const AllVisible& all) const
     return sorted;
 }
 
-/// For each of them those that come later and may cross it.
+/// For each close-up, those that come later and may cross it.
 std::vector<Others> Composition::overlapping(const AllVisible& sorted) const
 {
     std::vector<Others> others(sorted.size());
@@ -113,8 +114,9 @@ void Composition::putByDepth(const AllVisible& all) const
     const AllVisible sorted = farthestFirst(all);
     for (const VisibleCloseUp& visible : sorted)
         put(visible, What::Covered);
-    // What keeps no depth: anchors, and then edges, since one that kept its own anchor off would be a pale line between them. Where
-    // they cross those of a close-up that comes later, those pixels that are nearer wait for it. That is right for any two.
+    // Anchors and edges keep no depth. They come in this order, since an edge with a depth would hide its own anchor
+    // and leave a pale line between them. Where they cross those of a later close-up, the nearer pixels wait for it.
+    // This is right for any two close-ups.
     const std::vector<Others> others = overlapping(sorted);
     for (const Turn turn : {Turn::First, Turn::Second})
     {

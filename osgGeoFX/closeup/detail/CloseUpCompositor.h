@@ -10,7 +10,7 @@
 namespace osgGeoFX
 {
 
-/// Puts the layers of close-ups and anchors into the camera's picture, each over what is behind it.
+/// Puts the layers of close-ups and anchors into the camera's picture. Each layer comes over what is behind it.
 class CloseUpCompositor
 {
 public:

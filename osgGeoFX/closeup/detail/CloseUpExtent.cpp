@@ -78,13 +78,13 @@ void widenDepths(const ScenePass& pass, const CloseUpItem& item, double lowest, 
         nearest = std::min(nearest, -corner.z());
         farthest = std::max(farthest, -corner.z());
     }
-    // Anchors end on the ground, which may be out of the picture.
+    // Anchors end on the ground, which may lie outside the picture.
     Hull hull;
     pass.chain.bound(item.groundBox(lowest, highest, beyond), hull);
     for (const osg::Vec3d& point : hull.points)
         farthest = std::max(farthest, hull.margin - point.z());
     if (farthest <= 0.0) return;
-    constexpr double share = 0.001; // of the far plane, where the eye is within a close-up
+    constexpr double share = 0.001; // of the far plane; it holds where the eye is within a close-up
     nearest = std::max(nearest, share * farthest);
     pass.outer.setCalculatedNearPlane(std::min(pass.outer.getCalculatedNearPlane(), nearest));
     pass.outer.setCalculatedFarPlane(std::max(pass.outer.getCalculatedFarPlane(), farthest));

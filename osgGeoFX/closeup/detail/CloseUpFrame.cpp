@@ -17,10 +17,10 @@ namespace osgGeoFX
 namespace
 {
 
-/// As many layers as any GPU with OpenGL 3 has.
+/// Any GPU with OpenGL 3 has at least so many layers.
 constexpr int layersOfAll = 256;
 
-/// What the context can do; null where it has not drawn yet.
+/// What the context can do; null before it has drawn.
 const osg::GLExtensions* extensionsOf(osgUtil::CullVisitor& outer)
 {
     const osg::State* state = outer.getRenderInfo().getState();
@@ -33,7 +33,7 @@ bool canTessellate(osgUtil::CullVisitor& outer)
     return extensions && extensions->glVersion >= 4.0f;
 }
 
-/// Layers that one texture array may have here.
+/// The largest number of layers of a texture array in this context.
 int gpuLayers(osgUtil::CullVisitor& outer)
 {
     const osg::GLExtensions* extensions = extensionsOf(outer);
@@ -57,7 +57,8 @@ bool tessellates(const ScenePass& pass, const CloseUpTask& task, const std::vect
                        [](const CloseUpItem& item) { return item.wantsVertices(); });
 }
 
-/// The sun's direction in the frame of the surface data; x east, y north, z up, as good as the region's there.
+/// The direction to the sun in the frame of the surface data: x east, y north, z up. The region's own axes stand for
+/// these.
 osg::Vec3d sunOf(const CloseUp& closeUp)
 {
     const double azimuth = closeUp.getSunAzimuth() + closeUp.getRegion()->getHeading();
@@ -96,7 +97,8 @@ void CloseUpFrame::prepare()
 
 bool CloseUpFrame::singleIsCheaper(const Outlook& outlook) const
 {
-    // The geometry stage costs more than another pass over a few drawables, unless several passes would draw the same ones.
+    // The geometry stage costs more than another pass over a few drawables. It pays only if several passes would draw
+    // the same ones.
     constexpr double worthIt = 1.8;
     const bool magnified =
         std::any_of(_items.begin(), _items.end(),
@@ -138,7 +140,7 @@ void CloseUpFrame::place()
         const CloseUpItem& item = _items[i];
         RegionContents& found = _survey.contents[i];
         if (found.empty()) continue;
-        // Finer tiles may stand out a little.
+        // Finer tiles may be a little higher or lower.
         const double slack = 20.0 + 0.1 * (found.highest - found.lowest);
         if (!partOf(_pass, item, found.lowest - slack, found.highest + slack, found.longestEdge, true))
             continue;
@@ -169,7 +171,7 @@ void CloseUpFrame::allocate()
                              _perArray);
     CloseUpItems& values = _traversal.states.values;
     for (std::size_t i = 0; i < _items.size(); ++i)
-        values.set(i, {}); // what is not in sight draws nothing
+        values.set(i, {}); // a close-up out of sight draws nothing
     const osg::Viewport& viewport = *_pass.outer.getViewport();
     for (const VisibleCloseUp& visible : _visible)
     {

@@ -14,16 +14,17 @@ namespace osgGeoFX
 
 /** One cull of a camera's close-ups.
 
-    How large a close-up is in the picture depends on the heights of what lies over its region. So a look at the scene comes first, as
-    detailed as the overview is; then layers get their size, stages their viewports, and the camera the stages. */
+    The size of a close-up in the picture depends on the heights of the ground over its region. So the cull first
+    surveys the scene, as detailed as the overview is. Then the layers get their size, the stages their viewports, and
+    the camera its stages. */
 class CloseUpFrame
 {
 public:
-    /// What one cull's look at the scene says of the next one's: AUTOMATIC goes by it.
+    /// What one survey tells the next cull. AUTOMATIC chooses the pipeline by it.
     struct Outlook
     {
-        bool levels = true;   ///< whether something has levels of detail
-        double sharing = 1.0; ///< regions that a drawable over any touches on average
+        bool levels = true;   ///< whether anything has levels of detail
+        double sharing = 1.0; ///< how many regions a drawable over some region touches on average
     };
 
     CloseUpFrame(const ScenePass& pass, const CloseUpTask& task, CloseUpTraversal& traversal,
@@ -31,20 +32,21 @@ public:
     CloseUpFrame(const CloseUpFrame&) = delete;
     CloseUpFrame& operator=(const CloseUpFrame&) = delete;
 
-    /// Takes the last one's outlook, and leaves its own. A sentence that is to be said once; empty as a rule.
+    /// Culls with the last cull's outlook, and replaces it. The result is a sentence that should be printed once;
+    /// empty as a rule.
     std::string cull(Outlook& outlook);
-    /// When it has culled.
+    /// Call it after cull().
     CloseUps::Statistics statistics() const;
 
 private:
     // The steps, in their order.
     void prepare();
     void choosePipeline(const Outlook& outlook);
-    /// What lies over the regions; the pipeline may prove to be the wrong one.
+    /// Finds what lies over the regions. This may show that another pipeline is needed.
     void survey(Outlook& outlook);
-    /// Parts of the picture, and near and far planes.
+    /// Finds the parts of the picture, and moves near and far planes.
     void place();
-    /// Layers and uniform blocks.
+    /// Gives layers and uniform blocks their size.
     void allocate();
     void draw();
 
@@ -55,7 +57,7 @@ private:
     CloseUpTraversal& _traversal;
     CloseUpCompositor& _compositor;
     const std::vector<CloseUpItem> _items;
-    const int _perArray; ///< layers of a texture array
+    const int _perArray; ///< the layers of one texture array
     RegionPass _regions;
     std::unique_ptr<CloseUpPipeline> _pipeline;
     RegionSurvey _survey;

@@ -12,23 +12,23 @@ namespace osgGeoFX
 namespace
 {
 
-/// Takes perspective away from what is about a point: the point's own distance holds for all of it. Depth keeps its order.
+/// Removes perspective around a point: everything is scaled by the distance of this point. The order of depths stays.
 osg::Matrixd withoutPerspective(const osg::Vec3d& about)
 {
     const double z = about.z();
     return {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0 / z, 0.0, 0.0, z, 2.0};
 }
 
-/// A column of one of OSG's matrices, which act on rows: a row of the GPU's.
+/// A column of a matrix of OSG, which is a row of the GPU's matrix.
 osg::Vec4f column(const osg::Matrixd& matrix, int index)
 {
     return osg::Vec4f(osg::Vec4d(matrix(0, index), matrix(1, index), matrix(2, index), matrix(3, index)));
 }
 
-/// Places in a region may be off by so much as the GPU's floats have them.
+/// The GPU's floats may move a place in a region by so much.
 constexpr double slack = 1.001;
 
-/// The part of a convex polygon where a coordinate, times ±1, is no more than a limit.
+/// Cuts a convex polygon. The part stays where a coordinate, times ±1, is at most `limit`.
 using Polygon = std::vector<osg::Vec3d>;
 void cut(Polygon& polygon, int axis, double sign, double limit)
 {
@@ -54,7 +54,7 @@ CloseUpItem::CloseUpItem(const CloseUp& closeUp, const ViewGeometry& view, const
 {
     const RegionOfInterest& region = *closeUp.getRegion();
     const osg::Matrixd frame = region.frameToWorld(view.ground.ellipsoid);
-    // A region is a column: without an end it would go on through the planet and hold what lies beyond its middle, too.
+    // A region is a column. It must end, or it would reach the ground on the other side of the planet.
     if (view.ground.ellipsoid) _otherSide = (osg::Vec3d() * osg::Matrixd::inverse(frame)).z();
     _regionToEye = frame * modelView;
     const osg::Matrixd toFrame = osg::Matrixd::inverse(_regionToEye);
@@ -66,14 +66,14 @@ CloseUpItem::CloseUpItem(const CloseUp& closeUp, const ViewGeometry& view, const
         _lift = toFrame * shape * placed;
         return;
     }
-    // The offset is the scene's, the axes are the camera's.
+    // The offset is in the scene's axes, the shape in the camera's.
     osg::Matrixd turned = shape;
     turned.setTrans(0.0, 0.0, 0.0);
     const osg::Vec3d at = closeUp.getOffset() * placed;
     _lift = toFrame * turned * osg::Matrixd::translate(at);
     const bool perspective = view.projection(3, 3) == 0.0;
     if (closeUp.getOrientation() != CloseUp::BILLBOARD || !perspective) return;
-    // Not where the camera is within: there is no picture without perspective.
+    // Not where the eye may be within the close-up: nothing can be drawn without perspective there.
     const double reach = std::hypot(_halfWidth * closeUp.getScaleX(), _halfDepth * closeUp.getScaleY()) +
                          1e4 * closeUp.getScaleHeight();
     if (at.z() < -reach)
@@ -121,7 +121,8 @@ void CloseUpItem::includeHeights(const EyeBox& box, double& lowest, double& high
         highest = std::max(highest, middle.z() + reach.z());
         return;
     }
-    // On a globe a wide tile's box leans, and most of it is beside the region. The corners of what both have are on the box's sides.
+    // On a globe the box of a wide tile is tilted, and most of it lies beside the region. The sides of the box, cut
+    // by the region, give its heights there.
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     Polygon side;
@@ -162,7 +163,7 @@ std::array<osg::Vec3d, 8> CloseUpItem::liftedCorners(double lowest, double highe
 
 EyeBox CloseUpItem::groundBox(double lowest, double highest, double beyond) const
 {
-    // No ground curves away faster than the Earth does from the region's plane.
+    // The ground falls below the region's plane at most as fast as the Earth's surface does.
     constexpr double earthDiameter = 1.27e7;
     const double reach = std::hypot(_halfWidth, _halfDepth) + beyond;
     if (beyond > 0.0) lowest -= reach * reach / earthDiameter;

@@ -16,7 +16,7 @@ void CloseUpItems::resize(std::size_t items)
         block.buffer = new osg::UniformBufferObject;
         for (int i = 0; i < perBlock; ++i)
         {
-            // Each has an entry of its own in the buffer, which is what OSG uploads where it is dirty.
+            // Each item has an entry of its own in the buffer. OSG uploads the entries that are dirty.
             block.items.push_back(new osg::Vec4Array(CloseUpItem::rows));
             block.items.back()->setBufferObject(block.buffer);
         }

@@ -12,18 +12,17 @@
 namespace osgGeoFX
 {
 
-/** The uniform blocks with one camera's items: as many as are needed, with `perBlock` items each. Only items that
-    have changed are uploaded. */
+/** The uniform blocks with one camera's items, `perBlock` items in each. Only items that changed are uploaded. */
 class CloseUpItems
 {
 public:
-    static constexpr int perBlock = 64; ///< 16 KiB, which every GPU has room for
+    static constexpr int perBlock = 64; ///< together 16 KiB, for which every GPU has room
 
     void resize(std::size_t items);
     void set(std::size_t item, const CloseUpItem::Values& values);
     static std::size_t blockOf(std::size_t item) { return item / perBlock; }
     static int placeInBlock(std::size_t item) { return static_cast<int>(item % perBlock); }
-    /// Binds a block; `index` is its binding point.
+    /// Binds a block. `index` is its binding point.
     osg::ref_ptr<osg::UniformBufferBinding> binding(std::size_t block, unsigned int index) const;
     void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;

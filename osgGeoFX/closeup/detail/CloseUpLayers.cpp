@@ -16,9 +16,9 @@ namespace osgGeoFX
 namespace
 {
 
-/// Bins of the layers in the camera's picture: over what is opaque, below what is transparent.
+/// The render bin of the layers in the camera's picture: after opaque geometry, before transparent geometry.
 constexpr int layerBin = 9;
-/// The layers are drawn before the application's own textures would be.
+/// The layers are drawn before the application's own pre-render cameras, as a rule.
 constexpr int stageOrder = -10;
 constexpr unsigned int colorUnit = 0, depthUnit = 1;
 
@@ -41,13 +41,13 @@ osg::ref_ptr<osg::FrameBufferObject> createTarget(osg::Texture2DArray& colors, o
                                                   unsigned int layer)
 {
     osg::ref_ptr<osg::FrameBufferObject> target = new osg::FrameBufferObject;
-    // Both must be layered, or neither.
+    // OpenGL wants both attachments layered, or neither.
     target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(&colors, layer, 0));
     target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(&depths, layer, 0));
     return target;
 }
 
-/// Not made anew for every pixel by which a close-up grows.
+/// Rounds up, so that a growing close-up does not need new textures for every pixel.
 int rounded(int texels)
 {
     constexpr int step = 64;
@@ -63,7 +63,7 @@ void CloseUpLayers::resize(int layers, int width, int height, int perArray)
     width = rounded(width);
     height = rounded(height);
     const bool fits = width <= _width && height <= _height && layers <= _layers && perArray == _perArray;
-    // What was much larger gives its memory back.
+    // Layers that are much too large give their memory back.
     const bool wasteful = 4.0 * layers * width * height < 1.0 * _layers * _width * _height;
     if (fits && !wasteful) return;
     _layers = layers;
@@ -106,7 +106,8 @@ osg::ref_ptr<osg::Viewport> CloseUpLayers::viewport(osgUtil::CullVisitor& outer,
                                                     const osg::Vec2i& corner, int samples)
 {
     const osg::Viewport& viewport = *outer.getViewport();
-    // Of a layer, its first pixel moves to its corner; of all together, the geometry stage moves the picture.
+    // For one layer, the viewport moves its first pixel to the corner. For all layers together, the geometry stage
+    // moves the picture.
     const double x = layer < 0 ? 0.0 : -corner.x() * samples;
     const double y = layer < 0 ? 0.0 : -corner.y() * samples;
     return new osg::Viewport(x, y, viewport.width() * samples, viewport.height() * samples);

@@ -14,7 +14,7 @@
 namespace osgGeoFX
 {
 
-/// A part of a picture, in pixels of its viewport, from the lower left corner.
+/// A part of a picture in pixels, from the lower left corner of its viewport.
 struct PixelRectangle
 {
     int x = 0, y = 0, width = 0, height = 0;
@@ -26,41 +26,42 @@ struct PixelRectangle
     }
 };
 
-/** The layers that one camera draws close-ups into: texture arrays with their depths, the stages that draw into them, and
-    the rectangles that put them into the camera's picture. One belongs to one cull visitor, and so to one thread at a
-    time. */
+/** The layers that one camera draws close-ups into. They consist of texture arrays with depths, the stages that draw
+    into them, and the rectangles that put them into the camera's picture. An object belongs to one cull visitor, and
+    so to one thread at a time. */
 class CloseUpLayers
 {
 public:
     CloseUpLayers();
 
-    /// Room for so many layers of a size, texels, in arrays of `perArray` layers at most. What is drawn is as large as
-    /// the picture times `samples`.
+    /// Makes room for layers of a size, texels, in arrays of at most `perArray` layers. They are drawn `samples`
+    /// times as wide and high as the picture.
     void resize(int layers, int width, int height, int perArray);
     int width() const { return _width; }
     int height() const { return _height; }
 
-    /// Forgets the stages of the last frame; what they were used for has been drawn.
+    /// Frees the stages of the last frame, which has been drawn.
     void startFrame();
-    /// A stage that draws into one layer, or, with −1, into those of the first array that a geometry stage says; before the
-    /// layers have their size. It begins where `outer` is.
+    /// A new stage with the view and the lights of `outer`. draw() says later which layers it draws into, so these
+    /// need no size yet.
     osgUtil::RenderStage* newStage(osgUtil::CullVisitor& outer);
-    /// Where the picture lies in a layer: `corner` is the pixel that is the layer's first, `samples` stand along a pixel's
-    /// side. What is drawn needs it in its state, since the camera has its own there.
+    /// The viewport that places the picture in a layer; −1: in all layers. `corner` is the pixel at the layer's first
+    /// texel, and a pixel's side has `samples` samples. The drawn state needs it, since the camera puts its own
+    /// viewport there.
     static osg::ref_ptr<osg::Viewport> viewport(osgUtil::CullVisitor& outer, int layer,
                                                 const osg::Vec2i& corner, int samples);
-    /// Hands a stage to the camera, when all is culled.
+    /// Hands a stage to the camera, after all is culled. `layer` −1: for all layers of the first array.
     void draw(osgUtil::CullVisitor& outer, osgUtil::RenderStage& stage, int layer, osg::Viewport* viewport);
 
     /// A close-up that is put into the picture later and overlaps the one that is shown.
     struct Other
     {
-        int layer = 0; ///< the next one is its anchor's
+        int layer = 0; ///< its anchor's is the next one
         PixelRectangle part;
         osg::Vec2i corner;
         double covers = 1.0; ///< the alpha above which it hides what is behind it
     };
-    /// Which pixels of a layer are shown: those with one of the others behind them have to wait for it.
+    /// Which pixels of a layer are shown. Pixels with one of the others behind them wait for it.
     enum class Turn
     {
         Any,
@@ -70,15 +71,15 @@ public:
     struct Show
     {
         int layer = 0;
-        PixelRectangle part; ///< what of the picture is to be covered
-        osg::Vec2i corner;   ///< the pixel that is the layer's first
+        PixelRectangle part; ///< the part of the picture that may be covered
+        osg::Vec2i corner;   ///< the pixel at the layer's first texel
         int samples = 1;
         double opacity = 1.0;
         bool depthTest = true, depthWrite = true;
-        double above = 0.0, upTo = 1.0; ///< which of the layer's alphas
+        double above = 0.0, upTo = 1.0; ///< the layer's alphas that are shown
         Turn turn = Turn::Any;
-        int anchorLayer = -1;      ///< of an edge, which stays over it
-        std::vector<Other> others; ///< in the same texture array; those beyond mostOthers are left out
+        int anchorLayer = -1;      ///< the anchor's layer that an edge covers; −1 for none
+        std::vector<Other> others; ///< those in the same texture array; at most mostOthers count
     };
     static constexpr std::size_t mostOthers = 16;
     /// Whether two layers are in one texture array.

@@ -7,8 +7,8 @@
 namespace osgGeoFX
 {
 
-/** How the close-ups of one cull come into their layers. Called in this order: survey() once, draw() for each close-up,
-    handOver() once when the layers have their size, and finish() for each close-up that is in sight. */
+/** How the close-ups of one cull get into their layers. The calls come in this order: survey() once, draw() for each
+    close-up, handOver() once the layers have their size, and finish() for each close-up in sight. */
 class CloseUpPipeline
 {
 public:
@@ -18,15 +18,16 @@ public:
     virtual ~CloseUpPipeline() = default;
 
     virtual CloseUps::Pipeline kind() const = 0;
-    /// What lies over the regions, as the overview has it.
+    /// Finds what lies over the regions, as the overview draws it.
     virtual RegionSurvey survey() = 0;
-    /// Whether it can draw what was found.
+    /// Whether the pipeline can draw what was found.
     virtual bool takes(const RegionSurvey& found) const = 0;
-    /// Draws one close-up, whose part of the picture is not known yet; `found` gets the heights of what is more detailed.
+    /// Draws one close-up, whose part of the picture is not known yet. Adds the heights of finer tiles to `found`.
     virtual void draw(VisibleCloseUp& visible, RegionContents& found) = 0;
-    /// Hands what draws all close-ups at once to the camera; `picture` is the viewport of the picture as a whole.
+    /// Hands the stage that draws all close-ups at once to the camera. `picture` is the viewport of the whole
+    /// picture.
     virtual void handOver(osg::Viewport* picture) = 0;
-    /// Draws what waits for a close-up's part of the picture.
+    /// Draws what needs the close-up's part of the picture.
     virtual void finish(VisibleCloseUp& visible, const RegionContents& found) = 0;
 
 protected:

@@ -16,7 +16,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Texels of a mask, and pixels, that a part of an edge spans where tessellation has its way.
+/// The texels of a mask, and the pixels, that one part of a tessellated edge spans.
 constexpr float texelsOfPart = 1.0f, pixelsOfPart = 6.0f;
 
 } // namespace
@@ -40,7 +40,7 @@ void CloseUpStates::setUp(const ScenePass& pass, const CloseUpTask& task,
     values.resize(items.size());
     const auto forced =
         osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
-    // A layer has the nearest fragment; how it mixes with the picture is decided when the layer is shown.
+    // A layer keeps the nearest fragment. It is blended with the picture when it is shown.
     _base->setMode(GL_BLEND, forced);
     setTextures(task);
     _base->getOrCreateUniform(_prefix + "quality", osg::Uniform::FLOAT_VEC4)
@@ -89,7 +89,7 @@ void CloseUpStates::define(osg::StateSet& state, const char* name, bool needed) 
 void CloseUpStates::setDefines(const ScenePass& pass, const CloseUpTask& task,
                                const std::vector<CloseUpItem>& items)
 {
-    // Code that nothing needs is not compiled: some GPUs run through all branches.
+    // Code that no item needs is not compiled, since some GPUs run through all branches.
     define(*_base, "MASKED",
            std::any_of(items.begin(), items.end(),
                        [](const CloseUpItem& item) { return item.cutByVertices() || item.stretched(); }));

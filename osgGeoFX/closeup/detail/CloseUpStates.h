@@ -12,24 +12,24 @@
 namespace osgGeoFX
 {
 
-/** The state sets that one traversal draws into its layers with, and the uniform blocks that they bind. They stay from frame to
-    frame; uniforms and defines in them change. */
+/** The state sets that one traversal draws its layers with, and the uniform blocks that they bind. They stay from
+    frame to frame. Their uniforms and defines change. */
 class CloseUpStates
 {
 public:
-    /// Forgets all state where the names in it, or the units and the binding point that it takes, are no longer these.
+    /// Drops all state whose prefix, units or binding point differ from these.
     void use(const std::string& prefix, const CloseUpTask& task);
-    /// Makes all of it that of this cull.
+    /// Sets all state for this cull.
     void setUp(const ScenePass& pass, const CloseUpTask& task, const std::vector<CloseUpItem>& items,
                bool tessellated);
 
-    /// Of everything.
+    /// The state of everything.
     osg::StateSet& base() const { return *_base; }
-    /// Of what a single pass draws for several items at once; all are in one block.
+    /// The state for several items that a single pass draws at once. They must be in one block.
     osg::StateSet* group(const std::vector<std::size_t>& items);
-    /// Of an item's layer (0) or that of its anchor (1).
+    /// The state of an item's layer (0) or of its anchor's (1).
     osg::StateSet& layer(std::size_t item, std::size_t which) const { return *_layers[2 * item + which]; }
-    /// Of an item's wall (0) or line (1).
+    /// The state of an item's wall (0) or line (1).
     osg::StateSet& fence(std::size_t item, std::size_t which) const { return *_fences[2 * item + which]; }
 
     CloseUpItems values;

@@ -8,7 +8,7 @@
 namespace osgGeoFX
 {
 
-/// What CloseUps wants of a camera in one cull; it lives as long as the call.
+/// What CloseUps asks of a camera in one cull. It lives as long as the call.
 struct CloseUpTask
 {
     const std::vector<osg::ref_ptr<CloseUp>>& closeUps; ///< those that are enabled and have a mask

@@ -29,7 +29,7 @@ void setUp(TextureType& texture, GLint internalFormat, osg::Texture::FilterMode 
     texture.setResizeNonPowerOfTwoHint(false);
 }
 
-/// OSG takes an image into an array only where their formats are the same.
+/// OSG loads an image into an array only if both have the same format.
 constexpr GLint maskFormat = GL_RG32F;
 constexpr GLint surfaceFormat = GL_RGBA16F_ARB;
 
@@ -53,7 +53,7 @@ osg::ref_ptr<osg::Image> padded(const osg::Image& mask, int side)
     return image;
 }
 
-/// Values times their weights, so that what is averaged leaves holes out.
+/// Values times their weights, so that averages leave holes out.
 osg::ref_ptr<osg::Image> weighted(const osg::Image& layer)
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
@@ -92,7 +92,7 @@ std::pair<double, double> rangeOf(const osg::Image& layer)
     return {static_cast<double>(low), static_cast<double>(high)};
 }
 
-/// What shows a kind of data where the close-up has no table.
+/// The colors of a kind of data for a close-up without a table.
 osg::ref_ptr<ColorTable> readyTable(SurfaceData::Kind kind, const std::pair<double, double>& range)
 {
     switch (kind)
@@ -119,7 +119,7 @@ void CloseUpTextures::updateMasks(const CloseUpList& closeUps)
     for (std::size_t i = 0; i < closeUps.size(); ++i)
     {
         const osg::ref_ptr<const osg::Image> image = closeUps[i]->getRegion()->mask();
-        // Regions are shared, and so are their masks.
+        // Several close-ups may share a region, and so its mask.
         const auto found = std::find(images.begin(), images.end(), image);
         _state.places[i].mask = static_cast<int>(found - images.begin());
         _state.places[i].maskSide = image->s();
@@ -198,7 +198,7 @@ void CloseUpTextures::updateTables(const CloseUpList& closeUps, const SurfaceDat
         osg::ref_ptr<const ColorTable> table = closeUp.getTable();
         if (!table) table = readyTable(kind, _ranges[static_cast<std::size_t>(places.surfaceLayer)]);
         places.surfaceKind = table->getMode() == ColorTable::LINEAR ? 1 : 2;
-        // An aspect is in the layer as its sine and cosine, too, which can be averaged; classes cannot.
+        // The layer also has the sine and cosine of an aspect, which can be averaged. Classes cannot.
         if (kind == SurfaceData::ASPECT) places.surfaceKind = 4;
         if (kind == SurfaceData::CLASS) places.surfaceKind = 5;
         std::tie(places.low, places.high) = table->range();

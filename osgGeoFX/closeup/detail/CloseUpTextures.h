@@ -15,19 +15,19 @@
 namespace osgGeoFX
 {
 
-/** The textures that all cameras share: masks, tables and surface data. What changes is made anew, since the former one
-    may be on its way to the screen. Thread-safe. */
+/** The textures that all cameras share: masks, tables and surface data. A change makes a new texture, since the
+    former one may be on its way to the screen. Thread-safe. */
 class CloseUpTextures
 {
 public:
     static constexpr int tableWidth = 256;
 
-    /// As they were at one time.
+    /// The textures at one time.
     struct State
     {
         osg::ref_ptr<osg::Texture2DArray> masks;
         osg::ref_ptr<osg::Texture2D> tables;
-        osg::ref_ptr<osg::Texture2DArray> surfaces; ///< never null; one empty texel where there is no data
+        osg::ref_ptr<osg::Texture2DArray> surfaces; ///< never null; one empty texel if there is no data
         int normalLayer = -1;
         std::vector<CloseUpItem::Places> places; ///< for each close-up
     };
@@ -47,7 +47,7 @@ private:
     const SurfaceData* _data = nullptr;
     unsigned int _dataRevision = 0;
     std::vector<unsigned int> _imageCounts;
-    std::vector<std::pair<double, double>> _ranges; ///< of the surface layers' values
+    std::vector<std::pair<double, double>> _ranges; ///< of the values of the surface layers
     std::vector<osg::Vec4ub> _tableTexels;
 };
 

@@ -10,13 +10,13 @@
 namespace osgGeoFX
 {
 
-/// What one traversal of a frame needs until it is drawn; then another frame may use it.
+/// What one traversal needs until its frame is drawn. Another frame may use it afterwards.
 struct CloseUpTraversal
 {
     CloseUpStates states;
     CloseUpLayers layers;
     TriangleCopies copies;
-    std::vector<ContourFence> fences; ///< of each item
+    std::vector<ContourFence> fences; ///< one for each item
     osg::ref_ptr<osg::Program> program, fenceProgram;
 
     void resizeGLObjectBuffers(unsigned int size);

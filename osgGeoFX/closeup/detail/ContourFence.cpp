@@ -13,13 +13,14 @@ namespace
 {
 
 constexpr double partLength = 0.02; ///< of the border, in halves of the smaller side
-constexpr double longestPart = 0.1; ///< where the ground is level, for what bends it
+constexpr double longestPart = 0.1; ///< even on level ground, which a deformation may bend
 constexpr double tolerance = 0.1;   ///< of a texel of the mask
 constexpr double unknown = -std::numeric_limits<double>::infinity();
 
 using Contour = std::vector<osg::Vec2d>;
 
-/// The border's points and the heights below them, found by the cells of a grid over the region.
+/// The border's points and the heights of the ground below them. A grid over the region finds the points of a
+/// triangle.
 class Heights
 {
 public:
@@ -36,10 +37,11 @@ public:
         _heights.assign(_places.size(), unknown);
     }
 
-    /// All triangles of a geometry; the highest one counts. Upright ones, such as skirts, have no area.
+    /// Adds all triangles of a geometry. The highest one counts at each point. Upright triangles, such as skirts, do
+    /// not count.
     void add(const osg::Geometry& geometry, const osg::Matrixd& toRegion)
     {
-        // Where instances stand no one knows.
+        // The places of instances are not known here.
         if (DrawableTriangles::instanced(geometry)) return;
         const DrawableTriangles mesh(geometry);
         _vertices.resize(mesh.positions().size());
@@ -76,7 +78,7 @@ private:
         const double lowY = std::min({a.y(), b.y(), c.y()}) / _half.y();
         const double highY = std::max({a.y(), b.y(), c.y()}) / _half.y();
         if (area == 0.0 || !(lowX <= 1.0 && highX >= -1.0 && lowY <= 1.0 && highY >= -1.0)) return;
-        // Skirts are upright but for rounding.
+        // Rounding makes skirts lean a little.
         if (std::abs(area) < 1e-3 * (c - a).length() * (b - a).length()) return;
         for (std::size_t y = cellOf(lowY); y <= cellOf(highY); ++y)
         {
@@ -105,8 +107,9 @@ private:
     std::vector<osg::Vec3d> _vertices;
 };
 
-/// Which points of a closed line on the ground a line needs that is nowhere farther from it than `deviation` and whose parts are no
-/// longer than `longest`; all that have no height stay. The mask's own lines have points at each of its texels.
+/// Chooses the points of a closed line on the ground that a simpler line keeps. The simpler line is nowhere farther
+/// from it than `deviation`, and its parts are no longer than `longest`. Points without a height stay. The mask's own
+/// line has points at each texel.
 std::vector<std::size_t> needed(const std::vector<osg::Vec3d>& line, double deviation, double longest)
 {
     const auto fits = [&](std::size_t from, std::size_t to)
@@ -135,7 +138,7 @@ std::vector<std::size_t> needed(const std::vector<osg::Vec3d>& line, double devi
     return kept;
 }
 
-/// The same place, but for what the camera's matrices round.
+/// Whether two matrices are equal up to the rounding of a camera's matrices.
 bool same(const osg::Matrixd& one, const osg::Matrixd& other)
 {
     for (int i = 0; i < 16; ++i)
@@ -156,7 +159,7 @@ osg::ref_ptr<osg::Geometry> geometryOf(osg::Vec3Array* vertices, osg::Vec2Array*
     geometry->setVertexArray(vertices);
     geometry->setTexCoordArray(0, shares, osg::Array::BIND_PER_VERTEX);
     geometry->addPrimitiveSet(primitives);
-    // OSG gives its buffers to the next one of the same size, which comes with the next tile.
+    // OSG gives the buffers to the next geometry of the same size, which comes with the next tile.
     geometry->getOrCreateVertexBufferObject()->setUsage(GL_DYNAMIC_DRAW);
     return geometry;
 }
@@ -236,7 +239,7 @@ void ContourFence::build(const RegionOfInterest& region, const std::vector<Groun
             }
             line->push_back(osg::Vec3(point));
             lineShares->push_back(osg::Vec2(0.0f, 1.0f));
-            // No wall where there is no ground, such as beyond the terrain's border.
+            // There is no wall without ground, for example beyond the terrain's border.
             const std::size_t following = (i + 1) % kept.size();
             if (!known || !(points[kept[following]].z() > unknown)) continue;
             const unsigned int next = start + static_cast<unsigned int>(following);

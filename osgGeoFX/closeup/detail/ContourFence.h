@@ -13,24 +13,25 @@
 namespace osgGeoFX
 {
 
-/** The wall between a region's border on the ground and that of its close-up, and the line on the ground: geometry in the
-    region's frame, whose first texture coordinate says how far a vertex goes up (stages/closeup.fence.vert).
+/** The wall between a region's border on the ground and the border of its close-up, and the line on the ground. It is
+    geometry in the region's frame. Its first texture coordinate says how far a vertex goes up
+    (stages/closeup.fence.vert).
 
-    Heights are those of the triangles that the camera sees there; of the border's points as many as are needed to be within a tenth
-    of the mask's texel. One belongs to one camera and close-up. */
+    Heights are those of the triangles that the camera sees there. Points of the border are left out as long as the
+    line stays within a tenth of a texel of the mask. An object belongs to one camera and one close-up. */
 class ContourFence
 {
 public:
-    /// A drawable over the region; from its own frame to the region's, metres.
+    /// A drawable over the region, with the matrix from its own frame to the region's, metres.
     struct Ground
     {
         osg::ref_ptr<const osg::Drawable> drawable;
         osg::Matrixd toRegion;
     };
 
-    /// Makes the geometry anew where the region or the ground has changed. False where there is no ground below it.
+    /// Makes new geometry if the region or the ground has changed. False if there is no ground below the border.
     bool update(const RegionOfInterest& region, const std::vector<Ground>& ground);
-    /// In the region's frame; as they were at the last update. New ones whenever they change.
+    /// The geometry of the last update, in the region's frame. Each change makes a new one.
     osg::Geometry* wall() { return _wall.get(); }
     osg::Geometry* line() { return _line.get(); }
     void resizeGLObjectBuffers(unsigned int size);

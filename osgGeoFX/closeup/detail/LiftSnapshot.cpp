@@ -11,7 +11,8 @@ LiftSnapshot::LiftSnapshot(const CloseUpItem& item) : _lift(item.lift())
 {
     const CloseUp& closeUp = item.closeUp();
     _stretch = std::max({closeUp.getScaleX(), closeUp.getScaleY(), closeUp.getScaleHeight()});
-    // A flat map has no way back; its heights are taken as its scale in the plane would make them.
+    // The lift of a flat map has no inverse. Without one, levels of detail take its heights as its plane's scale
+    // would make them.
     if (closeUp.getScaleHeight() > 0.0) _back = osg::Matrixd::inverse(_lift);
 }
 

@@ -8,7 +8,7 @@
 namespace osgGeoFX
 {
 
-/// A close-up's lift as a deformation: what levels of detail go by where it is drawn by itself.
+/// A close-up's lift as a deformation. It tells the levels of detail of a close-up that is drawn by itself.
 class LiftSnapshot : public DeformationSnapshot
 {
 public:

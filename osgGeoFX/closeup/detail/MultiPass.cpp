@@ -10,7 +10,7 @@ namespace osgGeoFX
 RegionSurvey MultiPass::survey()
 {
     _regions.choosePrograms(false);
-    // Without states it draws nothing.
+    // Without state sets nothing is drawn.
     return _regions.survey([](const std::vector<std::size_t>&, std::vector<osg::StateSet*>&) {}, nullptr);
 }
 

@@ -7,7 +7,8 @@
 namespace osgGeoFX
 {
 
-/// Another traversal draws each close-up, as detailed as its size in the picture asks for, and each anchor.
+/// Draws each close-up in a traversal of its own, as detailed as its size in the picture asks for, and each anchor in
+/// another one.
 class MultiPass final : public CloseUpPipeline
 {
 public:

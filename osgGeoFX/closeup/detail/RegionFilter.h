@@ -14,42 +14,42 @@
 namespace osgGeoFX
 {
 
-/// What was found over a region.
+/// What was found over one region.
 struct RegionContents
 {
     double lowest = std::numeric_limits<double>::infinity(); ///< metres above the region's base
     double highest = -std::numeric_limits<double>::infinity();
-    /// Of the triangles there, metres: what is stretched reaches that far beyond the region.
+    /// The longest edge of the triangles there, metres. Stretched triangles reach that far beyond the region.
     double longestEdge = 0.0;
     std::vector<ContourFence::Ground> ground;
 
     bool empty() const { return !(lowest <= highest); }
 };
 
-/// What was found over regions.
+/// What was found over all regions.
 struct RegionSurvey
 {
-    /// Regions that a drawable over any of them touches on average; 1 where that says nothing.
+    /// How many regions a drawable over some region touches on average; 1 if the count tells nothing.
     double sharing() const { return drawables > 0 && !foreign ? 1.0 * touches / drawables : 1.0; }
 
-    /// Of all items; those that are not wanted have found nothing.
+    /// One entry for each item. Those of unwanted items are empty.
     std::vector<RegionContents> contents;
     bool foreign = false;       ///< something is not made of triangles or has shaders of its own
     bool levels = false;        ///< something has levels of detail
-    unsigned int touches = 0;   ///< regions that drawables touch, summed up
-    unsigned int drawables = 0; ///< that touch any
+    unsigned int touches = 0;   ///< the sum of the regions that drawables touch
+    unsigned int drawables = 0; ///< those that touch a region
     unsigned int count = 0;     ///< drawables drawn, once for each state
 };
 
-/// Wants what lies over any of the regions, and remembers it.
+/// Selects what lies over any of the regions, and notes what it finds.
 class RegionFilter final : public PassFilter
 {
 public:
-    /// `state` names what a drawable is drawn with, for the items that it touches; it may name nothing. Without
+    /// Adds the states that a drawable is drawn with, for the items that it touches; none for no drawing. Without
     /// `culls`, all drawables touch all regions.
     using StatesOf =
         std::function<void(const std::vector<std::size_t>& items, std::vector<osg::StateSet*>& states)>;
-    /// `copies` are drawn in the place of drawables, as patches where `patches` are wanted.
+    /// `copies` are drawn in place of the drawables, as patches if `patches` is true.
     RegionFilter(const std::vector<CloseUpItem>& items, std::vector<std::size_t> wanted, bool culls,
                  TriangleCopies& copies, bool patches, StatesOf statesOf);
 

@@ -38,7 +38,7 @@ private:
 };
 using Segments = std::vector<Segment>;
 
-/// Distance to an ellipse about the origin.
+/// The distance to an ellipse about the origin.
 double toEllipse(osg::Vec2d place, osg::Vec2d radii)
 {
     place.set(std::abs(place.x()), std::abs(place.y()));
@@ -50,8 +50,8 @@ double toEllipse(osg::Vec2d place, osg::Vec2d radii)
     const double a = radii.x(), b = radii.y();
     if (a == b) return std::abs(place.length() - a);
     const double focal2 = (a - b) * (a + b);
-    // The foot of the perpendicular is (a² x / (u + a² − b²), b² y / u); for u > 0 what is left of the ellipse's
-    // equation falls and is convex, so that Newton's method from its left never passes the root.
+    // The foot of the perpendicular is (a² x / (u + a² − b²), b² y / u). For u > 0 the rest of the ellipse's equation
+    // is falling and convex in u. So Newton's method from the left never passes the root.
     double u = std::max(b * place.y(), a * place.x() - focal2);
     if (!(u > 0.0))
     {
@@ -72,8 +72,8 @@ double toEllipse(osg::Vec2d place, osg::Vec2d radii)
     return (place - foot).length();
 }
 
-/** Fills a picture with distances to the nearest of some segments. It is halved again and again, and each half keeps only
-    the segments that can be nearest anywhere in it. */
+/** Fills a picture with the distances to the nearest of some segments. It halves the picture again and again. Each
+    half keeps only the segments that can be nearest somewhere in it. */
 class NearestSegments
 {
 public:
@@ -86,13 +86,13 @@ public:
     }
 
 private:
-    /// A part of the picture, the upper ends excluded.
+    /// A part of the picture, without its right and top ends.
     struct Block
     {
         int left, bottom, right, top;
     };
 
-    /// With the segments from `first` to the last that is kept.
+    /// Fills a block. Its segments are those from `first` to the end of the kept ones.
     void fill(const Block& block, std::size_t first)
     {
         const int columns = block.right - block.left;
@@ -109,7 +109,8 @@ private:
         const osg::Vec2d low = _picture.place(block.left, block.bottom);
         const osg::Vec2d high = _picture.place(block.right - 1, block.top - 1);
         const osg::Vec2d middle = (low + high) / 2.0;
-        // To be nearest somewhere, one may be farther from the middle than the nearest there by twice the half diagonal.
+        // A segment may be nearest somewhere in the block if it is at most twice the half diagonal farther from the
+        // middle than the segment that is nearest there.
         const double most = (std::sqrt(least(middle, first)) + (high - low).length()) * (1.0 + 1e-9);
         for (std::size_t i = first; i < count; ++i)
         {
@@ -127,7 +128,7 @@ private:
         _kept.erase(_kept.begin() + static_cast<std::ptrdiff_t>(count), _kept.end());
     }
 
-    /// Squared distance.
+    /// The smallest squared distance.
     double least(const osg::Vec2d& place, std::size_t first) const
     {
         double found = 1e60;
@@ -137,7 +138,7 @@ private:
     }
 
     Picture& _picture;
-    Segments _kept; ///< those of a block after those of the block that it is a half of
+    Segments _kept; ///< the segments of a block come after those of the block that it is a half of
 };
 
 /// Where a horizontal line meets an outline, in order.
@@ -155,14 +156,14 @@ std::vector<double> crossings(const Line& corners, double y)
     return found;
 }
 
-/** The lines where a field changes its sign: marching squares over a picture and one ring of texels beyond.
+/** The lines where a field changes its sign, by marching squares over a picture and one ring of texels around it.
 
-    Places of the field are the texels' centers. A place on the line is named by the edge between two neighbours that it
-    lies on. */
+    The field is known at the centers of texels. A point of the line lies on an edge between two neighbours, and the
+    number of this edge is its name. */
 class Marching
 {
 public:
-    /// `field(column, row)` for −1…side.
+    /// Calls `field(column, row)` for −1…side.
     template<typename Field>
     Marching(const Picture& picture, const Field& field) : _picture(picture), _width(picture.side + 2)
     {
@@ -172,7 +173,7 @@ public:
                 _field.push_back(field(column, row));
     }
 
-    /// Calls `take(from, to)` with the names of both ends for each part, the inside on its left.
+    /// Calls `take(from, to)` for each part, with the names of its ends. The inside is on the left.
     template<typename Take>
     void parts(const Take& take) const
     {
@@ -196,11 +197,11 @@ private:
     template<typename Take>
     void cell(int node, const Take& take) const
     {
-        // Counter-clockwise from the lower left; edge i leads from corner i to the next.
+        // Corners run counter-clockwise from the lower left. Edge i leads from corner i to the next.
         const std::array<double, 4> value = {_field[node], _field[node + 1], _field[node + _width + 1],
                                              _field[node + _width]};
         const std::array<int, 4> edge = {2 * node, 2 * (node + 1) + 1, 2 * (node + _width), 2 * node + 1};
-        // Where two corners across are inside, the bilinear surface between joins them or does not.
+        // If two opposite corners are inside, the bilinear surface decides whether they are joined.
         const double across = value[0] * value[2], other = value[1] * value[3];
         const bool joined = value[0] > 0.0 ? across > other : other > across;
         for (std::size_t i = 0; i < 4; ++i)
@@ -261,7 +262,7 @@ Picture rectangleDistances(int side, const osg::Vec2d& half, double radius)
 
 Picture outlineDistances(int side, const osg::Vec2d& half, const Line& corners)
 {
-    // Edges that come twice have the same on both sides.
+    // An edge that comes twice has the same on both sides and is no border.
     std::map<std::pair<osg::Vec2d, osg::Vec2d>, bool> odd;
     for (std::size_t i = 0; i < corners.size(); ++i)
     {
@@ -338,7 +339,8 @@ bool hasArea(const Line& corners)
     for (std::size_t i = 0; i + 1 < heights.size(); ++i)
     {
         const double height = heights[i + 1] - heights[i];
-        // Edges run straight between two heights; of those that cross, two rows meet one at least apart.
+        // Edges are straight between two heights. Even if some cross, one of the two rows shows that there is an
+        // area.
         for (const double share : {0.3, 0.8})
         {
             const std::vector<double> found =
@@ -366,7 +368,8 @@ Picture sharpMask(const Picture& distances)
         {
             const int left = std::max(x - 1, 0), right = std::min(x + 1, last);
             const int below = std::max(y - 1, 0), above = std::min(y + 1, last);
-            // A texel's size across the border; along ridges of the distance slopes vanish, sizes do not.
+            // The change of the distance from texel to texel. It vanishes along ridges, where the size of a texel
+            // takes its place.
             const double size =
                 std::max(std::hypot(slope(distances.at(left, y), distances.at(right, y), right - left),
                                     slope(distances.at(x, below), distances.at(x, above), above - below)),
@@ -394,7 +397,7 @@ std::vector<Line> borders(const Picture& distances)
                             [&](int column, int row)
                             {
                                 const bool beside = column < 0 || column == side;
-                                // The region's border is half a texel before the ring.
+                                // The region's border lies half a texel inside of the ring.
                                 if (row < 0 || row == side) return -texel.y() / 2.0;
                                 return beside ? -texel.x() / 2.0
                                               : static_cast<double>(distances.at(column, row));
@@ -410,7 +413,7 @@ std::vector<Line> borders(const Picture& distances)
             const osg::Vec2d place = marching.place(part->first);
             const osg::Vec2d shared(std::clamp(place.x() / distances.half.x(), -1.0, 1.0),
                                     std::clamp(place.y() / distances.half.y(), -1.0, 1.0));
-            // Lines through a texel's very center meet several edges there.
+            // A line through the very center of a texel meets several edges there.
             constexpr double same = 1e-6;
             if (line.empty() || (shared - line.back()).length() * side > same) line.push_back(shared);
             const int end = part->second;

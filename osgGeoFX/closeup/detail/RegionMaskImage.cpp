@@ -14,7 +14,7 @@ namespace osgGeoFX::region
 namespace
 {
 
-/// The mean over ±radius texels along a row or column of numbers; those beyond its ends are as the last ones.
+/// Replaces each number of a row or column by the mean over ±radius texels. The end numbers go on beyond the ends.
 void smooth(std::vector<double>& line, double radius)
 {
     const auto count = static_cast<int>(line.size());
@@ -32,7 +32,8 @@ void smooth(std::vector<double>& line, double radius)
         line[i] = (upTo(i + 0.5 + radius) - upTo(i + 0.5 - radius)) / (2.0 * radius);
 }
 
-/// Texels of a source that one texel of a picture shows, with their weights: a tent as wide as the coarser of both.
+/// The texels of a source that one texel of a picture shows, with their weights: a tent as wide as the coarser of
+/// both.
 std::vector<std::pair<int, double>> weights(int texel, int side, int source)
 {
     const double scale = static_cast<double>(source) / side;
@@ -54,7 +55,7 @@ std::vector<std::pair<int, double>> weights(int texel, int side, int source)
 std::optional<LayerPixels> pixelsOf(const osg::Image& image, int maxSide, std::string& error)
 {
     LayerPixels::Options options;
-    options.sRGB = false; // greys are shares here and not light
+    options.sRGB = false; // greys are shares here, and no light
     options.maxSide = maxSide;
     options.levels = 1;
     return LayerPixels::make(image, options, error);
@@ -73,7 +74,7 @@ std::optional<Picture> greys(const osg::Image& image, int side, const osg::Vec2d
 {
     const std::optional<LayerPixels> pixels = pixelsOf(image, 2048, error);
     if (!pixels) return std::nullopt;
-    // A single red channel is what is grey elsewhere.
+    // An image with one red channel is taken as grey.
     const bool isRed = image.getPixelFormat() == GL_RED;
     const auto greyOf = [&](LayerPixels::Texel texel)
     {
@@ -84,7 +85,7 @@ std::optional<Picture> greys(const osg::Image& image, int side, const osg::Vec2d
         const double luminance = 0.2126 * part(0) + 0.7152 * part(1) + 0.0722 * part(2);
         return (isRed ? part(0) : luminance) * part(3);
     };
-    // Rows first, and each of these into the rows that it shows in.
+    // Each source row is resampled first, and then added to the rows of the picture that it shows in.
     std::vector<std::vector<std::pair<int, double>>> across, along(pixels->height);
     for (int i = 0; i < side; ++i)
     {
@@ -128,7 +129,7 @@ Picture blurred(const Picture& grey, double softness)
             };
             for (int k = 0; k < side; ++k)
                 line[k] = static_cast<double>(value(k));
-            // Two means of half the width are a tent.
+            // Two means of half the width make a tent.
             for (int turn = 0; turn < 2; ++turn)
                 smooth(line, softness / 2.0 / (rows ? texel.x() : texel.y()));
             for (int k = 0; k < side; ++k)

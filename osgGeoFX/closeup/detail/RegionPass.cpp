@@ -42,7 +42,7 @@ PassShaders fenceShaders(unsigned int binding)
     return shaders;
 }
 
-/// Where OSG's own culling is off, all that there is is drawn for all regions.
+/// Whether culling is on. If OSG's own is off, everything is drawn for all regions.
 bool culls(const ScenePass& pass)
 {
     return pass.compensate && (pass.outer.getCullingMode() & osg::CullSettings::VIEW_FRUSTUM_CULLING) != 0;

@@ -10,7 +10,7 @@
 namespace osgGeoFX
 {
 
-/// Draws what lies over regions, in one cull. A CloseUpPipeline says what is drawn, when, and into which stage.
+/// Draws what lies over regions, in one cull. A CloseUpPipeline decides what is drawn, when, and into which stage.
 class RegionPass
 {
 public:
@@ -21,18 +21,18 @@ public:
     RegionPass(const ScenePass& scenePass, const CloseUpTask& task, CloseUpTraversal& needed,
                const std::vector<CloseUpItem>& closeUps, bool tessellates);
 
-    /// To be called before anything is drawn. `copies`: a geometry stage copies triangles into layers.
+    /// Call it before anything is drawn. `copies`: a geometry stage copies triangles into layers.
     void choosePrograms(bool copies);
-    /// Goes on with the vertex and the fragment stage alone: they draw whatever there is.
+    /// Goes on with the vertex and the fragment stage alone, which can draw any geometry.
     void simplify();
     bool tessellated() const { return _tessellated; }
 
     osgUtil::RenderStage* newStage() const { return traversal.layers.newStage(pass.outer); }
-    /// Has a look at all that lies over regions, as detailed as the overview is, and draws it into the stage with the
-    /// states that are named.
+    /// Finds everything over the regions, as detailed as the overview is, and draws it into the stage with the states
+    /// that `statesOf` gives.
     RegionSurvey survey(const RegionFilter::StatesOf& statesOf, osgUtil::RenderStage* stage) const;
-    /// Draws what lies over one region into its close-up's layer (0) or its anchor's (1), as detailed as its size where `chain`
-    /// takes it asks for. `found` gets the heights.
+    /// Draws the ground over one region into the layer of its close-up (0) or of its anchor (1). Levels of detail go
+    /// by the size after `chain`. Adds the heights to `found`.
     void draw(const VisibleCloseUp& visible, std::size_t which, const DeformationChain& chain,
               RegionContents& found);
     /// Draws the wall and the line around a region into its anchor's layer.

@@ -8,7 +8,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Items that the geometry stage takes at once: more would be more vertices than some GPUs hand out.
+/// The items that the geometry stage takes at once. More would need more vertices than some GPUs can emit.
 constexpr std::size_t groupSize = 3;
 
 } // namespace
@@ -53,7 +53,7 @@ void SinglePass::handOver(osg::Viewport* picture)
 
 void SinglePass::finish(VisibleCloseUp& visible, const RegionContents& found)
 {
-    // The layered stage has cleared all layers, and the anchor's own geometry comes into what it drew.
+    // The layered stage has cleared all layers already. The anchor's own geometry is drawn on top of its picture.
     visible.stages[1] = _regions.newStage();
     visible.stages[1]->setClearMask(0);
     _regions.drawFence(visible, found);

@@ -7,7 +7,8 @@
 namespace osgGeoFX
 {
 
-/// The look at the overview draws all close-ups: a geometry stage copies each triangle into the layers of those that it touches.
+/// The survey of the overview draws all close-ups. A geometry stage copies each triangle into the layers of the
+/// close-ups that it touches.
 class SinglePass final : public CloseUpPipeline
 {
 public:

@@ -14,10 +14,11 @@ namespace osgGeoFX
 namespace
 {
 
-/// Of a region's half: what a drawable may move by before it is looked at again, and a border as wide as several of these.
+/// Both in halves of a region. A drawable may move by `slack` before it is looked at again. The border is several
+/// times as wide.
 constexpr double slack = 1e-3, border = 1.01;
 
-/// Where vertices are, seen from a region, a bit for each side that they are beyond.
+/// One entry for each vertex, with a bit for each side of a region that the vertex is beyond.
 using Sides = std::vector<unsigned char>;
 
 Sides sidesOf(const std::vector<osg::Vec3d>& vertices, const TriangleCopies::Region& region)
@@ -35,7 +36,8 @@ Sides sidesOf(const std::vector<osg::Vec3d>& vertices, const TriangleCopies::Reg
     return sides;
 }
 
-/// Whether a triangle is not wholly beyond one side of each region; without regions, all are wanted.
+/// Whether a triangle is wanted by some region: not all of it is beyond one of its sides. Without regions all are
+/// wanted.
 bool wanted(const unsigned int* corners, const std::vector<Sides>& regions)
 {
     return regions.empty() ||
@@ -44,7 +46,7 @@ bool wanted(const unsigned int* corners, const std::vector<Sides>& regions)
                        { return (sides[corners[0]] & sides[corners[1]] & sides[corners[2]]) == 0; });
 }
 
-/// Whether a triangle of a wall is so near to the border of a region that it can be seen below the ground's end there.
+/// Whether a triangle of a wall lies so near to a region's border that it shows below the end of the ground.
 bool hangsOut(const std::vector<osg::Vec3d>& vertices, const unsigned int* corners,
               const TriangleCopies::Region& region)
 {
@@ -57,7 +59,7 @@ bool hangsOut(const std::vector<osg::Vec3d>& vertices, const unsigned int* corne
     places[6] = (places[0] + places[1] + places[2]) / 3.0;
     const auto [low, high] = std::minmax({places[0].z(), places[1].z(), places[2].z()});
     const double half = 0.5 * std::min(region.shape->getWidth(), region.shape->getDepth());
-    // Where one looks down by more than 18 degrees, the ground in front of a wall hides as much of it.
+    // Seen at more than 18 degrees from above, ground of this width in front of a wall hides the wall.
     const double margin = 3.0 * (high - low) / half;
     double nearest = std::numeric_limits<double>::infinity();
     double farthest = -std::numeric_limits<double>::infinity();
@@ -70,7 +72,7 @@ bool hangsOut(const std::vector<osg::Vec3d>& vertices, const unsigned int* corne
     return nearest < margin && farthest > -margin;
 }
 
-/// Whether what is in a box is in the same place of the regions, but for what a camera's matrices round.
+/// Whether a box lies in the same places of the regions, up to the rounding of a camera's matrices.
 bool same(const std::vector<TriangleCopies::Region>& some, const std::vector<TriangleCopies::Region>& others,
           const osg::BoundingBox& box)
 {
@@ -95,7 +97,7 @@ void TriangleCopies::build(Entry& entry, bool patches)
     const osg::Geometry& geometry = *entry.geometry;
     const DrawableTriangles mesh(geometry);
     std::vector<Sides> sides;
-    // Instances, and what a shader moves, lie elsewhere than the vertices say.
+    // Instances, and vertices that a shader moves, lie elsewhere than the vertices say.
     const bool cuts = mesh.tellAll() && entry.extent == OVER_REGIONS;
     for (std::size_t i = 0; cuts && i < entry.regions.size(); ++i)
         sides.push_back(sidesOf(mesh.positions(), entry.regions[i]));
@@ -123,7 +125,7 @@ void TriangleCopies::build(Entry& entry, bool patches)
         count += indices->size();
         if (!indices->empty()) copies.push_back(indices);
     }
-    // Vertices that could not be read may be anywhere.
+    // If the vertices could not be read, they may be anywhere.
     const bool unread = mesh.positions().empty();
     entry.empty = count == 0 && !unread;
     entry.copy = nullptr;
@@ -132,13 +134,13 @@ void TriangleCopies::build(Entry& entry, bool patches)
         patches || leftOut || static_cast<double>(count) < most * static_cast<double>(mesh.corners().size());
     if (entry.empty || unread || !worthIt) return;
     entry.copy = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
-    // The arrays are another's, who may be drawing them: their buffers stay as they are.
+    // The arrays belong to another geometry, which may be drawing them. Their buffers stay as they are.
     entry.copy->setUseDisplayList(false);
     entry.copy->removePrimitiveSet(0, entry.copy->getNumPrimitiveSets());
     for (const osg::ref_ptr<osg::DrawElementsUInt>& indices : copies)
     {
         entry.copy->addPrimitiveSet(indices);
-        // OSG gives it to the next copy of the same size.
+        // OSG gives the buffer to the next copy of the same size.
         if (osg::ElementBufferObject* buffer = indices->getElementBufferObject())
             buffer->setUsage(GL_DYNAMIC_DRAW);
     }
@@ -213,7 +215,7 @@ void TriangleCopies::releaseGLObjects(osg::State* state) const
         for (const auto& [key, entry] : *entries)
         {
             if (!entry.copy) continue;
-            // osg::Geometry's would take the arrays' buffers, too, which another geometry draws from.
+            // osg::Geometry's own method would release the arrays' buffers, too. Another geometry draws from these.
             entry.copy->Drawable::releaseGLObjects(state);
             for (const osg::ref_ptr<osg::PrimitiveSet>& indices : entry.copy->getPrimitiveSetList())
                 indices->releaseGLObjects(state);

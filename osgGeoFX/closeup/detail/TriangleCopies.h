@@ -17,12 +17,12 @@
 namespace osgGeoFX
 {
 
-/** Those triangles of a geometry that lie over some regions, as triangles or as the patches that tessellation asks for:
-    geometries that share the arrays of what they copy. Made when first asked for, and kept while the drawable lives and
-    lies where it is. For one thread at a time.
+/** Copies of geometries with only those triangles that lie over some regions, or with the same as patches for
+    tessellation. A copy shares the arrays of its geometry. It is made on demand, and kept while the drawable lives
+    and stays in its place. For one thread at a time.
 
-    A tile's walls close the cracks between its meshes and those beside them. A wall near a region's border is left out:
-    the ground ends there, and the wall would hang out below it. */
+    The walls of a tile close the cracks to other meshes. A copy has no walls near a region's border: the ground ends
+    there, and a wall would hang out below it. */
 class TriangleCopies
 {
 public:
@@ -32,8 +32,8 @@ public:
         OVER_REGIONS, ///< those over any of the regions
         EVERYWHERE    ///< all but the walls near borders
     };
-    /// One region: which it is, the matrix from the drawable's frame to places in it (−1…1; z: metres above its base),
-    /// the height below which nothing is wanted, and its shape. Without a shape, all walls are wanted.
+    /// One region: its number, the matrix from the drawable's frame to places in it (−1…1; z: metres above its base),
+    /// the height below which nothing is wanted, and its shape. Without a shape all walls are wanted.
     struct Region
     {
         std::size_t item;
@@ -43,16 +43,16 @@ public:
         unsigned int revision = 0; ///< of the shape
     };
 
-    /// Of a geometry that is made of triangles. Null where there is nothing over the regions; the geometry itself where most
-    /// of it is, and no wall is left out. Without regions, all of it.
+    /// The copy of a geometry of triangles. Null if none of it lies over the regions; the geometry itself if most of
+    /// it does and no wall is left out. Without regions it has all triangles.
     osg::Geometry* of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches,
                       Extent extent = OVER_REGIONS);
-    /// Of a geometry's triangles, in its own frame; 0 where it has none.
+    /// The longest edge of a geometry's triangles, in its own frame; 0 without triangles.
     double longestEdge(const osg::Geometry& geometry);
-    /// Forgets what has been deleted; to be called now and then, when nothing of it is on its way to the screen.
+    /// Forgets deleted drawables. Call it now and then, when none of their copies is on its way to the screen.
     void purge();
     void resizeGLObjectBuffers(unsigned int size);
-    /// Of the copies alone: what they share with the geometries is released with these.
+    /// Releases the objects of the copies alone. The geometries release what they share.
     void releaseGLObjects(osg::State* state) const;
 
 private:
@@ -62,7 +62,7 @@ private:
         GeometryStamp stamp;
         std::vector<Region> regions;
         Extent extent = OVER_REGIONS;
-        osg::ref_ptr<osg::Geometry> copy; ///< null where the geometry itself is as good
+        osg::ref_ptr<osg::Geometry> copy; ///< null if the geometry itself is drawn
         bool empty = false;
     };
     static void build(Entry& entry, bool patches);

@@ -13,10 +13,10 @@ namespace osgGeoFX
 struct VisibleCloseUp
 {
     std::size_t item = 0;
-    PixelRectangle part;                  ///< of the picture that its layers cover
-    std::optional<PixelRectangle> lifted; ///< and of that, the close-up without its anchor
+    PixelRectangle part;                  ///< the part of the picture that its layers cover
+    std::optional<PixelRectangle> lifted; ///< the part with the close-up, without its anchor
     int layer = 0;                        ///< the anchor's is the next one
-    /// The close-up's and the anchor's; null where nothing is drawn into the layer alone.
+    /// The stages of the close-up and of its anchor. Null for a layer that has no stage of its own.
     osgUtil::RenderStage* stages[2] = {nullptr, nullptr};
 };
 
