@@ -88,7 +88,7 @@ void GpuMappings::reset(Settings settings)
     _changes.roomMade = true;
     if (!pagesStay || !texelsFit)
     {
-        // Everything anew.
+        // Everything starts anew.
         _records.reset();
         _layers.reset(settings.pageSide, settings.maxPages);
         _tables.reset();
@@ -125,7 +125,7 @@ void GpuMappings::warnOfLimits()
 GpuMappings::Frame GpuMappings::commit(const Settings& settings, const PositionOf& positionOf,
                                        CameraList& list, const Wanted& wanted)
 {
-    // Under one lock: another camera's commit would come between.
+    // One lock for all steps, so that no other camera's commit comes between them.
     const std::lock_guard<std::mutex> lock(_mutex);
     reset(settings);
     for (ProjectiveMapping* mapping : _changes.mappings)

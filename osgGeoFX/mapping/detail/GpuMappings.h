@@ -15,13 +15,13 @@
 namespace osgGeoFX
 {
 
-/// What of ProjectiveMappings decides on the room and the positions.
+/// The properties of ProjectiveMappings that decide about room and positions.
 struct MappingSettings
 {
     int pageSide = 0;
     int maxPages = 0;
     int maxTexels = 0;
-    /// What the positions depend on, beside the ground.
+    /// The origin on a globe, on which positions depend; 0 on a plane.
     double longitude = 0.0;
     double latitude = 0.0;
 
@@ -35,11 +35,11 @@ struct MappingSettings
     }
 };
 
-/** The other side of ProjectiveMappings: keeps the GPU's copy of the mappings, their layers and tables, for all scenes with the
-    same ground.
+/** The GPU's copy of ProjectiveMappings: its mappings, their layers and their tables, for all scenes with the same
+    ground.
 
-    Changes are noted by the thread that makes them, and worked in by the first camera that culls thereafter. Thread-safe: its
-    parts are not, and it has the lock for all of them. */
+    The thread that changes a mapping notes the change here. The next camera that culls works it in. Thread-safe. The
+    parts are not; this class has the lock for all of them. */
 class GpuMappings
 {
 public:
@@ -55,17 +55,17 @@ public:
     /// All that a frame is drawn with, as it was at one time.
     struct Frame
     {
-        std::uint64_t number = 0; ///< of the frame's commit
+        std::uint64_t number = 0; ///< the number of the frame's commit
         MappingIndex::Root root;
         std::size_t longestList = 0;
         std::uint32_t features = 0;
         osg::ref_ptr<GpuStore> store;
     };
-    /// Works in what has changed. With `wanted`, makes the camera's list of those in the place of its former one; without, it has
-    /// none.
+    /// Works in all changes. With `wanted`, it also replaces the camera's list by one of the wanted mappings.
+    /// Without, the camera has no list.
     Frame commit(const Settings& settings, const PositionOf& positionOf, CameraList& list,
                  const Wanted& wanted);
-    /// Gives a list back.
+    /// Gives the texels of a list back.
     void release(CameraList& list);
     ProjectiveMappings::Capacity capacity() const;
     void releaseGLObjects(osg::State* state);

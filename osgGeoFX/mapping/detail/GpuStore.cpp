@@ -15,7 +15,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// A context that has fallen further behind takes everything anew.
+/// The length of the journal. A context that is further behind uploads everything.
 constexpr std::size_t mostEntries = 256;
 constexpr std::size_t mostBytes = 64u << 20u;
 
@@ -26,7 +26,7 @@ constexpr GLenum texture2DArray = 0x8C1A;
 constexpr GLenum maxArrayTextureLayers = 0x88FF;
 constexpr GLenum reversedBytes = 0x8367; // GL_UNSIGNED_INT_8_8_8_8_REV
 
-/// OSG calls them in the context's own thread, when it has time.
+/// Deletes buffers. OSG calls it in the context's own thread, when there is time.
 class BufferDeletion : public osg::GLObjectManager
 {
 public:
@@ -157,7 +157,7 @@ void GpuStore::askLimits()
 void GpuStore::uploadTexels(Context& context, osg::State& state, const Texels& texels)
 {
     const auto* gl = state.get<osg::GLExtensions>();
-    // At least one texel, so that there is always something to fetch from.
+    // There is at least one texel, so that shaders always have something to fetch.
     const std::size_t count = std::max<std::size_t>(texels.size(), 1);
     const auto bytes = static_cast<GLsizeiptr>(count * sizeof(TexelArena::Texel));
     const TexelArena::Texel nothing = {};
@@ -276,7 +276,7 @@ void GpuStore::replay(Context& context, osg::State& state, const Entry& entry)
 void GpuStore::update(Context& context, osg::State& state, std::uint64_t upTo)
 {
     if (context.buffer && context.number >= upTo) return;
-    // Pixels come from memory, as they lie there.
+    // Pixels come straight from memory, in rows without gaps.
     state.unbindPixelBufferObject();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);

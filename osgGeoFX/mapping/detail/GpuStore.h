@@ -21,24 +21,24 @@
 namespace osgGeoFX
 {
 
-/** What the GPUs hold of a set of mappings: a texture buffer, a texture array of data layers, and a texture of color
-    tables; and the way of each change there.
+/** The GPUs' data for a set of mappings: a texture buffer, a texture array of data layers, and a texture of color
+    tables. It carries each change to all graphics contexts.
 
-    Changes are written once, with commit(), and told by a number. A graphics context, when it draws a frame, takes over what
-    it has not seen, up to the number that the frame was culled with; so a frame that is drawn late does not see
-    what came after it, and only what changed is uploaded. Thread-safe. (osg::TextureBuffer and osg::Texture2DArray
-    upload whole buffers and lose changes; OSG has no place for partial ones.) */
+    commit() writes changes once, under a number. When a context draws a frame, it takes over the changes up to the
+    number that the frame was culled with. So a frame that is drawn late does not see later changes, and only changes
+    are uploaded. Thread-safe. (osg::TextureBuffer and osg::Texture2DArray upload whole buffers and lose changes. OSG
+    has no means for parts.) */
 class GpuStore : public osg::Referenced
 {
 public:
-    /// Width of the color tables' texture.
+    /// The width of the color tables' texture.
     static constexpr int tableWidth = 1024;
 
     explicit GpuStore(int pageSide) : _pageSide(pageSide) {}
 
     int pageSide() const { return _pageSide; }
 
-    /// One commit's changes.
+    /// The changes of one commit.
     struct Layer
     {
         LayerAtlas::Slot slot;
@@ -47,17 +47,17 @@ public:
     struct Table
     {
         int row = 0;
-        std::vector<std::uint16_t> texels; ///< RGBA, finer than bytes: blending may square them
+        std::vector<std::uint16_t> texels; ///< RGBA; finer than bytes, since blending may square them
     };
     struct Commit
     {
         std::vector<Layer> layers;
         std::vector<Table> tables;
     };
-    /// Takes over the arena's changes and these; its number is that of the frame to cull.
+    /// Takes over the arena's changes and these. The result is the number for the frame to cull.
     std::uint64_t commit(TexelArena& arena, Commit changes);
 
-    /// What the GPU can take; 0 before it has drawn anything.
+    /// The limits of the GPU; 0 before it has drawn anything.
     struct Limits
     {
         int texels = 0; ///< of the texture buffer
@@ -65,7 +65,7 @@ public:
         int pageSide = 0;
     };
     Limits limits() const;
-    /// Bytes that have been uploaded so far, all contexts together.
+    /// The bytes uploaded so far, in all contexts together.
     std::uint64_t uploadedBytes() const;
 
     enum class Part
@@ -76,7 +76,7 @@ public:
     };
     /// Binds a part on the active texture unit, with all changes up to a number.
     void bind(Part part, osg::State& state, std::uint64_t upTo);
-    /// Of all contexts where null.
+    /// Null: those of all contexts.
     void releaseGLObjects(osg::State* state);
 
 protected:
@@ -92,14 +92,15 @@ private:
     struct Entry
     {
         std::uint64_t number = 0;
-        std::shared_ptr<const Texels> all; ///< where much or the size has changed
+        std::shared_ptr<const Texels> all; ///< set instead of patches, if much or the size has changed
         std::vector<Patch> patches;
         Commit changes;
         std::size_t bytes = 0;
     };
     struct Context
     {
-        /// Of the context's own data, and gone when it is closed: the next one with its number has none of these names.
+        /// An object of the context, which dies with it. Without it these names are invalid: the next context with
+        /// the same number does not have them.
         osg::observer_ptr<osg::Referenced> life;
         std::uint64_t number = 0;
         unsigned int buffer = 0, data = 0, layers = 0, tables = 0;
@@ -133,7 +134,7 @@ private:
     std::uint64_t _uploaded = 0;
 };
 
-/// One of the store's textures in a state set, as a frame saw it.
+/// One of the store's textures in a state set, with the changes up to a frame.
 class StoreTexture : public osg::StateAttribute
 {
 public:

@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr double cellsPerMapping = 8; // cells across the smallest mapping whose boundary runs through them
-constexpr double shorterList = 0.75;  // what a split must at least make of the list, on the average
+constexpr double shorterList = 0.75;  // a split must shorten lists to this share at least, on average
 constexpr std::int64_t blockWords = 64;
 
 std::int64_t listWords(std::size_t count)
@@ -104,7 +104,7 @@ private:
                square.size / 8 * cellsPerMapping >= boundaries.smallest;
     }
 
-    /// Sorts mappings into cells; false where their lists would have more than `most` entries together.
+    /// Sorts mappings into cells. False if their lists would have more than `most` entries together.
     bool distribute(const PlaneSquare& square, const Span& items, std::size_t most, PlannedBlock& block)
     {
         _pairs.clear();
@@ -153,7 +153,7 @@ private:
         return words;
     }
 
-    /// The new block; 0 where a split does not pay, or there are too few words left.
+    /// The new block. 0 if the split does not pay, or if too few words are left.
     std::uint32_t split(const PlaneSquare& square, const Span& items)
     {
         const auto paying = static_cast<std::size_t>(shorterList * 64 * static_cast<double>(items.count));

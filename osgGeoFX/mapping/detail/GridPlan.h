@@ -26,45 +26,45 @@ struct GridItem
     }
 };
 
-/// What a grid has to keep to.
+/// The limits of a grid.
 struct GridLimits
 {
-    double margin = 0.0;       ///< footprints are wider by this, for the float arithmetic of the shader
-    double smallestCell = 0.0; ///< side of the smallest cell that float arithmetic tells from its neighbours
-    std::int64_t words = 0;    ///< that may be added by splitting
+    double margin = 0.0; ///< added to footprints on all sides, for the shader's float arithmetic
+    double smallestCell =
+        0.0;                ///< side of the smallest cell that float arithmetic can tell from its neighbours
+    std::int64_t words = 0; ///< the words that splitting may add
 };
 
-/// A block of 8 x 8 cells to be.
+/// A planned block of 8 x 8 cells.
 struct PlannedBlock
 {
-    std::vector<const GridItem*> items;    ///< those of cell 0 in drawing order, those of cell 1, …
+    std::vector<const GridItem*> items;    ///< those of cell 0 in drawing order, then those of cell 1, …
     std::array<std::uint32_t, 65> begin{}; ///< where each cell's items begin
-    std::array<std::uint32_t, 64>
-        child{}; ///< index of the block that a cell is split into; 0 where it is not
+    std::array<std::uint32_t, 64> child{}; ///< index of the block that a cell is split into; 0 for none
 };
 
 constexpr unsigned int partialsWorthSplitting = 4;
 
-/// Texels of a list: one word for the count and one for each mapping.
+/// The texels of a list: one word for the count and one for each mapping.
 constexpr std::uint32_t listTexels(std::size_t count)
 {
     return count == 0 ? 0 : static_cast<std::uint32_t>(count / 4 + 1);
 }
 
-/** The blocks for a square with mappings over it, in drawing order. The first is the square's own; none where
-    splitting the square does not pay, unless it `must`.
+/** Plans the blocks for a square. `items` are the mappings over it, in drawing order. The first block is the square's
+    own. There is none if splitting the square does not pay, unless it `must`.
 
-    A cell is split where four or more boundaries run through it, if the lists get shorter by a quarter on the
-    average, the cells do not get smaller than an eighth of the smallest of those mappings, and there are words left.
-    Those with the most boundaries times area come first, so that the words go where they save the most. */
+    A cell is split under four conditions. Four or more boundaries run through it. Lists get shorter by a quarter on
+    average. The new cells are at least an eighth as wide as the smallest of those mappings. There are words left.
+    Cells with the largest product of boundaries and area come first, so that the words save the most. */
 std::vector<PlannedBlock> planGrid(const PlaneSquare& square, const std::vector<const GridItem*>& items,
                                    const GridLimits& limits, bool must);
 
-/// Calls back for each cell of a square that a footprint lies over, with its index and its square.
+/// Calls `visit` for each cell of a square under a footprint, with the cell's index and square.
 template<class Visit>
 void forCellsUnder(const FootprintShape& shape, const PlaneSquare& square, double margin, const Visit& visit)
 {
-    // The row and the column before and behind it cost little, and then rounding decides nothing here.
+    // One more row and column on each side cost little. With them, rounding decides nothing here.
     const auto first = [&](double low, double origin)
     {
         return std::clamp(std::floor((low - origin) / square.size * 8) - 1, 0.0, 8.0);

@@ -11,8 +11,8 @@
 namespace osgGeoFX
 {
 
-/** Blocks and lists in an arena, as MappingIndex describes them. Whatever needs room fails, without a change, where
-    the arena has none. */
+/** The blocks and lists of a MappingIndex in an arena. A method that needs room fails without a change if the arena
+    has none. */
 class GridStore
 {
 public:
@@ -29,17 +29,17 @@ public:
 
     std::uint32_t count(std::uint32_t list) const { return list == 0 ? 0 : wordAt(list, 0); }
     void read(std::uint32_t list, std::vector<std::uint32_t>& ids) const;
-    /// Replaces a list by another one. Writes only texels that change, in place where it gets no longer.
+    /// Replaces a list. It writes only texels that change, and stays in place unless it gets longer.
     bool replace(std::uint32_t& list, const std::vector<std::uint32_t>& ids);
 
-    /// Stores planned blocks with their lists; the offset of the first, 0 without room.
+    /// Stores planned blocks with their lists. The result is the offset of the first block, or 0 without room.
     std::uint32_t write(const std::vector<PlannedBlock>& blocks);
-    /// Gives back a block with all that is below it.
+    /// Gives back a block and everything below it.
     void release(std::uint32_t block);
 
-    /// Texels of blocks and lists.
+    /// The texels of all blocks and lists.
     std::uint32_t texels() const { return _texels; }
-    /// Of all lists that there have been.
+    /// The length of the longest list so far.
     std::size_t longestList() const { return _longestList; }
     const TexelArena& arena() const { return _arena; }
 

@@ -16,7 +16,7 @@ bool isPowerOfTwo(int number)
     return number > 0 && (number & (number - 1)) == 0;
 }
 
-/// Column and row on the Z curve: their bits take turns.
+/// The number of a column and row on the Z curve, where the bits of both alternate.
 std::uint32_t interleave(std::uint32_t column, std::uint32_t row)
 {
     std::uint32_t number = 0;
@@ -25,7 +25,7 @@ std::uint32_t interleave(std::uint32_t column, std::uint32_t row)
     return number;
 }
 
-/// The even bits of a number on the Z curve: its column, or its row when shifted by one.
+/// The even bits of a number on the Z curve: its column. Shifted by one, its row.
 int evenBits(std::uint32_t number)
 {
     std::uint32_t bits = 0;
@@ -58,7 +58,7 @@ std::optional<LayerAtlas::Slot> LayerAtlas::add(int side)
     if (!isPowerOfTwo(side) || side > _pageSide) return std::nullopt;
     const std::size_t level = levelOf(side);
 
-    // The smallest free square that is large enough; of equal ones that in the fullest page.
+    // The smallest free square that is large enough. Among equal ones, that of the fullest page.
     Page* best = nullptr;
     std::size_t bestLevel = 0;
     for (Page& page : _pages)
@@ -109,7 +109,7 @@ bool LayerAtlas::release(const Slot& slot)
     if (page.taken[level].erase(square) == 0) return false;
     page.used -= static_cast<std::int64_t>(slot.side) * slot.side;
 
-    // Four free quarters are one free square again.
+    // Four free quarters make one free square again.
     page.free[level].insert(square);
     while (level > 0)
     {

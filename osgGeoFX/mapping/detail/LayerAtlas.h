@@ -13,13 +13,13 @@ namespace osgGeoFX
 
 /** Finds room for square slots in square pages, the layers of one texture array. It holds no texels.
 
-    Sides are powers of two, and a slot lies at a multiple of its side, so that its mip levels lie alone in the page's
-    down to one texel. A new slot goes where the smallest free square takes it, in the fullest page of those; a page
-    is begun only where no other has room. Freed squares merge. Not thread-safe. */
+    Sides are powers of two. A slot lies at a multiple of its side, so that its mip levels share no texel with others,
+    down to one texel. A new slot takes the smallest free square that fits, in the fullest page with one. A new page
+    is begun only if no other has room. Freed squares merge. Not thread-safe. */
 class LayerAtlas
 {
 public:
-    /// Texels from x to x + side − 1 and from y to y + side − 1 of a page.
+    /// The texels from x to x + side − 1 and from y to y + side − 1 of a page.
     struct Slot
     {
         int page = 0;
@@ -28,25 +28,26 @@ public:
         int side = 0;
     };
 
-    /// A page's side is a power of two from 1 to 32768; any other is taken as the next below, or as the limit.
+    /// A page's side is a power of two from 1 to 32768. Any other number is rounded down or limited to that.
     LayerAtlas(int pageSide, int maxPages);
 
-    /// Room for a slot; nothing where the side is no power of two or larger than a page, or where all pages are full.
+    /// Room for a slot. Nothing if the side is no power of two, if it is larger than a page, or if all pages are
+    /// full.
     std::optional<Slot> add(int side);
 
-    /// Gives a slot back. False, and nothing changes, where it is not one that add() gave and that is still in use.
+    /// Gives a slot back. False, without a change, if add() did not give it or if it is no longer in use.
     bool release(const Slot& slot);
 
     int pageSide() const { return _pageSide; }
     int maxPages() const { return _maxPages; }
-    /// Pages that were begun; they stay when they become empty.
+    /// The pages begun so far. Empty pages stay.
     int pages() const { return static_cast<int>(_pages.size()); }
-    /// Texels in use, of the page or of all.
+    /// The texels in use, of one page or of all.
     std::int64_t used(int page) const { return _pages[page].used; }
     std::int64_t used() const;
 
 private:
-    /// Squares of one size are numbered along the Z curve: a square's quarters are 4n … 4n + 3.
+    /// Squares of one size are numbered along the Z curve. The quarters of square n are 4n … 4n + 3.
     using Squares = std::set<std::uint32_t>;
 
     struct Page

@@ -77,7 +77,7 @@ void LayerResidency::update()
     if (std::none_of(_layers.begin(), _layers.end(),
                      [&](const auto& entry) { return isStale(entry.second); }))
         return;
-    // The most important first: what has to go for them gets what room is left.
+    // The most important layers come first. Less important ones make room for them, and share what is left.
     std::vector<Layer*> layers;
     for (auto& [data, layer] : _layers)
         layers.push_back(&layer);
@@ -98,7 +98,7 @@ void LayerResidency::update()
     }
 }
 
-/// Whether its place is another one than before.
+/// Whether the layer has moved.
 bool LayerResidency::updateLayer(Layer& layer)
 {
     const std::shared_ptr<LayerPixels> pixels = pixelsOf(layer);
@@ -121,7 +121,7 @@ bool LayerResidency::updateLayer(Layer& layer)
     return !isSame(former, layer.placed);
 }
 
-/// Null without a picture, and for one that cannot be drawn.
+/// Null for a layer without a picture, and for one that cannot be drawn.
 std::shared_ptr<LayerPixels> LayerResidency::pixelsOf(const Layer& layer) const
 {
     const DataLayer& data = *layer.data;
@@ -157,7 +157,7 @@ std::optional<LayerAtlas::Slot> LayerResidency::findRoom(int side, const DataLay
     return slot;
 }
 
-/// False where all that have a place are as important.
+/// False if all layers with a place are at least as important.
 bool LayerResidency::makeRoomFor(const DataLayer& data)
 {
     Layer* least = nullptr;

@@ -16,35 +16,36 @@
 namespace osgGeoFX
 {
 
-/** Which data layers lie where in the pages of the texture array.
+/** The places of data layers in the pages of the texture array.
 
-    A layer has a place for as long as some mapping uses it and there is room. Where there is not, the most important layers
-    stay, and the others are left out until room is made. Users of a layer that moves are among the changes. For one thread at
-    a time. */
+    A layer has a place while some mapping uses it and there is room. If there is not enough room, the most important
+    layers stay. The others are left out until room is made. If a layer moves, its users are among the changes. For
+    one thread at a time. */
 class LayerResidency
 {
 public:
-    /// One mapping's layers; null where it has none.
+    /// One mapping's layers; null for none.
     struct Pair
     {
         osg::ref_ptr<DataLayer> layer, mask;
     };
 
-    /// The changes must outlive it. There are no pages before the first reset().
+    /// The changes must outlive this object. There are no pages before the first reset().
     explicit LayerResidency(MappingChanges& changes) : _changes(changes) {}
 
-    /// Pages anew: no layer has a place before the next update().
+    /// Makes new pages. No layer has a place before the next update().
     void reset(int pageSide, int maxPages);
-    /// A mapping has some layers in the place of others. One that is among both keeps its place, and its texels there.
+    /// A mapping replaces its layers. A layer that is in both pairs keeps its place and its texels.
     void use(ProjectiveMapping& user, const Pair& next, const Pair& former);
-    /// Finds room for what is new, has another size, or was left out, and uploads what has changed.
+    /// Finds room for layers that are new, have another size, or were left out. Uploads what has changed.
     void update();
 
-    /// Nothing for null, for a layer that no mapping uses, without a picture, and for one that is left out.
+    /// The place of a layer. Nothing for null, for an unused layer, for one without a picture, and for one that is
+    /// left out.
     std::optional<PlacedLayer> placed(const DataLayer* data) const;
-    /// Layers that are in use, placed or not.
+    /// The number of layers in use, placed or not.
     std::size_t count() const { return _layers.size(); }
-    /// Those of them with a picture that has no room.
+    /// The number of these that have a picture and no room.
     int leftOut() const { return _leftOut; }
     int pagesUsed() const { return _atlas.pages(); }
 

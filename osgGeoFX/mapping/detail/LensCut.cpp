@@ -15,7 +15,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// One level of a layer, for looking up between its texels.
+/// One level of a layer, for interpolation between its texels.
 class Level
 {
 public:
@@ -61,11 +61,11 @@ private:
     }
 
     const std::vector<LayerPixels::Texel>& _texels;
-    int _side, _width, _height; ///< the last two of the last texels
+    int _side, _width, _height; ///< the last two: of the texels that have data
     double _scaleX, _scaleY;
 };
 
-/// Colors by their alphas, so that what is transparent does not bleed.
+/// Averages colors weighted by their alphas, so that transparent texels do not bleed.
 void mixColors(const Level::Four& four, double alpha, unsigned char* rgba)
 {
     std::array<double, 4> sum = {};
@@ -92,7 +92,7 @@ float mixValues(const Level::Four& four)
         sum += four.weights[i] * value;
         weights += four.weights[i];
     }
-    // Where most of it is none, there is none.
+    // Mostly no data means no data.
     return weights < 0.5 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(sum / weights);
 }
 
@@ -112,7 +112,7 @@ osg::ref_ptr<osg::Image> cutOutLens(const ProjectiveMapping& lens, const Project
         const glm::dvec3 found = lensToContent * glm::dvec3(u, v, 1.0);
         return glm::dvec2(found) / found.z;
     };
-    // The level whose texels are about as large as the cut's, in the middle.
+    // The level whose texels are about as large as those of the cut, in the middle.
     const double step = 1.0 / side;
     const glm::dvec2 size(pixels.width, pixels.height);
     const glm::dvec2 middle = raster(0.5, 0.5);

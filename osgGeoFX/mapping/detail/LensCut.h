@@ -8,10 +8,10 @@
 namespace osgGeoFX
 {
 
-/** The part of a layer below a lens, in the lens' own raster coordinates.
+/** Cuts out the part of a layer below a lens, in the raster coordinates of the lens.
 
-    `pixels` are those of the content's layer. Colors take the mask's alpha into their own; values and classes are
-    NaN where there are none and outside of the content's raster. */
+    `pixels` are those of the content's layer. Colors get the mask's alpha times their own. Values and classes are NaN
+    where there is no data and outside the content's raster. */
 osg::ref_ptr<osg::Image> cutOutLens(const ProjectiveMapping& lens, const ProjectiveMapping& content,
                                     const LayerPixels& pixels, int side, const osg::Image& mask);
 

@@ -10,11 +10,11 @@
 namespace osgGeoFX
 {
 
-/// What has changed since the last commit: layers, tables and records tell each other and the GPU of it.
+/// The changes since the last commit. Layers, tables and records tell each other and the GPU of them.
 struct MappingChanges
 {
-    std::unordered_set<ProjectiveMapping*> mappings; ///< whose records are to be written anew
-    /// Something was taken off: layers and mappings that were left out are tried again.
+    std::unordered_set<ProjectiveMapping*> mappings; ///< those whose records must be written anew
+    /// Room was made: layers and mappings that were left out are tried again.
     bool roomMade = false;
     GpuStore::Commit uploads;
 };

@@ -12,19 +12,21 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr double roundingShare = 1e-6;            // of the root's size: what a place has lost in the shader
+constexpr double roundingShare = 1e-6;            // of the root's size: the error of a place in the shader
 constexpr double smallestShare = 1.0 / (1 << 18); // 1 / 8^6; four times the rounding
-constexpr double slack = 1.5;                     // root to footprints, so that small moves stay inside
+constexpr double slack = 1.5; // the root's size over the footprints', so that small moves stay inside
 constexpr std::int64_t wordsPerMapping = 64;
 constexpr std::int64_t wordsAnyway = 1 << 20;
-constexpr std::size_t fewToMerge = 2;        // boundaries in a block; fewer than split it, lest it flickers
-constexpr std::uint32_t longestToMerge = 64; // a list; longer ones cost more to compare than a merge saves
+constexpr std::size_t fewToMerge =
+    2; // boundaries in a block; fewer than a split needs, so that it does not flicker
+constexpr std::uint32_t longestToMerge =
+    64; // mappings in a list; comparing longer lists costs more than a merge saves
 
-/// A square around a box, a power of two in size, not below `smallest`.
+/// A square around a box. Its size is a power of two, at least `smallest`.
 PlaneSquare squareAround(const osg::Vec2d& low, const osg::Vec2d& high, double smallest)
 {
     const double extent = std::max(high.x() - low.x(), high.y() - low.y());
-    // So far away that numbers are coarse, the rounding must be smaller than the square all the same.
+    // Far away, numbers are coarse. The square must still be larger than their rounding.
     const double far =
         std::max({std::abs(low.x()), std::abs(low.y()), std::abs(high.x()), std::abs(high.y())});
     const double wanted = std::max({slack * extent, smallest, std::ldexp(far, -24), 1.0});
@@ -71,25 +73,25 @@ bool MappingIndex::holds(const FootprintShape& shape) const
            shape.high().y() + margin() < end.y();
 }
 
-/// For a grid of `count` mappings that has taken so many texels.
+/// The limits of a grid of `count` mappings that has taken so many texels.
 GridLimits MappingIndex::limits(double rootSize, std::size_t count, std::uint32_t taken) const
 {
     const TexelArena& arena = _store.arena();
     const std::int64_t others = std::int64_t(arena.used()) - _store.texels();
-    const std::int64_t room = arena.limit() - others; // a quarter of the words
+    const std::int64_t room = arena.limit() - others; // texels, a quarter of the words
     const std::int64_t words =
         std::min(wordsPerMapping * static_cast<std::int64_t>(count) + wordsAnyway, room);
     return {roundingShare * rootSize, smallestShare * rootSize, words - 4 * std::int64_t(taken)};
 }
 
-/// Makes the grid for these mappings beside the old one, then gives that back.
+/// Makes a grid for these mappings beside the old one, and then releases the old one.
 bool MappingIndex::rebuild(const Items& items, double formerSize)
 {
     PlaneSquare square;
     std::uint32_t block = 0;
     if (!items.empty())
     {
-        // Shrinking by little would only be undone by the next move.
+        // The next move would undo a small shrinking.
         square = squareAround(items, 0.0);
         if (square.size * 16 > formerSize) square = squareAround(items, formerSize);
         std::vector<const GridItem*> order;
@@ -101,7 +103,7 @@ bool MappingIndex::rebuild(const Items& items, double formerSize)
         block = _store.write(planGrid(square, order, allowed, true));
         if (block == 0)
         {
-            // Rather long lists than none.
+            // Long lists are better than none.
             allowed.words = 0;
             block = _store.write(planGrid(square, order, allowed, true));
         }
@@ -167,7 +169,7 @@ bool MappingIndex::update(std::uint32_t id, std::uint64_t rank, const PlaneFootp
     if (held)
     {
         remove(refused, &item.shape, _root.block, rootSquare());
-        // It is still in all of these lists, so this needs no room.
+        // These lists still have it, so they need no room.
         place(item, _root.block, rootSquare());
         _grown.clear();
     }
@@ -195,8 +197,8 @@ void MappingIndex::clear()
     _items.clear();
 }
 
-/// Puts a mapping into the lists of all cells under it, where its rank says, and remembers those that are longer now.
-/// False where there was no room for one; then others may have it.
+/// Puts a mapping into the lists of all cells under it, at the place of its rank, and notes the lists that got
+/// longer. False if one list had no room. Some lists may have it then.
 bool MappingIndex::place(const GridItem& item, std::uint32_t block, const PlaneSquare& square)
 {
     bool fits = true;
@@ -228,8 +230,8 @@ bool MappingIndex::placeInList(const GridItem& item, std::uint32_t block, unsign
     return true;
 }
 
-/// Splits those of the lists that have grown for which it pays; makes the whole grid anew where it has become far
-/// too large, which can only be through mappings that lie over very many cells.
+/// Splits the grown lists where it pays. Makes the whole grid anew if it has become far too large; only mappings over
+/// very many cells can cause this.
 void MappingIndex::splitGrown()
 {
     const GridLimits now = limits(_root.size, _items.size(), _store.texels());
@@ -239,7 +241,7 @@ void MappingIndex::splitGrown()
     {
         std::uint32_t list = _store.word(grown.block, grown.cell);
         const std::uint32_t count = _store.count(list);
-        // A long list that could not be split needs not be tried for each mapping more.
+        // A long list that cannot be split is not tried again for each further mapping.
         if (count < partialsWorthSplitting || (count > 16 && count % 16 != 0)) continue;
         _store.read(list, _ids);
         items.clear();
@@ -262,7 +264,7 @@ void MappingIndex::splitGrown()
     }
 }
 
-/// Takes a mapping out of the lists of all cells under it, but those under `except` too. Whether it was in any.
+/// Takes a mapping out of the lists of all cells under it, except cells under `except` too. Whether any list had it.
 bool MappingIndex::remove(const GridItem& item, const FootprintShape* except, std::uint32_t block,
                           const PlaneSquare& square)
 {
@@ -299,7 +301,7 @@ bool MappingIndex::removeFromList(const GridItem& item, std::uint32_t block, uns
     return true;
 }
 
-/// Makes a list of a block again where so little is left in it that it does not pay.
+/// Turns a block back into a list if a split no longer pays.
 void MappingIndex::mergeChild(std::uint32_t block, unsigned int cell, const PlaneSquare& square)
 {
     const std::uint32_t child = GridStore::offsetOf(_store.word(block, cell));
@@ -315,7 +317,7 @@ void MappingIndex::mergeChild(std::uint32_t block, unsigned int cell, const Plan
     _store.setWord(block, cell, list);
 }
 
-/// Whether few boundaries run through a block; with all its mappings.
+/// Whether few boundaries run through a block. `items` gets all of its mappings.
 bool MappingIndex::mayMerge(std::uint32_t block, const PlaneSquare& square,
                             std::vector<const GridItem*>& items) const
 {

@@ -16,13 +16,13 @@ namespace osgGeoFX
 
 /** Tells which mappings lie over a place of the plane: a hierarchical grid in an arena, for a fragment shader to walk.
 
-    A block has 8 x 8 cells of one word each: 16 texels, word i for cell (i % 8, i / 8) in component i % 4 of texel
-    i / 4. A cell's word is 0 where no mapping lies; with the highest bit, the rest is the texel where the block that
-    the cell is split into begins; else it is the texel of a list: the number of mappings, then their ids in drawing
-    order, the last one on top. Up to three cost one fetch.
+    A block has 8 x 8 cells of one word each, in 16 texels: the word of cell (i % 8, i / 8) is component i % 4 of texel
+    i / 4. A cell without a mapping has the word 0. A word with the highest bit set is the first texel of the block that
+    the cell is split into. Any other word is the texel of a list: the number of mappings, and then their ids in drawing
+    order, the last one on top. A list of up to three mappings costs one fetch.
 
-    The walk, with `place` in metres from the root's origin, `inverseSize` the root's 1 / size, and `block` its
-    block; it returns the texel of the list, or 0:
+    This is the walk. `place` is in metres from the root's origin, `inverseSize` is the root's 1 / size, and `block` is
+    its block. The result is the texel of the list, or 0:
 
         uint geofx_mappingList(vec2 place, float inverseSize, uint block)
         {
@@ -42,16 +42,16 @@ namespace osgGeoFX
             return word;
         }
 
-    The root's size is a power of two, so all of this but `place` is exact. Footprints are widened by a millionth of
-    the root's size for what `place` has lost by then; so a list may have mappings that end just before a place, and
-    those whose footprint passes elsewhere through its cell, but lacks none.
+    The root's size is a power of two, so everything but `place` is exact. Footprints are wider by a millionth of the
+    root's size, for the rounding of `place`. So a list lacks no mapping. It may have mappings that end just before a
+    place, and mappings whose footprint passes elsewhere through the cell.
 
-    Cells follow the density: see planGrid(). Cells are not smaller than 1 / 8^6 of the root. The grid takes about
-    64 words for each mapping, and a million, and no more than a quarter of what its arena may have; when this leaves
-    no words for splitting, lists are longer. Edits touch the lists of the cells that a footprint leaves or enters.
+    Cells follow the density; see planGrid(). No cell is smaller than 1 / 8^6 of the root. The grid takes about 64 words
+    for each mapping and a million more, but at most a quarter of the words that its arena may have. Without words for
+    splitting, lists are longer. An edit touches the lists of the cells that a footprint leaves or enters.
 
-    What footprints leave is given back, but the root shrinks only when it is made anew for another reason. For one
-    thread at a time. */
+    Texels that are no longer needed are given back. The root shrinks only when it is made anew for another reason. For
+    one thread at a time. */
 class MappingIndex
 {
 public:
@@ -67,7 +67,7 @@ public:
     {
         osg::Vec2d origin;
         double size = 0.0;       ///< a power of two; 0 without mappings
-        std::uint32_t block = 0; ///< its texel; 0 without mappings
+        std::uint32_t block = 0; ///< the texel of its block; 0 without mappings
     };
 
     /// The arena must outlive the index.
@@ -76,16 +76,16 @@ public:
     MappingIndex(const MappingIndex&) = delete;
     MappingIndex& operator=(const MappingIndex&) = delete;
 
-    /// False, and nothing changes, where the id is there already, the footprint is not valid(), or the arena is
-    /// full.
+    /// Adds a mapping. False, without a change, if the id is there already, if the footprint is not valid(), or if
+    /// the arena is full.
     bool insert(const Entry& entry);
-    /// False where there is no such id.
+    /// Removes a mapping. False if there is no such id.
     bool erase(std::uint32_t id);
-    /// Moves or reorders a mapping. False, and nothing changes for a walk, where there is no such id, the footprint
-    /// is not valid(), or the arena is full.
+    /// Moves or reorders a mapping. False if there is no such id, if the footprint is not valid(), or if the arena is
+    /// full. A walk then finds what it found before.
     bool update(std::uint32_t id, std::uint64_t rank, const PlaneFootprint& footprint);
-    /// Replaces all mappings, without those that insert() would refuse. False, and nothing changes, where the arena
-    /// has no room for the new grid beside the old one.
+    /// Replaces all mappings, without those that insert() would refuse. False, without a change, if the arena has no
+    /// room for the new grid beside the old one.
     bool assign(const std::vector<Entry>& entries);
     void clear();
 
@@ -93,10 +93,10 @@ public:
     std::size_t size() const { return _items.size(); }
     bool contains(std::uint32_t id) const { return _items.count(id) != 0; }
 
-    /// What a shader finds for a place: in drawing order, all mappings over it and perhaps some nearby.
+    /// What a shader finds for a place: all mappings over it and perhaps some nearby, in drawing order.
     std::vector<std::uint32_t> at(const osg::Vec2d& place) const;
 
-    /// Mappings in the longest list that there has been.
+    /// The number of mappings in the longest list so far.
     std::size_t longestList() const { return _store.longestList(); }
 
     GridStatistics statistics() const { return statisticsOf(_store, _root.block); }
@@ -132,7 +132,7 @@ private:
     Items _items;
     std::uint32_t _texelsWhenBuilt = 0;
     std::vector<Grown> _grown;
-    std::vector<std::uint32_t> _ids; ///< of the list at hand
+    std::vector<std::uint32_t> _ids; ///< of the current list
 };
 
 } // namespace osgGeoFX

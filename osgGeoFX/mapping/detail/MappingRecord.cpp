@@ -37,7 +37,7 @@ Texel numbers(const osg::Vec4d& v)
 /// The bits of a record's flags; stages/mappings.frag.glsl has the same.
 enum Flag : std::uint32_t
 {
-    // The lowest two bits are the layer's kind and 0 for none.
+    // The lowest two bits are the layer's kind, 0 for none.
     SMOOTH = 1u << 2u,
     MATRIX = 1u << 3u,
     PROJECTIVE = 1u << 4u,
@@ -52,7 +52,7 @@ enum Flag : std::uint32_t
     RANGE = 1u << 15u,
     TABLE_CLASSES = 1u << 16u,
     TABLE_EXACT = 1u << 20u
-    // From bit 17 on the mask's kind, and whether it is smooth; from 24 on the channels.
+    // From bit 17 on: the mask's kind, and whether it is smooth. From bit 24 on: the channels.
 };
 
 std::uint32_t kindBits(const DataLayer& layer)
@@ -115,7 +115,7 @@ std::uint32_t flagsOf(const ProjectiveMapping& mapping, bool hasLayer, bool hasM
 void writeProjector(const ProjectiveMapping& mapping, double opacity, std::uint32_t& flags, Texel* record)
 {
     const glm::dmat3 there = mapping.placeToRaster();
-    // The place that comes to lie in the raster's middle, and what the projection does about it.
+    // The place in the middle of the raster, and the projection's part in it.
     const glm::dvec3 middle = glm::inverse(there) * glm::dvec3(0.5, 0.5, 1.0);
     const glm::dvec2 center(middle.x / middle.z, middle.y / middle.z);
     const double scale = (there * glm::dvec3(center, 1.0)).z;
@@ -124,7 +124,7 @@ void writeProjector(const ProjectiveMapping& mapping, double opacity, std::uint3
     glm::dvec2 v = glm::dvec2(there[0][1], there[1][1]) / scale - 0.5 * w;
     if (!mapping.getSoftEdges())
     {
-        // So that a pixel on the edge of two tiles is within one of them, whatever floats make of their places.
+        // A margin: a pixel on the edge of two tiles lies within one of them, in spite of the rounding of floats.
         const double size = 1.0 / glm::length(u) + 1.0 / glm::length(v);
         const double rounding = 2.5e-7 * (std::abs(center.x) + std::abs(center.y) + size);
         u /= 1.0 + 2.0 * rounding * glm::length(u);
@@ -136,7 +136,8 @@ void writeProjector(const ProjectiveMapping& mapping, double opacity, std::uint3
     record[9] = numbers(w.x, w.y);
 }
 
-/// The square of the largest radius up to which the distorted one grows with it, or is well outside of the picture.
+/// The square of the largest radius of the camera's picture. Up to it the distorted radius grows with the true one,
+/// or is well outside of the picture.
 double reachOf(const ProjectiveMapping::Camera& camera, double tangentX, double tangentY)
 {
     const double outside = 2.0 * std::hypot(tangentX, tangentY);

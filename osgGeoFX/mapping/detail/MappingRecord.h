@@ -10,7 +10,7 @@
 namespace osgGeoFX
 {
 
-/// A layer's place on the GPU.
+/// The place of a layer on the GPU.
 struct PlacedLayer
 {
     LayerAtlas::Slot slot;
@@ -18,29 +18,29 @@ struct PlacedLayer
     int height = 0;
 };
 
-/** One mapping as the GPU has it, for shaders/stages/mappings.frag.glsl to read.
+/** One mapping as the GPU has it. shaders/stages/mappings.frag.glsl reads it.
 
-    Texel by texel: 0 the rows U and V of the projector; 1 its center, opacity, flags; 2 the layer's slot, codes of the
+    The texels are: 0 the rows U and V of the projector; 1 its center, opacity, flags; 2 the layer's slot, codes of the
     transfer; 3 heights, the color table's row; 4 value range and ramp; 5-7 the color matrix; 8 the constant; 9 the
-    projector's row W; 10 center and half size in the frame; 11 fades by distance and size; 12 by slope, size in pixels,
-    softness; 13 the mask's slot; and of a pinhole: 16 eye and range; 17-19 its axes; 20 radial distortion and its reach;
-    21 tangential distortion and the tangents of the half angles. Numbers are bits of floats but for slots, flags and
-    codes. */
+    projector's row W; 10 center and half size in the frame; 11 fades by distance and size; 12 fade by slope, size in
+    pixels, softness; 13 the mask's slot. A pinhole also has: 16 eye and range; 17-19 its axes; 20 radial distortion and
+    its reach; 21 tangential distortion and the tangents of the half angles. Numbers are bits of floats, except slots,
+    flags and codes. */
 class MappingRecord
 {
 public:
     static constexpr std::uint32_t texels = 14;
     static constexpr std::uint32_t pinholeTexels = 22;
 
-    /// What the shader's code must have for a mapping; a bit for each name, in its order.
+    /// What the shader's code must have for a mapping; one bit for each name, in this order.
     static constexpr const char* features[] = {"COLORS",  "VALUES",     "CLASSES",  "TABLES",  "MATRICES",
                                                "MASKS",   "PROJECTIVE", "PINHOLES", "SYMBOLS", "FADES",
                                                "HEIGHTS", "BLENDS",     "RANGES",   "NEAREST"};
     static std::uint32_t featuresOf(const TexelArena::Texel* record);
 
-    /// How many texels a mapping needs.
+    /// The number of texels that a mapping needs.
     static std::uint32_t sizeOf(const ProjectiveMapping& mapping);
-    /// `position` is the center in the frame; `tableRow` −1 where there is no table.
+    /// `position` is the center in the frame. `tableRow` is −1 without a table.
     static void write(const ProjectiveMapping& mapping, const std::optional<PlacedLayer>& layer,
                       const std::optional<PlacedLayer>& mask, int tableRow, const osg::Vec3d& position,
                       TexelArena::Texel* record);

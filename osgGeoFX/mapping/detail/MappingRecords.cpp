@@ -10,7 +10,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// From so many changes at once on the whole grid is made anew.
+/// With so many changes at once, the whole grid is made anew.
 constexpr std::size_t bulk = 2000;
 
 bool needsLayer(const ProjectiveMapping& mapping)
@@ -19,7 +19,7 @@ bool needsLayer(const ProjectiveMapping& mapping)
     return source == ColorTransfer::LAYER || source == ColorTransfer::TABLE;
 }
 
-/// Whether one is to stay rather than the other.
+/// Whether `a` stays rather than `b` if there is room for one.
 bool outranks(const ProjectiveMapping& a, const ProjectiveMapping& b)
 {
     if (a.getImportance() != b.getImportance()) return a.getImportance() > b.getImportance();
@@ -58,7 +58,7 @@ void MappingRecords::remove(ProjectiveMapping& mapping)
 
 void MappingRecords::clear()
 {
-    // At once: out of a long list one after the other takes its length squared.
+    // All at once: taking one after the other out of a long list takes time with the square of its length.
     _index->clear();
     for (const auto& [mapping, item] : _items)
     {
@@ -223,7 +223,7 @@ void MappingRecords::update(const PositionOf& positionOf)
         else
             takeOff(item);
     }
-    // How the grid is split depends on the order, and that of the set is one of addresses.
+    // The splits of the grid depend on the order. The set's own order is that of addresses, so it is not used.
     std::sort(items.begin(), items.end(),
               [](const Item* one, const Item* other) { return one->sequence < other->sequence; });
     bool placed = true;

@@ -20,29 +20,30 @@ namespace osgGeoFX
 
 /** The mappings' records in the texel arena, the grid over them (MappingIndex), and cameras' lists of them.
 
-    A record is there while its mapping shows something and the arena has room. Where it has not, the most important mappings
-    stay, of equal ones the largest, and the others are left out until room is made. For one thread at a time. */
+    A record exists while its mapping shows something and the arena has room. If there is not enough room, the most
+    important mappings stay, and the largest among equal ones. The others are left out until room is made. For one
+    thread at a time. */
 class MappingRecords
 {
 public:
-    /// Where in the frame a place of the plane at a height is.
+    /// The position in the frame of a place: x and y on the plane, and a height.
     using PositionOf = std::function<osg::Vec3d(const osg::Vec3d& place)>;
     using Wanted = std::function<bool(const ProjectiveMapping&)>;
-    /// What a record refers to, as it was when the mapping's last change was worked in.
+    /// What a record refers to since the mapping's last change was worked in.
     struct Sources
     {
         LayerResidency::Pair layers;
         TableRows::Key table;
     };
 
-    /// All three must outlive it.
+    /// All three must outlive this object.
     MappingRecords(MappingChanges& changes, const LayerResidency& layers, const TableRows& tables);
 
     void add(ProjectiveMapping& mapping);
     void remove(ProjectiveMapping& mapping);
     void clear();
     std::size_t count() const { return _items.size(); }
-    /// Null for a mapping that was not added. Valid until it is removed.
+    /// Null for a mapping that was not added. Valid until the mapping is removed.
     Sources* sources(ProjectiveMapping& mapping);
     template<class Action>
     void each(const Action& action)
@@ -51,23 +52,23 @@ public:
             action(*mapping, item.sources);
     }
 
-    /// All are to be written anew.
+    /// Notes that all records must be written anew.
     void changeAll();
-    /// Another arena: no mapping has a record before the next update(), and lists that cameras have are not valid any more.
+    /// Takes another arena. No mapping has a record before the next update(), and cameras' lists are no longer valid.
     void reset();
-    /// Writes the records of the mappings that have changed, or takes them off.
+    /// Writes the records of mappings that have changed, or takes them off.
     void update(const PositionOf& positionOf);
 
-    /// Fills a camera's empty list with those of the mappings that are wanted.
+    /// Fills a camera's empty list with the mappings that are wanted.
     void fill(CameraList& list, const Wanted& wanted);
     void release(CameraList& list) { list.release(_arena); }
 
     TexelArena& arena() { return *_arena; }
     const TexelArena& arena() const { return *_arena; }
     const MappingIndex& index() const { return *_index; }
-    /// What the shader's code must have; only grows, so that it is not compiled again and again.
+    /// What the shader's code must have. It only grows, so that the code is not compiled again and again.
     std::uint32_t features() const { return _features; }
-    /// Mappings that show something and have no room.
+    /// The number of mappings that show something and have no room.
     int leftOut() const { return _leftOut; }
 
 private:
@@ -94,11 +95,11 @@ private:
     MappingChanges& _changes;
     const LayerResidency& _layers;
     const TableRows& _tables;
-    std::shared_ptr<TexelArena> _arena; ///< shared with no one; lists tell by it whether they are valid
+    std::shared_ptr<TexelArena> _arena; ///< shared with no one; lists find out by it whether they are valid
     std::unique_ptr<MappingIndex> _index;
     std::uint64_t _sequence = 0;
     std::unordered_map<ProjectiveMapping*, Item> _items;
-    std::map<std::uint64_t, std::uint32_t> _sorted; ///< records on the GPU by rank
+    std::map<std::uint64_t, std::uint32_t> _sorted; ///< records on the GPU, by rank
     std::uint32_t _features = 0;
     int _leftOut = 0;
 };

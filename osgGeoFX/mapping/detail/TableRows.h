@@ -13,12 +13,12 @@
 namespace osgGeoFX
 {
 
-/** Which color table has which row of the tables' texture. Mappings with the same table over the same range share a row, which
-    is free again when the last of them goes. For one thread at a time. */
+/** The rows of color tables in the tables' texture. Mappings with the same table over the same range share a row. It
+    is free again after the last of them. For one thread at a time. */
 class TableRows
 {
 public:
-    /// A table over a range; without a table it stands for none.
+    /// A table over a range. Without a table it stands for none.
     struct Key
     {
         const ColorTable* table = nullptr;
@@ -30,16 +30,16 @@ public:
         }
     };
 
-    /// The changes must outlive it.
+    /// The changes must outlive this object.
     explicit TableRows(MappingChanges& changes) : _changes(changes) {}
 
-    /// All rows are to be uploaded anew; they stay where they are.
+    /// Notes that all rows must be uploaded anew. They stay where they are.
     void reset();
-    /// A mapping has one table in the place of another.
+    /// A mapping replaces its table.
     void use(ProjectiveMapping& user, const Key& next, const Key& former);
     /// Gives rows to new tables, and uploads what has changed.
     void update();
-    /// 0 for a table that no mapping has.
+    /// The row of a table; 0 for a table that no mapping has.
     int row(const Key& key) const;
 
 private:

@@ -12,10 +12,10 @@ namespace
 {
 
 constexpr std::uint32_t highestLimit = 0x7fffffffu; // offsets leave one bit of a word to their users
-constexpr std::uint32_t joinedGap = 4;              // an upload costs more than these few texels
+constexpr std::uint32_t joinedGap = 4;              // an upload costs more than so many texels
 constexpr std::size_t fewestToJoin = 4096;
 
-/// The order of the smallest block that `count` texels fit into.
+/// The order of the smallest block with room for `count` texels.
 unsigned int orderFor(std::uint32_t count)
 {
     unsigned int order = 0;
@@ -26,7 +26,7 @@ unsigned int orderFor(std::uint32_t count)
     return order;
 }
 
-/// The order of the largest block that may begin at `first` and has no more than `count` texels.
+/// The order of the largest block that may begin at `first` and has at most `count` texels.
 unsigned int largestOrder(std::uint32_t first, std::uint32_t count)
 {
     unsigned int order = 0;
@@ -72,7 +72,7 @@ void TexelArena::release(std::uint32_t offset, std::uint32_t count)
     }
 }
 
-/// Takes the lowest of the smallest blocks that are large enough, and leaves its upper halves free.
+/// Takes the lowest of the smallest blocks that are large enough. Its unused upper halves stay free.
 std::uint32_t TexelArena::takeFree(unsigned int order)
 {
     unsigned int found = order;
@@ -111,14 +111,15 @@ std::uint32_t TexelArena::startOfFreeTail() const
     std::uint32_t start = size();
     for (unsigned int order = 0; order < orders; ++order)
     {
-        // From the end, free blocks grow up to a well-aligned place; what is free before that begins none.
+        // Towards the end of the array, free blocks get smaller. From the end on, they are joined as long as they
+        // touch.
         const std::set<std::uint32_t>& blocks = _free[order];
         if (!blocks.empty() && *blocks.rbegin() + (1u << order) == start) start = *blocks.rbegin();
     }
     return start;
 }
 
-/// Makes the array long enough for one more block, and by half as much again, for a longer array means a new buffer.
+/// Makes room for one more block, and half as much again, since a longer array means a new buffer.
 bool TexelArena::grow(unsigned int order)
 {
     const std::uint64_t block = 1ull << order;
@@ -137,7 +138,7 @@ bool TexelArena::grow(unsigned int order)
 TexelArena::Texel* TexelArena::edit(std::uint32_t offset, std::uint32_t count)
 {
     assert(offset > 0 && offset + count <= size());
-    if (_grown) return _texels.data() + offset; // all of it is to be uploaded
+    if (_grown) return _texels.data() + offset; // everything is uploaded anyway
     const std::uint32_t end = offset + count;
     if (!_changes.empty() && offset >= _changes.back().first &&
         offset <= _changes.back().first + _changes.back().count)

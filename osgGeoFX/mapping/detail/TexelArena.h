@@ -11,12 +11,12 @@
 namespace osgGeoFX
 {
 
-/** The CPU's copy of a texture buffer of RGBA32UI texels (a usamplerBuffer), from which records, grid blocks and
-    lists take whole texels.
+/** The CPU's copy of a texture buffer of RGBA32UI texels (a usamplerBuffer). Records, grid blocks and lists take
+    whole texels of it.
 
-    Offsets are texel indices; 0 is never handed out and stands for nothing. Free space is kept in blocks of two to
-    the power of k, aligned to their size, that are halved when taken and joined again when given back; what a
-    piece does not need of its block stays free. So random use does not fragment it without bound. The lowest place
+    Offsets are indices of texels. Offset 0 stands for nothing and is never handed out. Free space consists of blocks
+    of 2^k texels, aligned to their size. A block is halved when a part is taken, and joined again when it is given
+    back. The rest of a block stays free. So random use does not fragment the array without bound. The lowest place
     goes first.
 
     The array grows and never shrinks. For one thread at a time. */
@@ -31,36 +31,36 @@ public:
         std::uint32_t count = 0;
     };
 
-    /// What is to be uploaded.
+    /// What must be uploaded.
     struct Changes
     {
-        bool all = false;          ///< then there is one range over all, and the size may be another one
-        std::vector<Range> ranges; ///< from first to last, neither overlapping nor touching
+        bool all = false;          ///< one range over everything; the size may have changed, too
+        std::vector<Range> ranges; ///< in ascending order, neither overlapping nor touching
     };
 
     TexelArena();
 
-    /// Texels that the array may have, as in GL_MAX_TEXTURE_BUFFER_SIZE; 2^31 - 1 by default and at most. What it
-    /// has already stays.
+    /// The number of texels that the array may have (GL_MAX_TEXTURE_BUFFER_SIZE); 2^31 - 1 by default and at most. It
+    /// never shrinks.
     void setLimit(std::uint32_t texels);
     std::uint32_t limit() const { return _limit; }
 
-    /// The offset of `count` texels in a row, their contents undefined; 0 where the limit leaves no room for them,
-    /// or none are asked for. Then nothing changes.
+    /// The offset of `count` texels in a row, with undefined contents. 0, without a change, if the limit leaves no
+    /// room, or if `count` is 0.
     std::uint32_t allocate(std::uint32_t count);
-    /// Gives back `count` texels from `offset` on: all that were allocated there or a part of them.
+    /// Gives back `count` texels from `offset` on: a whole allocation or a part of one.
     void release(std::uint32_t offset, std::uint32_t count);
 
-    /// `count` texels for writing, which takeChanges() will tell of. Valid until the next allocate().
+    /// `count` texels for writing. takeChanges() tells of them. Valid until the next allocate().
     Texel* edit(std::uint32_t offset, std::uint32_t count);
 
     const std::vector<Texel>& texels() const { return _texels; }
     std::uint32_t size() const { return static_cast<std::uint32_t>(_texels.size()); }
-    /// Texels that are allocated.
+    /// The number of allocated texels.
     std::uint32_t used() const { return _used; }
 
-    /// What was edited since the last call. Gaps of up to four texels are joined; where more than a quarter of the
-    /// array changed, or it has grown, it is all.
+    /// What was edited since the last call. Gaps of up to four texels are joined. It is all texels if more than a
+    /// quarter of the array changed, or if the array has grown.
     Changes takeChanges();
 
 private:

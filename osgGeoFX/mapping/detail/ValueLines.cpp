@@ -12,7 +12,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// The values of a layer, mixed between its texels; NaN where one of them has none.
+/// The values of a layer, interpolated between texels. NaN if one of these has no data.
 class Values
 {
 public:
@@ -63,7 +63,7 @@ osg::ref_ptr<osg::Image> distancesToLines(const LayerPixels& pixels, const osg::
             double distance = std::numeric_limits<double>::quiet_NaN();
             if (!std::isnan(value))
             {
-                // Over a texel to each side, so that the slope has no jumps at texels.
+                // Measured over a texel to each side, so that the slope does not jump at texels.
                 const double slope =
                     std::hypot((values.at(x + 0.5, y) - values.at(x - 0.5, y)) / texelWidth,
                                (values.at(x, y + 0.5) - values.at(x, y - 0.5)) / texelHeight);

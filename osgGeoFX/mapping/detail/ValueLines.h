@@ -9,12 +9,12 @@
 namespace osgGeoFX
 {
 
-/** How far each place of a raster of values is from the next line of equal value, for lines of one width wherever the values
-    rise fast or slowly.
+/** The distance of each place of a raster of values from the next line of equal value. With it, lines have one width,
+    whether values rise fast or slowly.
 
-    Lines are at the multiples of `step` between `low` and `high`, without these. `size` is the raster's width and height,
-    metres. The picture is finer than the raster where that is coarse. Distances are metres up to `reach`, as 32-bit floats;
-    they are true near the lines, where they count. NaN where there are no values. */
+    Lines are at the multiples of `step` between `low` and `high`, without these. `size` is the raster's width and
+    height, metres. The picture is finer than a coarse raster. Distances are metres up to `reach`, as 32-bit floats.
+    They are exact near the lines, where it matters. NaN where there is no data. */
 osg::ref_ptr<osg::Image> distancesToLines(const LayerPixels& pixels, const osg::Vec2d& size, double step,
                                           double low, double high, double reach);
 
