@@ -28,7 +28,7 @@ void writeFileAtomically(const std::string& path, const char* data, std::size_t 
     std::filesystem::create_directories(std::filesystem::path(path).parent_path(), code);
     if (code) failToWrite(path, code.value());
 
-    // Each path is written by one thread of one process, so the temporary name need not be unique beyond it.
+    // One thread of one process writes each path, so the temporary name need not be unique.
     const std::string temporary = path + ".tmp";
     std::FILE* file = std::fopen(temporary.c_str(), "wb");
     if (!file) failToWrite(path, errno);

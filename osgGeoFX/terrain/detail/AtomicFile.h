@@ -9,14 +9,14 @@
 namespace osgGeoFX
 {
 
-/// Throws BuildError for a file that cannot be written, with the remedy that suits the error number.
+/// Throws a BuildError for a file that cannot be written. The remedy in it suits the error number.
 [[noreturn]] void failToWrite(const std::string& path, int error);
 
-/// Writes a file under a temporary name and renames it, so that whoever reads finds all of it or nothing.
-/// Makes the folder. Throws BuildError, and leaves nothing behind, where the disk is full or the folder read-only.
+/// Writes a file under a temporary name and renames it, so that a reader finds all of it or nothing. Makes the
+/// folder. If the disk is full or the folder read-only, it throws a BuildError and leaves nothing behind.
 void writeFileAtomically(const std::string& path, const char* data, std::size_t size);
 
-/// Bytes to and from a work file: plain values and arrays in the order in which they were put.
+/// The bytes of a work file: plain values and arrays, read in the order in which they were written.
 class ByteWriter
 {
 public:
@@ -46,7 +46,7 @@ private:
 class ByteReader
 {
 public:
-    /// Reads the whole file; `good()` is false where there is none.
+    /// Reads the whole file. `good()` is false if there is none.
     explicit ByteReader(const std::string& path);
 
     bool good() const { return _good; }

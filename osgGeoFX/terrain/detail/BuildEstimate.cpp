@@ -16,16 +16,17 @@ namespace
 
 namespace fs = std::filesystem;
 
-// Measured on Oahu (smooth, much sea) and on noise of the relief of the Himalaya, with textures by heights and by
-// land cover: bytes after compression, and seconds of one core. Normals: of the mean of Oahu and Fuji.
+// Bytes after compression, and seconds of one core. They were measured on Oahu (smooth, much sea) and on noise with
+// the relief of the Himalaya, with colors by heights and by land cover. The bytes of normals are the mean of Oahu and
+// Fuji.
 constexpr double BYTES_PER_POST = 12.0, BYTES_PER_TEXEL = 5.0, BYTES_PER_NORMAL = 1.0;
 constexpr double SECONDS_PER_POST = 4e-7, SECONDS_PER_TEXEL = 2.5e-7;
-// What even a plain takes of that: less than this and the disk will be full before the end.
+// Even a plain takes this share of the estimate. With less room the disk would be full before the end.
 constexpr double LEAST_SHARE = 0.25;
-// Work files, bytes: heights for each post and what units hand on; heights, covers and distances of the ground's raster.
+// Work files, bytes. Posts: heights, and what units hand on. Ground cells: heights, covers and distances.
 constexpr double WORK_PER_POST = 8.0, WORK_PER_GROUND_CELL = 10.0;
 
-/// The nearest folder above that exists, where the system knows how much room there is.
+/// The nearest folder above that exists and whose free space is known.
 fs::path standingFolder(fs::path folder)
 {
     std::error_code code;
@@ -52,7 +53,7 @@ void BuildPlan::chooseEstimate()
 {
     const double posts = (scheme.lastColumn + 1.0) * (scheme.lastRow + 1.0);
     const double perPost = static_cast<double>(scheme.texels) / scheme.intervals;
-    // Levels that keep the finest texels have all of them again, and the ones above a quarter each.
+    // Levels that keep the finest texels have all of them again. Each level above has a quarter of the one before.
     const double texels = posts * perPost * perPost * (scheme.textureDepth + 4.0 / 3.0);
     const GroundRaster::Size cells = GroundRaster::sizeFor(*this);
     double tiles = 0.0, squares = 0.0;
@@ -86,7 +87,7 @@ void BuildPlan::chooseEstimate()
     std::error_code code;
     const fs::path folder = standingFolder(options.output);
     const fs::space_info space = fs::space(folder, code);
-    // What lies in the folder already goes, or is part of what is asked for.
+    // Files in the folder are replaced, or are a part of this build already.
     const double room = code ? 1e300 : static_cast<double>(space.available) + bytesBelow(options.output);
     const double least = bytes * LEAST_SHARE + workBytes;
     if (least > room)

@@ -22,7 +22,7 @@ namespace
 {
 
 constexpr int MAX_LEVEL = 20;
-// How far beyond its area of use a CRS may serve, degrees: a neighbouring zone, and some more.
+// How far a CRS may be used beyond its area of use, degrees: a neighbouring zone and some more.
 constexpr double CRS_MARGIN = 10.0;
 
 void require(bool condition, const std::string& sentence)
@@ -38,7 +38,7 @@ std::vector<Footprint> footprints(const std::vector<std::string>& files, RasterK
     return result;
 }
 
-/// The shortest range of longitudes that holds all footprints, which it turns by full circles to lie in it.
+/// Turns footprints by full circles, so that together they take the shortest range of longitudes.
 void gatherLongitudes(std::vector<Footprint>& prints)
 {
     const auto turnedTo = [](Footprint print, double start)
@@ -60,7 +60,7 @@ void gatherLongitudes(std::vector<Footprint>& prints)
             bestStart = candidate.west;
         }
     }
-    // As near to the usual −180…180 as it goes.
+    // As near to the usual −180…180 as possible.
     bestStart -= 360.0 * std::floor((bestStart + 180.0) / 360.0 + 1e-12);
     for (auto& print : prints)
         print = turnedTo(print, bestStart);
@@ -75,7 +75,8 @@ bool overlaps(const Footprint& print, const TilingScheme& scheme)
     return false;
 }
 
-/// A projected CRS is of use in its own area and some way around it; at its antipode it tears a raster apart.
+/// Throws unless a raster lies within the area of use of a projected CRS, or near it. At its antipode a CRS would
+/// tear a raster apart.
 void requireWithin(const GridCrs& crs, const std::string& file)
 {
     double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
@@ -248,9 +249,9 @@ void BuildPlan::chooseLevels(const Spacing& posts)
 
 void BuildPlan::chooseTexels(const Spacing& colors)
 {
-    // Finest tiles have as many texels as the colors' source has pixels, by default up to four for each interval;
-    // tiles above them keep these texels until there are, by default, two for each interval: where a tile's relief asks for
-    // finer ones, its texels do, too.
+    // Finest tiles have as many texels as the colors' source has pixels, by default up to four for each interval.
+    // Tiles above them keep these texels up to two for each interval, by default. Thus texels are as fine as the
+    // relief asks for.
     const int limit = options.textureSize > 0 ? options.textureSize : 4 * options.tileSize;
     const std::vector<std::string> files = colorFiles();
     for (;; ++scheme.finestLevel, scheme.lastColumn *= 2, scheme.lastRow *= 2)
@@ -274,8 +275,8 @@ void BuildPlan::chooseTexels(const Spacing& colors)
 
 void BuildPlan::chooseUnits()
 {
-    // A unit's textures are its largest arrays: some four million texels at most. Bytes at a unit's border
-    // depend on where it lies, so nothing here may depend on the machine.
+    // A unit's textures are its largest arrays. They may have some four million texels. Bytes at a unit's border
+    // depend on its place, so nothing here may depend on the machine.
     int depthLimit = 3;
     while (depthLimit > 1 && (scheme.texels << depthLimit) > 2048)
         --depthLimit;
@@ -375,35 +376,35 @@ const TileFacts& BuildPlan::fact(const TileKey& key) const
 
 double BuildPlan::tolerance(int level) const
 {
-    // Where its children are due, a tile's edge then is two pixels long for each pixel of error, so that relief and
-    // texture ask for them at about the same distance.
+    // At the distance where a tile's children replace it, its edge is two pixels long for each pixel of error. So
+    // relief and texture ask for the children at about the same distance.
     return 2.0 * options.pixelError * scheme.tileMetres(level) / options.pixelsPerRadian;
 }
 
 double BuildPlan::finestError(int level) const
 {
-    // Errors of edges and of those that they are split into add up, but hardly ever to more.
+    // The errors of an edge and of its parts add up, but hardly ever to more.
     return level == scheme.finestLevel ? 0.0 : 1.5 * tolerance(level);
 }
 
 double BuildPlan::largestError(int level) const
 {
-    // From twice as far as where the parent takes over a tile needs no coarser meshes.
+    // A tile needs no meshes for more than twice the distance at which its parent replaces it.
     return 4.0 * tolerance(level);
 }
 
 double BuildPlan::skirt(const TileKey& key, int side) const
 {
-    // On the terrain's own border nobody stands beside it; a skirt would only show below the edge.
+    // A tile has no neighbour beyond the terrain's border. A skirt would only show below the edge there.
     const int width = scheme.intervals * scheme.step(key.level);
     const bool outer[] = {key.y == 0, scheme.firstColumn(key) + width >= scheme.lastColumn,
                           scheme.firstRow(key) + width >= scheme.lastRow, key.x == 0};
-    // But the globe's eastern and western end are one line, with tiles of all levels on both sides.
+    // The globe's eastern and western end are one line, however, with tiles of all levels on both sides.
     const bool seam = outer[side] && scheme.wholeCircle() && side % 2 == 1;
     if (outer[side] && !seam) return 0.0;
 
-    // Which neighbour stands on the other side is up to the camera and the pager: any from the coarsest level on
-    // which this line divides two tiles. (Below that level both sides lie in one tile.)
+    // The camera and the pager decide which neighbour stands on the other side. It may be of any level from the
+    // coarsest one on which this line divides two tiles. (On coarser levels both sides lie in one tile.)
     const int dx = side == 1 ? 1 : side == 3 ? -1 : 0, dy = side == 0 ? -1 : side == 2 ? 1 : 0;
     double other = 0.0;
     for (TileKey self = key;; self = {self.level - 1, self.x / 2, self.y / 2})
@@ -422,7 +423,7 @@ double BuildPlan::skirt(const TileKey& key, int side) const
 
 double BuildPlan::leastSkirt(int level) const
 {
-    // Rounding alone opens hair lines between meshes of different density, even in a plain.
+    // Even in a plain, rounding opens hair lines between meshes of different density.
     return 0.5 + 0.02 * scheme.tileMetres(level) / scheme.intervals;
 }
 

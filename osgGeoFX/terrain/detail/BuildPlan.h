@@ -23,40 +23,41 @@ struct TileFacts
 {
     float minHeight = 0.0f, maxHeight = 0.0f; ///< of the finest posts below it, metres
     float latticeError =
-        0.0f; ///< what the lattice that its mesh is made from misses of the finest heights, metres
-    float rootError = 0.0f; ///< of a unit's root: what its own posts miss of the finest heights, metres
+        0.0f; ///< the error of the lattice that its mesh is made from, against the finest heights, metres
+    float rootError =
+        0.0f; ///< of a unit's root: the error of its own posts against the finest heights, metres
     float error =
         0.0f; ///< bound of the vertical distance between its finest mesh and the finest of all, metres
     float skirtBelow =
         0.0f; ///< the deepest wall of the tile and all below it, below the lowest ground, metres
     std::int32_t voids =
-        0; ///< of a unit's root: its posts lack heights within a raster's rectangle (VoidState)
+        0; ///< of a unit's root: whether posts have no height within a raster's rectangle (VoidState)
     std::int32_t any = 0; ///< it has at least one post with data
 
     enum VoidState : std::int32_t
     {
         NO_VOIDS,
         HAS_VOIDS,
-        FILLED_VOIDS ///< what can be filled is
+        FILLED_VOIDS ///< what can be filled is filled
     };
 };
 
-/// A square block of tiles that one worker builds at a time: `root` and the `depth` levels below it. Its arrays
-/// are lattices of the level root.level + depth.
+/// A square block of tiles that one worker builds at a time: `root` and the `depth` levels below it. Its arrays are
+/// lattices of the level root.level + depth.
 struct Unit
 {
     TileKey root;
     int depth = 0;
-    int tier = 0; ///< 0 samples rasters; tier n stands on the roots of tier n−1
+    int tier = 0; ///< 0 samples rasters; tier n uses the roots of tier n−1
 
     int latticeLevel() const { return root.level + depth; }
     int span() const { return 1 << depth; }
 };
 
-/** Everything that follows from the options and the rasters' headers, and what the passes hand on.
+/** Everything that follows from the options and the rasters' headers, and everything that the passes hand on.
 
-    Built in two passes, because a skirt must reach the coarsest neighbour that can ever stand beside it, and how
-    far off that can be is known only when all heights have been seen. */
+    There are two passes. A skirt must reach the coarsest neighbour that can ever stand beside it, and the error of
+    this neighbour is known only after all heights have been seen. */
 class BuildPlan
 {
 public:
@@ -67,12 +68,12 @@ public:
     std::vector<std::vector<Unit>> tiers;
     std::vector<LandCoverClass> classes;
     std::array<std::array<unsigned char, 4>, 256> classColors{};
-    /// The land cover's class of a value; null where the table has none.
+    /// The land cover's class of a value; null if the table has none.
     const LandCoverClass* classOf(unsigned char value) const { return _classByValue[value]; }
-    /// The widest spacing of the raster of shores that loses none of its sources, in the grid's CRS.
+    /// The widest spacing of the raster of shores that loses nothing of its sources, in the grid's CRS.
     double groundStepX = 0.0, groundStepY = 0.0;
     std::shared_ptr<const GroundRaster> ground; ///< from the ground pass on
-    std::shared_ptr<const VoidRaster> voids;    ///< null until the voids are filled, and where there are none
+    std::shared_ptr<const VoidRaster> voids;    ///< null until the voids are filled, and if there are none
     std::string fingerprint;                    ///< what the database's bytes depend on, in words
     int threads = 1;
     BuildEstimate estimate;
@@ -81,30 +82,31 @@ public:
     std::vector<std::vector<TileFacts>> facts;
     TileFacts& fact(const TileKey& key);
     const TileFacts& fact(const TileKey& key) const;
-    /// How far below a mesh's own error the walls on a tile's side (0 south, 1 east, 2 north, 3 west) reach at least, metres:
-    /// to the finest meshes of all tiles that can stand there, while finer ones are on their way. 0 where none can.
+    /// How far the walls on a tile's side (0 south, 1 east, 2 north, 3 west) reach at least below a mesh's own error,
+    /// metres. They reach the finest meshes of all tiles that can stand there while finer ones are loaded. 0 if no
+    /// tile can.
     double skirt(const TileKey& key, int side) const;
-    double leastSkirt(int level) const; ///< where all is even, metres
+    double leastSkirt(int level) const; ///< on even ground, metres
 
-    /// The vertical error that the finest meshes of a level are made with, metres; the finest level's have
-    /// all posts instead, but for those of plains.
+    /// The vertical error that the finest meshes of a level are made with, metres. Those of the finest level have all
+    /// posts instead, except on plains.
     double tolerance(int level) const;
-    /// Bounds of the vertical error of a level's finest meshes and of all of them, metres, from the heights that they are
-    /// made of.
+    /// Bounds of the vertical error of a level's finest meshes and of all its meshes, metres, against their own
+    /// lattice.
     double finestError(int level) const;
     double largestError(int level) const;
 
-    /// Points of a unit's lattice that lie on the extent; those beyond repeat the last of them.
+    /// The points of a unit's lattice on the extent. Points beyond repeat the last of them.
     int validColumns(const Unit& unit) const;
     int validRows(const Unit& unit) const;
-    /// The posts of a unit of tier 0 that lie on the extent, with one more on each side.
+    /// The posts of a unit of tier 0 on the extent, with one more on each side.
     Lattice postsWithApron(const Unit& unit) const;
 
-    std::string tileFile(const TileKey& parent) const; ///< the file that holds the children of `parent`
+    std::string tileFile(const TileKey& parent) const; ///< the file with the children of `parent`
     std::string workFile(const char* pass, const Unit& unit) const;
     std::string workFolder() const { return options.output + "/work"; }
 
-    /// Counts a finished unit; throws BuildError where the caller's progress function says stop.
+    /// Counts a finished unit. Throws BuildError if the caller's progress function says stop.
     void advance(const std::string& phase);
     BuildProgress progress;
     std::uint64_t unitsDone = 0, unitsTotal = 0;
@@ -116,9 +118,9 @@ private:
         double x, y;
     };
     void chooseGrid();
-    Spacing chooseExtent();                      ///< that of the elevation; its finest spacing
-    std::vector<std::string> colorFiles() const; ///< what asks for a resolution of its own
-    Spacing checkColors();                       ///< and the ground's spacing; the finest one of the colors
+    Spacing chooseExtent();                      ///< sets the extent; the elevation's finest spacing
+    std::vector<std::string> colorFiles() const; ///< the files that the texels' spacing follows from
+    Spacing checkColors();                       ///< sets the ground's spacing; the colors' finest spacing
     void chooseLevels(const Spacing& posts);
     void chooseTexels(const Spacing& colors);
     void chooseEstimate();
@@ -128,10 +130,10 @@ private:
     std::mutex _progressMutex;
 };
 
-/// The machine's cores, at least 1.
+/// The number of the machine's cores, at least 1.
 int coreCount();
 
-/// "12 MB" of a number of bytes.
+/// A number of bytes in words: "12 MB".
 std::string sizeInWords(double bytes);
 
 /// The rasters of a plan, opened for one worker.
@@ -140,27 +142,28 @@ class RasterStack
 public:
     explicit RasterStack(const BuildPlan& plan);
 
-    /// Heights on a lattice, metres; NaN where there are none.
+    /// Heights on a lattice, metres; NaN for none.
     std::vector<float> heights(const Lattice& lattice);
 
-    /// The same as the files have them, not moved to the ellipsoid: level water is level, the sea at 0. Voids are filled as
-    /// soon as the plan knows how; `filled` gets a byte for each point then, 1 where that is so.
+    /// The heights of the files, not moved to the ellipsoid: level water is level, and the sea is at 0. Voids are
+    /// filled once the plan knows their heights. `filled` then gets a byte for each point, 1 for a filled one.
     std::vector<float> heightsAboveSea(const Lattice& lattice, std::vector<unsigned char>* filled = nullptr);
 
     /// The same without filled voids.
     std::vector<float> measuredHeights(const Lattice& lattice);
 
-    /// For each point 1 where it has a height or lies within the rectangle of a raster that has none there.
+    /// One byte for each point: 1 if it has a height, or if it lies within the rectangle of a raster that has none
+    /// there.
     std::vector<unsigned char> covered(const Lattice& lattice, const std::vector<float>& heights);
 
-    /// Classes on a lattice; 0 where there are none. Empty without land cover.
+    /// Classes on a lattice; 0 for none. Empty without land cover.
     std::vector<unsigned char> classes(const Lattice& lattice);
 
-    /// Base colors on a lattice, red, green, blue for each texel.
+    /// Base colors on a lattice: red, green, blue for each texel.
     std::vector<unsigned char> colors(const Lattice& lattice);
 
-    /// What lies on the ground, four bytes for each texel as shaders/lib/cover.glsl codes them. `ground` is the plan's
-    /// at the same texels: the shores, and what holds where no other raster says more.
+    /// What lies on the ground: four bytes for each texel, coded as in shaders/lib/cover.glsl. `ground` is the plan's
+    /// at the same texels. It has the shores, and counts where no other raster says more.
     std::vector<unsigned char> cover(const Lattice& lattice, const std::vector<GroundCell>& ground);
 
 private:
@@ -174,7 +177,7 @@ private:
 /// Pass 1: samples all heights into work files, and fills the plan's facts.
 void runHeightPass(BuildPlan& plan);
 
-/// The lattice of an upper tier's unit: what the roots of the units below it have, as pass 1 left them.
+/// The lattice of an upper tier's unit, made of the roots of the units below it. Pass 1 has left these.
 HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit);
 
 } // namespace osgGeoFX

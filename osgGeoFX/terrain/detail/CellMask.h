@@ -9,7 +9,7 @@
 namespace osgGeoFX
 {
 
-/// A bit for each cell of a raster. Different rows may be written by several threads at once.
+/// One bit for each cell of a raster. Several threads may write different rows at once.
 class CellMask
 {
 public:

@@ -20,9 +20,10 @@ namespace osgGeoFX
 namespace
 {
 
-// Rows that one worker samples at a time.
+// The rows that one worker samples at a time.
 constexpr int STRIP = 64;
-// Elevation is taken for depths where it goes this far below the sea somewhere: noise about 0 is none. Metres.
+// Elevation below the sea gives depths only if it reaches this depth somewhere, metres. Otherwise it is noise about
+// 0.
 constexpr float LEAST_DEPTH = 10.0f;
 
 std::uint8_t byteOf(double share)
@@ -52,7 +53,7 @@ private:
     const std::size_t _columns;
     CellMetres _metres;
     std::vector<double> _latitudes; ///< by row, degrees
-    CellMask _water, _classed;      ///< of land cover; all else goes by the heights
+    CellMask _water, _classed;      ///< by land cover; other cells go by their heights
     CellMask _lakes, _filled;
     RowFile _heights, _cells;
     std::vector<float> _deepest; ///< by strip, in water; metres above the sea
@@ -98,7 +99,7 @@ double GroundPass::treeLine(int row) const
     return likelyTreeLine(_latitudes[static_cast<std::size_t>(row)]);
 }
 
-/// Heights, classes, and what is likely to grow there.
+/// Samples heights, classes, and what is likely to grow there.
 void GroundPass::sampleStrip(RasterStack& rasters, int firstRow, int rowCount)
 {
     const TilingScheme& scheme = _plan.scheme;
@@ -115,7 +116,7 @@ void GroundPass::sampleStrip(RasterStack& rasters, int firstRow, int rowCount)
     HeightGrid heights(_size.columns + 2, rowCount + 2);
     std::vector<unsigned char> filled;
     heights.values = rasters.heightsAboveSea(lattice(1), &filled);
-    // A sample of the sea beside land is off by what its place was rounded.
+    // A sample of the sea beside land may be off by the rounding of its place.
     for (float& height : heights.values)
         if (std::abs(height) < 1e-3f) height = 0.0f;
     const std::vector<unsigned char> classes = rasters.classes(lattice(0));
@@ -203,7 +204,8 @@ void GroundPass::writeShores()
                        {
                            _cells.read(row, cells.data());
                            _heights.read(row, heights.data());
-                           // Depths begin one cell off the shore, so that it stays half-way between land and water.
+                           // Depths begin one cell away from the shore, so that the shore stays half-way between land
+                           // and water.
                            const double shallows = 1.5 * _metres.x[static_cast<std::size_t>(row)];
                            for (int i = 0; i < _size.columns; ++i)
                            {

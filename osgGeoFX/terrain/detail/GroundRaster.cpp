@@ -13,7 +13,7 @@ namespace osgGeoFX
 namespace
 {
 
-// Points along a side: some minutes and two gigabytes of work files at most.
+// The most points along a side. It limits the time to some minutes and the work files to two gigabytes.
 constexpr int LARGEST_SIDE = 16385;
 
 std::string finishedFile(const BuildPlan& plan)
@@ -44,7 +44,7 @@ GroundRaster::GroundRaster(const BuildPlan& plan)
 std::vector<GroundCell> GroundRaster::sample(std::int64_t firstColumn, std::int64_t firstRow, int columns,
                                              int rows) const
 {
-    // From texels to points in whole numbers, so that all tiles come to the same place.
+    // A place between points. It is computed from texels in whole numbers, so that all tiles get the same place.
     struct Place
     {
         int index;

@@ -16,29 +16,29 @@ namespace osgGeoFX
 class BuildPlan;
 class RasterStack;
 
-/// What is known of a place from water and heights alone, as shaders/lib/cover.glsl codes it.
+/// What water and heights alone tell of a place, coded as in shaders/lib/cover.glsl.
 struct GroundCell
 {
     std::uint16_t shore = 0; ///< the alpha of a cover texel in 1/65280: 256 for each step of a byte
     std::uint8_t trees = 0, bare = 0;
 };
 
-/** Shores and likely trees over the whole terrain, so that distances run on across tiles and a place has one value
-    whichever tile it lies on. A raster in a work file, as dense as the land cover, or else the elevation, but at most
-    16,385 points a side. Sampling is thread-safe. */
+/** Shores and likely trees of the whole terrain. Distances go on across tiles, and a place has one value on whichever
+    tile it lies. It is a raster in a work file, as dense as the land cover, or else as the elevation, but with at
+    most 16,385 points a side. Sampling is thread-safe. */
 class GroundRaster
 {
 public:
-    /// The size of the raster that a plan asks for.
+    /// The size of the raster for a plan.
     struct Size
     {
-        int columns = 2, rows = 2; ///< points, the outermost on the extent's corners
+        int columns = 2, rows = 2; ///< points; the outermost lie on the extent's corners
     };
     static Size sizeFor(const BuildPlan& plan);
-    /// Steps of progress that making it takes.
+    /// The steps of progress of making it.
     static int steps(const BuildPlan& plan);
 
-    /// Reads what make() has written. Throws BuildError.
+    /// Reads the raster that runGroundPass() has written. Throws BuildError.
     explicit GroundRaster(const BuildPlan& plan);
 
     /// Bilinear samples at texels of the finest level, counted from the extent's south-western corner.
@@ -51,12 +51,12 @@ private:
     RowFile _file;
 };
 
-/// Metres above the sea up to which trees grow at a latitude in degrees: 3,800 from the equator to 25°, from there
-/// evenly down to 0 at 70°.
+/// The height up to which trees grow at a latitude in degrees, metres above the sea: 3,800 up to 25°, then evenly
+/// down to 0 at 70°.
 double likelyTreeLine(double latitude);
 
-/// Samples classes and heights, finds water, measures the distances from its shores; sets the plan's `ground`.
-/// An interrupted build's is taken over.
+/// Samples classes and heights, finds water, and measures the distances from its shores. Sets the plan's `ground`.
+/// Takes over the raster of an interrupted build.
 void runGroundPass(BuildPlan& plan);
 
 } // namespace osgGeoFX

@@ -9,7 +9,7 @@
 namespace osgGeoFX
 {
 
-/// Heights on a lattice, metres, NaN where there are none; row 0 is the southernmost.
+/// Heights on a lattice, metres, NaN for none. Row 0 is the southernmost.
 struct HeightGrid
 {
     HeightGrid(int c, int r)
@@ -28,7 +28,7 @@ struct HeightGrid
     std::vector<float> values;
 };
 
-/// Repeats the last valid column and row over the rest of a lattice, of `channels` values a point.
+/// Repeats the last valid column and row over the rest of a lattice, which has `channels` values at a point.
 template<typename T>
 void extendBeyond(std::vector<T>& values, int columns, int rows, int channels, int validColumns,
                   int validRows)

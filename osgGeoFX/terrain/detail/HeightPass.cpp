@@ -17,8 +17,8 @@ namespace osgGeoFX
 namespace
 {
 
-/// Largest vertical distance between the mesh with every `step`-th post and the full one.
-/// Where only one of the two has ground, `missing` stands for the distance.
+/// The largest vertical distance between the mesh of every `step`-th post and the full one. If only one of them has
+/// ground somewhere, the distance there is `missing`.
 float meshDeviation(const HeightGrid& grid, int step, float missing)
 {
     float worst = 0.0f;
@@ -54,7 +54,7 @@ HeightGrid decimated(const HeightGrid& grid, int step)
     return result;
 }
 
-/// The unit's tiles whose facts it settles: down to its lattice's level, which for an upper tier is not its own.
+/// Visits the tiles whose facts the unit settles. For an upper tier these do not include the lattice's own level.
 template<typename Visit>
 void forTiles(const Unit& unit, Visit visit)
 {
@@ -94,7 +94,7 @@ TileFacts gatheredFacts(const BuildPlan& plan, const Unit& unit, const TileKey& 
         facts.minHeight = facts.any ? std::min(facts.minHeight, child.minHeight) : child.minHeight;
         facts.maxHeight = facts.any ? std::max(facts.maxHeight, child.maxHeight) : child.maxHeight;
         facts.any = 1;
-        // Lattices of upper tiers are made of the roots below them; above that they are the same lattice.
+        // The lattice of an upper tier consists of the roots below it. The levels above use the same lattice.
         const bool root = unit.tier > 0 && key.level == unit.latticeLevel() - 1;
         facts.latticeError = std::max(facts.latticeError, root ? child.rootError : child.latticeError);
     }
@@ -113,10 +113,10 @@ void settleFacts(BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
                                                                   : gatheredFacts(plan, unit, key);
                  plan.fact(key) = facts;
              });
-    // What the next tier will miss. Coverage is off by at most a cell.
+    // The error that the next tier starts with. The border of the data may be off by a cell.
     TileFacts& root = plan.fact(unit.root);
     const double cell = plan.scheme.tileMetres(unit.root.level) / plan.scheme.intervals;
-    // Between its posts the Earth is round: by this much above a chord across a cell.
+    // The Earth is round: it rises by this much above a chord across a cell.
     const double sag = plan.scheme.crs.geographic ? 0.25 * cell * cell / 6378137.0 : 0.0;
     root.rootError = 0.0f;
     if (root.any)
@@ -155,7 +155,7 @@ void writeGrid(const BuildPlan& plan, const char* name, const Unit& unit, const 
     writeFileAtomically(plan.workFile(name, unit), writer.bytes().data(), writer.bytes().size());
 }
 
-/// Whether any of the posts lacks a height where a raster should have one.
+/// Whether any post has no height although a raster covers it.
 bool lacksHeights(RasterStack& rasters, const Lattice& lattice, const HeightGrid& heights)
 {
     const auto isMissing = [](float height)
@@ -228,7 +228,7 @@ HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit)
                                  ": this work file is damaged; build again without --resume.");
             for (int j = 0; j <= n; ++j)
                 for (int i = 0; i <= n; ++i)
-                    // A neighbour without data must not take away a border that this one has.
+                    // A neighbour without data must not delete the border that this unit has.
                     if (!std::isnan(part.at(i, j))) grid.at(x * n + i, y * n + j) = part.at(i, j);
         }
     extendBeyond(grid.values, grid.columns, grid.rows, 1, plan.validColumns(unit), plan.validRows(unit));
@@ -256,7 +256,7 @@ void runHeightPass(BuildPlan& plan)
                                  sample(worker, unit);
                              else
                                  gatherUnit(plan, unit);
-                             // Written last: a unit with facts is a unit that is done.
+                             // Facts are written last, so a unit with facts is done.
                              writeFacts(plan, unit);
                          }
                          plan.advance("heights");
@@ -295,7 +295,7 @@ void runHeightPass(BuildPlan& plan)
                 const TileKey key{level, x, y};
                 TileFacts& facts = plan.fact(key);
                 if (!facts.any) continue;
-                // Where the walls of its coarsest meshes reach to.
+                // The depth that the walls of its coarsest meshes reach.
                 facts.skirtBelow =
                     static_cast<float>(2.0 * plan.largestError(level) + plan.leastSkirt(level)) +
                     facts.latticeError;

@@ -22,10 +22,10 @@ namespace osgGeoFX
 namespace
 {
 
-// Below this, z is not left to the other two: what they are off by, z would be off by many times over.
+// Above this, z follows from x and y. Below, an error of theirs would become a much larger one of z.
 constexpr double LEAST_Z = 0.2;
 
-// As stages/tile.frag has it.
+// The same set as in stages/tile.frag.
 constexpr unsigned int VERTEX_NORMAL_SET = 6;
 
 unsigned char encoded(double value)
@@ -33,7 +33,7 @@ unsigned char encoded(double value)
     return static_cast<unsigned char>(std::lround(value * 127.0) + 128);
 }
 
-/// The directions east, north and up in a tile's frame. Sines and cosines are taken once for each row and column.
+/// The directions east, north and up in a tile's frame. Sines and cosines are computed once for each row and column.
 class LatticeAxes
 {
 public:
@@ -50,7 +50,7 @@ public:
         }
     }
 
-    /// The normal of ground that rises by these slopes to the east and to the north.
+    /// The normal of ground with these slopes to the east and to the north.
     osg::Vec3d normal(int column, int row, double slopeX, double slopeY) const
     {
         osg::Vec3d result(-slopeX, -slopeY, 1.0);
@@ -58,7 +58,8 @@ public:
         {
             const auto [sinX, cosX] = _columns[static_cast<std::size_t>(column)];
             const auto [sinY, cosY] = _rows[static_cast<std::size_t>(row)];
-            // About the Earth's axis, the tile's meridian ahead; then about the east.
+            // In a frame about the Earth's axis whose x axis points to the tile's meridian. Then it is turned about
+            // the east.
             const osg::Vec3d east(-sinX, cosX, 0.0), north(-sinY * cosX, -sinY * sinX, cosY),
                 up(cosY * cosX, cosY * sinX, sinY);
             const osg::Vec3d v = up - east * slopeX - north * slopeY;
@@ -119,7 +120,8 @@ void addNormalMap(osg::StateSet& state, TileTextures& textures, const TilingSche
                   const TileKey& key, const LevelArrays& arrays, int x, int y)
 {
     const osg::ref_ptr<osg::Image> image = normalImage(scheme, key, arrays, x, y);
-    // Three channels stay as they are: BC1, which is all there is for them, is off by up to a third of what there can be.
+    // Images of three channels are not compressed. For these there is BC1 alone, whose error is up to a third of the
+    // whole range.
     osg::ref_ptr<osg::Texture2D> normals = new osg::Texture2D(
         image->getPixelFormat() == GL_RG ? textures.picture(image) : textures.data(image, true));
     normals->setName(TileNormals::texture);
@@ -130,7 +132,8 @@ void addNormalMap(osg::StateSet& state, TileTextures& textures, const TilingSche
     normals->setResizeNonPowerOfTwoHint(false);
     state.setTextureAttribute(TileNormals::unit, normals);
 
-    // Coordinates put the first and the last texel's centers on the borders, which depends on how many there are.
+    // Texture coordinates place the centers of the first and the last texel on the borders. So they depend on the
+    // number of texels.
     const int colors = scheme.textureIntervals(key.level), n = scheme.normalIntervals(key.level);
     if (colors == n) return;
     const double each = static_cast<double>(n) / colors, size = scheme.textureSize(n);
@@ -143,13 +146,13 @@ void addNormalMap(osg::StateSet& state, TileTextures& textures, const TilingSche
 
 void addTileProgram(osg::StateSet& state)
 {
-    // The baked text, whatever lies on the disk: a database's bytes follow from its options.
+    // The baked text, not that of a folder, so that a database's bytes follow from its options.
     const ShaderLibrary library{std::filesystem::path()};
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->setName(TileNormals::program);
     program->addShader(library.createShader(osg::Shader::FRAGMENT, "stages/tile.frag"));
     state.setAttributeAndModes(program);
-    // The fixed functions hand over the vertices' normals as coordinates that no one else uses.
+    // The fixed functions hand on the vertices' normals as texture coordinates of a set that nothing else uses.
     osg::ref_ptr<osg::TexGen> generator = new osg::TexGen;
     generator->setMode(osg::TexGen::NORMAL_MAP);
     state.setTextureAttribute(VERTEX_NORMAL_SET, generator);

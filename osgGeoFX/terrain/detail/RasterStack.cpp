@@ -14,10 +14,10 @@ namespace osgGeoFX
 namespace
 {
 
-// Heights that no point of the Earth has: a no-data value that the file does not declare.
+// No point of the Earth has a height beyond these. Such a height is an undeclared no-data value.
 constexpr float LOWEST = -12000.0f, HIGHEST = 9500.0f;
 
-// More is a no-data value that the file does not declare; a resampling kernel may overshoot a little.
+// A higher value is an undeclared no-data value. A resampling kernel may overshoot a little.
 constexpr float MOST_PERCENT = 100.5f;
 
 struct RampStop
@@ -26,7 +26,8 @@ struct RampStop
     float red, green, blue;
 };
 
-// Lowland green over yellow and brown to the white of the summits, muted so that light and shade can be read.
+// From lowland green over yellow and brown to white summits. The colors are muted, so that light and shade can be
+// seen.
 constexpr RampStop RAMP[] = {{0.0f, 116, 143, 94},   {0.15f, 152, 168, 107}, {0.35f, 197, 189, 137},
                              {0.55f, 176, 149, 110}, {0.75f, 150, 127, 106}, {0.9f, 190, 182, 174},
                              {1.0f, 240, 240, 238}};
@@ -144,7 +145,7 @@ void RasterStack::moveToEllipsoid(const Lattice& lattice, std::vector<float>& he
         _geoid->Transform(lattice.columns, x.data(), y.data(), z.data(), success.data());
         for (std::size_t i = 0; i < columns; ++i)
         {
-            // Outside ±150 m no geoid undulation lies: PROJ has passed the height through without a grid.
+            // No geoid undulation lies beyond ±150 m. PROJ has then passed the height on without a grid.
             if (!success[i] || !(std::abs(z[i]) < 150.0))
                 throw BuildError(
                     _plan.options.dems.front() +
@@ -169,7 +170,8 @@ std::vector<unsigned char> RasterStack::colors(const Lattice& lattice)
     const std::size_t count =
         static_cast<std::size_t>(lattice.columns) * static_cast<std::size_t>(lattice.rows);
     std::vector<unsigned char> planes(4 * count, 0);
-    // From the ground up: the hypsometric ramp, the land cover's colors, the imagery. Each where it has data.
+    // Each layer covers those before it where it has data: the hypsometric ramp, the land cover's colors, the
+    // imagery.
     if (_landCover.empty())
     {
         const TileFacts& whole = _plan.facts[0][0];

@@ -8,14 +8,14 @@
 namespace osgGeoFX
 {
 
-/** A work file of rows of equal size, for what is too large for memory. Rows may be read and written in any order, and
-    by several threads at once. Methods throw BuildError. */
+/** A work file of rows of equal size, for data that are too large for memory. Several threads may read and write rows
+    at once, in any order. Methods throw BuildError. */
 class RowFile
 {
 public:
     enum class Mode
     {
-        CREATE, ///< empty, with the folder it lies in
+        CREATE, ///< empty; makes the folder, too
         READ
     };
     RowFile(std::string path, std::size_t rowBytes, Mode mode);
@@ -26,14 +26,15 @@ public:
     void write(int row, const void* data);
     void read(int row, void* data) const;
 
-    /// Part of a row: `size` bytes from the byte `first` on. Bytes that were never written are 0 where a later row was.
+    /// A part of a row: `size` bytes from the byte `first` on. Bytes that were never written are 0 if a later row was
+    /// written.
     void write(int row, std::size_t first, std::size_t size, const void* data);
     void read(int row, std::size_t first, std::size_t size, void* data) const;
 
-    /// Makes the file as long as so many rows, of which those that are never written are 0 and take no room on the disk.
+    /// Makes the file so many rows long. Rows that are never written are 0 and take no room on the disk.
     void extend(int rows);
 
-    /// Closes a file that was written, and gives it its final name: whoever finds that has all of it.
+    /// Closes a file that was written, and gives it its final name. A file of this name is complete.
     void finish(const std::string& path);
 
 private:

@@ -20,7 +20,7 @@ constexpr double ENDLESS = std::numeric_limits<double>::infinity();
 constexpr double FARTHEST = 1e6;
 constexpr std::uint16_t NONE = 65535;
 
-/// For each column the row in which each kind of cell, land or water, was seen last.
+/// For each column, the last row with a cell of each kind, land or water.
 class LastSeen
 {
 public:
@@ -30,7 +30,7 @@ public:
             rows.assign(static_cast<std::size_t>(columns), NONE);
     }
 
-    /// The nearest row behind that is of the other kind; sees this cell.
+    /// Adds a cell. The result is the nearest row behind it of the other kind.
     std::uint16_t pass(bool water, std::size_t column, int row)
     {
         _rows[water ? 1 : 0][column] = static_cast<std::uint16_t>(row);
@@ -41,7 +41,7 @@ private:
     std::array<std::vector<std::uint16_t>, 2> _rows;
 };
 
-/// Squared distances along a row from squared distances along its columns: the lower envelope of parabolas.
+/// Squared distances in a row, from squared distances in its columns: the lower envelope of parabolas.
 class RowTransform
 {
 public:
@@ -101,7 +101,7 @@ void findShoreDistances(const CellMask& water, const CellMetres& metres, const s
         below.write(row, others.data());
     }
 
-    // Around the globe, half of the row again on either side.
+    // On a whole circle, half of the row is repeated on each side.
     const std::size_t lap = metres.wholeCircle ? columns - 1 : 0, margin = (lap + 1) / 2;
     std::vector<double> toWater(columns + 2 * margin), toLand(toWater), waterSquares, landSquares;
     std::vector<float> distances(columns);

@@ -11,7 +11,7 @@
 namespace osgGeoFX
 {
 
-/// Where the cells of a mask lie; row 0 is the southernmost.
+/// The places of a mask's cells. Row 0 is the southernmost.
 struct CellMetres
 {
     std::vector<double> x;    ///< by row: from cell to cell to the east, metres
@@ -19,11 +19,12 @@ struct CellMetres
     bool wholeCircle = false; ///< the last column lies on the first
 };
 
-/** Distances from the shore in metres, over water; negative over land; ±1,000 km where there is no shore.
+/** Distances from the shore in metres, over water. They are negative over land, and ±1,000 km without a shore.
 
-    Exact between the centers of cells on a plane with the metres of each row (Felzenszwalb and Huttenlocher: Distance
-    transforms of sampled functions, 2012), less half a cell: the shore lies between the centers. `visit` gets all
-    rows, from the northernmost on. `workFile` takes two bytes for each cell. Up to 65,535 rows. Throws BuildError. */
+    They are exact between the centers of cells, on a plane with the metres of each row (Felzenszwalb and
+    Huttenlocher: Distance transforms of sampled functions, 2012), less half a cell, since the shore lies between
+    centers. `visit` gets all rows, the northernmost first. `workFile` takes two bytes for each cell. At most 65,535
+    rows. Throws BuildError. */
 void findShoreDistances(const CellMask& water, const CellMetres& metres, const std::string& workFile,
                         const std::function<void(int row, const std::vector<float>& distances)>& visit);
 

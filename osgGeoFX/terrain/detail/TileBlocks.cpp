@@ -14,27 +14,28 @@ namespace osgGeoFX
 namespace
 {
 
-/// Four finer blocks take a block's place within so many of its radii. With more, blocks fit their distance better, and
-/// there are more of them to draw; the architecture page has what was measured.
+/// Four finer blocks replace a block within so many of its radii. With a larger number, blocks fit their distance
+/// better, and more of them are drawn. The architecture page has the measurements.
 constexpr double FINER_WITHIN = 20.0;
-/// A mesh has at most this share of the posts of the one before it that could be left out.
+/// Not all posts can be left out. Of those that can, a mesh has at most this share of the mesh before it.
 constexpr double STEP = 0.65;
-/// Below this gain a coarser mesh is not worth its bytes.
+/// A coarser mesh with more than this share of the triangles is not worth its bytes.
 constexpr double LEAST_GAIN = 0.85;
-/// A mesh that would be shown from one distance to hardly more than that is left out.
+/// A mesh is left out if it would be shown over a range of distances no wider than this factor.
 constexpr double LEAST_STEP = 1.1;
-/// The errors of an edge and of those that it is split into add up: posts may lie so many times the tolerance off. In the corners of
-/// a wide picture that is one and a half pixels, since an angle takes more of them there than in the middle.
+/// The errors of an edge and of its parts add up, so posts may be off by so many times the tolerance. That is one and
+/// a half pixels in the corners of a wide picture, where an angle takes more pixels than in the middle.
 constexpr double ACCUMULATION = 1.2;
-/// Cells along the smallest blocks of a finest tile, and how many times its tile's edge has that of a coarser one.
+/// The cells along the smallest block of a finest tile, and the number of smallest blocks along the edge of a coarser
+/// one.
 constexpr int FINEST_CELLS = 16;
 constexpr int COARSE_SHARE = 4;
-/// A finest tile leaves posts out whose errors are below this share of a cell, and below a millimetre: no camera comes near
-/// enough to see them.
+/// A finest tile leaves out posts whose errors are below this share of a cell and below a millimetre. No camera comes
+/// near enough to see these errors.
 constexpr double NEGLIGIBLE = 1.0 / 32768.0, NEGLIGIBLE_METRES = 1e-3;
-/// What bends a plain finds edges of so many cells on a finest tile.
+/// The longest edges on a plain's finest tile, cells. Deformations bend the plain at their ends.
 constexpr int PLAIN_CELLS = 2;
-/// A wall leans outwards a little, so that it also closes hair lines when one looks straight down.
+/// A wall leans outwards a little. So it also closes hair lines seen from straight above.
 constexpr double LEAN = 0.1;
 
 int smallestBlock(const TilingScheme& scheme, int level, int intervals)
@@ -43,7 +44,7 @@ int smallestBlock(const TilingScheme& scheme, int level, int intervals)
     return intervals / std::clamp(scheme.intervals / FINEST_CELLS, 1, COARSE_SHARE);
 }
 
-/// Twice the area of a triangle, positive where it is anticlockwise.
+/// Twice the area of a triangle, positive if it is counter-clockwise.
 double turn(const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c)
 {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -56,12 +57,12 @@ struct TileBlocks::Side
 {
     int number = 0;      ///< 0 south, 1 east, 2 north, 3 west
     int line = 0;        ///< the row or the column that it lies on
-    double depth = 0.0;  ///< metres that its wall reaches below the ground at least
+    double depth = 0.0;  ///< how far its wall reaches below the ground at least, metres
     bool border = false; ///< of the tile
     std::size_t vertices = 0;
 
     bool alongColumns() const { return number % 2 == 0; }
-    /// Grows along the side with the block's inside on the left.
+    /// The place along the side. It grows with the block's inside on the left.
     int place(const Post& post) const
     {
         const int along = alongColumns() ? post.column : post.row;
@@ -79,12 +80,12 @@ struct TileBlocks::Side
     }
 };
 
-/// The meshes of a block while they have no vertices: the nearest one first.
+/// The meshes of a block before they have vertices, the nearest one first.
 struct TileBlocks::Draft
 {
     std::vector<BlockMesh> meshes;
     std::vector<double> from; ///< metres from the block's middle
-    double tolerance = -1.0;  ///< of the nearest one, metres; negative where it leaves out no post
+    double tolerance = -1.0;  ///< of the nearest one, metres; negative if it leaves out no post
     bool dense = false;       ///< whether the nearest one has all posts of the block
 };
 
@@ -95,7 +96,8 @@ TileBlocks::TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetw
     addVertices({0, 0, _lattice.intervals});
     for (int side = 0; side < 4; ++side)
         _skirts[static_cast<std::size_t>(side)] = plan.skirt(key, side);
-    // Whole tiles are far enough away for one block on the coarsest level alone; halves of a finest one hardly ever are.
+    // Only tiles of the coarsest level are far enough away to be one block. A finest tile is hardly ever far enough
+    // away for halves.
     const int intervals = _lattice.intervals, smallest = smallestBlock(plan.scheme, key.level, intervals);
     const int parts = key.level == 0 ? 1 : key.level == plan.scheme.finestLevel ? 4 : 2;
     const int size = std::max(smallest, intervals / parts);
@@ -145,11 +147,11 @@ TileBlocks::Block TileBlocks::make(const TileBlock& block)
         for (int column = block.column; column <= block.column + block.size; ++column)
         {
             const float height = _lattice.heights.at(_lattice.column + column, _lattice.row + row);
-            low = std::min(low, height); // not by NaN
+            low = std::min(low, height); // this order ignores NaN
             high = std::max(high, height);
         }
     if (low > high || block.column >= _lattice.endColumn || block.row >= _lattice.endRow) return result;
-    // The middle of its box. Between these points the globe is near enough a plane.
+    // The box of a grid of points. Between them the globe is as good as a plane.
     constexpr int parts = 4;
     osg::BoundingBoxd box;
     const int step = std::max(1, block.size / parts);
@@ -175,7 +177,7 @@ TileBlocks::Block TileBlocks::make(const TileBlock& block)
             _blocks.push_back(std::move(finer));
             result.finer.push_back(_blocks.size() - 1);
         }
-        // Not before its own error is small enough, where it is smaller than others: at the end of the ground.
+        // At the end of the ground blocks are small. They wait until the tile's own error is small enough.
         if (!result.finer.empty())
             result.finerWithin = std::max(FINER_WITHIN * result.radius,
                                           result.radius + _plan.tolerance(_key.level) * perMetre());
@@ -211,7 +213,7 @@ TileBlocks::Draft TileBlocks::nearest(const TileBlock& block, const Block& resul
     Draft draft;
     if (own)
     {
-        // Where hardly a post can be left out, all are there.
+        // If hardly any post can be left out, all stay.
         const double negligible = std::min(NEGLIGIBLE * metres(), NEGLIGIBLE_METRES);
         const auto posts =
             static_cast<std::size_t>(block.size + 1) * static_cast<std::size_t>(block.size + 1);
@@ -221,14 +223,14 @@ TileBlocks::Draft TileBlocks::nearest(const TileBlock& block, const Block& resul
     else
         draft.tolerance =
             std::max(_plan.tolerance(_key.level), (result.finerWithin - result.radius) / perMetre());
-    // What the finest meshes may be off by is part of what neighbours' walls reach down to.
+    // The walls of neighbours reach down by the error of the finest meshes, so it has a bound.
     const double most = own        ? HUGE_VAL
                         : smallest ? _plan.finestError(_key.level)
                                    : std::min(_plan.largestError(_key.level), ACCUMULATION * draft.tolerance);
     BlockMesh mesh = _network.triangulate(block, draft.tolerance, block.size);
     while (draft.tolerance > 0.0 && mesh.deviation > most)
         mesh = _network.triangulate(block, draft.tolerance *= 0.7, block.size);
-    // With all posts what is left is rounding.
+    // A mesh with all posts is off by rounding alone.
     if (draft.tolerance < 0.0) mesh.deviation = 0.0;
     draft.meshes.push_back(std::move(mesh));
     draft.from.push_back(result.finerWithin);
@@ -251,8 +253,8 @@ void TileBlocks::addCoarser(const TileBlock& block, const Block& result, Draft& 
         const double error = std::max(coarser, mesh.deviation / ACCUMULATION) +
                              static_cast<double>(_plan.fact(_key).latticeError) + rounding();
         const double distance = result.radius + error * perMetre();
-        // Where the nearer one would hardly ever be seen, this one takes its place; the nearest one goes only where it never
-        // would.
+        // If the nearer mesh would hardly ever be seen, this one replaces it. The nearest one of all is replaced only
+        // if it would never be seen.
         const bool replaces = distance <= (meshes.size() > 1 ? LEAST_STEP : 1.0) * from.back();
         if (replaces)
         {
@@ -287,8 +289,8 @@ TileBlocks::Mesh TileBlocks::made(const TileBlock& block, const Block& result, c
     for (const Post& corner : surface.corners)
         made.triangles.push_back(vertices.post(corner));
     made.ground = made.triangles.size();
-    // A neighbour of the same tile, or of its level, is hardly farther away than the farthest place where this mesh
-    // is drawn; twice that, since deformations stretch distances.
+    // A neighbour of the same tile or level is hardly farther away than the farthest place where this mesh is drawn.
+    // The distance counts twice, since deformations stretch it.
     double other = _plan.largestError(_key.level);
     if (mesh + 1 < draft.meshes.size())
         other = std::min(other, 2.0 * (draft.from[mesh + 1] + result.radius) / perMetre());
@@ -313,10 +315,10 @@ double TileBlocks::longestEdge(const BlockMesh& mesh)
 void TileBlocks::addWalls(const TileBlock& block, std::size_t vertices, const BlockMesh& mesh, double depth,
                           std::vector<std::uint32_t>& triangles)
 {
-    // Rounding alone opens hair lines between meshes of different density, even in a plain.
-    // Meshes of about the same depth share a wall's lower end.
+    // Even in a plain, rounding opens hair lines between meshes of different density. A power of two lets meshes of
+    // about the same depth share a wall's lower end.
     const double inner = std::exp2(std::ceil(std::log2(depth + _plan.leastSkirt(_key.level))));
-    // Beyond the end of the ground there is nothing.
+    // There is nothing beyond the end of the ground.
     const int east = _lattice.eastColumn(), north = _lattice.northRow();
     const int lines[4] = {block.row, std::min(block.column + block.size, east),
                           std::min(block.row + block.size, north), block.column};
@@ -328,7 +330,8 @@ void TileBlocks::addWalls(const TileBlock& block, std::size_t vertices, const Bl
         const double neighbours = _skirts[static_cast<std::size_t>(number)];
         if (side.border) side.depth = neighbours > 0.0 ? std::max(inner, mesh.deviation + neighbours) : 0.0;
         if (side.depth <= 0.0) continue;
-        // A wall hangs from each edge of the surface along the side; not across a hole, nor beyond the ground's end.
+        // A wall hangs from each edge of the surface along the side. Holes, and posts beyond the end of the ground,
+        // have none.
         std::vector<std::pair<int, int>> edges;
         for (std::size_t i = 0; i < mesh.corners.size(); ++i)
         {
@@ -379,7 +382,8 @@ void TileBlocks::addWall(const Side& side, const std::vector<Post>& top,
     Line& line = entry->second;
     if (isNew)
     {
-        // A straight line below all that lies between, along the chord or level, whichever does not go below both.
+        // The lower end is a straight line below everything between. It runs along the chord, unless this would take
+        // it lower than a level line.
         const double a = height(first), b = height(last);
         double sag = 0.0, lowest = std::min(a, b);
         for (int place = start + 1; place < end; ++place)
@@ -428,8 +432,8 @@ void TileBlocks::addStrip(const Side& side, const std::vector<Post>& top,
             std::make_tuple(side.vertices, side.number, post.column, post.row, side.depth), 0u);
         if (isNew)
         {
-            // At the terrain's border it may still stand above the first posts of a finer neighbour, by its own error;
-            // deeper, or leaning, the wall's end would show below the border.
+            // At the terrain's border the wall reaches down by the tile's own error only, since a finer neighbour's
+            // first posts may be so much lower. A deeper or leaning end would show below the border.
             const bool end = ends(post);
             const double depth =
                 end ? std::min(side.depth, 1.5 * _plan.largestError(_key.level) / 4.0) : side.depth;

@@ -15,11 +15,12 @@
 namespace osgGeoFX
 {
 
-/** What a tile's levels of detail are made of: a quadtree of blocks, each with meshes for several distances.
+/** The levels of detail of a tile: a quadtree of blocks, each with meshes for several distances.
 
-    A mesh is right to a pixel from its own distance on, and has hardly more triangles than that needs. All of them are
-    index lists over vertices that they share. Each has walls along the block's border, down to what may stand on the other
-    side; a wall ends in a straight line, so it costs one triangle for each edge of the border, and one more.
+    From its own distance on, a mesh is right to a pixel, with hardly more triangles than needed. Meshes are index
+    lists over shared vertices. Each mesh has walls along the block's border, down to what may stand on the other
+    side. The lower end of a wall is a straight line. So a wall costs one triangle for each edge of the border, and
+    one more.
 
     Not thread-safe. */
 class TileBlocks
@@ -28,7 +29,7 @@ public:
     struct Mesh
     {
         std::vector<std::uint32_t> triangles; ///< the ground's, then the walls'
-        std::size_t ground = 0;               ///< indices of the ground
+        std::size_t ground = 0;               ///< the number of indices of the ground
         double from = 0.0;                    ///< metres from the block's middle
         double longestEdge = 0.0;             ///< of the surface, along the ground, metres
     };
@@ -36,26 +37,26 @@ public:
     {
         osg::Vec3d middle;
         double radius = 0.0;            ///< around the ground, without walls
-        double error = 0.0;             ///< by how much its first mesh misses the lattice, metres
+        double error = 0.0;             ///< the error of its first mesh against the lattice, metres
         std::vector<Mesh> meshes;       ///< the nearest first
-        std::size_t vertices = 0;       ///< whose its meshes' indices are
-        double finerWithin = 0.0;       ///< metres; the four finer blocks are due there
+        std::size_t vertices = 0;       ///< the place of its meshes' vertices in vertices()
+        double finerWithin = 0.0;       ///< the four finer blocks are drawn within this distance, metres
         std::vector<std::size_t> finer; ///< their places in the list of all blocks; none, or up to four
     };
 
-    /// Metres; no camera is as near to a block's middle, but a deformation may ask as if it were.
+    /// A distance, metres. No camera is as near to a block's middle, but a deformation may act as if it were.
     static constexpr double NEARER_THAN_ANY_CAMERA = 1e-3;
 
-    /// The tile's place in the arrays, x and y, is counted in tiles from their south-west corner.
+    /// x and y are the tile's place in the arrays, counted in tiles from their south-west corner.
     TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetwork& network,
                const LevelArrays& arrays, int x, int y);
 
-    /// Those that nothing else holds come first.
+    /// All blocks. The roots, which no other block holds, come first.
     const std::vector<Block>& blocks() const { return _blocks; }
     std::size_t roots() const { return _roots; }
-    /// What blocks have in common; a smallest block of a finest tile has its own.
+    /// The vertices that blocks share. A smallest block of a finest tile has its own.
     const std::vector<std::unique_ptr<TileVertices>>& vertices() const { return _vertices; }
-    /// By how much the tile's finest meshes miss the lattice, as a length that must not show a pixel: metres.
+    /// The error of the tile's finest meshes against the lattice, metres. It must not show as a pixel.
     double error() const { return _error; }
     bool empty() const { return _blocks.empty(); }
 
@@ -74,11 +75,11 @@ private:
     /// A draft of the block's nearest mesh alone.
     Draft nearest(const TileBlock& block, const Block& result) const;
     void addCoarser(const TileBlock& block, const Block& result, Draft& draft) const;
-    /// Makes the edges of a smallest block's nearest mesh short enough for what bends it.
+    /// Makes the edges of a smallest block's nearest mesh short enough for deformations.
     void addShortEdges(const TileBlock& block, Draft& draft) const;
     /// A mesh of a draft with its vertices and walls.
     Mesh made(const TileBlock& block, const Block& result, const Draft& draft, std::size_t mesh);
-    /// Makes one for a block, or for the whole tile.
+    /// Makes the vertices of a block, or of the whole tile.
     std::size_t addVertices(const TileBlock& block);
     static double longestEdge(const BlockMesh& mesh);
     void addWalls(const TileBlock& block, std::size_t vertices, const BlockMesh& mesh, double depth,
@@ -104,8 +105,8 @@ private:
         std::array<std::uint32_t, 2> ends{};
         std::array<double, 2> depths{}; ///< below the border's first and last post, metres
     };
-    /// By the vertices, the side, its row or column, the border's first and last place, and the least depth: meshes share
-    /// them.
+    /// By the vertices, the side, its row or column, the border's first and last place, and the least depth. Meshes
+    /// share these lines.
     std::map<std::tuple<std::size_t, int, int, int, int, double>, Line> _lines;
     /// By the vertices, the side, the post and the depth.
     std::map<std::tuple<std::size_t, int, int, int, double>, std::uint32_t> _strips;

@@ -21,12 +21,12 @@ namespace osgGeoFX
 namespace
 {
 
-/// Of what libdeflate has, a little smaller than zlib's usual level, in half of its time.
+/// The level of libdeflate. Its files are a little smaller than those of zlib's usual level, in half of the time.
 constexpr int LEVEL = 7;
 
-/// What stands in an .osgb file in front of the compressor's name: two marks, the kind, the version, attributes.
+/// The bytes of an .osgb file before the compressor's name: two marks, the kind, the version, attributes.
 constexpr std::size_t HEADER = 20;
-/// The name of no compressor and of OSG's own one, each behind its length.
+/// The names of no compressor and of OSG's own one, each behind its length.
 const std::string NONE("\1\0\0\0"
                        "0",
                        5),
@@ -39,8 +39,8 @@ struct Free
     void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
 };
 
-/// The file that OSG would have compressed: a gzip stream behind the header and the name. One of a form that is not known
-/// stays as it is, and can be read as well.
+/// The file that OSG would have compressed: a gzip stream behind the header and the name. A file of unknown form
+/// stays uncompressed, which can be read as well.
 std::string compressed(const std::string& plain)
 {
     if (plain.compare(HEADER, NONE.size(), NONE) != 0) return plain;

@@ -9,9 +9,10 @@
 namespace osgGeoFX
 {
 
-/** Writes a node into an .osgb file that any OpenSceneGraph reads, compressed; the file is there whole or not at all.
+/** Writes a node into a compressed .osgb file that any OpenSceneGraph reads. The file is written completely or not at
+    all.
 
-    Throws BuildError, with the file and the remedy. Every thread may call it, for files of its own. */
+    Throws a BuildError with the file and the remedy. Several threads may call it for different files. */
 void writeNodeAtomically(const osg::Node& node, const std::string& path);
 
 } // namespace osgGeoFX

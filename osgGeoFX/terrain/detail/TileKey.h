@@ -7,7 +7,7 @@
 namespace osgGeoFX
 {
 
-/// Place of a tile in the quadtree: level 0 is the root, x counts eastwards, y northwards.
+/// The place of a tile in the quadtree. Level 0 is the root, x counts eastwards, y northwards.
 struct TileKey
 {
     int level = 0;
@@ -16,7 +16,7 @@ struct TileKey
 
     TileKey child(int dx, int dy) const { return {level + 1, 2 * x + dx, 2 * y + dy}; }
 
-    /// "level/x/y", as tiles are named and their files are filed.
+    /// The name of a tile and of its file: "level/x/y".
     std::string path() const
     {
         return std::to_string(level) + "/" + std::to_string(x) + "/" + std::to_string(y);

@@ -13,7 +13,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Of a post that every mesh must have.
+/// The error of a post that every mesh must have.
 constexpr float ALWAYS = std::numeric_limits<float>::max();
 
 } // namespace
@@ -26,7 +26,7 @@ struct TileNetwork::Splitter
     const int longest;
     BlockMesh mesh;
 
-    /// The triangle with the longest edge from a to b and the right angle at c, anticlockwise as a, b, c.
+    /// A triangle with the longest edge from a to b and the right angle at c. The order a, b, c is counter-clockwise.
     void split(Post a, Post b, Post c)
     {
         const Post m{(a.column + b.column) / 2, (a.row + b.row) / 2};
@@ -87,7 +87,7 @@ std::vector<float> TileNetwork::errors(const TileBlock& block, double tolerance)
     return result;
 }
 
-/// How much the middle of an edge is missed by the straight line between its ends, metres.
+/// The distance of an edge's middle from the straight line between its ends, metres.
 float TileNetwork::edgeError(int c, int r, int dc, int dr) const
 {
     const float h = _lattice.height(c, r), a = _lattice.height(c - dc, r - dr),
@@ -95,7 +95,7 @@ float TileNetwork::edgeError(int c, int r, int dc, int dr) const
     const int holes = std::isnan(h) + std::isnan(a) + std::isnan(b);
     if (holes == 3) return 0.0f;
     if (holes > 0) return ALWAYS;
-    // Posts beyond the end of the ground are drawn on it, so nothing may lie on both sides.
+    // Posts beyond the end of the ground are drawn on the end, so an edge must not cross it.
     const auto crosses = [](int from, int to, int end)
     {
         return std::min(from, to) < end && std::max(from, to) > end;
@@ -107,7 +107,7 @@ float TileNetwork::edgeError(int c, int r, int dc, int dr) const
         .length();
 }
 
-/// An edge's middle carries the largest error of all that depends on it, so that a split never leaves a gap.
+/// The middle of an edge gets the largest error of all posts that depend on it, so that a split never leaves a gap.
 void TileNetwork::gatherErrors()
 {
     const int n = _lattice.intervals;
@@ -144,7 +144,7 @@ void TileNetwork::gatherErrors()
     }
 }
 
-/// The largest distance of the posts over a triangle from it; its right angle is at c.
+/// The largest distance of the posts over a triangle from it. Its right angle is at c.
 double TileNetwork::deviation(Post a, Post b, Post c) const
 {
     const float ha = _lattice.height(a.column, a.row), hb = _lattice.height(b.column, b.row),

@@ -27,25 +27,25 @@ struct BlockMesh
     {
         int column = 0, row = 0; ///< of the tile's lattice
     };
-    std::vector<Post> corners; ///< three for each triangle, anticlockwise seen from above
+    std::vector<Post> corners; ///< three for each triangle, counter-clockwise seen from above
     double deviation = 0.0;    ///< largest distance of a lattice point from its place on the mesh, metres
 };
 
-/// A tile's part of the lattices from which its mesh is made.
+/// A tile's part of the lattices that its mesh is made from.
 struct TileLattice
 {
     const HeightGrid& heights; ///< the densest heights at hand
     int column = 0, row = 0;   ///< the tile's south-western post
     int intervals = 0;         ///< a power of two
-    /// The ground ends at these columns and rows (posts beyond lie on the end as well); at least `intervals` where
-    /// it does not end inside.
+    /// The ground ends at these columns and rows; posts beyond lie on the end, too. They are at least `intervals` if
+    /// the ground does not end inside.
     int endColumn = 0, endRow = 0;
-    /// How far the Earth curves away below the tile's tangent plane at each column and row, metres. Near enough for
-    /// tiles of some 20 km; larger ones have their posts' places instead, row by row, in the tile's frame.
+    /// The depth of the Earth's curve below the tile's tangent plane at each column and row, metres. It is exact
+    /// enough for tiles of some 20 km. Larger tiles have the posts' places instead, row by row, in the tile's frame.
     std::vector<float> dropX, dropY;
     std::vector<osg::Vec3f> places;
 
-    /// Where the tile's ground ends in the east and in the north.
+    /// The column and the row where the tile's ground ends in the east and in the north.
     int eastColumn() const { return std::min(intervals, endColumn); }
     int northRow() const { return std::min(intervals, endRow); }
 
@@ -55,7 +55,7 @@ struct TileLattice
                       static_cast<std::size_t>(c)];
     }
 
-    /// Above the tangent plane, so that what is straight in space is straight here.
+    /// The height above the tangent plane. Straight lines in space are straight in it.
     float height(int c, int r) const
     {
         return heights.at(column + c, row + r) - dropX[static_cast<std::size_t>(c)] -
@@ -63,30 +63,30 @@ struct TileLattice
     }
 };
 
-/// The number of cells that a bent mesh has along a tile's edge at least.
+/// The least number of cells of a bent mesh along a tile's edge.
 inline int leastCells(int intervals)
 {
     return std::min(intervals, 16);
 }
 
-/** A right-triangulated irregular network over a tile's lattice: large triangles where the ground is even, small ones
-    where it is not.
+/** A right-triangulated irregular network over a tile's lattice: large triangles on even ground, small ones
+    elsewhere.
 
-    A post's error is how far the ground's straight line between its neighbours misses it, or any post that depends on
-    it. Meshes of one tolerance fit together, whichever blocks of the tile they cover. Borders of holes in the data are
-    followed post by post. (Evans, Kirkpatrick, Townsend: Right-triangulated irregular networks, 2001.) */
+    The error of a post is its distance from the straight line between its neighbours, or that of any post that
+    depends on it. Meshes of one tolerance fit together, whichever blocks of the tile they cover. Borders of holes in
+    the data are followed post by post. (Evans, Kirkpatrick, Townsend: Right-triangulated irregular networks, 2001.) */
 class TileNetwork
 {
 public:
     /// The lattice must outlive the network.
     explicit TileNetwork(const TileLattice& lattice);
 
-    /** The least mesh over a block that has all posts whose error is greater than `tolerance` (metres; all posts where
-        it is negative), and no edge along an axis longer than `longest` cells. */
+    /** The smallest mesh over a block with all posts whose error is greater than `tolerance` (metres; negative: all
+        posts). No edge along an axis is longer than `longest` cells. */
     BlockMesh triangulate(const TileBlock& block, double tolerance, int longest) const;
 
-    /// The errors of the posts in a block that are greater than a tolerance, the largest first, metres; those that
-    /// every mesh has, as at holes, are left out.
+    /// The errors of a block's posts above a tolerance, metres, the largest first. Posts that every mesh has, such as
+    /// those at holes, are left out.
     std::vector<float> errors(const TileBlock& block, double tolerance) const;
 
     const TileLattice& lattice() const { return _lattice; }

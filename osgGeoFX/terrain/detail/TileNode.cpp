@@ -23,9 +23,9 @@ namespace osgGeoFX
 namespace
 {
 
-/// Metres; no camera is as near to a tile's middle.
+/// A distance, metres. No camera is as near to a tile's middle.
 constexpr double RANGE_OF_PLAINS = 1e-3;
-// Metres along an edge from which on a tile's part of the globe must be taken exactly.
+// From this edge length on, metres, the globe's curve in a tile is computed exactly.
 constexpr double LARGE_TILE = 25000.0;
 constexpr int COLOR_UNIT = 0, LAND_COVER_UNIT = 1, COVER_UNIT = 7;
 
@@ -52,7 +52,8 @@ public:
     BlockNodes(const TileBlocks& blocks, osg::Array* color, osg::StateSet* state)
         : _blocks(blocks), _color(color), _state(state)
     {
-        // A buffer of their own, whatever geometry takes them first. Not one for all: drivers count how often one is written.
+        // The arrays have a buffer of their own, whichever geometry takes them first. They do not share one: drivers
+        // count how often a buffer is written.
         for (const auto& vertices : blocks.vertices())
         {
             osg::ref_ptr<osg::VertexBufferObject> buffer = new osg::VertexBufferObject;
@@ -126,7 +127,7 @@ private:
         else
             elements = new osg::DrawElementsUInt(osg::PrimitiveSet::TRIANGLES, mesh.triangles.begin(),
                                                  mesh.triangles.end());
-        // Of its own: what is added to a buffer that is being drawn from makes drivers wait.
+        // Indices have a buffer of their own: adding to a buffer in use makes drivers wait.
         elements->setElementBufferObject(new osg::ElementBufferObject);
         geometry->addPrimitiveSet(elements);
         geometry->setStateSet(_state);
@@ -145,8 +146,8 @@ private:
 TileNodeFactory::TileNodeFactory(const BuildPlan& plan)
     : _plan(plan), _textures(plan.options.compressTextures)
 {
-    // With a buffer object of their own, shared arrays do not join that of the first geometry that takes them, which
-    // would make a file's bytes depend on the order of the work.
+    // Shared arrays have a buffer object of their own. Otherwise they would join that of the first geometry that
+    // takes them, and a file's bytes would depend on the order of the work.
     _sharedBuffer = new osg::VertexBufferObject;
     _white = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1);
     _white->front().set(1.0f, 1.0f, 1.0f, UNLIT_ALPHA);
@@ -212,7 +213,7 @@ osg::ref_ptr<osg::StateSet> TileNodeFactory::createState(const TileKey& key, con
     state->setTextureAttributeAndModes(COLOR_UNIT, color);
     if (!arrays.classes.empty())
     {
-        // Bound for shaders that want it, but not enabled: the fixed pipeline must not draw it.
+        // Bound for shaders that want it, but not enabled: the fixed functions must not draw it.
         osg::ref_ptr<osg::Texture2D> classes = new osg::Texture2D(
             _textures.data(cutImage(arrays.classes, arrays.texelColumns, x * m, y * m, m + 1, 1), false));
         classes->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
@@ -261,7 +262,7 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     }
     else
     {
-        // Data so scattered that no triangle of this level holds any; the finer levels draw it.
+        // The data are so scattered that no triangle of this level has any. Finer levels draw them.
         const TileFrame frame(scheme, key);
         const int span = scheme.intervals * scheme.step(key.level);
         for (int c = 0; c < 4; ++c)
@@ -278,13 +279,13 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     if (scheme.textureSize(texels) != texels + 1) transform->setUserValue("geofx.texels", texels);
     if (key.level == scheme.finestLevel) return transform;
 
-    // Seen from d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R away, so
-    // the finer tiles are due where d < R + e·k/limit.
+    // At a distance of d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R
+    // away, so the finer tiles are drawn within R + e·k/limit.
     const double relief = blocks.error() + static_cast<double>(facts.latticeError);
     const double texel =
         static_cast<double>(arrays.textureError[static_cast<std::size_t>(y * arrays.span + x)]);
     const double error = std::max(relief / _plan.options.pixelError, texel / _plan.options.texelError);
-    // Without an error they are due where a deformation asks for them alone (DeformationChain::lodLimit).
+    // Without an error, finer tiles are drawn only if a deformation asks for them (DeformationChain::lodLimit).
     const double range = error > 0.0 ? radius + error * _plan.options.pixelsPerRadian : RANGE_OF_PLAINS;
 
     osg::ref_ptr<osg::PagedLOD> lod = new osg::PagedLOD;
@@ -294,7 +295,7 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     lod->setCenter(osg::Vec3(box.center() * transform->getMatrix()));
     lod->setRadius(static_cast<float>(radius + static_cast<double>(facts.error + facts.skirtBelow)));
     lod->addChild(transform, static_cast<float>(range), std::numeric_limits<float>::max());
-    // A file holds the four children of a tile; the root's lies beside no other tile.
+    // A file has the four children of a tile. That of the root lies beside no other tile.
     lod->setFileName(1, (key.level == 0 ? "tiles/" : "../../") + key.path() + ".osgb");
     lod->setRange(1, 0.0f, static_cast<float>(range));
     lod->setNumChildrenThatCannotBeExpired(1);

@@ -24,11 +24,11 @@ namespace osgGeoFX
 namespace
 {
 
-// A difference of color that an eye would miss, of 255.
+// A difference of color that the eye misses, of 255.
 constexpr int VISIBLE_DIFFERENCE = 10;
 
 /// Every second point of a lattice, smoothed by 1-2-1 in each direction. Points on the lattice's border are smoothed
-/// along the border only: the neighbouring unit has the same points there and must come to the same result.
+/// along the border only. The neighbouring unit has the same points there and must get the same result.
 template<typename T, typename Sum, int Channels>
 std::vector<T> halved(const std::vector<T>& values, int columns, int rows)
 {
@@ -46,7 +46,7 @@ std::vector<T> halved(const std::vector<T>& values, int columns, int rows)
         for (int i = 0; i < halfColumns; ++i)
         {
             const bool insideX = i > 0 && i + 1 < halfColumns, insideY = j > 0 && j + 1 < halfRows;
-            // On the west or east border: along y only; on the south or north one: along x only; a corner: itself.
+            // West and east border: along y only. South and north border: along x only. A corner stays.
             const int wx[3] = {insideX ? 1 : 0, insideX ? 2 : 1, insideX ? 1 : 0};
             const int wy[3] = {insideY ? 1 : 0, insideY ? 2 : 1, insideY ? 1 : 0};
             const int total = (insideX ? 4 : 1) * (insideY ? 4 : 1);
@@ -90,7 +90,7 @@ std::string rootTileFile(const BuildPlan& plan, const TileKey& key)
 osg::ref_ptr<osg::Node> readRootTile(const BuildPlan& plan, const TileKey& key)
 {
     const std::string file = rootTileFile(plan, key);
-    // Without a path in the options OSG leaves the tile's own file names as they were written.
+    // Without a path in the options, OSG leaves the file names in the tile as they were written.
     std::ifstream stream(file, std::ios::binary);
     osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
     osg::ref_ptr<osg::Node> node;
@@ -124,7 +124,7 @@ bool losesDetail(const LevelArrays& fine, const LevelArrays& coarse, int x, int 
     return false;
 }
 
-/// What a unit's last work file tells first.
+/// What a unit's last work file starts with.
 struct UnitFigures
 {
     std::uint64_t tiles = 0;
@@ -136,13 +136,14 @@ class UnitBuilder
 public:
     explicit UnitBuilder(BuildPlan& plan) : _plan(plan), _factory(plan) {}
 
-    /// Writes the files of all groups of four tiles in the unit, and its root where the next tier finds it.
+    /// Writes the files of all groups of four tiles in the unit. Writes the unit's root for the next tier.
     UnitFigures build(const Unit& unit);
 
 private:
     LevelArrays sampled(const Unit& unit);
     LevelArrays gathered(const Unit& unit);
-    /// The next coarser level; may take over the finer one's texels and slopes, which is then done with.
+    /// Makes the next coarser level. It may take over texels and slopes of the finer one, which is not used
+    /// afterwards.
     LevelArrays coarser(LevelArrays& fine) const;
     void slopes(const Unit& unit, const HeightGrid& withApron, LevelArrays& arrays) const;
     std::uint64_t writeGroups(const Unit& unit, const LevelArrays& arrays);
@@ -152,7 +153,7 @@ private:
     std::unique_ptr<RasterStack> _rasters;
 };
 
-/// Slopes at the posts from their neighbours; the apron gives those on the border theirs.
+/// Slopes at the posts, from their neighbours. The apron has the neighbours of posts on the border.
 void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArrays& arrays) const
 {
     const TilingScheme& scheme = _plan.scheme;
@@ -361,7 +362,7 @@ std::uint64_t UnitBuilder::writeGroups(const Unit& unit, const LevelArrays& arra
             {
                 const TileKey key = parent.child(c & 1, c >> 1);
                 if (!_plan.fact(key).any) continue;
-                // An upper tier's finest tiles are the roots of the units below it, which made them from their
+                // The finest tiles of an upper tier are the roots of the units below. These units made them, from
                 // denser heights.
                 const bool made = unit.tier > 0 && key.level == unit.latticeLevel();
                 group->addChild(made ? readRootTile(_plan, key)

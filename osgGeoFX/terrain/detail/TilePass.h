@@ -20,7 +20,7 @@ struct TilePassResult
     osg::ref_ptr<osg::Node> root; ///< the root tile, for terrain.osgb
 };
 
-/// Pass 2: writes the tiles' files; needs what pass 1 has found.
+/// Pass 2: writes the tiles' files. It needs the results of pass 1.
 TilePassResult runTilePass(BuildPlan& plan);
 
 } // namespace osgGeoFX

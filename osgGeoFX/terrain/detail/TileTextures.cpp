@@ -21,7 +21,7 @@ namespace
 
 constexpr int BLOCK = TileTextures::BLOCK;
 
-/// Of a block's texels, as libsquish takes them: red, green, blue, alpha of each, row by row.
+/// The bytes of a block's texels for libsquish: red, green, blue, alpha of each, row by row.
 constexpr std::size_t BLOCK_RGBA = 4 * BLOCK * BLOCK;
 
 int channelsOf(const osg::Image& image)
@@ -29,7 +29,7 @@ int channelsOf(const osg::Image& image)
     return static_cast<int>(image.getPixelSizeInBits() / 8);
 }
 
-/// Of a texture and its mipmaps, down to a single texel.
+/// The bytes of a texture and its mipmaps, down to a single texel.
 std::uint64_t chainBytes(int size, GLenum format, bool mipmaps)
 {
     std::uint64_t bytes = 0;
@@ -40,8 +40,8 @@ std::uint64_t chainBytes(int size, GLenum format, bool mipmaps)
     }
 }
 
-/// Half of a line's texels, as many as OpenGL's next mipmap has: of an odd number of them each becomes the mean of a little
-/// more than two. `stride` is the way from one to the next, in the source and in the target.
+/// Halves a line of texels to the number of OpenGL's next mipmap. If the number is odd, each new texel is the mean of
+/// a little more than two. `stride` is the way from texel to texel, in the source and in the target.
 void halveLine(const float* from, float* to, int size, std::size_t stride)
 {
     const int half = size / 2;
@@ -57,7 +57,7 @@ void halveLine(const float* from, float* to, int size, std::size_t stride)
     }
 }
 
-/// The next mipmap. Means are not rounded from one to the next, which would shift the smallest ones.
+/// The next mipmap. Means stay unrounded from one mipmap to the next; rounding would shift the smallest ones.
 std::vector<float> halved(const std::vector<float>& texels, int size)
 {
     const auto all = static_cast<std::size_t>(size), half = all / 2;
@@ -73,8 +73,8 @@ std::vector<float> halved(const std::vector<float>& texels, int size)
     return result;
 }
 
-/// An image's blocks. squish::CompressImage would do so with threads of its own for each image (OpenMP), which wait for the next
-/// one without rest: our workers have all cores already.
+/// The blocks of an image. squish::CompressImage would use threads of its own for each image (OpenMP). They never
+/// sleep while they wait for the next image, and our workers have all cores already.
 void encode(const std::vector<float>& texels, int size, int flags, unsigned char* blocks)
 {
     const int bytes = squish::GetStorageRequirements(BLOCK, BLOCK, flags);
@@ -82,7 +82,7 @@ void encode(const std::vector<float>& texels, int size, int flags, unsigned char
         for (int x = 0; x < size; x += BLOCK, blocks += bytes)
         {
             std::array<unsigned char, BLOCK_RGBA> rgba{};
-            int within = 0; // a bit for each of the block's texels that there is
+            int within = 0; // one bit for each texel of the block within the image
             for (int row = y; row < std::min(y + BLOCK, size); ++row)
                 for (int column = x; column < std::min(x + BLOCK, size); ++column)
                 {
@@ -98,7 +98,7 @@ void encode(const std::vector<float>& texels, int size, int flags, unsigned char
         }
 }
 
-/// What a block says, as a GPU reads it.
+/// The texels of a block, as a GPU reads it.
 void decode(const unsigned char* block, bool colors, std::array<unsigned char, BLOCK_RGBA>& rgba)
 {
     if (colors)
@@ -106,7 +106,7 @@ void decode(const unsigned char* block, bool colors, std::array<unsigned char, B
         squish::Decompress(rgba.data(), block, squish::kDxt1);
         return;
     }
-    // libsquish writes BC5 and does not read it; but each half is what BC3 has for alpha.
+    // libsquish writes BC5 and does not read it. Each half of a BC5 block is the alpha part of a BC3 block.
     for (std::size_t channel = 0; channel < 2; ++channel)
     {
         std::array<unsigned char, 16> asBc3{};

@@ -12,33 +12,35 @@
 namespace osgGeoFX
 {
 
-/// What textures take and what compression has changed in them: whole numbers, so that they add up to the same in any order.
+/// The bytes of textures and the errors of compression, in whole numbers. So their sums do not depend on the order.
 struct TextureFigures
 {
-    std::uint64_t bytes = 0, uncompressedBytes = 0; ///< as TextureSummary has them
+    std::uint64_t bytes = 0, uncompressedBytes = 0; ///< as in TextureSummary
     std::uint64_t colorTexels = 0, normalTexels = 0;
-    /// Squares of differences and the largest ones: red, green, blue of colors, x and y of normals.
+    /// Sums of squared differences, and the largest ones: red, green, blue of colors, x and y of normals.
     std::array<std::uint64_t, 5> squares{}, largest{};
 
     void add(const TextureFigures& other);
     TextureSummary summary() const;
 };
 
-/** Makes a tile's images what its textures have: as they are, or, if it compresses, with a number of texels along their edges that
-    blocks of 4 × 4 divide. Texels beyond an image repeat its last ones. Keeps account of all of them.
+/** Makes textures' images of a tile's images: unchanged, or compressed. A compressed image has blocks of 4 × 4
+    texels. Texels beyond the original repeat its last ones. The object counts all of them.
 
-    OSG 3.6 makes an error of a compressed texture whose edges are others (Texture::applyTexImage2D_load). Not thread-safe. */
+    OSG 3.6 reports an error for a compressed texture with other edges (Texture::applyTexImage2D_load). Not
+    thread-safe. */
 class TileTextures
 {
 public:
     explicit TileTextures(bool compress) : _compress(compress) {}
 
-    /// Texels along a compressed texture's edges come in as many.
+    /// Texels along the edge of a block of a compressed texture.
     static constexpr int BLOCK = 4;
 
-    /// Three channels are colors, two are normals: both can be compressed, to BC1 and BC5 (RGTC2), with their mipmaps.
+    /// An image that can be compressed, with its mipmaps: three channels are colors (BC1), two are normals (BC5,
+    /// RGTC2).
     osg::ref_ptr<osg::Image> picture(const osg::ref_ptr<osg::Image>& image);
-    /// What must stay as it is. OpenGL makes its mipmaps, or it has none.
+    /// An image that must not change. OpenGL makes its mipmaps, or it has none.
     osg::ref_ptr<osg::Image> data(const osg::ref_ptr<osg::Image>& image, bool mipmaps);
 
     const TextureFigures& figures() const { return _figures; }

@@ -11,7 +11,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Indices from here on stand for what lies below posts.
+/// Indices from here on stand for vertices below posts.
 constexpr std::uint32_t STAND_IN = 0x80000000u;
 constexpr std::uint32_t NONE = 0xffffffffu;
 
@@ -19,7 +19,7 @@ constexpr std::uint32_t NONE = 0xffffffffu;
 constexpr double QUANTUM = 1.0 / 32.0;
 constexpr double SHARE_OF_CELL = 1.0 / 1024.0;
 
-/// A power of two, and not less than what floats tell apart on a tile.
+/// The grid's step: a power of two, at least what floats can tell apart on a tile.
 double quantum(double tileMetres, int intervals)
 {
     const double wanted = std::min(QUANTUM, SHARE_OF_CELL * tileMetres / intervals);
@@ -59,7 +59,7 @@ double TileVertices::gridY(int row) const
 osg::Vec3d TileVertices::position(const Post& post) const
 {
     float height = _arrays.heights.at(_x * _intervals + post.column, _y * _intervals + post.row);
-    // No triangle uses such a post; it must only not widen the tile's box.
+    // No triangle uses such a post. It must not widen the tile's box.
     if (std::isnan(height)) height = _plan.fact(_key).minHeight;
     return _frame.position(gridX(post.column), gridY(post.row), static_cast<double>(height));
 }
@@ -76,7 +76,7 @@ osg::Vec3d TileVertices::up(const Post& post) const
     return up;
 }
 
-/// The level's slopes lie on its own posts; between them they are interpolated.
+/// The level's slopes lie on its own posts. Between them they are interpolated.
 double TileVertices::slope(const std::vector<float>& values, const Post& post) const
 {
     const int n = _plan.scheme.intervals, stride = _arrays.span * n + 1;

@@ -13,39 +13,39 @@
 namespace osgGeoFX
 {
 
-/** Vertices that the meshes of a tile, or of one of its blocks, share: posts first, then what lies below them as the
-    walls' lower ends.
+/** The vertices that the meshes of a tile, or of one of its blocks, share. Posts come first, then the walls' lower
+    ends.
 
-    Places are rounded to a grid of at most 1/32 m, and of at most 1/1024 of the way from post to post: all else is noise,
-    which no compressor can shrink. Not thread-safe. */
+    Places are rounded to a grid of at most 1/32 m, and of at most 1/1024 of the way from post to post. Finer digits
+    are noise, which no compressor can shrink. Not thread-safe. */
 class TileVertices
 {
 public:
     using Post = BlockMesh::Post;
 
-    /// Posts may be those of `block` alone; they are there in the order in which they are asked for.
+    /// The posts of `block` alone can be used. They get their numbers in the order of the calls.
     TileVertices(const BuildPlan& plan, const TileKey& key, const LevelArrays& arrays, int x, int y,
                  const TileBlock& block);
 
-    /// All posts of the block, row by row from the south-west. Where all blocks number theirs in one way, their index
-    /// lists look alike, which compressors use.
+    /// Adds all posts of the block, row by row from the south-west. If all blocks number their posts in one way,
+    /// their index lists look alike, and compressors use this.
     void addAll();
     /// The index of a post.
     std::uint32_t post(const Post& post);
-    /// The index of a new vertex below a post, `outX` and `outY` metres to the east and to the north of it. Final indices
-    /// are known only when all posts are: until finish() this one is a stand-in.
+    /// The index of a new vertex below a post, moved by `outX` and `outY` metres to the east and to the north. Final
+    /// indices are known only after all posts, so this index is a stand-in until finish().
     std::uint32_t below(const Post& post, double depth, double outX, double outY);
-    /// Puts what lies below behind the posts, and turns stand-ins into indices.
+    /// Puts the vertices below posts behind the posts, and replaces stand-ins by indices.
     void finish(std::vector<std::vector<std::uint32_t>*>& indices);
 
-    /// How far a vertex may lie from its place, metres.
+    /// The largest distance of a vertex from its exact place, metres.
     double rounding() const;
 
     /// In the tile's frame.
     osg::Vec3d position(const Post& post) const;
-    /// Where a post's height is counted from, in the tile's frame.
+    /// The place of a post at height 0, in the tile's frame.
     osg::Vec3d ground(const Post& post) const;
-    /// Upwards at a post, in the tile's frame.
+    /// The upward direction at a post, in the tile's frame.
     osg::Vec3d up(const Post& post) const;
 
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);

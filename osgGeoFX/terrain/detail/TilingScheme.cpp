@@ -15,7 +15,7 @@ namespace
 
 const double WGS84_A = GeographicLib::Constants::WGS84_a(), WGS84_F = GeographicLib::Constants::WGS84_f();
 
-// Longitudes beyond ±180° are the grid's way across the antimeridian.
+// A grid that crosses the antimeridian has longitudes beyond ±180°.
 double turned(double longitude)
 {
     return longitude - 360.0 * std::round(longitude / 360.0);
@@ -40,7 +40,7 @@ double TilingScheme::metresX(double y) const
 {
     const double dx = (east - west) / lastColumn;
     if (!crs.geographic) return dx * crs.metresPerUnit;
-    // Not at the poles themselves, where slopes to the east would be divided by nothing.
+    // Not at the poles, where slopes to the east would be divided by 0.
     const double latitude = osg::DegreesToRadians(std::clamp(y, -89.9, 89.9));
     const double e2 = WGS84_F * (2.0 - WGS84_F);
     const double sine = std::sin(latitude);
@@ -81,7 +81,7 @@ osg::Matrixd TileFrame::localToWorld() const
     std::vector<double>& r = _rotation;
     GeographicLib::Geocentric::WGS84().Forward(_geodetic->LatitudeOrigin(), _geodetic->LongitudeOrigin(), 0.0,
                                                x, y, z, r);
-    // GeographicLib's columns are east, north and up; OSG's rows are.
+    // East, north and up are columns for GeographicLib, and rows for OSG.
     return osg::Matrixd(r[0], r[3], r[6], 0.0, r[1], r[4], r[7], 0.0, r[2], r[5], r[8], 0.0, x, y, z, 1.0);
 }
 

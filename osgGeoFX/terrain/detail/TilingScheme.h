@@ -18,11 +18,11 @@
 namespace osgGeoFX
 {
 
-/** The quadtree's grid: posts on a lattice over the extent, the first on its south-western corner and the last on its
-    north-eastern one, as dense as the source asks for; a tile has `intervals` × `intervals` cells, a power of two, and a
-    parent's posts are every second one of its children's.
+/** The grid of the quadtree. Posts lie on a lattice over the extent, as dense as the source asks for. The first lies
+    on the south-western corner, the last on the north-eastern one. A tile has `intervals` × `intervals` cells, a
+    power of two. The posts of a parent are every second post of its children.
 
-    The quadtree is square, the extent need not be: posts beyond the extent lie on its border, with the border's
+    The quadtree is square, and the extent need not be. Posts beyond the extent lie on its border, with the border's
     height. So all levels end exactly where the source does, and tiles beyond do not exist. */
 struct TilingScheme
 {
@@ -33,9 +33,9 @@ struct TilingScheme
     int intervals = 0;    ///< cells along a tile's edges
     int texels = 0;       ///< texture intervals along a finest tile's edges; texels lie on both ends
     int textureDepth = 0; ///< levels above the finest that keep the finest texels
-    int texelBlock = 1;   ///< texels along a texture's edges are a multiple of it
+    int texelBlock = 1;   ///< the number of texels along a texture's edge is a multiple of it
 
-    /// All around the globe: the last column of posts lies on the first.
+    /// Whether the grid goes around the globe: the last column of posts lies on the first.
     bool wholeCircle() const { return crs.geographic && east - west > 360.0 - 1e-9; }
 
     int tilesAcross(int level) const { return 1 << level; }
@@ -44,17 +44,18 @@ struct TilingScheme
         return 1 << (finestLevel - level);
     } ///< finest posts from post to post of a level
 
-    /// Texels of a level are as dense as those of finest tiles, until a texture would grow beyond its limit.
+    /// Whether the texels of a level are as dense as those of finest tiles. Above, textures would grow beyond their
+    /// limit.
     bool keepsTexels(int level) const { return level >= finestLevel - textureDepth; }
     int textureIntervals(int level) const { return texels << std::min(finestLevel - level, textureDepth); }
 
-    /// Texels along the edges of a texture: on both ends of its intervals, and what makes whole blocks of them.
+    /// The texels along an edge of a texture: one more than its intervals, rounded up to whole blocks.
     int textureSize(int textureIntervals) const
     {
         return (textureIntervals + texelBlock) / texelBlock * texelBlock;
     }
 
-    /// Normals are as dense as the posts of finest tiles, up to four for each cell of a tile.
+    /// Whether the normals of a level are as dense as the posts of finest tiles: up to four for each cell.
     bool keepsNormals(int level) const { return level >= finestLevel - normalDepth; }
     int normalIntervals(int level) const { return intervals << std::min(finestLevel - level, normalDepth); }
     static constexpr int normalDepth = 2; ///< levels above the finest that keep the finest normals
@@ -64,7 +65,7 @@ struct TilingScheme
     int firstRow(const TileKey& key) const { return key.y * intervals * step(key.level); }
     bool exists(const TileKey& key) const { return firstColumn(key) < lastColumn && firstRow(key) < lastRow; }
 
-    /// Grid position of a finest post, which may be a fraction; beyond the extent, its border.
+    /// The grid position of a finest post; fractions are allowed. Beyond the extent it is that of the border.
     double gridX(double column) const
     {
         return west + (east - west) * (std::min<double>(column, lastColumn) / lastColumn);
@@ -77,29 +78,29 @@ struct TilingScheme
     /// `columns` × `rows` points from a finest post on, `spacing` finest posts apart.
     Lattice lattice(double column, double row, double spacing, int columns, int rows) const;
 
-    /// Metres from post to post of the finest level at a latitude's (geographic: degrees) scale.
+    /// Metres from post to post of the finest level, at the scale of a latitude (geographic: degrees).
     double metresX(double gridYPosition) const;
     double metresY(double gridYPosition) const;
 
-    /// Metres along a tile's edge on a level, the longer one.
+    /// The length of a tile's edge on a level, the longer one, metres.
     double tileMetres(int level) const;
 };
 
-/** Local frame of a tile: origin on the ellipsoid (or the plane's zero) at the tile's center, x east, y north, z up.
-    Not thread-safe. */
+/** The local frame of a tile. Its origin is at the tile's center, on the ellipsoid or at height 0 of the plane. x
+    points east, y north, z up. Not thread-safe. */
 class TileFrame
 {
 public:
     TileFrame(const TilingScheme& scheme, const TileKey& key);
 
-    /// Its origin, in the grid's CRS.
+    /// The origin in the grid's CRS.
     double centerX() const { return _centerX; }
     double centerY() const { return _centerY; }
 
-    /// From the frame to the world.
+    /// The matrix from the frame to the world.
     osg::Matrixd localToWorld() const;
 
-    /// Position in the frame of a grid point (CRS units) at a height in metres.
+    /// The position in the frame of a grid point (CRS units) at a height in metres.
     osg::Vec3d position(double x, double y, double height) const;
 
     /// East, north and up at a grid point, in the frame.
@@ -109,7 +110,7 @@ private:
     const TilingScheme& _scheme;
     double _centerX, _centerY;
     std::optional<GeographicLib::LocalCartesian> _geodetic;
-    mutable std::vector<double> _rotation = std::vector<double>(9); ///< GeographicLib's way to return it
+    mutable std::vector<double> _rotation = std::vector<double>(9); ///< GeographicLib returns it this way
 };
 
 } // namespace osgGeoFX

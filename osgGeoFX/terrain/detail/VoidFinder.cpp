@@ -11,7 +11,7 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr float LOW_RIM = 1.0f; // metres, as WaterFinder has it
+constexpr float LOW_RIM = 1.0f; // metres, as in WaterFinder
 
 /// Calls visit(i, j) for each pair of runs of two neighbouring rows that touch, by sides or corners.
 template<typename Runs, typename Visit>
@@ -108,7 +108,7 @@ void VoidFinder::look(Area& area, Post post, float height) const
     area.lowRim += height <= LOW_RIM ? 1 : 0;
 }
 
-/// Counts what lies on the other side of each post of the runs, in a row beside theirs.
+/// Counts the posts on the other side of each post of the runs, in a row beside theirs.
 void VoidFinder::lookAcross(const std::vector<Run>& runs, const std::vector<Post>& posts,
                             const std::vector<float>& heights)
 {
@@ -120,7 +120,7 @@ void VoidFinder::lookAcross(const std::vector<Run>& runs, const std::vector<Post
     }
 }
 
-/// Squares that end at the posts of a new row.
+/// Finds the largest squares that end at the posts of a new row.
 void VoidFinder::grow(const std::vector<Post>& posts, const std::vector<Run>& runs)
 {
     int before = 0; // of the row before, one column before
@@ -182,7 +182,7 @@ void VoidFinder::add(const std::vector<Post>& posts, const std::vector<float>& h
     _runs.clear();
 }
 
-/// Decides on the areas of the row that was added last which do not go on, and on where their runs end.
+/// Decides about the areas that end with the last row, and notes where their runs end.
 void VoidFinder::finishRow()
 {
     for (const Run& run : _runs)

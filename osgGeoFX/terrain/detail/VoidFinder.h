@@ -14,31 +14,32 @@ enum class Post : std::uint8_t
     DATA,    ///< a height
     VOID,    ///< within the rectangle of a raster that has no height there
     OUTSIDE, ///< in no raster's rectangle
-    FILLED   ///< void, but given a height from those around it
+    FILLED   ///< a void that got a height from the posts around it
 };
 
 /** Finds the voids of an elevation: posts without a height that lie inside the data.
 
-    Posts without a height hang together by their sides and corners. Such an area is a void
-    - where no square of more than 2 × `reach` posts' side fits into it: a larger one is a region that was left out;
-    - and where at most two fifths of its outline run along the edge of the rasters, so that data surround it: corners
-      and bands that a turned raster leaves empty have at least a half there;
-    - and where, if it touches that edge at all, less than a third of the data around it lies at 1 m or below: that is
-      a sea whose heights were left out.
+    Posts without a height form areas, which are connected by sides and corners. An area is a void under three
+    conditions:
+    - No square with a side of more than 2 × `reach` posts fits into it. A larger area is a region that was left out.
+    - At most two fifths of its outline run along the edge of the rasters, so data surround it. A turned raster leaves
+      corners and bands empty, which have at least a half of their outline there.
+    - If it touches that edge at all, less than a third of the data around it lies at 1 m or below. Otherwise it is a
+      sea whose heights were left out.
 
-    Two sweeps over the rows, first add() from the first row to the last, then mark() back. Memory grows with the areas
-    that one row crosses, and with the number of voids, not with the grid. Not thread-safe. */
+    There are two sweeps over the rows: add() from the first row to the last, then mark() back. Memory grows with the
+    areas that one row crosses, and with the number of voids, not with the grid. Not thread-safe. */
 class VoidFinder
 {
 public:
     /// With `wholeCircle` the last column lies on the first, and neither is an edge.
     VoidFinder(int columns, int rows, int reach, bool wholeCircle);
 
-    /// The next row: what its posts are, and the heights of those with data, metres above the sea.
+    /// Adds the next row: its posts, and the heights of those with data, metres above the sea.
     void add(const std::vector<Post>& posts, const std::vector<float>& heights);
 
-    /// The row before the last one that was marked, at first the last row that was added: makes FILLED of VOID where the
-    /// post belongs to a void. Returns whether any does.
+    /// Marks the row before the last marked one, at first the last row that was added. A VOID that belongs to a void
+    /// becomes FILLED. The result says whether there is any.
     bool mark(std::vector<Post>& posts);
 
 private:
@@ -58,7 +59,7 @@ private:
         int square = 0;                             ///< the side of the largest square in it
         int lastRow = -1;
         std::vector<int> labels; ///< all that have become one with it
-        std::vector<End> ends;   ///< where mark() must begin: nothing of the area lies ahead of them
+        std::vector<End> ends;   ///< where mark() must begin: the area has nothing in the next rows there
     };
 
     std::vector<Run> runsOf(const std::vector<Post>& posts) const;
@@ -81,7 +82,7 @@ private:
     std::vector<int> _squares; ///< by column: the side of the largest square that ends there
     std::vector<int> _parents, _free;
     std::vector<Area> _areas;
-    std::vector<End> _ends; ///< of voids, by rows as they were met
+    std::vector<End> _ends; ///< of voids, by row in the order of their discovery
     bool _sorted = false;
     std::vector<Run> _marked;
 };

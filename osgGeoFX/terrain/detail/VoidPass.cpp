@@ -23,9 +23,9 @@ namespace
 
 // Cells along the mask's longer side.
 constexpr int MASK_SIDE = 1024;
-// What GDAL has left as it was: no height of the Earth, and exact in a float.
+// The height of posts that GDAL left unfilled: no height of the Earth, and exact in a float.
 constexpr float UNFILLED = -1048576.0f;
-// Of a window in GDAL's hands: heights, mask, and what it keeps itself.
+// The memory of a post in a window: heights, mask, and GDAL's own.
 constexpr double BYTES_PER_POST = 24.0;
 
 class VoidPass
@@ -37,7 +37,7 @@ public:
 private:
     void sample(RasterStack& rasters, const Unit& unit);
     void find();
-    /// What GDAL sees of a unit and around it.
+    /// The part of the grid that GDAL gets for a unit: the unit and a margin.
     struct Window
     {
         int west = 0, south = 0, width = 0, height = 0; ///< posts
@@ -46,13 +46,14 @@ private:
     };
     bool hasVoids(const Unit& unit);
     Window windowOf(const Unit& unit);
-    /// Heights for all posts that have none, UNFILLED where there is no data near enough.
+    /// Gives all posts without a height one. It is UNFILLED if there is no data near enough.
     void interpolate(Window& window) const;
     void fill(const Unit& unit);
     void finish();
     int firstColumn(const Unit& unit) const { return _plan.scheme.firstColumn(unit.root); }
     int firstRow(const Unit& unit) const { return _plan.scheme.firstRow(unit.root); }
-    /// Posts that a unit has for itself: those on its northern and eastern border are the next unit's, if there is one.
+    /// The posts of a unit that no other unit has. Those on its northern and eastern border belong to the next unit,
+    /// if there is one.
     int ownColumns(const Unit& unit) const;
     int ownRows(const Unit& unit) const;
     void flushPosts(int row, int column, std::size_t count, Post post);
@@ -60,9 +61,9 @@ private:
     BuildPlan& _plan;
     const TilingScheme& _scheme;
     const int _columns, _rows;
-    /// How far GDAL looks for data: across the largest void, and to the middle of one that the data's edge cuts.
+    /// How far GDAL looks for data: across the largest void, and to the middle of a void that the data's edge cuts.
     const int _search;
-    const int _margin; ///< so that posts of a window's middle come to what they would come to in the whole
+    const int _margin; ///< makes a window's middle come out as it would in the whole grid
     RowFile _heights, _posts, _filled;
 };
 
@@ -106,7 +107,7 @@ int VoidPass::ownRows(const Unit& unit) const
 
 void VoidPass::sample(RasterStack& rasters, const Unit& unit)
 {
-    // The same points as the height pass samples: GDAL's last bits depend on them.
+    // The same points as the height pass samples. The last bits of GDAL's heights depend on them.
     const Lattice lattice = _plan.postsWithApron(unit);
     const std::vector<float> heights = rasters.measuredHeights(lattice);
     const std::vector<unsigned char> covered = rasters.covered(lattice, heights);
@@ -159,7 +160,7 @@ bool VoidPass::hasVoids(const Unit& unit)
 
 VoidPass::Window VoidPass::windowOf(const Unit& unit)
 {
-    // Around the globe a window goes on beyond the seam; the last column is the first one again.
+    // On a whole circle a window goes on beyond the seam. The last column is the first one again.
     const bool circle = _scheme.wholeCircle();
     const int column = firstColumn(unit), row = firstRow(unit);
     const int last = column + ownColumns(unit) + _margin;
@@ -234,7 +235,7 @@ void VoidPass::fill(const Unit& unit)
                 _filled.write(row + j, static_cast<std::size_t>(column + i) * sizeof(float),
                               static_cast<std::size_t>(end - i) * sizeof(float),
                               window.heights.data() + start + static_cast<std::size_t>(i));
-            // Where GDAL has found no data near enough, the post stays as it was.
+            // GDAL found no data near enough, so the post stays a void.
             for (i = end; i < columns && is(i, false); ++i)
                 flushPosts(row + j, column + i, 1, Post::VOID);
             while (i < columns && !is(i, true) && !is(i, false))
@@ -249,7 +250,7 @@ void VoidPass::flushPosts(int row, int column, std::size_t count, Post post)
     _posts.write(row, static_cast<std::size_t>(column), count, posts.data());
 }
 
-/// Counts, and writes what VoidRaster looks for first.
+/// Counts posts, and writes the file that VoidRaster reads first.
 void VoidPass::finish()
 {
     const double scale = std::min(1.0, static_cast<double>(MASK_SIDE) / std::max(_columns, _rows));

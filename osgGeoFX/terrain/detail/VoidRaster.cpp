@@ -18,7 +18,7 @@ namespace osgGeoFX
 namespace
 {
 
-// Where a point lies so near to a post, in posts, rounding has put it beside it.
+// A point so near to a post, in posts, lies on it. The difference is rounding.
 constexpr double ON_POST = 1e-5;
 
 /// A place between two posts of a row or column.
@@ -67,7 +67,7 @@ public:
         }
     }
 
-    /// NaN where there is no height. Sets `any` where the post was filled.
+    /// The height of a post; NaN for none. Sets `any` if the post was filled.
     float height(std::size_t side, int column, bool& any) const
     {
         const auto c = static_cast<std::size_t>(column - _first);

@@ -17,16 +17,16 @@ namespace osgGeoFX
 
 class BuildPlan;
 
-/** The finest level's posts where the elevation has voids: heights above the sea, what each post is, and what the voids were
-    filled with. Three work files, written by fillVoids(); sampling is thread-safe. */
+/** The finest level's posts of an elevation with voids: heights above the sea, the kind of each post, and the heights
+    of filled voids. They are three work files, which fillVoids() writes. Sampling is thread-safe. */
 class VoidRaster
 {
 public:
     /// Reads what fillVoids() has written. Throws BuildError.
     explicit VoidRaster(const BuildPlan& plan);
 
-    /// Gives points without a height (NaN) that lie in filled voids theirs, metres above the sea, bilinear between posts.
-    /// Sets `filled` to 1 there; it has a byte for each point, or is null.
+    /// Gives heights to points without one (NaN) that lie in filled voids, metres above the sea, bilinear between
+    /// posts. `filled` is null, or has a byte for each point, which becomes 1 there.
     void fill(const Lattice& lattice, std::vector<float>& heights, std::vector<unsigned char>* filled) const;
 
     std::uint64_t filledPosts() const { return _filledPosts; }
@@ -36,8 +36,8 @@ public:
     } ///< within a raster's rectangle, and without a height
     std::uint64_t dataPosts() const { return _dataPosts; }
 
-    /// The share of filled posts over the extent, a byte for each cell, 255 for all and at least 1 for any; the
-    /// south-western cell first, at most 1,024 cells a side.
+    /// The share of filled posts over the extent, a byte for each cell. 255 is all, and any filled post gives at
+    /// least 1. The south-western cell comes first. There are at most 1,024 cells a side.
     const std::vector<unsigned char>& mask() const { return _mask; }
     int maskColumns() const { return _maskColumns; }
 
@@ -53,11 +53,11 @@ private:
     std::vector<unsigned char> _mask;
 };
 
-/// Finds the voids of the elevation on the finest level's posts and fills them; sets the plan's `voids`. An interrupted
-/// build's are taken over. Throws BuildError.
+/// Finds the voids of the elevation on the finest level's posts and fills them. Sets the plan's `voids`. Takes over
+/// those of an interrupted build. Throws BuildError.
 void fillVoids(BuildPlan& plan);
 
-/// Steps of progress that fillVoids() takes.
+/// The steps of progress of fillVoids().
 std::uint64_t voidSteps(const BuildPlan& plan);
 
 } // namespace osgGeoFX

@@ -16,7 +16,7 @@ constexpr std::int64_t LAKE_CELLS = 32;
 constexpr float LOW_RIM = 1.0f; // metres
 constexpr int NO_LABEL = -1;
 
-/// Whether two cells side by side belong to one area. Samples of level ground differ by what floats round.
+/// Whether two cells side by side belong to one area. Samples of level ground differ by the rounding of floats.
 bool together(float a, float b)
 {
     if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
@@ -61,7 +61,7 @@ int WaterFinder::newLabel(float height, int row)
     return label;
 }
 
-/// Makes the areas of two cells one, `a` the one in the newer row. Most cells are alone, and cost no label.
+/// Joins the areas of two cells; `a` is the one in the newer row. Most cells are alone, and need no label.
 void WaterFinder::join(int& a, int& b, float height, int row)
 {
     if (b == NO_LABEL) b = a == NO_LABEL ? newLabel(height, row) : a;
@@ -118,7 +118,7 @@ void WaterFinder::add(const std::vector<float>& heights, const std::vector<bool>
     count(_rows - 1);
 }
 
-/// Counts the cells of a row and those around them, now that both rows beside it are known.
+/// Counts the cells of a row and the cells around them. Both rows beside it are known now.
 void WaterFinder::count(int row)
 {
     const std::size_t columns = _here.size();
@@ -160,7 +160,7 @@ void WaterFinder::count(int row)
             decide(root(label));
 }
 
-/// An area that does not go on is whole: keeps where it ends if it is water, and its labels for others.
+/// Decides about an area that does not go on. If it is water, its ends are kept. Its labels become free.
 void WaterFinder::decide(int label)
 {
     Area& area = _areas[static_cast<std::size_t>(label)];

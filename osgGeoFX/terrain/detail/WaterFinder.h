@@ -18,18 +18,18 @@ enum class GroundKind : unsigned char
 
 /** Finds water in heights alone, metres above the sea, NaN where there are none.
 
-    Cells hang together by their sides where both have no data, both are at 0 or below, or both have the same height. Of
-    such areas
-    - those at 0 or below are sea where they reach the raster's border or cells without data, or where at least half
-      of them lies at 0 and they are as large as a lake: other depressions are land;
-    - those without data are sea where at least a third of the cells around them are no higher than 1 m;
-    - those of one height are lakes where they have at least 32 cells and `lakeArea`, and at most a fifth of the
-      cells around them, of which there must be some, lie lower: terraces and summits are level, too.
-    Cells that were not measured, such as filled voids, go with the water that they hang together with, but do not
-    make any: they count for no size, and an area of nothing else is land.
+    Two cells side by side belong to one area if both have no data, if both are at 0 or below, or if both have the same
+    height. There are three kinds of areas:
+    - An area at 0 or below is sea if it reaches the raster's border or cells without data. It is also sea if at least
+      half of it lies at 0 and it is as large as a lake. Other depressions are land.
+    - An area without data is sea if at least a third of the cells around it are no higher than 1 m.
+    - An area of one height is a lake if it has at least 32 cells and `lakeArea`, and if at most a fifth of the cells
+      around it lie lower. There must be such cells around it. Terraces and summits are level, too, but lie higher.
+    Cells that were not measured, such as filled voids, belong to the water of their area, but do not make water: they
+    do not count for its size, and an area of nothing else is land.
 
-    Two sweeps over the rows, first add() from the first row to the last, then mark() back. Memory grows with the areas
-    that one row crosses, and with the shores' bays, not with the raster. Not thread-safe. */
+    There are two sweeps over the rows: add() from the first row to the last, then mark() back. Memory grows with the
+    areas that one row crosses, and with the shores' bays, not with the raster. Not thread-safe. */
 class WaterFinder
 {
 public:
@@ -39,7 +39,7 @@ public:
     void add(const std::vector<float>& heights);
     void add(const std::vector<float>& heights, const std::vector<bool>& measured);
 
-    /// The row before the last one that was marked, at first the last row that was added.
+    /// The kinds of the row before the last marked one, at first of the last row that was added.
     std::vector<GroundKind> mark(const std::vector<float>& heights);
 
 private:
@@ -56,7 +56,7 @@ private:
         int lastRow = -1;
         bool open = false;       ///< reaches the border or cells without data
         std::vector<int> labels; ///< all that have become one with it
-        std::vector<End> ends;   ///< where mark() must begin: nothing of the area lies ahead of them
+        std::vector<End> ends;   ///< where mark() must begin: the area has nothing in the next rows there
     };
 
     int root(int label);
@@ -70,12 +70,12 @@ private:
     std::vector<double> _cellArea;
     double _lakeArea;
     int _rows = 0;                             ///< added so far
-    std::vector<float> _behind, _here, _ahead; ///< three rows, the one that is counted in the middle
+    std::vector<float> _behind, _here, _ahead; ///< three rows; the one that is counted is in the middle
     std::vector<bool> _hereMeasured, _aheadMeasured;
     std::vector<int> _hereLabels, _aheadLabels;
     std::vector<int> _parents, _free;
     std::vector<Area> _areas;
-    std::vector<End> _ends; ///< of water, by rows as they were met
+    std::vector<End> _ends; ///< of water, by row in the order of their discovery
     bool _sorted = false;
     std::vector<float> _markedHeights;
     std::vector<GroundKind> _marked;

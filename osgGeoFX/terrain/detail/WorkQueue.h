@@ -12,8 +12,8 @@
 namespace osgGeoFX
 {
 
-/// Calls work(worker, index) for each index below `count` on `threads` threads, one index at a time each.
-/// The first exception stops the others and is thrown to the caller.
+/// Calls work(worker, index) for each index below `count`, on `threads` threads, each with one index at a time. The
+/// first exception stops the others and is thrown to the caller.
 template<typename Work>
 void runOnWorkers(int threads, std::size_t count, Work work)
 {
