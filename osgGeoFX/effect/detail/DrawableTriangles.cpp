@@ -14,16 +14,16 @@ namespace osgGeoFX
 namespace
 {
 
-// Names of OpenGL that OSG's headers lack.
+// OpenGL's names for these numbers are not in OSG's headers.
 constexpr GLenum restartMode = 0x8F9D;      // GL_PRIMITIVE_RESTART
 constexpr GLenum fixedRestartMode = 0x8D69; // GL_PRIMITIVE_RESTART_FIXED_INDEX
 
-/// A vertex array of any type as positions.
+/// Reads a vertex array of any type as positions.
 class PositionReader : public osg::ConstArrayVisitor
 {
 public:
     std::vector<osg::Vec3d> positions;
-    bool finite = true; ///< no position lies at infinity
+    bool finite = true; ///< no position is infinite or NaN
 
     using osg::ConstArrayVisitor::apply;
     void apply(const osg::Vec2Array& array) override { take(array); }
@@ -80,14 +80,14 @@ private:
     }
 };
 
-/// The array that OpenGL, and OSG for its bounds, takes vertices from.
+/// The array that OpenGL takes vertices from, and OSG for its bounds.
 const osg::Array* vertexArray(const osg::Geometry& geometry)
 {
     if (geometry.getVertexArray()) return geometry.getVertexArray();
     return geometry.getNumVertexAttribArrays() > 0 ? geometry.getVertexAttribArray(0) : nullptr;
 }
 
-/// Where primitives start anew: at an index that the state says, or at the largest of the indices' type.
+/// The index at which primitives restart: one that the state names, or the largest of the indices' type.
 struct Restart
 {
     std::optional<unsigned int> index;
@@ -102,7 +102,8 @@ std::optional<bool> modeIn(const osg::StateSet& state, GLenum mode)
     return (found->second & osg::StateAttribute::ON) != 0;
 }
 
-/// By the drawable's state and that of the nodes above it, the nearest first; of several parents the first.
+/// The restart by the state of the drawable and of the nodes above it, the nearest first. Of several parents the
+/// first counts.
 Restart restartOf(const osg::Drawable& drawable)
 {
     std::optional<bool> on, atLargest;
@@ -120,7 +121,7 @@ Restart restartOf(const osg::Drawable& drawable)
     }
     Restart restart;
     restart.atLargest = atLargest.value_or(false);
-    // Without an attribute it is OpenGL's own, 0.
+    // Without the attribute, OpenGL's default is 0.
     if (on.value_or(false)) restart.index = index.value_or(0);
     return restart;
 }
@@ -132,7 +133,7 @@ bool isList(GLenum mode)
 
 } // namespace
 
-/// Takes primitives apart; of both kinds of functors, since some drawables know one of them only.
+/// Takes primitives apart. It is a functor of both kinds, since some drawables know only one of them.
 class DrawableTriangles::Reader : public osg::PrimitiveFunctor, public osg::PrimitiveIndexFunctor
 {
 public:
@@ -186,7 +187,8 @@ private:
         {
             if (_restart.index && index == *_restart.index) return true;
             if (_restart.atLargest && index == std::numeric_limits<Index>::max()) return true;
-            // What names no vertex may be a restart that someone else sets; nothing that it touches can be drawn.
+            // An index beyond the vertices may be a restart that another state sets. A primitive with it cannot be
+            // drawn.
             return index >= vertices && !isList(mode);
         };
         const Index* const end = indices + count;
@@ -207,7 +209,7 @@ private:
             _triangles._corners.push_back(corner);
     }
 
-    /// As osg::TriangleIndexFunctor has it, but for what is incomplete.
+    /// Assembles triangles as osg::TriangleIndexFunctor does, but leaves out incomplete ones.
     template<typename At>
     void assemble(GLenum mode, std::size_t count, At at)
     {
@@ -258,7 +260,7 @@ DrawableTriangles::DrawableTriangles(const osg::Drawable& drawable)
     const osg::Geometry* geometry = drawable.asGeometry();
     if (!geometry)
     {
-        // Some know both ways, and then tell the same.
+        // A drawable that knows both kinds says the same to both.
         _tellAll = false;
         if (drawable.supports(static_cast<const osg::PrimitiveIndexFunctor&>(reader)))
             drawable.accept(static_cast<osg::PrimitiveIndexFunctor&>(reader));
@@ -338,7 +340,7 @@ bool GeometryStamp::matches(const osg::Geometry& geometry) const
                                   [&](const osg::Referenced* part)
                                   {
                                       if (known == _parts.end()) return false;
-                                      // What has been deleted may have left its place to another one.
+                                      // A new array may have the address of a deleted one.
                                       const bool equal = *known == part && (!part || known->valid());
                                       ++known;
                                       return equal;

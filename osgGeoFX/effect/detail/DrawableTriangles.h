@@ -11,33 +11,34 @@
 namespace osgGeoFX
 {
 
-/** The triangles of a drawable, in the order in which OpenGL draws them: for whoever works on them on the CPU.
+/** The triangles of a drawable, in the order in which OpenGL draws them, for work on the CPU.
 
-    OSG's own functors know vertices as osg::Vec3 alone and trust every index. This one reads vertex arrays of all types, with two
-    coordinates, three, or four, which are divided by the last; it knows primitive restart; and no number that it hands out lies
-    beyond the array. Made of a copy, so the drawable may change afterwards. */
+    OSG's own functors know only osg::Vec3 vertices, and trust every index. This class reads vertex arrays of all
+    types. They may have two, three or four coordinates; the first three are divided by the fourth. It knows primitive
+    restart. None of its numbers lies beyond the array. It is a copy, so the drawable may change afterwards. */
 class DrawableTriangles
 {
 public:
     explicit DrawableTriangles(const osg::Drawable& drawable);
 
-    /// In the drawable's frame; empty where its vertices cannot be read.
+    /// In the drawable's frame. Empty if the vertices cannot be read.
     const std::vector<osg::Vec3d>& positions() const { return _positions; }
-    /// Three for each triangle, numbers of positions.
+    /// Numbers of positions, three for each triangle.
     const std::vector<unsigned int>& corners() const { return _corners; }
 
     /// Triangles in a row that are drawn equally often.
     struct Part
     {
         std::size_t end; ///< where the next part begins in corners()
-        int instances;   ///< as osg::PrimitiveSet has it: 0 where they are not instanced
+        int instances;   ///< as in osg::PrimitiveSet; 0 without instancing
     };
     const std::vector<Part>& parts() const { return _parts; }
 
-    /// Whether the triangles are all that the drawable draws, and where it draws it: no points and lines, no instances, no box
-    /// that its owner has told (a shader may move the vertices), nothing that could not be read.
+    /// Whether these triangles are everything that the drawable draws, at the places where it draws. False with
+    /// points, lines or instances, with a bounding box that its owner set (a shader may move the vertices), and if
+    /// anything could not be read.
     bool tellAll() const { return _tellAll; }
-    /// Whether a geometry is drawn more than once by one of its primitive sets.
+    /// Whether a primitive set of a geometry is drawn more than once.
     static bool instanced(const osg::Geometry& geometry);
 
 private:
@@ -49,14 +50,14 @@ private:
     bool _tellAll = true;
 };
 
-/** Tells whether a geometry still has the vertices and primitives that it had: the same arrays, which count their own changes. */
+/** Tells whether a geometry still has its vertices and primitives: the same arrays with the same counts of changes. */
 class GeometryStamp
 {
 public:
     enum What
     {
         SHAPE,     ///< vertices and primitives
-        ALL_ARRAYS ///< which arrays it has for all else, too
+        ALL_ARRAYS ///< also which other arrays it has
     };
 
     GeometryStamp() = default;
@@ -65,7 +66,7 @@ public:
 
 private:
     using Parts = std::vector<osg::observer_ptr<const osg::Referenced>>;
-    /// Calls an action with each part; false as soon as the action says so.
+    /// Calls an action with each part. False as soon as the action returns false.
     template<typename Action>
     static bool forEachPart(const osg::Geometry& geometry, What what, Action action);
     static unsigned int changes(const osg::Geometry& geometry);

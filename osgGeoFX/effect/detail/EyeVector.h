@@ -9,7 +9,7 @@
 namespace osgGeoFX
 {
 
-/// OSG's vectors as GLM's, in which shaders/lib is written for C++.
+/// A vector of OSG as one of GLM, which shaders/lib uses in C++.
 inline glm::dvec3 toGlm(const osg::Vec3d& vector)
 {
     return {vector.x(), vector.y(), vector.z()};

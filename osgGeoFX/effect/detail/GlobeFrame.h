@@ -11,12 +11,13 @@
 namespace osgGeoFX
 {
 
-/// What shaders/lib/exaggeration.glsl has to know of an ellipsoid at a place whose geodetic latitude has this sine.
+/// Sets what shaders/lib/exaggeration.glsl needs of an ellipsoid, at a place whose geodetic latitude has this sine.
 inline void setGlobe(glsl::geofx_Exaggeration& frame, const osg::EllipsoidModel& ellipsoid, double sine)
 {
     const double a = ellipsoid.getRadiusEquator();
     const double b = ellipsoid.getRadiusPolar();
-    // The support function: distance of the tangent plane from the center, 1/|gradient| of the ellipsoid's equation.
+    // The support function: the distance of the tangent plane from the center, 1/|gradient| of the ellipsoid's
+    // equation.
     const double support = std::sqrt(a * a * (1.0 - sine * sine) + b * b * sine * sine);
     frame.curvature = support / (a * a);
     frame.scale = 1.0 / support;

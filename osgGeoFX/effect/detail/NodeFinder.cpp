@@ -12,10 +12,10 @@ namespace osgGeoFX
 namespace
 {
 
-/// Steps that a look goes on by: up to half as many nodes.
+/// The steps of one look. A node takes up to two steps.
 constexpr std::size_t slice = 128;
 
-/// The children that are looked into.
+/// The group whose children are searched; null for none.
 const osg::Group* insideOf(const osg::Node& node)
 {
     const osg::Group* group = node.asGroup();
@@ -26,7 +26,7 @@ const osg::Group* insideOf(const osg::Node& node)
 
 bool NodeFinder::leadsDown() const
 {
-    // What is still a child of a living group lives; nothing else is looked at.
+    // A node that is still a child of a living group lives. Only such nodes are used.
     const osg::Group* parent = _top;
     for (const Step& step : _way)
     {
@@ -87,7 +87,7 @@ const osg::Node* NodeFinder::find(const osg::Group& top)
     else if (_found)
     {
         if (leadsDown() && _wanted(*found())) return found();
-        // The scene's frame hangs on it: what takes its place counts at once.
+        // The scene's frame depends on this node, so its replacement must be found at once.
         start();
         walk(all);
     }
