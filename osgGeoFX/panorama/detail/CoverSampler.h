@@ -10,17 +10,18 @@
 namespace osgGeoFX
 {
 
-/// Reads on the CPU what a tile's cover texture says (shaders/lib/cover.glsl), as a GPU would without mipmaps.
+/// Reads a tile's cover texture (shaders/lib/cover.glsl) on the CPU, as a GPU would without mipmaps.
 class CoverSampler
 {
 public:
-    /// With the 2D texture at the unit in the state of the geometry or, where it has none, of the nearest node above it, by first
-    /// parents.
+    /// Takes the 2D texture at the unit from the geometry's state. If it has none, that of the nearest node above
+    /// counts, by first parents.
     explicit CoverSampler(const osg::Geometry& geometry, unsigned int unit = 7);
 
     /// Whether there is a texture that can be read.
     bool valid() const { return _image.valid(); }
-    /// The texel at texture coordinates (those of unit 0), filtered and clamped to the border; (0, 0, 0, 1) without a texture.
+    /// The texel at texture coordinates (those of unit 0), filtered and clamped to the border; (0, 0, 0, 1) without a
+    /// texture.
     glsl::Rgba at(double s, double t) const;
 
 private:

@@ -13,17 +13,18 @@ namespace
 {
 
 constexpr int within = EdgeExtent::within, around = EdgeExtent::around, whole = EdgeExtent::whole;
-/// The land along the border: cells that are so far from it, not the last ones, which are not drawn in a picture of all of it; in blocks
-/// of so many, which count a quarter at so many.
+/// The land along the border has these distances from it, cells. The last cells do not count, since a picture of the
+/// whole extent does not draw them. Blocks have so many cells along a side. At the distance `farCells` a block's
+/// weight is a quarter.
 constexpr double besideFirst = 4.0, besideLast = 14.0;
 constexpr int blockCells = 8;
 constexpr double farCells = 16.0;
-/// Most of its mountains are lower than so many standard deviations above the mean.
+/// Most mountains are lower than so many standard deviations above the mean.
 constexpr double summits = 1.2;
 
 using Cell = EdgeExtent::Cell;
 
-/// The land of one block of cells: sums.
+/// Sums over the land of one block of cells.
 struct Block
 {
     double x = 0.0, y = 0.0, height = 0.0, square = 0.0, count = 0.0;
@@ -59,7 +60,7 @@ std::vector<Block> blocksAlong(const EdgeExtent& extent, const std::vector<float
     return seeds;
 }
 
-/// Heights at the blocks' corners, between which they change little.
+/// The heights at the blocks' corners. Between them heights change little.
 std::vector<double> heightsAtCorners(const std::vector<Block>& seeds)
 {
     std::vector<double> coarse(std::size_t{corners} * corners, 0.0);

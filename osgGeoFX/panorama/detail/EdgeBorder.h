@@ -7,25 +7,25 @@
 namespace osgGeoFX
 {
 
-/// What lies beyond the border of an extent, by what it is along it.
+/// What lies beyond the border of an extent, as the border itself tells.
 class EdgeBorder
 {
 public:
     explicit EdgeBorder(const EdgeExtent& extent);
 
-    /// Of a cell outside of the extent, in cells of it: the farther off, the more of the border says what is there, so that a bay
-    /// closes.
+    /// Whether a cell outside the extent is sea. Columns and rows are those of the extent. The farther off the cell
+    /// is, the more of the border decides, so bays close.
     bool sea(int column, int row) const;
-    /// The share of it that is sea.
+    /// The share of the border that is sea.
     double share() const { return static_cast<double>(_sums[length]) / length; }
 
-    /// How high the land along the border lies, smoothed along it and in the same way away from it, so that it tells of none of its
-    /// mountains; 0 where there is none. `distances`: to where what is known ends, in cells.
+    /// The height of the land along the border, smoothed along the border and away from it, so that no single
+    /// mountain shows; 0 without land. `distances`: to the end of the known ground, in cells.
     static std::vector<float> heights(const EdgeExtent& extent, const std::vector<float>& distances);
 
 private:
     static constexpr int length = 4 * EdgeExtent::within;
-    std::vector<int> _sums; ///< of the border's cells that are sea, three times around
+    std::vector<int> _sums; ///< sums of the border's sea cells, three times around
 };
 
 } // namespace osgGeoFX

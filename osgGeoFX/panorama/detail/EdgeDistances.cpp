@@ -11,7 +11,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Squared distances, metres, from each cell's middle to that of the nearest marked one.
+/// Squared distances, metres, from each cell's middle to that of the nearest marked cell.
 std::vector<double> squaredDistances(const std::vector<char>& marks, std::size_t n, double stepX,
                                      double stepY)
 {
@@ -29,7 +29,7 @@ std::vector<double> squaredDistances(const std::vector<char>& marks, std::size_t
             }
         }
     }
-    // Along rows the lowest of the parabolas above all columns (Felzenszwalb and Huttenlocher, 2012).
+    // In a row, the lowest of the parabolas over all columns counts (Felzenszwalb and Huttenlocher, 2012).
     std::vector<double> row(n), starts(n + 1);
     std::vector<std::size_t> lowest(n);
     for (std::size_t y = 0; y < n; ++y)

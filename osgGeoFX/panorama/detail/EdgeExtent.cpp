@@ -11,10 +11,10 @@ namespace
 {
 
 constexpr int within = EdgeExtent::within;
-/// Holes within the data that are smaller than this share of it are gaps.
+/// Holes within the data that are smaller than this share of the extent are gaps.
 constexpr double largestGap = 0.02;
 
-/// Calls back with the cells of each area that hangs together of those of a kind.
+/// Calls `action` with the cells of each connected area of a kind.
 template<class Kind, class Action>
 void forAreas(const std::vector<EdgeExtent::Cell>& cells, const Kind& kind, const Action& action)
 {

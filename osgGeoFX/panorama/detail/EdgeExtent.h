@@ -14,7 +14,7 @@ namespace osgGeoFX
 /// What is known of the cells of a terrain's extent.
 struct EdgeExtent
 {
-    /// Cells along each side of the extent, around it, and in all.
+    /// The cells along each side of the extent, around it, and in all.
     static constexpr int within = 256, around = 64, whole = within + 2 * around;
 
     enum class Cell : unsigned char
@@ -34,10 +34,10 @@ struct EdgeExtent
         return static_cast<std::size_t>(row) * within + static_cast<std::size_t>(column);
     }
 
-    /// Takes heights from a triangle. x and y are places in the extent, 0 to 1, z heights.
+    /// Takes heights from a triangle. x and y are places in the extent, 0 to 1. z is the height.
     void rasterise(const osg::Vec3d (&corners)[3]);
 
-    /// Tells land, water and holes. `wet`: whether there is water at a place of the extent.
+    /// Sorts cells into land, water and holes. `wet`: whether there is water at a place of the extent.
     template<class Wet>
     void tellCells(const Wet& wet)
     {
@@ -53,9 +53,9 @@ struct EdgeExtent
         }
     }
 
-    /// Water that is sea stays; that of lakes and rivers becomes land, or a hole. `highest`: of the sea, metres.
+    /// Keeps water that is sea. Lakes and rivers become land or holes. `highest`: of the sea, metres.
     void keepSea(double highest);
-    /// The land does not run out towards a gap in its middle: what lies behind is seen through it.
+    /// Finds gaps. Land does not run out towards a gap in its middle, which shows what lies behind.
     void tellGaps();
 };
 

@@ -25,14 +25,15 @@ namespace
 {
 
 constexpr int within = EdgeExtent::within, around = EdgeExtent::around, whole = EdgeExtent::whole;
-/// Water that lies higher than this share of the relief, or than as many metres, is no sea: heights may stand above the ellipsoid.
+/// Water that lies higher than this share of the relief, and higher than so many metres, is no sea. Sea level may be
+/// above the ellipsoid.
 constexpr double seaShare = 0.02, seaHeight = 10.0;
-/// Behind land the sea may show from so many cells on.
+/// Behind land the sea may begin after so many cells.
 constexpr double landCells = 3.0;
 
 using Cell = EdgeExtent::Cell;
 
-/// The coarsest tile's ground, and where it lies.
+/// Finds the coarsest tile's ground and its place.
 class FindTile : public osg::NodeVisitor
 {
 public:
@@ -52,7 +53,7 @@ public:
     }
     void apply(osg::LOD& node) override
     {
-        // Finer tiles come later; they need not be looked at.
+        // The first child is the coarse tile. Finer tiles need not be searched.
         if (!geometry && node.getNumChildren() > 0) node.getChild(0)->accept(*this);
     }
 
@@ -70,7 +71,7 @@ struct Triangles
     }
 };
 
-/// How a texture's coordinate runs along the extent, from its two outermost vertices.
+/// A texture coordinate along the extent, by the two outermost vertices.
 struct Line
 {
     double low = HUGE_VAL, high = -HUGE_VAL, atLow = 0.0, atHigh = 1.0;
@@ -85,7 +86,7 @@ struct Line
     }
 };
 
-/// A place of the world in the extent, 0 to 1, and its height.
+/// The place of a position of the world in the extent, 0 to 1, and its height.
 osg::Vec3d placeIn(const TerrainInfo& info, osg::Vec3d place)
 {
     if (info.geocentric)
@@ -101,7 +102,7 @@ osg::Vec3d placeIn(const TerrainInfo& info, osg::Vec3d place)
             (place.y() - info.south) / (info.north - info.south), place.z()};
 }
 
-/// The whole extent in metres, to the east and to the north.
+/// The size of the extent to the east and to the north, metres.
 osg::Vec2d sizeOf(const TerrainInfo& info)
 {
     const osg::Vec2d size(info.east - info.west, info.north - info.south);
@@ -111,7 +112,7 @@ osg::Vec2d sizeOf(const TerrainInfo& info)
     return {size.x() * degree * std::max(std::cos(middle), 0.01), size.y() * degree};
 }
 
-/// Fills the extent from the coarsest tile. False where that cannot be read.
+/// Fills the extent from the coarsest tile. False if this tile cannot be read.
 bool readTile(const osg::Node& root, const TerrainInfo& info, unsigned int coverUnit, EdgeExtent& extent)
 {
     FindTile finder;
@@ -150,11 +151,12 @@ bool readTile(const osg::Node& root, const TerrainInfo& info, unsigned int cover
     return true;
 }
 
-/// What is not known: beyond land, and holes. Where there is no ground, land does not count, either.
+/// The cells that are not known: those beyond land, and holes. `land` is for places without ground, where land does
+/// not count as known.
 struct Known
 {
     std::vector<char> gone = std::vector<char>(std::size_t{whole} * whole), land = gone;
-    bool ends = false; ///< whether anything is not known
+    bool ends = false; ///< whether anything is unknown
 
     Known(const EdgeExtent& extent, const EdgeBorder& border, bool seaGoesOn)
     {
@@ -208,7 +210,7 @@ osg::ref_ptr<const EdgeMap> EdgeMap::make(const osg::Node& root, const TerrainIn
     if (!(info.east > info.west && info.north > info.south)) return nullptr;
     osg::ref_ptr<EdgeMap> map = new EdgeMap;
     map->_info = info;
-    // Nothing is missing of the whole globe.
+    // The whole globe has no edge.
     if (info.geocentric && info.east - info.west > 359.0) return map;
     EdgeExtent extent;
     if (!readTile(root, info, coverUnit, extent)) return nullptr;
@@ -228,7 +230,7 @@ osg::ref_ptr<const EdgeMap> EdgeMap::make(const osg::Node& root, const TerrainIn
     for (float& distance : inCells)
         distance /= static_cast<float>(0.5 * (step.x() + step.y()));
     const std::vector<float> heights = EdgeBorder::heights(extent, inCells);
-    // Land is told from what lies behind it at once, however wide the land runs out.
+    // Land differs from what lies behind it at once, however wide the land runs out.
     const auto steep = static_cast<float>(widest() * within / landCells);
     map->_image = new osg::Image;
     map->_image->allocateImage(whole, whole, 1, GL_RGB, GL_FLOAT);

@@ -12,33 +12,35 @@
 namespace osgGeoFX
 {
 
-/** Where a terrain of the kit's databases ends, and what it ends as: in the sea, or in the middle of the land. Made of the coarsest
-    tile, which is always at hand: its surface tells where there is data, its cover what is water.
+/** Where the terrain of a database ends, and how: in the sea, or within the land. It is made of the coarsest tile,
+    which is always loaded. The tile's surface tells where there is data, and its cover tells where there is water.
 
-    The sea is water that lies as low as the sea and reaches the data's border; a lake or a river that the border cuts is land.
-    Beyond the border it goes on as the border does, and a bay closes. Immutable. */
+    The sea is water at sea level that reaches the border of the data. A lake or a river that the border cuts counts
+    as land. Beyond the border the sea goes on as the border does, and bays close. Immutable. */
 class EdgeMap : public osg::Referenced
 {
 public:
-    /// Of a terrain's root (TerrainInfo::root). `seaGoesOn`: false where the sea ends at the border, too. Null where it has no coarsest
-    /// tile with a cover at unit `coverUnit`.
+    /// Makes the map of a terrain's root (TerrainInfo::root). `seaGoesOn`: false if the sea ends at the border, too.
+    /// Null without a coarsest tile that has a cover at unit `coverUnit`.
     static osg::ref_ptr<const EdgeMap> make(const osg::Node& root, const TerrainInfo& info,
                                             unsigned int coverUnit, bool seaGoesOn);
 
     const TerrainInfo& info() const { return _info; }
-    /// Whether what is known ends anywhere: not that of an island within its sea, nor of the whole globe. Without an end there is no image.
+    /// Whether the known ground ends anywhere. That of an island within its sea does not, and that of the whole globe
+    /// does not. Without an end there is no image.
     bool ends() const { return _ends; }
     /// Whether most of the border is sea.
     bool island() const { return _island; }
-    /// Of the extent's sides the shorter one, metres.
+    /// The shorter side of the extent, metres.
     double size() const { return _size; }
-    /// Three floats for each texel, metres. Two to where what is known ends, negative beyond: for the ground, and for what is seen where
-    /// there is no ground, where land does not count as known. Then how high the land along the nearest border lies, its mountains smoothed.
+    /// Three floats for each texel, metres. The first two are distances to the end of what is known, negative beyond.
+    /// The first is for the ground. The second is for places without ground, where land does not count as known. The
+    /// third is the height of the land along the nearest border, with smoothed mountains.
     osg::Image* image() const { return _image; }
     osg::Texture2D* texture() const { return _texture; }
-    /// The share of the picture that the extent takes across; the same along.
+    /// The share of the image's width, and of its height, that the extent takes.
     static double inner();
-    /// The land runs out over this share of its size at most.
+    /// The largest share of its size over which the land runs out.
     static double widest();
 
 protected:

@@ -23,7 +23,7 @@ bool compressed(const osg::Image& image)
     return image.getPixelFormat() == GL_COMPRESSED_RED_GREEN_RGTC2_EXT;
 }
 
-/// A channel's value, 0 to 255, in a block of RGTC: two ends, then three bits for each of 4 × 4 texels.
+/// The value of a channel, 0 to 255, in a block of RGTC: two ends, then three bits for each of 4 × 4 texels.
 double valueInBlock(const unsigned char* block, int texel)
 {
     std::uint64_t bits = 0;

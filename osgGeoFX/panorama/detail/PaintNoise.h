@@ -8,8 +8,8 @@
 namespace osgGeoFX
 {
 
-/** Noise and brush strokes that painted images are made of. What is random comes from a hash of integers. Within the
-    library only. */
+/** The noise and the brush strokes of painted images. Random numbers come from a hash of integers. For the library
+    only. */
 namespace paint
 {
 
@@ -28,7 +28,7 @@ inline double unit(std::uint32_t bits)
     return bits / 4294967296.0;
 }
 
-/// Random numbers one after the other.
+/// A sequence of random numbers.
 class Sequence
 {
 public:
@@ -48,7 +48,7 @@ inline double ease(double value, double low, double high)
     return t * t * (3.0 - 2.0 * t);
 }
 
-/// Smooth noise −1…1 with a cell of 1, which repeats after `periodX` and `periodY` cells.
+/// Smooth noise −1…1 with cells of size 1. It repeats after `periodX` and `periodY` cells.
 inline double noise(double x, double y, int periodX, int periodY, std::uint32_t seed)
 {
     const double cellX = std::floor(x);
@@ -64,7 +64,7 @@ inline double noise(double x, double y, int periodX, int periodY, std::uint32_t 
     const int high = low + 1 == periodY ? 0 : low + 1;
     const double u = x - cellX;
     const double v = y - cellY;
-    // Gradients of eight directions or so, as Perlin's: no lattice shows.
+    // Gradients have about eight directions, as Perlin's do, so that no lattice shows.
     const auto corner = [&](int i, int j, double dx, double dy)
     {
         const std::uint32_t bits = hash(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), seed);
@@ -80,7 +80,7 @@ inline double noise(double x, double y, int periodX, int periodY, std::uint32_t 
     return 1.5 * ((1.0 - sv) * below + sv * above);
 }
 
-/// Octaves of noise, each half as strong and as wide as the one before; about −1…1.
+/// Octaves of noise, each half as strong and half as wide as the one before; about −1…1.
 inline double cloudy(double x, double y, int periodX, int periodY, int octaves, std::uint32_t seed)
 {
     double sum = 0.0;
@@ -108,8 +108,8 @@ struct Stroke
     std::uint32_t seed;
 };
 
-/** Calls touch(x, y, cover, across) for each pixel under a stroke: `cover` 0…1 is how much paint it gets, `across` is −1…1 over the
-    brush's width. x and y may lie outside the image. */
+/** Calls touch(x, y, cover, across) for each pixel under a stroke. `cover` is the amount of paint, 0…1. `across` is
+    −1…1 over the brush's width. x and y may lie outside the image. */
 template<class Touch>
 void stamp(const Stroke& stroke, const Touch& touch)
 {
@@ -117,7 +117,7 @@ void stamp(const Stroke& stroke, const Touch& touch)
     const double s = std::sin(stroke.angle);
     const double reachX = std::abs(c) * stroke.length + std::abs(s) * stroke.width;
     const double reachY = std::abs(s) * stroke.length + std::abs(c) * stroke.width;
-    // Bristles: each takes off at its own place.
+    // Each bristle lifts off at its own place.
     double lift[8];
     for (std::uint32_t i = 0; i < 8; ++i)
         lift[i] = 0.55 + 0.9 * unit(hash(stroke.seed, i));

@@ -15,7 +15,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// How much of the sky's turn lies across the picture.
+/// The part of the sky's whole turn that lies across the picture.
 constexpr double skyAcross = 0.5;
 
 /// As in shaders/stages/panorama.edge.glsl.
@@ -80,7 +80,7 @@ PanoramaEdge::PanoramaEdge(const PanoramaMap& settings, PanoramaTextures& textur
         east.set(-std::sin(longitude), std::cos(longitude), 0.0);
         north.set(-std::sin(latitude) * std::cos(longitude), -std::sin(latitude) * std::sin(longitude),
                   std::cos(latitude));
-        // The ellipsoid's own radii to the east and to the north: its normals turn by a metre over them.
+        // The ellipsoid's radii of curvature to the east and to the north. Its normals turn by a metre over them.
         const double a = globe.getRadiusEquator(), b = globe.getRadiusPolar();
         const double squared = 1.0 - (b * b) / (a * a), sine = std::sin(latitude);
         const double across = a / std::sqrt(1.0 - squared * sine * sine);

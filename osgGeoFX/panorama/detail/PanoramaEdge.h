@@ -14,7 +14,7 @@ namespace osgGeoFX
 class PanoramaMap;
 class PanoramaTextures;
 
-/// What the shaders of a panorama map ask of the terrain's edge and of the sky behind it, for one camera
+/// What the shaders of a panorama map need of the terrain's edge and of the sky behind it, for one camera
 /// (shaders/lib/edge.glsl, shaders/stages/panorama.edge.glsl).
 struct PanoramaEdge
 {
@@ -24,10 +24,10 @@ struct PanoramaEdge
 
     osg::Vec4d eye, ways;
     osg::Vec4d
-        kind; ///< whether on a globe, the extent's middle latitude, over how many metres the land runs out, how it is drawn
+        kind; ///< whether on a globe, the extent's middle latitude, how wide the land runs out (metres), how it is drawn
     osg::Vec4d
         sky; ///< the horizon's height in the picture, its arch, the heading and the part across, in turns
-    osg::ref_ptr<osg::Texture2D> map;        ///< one that says nothing where none is needed
+    osg::ref_ptr<osg::Texture2D> map;        ///< an empty one if none is needed
     osg::ref_ptr<osg::Texture2D> skyTexture; ///< the same
 
     /// The place of a map in the edge's picture, by the numbers above.

@@ -18,7 +18,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// How many times the brush's picture lies across the half of the picture's width.
+/// How many times the brush's picture repeats across half of the picture's width.
 constexpr double brushRepeats = 1.6;
 
 void set(osg::StateSet& state, const std::string& name, const osg::Vec4d& value)
@@ -34,8 +34,8 @@ void setTexture(osg::StateSet& state, const std::string& name, int unit, osg::Te
     state.getOrCreateUniform(name, osg::Uniform::SAMPLER_2D)->set(unit);
 }
 
-/** Axes that the brush's picture lies along, in eye space, and where the eye is on them. They stand still on the ground: the frame
-    of a place some degrees apart, so that it changes only where no one will compare. */
+/** The axes of the brush's picture in eye space, and the eye's place on them. They are fixed on the ground: the frame
+    of a place some degrees away. So the axes change only where nobody can compare. */
 struct BrushAxes
 {
     osg::Vec3d x, y;
@@ -83,7 +83,7 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
     };
     if (!_map.getProjection())
     {
-        // The projection itself is not in force, and what it would do is still asked for.
+        // The projection itself is off, and the painting still needs its values.
         const osg::ref_ptr<const PanoramaSnapshot> frame = new PanoramaSnapshot(*panorama, 1.0);
         for (const auto& [name, value] : frame->uniforms())
             set(state, prefix + name, value);
@@ -102,7 +102,8 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
     put("snow", {snowLine, glsl::geofx_winterDrop(latitude), _map.getSnowWidth(), _map.getSeason()});
     put("slopes", {_map.getCliffSlope(), _map.getHillSlope(), treeLine, _map.getBottomShade()});
 
-    // The brush is as large on the screen at any zoom: two sizes of it, one twice the other, blend into each other.
+    // The brush has the same size on the screen at any zoom. Two sizes of it, one twice the other, blend into each
+    // other.
     const double radius = 1.0 / panorama->across;
     const double octave = std::log2(radius / brushRepeats);
     const double period = std::exp2(std::floor(octave));
@@ -135,7 +136,7 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
     put("edgePlace", edge.sky);
     setTexture(state, prefix + "edgeMap", view.units[EdgeMapUnit], edge.map);
     setTexture(state, prefix + "edgeSky", view.units[EdgeSkyUnit], edge.skyTexture);
-    // The scenery puts the reflection there, where there is one.
+    // The scenery puts the reflection there if there is one.
     state.getOrCreateUniform(prefix + "mirror", osg::Uniform::SAMPLER_2D)->set(view.units[MirrorUnit]);
     return true;
 }

@@ -8,7 +8,7 @@
 namespace osgGeoFX
 {
 
-/// A panorama map as the effect that paints the ground; its parameters are the map's, and it is enabled as that is.
+/// A panorama map as the effect that paints the ground. It has the map's parameters, and is enabled if the map is.
 class PanoramaMap::Ground : public SurfaceEffect
 {
 public:

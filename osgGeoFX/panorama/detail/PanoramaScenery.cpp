@@ -29,16 +29,16 @@ namespace osgGeoFX
 namespace
 {
 
-/// The picture in the water is as many times smaller than the camera's: what is blurred needs no more.
+/// The picture in the water is so many times smaller than the camera's. It is blurred, so it needs no more.
 constexpr int mirrorShrink = 4;
 constexpr int mostMirrorPixels = 4096;
 /// Over so many grounds one map may hang at a time, with strokes that stay.
 constexpr std::size_t mostGrounds = 8;
-/// Its levels of detail are as many times coarser.
+/// The detail of the picture in the water.
 constexpr double mirrorDetail = 0.3;
-/// Drawn before the camera's picture, after the application's own textures.
+/// The picture in the water is drawn before the camera's, after the application's own textures.
 constexpr int mirrorOrder = -5;
-/// Over what is opaque, so that it is drawn where nothing else is.
+/// The sky is drawn after opaque geometry, and so only where nothing else is.
 constexpr int skyBin = 8;
 
 osg::ref_ptr<osg::Texture2D> createTarget(int width, int height, bool depth)
@@ -56,7 +56,7 @@ osg::ref_ptr<osg::Texture2D> createTarget(int width, int height, bool depth)
     return texture;
 }
 
-/// What one camera draws into the water in one of the frames that are on their way.
+/// What one camera draws into the water in one frame on its way to the screen.
 class Mirror
 {
 public:
@@ -123,7 +123,7 @@ private:
 
 constexpr auto forced = osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
 
-/// Uniforms whose names begin with the prefix, by what is in a snapshot of the projection.
+/// Sets the uniforms of a snapshot of the projection. Their names begin with the prefix.
 void setUniforms(osg::StateSet& state, const std::string& prefix, const PanoramaSnapshot& snapshot)
 {
     for (const auto& [name, value] : snapshot.uniforms())
@@ -145,7 +145,7 @@ struct Sky
     Mirror& mirror;
     osg::Program* program;
 
-    /// That of the camera's picture, or of the one in the water.
+    /// The state for the camera's picture, or for the picture in the water.
     osg::StateSet& state(bool mirrored) const
     {
         osg::StateSet& state = mirror.skyState(mirrored);
@@ -184,7 +184,7 @@ private:
         state.getOrCreateUniform(name, osg::Uniform::SAMPLER_2D)->set(unit);
     }
 
-    /// What lies behind where the terrain ends.
+    /// Sets what lies behind the end of the terrain.
     void setEdge(osg::StateSet& state) const
     {
         const PanoramaEdge edge(map, textures, pass.view, pass.view.modelView, panorama);
@@ -197,7 +197,7 @@ private:
 
     void setWater(osg::StateSet& state) const
     {
-        // Where the water's ripples lie on the ground, also where there is none.
+        // The axes of the water's ripples on the ground. They are set even if no ground is painted.
         const auto axis = [&](const char* name, const std::string& ground)
         {
             const osg::Uniform* uniform = pass.state.getUniform(pass.prefix + ground);
@@ -245,7 +245,7 @@ void setMirrorState(Mirror& mirror, const ScenePass& pass, unsigned int unit, Pa
     state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
     state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
     state.setAttribute(mirror.viewport(), forced);
-    // Another effect may have its texture now where this was.
+    // Another effect may have its texture now at the unit that was used here.
     for (unsigned int former = 0; former < state.getNumTextureAttributeLists(); ++former)
         state.removeTextureAttribute(former, osg::StateAttribute::TEXTURE);
     state.setTextureAttribute(unit, textures.noCover(), forced);
@@ -267,12 +267,12 @@ public:
         StrokeCompanion strokes;
     };
 
-    /// One camera's. Its cull visitor may come by several times, for a camera that renders to a texture or a scene with two
-    /// parents, before anything is drawn.
+    /// The looks of one camera. Its cull visitor may come several times before anything is drawn: for a camera that
+    /// renders to a texture, or for a scene with two parents.
     class Looks
     {
     public:
-        /// That of the traversal that is on its way.
+        /// The look of the current traversal.
         Look& now(const ScenePass& pass)
         {
             if (pass.frame != _frame) _used = 0;
@@ -280,7 +280,7 @@ public:
             if (_used == _all.size()) _all.push_back(std::make_unique<Look>());
             return *_all[_used];
         }
-        /// The traversal needs its look no more until it is drawn.
+        /// Ends the traversal. Its look stays until it is drawn.
         void end() { ++_used; }
 
         void resizeGLObjectBuffers(unsigned int size)
@@ -307,8 +307,8 @@ public:
     };
     PerCamera<Looks> looks;
 
-    /// Who makes the strokes of a terrain, with the map's parameters. Scenes over different grounds, whose threads may ask at once,
-    /// have different ones.
+    /// The maker of a terrain's strokes, with the map's parameters. Scenes over different grounds have different
+    /// makers; their threads may ask at once.
     osg::ref_ptr<StrokeMaker> maker(const PanoramaMap& map, const osgGeoFX::Ground& ground)
     {
         const std::lock_guard<std::mutex> lock(_mutex);
@@ -322,11 +322,11 @@ public:
                                 });
         };
         auto known = madeFor(latitude);
-        // A maker that a pager has been given before there was a terrain goes on with it.
+        // A pager may have got a maker before there was a terrain. This maker goes on.
         if (known == _makers.end()) known = madeFor(0.0);
         const osg::ref_ptr<StrokeMaker> maker =
             known == _makers.end() ? new StrokeMaker(ground.ellipsoid) : known->get();
-        // The one that was asked for last comes first.
+        // The maker that was asked for last comes first.
         if (known != _makers.end()) _makers.erase(known);
         _makers.insert(_makers.begin(), maker);
         if (_makers.size() > mostGrounds) _makers.pop_back();

@@ -15,20 +15,20 @@ namespace osgGeoFX
 namespace
 {
 
-/// From D2 to where nothing shows any more, of D2.
+/// The distance where heights have faded and nothing shows any more, as a multiple of D2.
 constexpr double endOfHeights = 1.25;
 constexpr double leastRadius = 1e-3;
-/// Of the picture's half width and height, with room for rounding.
+/// The border of the picture, of its half width and height, with room for rounding.
 constexpr double beside = 1.0 + 1e-4;
-/// Where the ground falls away behind the Earth, of its radius.
+/// The distance where the ground falls away behind the Earth, of its radius.
 constexpr double mostTurned = 1.3;
-/// By how much x and s grow there at most: 20 for what lies behind, the rest for the projection itself, which goes on.
+/// The largest growth of x and s there: 20 for what lies behind, and the rest for the projection, which goes on.
 constexpr double stretchBehind = 30.0;
-/// From the Earth's center, of its radius. Verticals that meet are followed no deeper.
+/// The least distance from the Earth's center, of its radius. Verticals meet there, and are followed no deeper.
 constexpr double leastDepth = 0.1;
-/// Without any exaggeration heights could not be told from the picture.
+/// Without any exaggeration the picture would not tell heights.
 constexpr double leastExaggeration = 1e-6;
-/// Of what is seen from the eye, of that of the picture's base.
+/// The least distance of seen ground from the eye, of that of the picture's base.
 constexpr double leastDistance = 1e-6;
 
 osg::Vec4d vec4(const glm::dvec3& vector, double w)
@@ -36,7 +36,7 @@ osg::Vec4d vec4(const glm::dvec3& vector, double w)
     return {vector.x, vector.y, vector.z, w};
 }
 
-/// The lines of the picture as geofx_panoramaEye has them, moved to begin in the plane of the eye.
+/// Sets the lines of the picture for geofx_panoramaEye. They begin in the plane of the eye.
 void setRays(glsl::geofx_Panorama& panorama, const ViewGeometry& view)
 {
     const auto line = [&](double x, double y, glm::dvec3& origin, glm::dvec3& direction)
@@ -122,13 +122,13 @@ osg::Vec3d PanoramaSnapshot::deform(const osg::Vec3d& position) const
 
 osg::Vec3d PanoramaSnapshot::undeform(const osg::Vec3d& position) const
 {
-    // Nothing is seen at the eye and behind it.
+    // Nothing is seen at the eye or behind it.
     osg::Vec3d before = position;
     before.z() = std::min(before.z(), _view.origin.z - leastDistance * _view.nearest);
     return toOsg(glsl::geofx_panoramaUndeform(_view, toGlm(before)));
 }
 
-/// What bounds need of a ball: its place, and how the place changes at most over a metre within it.
+/// What bounds need of a ball: its place, and the largest change of the place over a metre within it.
 struct PanoramaSnapshot::Extent
 {
     glm::dvec3 place;  ///< of the middle
@@ -152,11 +152,11 @@ PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
     extent.place = glsl::geofx_panoramaPlace(_view, toGlm(ball.center));
     const double k = _view.globe.curvature;
     const double tallest = std::abs(extent.place.z) + ball.radius;
-    // The angle of arc that the ball reaches to; the equidistant projection stretches by it over its sine.
+    // The angle of arc that the ball reaches. The equidistant projection stretches by this angle over its sine.
     const double arc = k * (std::hypot(extent.place.x, extent.place.y) + ball.radius);
     extent.turned = k * (glm::length(toGlm(ball.center)) + ball.radius);
     extent.stretch = 1.0 + 0.5 * arc * arc;
-    // Feet are farther apart than what lies deep below them.
+    // Points deep below the ground are nearer to each other than their feet.
     const double deepest = std::min(extent.place.z - ball.radius, 0.0);
     extent.stretch /= std::max(1.0 + k * deepest, leastDepth);
     if (extent.turned > mostTurned) extent.stretch = std::max(extent.stretch, stretchBehind);
@@ -201,7 +201,7 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
     const Extent extent = extentOf(ball);
     const double length = edge.length();
     const double up = edge * toOsg(_view.globe.up);
-    // A flat edge hardly changes its height: by what it rises below the eye, and by the ground's curve.
+    // A flat edge changes its height little: by its slope below the eye, and by the ground's curve.
     const double turned = _view.globe.curvature * (std::hypot(extent.place.x, extent.place.y) + extent.reach);
     const double rise = std::min(length, std::abs(up) + 1.1 * turned * length);
     const double side =
@@ -232,9 +232,9 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
                         reachY * glm::length(_view.directionY);
     const double curve = x2 * sideX + y2 * sideY + n2 * away +
                          2.0 * n1 * (x1 * glm::length(_view.directionX) + y1 * glm::length(_view.directionY));
-    // Where the ground falls away behind the Earth the projection has a kink.
+    // Where the ground falls away behind the Earth, the projection has a kink.
     if (extent.turned > mostTurned) return {curve, lipschitz(ball) * length};
-    // Nowhere is it off by more than all of the ball is apart in the picture.
+    // The error is nowhere larger than the ball's size in the picture.
     const double nearS = extent.place.y - extent.reach;
     const double farS = extent.place.y + extent.reach;
     const double apartX = farS > _view.end ? 2.0 * extent.x : 2.0 * _view.across * extent.reach;
@@ -261,7 +261,7 @@ double PanoramaSnapshot::longestEdge(const Ball& ball, double tolerance) const
 {
     const Extent extent = extentOf(ball);
     if (extent.place.y - extent.reach > _view.end) return HUGE_VAL;
-    // Of the picture's y: the curve's second derivative, and that of Eq. 1.
+    // The second derivative of the picture's y: that of the curve, and that of Eq. 1.
     const double second =
         _view.along * extent.slopeRate + std::abs(_view.arch) * 2.4675 * _view.across * _view.across;
     return std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
@@ -273,8 +273,8 @@ bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
     const double nearS = extent.place.y - extent.reach;
     const double farS = extent.place.y + extent.reach;
     if (nearS > 2.0 * _view.end - _view.horizon) return true;
-    // What has x and s of its own lies beside the picture or below it as the ground does, which its bounds in eye space, where
-    // everything there is stretched, may not tell.
+    // A ball with known x and s is beside or below the picture as its ground is. Its bounds in eye space may not tell
+    // this, since everything is stretched there.
     if (extent.turned > mostTurned || farS > _view.end) return false;
     if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside + room.x()) return true;
     return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside - room.y();
@@ -286,7 +286,7 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     if (hides(ball, room)) return true;
     const Extent extent = extentOf(ball);
     if (extent.turned > mostTurned) return false;
-    // Places within the box lie between those of its corners, but for what the ground's curve adds.
+    // Places within the box lie between those of its corners, except for the ground's curve.
     double bent = 0.0;
     for (const osg::Vec3d& half : box.half)
         bent += extent.curvature * half.length2() / 2.0;
@@ -305,7 +305,7 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     const double side = beside + room.x();
     if (_view.across * low.x > side || _view.across * high.x < -side) return true;
 
-    // Heights and Eq. 1 move what is shown there up or down.
+    // Heights and Eq. 1 move a place up or down in the picture.
     const double lifts[] = {_view.lift * (low.z - _view.base), _view.lift * (high.z - _view.base)};
     const auto lifted = [&](double lift, bool most)
     {

@@ -12,7 +12,7 @@ namespace osgGeoFX
 
 class PanoramaMap;
 
-/// Where a panorama map lies for a camera; nothing where the camera has no heading or shows nothing.
+/// The projection of a panorama map for a camera. Nothing if the camera has no heading or shows nothing.
 std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const ViewGeometry& view);
 
 /// The tree line of a latitude (radians), metres.
@@ -25,13 +25,13 @@ inline double treeLineAt(double latitude)
 class PanoramaSnapshot : public DeformationSnapshot
 {
 public:
-    /// `viewDistance`: the distance at which the camera's own projection would show ground as large as the picture's base does,
-    /// metres.
+    /// `viewDistance`: at this distance, metres, the camera's own projection would show ground as large as the
+    /// picture's base does.
     PanoramaSnapshot(const glsl::geofx_Panorama& view, double viewDistance);
 
     osg::Vec3d deform(const osg::Vec3d& position) const override;
     osg::Vec3d undeform(const osg::Vec3d& position) const override;
-    /// The ground is lit as it lies.
+    /// The ground is lit as it lies, undeformed.
     osg::Vec3d deformNormal(const osg::Vec3d&, const osg::Vec3d& normal) const override { return normal; }
     Reach reach(const Ball&) const override { return Reach::Curved; }
     double lipschitz(const Ball& ball) const override;
@@ -43,8 +43,8 @@ public:
     Uniforms uniforms() const override;
 
     const glsl::geofx_Panorama& view() const { return _view; }
-    /// The picture in a still water's surface at a height, metres: what stands `h` above it stands `h` below. `detail`: levels of
-    /// detail are that much finer.
+    /// The projection for the reflection in still water at a height, metres: what stands `h` above the water stands
+    /// `h` below. `detail`: the factor of levels of detail.
     osg::ref_ptr<const PanoramaSnapshot> mirrored(double level, double detail) const;
 
 protected:

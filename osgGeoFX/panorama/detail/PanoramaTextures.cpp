@@ -96,7 +96,7 @@ osg::ref_ptr<const EdgeMap> PanoramaTextures::edge(const PanoramaMap& map, const
     if (!root) return nullptr;
     const bool seaGoesOn = map.getEdge() != PanoramaMap::HAZE;
     const std::lock_guard<std::mutex> lock(_mutex);
-    // Those of terrains that have gone, and of former choices.
+    // Those of deleted terrains, and of former choices.
     const auto stale = [&](const TerrainEdge& each)
     {
         return !each.root.valid() || each.seaGoesOn != seaGoesOn || each.coverUnit != map.getCoverUnit();

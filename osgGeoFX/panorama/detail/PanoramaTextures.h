@@ -15,8 +15,8 @@ namespace osgGeoFX
 
 class PanoramaMap;
 
-/// The textures that all cameras of a panorama map share. Made when first asked for and when what they are made of
-/// has changed; any thread may ask.
+/// The textures that all cameras of a panorama map share. They are made on demand, and again after a change of what
+/// they are made of. Any thread may ask.
 class PanoramaTextures
 {
 public:
@@ -27,7 +27,7 @@ public:
     osg::ref_ptr<osg::Texture2D> brush();
     /// One texel that says that nothing is known of the ground (shaders/lib/cover.glsl).
     osg::ref_ptr<osg::Texture2D> noCover() { return _noCover; }
-    /// Where the terrain below a root ends, as the map wants it; null where nothing is known.
+    /// Where the terrain below a root ends, with the map's parameters. Null if this is not known.
     osg::ref_ptr<const EdgeMap> edge(const PanoramaMap& map, const osg::Node* root);
 
     void resizeGLObjectBuffers(unsigned int size);

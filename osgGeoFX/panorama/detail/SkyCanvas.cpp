@@ -25,7 +25,7 @@ Color cloudColor(float light)
     return glm::mix(shades[below], shades[below + 1], place - static_cast<float>(below));
 }
 
-/// A range of distance: how large its clouds are, in heights of the strip, and how much haze lies before them.
+/// A range of distances: the size of its clouds, in heights of the strip, and the haze before them.
 struct Range
 {
     double spacing; // of banks
@@ -42,19 +42,19 @@ constexpr Range ranges[] = {
     {5.00, 4, 0.28, 0.36, 0.38, 0.56, 2.7f, 0.04f},
 };
 
-/// What one range of clouds is modelled in before it is painted; all in pixels.
+/// The model of one range of clouds, before it is painted; all in pixels.
 struct Model
 {
     Model(int width, int height)
         : bulge(width, height), base(width, height), top(width, height), fray(width, height)
     {
     }
-    SkyStrip<float> bulge; // how far a cloud stands out towards the viewer; 0 where there is none
+    SkyStrip<float> bulge; // how far a cloud stands out towards the viewer; 0 for no cloud
     SkyStrip<float> base;  // of the cloud that is seen here
     SkyStrip<float> top;
     SkyStrip<float> fray; // what frays the outlines, along x
 
-    /// The same noise serves along y, from elsewhere.
+    /// The same noise, taken from another place, serves along y.
     float frayY(int x, int y) const { return fray.at(x + fray.width() / 3, fray.height() - 1 - y); }
 };
 
@@ -87,7 +87,7 @@ void addPuff(Model& model, const Puff& puff, double base, double top)
     }
 }
 
-/// One cloud: two or three towers over a flat base, of large balls within and smaller ones about them.
+/// Adds one cloud: two or three towers over a flat base, of large balls within and smaller ones around them.
 void addCloud(Model& model, paint::Sequence& random, double x, double base, double width, double height)
 {
     const int towers = 2 + static_cast<int>(random.uniform() * 2.99);
@@ -124,7 +124,7 @@ void addCloud(Model& model, paint::Sequence& random, double x, double base, doub
             addPuff(model, puff, base, base + height);
         }
     }
-    // What bulges from it.
+    // The puffs that bulge from it.
     const int puffs = 120;
     for (int i = 0; i < puffs; ++i)
     {
@@ -190,7 +190,7 @@ void paintRange(SkyCanvas& canvas, Model& model, const Range& range, paint::Sequ
             const auto base = static_cast<double>(model.base.at(x, y) + 0.25f * model.frayY(x, y));
             const double floor = paint::ease(y, base - 0.2 * fade, base + fade);
             if (floor <= 0.0) continue;
-            // Of the masses and of what stands out from them.
+            // The light on the masses, and on the puffs that stand out from them.
             const float lambert =
                 0.45f * lambertAt(model, x, y, static_cast<int>(0.10 * unit * range.heightHigh + 1.0)) +
                 0.55f * lambertAt(model, x, y, static_cast<int>(0.014 * unit + 1.0));
@@ -198,7 +198,7 @@ void paintRange(SkyCanvas& canvas, Model& model, const Range& range, paint::Sequ
                 (y - base) / std::max(1.0, static_cast<double>(model.top.at(x, y)) - base), 0.0, 1.0));
             const float light = 0.27f + 0.76f * lambert + 0.34f * (rise - 0.4f);
             const Color color = glm::mix(cloudColor(light), haze, range.haze);
-            // The sunlit edge is sharp, the other dissolves.
+            // The sunlit edge is sharp. The other one dissolves.
             const double soft = (0.05 + 0.12 * paint::ease(static_cast<double>(-lambert), -0.4, 0.5)) * unit *
                                     range.heightHigh +
                                 1.0;
@@ -212,7 +212,7 @@ void paintRange(SkyCanvas& canvas, Model& model, const Range& range, paint::Sequ
 /// Clouds without bodies, drawn out by the wind. Heights are in those of the strip.
 struct Streaks
 {
-    double low, lowFull, highFull, high; // between the full ones they are strongest
+    double low, lowFull, highFull, high; // strongest between the full ones
     double patches;                      // in a strip's height, along x
     double alongX, alongY;               // strokes in a strip's height
     double strength;
@@ -320,7 +320,7 @@ void paintInStrokes(SkyCanvas& canvas, std::uint32_t seed)
             const float dx = luminance(model.at(x + reach, y)) - luminance(model.at(x - reach, y));
             const float dy = luminance(model.at(x, y + reach)) - luminance(model.at(x, y - reach));
             const double change = static_cast<double>(std::hypot(dx, dy));
-            // Along what is drawn; where nothing is, across the sky.
+            // Strokes run along what is painted; on open sky, across the sky.
             const double along = std::atan2(static_cast<double>(dx), -static_cast<double>(dy));
             const double drawn = paint::ease(change, 0.03, 0.10);
             // The open sky needs no fine brush.

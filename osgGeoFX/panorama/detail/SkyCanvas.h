@@ -12,7 +12,7 @@
 namespace osgGeoFX
 {
 
-/// Numbers or colors on a strip that repeats in x and ends in y. Within the library only.
+/// Numbers or colors on a strip that repeats in x and ends in y. For the library only.
 template<class Value>
 class SkyStrip
 {
@@ -26,7 +26,7 @@ public:
     int width() const { return _width; }
     int height() const { return _height; }
 
-    /// Any x; y is taken into the strip.
+    /// Takes any x. y is clamped to the strip.
     Value& at(int x, int y) { return _values[index(x, y)]; }
     const Value& at(int x, int y) const { return _values[index(x, y)]; }
 
@@ -50,7 +50,7 @@ using SkyCanvas = SkyStrip<glm::vec3>;
 /// Paints cumulus clouds, the far ones first, and wisps onto a sky. `haze` is the horizon's color.
 void paintClouds(SkyCanvas& canvas, std::uint32_t seed, const glm::vec3& haze);
 
-/// Paints a canvas again in strokes of a brush, which follow what is painted.
+/// Paints a canvas again in strokes of a brush, which follow its picture.
 void paintInStrokes(SkyCanvas& canvas, std::uint32_t seed);
 
 } // namespace osgGeoFX

@@ -40,7 +40,8 @@ double growthOf(const ScenePass& pass, const PanoramaMap& map, const osg::Vec2d&
         glsl::geofx_strokeWanted(map.getStrokeSpacing(), map.getStrokeStep(), groundScale));
 }
 
-/// Half the length of a cliff's stroke, which is longest, over the size; and a road's over the spacing, seen at a slant.
+/// Half the length of the longest stroke, a cliff's, over the size. Half that of a road's over the spacing, seen at a
+/// slant.
 constexpr double longestStroke = 2.0, longestLine = 1.5;
 
 } // namespace
@@ -64,7 +65,8 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
         _state->setAttributeAndModes(new osg::BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA),
                                      osg::StateAttribute::ON | forced);
         _state->setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
-        // Over all of the ground: soft edges mix with it; always in the same order, so that pictures do not depend on addresses.
+        // Strokes are drawn over all ground, since soft edges mix with it. They are drawn in the order of traversal,
+        // so that pictures do not depend on addresses.
         _state->setRenderBinDetails(2, "TraversalOrderBin",
                                     osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
     }
@@ -94,12 +96,12 @@ osg::Drawable* StrokeCompanion::companion(osg::Drawable& drawable, const osg::Ma
     if (!terrain || !terrain->getStateSet() ||
         !terrain->getStateSet()->getTextureAttribute(_coverUnit, osg::StateAttribute::TEXTURE))
         return nullptr;
-    // The geometry keeps them.
+    // The geometry keeps them alive.
     osg::Drawable* const strokes = _maker->strokes(*terrain, modelView * _toWorld).get();
     if (!strokes) return nullptr;
     osg::observer_ptr<osg::Drawable>& known = _drawn[strokes];
     if (!known.valid()) known = strokes;
-    // The meshes of a tile have them in common.
+    // The meshes of a tile share them.
     return _given.insert(strokes).second ? strokes : nullptr;
 }
 

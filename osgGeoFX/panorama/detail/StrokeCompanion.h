@@ -17,19 +17,19 @@
 namespace osgGeoFX
 {
 
-/** Draws the strokes of each terrain tile that one camera has in sight. Tiles are geometries that say what lies on them (a
-    texture at PanoramaMap's coverUnit); what else is in the scene has no strokes. */
+/** Draws the strokes of each terrain tile that one camera sees. A tile is a geometry with a texture of its cover at
+    PanoramaMap's coverUnit. Other geometries have no strokes. */
 class StrokeCompanion final : public DrawableCompanion
 {
 public:
-    /// For one frame. False where there is nothing to be drawn.
+    /// Starts a frame. False if there is nothing to draw.
     bool begin(const ScenePass& pass, const PanoramaMap& map, StrokeMaker& maker);
 
     void start() override { _given.clear(); }
     osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) override;
     osg::StateSet* state() override { return _state; }
     double reach() const override { return _reach; }
-    /// Of the points, which tiles keep to themselves; the program is the scene's.
+    /// For the points, which belong to the tiles. The program belongs to the scene.
     void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;
 
@@ -41,9 +41,9 @@ private:
     osg::Matrixd _toWorld; ///< from eye space
     unsigned int _coverUnit = 0;
     double _reach = 0.0; ///< pixels from a stroke's foot to its end, at most
-    std::map<const osg::Drawable*, osg::observer_ptr<osg::Drawable>> _drawn; ///< all strokes so far, and
-    std::set<const osg::Drawable*> _given;                                   ///< in the traversal under way
-    std::size_t _remembered = 0; ///< how many lived when last looked
+    std::map<const osg::Drawable*, osg::observer_ptr<osg::Drawable>> _drawn; ///< all strokes so far
+    std::set<const osg::Drawable*> _given; ///< those of the current traversal
+    std::size_t _remembered = 0;           ///< how many were alive at the last look
 };
 
 } // namespace osgGeoFX

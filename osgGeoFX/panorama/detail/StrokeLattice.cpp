@@ -13,7 +13,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// The finaliser of SplitMix64: every bit of the result hangs on every bit of the input.
+/// The finaliser of SplitMix64: every bit of the result depends on every bit of the input.
 std::uint64_t mixed(std::uint64_t x)
 {
     x += 0x9e3779b97f4a7c15u;
@@ -22,8 +22,8 @@ std::uint64_t mixed(std::uint64_t x)
     return x ^ (x >> 31);
 }
 
-/// The power of two that divides the columns of a globe: as high as levels go, but not so high that rounding the number of columns
-/// to it would change the spacing by more than a few parts in a hundred.
+/// The power of two that divides the columns of a globe. It is as high as levels go, as long as rounding the columns
+/// to it changes the spacing by a few parts in a hundred only.
 std::int64_t roundColumns(double columns)
 {
     std::int64_t power = std::int64_t{1} << (StrokeLattice::highest / 2);
@@ -110,7 +110,7 @@ double StrokeLattice::chance(std::int64_t column, std::int64_t row, StrokeChance
 
 osg::Vec2d StrokeLattice::place(std::int64_t column, std::int64_t row) const
 {
-    // By the spacing of its own level, so that rows look alike at every zoom.
+    // The range follows the spacing of the point's own level, so that rows look alike at every zoom.
     const double range = 2.0 * reach(halfLevel(column, row));
     return {static_cast<double>(column) + range * (chance(column, row, StrokeChance::East) - 0.5),
             static_cast<double>(row) + range * (chance(column, row, StrokeChance::North) - 0.5)};

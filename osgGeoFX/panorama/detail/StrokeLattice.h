@@ -13,7 +13,7 @@
 namespace osgGeoFX
 {
 
-/// Which random number of a lattice point is asked for.
+/// Which random number of a lattice point is wanted.
 enum class StrokeChance
 {
     East,
@@ -24,47 +24,49 @@ enum class StrokeChance
     Threshold
 };
 
-/** The lattice of the whole ground on which brush strokes stand.
+/** The lattice of the whole ground, on which brush strokes stand.
 
-    On a globe its columns are meridians and its rows parallels, `spacing` apart at the reference latitude; on a projected
-    terrain x and y. A point has a level, in halves: its group, the highest power of two that divides both its indices (Figure
-    10 of the paper), and within a group those with an odd sum of indices half a level below the others. So the points of a
-    level and all higher ones are a square lattice, upright and diagonal in turn, and each half level halves their number.
+    On a globe its columns are meridians and its rows parallels, `spacing` apart at the reference latitude. On a
+    projected terrain they are x and y. A point has a level, counted in halves. It is the point's group, the highest
+    power of two that divides both its indices (Figure 10 of the paper). Within a group, points with an odd sum of
+    indices are half a level lower. So the points of a level and of all higher ones form a square lattice, upright and
+    diagonal in turn, and each half level halves their number.
 
-    All follows from indices alone: a place has the same points in every tile and at every time. A globe has as many columns
-    as a large power of two divides, so that the lattice closes at the date line. Immutable; thread-safe. */
+    Everything follows from indices alone: a place has the same points in every tile and at every time. The number of
+    a globe's columns is a multiple of a large power of two, so that the lattice closes at the date line. Immutable;
+    thread-safe. */
 class StrokeLattice
 {
 public:
-    /// The highest level, in halves; what is above belongs to it.
+    /// The highest level, in halves. Higher points belong to it.
     static constexpr int highest = 32;
 
     /// `ellipsoid` is null for a projected terrain.
     StrokeLattice(const StrokeParameters& parameters, const osg::EllipsoidModel* ellipsoid);
 
-    /// Column, row (both with fractions, at the steps of the lattice) and height in metres of a place of the world.
+    /// The column and row of a place of the world, in steps of the lattice with fractions, and its height in metres.
     osg::Vec3d coordinates(const osg::Vec3d& world) const;
-    /// Column and row of a point of the map: degrees on a globe, else metres; and back.
+    /// Column and row of a point of the map (degrees on a globe, else metres), and the inverse.
     osg::Vec2d fromMap(const osg::Vec2d& point) const;
     osg::Vec2d toMap(const osg::Vec2d& place) const;
     bool onGlobe() const { return _ellipsoid.valid(); }
-    /// Unit vector away from the ground, in the world.
+    /// The unit vector away from the ground, in the world.
     osg::Vec3d up(const osg::Vec3d& world) const;
 
-    /// How many columns a globe has; 0 where columns do not return.
+    /// The number of columns of a globe; 0 if columns do not return.
     std::int64_t columns() const { return _columns; }
-    /// The column nearest to another one among those that are the same on the globe.
+    /// The column nearest to `other` among those that are the same on the globe.
     double columnNear(double column, double other) const;
 
-    /// Level of a point, in halves, 0…highest.
+    /// The level of a point, in halves, 0…highest.
     static int halfLevel(std::int64_t column, std::int64_t row);
-    /// Spacing of the points of a level and above, in steps.
+    /// The spacing of the points of a level and above, in steps.
     static double spacingOf(int halfLevel);
-    /// How far strokes of a level stand from their points at most, in steps, along columns and along rows.
+    /// The largest distance of strokes of a level from their points, in steps, along columns and along rows.
     double reach(int halfLevel) const { return _jitter * spacingOf(halfLevel); }
-    /// A random number, 0 ≤ x < 1, of a point; the same for columns that are the same on a globe.
+    /// A random number, 0 ≤ x < 1, of a point. Columns that are the same on a globe have the same one.
     double chance(std::int64_t column, std::int64_t row, StrokeChance which) const;
-    /// Where the point's stroke stands: column and row.
+    /// The column and row where the point's stroke stands.
     osg::Vec2d place(std::int64_t column, std::int64_t row) const;
 
 private:

@@ -17,23 +17,23 @@ namespace osgGeoFX
 namespace
 {
 
-/// Geometries may be shared by scenes, and so by makers.
+/// One lock for all makers, since scenes, and so makers, may share geometries.
 std::mutex& userDataMutex()
 {
     static std::mutex mutex;
     return mutex;
 }
 
-/// What the strokes of a geometry are kept with: the meshes of a terrain tile have them in common.
+/// The object that keeps the strokes of a geometry. The meshes of a terrain tile share theirs.
 osg::Object& keeperOf(osg::Geometry& terrain)
 {
     const osg::Transform* tile = TileInfo::tileOf(terrain);
     const osg::Geometry* mesh = tile ? TileInfo::firstMesh(*tile) : nullptr;
-    // Not with the tile, whose user data others read without a lock.
+    // Not the tile itself: others read its user data without a lock.
     return mesh ? const_cast<osg::Geometry&>(*mesh) : terrain;
 }
 
-/// A tile that stands in more places than these loses the strokes of the first ones.
+/// A tile in more places than these loses the strokes of the first ones.
 constexpr int mostPlaces = 4;
 
 } // namespace
@@ -94,7 +94,8 @@ StrokeParameters StrokeMaker::getParameters() const
     return _parameters;
 }
 
-/// Those of a place that are there already; they are this maker's, too, from now on. Under the lock of the user data.
+/// The strokes of a place, if there are any. They belong to this maker, too, from now on. The caller holds the lock
+/// of the user data.
 TileStrokes* StrokeMaker::known(const osg::Object& keeper, const osg::Matrixd& toWorld,
                                 const StrokeParameters& parameters) const
 {
@@ -115,7 +116,8 @@ TileStrokes* StrokeMaker::known(const osg::Object& keeper, const osg::Matrixd& t
     return nullptr;
 }
 
-/// Takes strokes to what keeps them, and those away that no maker wants any more. Under the lock of the user data.
+/// Gives strokes to their keeper, and takes away those that no maker wants any more. The caller holds the lock of the
+/// user data.
 void StrokeMaker::keep(osg::Object& keeper, TileStrokes& strokes) const
 {
     osg::UserDataContainer* data = keeper.getOrCreateUserDataContainer();
@@ -139,7 +141,8 @@ void StrokeMaker::keep(osg::Object& keeper, TileStrokes& strokes) const
     data->addUserObject(&strokes);
 }
 
-/// Where the pager's strokes are of another place, there is a transform above its tiles. Under the lock of the user data.
+/// If the pager's strokes were made for another place, there is a transform above its tiles. The caller holds the
+/// lock of the user data.
 void StrokeMaker::learn(const osg::Object& keeper, const osg::Matrixd& toWorld) const
 {
     const osg::UserDataContainer* data = keeper.getUserDataContainer();
@@ -191,7 +194,7 @@ osg::ref_ptr<osg::Geometry> StrokeMaker::strokes(osg::Geometry& terrain, const o
         const std::lock_guard<std::mutex> lock(userDataMutex());
         if (const TileStrokes* strokes = known(keeper, toWorld, parameters)) return strokes->points();
     }
-    // Not under the lock. Where two threads make the same ones, the first's are kept.
+    // Made without the lock. If two threads make the same strokes, the first ones are kept.
     const osg::Transform* tile = TileInfo::tileOf(terrain);
     const osg::ref_ptr<osg::Geometry> ground = tile ? TileInfo::ground(*tile) : nullptr;
     const osg::ref_ptr<TileStrokes> made =

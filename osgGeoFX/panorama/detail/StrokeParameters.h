@@ -19,7 +19,7 @@ struct StrokeParameters
     double referenceLatitude = 0.0; ///< radians, within ±1.5: where the lattice of a globe is as wide as high
     double jitter = 0.2;        ///< of a stroke from its place in its row, in spacings of its level, 0…1
     double cliffSlope = 1.2;    ///< rise over run above which ground is cliff, > 0
-    double treeLine = 2000.0;   ///< metres; where the terrain says nothing of its cover
+    double treeLine = 2000.0;   ///< metres; for terrain that says nothing of its cover
     unsigned int coverUnit = 7; ///< texture unit of the tiles' cover
     std::uint32_t seed = 0;     ///< another one gives other strokes
     double strokesAlongTile =

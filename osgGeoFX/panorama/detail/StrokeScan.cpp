@@ -17,9 +17,10 @@ namespace
 
 /// Skirts of the kit's tiles lean by 1 in 10.
 constexpr double steepest = 0.15; ///< cosine of the steepest slope that is ground
-/// Steps of the lattice are cut into this many for the test whether a point is in a triangle; points get the middles.
+/// A step of the lattice is divided into so many parts for the test of points in triangles. Points lie in the middle
+/// of a part.
 constexpr double cuts = 256.0;
-/// Tiles of more steps than that have no strokes: their integers would overflow.
+/// Larger tiles, in steps, have no strokes: their integers would overflow.
 constexpr double mostSteps = 2097152.0;
 
 std::int64_t crossed(const std::array<std::int64_t, 2>& a, const std::array<std::int64_t, 2>& b,
@@ -28,7 +29,8 @@ std::int64_t crossed(const std::array<std::int64_t, 2>& a, const std::array<std:
     return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
 }
 
-/// Of the two triangles that share an edge, which run along it in opposite directions, exactly one owns it.
+/// Whether a triangle owns an edge. Two triangles that share an edge run along it in opposite directions, and exactly
+/// one owns it.
 bool owns(const std::array<std::int64_t, 2>& a, const std::array<std::int64_t, 2>& b)
 {
     return b[1] > a[1] || (b[1] == a[1] && b[0] < a[0]);
@@ -36,13 +38,13 @@ bool owns(const std::array<std::int64_t, 2>& a, const std::array<std::int64_t, 2
 
 } // namespace
 
-/// Anticlockwise, with columns that belong together.
+/// Counter-clockwise, with columns on one turn of the globe.
 struct StrokeScan::Triangle
 {
     std::array<unsigned int, 3> corners;
     std::array<osg::Vec2d, 3> at;
 
-    /// A way on the lattice as one in the mesh's frame.
+    /// A vector of the lattice as one in the mesh's frame.
     osg::Vec3d onGround(const osg::Vec3Array& vertices, const osg::Vec2d& way) const
     {
         const osg::Vec2d ab = at[1] - at[0], ac = at[2] - at[0];
@@ -54,7 +56,7 @@ struct StrokeScan::Triangle
     }
 };
 
-/// Where a place lies; nowhere without a triangle.
+/// The triangle at a place; none for a place beside the mesh.
 struct StrokeScan::Footing
 {
     const Triangle* triangle = nullptr;
@@ -136,7 +138,7 @@ void StrokeScan::chooseLevel(const std::vector<Triangle>& triangles, double stro
             _high.set(std::max(_high.x(), at.x()), std::max(_high.y(), at.y()));
         }
     }
-    // A little more is allowed, so that rounding does not take tiles of one size for two.
+    // A little slack keeps tiles of one size on one level in spite of rounding.
     const double size = std::max(_high.x() - _low.x(), _high.y() - _low.y());
     const auto fits = [&]
     {
@@ -146,7 +148,7 @@ void StrokeScan::chooseLevel(const std::vector<Triangle>& triangles, double stro
         ++_finest;
 }
 
-/// All points whose strokes may stand within the triangles' box.
+/// Lists all points whose strokes may stand within the triangles' box.
 void StrokeScan::sow(std::vector<StrokeSpot>& spots) const
 {
     for (int level = _finest; level <= StrokeLattice::highest; ++level)
@@ -187,7 +189,7 @@ std::vector<StrokeScan::Footing> StrokeScan::footings(const std::vector<Triangle
         const int x = cellOf(places[i].x(), _low.x()), y = cellOf(places[i].y(), _low.y());
         if (x >= -1 && y >= -1 && x <= across && y <= along)
         {
-            // What lies on the border may be within after rounding.
+            // Rounding may move a place on the border into the box.
             const int column = std::clamp(x, 0, across - 1), row = std::clamp(y, 0, along - 1);
             cellOfPoint[i] = static_cast<std::size_t>(row * across + column);
         }
@@ -200,7 +202,8 @@ std::vector<StrokeScan::Footing> StrokeScan::footings(const std::vector<Triangle
 
     const osg::Vec2d origin(std::floor(_low.x()), std::floor(_low.y()));
     using Point = std::array<std::int64_t, 2>;
-    // Vertices have even numbers and points odd ones: no point lies on a line that runs straight along the lattice.
+    // Vertices have even numbers and points odd ones, so no point lies on an edge that runs straight along the
+    // lattice.
     const auto rounded = [&](const osg::Vec2d& at)
     {
         return Point{2 * std::llround((at.x() - origin.x()) * cuts),
@@ -271,7 +274,7 @@ void StrokeScan::settle(const std::vector<Triangle>& triangles)
 
 void StrokeScan::settleLines(const std::vector<Triangle>& triangles, const StrokeLines& lines, double spacing)
 {
-    // A globe's lines may have been given a turn away from the tile.
+    // The lines of a globe may be a turn away from the tile.
     const auto around = static_cast<double>(_lattice.columns());
     for (const double turn :
          around > 0.0 ? std::vector<double>{-around, 0.0, around} : std::vector<double>{0.0})

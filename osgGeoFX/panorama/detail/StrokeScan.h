@@ -24,7 +24,7 @@ struct StrokeSpot
     std::array<double, 3> weights{};       ///< of them; the sum is 1
 };
 
-/// A mark of a road or a river that lies on a mesh. Column and row are the mark's index and the line's number.
+/// A mark of a road or a river on a mesh. Its column and row are the mark's index and the line's number.
 struct StrokeLineSpot : StrokeSpot
 {
     StrokeLines::Kind kind = StrokeLines::ROAD;
@@ -33,34 +33,36 @@ struct StrokeLineSpot : StrokeSpot
 
 /** Finds the lattice points on a tile's mesh.
 
-    A point belongs to the triangle that its stroke's place lies in, seen from above; one on an edge to one of the two that share it,
-    also where these are in two tiles: vertices are rounded to a grid, on which the test is exact. Left out are triangles
-    with heights that are not numbers, those nearly seen from the edge (tiles' skirts), from below, and those around a pole.
+    A point belongs to the triangle under its stroke's place, seen from above. A point on an edge belongs to one of
+    the two triangles that share it, even if these are in two tiles: vertices are rounded to a grid, on which the test
+    is exact. Some triangles do not count: those with heights that are not numbers, nearly upright ones (tiles'
+    skirts), those seen from below, and those around a pole.
 
-    The finest level that a tile has follows from the tile's size in lattice steps alone, such that its longer side
-    has at most `strokesAlongTile` points. Levels nest: what a tile has, all finer tiles over the same ground have, too.
+    The finest level of a tile follows from the tile's size in lattice steps alone: its longer side has at most
+    `strokesAlongTile` points. Levels nest: finer tiles over the same ground have everything that a tile has.
 
-    Marks of lines are found in the same way, at half the lattice's spacing, and from the tile's whole level on. */
+    Marks of lines are found in the same way, at half the lattice's spacing, from the tile's whole level on. */
 class StrokeScan
 {
 public:
-    /// `toWorld` is the way from the geometry's frame to the world. `lines` in other units
-    /// than the lattice's terrain has are none; `spacing` is the lattice's, metres.
+    /// `toWorld` is the matrix from the geometry's frame to the world. `lines` in other units than the terrain's do
+    /// not count. `spacing` is the lattice's, metres.
     StrokeScan(const StrokeLattice& lattice, const osg::Geometry& mesh, const osg::Matrixd& toWorld,
                double strokesAlongTile, const StrokeLines* lines = nullptr, double spacing = 25.0);
 
-    /// The finest level, in halves, and the spots, in no particular but always the same order.
+    /// The finest level, in halves, and the spots. Their order is always the same.
     int finest() const { return _finest; }
     const std::vector<StrokeSpot>& spots() const { return _spots; }
-    /// Of roads and rivers; and their finest level, in halves.
+    /// The spots of roads and rivers, and their finest level, in halves.
     const std::vector<StrokeLineSpot>& lineSpots() const { return _lineSpots; }
     int finestOfLines() const { return 2 * (_finest / 2) - 2; }
-    /// Columns and rows of the triangles lie between these.
+    /// The least and the largest column and row of the triangles.
     const osg::Vec2d& low() const { return _low; }
     const osg::Vec2d& high() const { return _high; }
-    /// Height above the ellipsoid or z = 0, and the unit vector upwards in the geometry's frame, of a vertex of a spot.
+    /// Of a vertex of a spot: the height above the ellipsoid or z = 0, and the upward unit vector in the geometry's
+    /// frame.
     double height(unsigned int vertex) const { return _coordinates[vertex].z(); }
-    /// The mesh's vertices; null where it has none that can be read.
+    /// The mesh's vertices. Null if there are none that can be read.
     const osg::Vec3Array* vertices() const { return _vertices; }
     osg::Vec3d up(unsigned int vertex) const;
 
@@ -78,7 +80,7 @@ private:
     void settleLines(const std::vector<Triangle>& triangles, const StrokeLines& lines, double spacing);
 
     const StrokeLattice& _lattice;
-    osg::ref_ptr<const osg::Vec3Array> _vertices; ///< the mesh's, or as many of another type
+    osg::ref_ptr<const osg::Vec3Array> _vertices; ///< the mesh's, or a copy of those of another type
     std::vector<unsigned int> _corners;           ///< of the mesh's triangles
     const osg::Matrixd _toWorld;
     std::vector<osg::Vec3d> _coordinates; ///< of the vertices: column, row, height

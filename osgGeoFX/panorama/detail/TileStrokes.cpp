@@ -30,7 +30,7 @@ osg::Vec3s toShorts(const osg::Vec3d& direction)
     return {toShort(direction.x()), toShort(direction.y()), toShort(direction.z())};
 }
 
-/// A vertex' value from an array of one of the types in use; nothing from others.
+/// The value of a vertex in an array of one of the types in use. Nothing for other types.
 std::optional<osg::Vec3d> vectorAt(const osg::Array* array, unsigned int index)
 {
     if (!array || index >= array->getNumElements()) return {};
@@ -58,10 +58,10 @@ std::optional<osg::Vec3d> vectorAt(const osg::Array* array, unsigned int index)
     }
 }
 
-/// How many of the lattice points in a town from vector data are houses, where the cover knows of fewer.
+/// The share of the lattice points in a town from vector data that are houses, unless the cover knows more.
 constexpr double townShare = 0.7;
 
-/// Nothing where none lie on the mesh.
+/// The towns on the mesh; nothing if there are none.
 std::optional<StrokeLines::Towns> townsOf(const StrokeScan& scan, const StrokeLattice& lattice,
                                           const StrokeParameters& parameters)
 {
@@ -163,7 +163,7 @@ std::optional<TileStrokes::Kind> Painter::kindAt(const StrokeSpot& spot, double 
     {
         return _lattice.chance(spot.column, spot.row, which);
     };
-    // The steeper, the more of the ground is rock.
+    // The steeper the ground, the more of it is rock.
     const double cliff = std::max(_parameters.cliffSlope, 1e-3);
     if (chance(StrokeChance::Cliff) < std::clamp(2.0 * (steepness - cliff) / cliff, 0.0, 1.0))
         return TileStrokes::Cliff;
@@ -198,7 +198,7 @@ void Painter::paint(const StrokeSpot& spot)
 
 void Painter::paint(const StrokeLineSpot& spot)
 {
-    // Roads cross water, and a river in a lake is not to be seen.
+    // Roads cross water. A river in a lake is not seen.
     if (spot.kind == StrokeLines::RIVER && coverAt(spot, 0.0).shore > 0.0) return;
     osg::Vec3d along = spot.along;
     along.normalize();
@@ -233,11 +233,11 @@ osg::ref_ptr<osg::Geometry> Painter::points() const
     points->setVertexArray(_vertices);
     points->setNormalArray(_normals);
     points->setTexCoordArray(0, _traits);
-    // In a buffer of its own: Mesa frowns on more than three arrays that are written into one.
+    // In a buffer of its own: Mesa complains of more than three arrays that are written into one.
     _directions->setVertexBufferObject(new osg::VertexBufferObject);
     if (_directed) points->setTexCoordArray(1, _directions);
     points->addPrimitiveSet(new osg::DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(_vertices->size())));
-    points->getBound(); // here, and not on two threads that draw
+    points->getBound(); // computed here, not by two draw threads at once
     return points;
 }
 

@@ -16,17 +16,19 @@
 namespace osgGeoFX
 {
 
-/** The brush strokes of a geometry, among its user objects, or of a terrain tile, among those of its vertices: points that
-    shaders/stages/panorama.strokes.* draw. Immutable once made.
+/** The brush strokes of a geometry, as one of its user objects. Those of a terrain tile belong to its first mesh. They are
+    points that shaders/stages/panorama.strokes.* draw. Immutable once made.
 
-    The points' arrays, in the frame of the tile's geometry:
-    - vertices (vec3): where strokes stand;
-    - normals (3 shorts, normalised): of the ground;
-    - texture coordinates 0 (4 shorts): seed, 0…32767; level, in halves; kind, 0 tree, 1 cliff, 2 house, 3 road, 4
-      river; threshold, 0…32767, or of roads and rivers the finest level that the tile has of them, in halves;
-    - texture coordinates 1 (3 shorts), where there are cliffs, roads or rivers: along the ground the direction downhill or of the line.
+    The points' arrays are in the frame of the tile's geometry:
+    - Vertices (vec3) are the places of strokes.
+    - Normals (3 shorts, normalised) are the ground's.
+    - Texture coordinates 0 (4 shorts) are the seed, 0…32767; the level, in halves; the kind, 0 tree, 1 cliff, 2 house,
+      3 road, 4 river; and the threshold, 0…32767. Roads and rivers have another number in place of the threshold: their
+      finest level in the tile, in halves.
+    - Texture coordinates 1 (3 shorts) exist if there are cliffs, roads or rivers. They are the direction on the ground,
+      downhill or along the line.
 
-    For copies and files it is an empty string: they get strokes of their own when they are drawn. */
+    In copies and files it is an empty string. These get strokes of their own when they are drawn. */
 class TileStrokes : public osg::StringValueObject
 {
 public:
@@ -39,21 +41,21 @@ public:
         River
     };
 
-    /// Those of a geometry, from `maker`'s parameters: made of the mesh and its textures of cover and
-    /// normals. `toWorld` is the
-    /// way from the geometry's frame; `ellipsoid` null for projected terrain. For any thread, while the geometry does not change.
+    /// Makes the strokes of a geometry from a maker's parameters, of its mesh and its textures of cover and normals.
+    /// `toWorld` is the matrix from the geometry's frame. `ellipsoid` is null for projected terrain. Any thread may
+    /// call it, while the geometry does not change.
     static osg::ref_ptr<TileStrokes> make(const osg::Geometry& terrain, const osg::Matrixd& toWorld,
                                           const StrokeParameters& parameters,
                                           const osg::EllipsoidModel* ellipsoid);
 
-    /// Null where there are none.
+    /// Null if there are none.
     osg::Geometry* points() const { return _points.get(); }
-    /// The finest level of strokes that the tile has, in halves.
+    /// The finest level of strokes of the tile, in halves.
     int finest() const { return _finest; }
     const StrokeParameters& parameters() const { return _parameters; }
-    /// Whether these are what make() would make with them.
+    /// Whether make() would make these with such parameters.
     bool madeWith(const StrokeParameters& parameters, const osg::EllipsoidModel* ellipsoid) const;
-    /// Whether they were made for that way to the world, within a centimetre.
+    /// Whether they were made for this matrix to the world, within a centimetre.
     bool madeAt(const osg::Matrixd& toWorld) const;
     const osg::Matrixd& toWorld() const { return _toWorld; }
 
@@ -69,9 +71,9 @@ private:
     int _finest = 0;
     osg::ref_ptr<osg::Geometry> _points;
     std::optional<osg::Matrixd>
-        _above; ///< the pager's: the way from the tile's parent that they were made with; StrokeMaker's lock
+        _above; ///< the pager's: the matrix from the tile's parent that they were made with; under StrokeMaker's lock
     std::vector<osg::observer_ptr<const osg::Referenced>>
-        _users; ///< the makers that they are kept for; StrokeMaker's lock
+        _users; ///< the makers that they are kept for; under StrokeMaker's lock
 };
 
 } // namespace osgGeoFX
