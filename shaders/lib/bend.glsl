@@ -27,7 +27,7 @@ const int GEOFX_CURVE_BEZIER = 0;
 const int GEOFX_CURVE_ARC_LENGTH = 1;
 const int GEOFX_CURVE_CIRCULAR_ARC = 2;
 
-// A bend and what follows from it; made by geofx_makeBend, best once per camera and in double.
+// A bend and the values that follow from it. geofx_makeBend makes it, best once per camera and in double.
 struct geofx_Bend
 {
     int curve;         // GEOFX_CURVE_...
@@ -49,7 +49,7 @@ struct geofx_BendFrame
     PerMetre turnRate; // turn of the frame for each metre of ground, positive upwards
 };
 
-// Length of the parabola from its vertex to u / (d/2 * cos(beta/2)); odd in u, |u| <= 1.
+// The length of the parabola from its vertex to u, over d/2 * cos(beta/2). Odd in u, |u| <= 1.
 GEOFX_INLINE Number geofx_bendArc(Number slope, Number u)
 {
     Number x = slope * u;
@@ -80,8 +80,8 @@ GEOFX_INLINE geofx_Bend geofx_makeBend(int curve, Length size, Angle angle)
     return bend;
 }
 
-// The largest curvature of the bend, with beta's sign. Heights on the curve's inner side must keep
-// h * curvature < 1: there the curve folds, and the inverse ends.
+// The largest curvature of the bend, with beta's sign. On the curve's inner side heights must keep h * curvature < 1.
+// Beyond, the curve folds, and the inverse ends.
 GEOFX_INLINE PerMetre geofx_bendCurvature(geofx_Bend bend)
 {
     Length size = max(bend.size, Number(1e-30));
@@ -92,10 +92,11 @@ GEOFX_INLINE PerMetre geofx_bendCurvature(geofx_Bend bend)
     return 2 * bend.slope / (bend.bisector.x * size);
 }
 
-// The parabola's u after the share 0..1 of its length. It starts from the odd polynomial of fifth degree that has
-// the right slopes at the vertex and, with the right value, at the ends: off by 3e-6 for |beta| = 30 degrees, by
-// 3e-3 for 90. Then Newton's method on geofx_bendArc, in which an error e becomes less than 0.36 * e^2: one step
-// leaves 1e-7 for 75 degrees and 3e-6 for 90, which is for floats; three leave less than 1e-20, for doubles.
+// The parabola's u after the share 0..1 of its length. The start is the odd polynomial of fifth degree with the right
+// slopes at the vertex and at the ends, and the right value at the ends. It is off by 3e-6 for |beta| = 30 degrees,
+// and by 3e-3 for 90. Newton's method on geofx_bendArc follows, which turns an error e into less than 0.36 * e^2. One
+// step leaves 1e-7 for 75 degrees and 3e-6 for 90, which is enough for floats. Three steps leave less than 1e-20,
+// which is enough for doubles.
 GEOFX_INLINE Number geofx_bendArcInverse(geofx_Bend bend, Number share)
 {
     Number v = 2 * share - 1;
@@ -135,7 +136,7 @@ GEOFX_INLINE geofx_BendFrame geofx_bendFrameOnParabola(geofx_Bend bend, Length s
     Number t = even ? (1 + u) / 2 : share;
     Number x = bend.slope * u;
     Number secant = sqrt(1 + x * x);
-    // du/d(s/d): 2 for the paper's parameter, constant over the secant for equal lengths of curve.
+    // du/d(s/d): 2 for the paper's parameter. For equal lengths of curve it is a constant over the secant.
     Number rate = even ? bend.arc / secant : Number(2);
     frame.foot = bend.size * t * Vector2(1 - t * bend.bisector.y * bend.bisector.y, t * bend.direction.y / 2);
     frame.tangent = (bend.bisector + x * Vector2(-bend.bisector.y, bend.bisector.x)) / secant;
@@ -174,28 +175,27 @@ GEOFX_INLINE Vector2 geofx_bendTurn(geofx_BendFrame frame, Vector2 v)
     return v.x * frame.tangent + v.y * Vector2(-frame.tangent.y, frame.tangent.x);
 }
 
-// By how much the bend stretches along the tangent at height h; it keeps heights, so this is its determinant
-// too, and is positive before the fold. An exact normal is geofx_bendTurn(frame, Vector2(n.x / stretch,
-// n.y)).
+// The stretch of the bend along the tangent at height h. The bend keeps heights, so this is its determinant, too. It
+// is positive before the fold. An exact normal is geofx_bendTurn(frame, Vector2(n.x / stretch, n.y)).
 GEOFX_INLINE Number geofx_bendStretch(geofx_BendFrame frame, Length h)
 {
     return frame.speed - h * frame.turnRate;
 }
 
-// Where the bend takes a point (s, h).
+// Where a point (s, h) goes.
 GEOFX_INLINE Profile geofx_bend(geofx_Bend bend, Profile point)
 {
     geofx_BendFrame frame = geofx_bendFrame(bend, point.x);
     return frame.foot + geofx_bendTurn(frame, Vector2(Number(0), point.y));
 }
 
-// The parabola's u whose normal meets a point. In units of d/2 * cos(beta/2), from the vertex, along and
-// across the bisector, with `along` >= 0: the root of slope^2/2 * u^3 + c*u = along, where c = 1 - slope *
-// across. Newton's method from a start beyond the root: there the cubic is convex and rises, so the steps
-// come down to the root, an error e becoming less than 2/3 * e, and, with m = 1 - h*curvature, less than e^2
-// * (0.75/sqrt(m) + e/m). So 14 steps reach double precision for h*curvature <= 0.99; the loop ends when
-// rounding stops the descent, most often after three. Between the zone's borders u stays in 0..1, even beyond
-// the fold: the cubic is negative at 0 and not at 1.
+// The parabola's u whose normal meets a point. `across` and `along` are its coordinates from the vertex, across and
+// along the bisector, in units of d/2 * cos(beta/2), with `along` >= 0. u is the root of slope^2/2 * u^3 + c*u =
+// along, where c = 1 - slope * across. Newton's method starts beyond the root, where the cubic is convex and rises,
+// so the steps come down to the root. An error e becomes less than 2/3 * e, and, with m = 1 - h*curvature, less than
+// e^2 * (0.75/sqrt(m) + e/m). So 14 steps reach double precision for h*curvature <= 0.99. The loop ends when rounding
+// stops the descent, most often after three steps. Between the zone's borders u stays in 0..1, even beyond the fold:
+// the cubic is negative at 0 and not at 1.
 GEOFX_INLINE Number geofx_bendFootInverse(Number slope, Number across, Number along)
 {
     Number c = 1 - slope * across;
@@ -225,7 +225,7 @@ GEOFX_INLINE Profile geofx_unbendFromParabola(geofx_Bend bend, Profile point)
     Number across = bisector.x * offset.y - bisector.y * offset.x;
     Number u = geofx_bendFootInverse(bend.slope, across, abs(along));
     u = along < 0 ? -u : u;
-    // From the foot to the point, along the normal.
+    // The height is measured from the foot to the point, along the normal.
     Number x = bend.slope * u;
     Length height = unit * (across - u * x / 2 - x * (along - u)) / sqrt(1 + x * x);
     Number share = (1 + u) / 2;
@@ -247,9 +247,9 @@ GEOFX_INLINE Profile geofx_unbendFromArc(geofx_Bend bend, Profile point)
     return Vector2(s, (2 * point.y - curvature * dot(point, point)) / (1 + radius));
 }
 
-// The inverse of geofx_bend: which point (s, h) is taken to this place. Exact for all heights with h *
-// geofx_bendCurvature(bend) <= 0.99. Beyond the fold, where places have several originals or none, it stays
-// finite, and prefers the focus. The wedge that a hinge (d = 0) opens is given to s = 0.
+// The inverse of geofx_bend: the point (s, h) that goes to this place. It is exact for heights with h *
+// geofx_bendCurvature(bend) <= 0.99. Beyond the fold, places have several originals or none. There it stays finite,
+// and prefers the focus. A hinge (d = 0) opens a wedge, which belongs to s = 0.
 GEOFX_INLINE Profile geofx_unbend(geofx_Bend bend, Profile point)
 {
     if (point.x <= 0)

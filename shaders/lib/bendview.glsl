@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// A bend placed before a camera: positions in eye space to the bend's profile and back, after Sections 3 and 4
-// of Lorenz et al. (2008). The CPU works out the placement, once for each camera and frame.
+// A bend placed before a camera, after Sections 3 and 4 of Lorenz et al. (2008). It takes positions in eye space to
+// the bend's profile and back. The CPU computes the placement once for each camera and frame.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #include "lib/bend.glsl"
@@ -17,13 +17,13 @@ struct geofx_BendView
     geofx_Bend bend;
 };
 
-// Where a position lies in the profile.
+// The profile of a position.
 GEOFX_INLINE Profile geofx_bendViewProfile(geofx_BendView view, Position position)
 {
     return Vector2(dot(position, view.forward) - view.start, dot(position, view.normal) + view.height);
 }
 
-// Where the view takes a position. The focus stays as it is, to the last bit.
+// Where the view moves a position. The focus stays as it is, to the last bit.
 GEOFX_INLINE Position geofx_bendViewDeform(geofx_BendView view, Position position)
 {
     Profile point = geofx_bendViewProfile(view, position);
@@ -47,7 +47,7 @@ GEOFX_INLINE Position geofx_bendViewUndeform(geofx_BendView view, Position posit
     return position + offset.x * view.forward + offset.y * view.normal;
 }
 
-// What becomes of a surface's unit normal at a position that has not been deformed yet.
+// The deformed unit normal of a surface. The position is the one before the deformation.
 GEOFX_INLINE Vector3 geofx_bendViewNormal(geofx_BendView view, Position position, Vector3 normal)
 {
     Profile point = geofx_bendViewProfile(view, position);

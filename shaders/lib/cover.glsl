@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// What lies on the ground, as the tiles of a terrain database carry it in a texture beside their colors: trees, towns,
-// bare ground and water, after Section 3.2.1 of Brown and Samavati (2017). A texel may be filtered like a color: the
-// shore is a signed distance, and so stays sharp however far it is magnified.
+// What lies on the ground: trees, towns, bare ground and water, after Section 3.2.1 of Brown and Samavati (2017). The
+// tiles of a terrain database have it in a texture beside their colors. A texel may be filtered like a color. The
+// shore is a signed distance, so it stays sharp at any magnification.
 //
-// Red is the share of trees, green that of buildings; blue is 0 for fields, 1/2 for bare ground, 1 for ice that stays;
-// alpha is the distance to the shore. The texel (0, 0, 0, 1), which a texture unit without a texture gives, says that
-// nothing is known.
+// Red is the share of trees, and green that of buildings. Blue is 0 for fields, 1/2 for bare ground, and 1 for ice
+// that stays. Alpha is the distance to the shore. The texel (0, 0, 0, 1), which a texture unit without a texture
+// gives, says that nothing is known.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #endif
 
-// The distance from the shore that lies half-way from the shore to the end of alpha's range.
+// The distance from the shore that is coded half-way to the end of alpha's range.
 const Length GEOFX_SHORE_SCALE = Length(500);
-// How deep water is estimated to be, for each metre from the shore, where no one measured it (paper, Section 3.4.2).
+// The estimated depth of water for each metre from the shore, for water that nobody measured (paper, Section 3.4.2).
 const Number GEOFX_SHORE_SLOPE = Number(0.02);
 
 struct geofx_Cover
@@ -22,7 +22,7 @@ struct geofx_Cover
     Number trees; // 0 to 1
     Number town;  // 0 to 1
     Number bare;  // 0 field, 1/2 bare ground, 1 ice
-    Length shore; // from the nearest shore, over water; negative over land. Depth / GEOFX_SHORE_SLOPE where it is known
+    Length shore; // from the nearest shore, over water; negative over land. If the depth is known, it is depth / GEOFX_SHORE_SLOPE
 };
 
 // Whether a texel says anything.
@@ -58,13 +58,13 @@ GEOFX_INLINE geofx_Cover geofx_coverOf(Rgba texel)
     return cover;
 }
 
-// What is likely where nothing is known: the sea at height 0 and below, trees below the tree line where it is
-// not too steep, bare ground above. `steepness` is rise over run; heights are above the sea.
+// The likely cover of ground that nothing is known of: the sea at height 0 and below, trees below the tree line on
+// ground that is not too steep, bare ground above. `steepness` is rise over run. Heights are above the sea.
 GEOFX_INLINE geofx_Cover geofx_likelyCover(Length height, Number steepness, Length treeLine)
 {
     Number below = clamp((treeLine - height) / (treeLine / 5 + 1), Number(0), Number(1));
     Number gentle = clamp((Number(1.1) - steepness) / Number(0.5), Number(0), Number(1));
-    // Plains are fields; the hills above them carry the woods.
+    // Plains are fields. The hills above them have the woods.
     Number hilly = clamp((steepness - Number(0.05)) / Number(0.15), Number(0), Number(1));
     geofx_Cover cover;
     cover.trees = below * gentle * (Number(0.15) + Number(0.7) * hilly);

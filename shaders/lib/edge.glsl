@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Where a terrain ends, and what a panorama map shows there. A picture of the terrain's extent and some of what lies around it
-// tells for each place how far what is known reaches.
+// Where a terrain ends, and what a panorama map shows there. A picture of the terrain's extent, and of some land
+// around it, has the distance of each place to the end of what is known.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #include "lib/series.glsl"
 #include "lib/painting.glsl"
 #endif
 
-// How places of a panorama map lie in that picture.
+// The place of a panorama map in this picture.
 struct geofx_Edge
 {
     Number globe;     // 1 on a globe, 0 on a plane
@@ -21,8 +21,8 @@ struct geofx_Edge
     Angle latitude;   // of the extent's middle
 };
 
-// Where (x, s) of a panorama map lies in the picture, 0 to 1; beyond that outside of it. On a globe along great circles of
-// the sphere that touches it below the eye: off by less than 1e-3 of the distance up to 500 km.
+// The place (x, s) of a panorama map in the picture, 0 to 1; other numbers lie outside of it. On a globe the way is a
+// great circle of the sphere that touches it below the eye. The error is less than 1e-3 of the distance up to 500 km.
 GEOFX_INLINE Vector2 geofx_edgePlace(geofx_Edge edge, Vector2 place)
 {
     Vector2 way = place.x * edge.right + place.y * edge.forward;
@@ -33,7 +33,7 @@ GEOFX_INLINE Vector2 geofx_edgePlace(geofx_Edge edge, Vector2 place)
     }
     Angle arc = length(way);
     Number cosine = cos(min(arc, Number(3.1)));
-    // The sine over the arc, in halves: its series reaches to pi / 2.
+    // The sine over the arc, in halves, since its series reaches to pi / 2.
     Angle halfArc = Number(0.5) * min(arc, Number(3.1));
     Number sine = geofx_sinc(halfArc) * cos(halfArc);
     Number sine0 = sin(edge.origin.y);
@@ -43,7 +43,7 @@ GEOFX_INLINE Vector2 geofx_edgePlace(geofx_Edge edge, Vector2 place)
     Number z = cosine * sine0 + way.y * sine * cosine0;
     Number level = sqrt(x * x + y * y);
     Angle east = edge.origin.x + (x > abs(y) ? y / x * geofx_atanc(y / x) : atan(y, x));
-    // North of the eye's foot: small where the way is short.
+    // North of the eye's foot. This form stays exact for short ways.
     Number rise = z * cosine0 - level * sine0;
     Number run = level * cosine0 + z * sine0;
     Angle north = run > abs(rise) ? rise / run * geofx_atanc(rise / run) : atan(rise, run);
@@ -53,8 +53,8 @@ GEOFX_INLINE Vector2 geofx_edgePlace(geofx_Edge edge, Vector2 place)
                    Number(0.5) + (edge.origin.y + north - edge.latitude) * edge.scale.y);
 }
 
-// How much of a place is haze or paper, 0 to 1, from its distance to the end of what is known, negative beyond it. The whole
-// of it a little before that, so that no border shows. `noise`, -1 to 1, frays it, by `rough`, 0 to 1.
+// The share of haze or paper at a place, 0 to 1. `distance` goes to the end of what is known, negative beyond it. The
+// share is 1 a little before the end, so that no border shows. `noise`, -1 to 1, frays it, by `rough`, 0 to 1.
 GEOFX_INLINE Number geofx_edgeAmount(Length distance, Length width, Number noise, Number rough)
 {
     Number t = 1 - geofx_share(distance / max(width, Number(1e-3)));
@@ -62,7 +62,7 @@ GEOFX_INLINE Number geofx_edgeAmount(Length distance, Length width, Number noise
     return geofx_ease(t, Number(0.04), Number(0.84));
 }
 
-// How much of haze is paper: `y` is the height in the picture, 0 at its base to 1.
+// The share of paper in the haze. `y` is the height in the picture, 0 at its base to 1.
 GEOFX_INLINE Number geofx_edgePaper(Number y)
 {
     return 1 - geofx_ease(y, Number(0.08), Number(0.5));

@@ -3,10 +3,10 @@
 //
 // Vertical exaggeration in eye space, above a plane or an ellipsoid of revolution.
 //
-// Nothing here is as large as the Earth, so that floats suffice: positions are taken from the eye's foot on the
-// ellipsoid, q, and there the ellipsoid is F(q) = 2 n.q + k (q.q + e (q.p)^2) = 0, in metres, with the normal n,
-// the axis of revolution p, k = 1/(a^2 |grad|) and e = a^2/b^2 - 1. A plane has k = 0. The height follows from F
-// and its gradient: exactly for a plane and for a sphere, within a millimetre at 9 km for the Earth.
+// No number here is as large as the Earth, so floats suffice. Positions are relative to the eye's foot on the
+// ellipsoid, q. There the ellipsoid is F(q) = 2 n.q + k (q.q + e (q.p)^2) = 0, in metres, with the normal n, the axis
+// of revolution p, k = 1/(a^2 |grad|) and e = a^2/b^2 - 1. A plane has k = 0. The height follows from F and its
+// gradient. It is exact for a plane and for a sphere, and for the Earth within a millimetre at 9 km.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #endif
@@ -23,7 +23,7 @@ struct geofx_Exaggeration
     Length base;        // the height that stays as it is
 };
 
-// Half of F's gradient: along the vertical, and 1 long at the eye's foot.
+// Half of F's gradient. It is vertical, and has the length 1 at the eye's foot.
 GEOFX_INLINE Vector3 geofx_exaggerationGradient(geofx_Exaggeration view, Position position)
 {
     Vector3 q = position + view.height * view.up;
@@ -38,7 +38,7 @@ GEOFX_INLINE Length geofx_exaggerationHeight(geofx_Exaggeration view, Position p
     Length value = 2 * (dot(position, view.up) + view.height) +
                    view.curvature * (dot(q, q) + view.flattening * along * along);
     Number gradient = length(geofx_exaggerationGradient(view, position));
-    // A point near the Earth's center has no height worth exaggerating.
+    // A point near the Earth's center has no useful height.
     Number surface = sqrt(max(1 + value * view.scale, Number(0.01)));
     return value / (max(gradient, Number(0.1)) * (1 + 1 / surface));
 }
@@ -50,9 +50,9 @@ GEOFX_INLINE Position geofx_exaggerate(geofx_Exaggeration view, Position positio
     return position + lift / max(length(gradient), Number(0.1)) * gradient;
 }
 
-// The inverse, by Newton's method with the derivative that a sphere has: `factor` along the vertical, and across it
-// what the spreading of the verticals makes of the lift. The ellipsoid's flattening leaves a share of 1e-2 of that
-// spreading, so each turn gains two digits or more; on a plane the first one is exact.
+// The inverse, by Newton's method. The derivative is that of a sphere: `factor` along the vertical, and across it the
+// spreading of the verticals times the lift. The ellipsoid's flattening changes this spreading by a share of 1e-2, so
+// each step gains two digits or more. On a plane the first step is exact.
 GEOFX_INLINE Position geofx_unexaggerate(geofx_Exaggeration view, Position position)
 {
     Position original = position;
@@ -70,7 +70,7 @@ GEOFX_INLINE Position geofx_unexaggerate(geofx_Exaggeration view, Position posit
     return original;
 }
 
-// What becomes of a surface's unit normal.
+// The deformed unit normal of a surface.
 GEOFX_INLINE Vector3 geofx_exaggerationNormal(geofx_Exaggeration view, Position position, Vector3 normal)
 {
     Vector3 up = normalize(geofx_exaggerationGradient(view, position));

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Projective mappings, after Sections 3.1 to 3.3 and 4.3 of Trapp and Doellner (2009): where a raster lies on the ground,
-// how strongly it shows, and how its color meets the scene's.
+// Projective mappings, after Sections 3.1 to 3.3 and 4.3 of Trapp and Doellner (2009): the place of a raster on the
+// ground, its strength, and the blending of its color with the scene's.
 //
-// A place is a point of the mappings' frame: x and y on the reference plane and the height above it, metres. On a globe
-// the plane is the tangent plane at the frame's origin, onto which the ellipsoid is projected along the origin's normal
-// (the orthographic projection of PROJ), and a point above the ground goes to the place of its foot.
+// A place is a point of the mappings' frame: x and y on the reference plane and the height above it, metres. On a
+// globe the plane is the tangent plane at the frame's origin. The ellipsoid is projected onto it along the origin's
+// normal (the orthographic projection of PROJ). A point above the ground has the place of its foot.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #endif
 
-// O and the rows that take a place to the raster, with the extra transform M_T in them: (u, v) = 1/2 + A d / (1 + w.d)
-// with d = P - O. The paper's printed matrices have the bias' sign and the scale the wrong way round.
+// O, and the rows that take a place to the raster, with the extra transform M_T: (u, v) = 1/2 + A d / (1 + w.d) with
+// d = P - O. In the paper's printed matrices the bias has the wrong sign, and the scale is inverted.
 struct geofx_Projector
 {
     Vector2 center; // metres
@@ -21,7 +21,8 @@ struct geofx_Projector
     Vector2 rowW;   // per metre; 0 unless M_T is projective
 };
 
-// Raster coordinates of a place: 0 to 1 from the left and from the bottom. Far outside where the projection has no image.
+// The raster coordinates of a place: 0 to 1 from the left and from the bottom. They are far outside if the projection
+// has no image there.
 GEOFX_INLINE Vector2 geofx_projectPlane(geofx_Projector projector, Vector2 place)
 {
     Vector2 d = place - projector.center;
@@ -30,8 +31,8 @@ GEOFX_INLINE Vector2 geofx_projectPlane(geofx_Projector projector, Vector2 place
     return w > Number(1e-6) ? Number(0.5) + uv / w : Vector2(-1, -1);
 }
 
-// What raster coordinates change by along a step, at the place: where the step itself would end behind the projection's
-// horizon, there is no difference to take.
+// The change of raster coordinates along a step, as a derivative at the place. The end of the step may lie behind the
+// projection's horizon, so a difference would not do.
 GEOFX_INLINE Vector2 geofx_projectPlaneStep(geofx_Projector projector, Vector2 place, Vector2 step)
 {
     Vector2 d = place - projector.center;
@@ -95,7 +96,7 @@ GEOFX_INLINE Vector2 geofx_projectPinholeStep(geofx_Pinhole camera, Position pos
     return Number(0.5) * (radial * dt + growth * t + tangential) / camera.tangents;
 }
 
-// How much of a pixel lies within the raster along one axis: 0 at its edge, 1 from a pixel inwards on. `width` is the
+// The share of a pixel within the raster along one axis: 0 at its edge, 1 from a pixel inwards on. `width` is the
 // pixel's, in raster coordinates.
 GEOFX_INLINE Number geofx_edge(Number coordinate, Number width)
 {
@@ -103,7 +104,7 @@ GEOFX_INLINE Number geofx_edge(Number coordinate, Number width)
     return clamp(inwards / max(width, Number(1e-9)), Number(0), Number(1));
 }
 
-// 0 at `none`, 1 at `full` and beyond, straight between them; a step where they are equal.
+// 0 at `none`, 1 at `full` and beyond, linear between them. A step if both are equal.
 GEOFX_INLINE Number geofx_ramp(Number value, Number none, Number full)
 {
     if (none == full)
@@ -139,7 +140,8 @@ GEOFX_INLINE Number geofx_overlay(Number source, Number destination)
     return destination <= Number(0.5) ? 2 * source * destination : 1 - 2 * (1 - source) * (1 - destination);
 }
 
-// Blend equations: OpenGL's five, and multiply, screen and overlay, which take the source's alpha as their share.
+// Blend equations: OpenGL's five, and multiply, screen and overlay. These three take the source's alpha as their
+// share.
 GEOFX_INLINE Rgb geofx_blend(int equation, int sourceFactor, int destinationFactor, Rgba source, Rgba destination,
                              Rgba constant)
 {
@@ -176,7 +178,7 @@ GEOFX_INLINE Rgb geofx_blend(int equation, int sourceFactor, int destinationFact
     return clamp(result, Number(0), Number(1));
 }
 
-// How a raster is filtered: level of the pyramid, and how many probes along which axis (texels).
+// The filtering of a raster: the level of the pyramid, and the number of probes along an axis (texels).
 struct geofx_Filter
 {
     Number level;
@@ -184,17 +186,17 @@ struct geofx_Filter
     Vector2 step; // from probe to probe
 };
 
-// `across` and `up` are what the raster's texel coordinates change by from pixel to pixel.
+// `across` and `up` are the changes of the raster's texel coordinates from pixel to pixel.
 GEOFX_INLINE geofx_Filter geofx_filter(Vector2 across, Vector2 up, Number mostProbes, Number lastLevel)
 {
-    // The pixel's footprint is an ellipse: the eigenvalues of its matrix are the squares of the half axes.
+    // The pixel's footprint is an ellipse. The eigenvalues of its matrix are the squares of the half axes.
     Number p = across.x * across.x + up.x * up.x;
     Number q = across.x * across.y + up.x * up.y;
     Number r = across.y * across.y + up.y * up.y;
     Number mean = (p + r) / 2;
     Number root = sqrt((p - r) * (p - r) / 4 + q * q);
     Number longest2 = mean + root;
-    // Where the texels are larger than pixels, one probe is all there is to see.
+    // If texels are larger than pixels, one probe sees everything.
     Number shortest2 = max(mean - root, Number(1));
     geofx_Filter result;
     result.probes = clamp(floor(sqrt(longest2 / shortest2) + Number(0.5)), Number(1), mostProbes);

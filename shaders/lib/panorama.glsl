@@ -7,11 +7,12 @@
 #include "lib/exaggeration.glsl"
 #endif
 
-// A place of the map: x to the right of the middle and s away from the picture's base, along the ground, and the height
-// above the sea, metres. On a globe x and s are the azimuthal equidistant projection about the point below the eye.
+// A place of the map: x to the right of the middle and s away from the picture's base, along the ground, and the
+// height above the sea, metres. On a globe x and s are the azimuthal equidistant projection about the point below the
+// eye.
 //
-// The picture: x -1 to 1 and y -1 to 1, and n, the distance from the eye along its axis, which grows with s: of two
-// places at the same point of the picture the one with the smaller s hides the other.
+// A point of the picture has x and y from -1 to 1. n is the distance from the eye along its axis, and grows with s.
+// Of two places at the same point of the picture, the one with the smaller s hides the other.
 struct geofx_Panorama
 {
     geofx_Exaggeration globe; // factor 0 and base 0: takes a position to its foot
@@ -34,8 +35,8 @@ struct geofx_Panorama
     Vector3 directionY;
 };
 
-// The angle over its sine, from its cosine: what stretches the orthographic projection to the equidistant one. Within 1e-4 up
-// to 60 degrees; beyond it still grows.
+// The angle over its sine, from its cosine. It stretches the orthographic projection to the equidistant one. The
+// error is within 1e-4 up to 60 degrees. Beyond, the function still grows.
 GEOFX_INLINE Number geofx_arcStretch(Number cosine)
 {
     Number u = 1 - cosine;
@@ -52,7 +53,7 @@ GEOFX_INLINE Position geofx_panoramaPlace(geofx_Panorama view, Position position
     Position foot = geofx_exaggerate(view.globe, position);
     Number steepness = dot(normalize(geofx_exaggerationGradient(view.globe, foot)), view.globe.up);
     Number stretch = geofx_arcStretch(steepness);
-    // The other side of the Earth lies farther than anything on this one.
+    // The other side of the Earth must lie farther away than anything on this side.
     Length behind = view.globe.curvature > 0 ? max(-steepness, Number(0)) * 20 / view.globe.curvature : Length(0);
     return Position(stretch * dot(foot, view.right), stretch * dot(foot, view.forward) + behind, height);
 }
@@ -62,7 +63,7 @@ GEOFX_INLINE Position geofx_panoramaPosition(geofx_Panorama view, Position place
 {
     Vector3 ground = place.x * view.right + place.y * view.forward;
     Position position = ground + (place.z - view.globe.height) * view.globe.up;
-    // Each turn is off by a share of the angle's square of what the last one was off by.
+    // Each step leaves a share of the last error: about the square of the angle.
     for (int i = 0; i < 24; ++i)
     {
         Position error = place - geofx_panoramaPlace(view, position);
@@ -73,27 +74,27 @@ GEOFX_INLINE Position geofx_panoramaPosition(geofx_Panorama view, Position place
     return position;
 }
 
-// How far up the curve a distance s is: metres at the scale of the base (paper, Figure 5).
+// The distance up the curve at a distance s: metres at the scale of the base (paper, Figure 5).
 GEOFX_INLINE Length geofx_panoramaRise(geofx_Panorama view, Length s)
 {
     Length bent = clamp(s - view.curve, Length(0), view.horizon - view.curve);
     return min(s, view.curve) + bent - bent * bent / (2 * max(view.horizon - view.curve, Length(1e-3)));
 }
 
-// The share of the base's scale that ground at a distance s has along the view.
+// The scale of ground along the view at a distance s, as a share of the base's.
 GEOFX_INLINE Number geofx_panoramaSlope(geofx_Panorama view, Length s)
 {
     return clamp((view.horizon - s) / max(view.horizon - view.curve, Length(1e-3)), Number(0), Number(1));
 }
 
-// 1 up to `from`, 0 as far behind that as the end is behind the horizon.
+// 1 up to `from`. 0 as far behind it as the end is behind the horizon.
 GEOFX_INLINE Number geofx_panoramaFadeFrom(geofx_Panorama view, Length from, Length s)
 {
     Number t = clamp(1 - (s - from) / max(view.end - view.horizon, Length(1e-3)), Number(0), Number(1));
     return t * t * (3 - 2 * t);
 }
 
-// The share of its height that something at a distance s shows: all of it up to the horizon.
+// The share of its height that an object at a distance s shows: 1 up to the horizon.
 GEOFX_INLINE Number geofx_panoramaFade(geofx_Panorama view, Length s)
 {
     return geofx_panoramaFadeFrom(view, view.horizon, s);
@@ -116,7 +117,7 @@ GEOFX_INLINE Position geofx_panoramaPicture(geofx_Panorama view, Position place)
     return Position(x, y, n);
 }
 
-// The inverse of geofx_panoramaPicture where a height shows at all.
+// The inverse of geofx_panoramaPicture, if a height shows at all.
 GEOFX_INLINE Position geofx_panoramaPlaceAt(geofx_Panorama view, Position picture)
 {
     Length s = picture.z > view.nearest ? picture.z - view.nearest
@@ -132,7 +133,7 @@ GEOFX_INLINE Position geofx_panoramaEye(geofx_Panorama view, Position picture)
            picture.z * (view.direction + picture.x * view.directionX + picture.y * view.directionY);
 }
 
-// The inverse of geofx_panoramaEye, where the projection takes x and y apart, as frusta and boxes do.
+// The inverse of geofx_panoramaEye. It needs a projection that separates x and y, as frusta and boxes do.
 GEOFX_INLINE Position geofx_panoramaPictureAt(geofx_Panorama view, Position eye)
 {
     Length n = view.origin.z - eye.z;

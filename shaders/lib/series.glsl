@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Functions that stay exact where the textbook formula becomes 0/0: to double precision with 12 terms, as C++ has
-// them, and to that of floats with 5 (GEOFX_SERIES_TERMS), which is what a vertex can afford.
-// OpenGL promises nothing about the precision of sin, atan and asinh (Mesa's atan is off by 2e-5 near zero),
-// hence series, whose arguments are first brought near zero where they are not.
+// Functions that stay exact where the textbook formula becomes 0/0. C++ has 12 terms, for double precision. GLSL has
+// 5 (GEOFX_SERIES_TERMS), for floats, which is what a vertex can afford. OpenGL promises nothing about the precision
+// of sin, atan and asinh (Mesa's atan is off by 2e-5 near zero). So these are series. Arguments that are not near
+// zero are brought near zero first.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #endif
@@ -32,8 +32,8 @@ GEOFX_INLINE Number geofx_atanhSeries(Number y)
     return sum;
 }
 
-// asinh(x)/x for |x| <= 1. The half of the argument's area, twice: tanh(a/2) = sinh a / (1 + cosh a) and
-// tanh(a/2) = tanh a / (1 + sqrt(1 - tanh^2 a)).
+// asinh(x)/x for |x| <= 1. It halves the argument's area twice: tanh(a/2) = sinh a / (1 + cosh a) and tanh(a/2) =
+// tanh a / (1 + sqrt(1 - tanh^2 a)).
 GEOFX_INLINE Number geofx_asinhc(Number x)
 {
     Number first = 1 + sqrt(1 + x * x);
@@ -43,7 +43,7 @@ GEOFX_INLINE Number geofx_asinhc(Number x)
     return 4 * geofx_atanhSeries(z * z) / (first * second);
 }
 
-// atan(x)/x for |x| <= 1. The angle is halved twice: tan(a/2) = tan a / (1 + sqrt(1 + tan^2 a)).
+// atan(x)/x for |x| <= 1. It halves the angle twice: tan(a/2) = tan a / (1 + sqrt(1 + tan^2 a)).
 GEOFX_INLINE Number geofx_atanc(Number x)
 {
     Number first = 1 + sqrt(1 + x * x);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Brush strokes of panorama maps, after Section 3.3 of Brown and Samavati (2017): trees, cliffs and houses; and roads and
-// rivers in the same hand.
+// Brush strokes of panorama maps, after Section 3.3 of Brown and Samavati (2017): trees, cliffs and houses, and roads
+// and rivers in the same hand.
 //
-// Strokes stand on a lattice that covers the ground. Those of level 0, 1/2, 1, 3/2 ... and all higher ones stand at a spacing
-// of 2^level steps, and each half level has twice as many strokes as are above it. `wanted` is the level, with
+// Strokes stand on a lattice that covers the ground. Those of a level 0, 1/2, 1, 3/2 ... and all higher ones stand at
+// a spacing of 2^level steps. Each half level has as many strokes as all levels above it. `wanted` is the level, with
 // fractions, whose spacing looks right on the screen.
 #ifndef __cplusplus
 #include "lib/types.glsl"
@@ -17,24 +17,24 @@ const int GEOFX_STROKE_HOUSE = 2;
 const int GEOFX_STROKE_ROAD = 3;
 const int GEOFX_STROKE_RIVER = 4;
 
-// Half of the levels that a stroke takes to go.
+// Half of the range of levels over which a stroke disappears.
 const Number GEOFX_STROKE_WINDOW = Number(0.06);
 
-// The level whose spacing is `pixels` on the screen, where a metre of the ground has `pixelsPerMetre`.
+// The level whose spacing is `pixels` on the screen. A metre of the ground has `pixelsPerMetre`.
 GEOFX_INLINE Number geofx_strokeWanted(Number pixels, Length step, Number pixelsPerMetre)
 {
     return log2(max(pixels, Number(1e-6)) / max(step * pixelsPerMetre, Number(1e-12)));
 }
 
-// The wanted level at which a stroke goes, from its own level and its threshold, 0 to 1: the strokes of a half level
-// go one by one, so that the density falls as the square of the wanted spacing grows, and all are gone when the next ones
-// begin to.
+// The wanted level at which a stroke disappears, from its own level and its threshold, 0 to 1. The strokes of a half
+// level disappear one by one, so that the density falls with the square of the wanted spacing. All are gone when the
+// next ones begin to disappear.
 GEOFX_INLINE Number geofx_strokeEnd(Number level, Number threshold)
 {
     return level + Number(0.5) - Number(0.5) * log2(1 + threshold);
 }
 
-// How large a stroke is, 0 to 1; it scales out and does not pop.
+// The size of a stroke, 0 to 1. It shrinks to 0, and does not pop.
 GEOFX_INLINE Number geofx_strokeScale(Number level, Number threshold, Number wanted)
 {
     Number left = (geofx_strokeEnd(level, threshold) - wanted) / (2 * GEOFX_STROKE_WINDOW) + Number(0.5);
@@ -42,19 +42,20 @@ GEOFX_INLINE Number geofx_strokeScale(Number level, Number threshold, Number wan
     return t * t * (3 - 2 * t);
 }
 
-// How much larger strokes are where even the finest ones stand too far apart: the forest keeps its look a while.
+// The growth of strokes where even the finest ones stand too far apart, so that the forest keeps its look a while.
 GEOFX_INLINE Number geofx_strokeGrowth(Number wanted)
 {
     return clamp(exp(Number(-0.6931471805599453) * wanted), Number(1), Number(3));
 }
 
-// The strokes of roads and rivers go level by level; the next ones are as long by then as to cover their places.
+// The strokes of roads and rivers disappear level by level. The remaining ones are long enough by then to cover their
+// places.
 GEOFX_INLINE bool geofx_strokeOfLine(Number level, Number wanted)
 {
     return level >= floor(wanted);
 }
 
-// Half of their length on the ground, from the step of the lattice and the finest level that there is: they overlap.
+// Half of their length on the ground, from the step of the lattice and the finest level that there is. They overlap.
 GEOFX_INLINE Length geofx_strokeReach(Length step, Number finest, Number wanted)
 {
     return Number(0.65) * step * exp(Number(0.6931471805599453) * max(wanted, finest));
@@ -82,7 +83,7 @@ GEOFX_INLINE geofx_StrokeShape geofx_strokeShape(int kind, Number seed)
     geofx_StrokeShape shape;
     if (kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER)
     {
-        // Half the width; their length comes from the ground.
+        // Half the width. The length comes from the ground.
         shape.size = Vector2(Number(kind == GEOFX_STROKE_ROAD ? 0.26 : 0.22), Number(0));
         shape.lean = Angle(0);
         shape.tone = Number(0);
@@ -115,7 +116,7 @@ GEOFX_INLINE Number geofx_strokeBristle(Number across, Number seed)
     return Number(0.5) + Number(0.3) * sin(Number(9) * across + phase) + Number(0.2) * sin(Number(23) * across - 3 * phase);
 }
 
-// Where a point of a stroke lies, x and y -1 to 1 over its size: positive within it and 0 on its edge.
+// A point of a stroke, x and y -1 to 1 over its size: positive inside and 0 on its edge.
 GEOFX_INLINE Number geofx_strokeInside(int kind, Vector2 point, Number seed)
 {
     Number x = point.x;
@@ -130,12 +131,12 @@ GEOFX_INLINE Number geofx_strokeInside(int kind, Vector2 point, Number seed)
     Number bristle = geofx_strokeBristle(x, seed);
     if (kind == GEOFX_STROKE_CLIFF)
     {
-        // Set down hard at the top, and running dry downwards.
+        // The brush sets down hard at the top, and runs dry downwards.
         Number width = (1 - y * y) * (Number(0.75) + Number(0.25) * y);
         return width - abs(x + Number(0.2) * sin(Number(3) * y + Number(40) * seed)) -
                bristle * Number(0.5) * clamp(-y, Number(0), Number(1));
     }
-    // A drop, its foot broader than its top, with a ragged edge.
+    // A drop with a ragged edge. Its foot is broader than its top.
     x = x * (Number(1.04) + Number(0.24) * y);
     Number radius = sqrt(x * x + y * y);
     Number scale = 1 / max(radius, Number(1e-3));
@@ -145,7 +146,7 @@ GEOFX_INLINE Number geofx_strokeInside(int kind, Vector2 point, Number seed)
     return Number(0.9) + wobble - dry - radius;
 }
 
-// How much of the light side a point of a stroke shows, 0 to 1. `light` is the direction to the light on the screen.
+// The share of the light side at a point of a stroke, 0 to 1. `light` is the direction to the light on the screen.
 GEOFX_INLINE Number geofx_strokeLit(Vector2 point, Vector2 light, Number seed)
 {
     Number bristle = geofx_strokeBristle(point.x - Number(0.3) * point.y, seed) - Number(0.5);

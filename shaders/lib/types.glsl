@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// What GLSL calls the things that shaders/lib is written in. C++ has its own definitions, in double and in
-// float, in osgGeoFX/effect/GlslFunctions.h; that header tells how a file of shaders/lib must be written.
+// The names of types in shaders/lib, as GLSL defines them. C++ has its own definitions, in double and in float, in
+// osgGeoFX/effect/GlslFunctions.h. This header also tells how a file of shaders/lib must be written.
 #define GEOFX_INLINE
 
 #define GEOFX_NEWTON_STEPS 1 // enough for floats in geofx_bendArcInverse

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// An anchor along a region's border: the first texture coordinate is the share of the way from the ground to the close-up,
-// the second 1 for the line on the ground.
+// An anchor along a region's border. The first texture coordinate is the share of the way from the ground to the
+// close-up. The second one is 1 for the line on the ground.
 vec4 geofx_vertex(vec4 eyePosition);
 void SLOT_setShare(float share);
 

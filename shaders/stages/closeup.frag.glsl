@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// CloseUps in the fragment stage: what is cut away, and the close-up's own data, light and style.
+// CloseUps in the fragment stage: cuts fragments away, and applies the close-up's own data, light and style.
 #pragma import_defines(SLOT_DATA)
 
 uniform sampler2D SLOT_tables;       // a row for each color table and each anchor
@@ -13,12 +13,12 @@ in vec3 SLOT_place;
 #ifdef GEOFX_AMPLIFY
 flat in int SLOT_target;
 #else
-// Of a layer that is drawn by itself: some GPUs read what is the same for all fragments much faster.
+// The layer, if layers are drawn one by one. Some GPUs read what is the same for all fragments much faster.
 uniform int SLOT_layer;
 #define SLOT_target SLOT_layer
 #endif
 
-// Mask and distance as SLOT_maskAt has them, to a sampler's precision.
+// Mask and distance as in SLOT_maskAt, to a sampler's precision.
 vec2 SLOT_coverAt(int item, vec2 place)
 {
     float side = SLOT_item(item, 11).z;
@@ -28,12 +28,13 @@ vec2 SLOT_coverAt(int item, vec2 place)
     return SLOT_bordered(item, place, value);
 }
 
-// A pixel at most: where the ground is seen from its edge, it would be as wide as the region.
+// The largest width of a pixel. On ground seen from its edge, a pixel would be as wide as the region.
 const float SLOT_widest = 0.04;
 
-// How wide a pixel is across the border, where that matters: near a border with a line of so many pixels. `right` and `up` are by
-// how much the place changes from pixel to pixel. What the distance changes by would vanish on its ridges, such as the diagonals in
-// a rectangle's corners; its slope, which is 1 on both sides of a ridge, only says which way the border lies.
+// The width of a pixel across the border. It matters only near a border, which has a line of `line` pixels. `right`
+// and `up` are the changes of the place from pixel to pixel. The change of the distance would vanish on its ridges,
+// such as the diagonals in a rectangle's corners. So its slope, which is 1 on both sides of a ridge, only tells the
+// direction to the border.
 float SLOT_pixelAt(int item, float distance, vec2 right, vec2 up, float line)
 {
     vec2 halfSides = vec2(SLOT_item(item, 7).w, SLOT_item(item, 13).y);
@@ -61,7 +62,7 @@ int SLOT_channels()
     return int(SLOT_item(SLOT_target / 2, 11).w);
 }
 
-// Between the texels of a row, or the nearest one.
+// Interpolated between the texels of a row, or the nearest one.
 vec4 SLOT_rowAt(float row, float share, bool smoothly)
 {
     float s = clamp(share, 0.0, 1.0) * (SLOT_quality.z - 1.0);
@@ -117,7 +118,8 @@ vec4 SLOT_finish(vec4 color)
     bool sharp = kinds.y < 0.5 && kinds.z < 0.5;
     if (sharp && tint.w > 0.5)
     {
-        // A rectangle's sides one by one: in a corner the nearest one need not be that of fewest pixels.
+        // Each side of a rectangle counts by itself: in a corner the nearest side need not be the one at the fewest
+        // pixels.
         vec2 halfSides = vec2(SLOT_item(item, 7).w, SLOT_item(item, 13).y);
         vec2 within = (1.0 - abs(SLOT_place.xy)) * halfSides;
         vec2 pixels = min(vec2(length(vec2(right.x, up.x)), length(vec2(right.y, up.y))) * halfSides, SLOT_widest);
@@ -155,12 +157,12 @@ vec4 SLOT_finish(vec4 color)
     }
 #endif
     result = geofx_restyle(clamp(result, vec3(0.0), vec3(1.0)), style.x, style.y, style.z);
-    // The line around it, in the color of its region.
+    // The line around the close-up has the color of its region.
     if (anchor.x > 0.0 && sharp) result = mix(result, tint.rgb, line);
     return vec4(result, opacity * cover * style.w);
 }
 
-// Of an anchor with a geometry of its own.
+// The color of an anchor with a geometry of its own.
 vec4 SLOT_fenceColor(vec2 fence)
 {
     int item = SLOT_target / 2;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// CloseUps in the geometry stage: a copy of each triangle for each close-up and each anchor that it touches, into the
-// layers of one texture array. EffectProgram puts the other effects' variables in the place of GEOFX_VARYINGS.
+// CloseUps in the geometry stage: copies each triangle for each close-up and each anchor that it touches, into the
+// layers of one texture array. EffectProgram replaces GEOFX_VARYINGS and GEOFX_COPY by the varyings of the other
+// effects.
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 18) out;
 
@@ -16,12 +17,12 @@ GEOFX_VARYINGS
 #include "stages/view.glsl"
 
 uniform ivec4 SLOT_targets; // up to three items, and how many they are
-uniform int SLOT_only;      // the layer that is drawn where they are drawn one by one, 0 the close-up's and 1 its anchor's; or -1
+uniform int SLOT_only;      // if layers are drawn one by one, the one to draw: 0 the close-up's, 1 its anchor's; else -1
 
 void SLOT_emit(int target, vec3 positions[3], vec3 places[3])
 {
     int item = target / 2;
-    // A layer that is drawn by itself is moved by its viewport.
+    // If layers are drawn one by one, their viewports move the picture.
     vec4 shift = SLOT_only < 0 ? SLOT_item(item, 14) : vec4(0.0);
     for (int i = 0; i < 3; ++i)
     {

@@ -22,15 +22,15 @@ geofx_Lift SLOT_liftOf(int item)
     return geofx_Lift(SLOT_item(item, 0), SLOT_item(item, 1), SLOT_item(item, 2), SLOT_item(item, 3));
 }
 
-// The place in the region, -1 to 1, of a point of the ground, and the height above its base.
+// The place in the region, -1 to 1, of a point of the ground, and its height above the region's base.
 vec3 SLOT_placeOf(int item, vec3 located)
 {
     vec4 point = vec4(located, 1.0);
     return vec3(dot(SLOT_item(item, 4), point), dot(SLOT_item(item, 5), point), dot(SLOT_item(item, 6), point));
 }
 
-// Mask and distance at a place that the texels there say `value` of: no mask outside of the region, where the distance goes on
-// from that of the region's own border.
+// Mask and distance at a place whose texels say `value`. Outside of the region there is no mask, and the distance
+// continues from the region's own border.
 vec2 SLOT_bordered(int item, vec2 place, vec2 value)
 {
     vec2 halfSides = vec2(SLOT_item(item, 7).w, SLOT_item(item, 13).y);
@@ -38,7 +38,7 @@ vec2 SLOT_bordered(int item, vec2 place, vec2 value)
     return vec2(outside ? 0.0 : value.x, geofx_border(value.y, place, SLOT_item(item, 11).z, halfSides));
 }
 
-// Mask and distance, between texels as floats are: samplers would round the shares.
+// Mask and distance, interpolated between texels in floats. A sampler would round the shares.
 vec2 SLOT_maskAt(int item, vec2 place)
 {
     float side = SLOT_item(item, 11).z;
@@ -55,13 +55,14 @@ vec2 SLOT_maskAt(int item, vec2 place)
     return SLOT_bordered(item, place, value);
 }
 
-// Where a point goes in a layer, 0 the close-up's and 1 its anchor's; `place` gets its place and its share of the way.
+// Where a point goes in a layer, 0 the close-up's and 1 its anchor's. `place` gets its place and its share of the
+// way.
 vec3 SLOT_moved(int item, int layer, vec3 located, vec3 bent, out vec3 place)
 {
     place.xy = SLOT_placeOf(item, located).xy;
 #ifdef SLOT_MASKED
     place.z = SLOT_maskAt(item, place.xy).x;
-    // What is cut by fragments is lifted as a whole.
+    // A close-up that fragments cut is lifted as a whole.
     bool whole = layer == 0 && SLOT_item(item, 9).y < 0.5;
     return geofx_raise(bent, geofx_lift(SLOT_liftOf(item), located), whole ? 1.0 : place.z);
 #else

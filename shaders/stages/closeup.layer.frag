@@ -7,17 +7,17 @@ uniform ivec4 geofx_layerOrigin; // the layer's first pixel, the layer, and samp
 uniform float geofx_layerOpacity;
 uniform vec2 geofx_layerAlphas; // pixels above the first and up to the second
 
-// Of those close-ups that are put into the picture after this one and overlap it.
+// The close-ups that are put into the picture after this one and overlap it.
 const int geofx_mostOthers = 16;
 uniform int geofx_others;
 uniform ivec4 geofx_otherOrigins[geofx_mostOthers]; // their first pixels and layers; anchors have the next layer
 uniform ivec4 geofx_otherParts[geofx_mostOthers];   // the first pixels of their parts of the window, and the first ones beyond
 uniform float geofx_otherCovers[geofx_mostOthers];  // the alphas above which they hide what is behind them
-// What of this layer: 0 all of it, 1 that without one of the others behind it, 2 that with one.
+// Which fragments of this layer to show: 0 all, 1 those without one of the others behind them, 2 those with one.
 uniform int geofx_layerTurn;
 uniform int geofx_layerAnchor; // the anchor's layer, or -1
 
-// Premultiplied, with the nearest depth.
+// The layer's premultiplied color, with the nearest depth.
 vec4 geofx_layerAt(ivec3 origin, out float depth)
 {
     int samples = geofx_layerOrigin.w;
@@ -49,7 +49,7 @@ bool geofx_othersBehind(float depth)
         float edge, anchor;
         float edgeAlpha = geofx_layerAt(origin, edge).a;
         bool anchored = geofx_layerAt(origin + ivec3(0, 0, 1), anchor).a > 0.0;
-        // An edge lies over its own anchor, wherever that is.
+        // An edge lies over its own anchor, wherever the anchor is.
         if (anchored) edge = min(edge, anchor);
         bool edged = edgeAlpha > 0.0 && edgeAlpha <= geofx_otherCovers[i];
         if ((anchored && anchor > depth) || (edged && edge > depth)) return true;

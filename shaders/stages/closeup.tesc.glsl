@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// CloseUps in the tessellation control stage: as many vertices as masks and magnified close-ups need. An edge's number
-// follows from the edge alone, so that its two triangles agree.
+// CloseUps in the tessellation control stage: as many vertices as masks and magnified close-ups need. The number of
+// an edge follows from the edge alone, so that its two triangles agree.
 layout(vertices = 3) out;
 
 in vec2 SLOT_surface_vertex[];
@@ -16,7 +16,7 @@ out vec3 SLOT_normal_control[];
 GEOFX_VARYINGS
 
 uniform ivec4 SLOT_targets; // up to three items, and how many they are
-uniform vec4 SLOT_fineness; // parts of an edge at most; texels of a mask in one; pixels in one; pixels of a metre: at a metre's distance, or, less than 0, at any
+uniform vec4 SLOT_fineness; // most parts of an edge; texels of a mask in one part; pixels in one part; pixels of a metre at a metre's distance, or, if less than 0, at any distance
 
 float SLOT_parts(vec3 a, vec3 b)
 {
@@ -28,12 +28,13 @@ float SLOT_parts(vec3 a, vec3 b)
         vec2 to = SLOT_placeOf(item, b).xy;
         if (any(greaterThan(min(from, to), vec2(1.0))) || any(lessThan(max(from, to), vec2(-1.0)))) continue;
         float texels = length(to - from) * 0.5 * SLOT_item(item, 11).z;
-        // Where the mask changes: as far from the border as the edge is long there is nothing to be found.
+        // An edge across the mask's change is divided. If the border is farther away than the edge is long, there is
+        // no change.
         vec2 ends = vec2(SLOT_maskAt(item, from).x, SLOT_maskAt(item, to).x);
         float border = abs(SLOT_maskAt(item, 0.5 * (from + to)).y);
         bool crossed = SLOT_item(item, 15).z > 0.5 && (ends.x != ends.y || border < length(to - from));
         if (crossed) parts = max(parts, texels / SLOT_fineness.y);
-        // Where the close-up is larger than what its triangles were made for.
+        // A close-up that is larger than its triangles were made for.
         if (SLOT_item(item, 15).w > 0.0)
         {
             vec3 first = geofx_lift(SLOT_liftOf(item), a);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// CloseUps in the tessellation evaluation stage: vertices between those of a triangle, on the curved surface that their
-// normals tell of (Boubekeur and Alexa, Phong tessellation, 2008).
+// CloseUps in the tessellation evaluation stage: places vertices between those of a triangle, on the curved surface
+// that their normals describe (Boubekeur and Alexa, Phong tessellation, 2008).
 layout(triangles, equal_spacing, ccw) in;
 
 in vec2 SLOT_surface_control[];
@@ -17,7 +17,7 @@ GEOFX_VARYINGS
 
 uniform float SLOT_roundness;
 
-// What takes a point to the plane of a vertex.
+// The vector from a point to its foot on the tangent plane of a vertex.
 vec3 SLOT_toPlane(int vertex, vec3 point)
 {
     vec3 normal = SLOT_normal_control[vertex];

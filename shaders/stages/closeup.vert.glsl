@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// CloseUps in the vertex stage. With GEOFX_AMPLIFY the geometry stage moves the vertices; with GEOFX_TESSELLATE two more
-// stages come before it.
+// CloseUps in the vertex stage. With GEOFX_AMPLIFY the geometry stage moves the vertices. With GEOFX_TESSELLATE two
+// more stages come before that one.
 #include "lib/exaggeration.glsl"
 #pragma import_defines(SLOT_DATA, SLOT_ROUND)
 
@@ -41,9 +41,9 @@ vec2 SLOT_surfacePlace(vec3 located)
     return (position.xy - SLOT_surfaceArea.xy) * SLOT_surfaceArea.zw;
 }
 
-float SLOT_share = -1.0; // of the way, where the geometry says it itself
+float SLOT_share = -1.0; // share of the way, if the geometry gives it itself; else negative
 
-// For anchors that have a geometry of their own.
+// For anchors with a geometry of their own.
 void SLOT_setShare(float share)
 {
     SLOT_share = share;

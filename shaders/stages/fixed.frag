@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// OpenGL's fixed fragment stage: texture environments, the separate specular color and fog, OpenGL 2.1, Sections
-// 3.8 to 3.10, with the effects before the fog; and the lighting where a texture has the normals.
+// OpenGL's fixed fragment stage: texture environments, the separate specular color and fog, after OpenGL 2.1,
+// Sections 3.8 to 3.10. The effects come before the fog. If a texture has the normals, this stage computes the
+// lighting, too.
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP, GEOFX_PAINTED)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_NORMAL_MAP)
@@ -27,21 +28,21 @@ vec4 geofx_fragment(vec4 color, vec4 map);
 #define GEOFX_LIT_HERE
 vec3 geofx_ground(); // the undeformed place in eye space
 float geofx_normalSize(); // a normal's length in eye space
-vec3 geofx_turnedNormal(); // what the effects make of the texture's normal, of length 1
+vec3 geofx_turnedNormal(); // the texture's normal after the effects, of length 1
 #include "stages/fixed.light.glsl"
 #endif
 
-// Where the terrain is seen from its edge, coordinates run through the whole texture and more within a pixel, and beyond a
-// triangle's border to infinity. The coarsest level is all that can be seen there; but Mesa's llvmpipe, when it filters
-// anisotropically, visits every texel between the neighbours, for minutes.
+// On terrain seen from its edge, coordinates change by more than the whole texture within a pixel, and go to infinity
+// beyond a triangle's border. Only the coarsest level shows there. But Mesa's llvmpipe, in anisotropic filtering,
+// would visit every texel between the neighbours, for minutes.
 vec4 tame(vec4 coordinates)
 {
     vec2 place = coordinates.xy / coordinates.w;
     return all(lessThan(fwidth(place), vec2(4.0))) ? coordinates : vec4(clamp(place, 0.0, 1.0), 0.0, 1.0);
 }
 
-// The environments of OpenGL 2.1, Tables 3.22 and 3.23. `code` is 1 modulate, 2 replace, 3 decal, 4 blend, 5 add; and, as
-// they depend on the texture's base format, 8 for those without alpha, 16 for alpha alone, 24 for intensity.
+// The environments of OpenGL 2.1, Tables 3.22 and 3.23. `code` is 1 modulate, 2 replace, 3 decal, 4 blend, 5 add. It
+// has 8 more for base formats without alpha, 16 more for alpha alone, and 24 more for intensity.
 vec4 environment(int code, vec4 color, vec4 texel, vec4 constant)
 {
     int mode = code & 7;
@@ -122,7 +123,7 @@ void main()
     color = geofx_fragment(color, vec4(0.0));
 #endif
 #ifdef GEOFX_FOG
-    // 1 linear, 2 exp, 3 exp2; 4 more where the distance comes with the vertex.
+    // 1 linear, 2 exp, 3 exp2; 4 more if the distance comes with the vertex.
     float distance = gl_FogFragCoord;
     float clear = 1.0;
     if ((GEOFX_FOG & 3) == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The lighting of OpenGL's fixed functions, OpenGL 2.1, Section 2.14.1, for vertices, or for fragments where a texture has
-// the normals.
+// The lighting of OpenGL's fixed functions, after OpenGL 2.1, Section 2.14.1. It is for vertices, or, if a texture
+// has the normals, for fragments.
 #pragma import_defines(GEOFX_SPECULAR)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_LOCAL_VIEWER)
 #pragma import_defines(GEOFX_COLOR_MATERIAL, GEOFX_COLOR_SUM)
@@ -29,7 +29,7 @@ Material colored(gl_MaterialParameters given)
     return material;
 }
 
-// Adds what one lamp gives. `lamp` is a constant where it is called, so that no driver makes a loop of it.
+// Adds the light of one lamp. `lamp` is a constant in each call, so that no driver makes a loop of it.
 void shine(int lamp, vec3 position, vec3 normal, Material material, inout vec4 sum, inout vec4 glitter)
 {
     vec3 direction = gl_LightSource[lamp].position.xyz;

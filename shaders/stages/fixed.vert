@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// OpenGL's fixed vertex stage, for geometry that has no shader of its own: what OpenGL 2.1, Section 2.14, says, with
-// the effects in between. scene/detail/FixedFunctionLook.cpp sets the defines from the modes that are in force.
+// OpenGL's fixed vertex stage, for geometry without a shader of its own, after OpenGL 2.1, Section 2.14, with the
+// effects in between. scene/detail/FixedFunctionLook.cpp sets the defines from the modes in force.
 #pragma import_defines(GEOFX_SPECULAR)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_LOCAL_VIEWER)
 #pragma import_defines(GEOFX_COLOR_MATERIAL, GEOFX_COLOR_SUM)
@@ -24,7 +24,7 @@
 #undef GEOFX_FOG
 #endif
 
-// Fragments that have normals of their own are lit by themselves.
+// If fragments have normals of their own, the fragment stage lights them.
 #ifdef GEOFX_NORMAL_MAP
 #undef GEOFX_LIGHTS
 #endif
@@ -40,7 +40,7 @@ vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);
 
 #ifdef GEOFX_GENERATES
 // Generated texture coordinates, OpenGL 2.1, Section 2.11.4. `code` is 1 object linear, 2 eye linear, 3 sphere map, 4
-// normal map, 5 reflection map; and 8 for s, 16 for t, 32 for r, 64 for q.
+// normal map, 5 reflection map, with 8 more for s, 16 for t, 32 for r, and 64 for q.
 vec4 generated(int unit, int code, vec4 given, vec4 eye, vec3 normal)
 {
     int mode = code & 7;
@@ -73,7 +73,7 @@ void main()
 {
     vec4 eye = gl_ModelViewMatrix * gl_Vertex;
     vec4 deformed = geofx_vertex(eye);
-    // What stays where it is goes exactly where OpenGL's own stage would put it.
+    // A vertex that stays where it is goes exactly where OpenGL's own stage would put it.
     gl_Position = deformed == eye ? ftransform() : gl_ProjectionMatrix * deformed;
     gl_ClipVertex = eye;
 
@@ -81,7 +81,7 @@ void main()
 #ifdef GEOFX_RESCALE
     normal *= gl_NormalScale;
 #endif
-    // The effects turn a normal of length 1. Without GL_NORMALIZE, OpenGL lights with the length that it has.
+    // The effects turn a normal of length 1. Without GL_NORMALIZE, OpenGL lights with the length that the normal has.
     float size = length(normal);
     normal = size > 0.0 ? normal / size : normal;
     normal = size > 0.0 ? geofx_normal(eye, normal) : normal;
@@ -89,7 +89,7 @@ void main()
     normal *= size;
 #endif
 
-    // Only what is read is written: each of these goes through clipping and set-up with every triangle.
+    // Only outputs that are read are written. Each of them goes through clipping and set-up with every triangle.
     vec4 primary = gl_Color;
     vec4 secondary = gl_SecondaryColor;
 #ifdef GEOFX_LIGHTS
@@ -137,7 +137,7 @@ void main()
     gl_FogFragCoord = GEOFX_FOG >= 4 ? gl_FogCoord : abs(deformed.z);
 #endif
 #ifdef GEOFX_POINT_SIZE
-    float far = abs(deformed.z); // Section 3.3 allows it for the distance, and Mesa takes it
+    float far = abs(deformed.z); // Section 3.3 allows it in place of the distance, and Mesa uses it
     float fading = gl_Point.distanceConstantAttenuation +
                    far * (gl_Point.distanceLinearAttenuation + far * gl_Point.distanceQuadraticAttenuation);
     gl_PointSize = clamp(gl_Point.size * inversesqrt(fading), gl_Point.sizeMin, gl_Point.sizeMax);

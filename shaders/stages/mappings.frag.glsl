@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// ProjectiveMappings in the fragment stage: all mappings over a fragment, the lowest first. SLOT_ stands for the effect's
-// prefix. osgGeoFX/mapping/detail/MappingRecord.cpp writes the records, osgGeoFX/mapping/detail/MappingIndex.cpp the grid.
+// ProjectiveMappings in the fragment stage: draws all mappings over a fragment, the lowest first. SLOT_ stands for
+// the effect's prefix. osgGeoFX/mapping/detail/MappingRecord.cpp writes the records, and
+// osgGeoFX/mapping/detail/MappingIndex.cpp the grid.
 #include "lib/mapping.glsl"
 
 #pragma import_defines(GEOFX_MAPPING_CHANNELS)
-// What some of the mappings need; MappingRecord.h lists them. Code that none needs is left out: compilers of CPUs run
-// through all branches.
+// What some of the mappings need; MappingRecord.h lists these defines. Code that no mapping needs is left out, since
+// compilers of CPUs run through all branches.
 #pragma import_defines(SLOT_COLORS, SLOT_VALUES, SLOT_CLASSES)
 #pragma import_defines(SLOT_TABLES, SLOT_MATRICES, SLOT_MASKS)
 #pragma import_defines(SLOT_PROJECTIVE, SLOT_PINHOLES, SLOT_SYMBOLS)
 #pragma import_defines(SLOT_FADES, SLOT_HEIGHTS, SLOT_BLENDS)
 #pragma import_defines(SLOT_RANGES, SLOT_NEAREST, SLOT_LINEAR, SLOT_IN_TURN)
-// Loops have their condition at the end where a first turn is certain, for the same reason: with the condition at the
-// start, those compilers go through the whole of a last turn in which nothing is left to do.
+// If a first turn is certain, a loop has its condition at the end, for the same reason: with the condition at the
+// start, those compilers run through a whole last turn that does nothing.
 
 uniform usamplerBuffer SLOT_data;
 uniform sampler2DArray SLOT_layers;
@@ -22,7 +23,7 @@ uniform sampler2D SLOT_tables;
 uniform mat4 SLOT_toFrame; // from eye space
 uniform vec4 SLOT_root;    // the grid's origin and one over its size
 uniform vec4 SLOT_pixel;   // what a pixel spans, metres: at a metre from the eye, and at any distance beside that; opacity
-uniform ivec2 SLOT_start;  // the grid's first block and, where all mappings are gone through instead, their list
+uniform ivec2 SLOT_start;  // the grid's first block; the list of all mappings, if fragments test them all
 uniform vec3 SLOT_quality; // probes at most; one over the pages' and tables' sides
 
 in vec3 SLOT_position;
@@ -35,7 +36,7 @@ uint SLOT_word(uvec4 words, uint which)
     return which < 2u ? (which == 0u ? words.x : words.y) : (which == 2u ? words.z : words.w);
 }
 
-// The list of the mappings over a place; 0 where there is none.
+// The list of the mappings over a place; 0 for none.
 uint SLOT_find(vec2 place)
 {
     vec2 p = (place - SLOT_root.xy) * SLOT_root.z;
@@ -56,7 +57,7 @@ uint SLOT_find(vec2 place)
     return word;
 }
 
-// What a mapping needs to know of the fragment.
+// What a mapping needs of the fragment.
 struct SLOT_Fragment
 {
     vec3 place;
@@ -95,7 +96,7 @@ float SLOT_power(float exponent)
 }
 
 #if defined(SLOT_VALUES) || defined(SLOT_CLASSES)
-// The value of a texel: the four bytes are those of a float.
+// The value of a texel, whose four bytes are those of a float.
 float SLOT_texel(SLOT_Slot slot, ivec2 texel, int level)
 {
     ivec2 most = max((ivec2(slot.size) - 1) >> level, ivec2(0));
@@ -105,10 +106,10 @@ float SLOT_texel(SLOT_Slot slot, ivec2 texel, int level)
     return uintBitsToFloat(b.x | b.y << 8u | b.z << 16u | b.w << 24u);
 }
 
-// x: sum of the weighted values that are data; y: their weights.
+// x: the sum of the weighted values that are data. y: the sum of their weights.
 vec2 SLOT_weighted(float value, float weight)
 {
-    // By its bits: compilers may take it that there are no NaNs.
+    // The bits tell, since compilers may assume that there are no NaNs.
     return (floatBitsToUint(value) & 0x7f800000u) == 0x7f800000u ? vec2(0.0) : vec2(value * weight, weight);
 }
 
@@ -130,7 +131,7 @@ vec2 SLOT_valueOf(SLOT_Slot slot, vec2 at, float level, bool smoothly)
 }
 #endif
 
-// A color with the share of the place that has data. Colors are averaged by their alphas.
+// A color with the share of the place that has data. Averages of colors are weighted by their alphas.
 struct SLOT_Sample
 {
     vec4 color;
@@ -150,8 +151,8 @@ SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 at, geofx_Filter how)
 #ifdef SLOT_COLORS
     if (kind == 1u)
     {
-        // Kept away from the borders of a level by half of its texel, so that nothing of the slots beside it comes in.
-        // Where a level's texel is larger than the picture, that is the texel's middle.
+        // The place stays half a texel away from the borders of its level, so that nothing of neighbouring slots is
+        // mixed in. If a level's texel is larger than the picture, the place is the texel's middle.
         float inset = 0.5 * SLOT_power(ceil(level));
         vec2 low = slot.corner + inset;
         vec2 high = max(slot.corner + slot.size - inset, low);
@@ -188,7 +189,7 @@ SLOT_Sample SLOT_sample(SLOT_Slot slot, uint flags, vec2 at, geofx_Filter how)
 }
 
 #ifdef SLOT_TABLES
-// A color table's entry for a value; w negative where the table has none. `row` in rows.
+// A color table's entry for a value; w is negative for no entry. `row` in rows.
 vec4 SLOT_entry(float value, vec4 range, float row, uint flags)
 {
     float share = (value - range.x) * range.y;
@@ -199,7 +200,7 @@ vec4 SLOT_entry(float value, vec4 range, float row, uint flags)
 }
 
 #ifdef SLOT_CLASSES
-// Classes have colors to average, but no values in between.
+// The colors of classes may be averaged, but classes have no values in between.
 SLOT_Sample SLOT_classes(SLOT_Slot slot, uint flags, vec2 at, geofx_Filter how, vec4 range, float row)
 {
     float level = floor(how.level + 0.5);
@@ -229,8 +230,8 @@ struct SLOT_Mapping
     int record;
     uint flags;
     float opacity;
-    vec2 uv; // where its raster is looked up: 0 to 1 within it
-    vec2 across; // by how much that changes to the next pixel
+    vec2 uv; // raster coordinates at the fragment: 0 to 1 within the raster
+    vec2 across; // the change of these to the next pixel
     vec2 up;
     float pixels; // the width of a symbol
 };
@@ -255,7 +256,7 @@ SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
         float wanted = uintBitsToFloat(texelFetch(SLOT_data, record + 12).z);
         if ((result.flags & 0x200u) != 0u)
         {
-            // Not larger than the footprint, which the grid knows.
+            // Never larger than the footprint, which the grid knows.
             float scale = max(result.pixels / wanted, 1.0);
             projector.rowU *= scale;
             projector.rowV *= scale;
@@ -306,7 +307,7 @@ SLOT_Mapping SLOT_mappingAt(int record, SLOT_Fragment fragment)
     return result;
 }
 
-// Whether the fragment is within the mapping, and takes it.
+// Whether the fragment lies within the mapping, and takes it.
 bool SLOT_meets(SLOT_Mapping mapping)
 {
 #ifdef GEOFX_MAPPING_CHANNELS
@@ -400,7 +401,7 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 color, SLOT_Fragment fragment)
     {
         vec4 entry = SLOT_entry(grey, range, more.z, flags);
         if (entry.a < 0.0) return color;
-        // The table speaks of what is drawn, the layer of where.
+        // The table gives the color. The layer gives the share.
         source = vec4(entry.rgb, entry.a * (kind == 1u ? source.a : 1.0));
     }
 #endif
@@ -454,7 +455,7 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 color, SLOT_Fragment fragment)
         return vec4(mix(color.rgb, blended, strength), color.a);
     }
 #endif
-    // The usual: source over destination.
+    // The usual case: source over destination.
     return vec4(mix(color.rgb, source.rgb, strength * source.a), color.a);
 }
 
@@ -468,8 +469,9 @@ vec4 SLOT_color(vec4 color)
     uint i = 0u;
     do
     {
-        // On to the next one here before doing the work, so that it is done as often as fragments have mappings; but
-        // each in its turn, without a loop in the loop, in very long lists: some compilers count all turns.
+        // Goes on to the next mapping over the fragment before the work, so that the work is done as often as the
+        // fragment has mappings. In very long lists each mapping has a turn of one loop instead: some compilers count
+        // the turns of all loops.
         SLOT_Mapping mapping;
         bool met;
 #ifndef SLOT_IN_TURN

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// ProjectiveMappings in the vertex stage: where a vertex lies in the mappings' frame, before anything is deformed.
-// SLOT_ stands for the effect's prefix.
+// ProjectiveMappings in the vertex stage: the place of a vertex in the mappings' frame, before any deformation. SLOT_
+// stands for the effect's prefix.
 #include "lib/exaggeration.glsl"
 
 uniform mat4 SLOT_toFrame; // from eye space

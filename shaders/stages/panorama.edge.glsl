@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The sky of panorama maps, and the haze and the paper that their land ends in. The same wherever a point of the picture is
-// asked for, on the ground and behind it, so that no border shows between the two.
+// The sky of panorama maps, and the haze and the paper that their land ends in. Ground and sky get the same color for
+// the same point of the picture, so that no border shows between them.
 #include "lib/edge.glsl"
 
 const vec3 geofx_paper = vec3(0.985, 0.968, 0.930);
@@ -15,7 +15,8 @@ const float GEOFX_EDGE_UNKNOWN = 2.0;  // no such picture: haze behind the land
 const float GEOFX_EDGE_LAND = 3.0;     // a perspective picture of land: haze behind it
 const float GEOFX_EDGE_ISLAND = 4.0;   // of an island: the sea behind it
 
-// The sea runs out over less than half the land's width, and has gone where land has: what geofx_edgeAmount is to be asked for.
+// The sea runs out over less than half the land's width, and is gone where land is gone. This is the distance for
+// geofx_edgeAmount.
 float geofx_edgeSeaReach(float reach, float width)
 {
     return (reach - 0.16 * width) / 0.45 + 0.16 * width;
@@ -42,7 +43,7 @@ vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 
     rough *= 1.0 - sea;
     if (kind.w != GEOFX_EDGE_MAPPED) return vec2(geofx_edgeAmount(reach, width, noise, rough), 0.0);
     if (reach > 6.0 * width) return vec2(0.0);
-    // Which part of the way to the end is the way back to the picture's base.
+    // The part of the way to the end that leads back to the picture's base.
     float aside = max(0.35 * width, 1.0);
     vec2 ahead = (geofx_edgePlace(edge, place.xy + vec2(0.0, aside)) - at) / aside;
     float grows = textureLod(map, at + aside * ahead, 0.0).r - textureLod(map, at - aside * ahead, 0.0).r;
@@ -56,8 +57,8 @@ vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 
     return vec2(max(geofx_edgeAmount(seen, width, noise, rough), geofx_ease(cut, 0.8, 1.0)), cut);
 }
 
-// `place` is the horizon's height in the picture, its arch, the heading and the part across, in turns; x the picture's, -1 to 1; y 0 to
-// 1. How far above the horizon the point is.
+// How far above the horizon a point is. `place` is the horizon's height in the picture, its arch, the heading and the
+// part across, in turns. x is the picture's, -1 to 1; y is 0 to 1.
 float geofx_skyAbove(vec4 place, float x, float y)
 {
     return y - place.x + place.y * (1.0 - cos(1.5707963 * x));
@@ -69,7 +70,7 @@ vec3 geofx_skyColor(sampler2D sky, vec4 place, float x, float above)
     float across = place.z + 0.5 * place.w * x;
     float height = above / max(room, 0.02);
     vec3 color = texture(sky, vec2(across, clamp(height, 0.002, 0.998))).rgb;
-    // Higher than it is painted, the sky is even: the mean of its upper edge.
+    // Above its painted height the sky is even: the mean of its upper edge.
     if (height > 0.75)
     {
         vec3 even = textureLod(sky, vec2(0.5, 0.95), 6.0).rgb;
@@ -78,19 +79,19 @@ vec3 geofx_skyColor(sampler2D sky, vec4 place, float x, float above)
     return color;
 }
 
-// What a point of the picture shows where the land has gone.
+// The color of a point of the picture where the land is gone.
 vec3 geofx_edgeColor(sampler2D sky, vec4 place, float x, float y, float paper)
 {
     float above = geofx_skyAbove(place, x, y);
     vec3 color = geofx_skyColor(sky, place, x, max(above, 0.0));
     if (above >= 0.0) return color;
-    // Down from the horizon the sky's light runs into haze.
+    // Below the horizon the sky's light turns into haze.
     vec3 low = textureLod(sky, vec2(place.z + 0.5 * place.w * x, 0.02), 5.0).rgb;
     float depth = -above / max(place.x, 0.05);
     color = mix(color, low, smoothstep(0.0, 0.06, depth));
     color = mix(color, geofx_haze, 0.65 * smoothstep(0.02, 0.35, depth));
     color = mix(color, geofx_paper, paper * geofx_edgePaper(y));
-    // So even a wash would show the steps of its bytes.
+    // Such an even wash would show the steps of its bytes.
     float grain = fract(52.9829189 * fract(dot(vec2(x, y), vec2(53.7, 41.9) * 1.9)));
     return color + (grain - 0.5) * (2.0 / 255.0);
 }

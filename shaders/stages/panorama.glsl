@@ -27,7 +27,7 @@ geofx_Panorama SLOT_view()
                           SLOT_directionX.xyz, SLOT_directionY.xyz);
 }
 
-// The place that was asked for last: the painting and the projection mostly ask for the same.
+// The place of the last position. The painting and the projection mostly ask for the same one.
 vec3 SLOT_knownPosition = vec3(1e30);
 vec3 SLOT_knownPlace;
 

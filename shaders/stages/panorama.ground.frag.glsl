@@ -10,7 +10,7 @@
 uniform sampler2D SLOT_cover;
 uniform sampler2D SLOT_palette;
 uniform sampler2D SLOT_brush;
-uniform sampler2D SLOT_mirror; // the picture in still water; alpha: how far off it is, s over the end, 1 for the sky
+uniform sampler2D SLOT_mirror; // the picture in still water; alpha: the distance of what it shows, s over the end, 1 for the sky
 uniform vec4 SLOT_light;
 uniform vec4 SLOT_snow;   // its line in midsummer, how much lower in midwinter, its width, the season
 uniform vec4 SLOT_slopes; // of cliffs and hills; the tree line, the bottom's shade
@@ -22,7 +22,7 @@ uniform vec4 SLOT_window; // the viewport's corner, one over its size
 uniform vec4 SLOT_clock;  // seconds
 uniform vec4 SLOT_scale;
 uniform vec4 SLOT_curve;
-uniform sampler2D SLOT_edgeMap; // how far what is known reaches, metres
+uniform sampler2D SLOT_edgeMap; // the distance to the end of what is known, metres
 uniform sampler2D SLOT_edgeSky;
 uniform vec4 SLOT_edgeEye;      // as in lib/edge.glsl
 uniform vec4 SLOT_edgeWays;
@@ -56,26 +56,26 @@ vec3 SLOT_wet(float shore, vec2 picture, float far)
 #ifdef GEOFX_MIRROR
     return geofx_waterBody(max(shore, 0.0), SLOT_water.x);
 #else
-    // The mirror stands at height 0; a lake's is as much higher as twice the lake is.
+    // The mirror is at height 0. The reflection in a lake lies higher by twice the lake's height.
     geofx_WaterPlace place = geofx_WaterPlace(max(shore, 0.0), picture, SLOT_texels.zw, SLOT_scale.z * SLOT_place.z,
                                               SLOT_place.y / SLOT_curve.z, far);
     return geofx_water(place, SLOT_water, SLOT_clock.x, SLOT_brush, SLOT_mirror);
 #endif
 }
 
-// How much of the ground is haze or paper, and whether it has gone.
+// The share of haze or paper on the ground, and whether the ground is gone.
 vec2 SLOT_gone(float noise, float y, float wet, float shore)
 {
     if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return vec2(0.0);
     geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind);
     vec3 place = vec3(SLOT_place.x / SLOT_scale.x, SLOT_place.yz);
-    // A lake runs out as the land around it, and so does the shore.
+    // A lake runs out as the land around it does, and so does the shore.
     float sea = wet * (1.0 - geofx_ease(SLOT_place.z, 10.0, 30.0)) * geofx_ease(shore, 0.0, 0.2 * SLOT_edgeKind.z);
     return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, place, SLOT_scale, SLOT_curve, sea, noise,
                           mix(0.3, 0.2, geofx_edgePaper(y)));
 }
 
-// As SLOT_face() has it.
+// As in SLOT_face().
 vec4 SLOT_facingHere()
 {
 #ifdef GEOFX_NORMAL_MAP
@@ -126,11 +126,11 @@ vec4 SLOT_color(vec4 color)
     painted = geofx_atmosphere(painted, geofx_airColor(), geofx_airAmount(far, SLOT_hand.z));
     vec2 gone = SLOT_gone(brush.z, picture.y, wet, cover.shore);
 #ifdef GEOFX_MIRROR
-    // What is below the water is not reflected, nor is water, nor what has gone.
+    // Water does not reflect ground below the water, other water, or ground that is gone.
     if (SLOT_place.z <= 0.0 || wet > 0.5 || max(gone.x, gone.y) > 0.5) discard;
     return vec4(painted, clamp(SLOT_place.y / SLOT_curve.z, 0.0, 0.98));
 #else
-    // What lies behind it shows, and the border leaves no trace.
+    // What lies behind the ground shows, and the border leaves no trace.
     if (gone.y >= 1.0) discard;
     if (gone.x > 0.0)
     {

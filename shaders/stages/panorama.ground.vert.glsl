@@ -3,12 +3,13 @@
 //
 // What the painting of a panorama map's ground needs of each vertex. SLOT_ stands for the effect's prefix.
 #pragma import_defines(GEOFX_NORMAL_MAP)
-uniform vec4 SLOT_light;  // towards the light, in eye space; by how much slopes are lit as steeper than they are
+uniform vec4 SLOT_light;  // towards the light, in eye space; the factor by which slopes are lit as steeper
 uniform vec4 SLOT_brushX; // from eye space to the brush's picture
 uniform vec4 SLOT_brushY;
 
 out vec3 SLOT_place;  // of the map: x of the picture, s and height in metres
-// The normal to light with, and the rise over run of the ground; the vertical where fragments have normals of their own.
+// The normal to light with, and the rise over run of the ground. If fragments have normals of their own, it is the
+// vertical.
 out vec4 SLOT_facing;
 out vec4 SLOT_texels; // in the cover's texture and in the brush's
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Behind a panorama map's terrain: above the horizon the sky as it is painted, below it, where there is no terrain, the sea, or haze
-// and paper where that is not known.
-// In the water the sky hangs from the horizon.
+// What shows behind a panorama map's terrain. Above the horizon it is the painted sky. Below it, without terrain, it
+// is the sea, or haze and paper if that is not known. In the water the sky hangs from the horizon.
 #pragma import_defines(GEOFX_MIRROR)
 #include "stages/panorama.water.glsl"
 #include "stages/panorama.edge.glsl"
@@ -18,14 +17,14 @@ uniform vec4 geofx_skyAxisX; // from x and s to the brush's picture: of a pictur
 uniform vec4 geofx_skyAxisY;
 uniform vec4 geofx_skyWater; // as in panorama.ground.frag.glsl
 uniform vec4 geofx_skyClock; // seconds, the air's strength, whether there is a reflection
-uniform sampler2D geofx_skyEdge; // how far what is known reaches: on the ground, and where there is none
+uniform sampler2D geofx_skyEdge; // the distances to the end of what is known: on the ground, and where there is none
 uniform vec4 geofx_skyEdgeEye;   // as in lib/edge.glsl
 uniform vec4 geofx_skyEdgeWays;
 uniform vec4 geofx_skyEdgeKind;  // whether on a globe, the middle's latitude, the width, how it is drawn
 
 in vec2 place; // -1 to 1
 
-// How far away the ground is that a height of the picture above its base shows: the curve's inverse.
+// The distance of the ground at a height of the picture above its base: the curve's inverse.
 float distanceAt(float rise)
 {
     float width = max(geofx_skyCurve.z - geofx_skyCurve.y, 1e-3);
@@ -33,7 +32,7 @@ float distanceAt(float rise)
     return min(rise, geofx_skyCurve.y) + width * (1.0 - sqrt(1.0 - 2.0 * bent));
 }
 
-// What lies below a point of the picture where there is no terrain: distance away, and the place in the brush's picture.
+// The distance of what lies below a point of the picture without terrain, and its place in the brush's picture.
 float groundAt(float horizonDrop, out vec2 brush)
 {
     float s = distanceAt((place.y + 1.0 + 2.0 * horizonDrop) / geofx_skyCurve.x);
@@ -55,7 +54,7 @@ vec3 sea(float s, vec2 brush)
     return geofx_atmosphere(color, geofx_airColor(), geofx_airAmount(far, geofx_skyClock.y));
 }
 
-// How much of what lies below is not known to be sea.
+// The share of what lies below that is not known to be sea.
 float unknown(float s)
 {
     float kind = geofx_skyEdgeKind.w;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Strokes have their color from their own stage. SLOT_ stands for the effect's prefix.
+// Strokes have their color from their own stage, so this stage does nothing. SLOT_ stands for the effect's prefix.
 vec4 SLOT_finish(vec4 color)
 {
     return color;

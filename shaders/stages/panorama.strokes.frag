@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Brush strokes of PanoramaMap: the mask of the brush and its two tones. Colors are premultiplied; depth is written, so strokes
-// need no order. What is less than half covered is left out there: a nearer stroke's soft edge would keep a farther one
-// from being drawn below it. With multisampling, GL_SAMPLE_ALPHA_TO_COVERAGE may take the place of blending.
+// Brush strokes of PanoramaMap: the mask of the brush and its two tones. Colors are premultiplied. Depth is written,
+// so strokes need no order. Fragments that are less than half covered are left out: the soft edge of a near stroke
+// would hide a far one behind it. With multisampling, GL_SAMPLE_ALPHA_TO_COVERAGE may take the place of blending.
 #include "lib/strokes.glsl"
 
 uniform vec4 SLOT_light; // xyz: unit vector to the light in eye space
@@ -35,7 +35,7 @@ void main()
     }
     else
     {
-        // The light's direction as the stroke sees it.
+        // The light's direction in the frame of the stroke.
         vec2 light = SLOT_light.xy / max(length(SLOT_light.xy), 0.25);
         light = vec2(dot(light, vec2(SLOT_stamp.w, -SLOT_stamp.z)), dot(light, SLOT_stamp.zw));
         color = mix(SLOT_darkTone, SLOT_lightTone, geofx_strokeLit(SLOT_point, light, seed));

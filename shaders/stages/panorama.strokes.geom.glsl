@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Brush strokes of PanoramaMap in the geometry stage: a rectangle on the screen for each point. Trees and houses stand on it, cliffs,
-// roads and rivers have it in their middle. EffectProgram puts the other effects' variables in the place of GEOFX_VARYINGS.
+// Brush strokes of PanoramaMap in the geometry stage: a rectangle on the screen for each point. Trees and houses
+// stand on the point. Cliffs, roads and rivers have it in their middle. EffectProgram replaces GEOFX_VARYINGS and
+// GEOFX_COPY by the varyings of the other effects.
 layout(points) in;
 layout(triangle_strip, max_vertices = 4) out;
 
@@ -22,10 +23,10 @@ uniform vec4 SLOT_viewport; // width and height in pixels, and one over each
 
 void main()
 {
-    const int i = 0; // the one point, as GEOFX_COPY calls it
+    const int i = 0; // the number of the one point, for GEOFX_COPY
     vec4 brush = SLOT_stamp_in[i];
     vec4 foot = gl_in[i].gl_Position;
-    // What is smaller than that would not be seen; what is behind the eye must not be.
+    // A smaller stroke would not be seen, and one behind the eye must not be.
     if (brush.y < 0.2 || foot.w <= 0.0) return;
     // Room for the edge's softness.
     vec2 room = vec2(1.0) + 1.0 / max(brush.xy, vec2(0.5));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// What a panorama map's strokes ask of the ground that they stand on, in the vertex stage. SLOT_ stands for the effect's prefix.
+// What a panorama map's strokes need of the ground that they stand on, in the vertex stage. SLOT_ stands for the
+// effect's prefix.
 #include "lib/painting.glsl"
 #include "stages/panorama.edge.glsl"
 
@@ -43,7 +44,7 @@ float SLOT_strokeFar(vec3 position)
     return clamp(SLOT_placeOf(position).y / view.horizon, 0.0, 1.0);
 }
 
-// How much of the ground below has gone where the terrain ends.
+// How far the ground below is gone at the end of the terrain.
 float SLOT_strokeGone(vec3 position)
 {
     if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return 0.0;
@@ -53,7 +54,7 @@ float SLOT_strokeGone(vec3 position)
 
 float SLOT_strokeShown(vec3 position)
 {
-    // They grow sparse and small before the ground has gone.
+    // Strokes get sparse and small before the ground is gone.
     float left = 1.0 - geofx_ease(SLOT_strokeGone(position), 0.1, 0.8);
     if (SLOT_strokeView.x > 0.0) return left;
     geofx_Panorama view = SLOT_view();

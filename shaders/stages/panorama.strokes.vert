@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Brush strokes of PanoramaMap, one point each (osgGeoFX/panorama/detail/TileStrokes.h tells the arrays): where a stroke goes and what
-// it looks like, all of it flat. SLOT_ stands for the effect's prefix.
+// Brush strokes of PanoramaMap, one point each (osgGeoFX/panorama/detail/TileStrokes.h lists the arrays): the place
+// of a stroke and its look, which is the same for all of it. SLOT_ stands for the effect's prefix.
 #include "lib/strokes.glsl"
 #include "stages/view.glsl"
 
@@ -15,7 +15,7 @@ float SLOT_strokeLight(vec3 eyePosition, vec3 eyeNormal, float y);
 vec3 SLOT_strokeAir(vec3 color, vec3 eyePosition);
 // 0 at the picture's base, 1 at the horizon.
 float SLOT_strokeFar(vec3 eyePosition);
-// What is left of it behind the horizon.
+// The share of a stroke that is left behind the horizon.
 float SLOT_strokeShown(vec3 eyePosition);
 
 uniform vec4 SLOT_viewport;    // width and height in pixels, and one over each
@@ -35,7 +35,7 @@ vec3 SLOT_tone(int row, float light)
     return textureLod(SLOT_palette, vec2(column, (float(row) + 0.5) / 8.0), 0.0).rgb;
 }
 
-// Where a place in eye space goes on the screen, in pixels.
+// The place on the screen of a place in eye space, in pixels.
 vec2 SLOT_pixel(vec4 clip)
 {
     return 0.5 * SLOT_viewport.xy * clip.xy / max(clip.w, 1e-6);
@@ -76,12 +76,12 @@ void main()
     }
     if (kind == GEOFX_STROKE_CLIFF && size > 0.0)
     {
-        // The fall line on the screen, upwards: the way of a place a little down the slope.
+        // The fall line on the screen, upwards: it ends at a place a little down the slope.
         vec3 downhill = normalize(gl_NormalMatrix * gl_MultiTexCoord1.xyz);
         vec4 below = vec4(eye.xyz + downhill * (0.5 * SLOT_stroke.y / max(groundScale, 1e-9)), 1.0);
         vec2 way = SLOT_pixel(gl_ProjectionMatrix * geofx_vertex(eye)) - SLOT_pixel(gl_ProjectionMatrix * geofx_vertex(below));
         axis = length(way) > 0.05 ? normalize(way) : axis;
-        // What falls away from the viewer is seen from its end.
+        // A slope that falls away from the viewer is seen from its end.
         shape.size.y *= clamp(length(way) / (0.35 * SLOT_stroke.y), 0.35, 1.0);
     }
     float c = cos(shape.lean);
@@ -90,7 +90,8 @@ void main()
     SLOT_stamp_in = vec4(extent, axis.x * c + axis.y * s, axis.y * c - axis.x * s);
     SLOT_traits_in = vec2(float(kind), seed);
 
-    // Ground that rises behind a stroke must not cut it off: it gets the depth of a place nearer by about its height.
+    // Ground that rises behind a stroke must not cut it off. So the stroke gets the depth of a place that is nearer
+    // by about its height.
     vec4 moved = geofx_vertex(eye);
     vec4 nearer = moved;
     float height = 1.4 * SLOT_stamp_in.y + (isLine ? 2.0 * SLOT_stroke.x : 0.0); // trees must not hide lines
@@ -104,7 +105,7 @@ void main()
                   shape.tone * (1.0 - 0.6 * SLOT_strokeFar(ground));
     if (kind == GEOFX_STROKE_HOUSE)
     {
-        // Walls in the town's color, roofs of tiles or slate.
+        // Walls have the town's color, and roofs that of tiles or slate.
         SLOT_lightTone_in = mix(SLOT_tone(6, light), vec3(1.0), 0.25);
         vec3 roof = geofx_strokeRandom(seed, 5.0) < 0.7 ? vec3(0.80, 0.42, 0.30) : vec3(0.58, 0.56, 0.60);
         SLOT_darkTone_in = roof * (0.75 + 0.3 * light);
