@@ -16,7 +16,9 @@ out vec3 SLOT_normal_control[];
 GEOFX_VARYINGS
 
 uniform ivec4 SLOT_targets; // up to three items, and how many they are
-uniform vec4 SLOT_fineness; // most parts of an edge; texels of a mask in one part; pixels in one part; pixels of a metre at a metre's distance, or, if less than 0, at any distance
+// Most parts of an edge; texels of a mask in one part; pixels in one part; pixels of a metre at a metre's distance, or,
+// if less than 0, at any distance.
+uniform vec4 SLOT_fineness;
 
 float SLOT_parts(vec3 a, vec3 b)
 {

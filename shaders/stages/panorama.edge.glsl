@@ -27,12 +27,13 @@ geofx_Edge geofx_edgeOf(vec4 eye, vec4 ways, vec4 kind)
     return geofx_Edge(kind.x, eye.xy, ways.xy, ways.zw, eye.zw, kind.y);
 }
 
-// How much of a place of the ground is haze or paper, and how much of that has gone wholly, 1 where what lies behind it shows. `place` is x,
-// s and height; `scale` and `curve` as the projection has them.
+// The share of haze or paper on a place of the ground, and the share of that which is gone wholly: at 1, what lies
+// behind it shows. `place` is x, s and height. `scale` and `curve` are the projection's.
 //
-// Land that comes in from the picture's base does so as one wash, over ridges and over valleys behind them: the ground is as far from the
-// end as land at the border's own height that is seen at the same point of the picture. Ridges would else be white before valleys.
-// `sea`, 0 to 1: whether it is sea, which hides nothing and stays itself nearly to the end.
+// Land that comes in from the picture's base does so as one wash, over ridges and over the valleys behind them. There
+// the distance to the end is that of land at the border's own height at the same point of the picture. Otherwise
+// ridges would be white before valleys. `sea`, 0 to 1: whether it is sea, which hides nothing and stays itself nearly
+// to the end.
 vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 scale, vec4 curve, float sea, float noise,
                     float rough)
 {

@@ -38,7 +38,7 @@ public:
 
     int pageSide() const { return _pageSide; }
 
-    /// The changes of one commit.
+    /// A layer that is put into a slot, or taken out of it.
     struct Layer
     {
         LayerAtlas::Slot slot;
