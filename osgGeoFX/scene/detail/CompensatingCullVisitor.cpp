@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/DrawableCompanion.h>
 #include <osgGeoFX/scene/RigidReference.h>
+#include <osgGeoFX/scene/detail/CullVisitorAccess.h>
 
 #include <osg/OcclusionQueryNode>
 #include <osg/Projection>
@@ -17,23 +18,6 @@ namespace osgGeoFX
 
 namespace
 {
-
-/// Members of OSG's cull visitor that have no accessors; a pointer to member may be formed in a derived class.
-struct Access : public osgUtil::CullVisitor
-{
-    static unsigned int& order(osgUtil::CullVisitor& visitor)
-    {
-        return visitor.*(&Access::_traversalOrderNumber);
-    }
-    static unsigned int& overrides(osgUtil::CullVisitor& visitor)
-    {
-        return visitor.*(&Access::_numberOfEncloseOverrideRenderBinDetails);
-    }
-    static std::vector<osgUtil::RenderBin*>& bins(osgUtil::CullVisitor& visitor)
-    {
-        return visitor.*(&Access::_renderBinStack);
-    }
-};
 
 /// Whether a transform's children ask for nothing but its matrix: geometry, and no callbacks.
 bool holdsGeometryOnly(const osg::Transform& node)
@@ -65,10 +49,10 @@ bool CompensatingCullVisitor::startsFrame(osgUtil::CullVisitor& outer)
 {
     // The outer visitor's leaves of the last frame have been drawn when it begins a new one; so have ours.
     const unsigned int frame = outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
-    const bool starts = frame != _frame || Access::order(outer) < _order;
+    const bool starts = frame != _frame || CullVisitorAccess::order(outer) < _order;
     if (starts) startFrame(outer);
     // Also where nothing is drawn until it is asked again.
-    _order = Access::order(outer);
+    _order = CullVisitorAccess::order(outer);
     return starts;
 }
 
@@ -84,6 +68,7 @@ void CompensatingCullVisitor::startFrame(osgUtil::CullVisitor& outer)
 void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& task)
 {
     _task = task;
+    setHost(outer);
     _looks.begin(task.program, task.following, task.mapUnit);
 
     setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
@@ -103,15 +88,15 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _currentStateGraph = outer.getCurrentStateGraph();
     _rootRenderStage = outer.getRenderStage();
     _currentRenderBin = outer.getCurrentRenderBin();
-    _renderBinStack = Access::bins(outer);
+    _renderBinStack = CullVisitorAccess::bins(outer);
     if (task.stage)
     {
         _rootRenderStage = task.stage;
         _currentRenderBin = task.stage;
         _renderBinStack.clear();
     }
-    _traversalOrderNumber = Access::order(outer);
-    _numberOfEncloseOverrideRenderBinDetails = Access::overrides(outer);
+    _traversalOrderNumber = CullVisitorAccess::order(outer);
+    _numberOfEncloseOverrideRenderBinDetails = CullVisitorAccess::overrides(outer);
     _entry = _currentStateGraph;
 
     _outerCullingMode = outer.getCullingMode();
@@ -177,7 +162,7 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
 {
     adoptLeaves();
     _order = _traversalOrderNumber;
-    Access::order(outer) = _traversalOrderNumber;
+    CullVisitorAccess::order(outer) = _traversalOrderNumber;
     if (!_task.compensate)
     {
         // Found by the base class, as OSG finds it.
@@ -287,19 +272,22 @@ bool CompensatingCullVisitor::partsInSight(const osg::Node& node, const Ball& un
 void CompensatingCullVisitor::apply(osg::Node& node)
 {
     const Scope scope(*this, node);
-    if (!scope.skip()) CullVisitor::apply(node);
+    // A pass needs nothing of nodes that hold no geometry.
+    if (!scope.skip() && !(_task.findsNearAndFar && drawByHost(node))) CullVisitor::apply(node);
 }
 
 void CompensatingCullVisitor::apply(osg::Geode& node)
 {
     const Scope scope(*this, node);
-    if (!scope.skip()) CullVisitor::apply(node);
+    if (!scope.skip() && !drawByHost(node)) CullVisitor::apply(node);
 }
 
 void CompensatingCullVisitor::apply(osg::Group& node)
 {
     const Scope scope(*this, node);
-    if (!scope.skip()) CullVisitor::apply(node);
+    if (scope.skip()) return;
+    tellHost(node);
+    CullVisitor::apply(node);
 }
 
 void CompensatingCullVisitor::meet(const osg::StateSet* state)
@@ -433,7 +421,7 @@ void CompensatingCullVisitor::passUntouched(NodeType& node)
     setComputeNearFarMode(_outerNearFar);
     const value_type formerNear = _computed_znear;
     const value_type formerFar = _computed_zfar;
-    CullVisitor::apply(node);
+    passToHost(node);
     _computed_znear = formerNear;
     _computed_zfar = formerFar;
     setCullSettings(formerSettings);
@@ -460,6 +448,7 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         CullVisitor::apply(drawable);
         return;
     }
+    if (drawByHost(drawable)) return;
     const Mode former = _mode;
     meet(drawable.getStateSet());
     if (_mode.stranger) noteStranger();

@@ -228,6 +228,22 @@ private:
     template<typename NodeType>
     void passUntouched(NodeType& node);
     void drawCompanions(osg::Drawable& drawable, double depth);
+    /// Finds out whether the outer visitor does more than OSG's.
+    void setHost(osgUtil::CullVisitor& outer);
+    /// Lets the host apply a node with this visitor's matrices, state graph and bins. `traverses`: also to what is below
+    /// it. `culls`: with the host's own culling, and its near and far.
+    template<typename NodeType>
+    void lend(NodeType& node, bool traverses, bool culls);
+    /// Lets the host draw a node of its own; what it adds is culled and gets the effects' state afterwards. False if
+    /// there is no host, or it cannot know the node.
+    template<typename NodeType>
+    bool drawByHost(NodeType& node);
+    /// Lets the host do for a node of its own what it does beside the traversal, such as collecting lights.
+    template<typename NodeType>
+    void tellHost(NodeType& node);
+    /// Culls what is not deformed.
+    template<typename NodeType>
+    void passToHost(NodeType& node);
 
     Visibility _sight;
     DrawableSight _drawables = DrawableSight(_sight);
@@ -241,9 +257,11 @@ private:
     OwnPrograms _programs;
     UndeformedParts _undeformedParts;
     std::vector<Stranger> _strangers;
-    osgUtil::StateGraph* _top = nullptr;                ///< below which all is ours
-    std::vector<const osgUtil::StateGraph*> _ownGraphs; ///< that got their first leaf here
-    std::size_t _graphsBefore = 0;                      ///< with leaves, when the run began
+    osgUtil::CullVisitor* _host = nullptr; ///< the outer visitor, if it is of a class of its own
+    osg::ref_ptr<osg::StateSet> _ofHost = new osg::StateSet; ///< above what the host adds to the render graph
+    osgUtil::StateGraph* _top = nullptr;                     ///< below which all is ours
+    std::vector<const osgUtil::StateGraph*> _ownGraphs;      ///< that got their first leaf here
+    std::size_t _graphsBefore = 0;                           ///< with leaves, when the run began
     osg::ref_ptr<osg::StateSet> _lightPoints; ///< the modes that osgSim's light points set themselves
     osgUtil::StateGraph* _entry = nullptr;    ///< the outer visitor's, where our state begins
     unsigned int _frame = 0;

@@ -171,11 +171,15 @@ void CompensatingCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph
                                     osgUtil::RenderLeaf& leaf, const osg::BoundingBox& bounds, osg::StateSet*,
                                     osg::StateSet* above)
 {
-    if (_task.compensate && bounds.valid() && _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR)
+    if (_task.compensate && bounds.valid())
     {
         const EyeBox box =
             EyeBox::of(bounds, inView(leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd()));
-        _drawables.depths().add(box, _mode.chain->bound(box.ball()), *_mode.chain);
+        // Whoever has put it there did not know where it goes.
+        const bool culled = leaf._drawable->isCullingActive() && _outerCullingMode != NO_CULLING;
+        if (culled && _sight.outOfSight(*_mode.chain, box, _sight.all())) return;
+        if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR)
+            _drawables.depths().add(box, _mode.chain->bound(box.ball()), *_mode.chain);
     }
     put(bin, graph, above ? *graph.find_or_insert(above) : graph, &leaf);
 }
