@@ -7,6 +7,7 @@
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/scene/CameraEffects.h>
+#include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 #include <osgGeoFX/scene/detail/CameraPasses.h>
 #include <osgGeoFX/scene/detail/CameraRoles.h>
 #include <osgGeoFX/scene/detail/CameraState.h>
@@ -101,13 +102,17 @@ struct EffectScene::Drawing
         osg::observer_ptr<const osg::StateAttribute>& known = strangers[own.get()];
         if (known.valid()) return;
         known = own.get();
-        OSG_WARN
-            << "osgGeoFX: " << OwnPrograms::describe(*own, stranger.path)
-            << " does not call geofx_vertex(), so what it draws stays where it is, without the scene's "
-               "effects. Let its vertex shader call the function (EffectScene::addFunctions), or put what "
-               "it draws below an osgGeoFX::RigidReference, or leave it out with "
-               "setDefine(\"GEOFX_DEFORMATION\", OFF) in its state set."
-            << std::endl;
+        const auto* program = dynamic_cast<const osg::Program*>(own.get());
+        const auto adaptation = program ? AdaptedPrograms::instance().of(*program) : nullptr;
+        const std::string why =
+            adaptation ? " cannot be adapted, since " + adaptation->refusal() : " does not call geofx_vertex()";
+        OSG_WARN << "osgGeoFX: " << OwnPrograms::describe(*own, stranger.path) << why
+                 << ", so what it draws stays where it is, without the scene's effects. "
+                 << (program && !adaptation ? "Let the kit adapt it (EffectScene::adapt), or let" : "Let")
+                 << " its vertex shader call geofx_vertex() (EffectScene::addFunctions), or put what it draws below an "
+                    "osgGeoFX::RigidReference, or leave it out with setDefine(\"GEOFX_DEFORMATION\", OFF) in its "
+                    "state set."
+                 << std::endl;
     }
 
     std::mutex mutex;
@@ -170,12 +175,17 @@ void EffectScene::addFunctions(osg::Program& program)
 {
     try
     {
-        EffectProgram::addFunctions(program, _effects);
+        EffectProgram::addFunctions(program, EffectProgram::Effects());
     }
     catch (const ShaderError& error)
     {
         OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
     }
+}
+
+void EffectScene::adapt(osg::Program& program)
+{
+    AdaptedPrograms::instance().add(program);
 }
 
 Ground EffectScene::ground(const osg::NodePath& above) const
@@ -333,6 +343,9 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         _drawing->sayOnce(own.visitor->complaint());
         for (const auto& stranger : own.visitor->strangers())
             _drawing->warnOf(stranger);
+        const std::vector<std::string> colors = _drawing->programs.following().takeComplaints(surfaces);
+        for (const std::string& sentence : colors)
+            _drawing->sayOnce(sentence);
     }
     else
     {

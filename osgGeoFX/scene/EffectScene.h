@@ -36,8 +36,9 @@ class TileGuard;
     - Geometry without a shader keeps its look: materials, lights, up to four 2D textures with their environments,
       fog.
     - Geometry with shaders of its own is deformed if these call geofx_vertex() and geofx_fragment()
-      (shaders/stages/functions.*), after addFunctions(). Otherwise it is drawn and culled where it is, and a warning
-      reports each such program once. It may also stand below a RigidReference, which needs no shaders.
+      (shaders/stages/functions.*), after addFunctions(), or after adapt(), without any change of these shaders.
+      Otherwise it is drawn and culled where it is, and a warning reports each such program once. It may also stand
+      below a RigidReference, which needs no shaders.
     - `stateSet->setDefine("GEOFX_DEFORMATION", OFF)` leaves a subgraph undeformed.
     - A change of programs or defines below a node that is out of sight takes effect after some frames. It takes
       effect at once if the node has `setCullingActive(false)`.
@@ -111,10 +112,38 @@ public:
     void setTerrainFrame(TerrainFrame frame) { _terrainFrame = frame; }
     TerrainFrame getTerrainFrame() const { return _terrainFrame; }
 
-    /// Adds the functions geofx_vertex, geofx_normal and geofx_fragment to a program. An EffectScene does not draw with
-    /// this program, but with a copy that has the functions of its own effects. The program itself never changes after
-    /// this call.
-    void addFunctions(osg::Program& program);
+    /** Adds the functions geofx_vertex, geofx_normal and geofx_fragment to a program, as functions that do nothing. An
+        EffectScene does not draw with this program, but with a copy that has the functions of its own effects. So
+        any number of scenes may draw it, each with its own effects. The program itself never changes after this
+        call, and draws the same outside of scenes.
+
+        Add the program's own shaders first. If it has a tessellation evaluation or a geometry shader, these stages get
+        geofx_vertex and geofx_normal, too, and geofx_texture, for what the vertex stage knows by its attributes (the
+        texture coordinates of unit 0). Call geofx_vertex once for each vertex, in the last stage that places vertices.
+        That is the geometry stage, if there is one, before each EmitVertex(). shaders/stages/functions.vert is the
+        reference. Call this function before the program is drawn. */
+    static void addFunctions(osg::Program& program);
+
+    /** Lets scenes deform a program that knows nothing of effects. Scenes draw a copy of the program whose `main` is
+        called by one of the kit's. This one takes the eye position from gl_Position as the program wrote it, deforms
+        it, and then gives the fragment's color to the effects that color. So a shader may displace its vertices, and
+        needs no change. The program itself does not change at all. For light, fog and its own variables it goes on to
+        see the undeformed place.
+
+        What can be adapted: GLSL 1.10 to 4.60 in a compatibility context; one or several shaders for each stage;
+        displaced vertices; a depth with an offset, or the logarithmic one, `z = (log2(max(1e-6, 1 + w)) * F - 1) * w`,
+        in the vertex stage or as gl_FragDepth from a variable; clip vertices and distances; a tessellation evaluation
+        stage; a geometry stage of GLSL 1.50 or later. The eye position has w = 1, unless gl_Position is that of
+        gl_Vertex. The color is gl_FragColor, gl_FragData[0], or the `out vec4` at location 0.
+
+        A scene draws a program that cannot be adapted where it is, and culls it undeformed; a warning names the
+        reason and the remedy once. If only its colors cannot be adapted, its vertices are deformed all the same.
+
+        Calling it twice, or for a program that calls geofx_vertex() itself, does no harm. Scenes may share the program.
+        A copy of the program is not adapted, and files do not keep this. ProgramAdapter calls it for a subgraph or
+        for the tiles of a pager. Threads: may be called from any thread, at any time, even while the program is drawn;
+        the next frame that is culled shows it. */
+    static void adapt(osg::Program& program);
 
     /// The deformation of a camera. `modelView`: from the children's frame to eye space. `above`: the nodes above the
     /// group. Never null; empty if nothing is deformed.

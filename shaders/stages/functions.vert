@@ -7,12 +7,26 @@
 //     vec4 geofx_vertex(vec4 eyePosition);                    // where it goes, in eye space; sets what fragments need
 //     vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);    // the normal to light with
 //
+// The tessellation evaluation and the geometry stage have them, too, and one more, since attributes do not reach them:
+//
+//     void geofx_texture(vec4 coordinates);    // the vertex' gl_MultiTexCoord0, before geofx_vertex(); vec4(0.0) if not called
+//
+// Call them in one stage: the last one that places vertices.
+//
 // EffectScene puts the code of its effects in the place of the words in capitals.
 #pragma import_defines(GEOFX_DEFORMATION)
 #pragma import_defines(GEOFX_PLACED)
 #pragma import_defines(GEOFX_NORMAL_MAP)
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
+#ifdef GEOFX_LATER_STAGE
+#undef GEOFX_NORMAL_MAP
+vec4 geofx_textureCoordinates = vec4(0.0);
+void geofx_texture(vec4 coordinates)
+{
+    geofx_textureCoordinates = coordinates;
+}
+#endif
 out float geofx_styleBlend;
 #ifdef GEOFX_NORMAL_MAP
 out vec2 geofx_normalPlace;  // in the texture of normals

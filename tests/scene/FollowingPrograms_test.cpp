@@ -41,6 +41,7 @@ osg::ref_ptr<TintedProgram> makeProgram()
     osg::ref_ptr<TintedProgram> program = new TintedProgram;
     program->tint = 7;
     program->addShader(new osg::Shader(osg::Shader::VERTEX, "#pragma import_defines(OWN)\nvoid main() {}\n"));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, "void main() {}\n"));
     EffectProgram::addFunctions(*program, {});
     program->setName("the grass");
     program->setParameter(GL_GEOMETRY_VERTICES_OUT_EXT, 5);
@@ -75,10 +76,11 @@ TEST(FollowingPrograms, CopiesHaveAllThatTheProgramHas)
     EXPECT_EQ(copy->getTransformFeedBackVarying(0), "tip");
     for (const char* define : {"OWN", "BY_HAND", "GEOFX_EFFECT_0", "GEOFX_DEFORMATION"})
         EXPECT_EQ(copy->getShaderDefines().count(define), 1u) << define;
-    // Its own shader, and the effects' functions in the place of those that it was given.
-    ASSERT_EQ(copy->getNumShaders(), 3u);
+    // Its own shaders, and the effects' functions in the place of those that it was given.
+    ASSERT_EQ(copy->getNumShaders(), 4u);
     EXPECT_EQ(copy->getShader(0), program->getShader(0));
-    for (const unsigned int i : {1u, 2u})
+    EXPECT_EQ(copy->getShader(1), program->getShader(1));
+    for (const unsigned int i : {2u, 3u})
     {
         EXPECT_NE(copy->getShader(i), program->getShader(i));
         EXPECT_EQ(copy->getShader(i)->getType(), program->getShader(i)->getType());

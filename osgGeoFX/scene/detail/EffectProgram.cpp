@@ -9,6 +9,9 @@
 
 #include <osg/Notify>
 
+#include <algorithm>
+#include <iterator>
+
 namespace osgGeoFX
 {
 
@@ -52,7 +55,31 @@ struct Parts
 
 std::string fileOf(osg::Shader::Type stage)
 {
-    return stage == osg::Shader::VERTEX ? "stages/functions.vert" : "stages/functions.frag";
+    return stage == osg::Shader::FRAGMENT ? "stages/functions.frag" : "stages/functions.vert";
+}
+
+/// Those that have functions.
+constexpr osg::Shader::Type functionStages[] = {osg::Shader::VERTEX, osg::Shader::TESSEVALUATION,
+                                                osg::Shader::GEOMETRY, osg::Shader::FRAGMENT};
+
+bool hasStage(const osg::Program& program, osg::Shader::Type stage)
+{
+    for (unsigned int i = 0; i < program.getNumShaders(); ++i)
+    {
+        const osg::Shader& shader = *program.getShader(i);
+        if (shader.getType() == stage && !EffectProgram::isFunctions(shader)) return true;
+    }
+    return false;
+}
+
+/// The vertex stage's functions in a later stage, which has no attributes.
+std::string inLaterStage(std::string text, osg::Shader::Type stage)
+{
+    const std::string version = "#version 330 compatibility\n";
+    const std::string later =
+        stage == osg::Shader::TESSEVALUATION ? "#version 400 compatibility\n" : version;
+    text.replace(0, version.size(), later + "#define GEOFX_LATER_STAGE\n");
+    return replaced(text, "gl_MultiTexCoord0", "geofx_textureCoordinates");
 }
 
 std::string conditional(const std::string& condition, const std::string& text)
@@ -273,9 +300,9 @@ const std::vector<std::string>& relayFiles(const PassShaders& pass, osg::Shader:
     return stage == osg::Shader::TESSCONTROL ? pass.tessellationControl : pass.tessellationEvaluation;
 }
 
-osg::ref_ptr<osg::Shader> functionShader(const EffectProgram::Effects& effects, osg::Shader::Type stage)
+osg::ref_ptr<osg::Shader> functionShader(osg::Shader::Type stage, const std::string& text)
 {
-    osg::ref_ptr<osg::Shader> shader = new osg::Shader(stage, EffectProgram::functions(effects, stage));
+    osg::ref_ptr<osg::Shader> shader = new osg::Shader(stage, text);
     shader->setName(fileOf(stage));
     return shader;
 }
@@ -319,8 +346,10 @@ std::string EffectProgram::functions(const Effects& effects, osg::Shader::Type s
 {
     const ShaderLibrary library;
     const std::string file = fileOf(stage);
-    const Parts parts = partsOf(effects, library, stage == osg::Shader::VERTEX);
-    return library.assemble(parts.fill(library.read(file)), file);
+    const Parts parts = partsOf(effects, library, stage != osg::Shader::FRAGMENT);
+    std::string text = library.assemble(parts.fill(library.read(file)), file);
+    const bool later = stage != osg::Shader::FRAGMENT && stage != osg::Shader::VERTEX;
+    return later ? inLaterStage(std::move(text), stage) : text;
 }
 
 std::string EffectProgram::passFunctions(const Effects& effects, const PassShaders& pass,
@@ -342,18 +371,50 @@ std::string EffectProgram::passFunctions(const Effects& effects, const PassShade
 
 void EffectProgram::addFunctions(osg::Program& program, const Effects& effects)
 {
-    if (hasFunctions(program)) return;
-    const osg::ref_ptr<osg::Shader> vertex = functionShader(effects, osg::Shader::VERTEX);
-    const osg::ref_ptr<osg::Shader> fragment = functionShader(effects, osg::Shader::FRAGMENT);
-    program.addShader(vertex);
-    program.addShader(fragment);
+    for (const osg::Shader::Type stage : missingStages(program))
+        program.addShader(functionShader(stage, functions(effects, stage)));
+}
+
+void EffectProgram::addFunctionsOf(const osg::Program& like, osg::Program& program)
+{
+    for (const osg::Shader::Type stage : missingStages(program))
+    {
+        osg::ref_ptr<osg::Shader> vertex;
+        osg::ref_ptr<osg::Shader> found;
+        for (unsigned int i = 0; i < like.getNumShaders(); ++i)
+        {
+            const osg::Shader& shader = *like.getShader(i);
+            if (!isFunctions(shader)) continue;
+            if (shader.getType() == stage) found = const_cast<osg::Shader*>(&shader);
+            if (shader.getType() == osg::Shader::VERTEX) vertex = const_cast<osg::Shader*>(&shader);
+        }
+        if (!found && vertex) found = functionShader(stage, inLaterStage(vertex->getShaderSource(), stage));
+        if (found) program.addShader(found);
+    }
+}
+
+std::vector<osg::Shader::Type> EffectProgram::missingStages(const osg::Program& program)
+{
+    std::vector<osg::Shader::Type> missing;
+    // The application's shaders may come later.
+    const bool empty = std::none_of(std::begin(functionStages), std::end(functionStages),
+                                    [&](osg::Shader::Type stage) { return hasStage(program, stage); });
+    for (const osg::Shader::Type stage : functionStages)
+    {
+        const bool wanted =
+            empty ? stage == osg::Shader::VERTEX || stage == osg::Shader::FRAGMENT : hasStage(program, stage);
+        bool has = false;
+        for (unsigned int i = 0; i < program.getNumShaders(); ++i)
+            has = has || (program.getShader(i)->getType() == stage && isFunctions(*program.getShader(i)));
+        if (wanted && !has) missing.push_back(stage);
+    }
+    return missing;
 }
 
 bool EffectProgram::isFunctions(const osg::Shader& shader)
 {
     // A name outlives copies and files.
-    return (shader.getType() == osg::Shader::VERTEX || shader.getType() == osg::Shader::FRAGMENT) &&
-           shader.getName() == fileOf(shader.getType());
+    return shader.getName() == fileOf(shader.getType());
 }
 
 bool EffectProgram::hasFunctions(const osg::Program& program)

@@ -28,10 +28,13 @@ public:
 
     /// Changes where the shaders' text does.
     static std::string key(const Effects& effects);
-    /// The text of a function shader; ShaderError as ShaderLibrary has it.
+    /// The text of a function shader, of the vertex, tessellation evaluation, geometry or fragment stage; ShaderError as
+    /// ShaderLibrary has it.
     static std::string functions(const Effects& effects, osg::Shader::Type stage);
-    /// Adds the functions of effects to a program that has none yet; ShaderError.
+    /// Adds the functions of effects to the stages of a program that have none yet; ShaderError.
     static void addFunctions(osg::Program& program, const Effects& effects);
+    /// Those that another program has.
+    static void addFunctionsOf(const osg::Program& like, osg::Program& program);
     /// Whether a shader is one of those that addFunctions() adds; create() has such, too.
     static bool isFunctions(const osg::Shader& shader);
     static bool hasFunctions(const osg::Program& program);
@@ -45,6 +48,10 @@ public:
                                      const std::string& prefix, osg::Shader::Type stage);
     static osg::ref_ptr<osg::Program> create(const Effects& effects, const PassShaders& pass,
                                              const std::string& prefix);
+
+private:
+    /// Those of a program's stages that have no functions yet.
+    static std::vector<osg::Shader::Type> missingStages(const osg::Program& program);
 };
 
 } // namespace osgGeoFX

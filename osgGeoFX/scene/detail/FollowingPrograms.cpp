@@ -3,9 +3,11 @@
 #include <osgGeoFX/scene/detail/FollowingPrograms.h>
 
 #include <osgGeoFX/scene/detail/EffectProgram.h>
+#include <osgGeoFX/scene/detail/OwnPrograms.h>
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -32,8 +34,8 @@ std::vector<std::string> feedback(const osg::Program& program)
     return names;
 }
 
-/// Whether a copy still has what the application has put into its program.
-bool isCopyOf(const osg::Program& copy, const osg::Program& program)
+/// Whether a copy still has what the application has put into its program. `adapted`: its shaders are known to be those.
+bool isCopyOf(const osg::Program& copy, const osg::Program& program, bool adapted)
 {
     for (const GLenum parameter :
          {GL_GEOMETRY_VERTICES_OUT_EXT, GL_GEOMETRY_INPUT_TYPE_EXT, GL_GEOMETRY_OUTPUT_TYPE_EXT})
@@ -42,7 +44,7 @@ bool isCopyOf(const osg::Program& copy, const osg::Program& program)
     }
     const osg::ShaderDefines& defines = copy.getShaderDefines();
     const osg::ShaderDefines& wanted = program.getShaderDefines();
-    return ownShaders(copy) == ownShaders(program) && copy.getName() == program.getName() &&
+    return (adapted || ownShaders(copy) == ownShaders(program)) && copy.getName() == program.getName() &&
            copy.getAttribBindingList() == program.getAttribBindingList() &&
            copy.getFragDataBindingList() == program.getFragDataBindingList() &&
            copy.getUniformBlockBindingList() == program.getUniformBlockBindingList() &&
@@ -51,19 +53,17 @@ bool isCopyOf(const osg::Program& copy, const osg::Program& program)
            std::includes(defines.begin(), defines.end(), wanted.begin(), wanted.end());
 }
 
-osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Program& functions)
+osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Program& functions,
+                                  const ProgramAdaptation* adaptation)
 {
     osg::ref_ptr<osg::Program> copy = osg::clone(&program, osg::CopyOp::SHALLOW_COPY);
     for (unsigned int i = copy->getNumShaders(); i-- > 0;)
     {
         if (EffectProgram::isFunctions(*copy->getShader(i))) copy->removeShader(copy->getShader(i));
     }
-    for (unsigned int i = 0; i < functions.getNumShaders(); ++i)
-    {
-        // They are the same for all, and compiled once.
-        auto* shader = const_cast<osg::Shader*>(functions.getShader(i));
-        if (EffectProgram::isFunctions(*shader)) copy->addShader(shader);
-    }
+    if (adaptation) adaptation->apply(*copy);
+    // They are the same for all, and compiled once.
+    EffectProgram::addFunctionsOf(functions, *copy);
     // What OSG's own copy leaves out.
     for (const auto& [name, binding] : program.getUniformBlockBindingList())
         copy->addBindUniformBlock(name, binding);
@@ -83,16 +83,27 @@ void FollowingPrograms::follow(const osg::Program& functions)
 osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& program)
 {
     const auto* original = dynamic_cast<const osg::Program*>(&program);
-    if (!original || !EffectProgram::hasFunctions(*original)) return nullptr;
+    if (!original) return nullptr;
+    std::shared_ptr<const ProgramAdaptation> adaptation = AdaptedPrograms::instance().of(*original);
+    if (adaptation && !adaptation->refusal().empty()) adaptation = nullptr;
+    if (!adaptation && !EffectProgram::hasFunctions(*original)) return nullptr;
     const std::lock_guard<std::mutex> lock(_mutex);
     if (!_functions) return nullptr;
     Copy& copy = _copies[&program];
-    if (copy.original.valid() && copy.functions == _functions && isCopyOf(*copy.program, *original))
+    if (copy.original.valid() && copy.functions == _functions && copy.adaptation == adaptation &&
+        isCopyOf(*copy.program, *original, adaptation != nullptr))
         return copy.state;
     if (copy.program) _former.emplace_back(copy.program);
     copy.original = &program;
     copy.functions = _functions;
-    copy.program = copyOf(*original, *_functions);
+    copy.adaptation = adaptation;
+    copy.program = copyOf(*original, *_functions, adaptation.get());
+    if (adaptation && !adaptation->colorRefusal().empty())
+    {
+        std::string sentence = OwnPrograms::describe(program, {}) + " is adapted, but keeps its colors: ";
+        sentence += adaptation->colorRefusal() + ". Let its fragment shader call geofx_fragment().";
+        _complaints.push_back(sentence);
+    }
     copy.state = new osg::StateSet;
     // Whatever put the program into force.
     copy.state->setAttributeAndModes(copy.program, osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
@@ -115,6 +126,13 @@ void FollowingPrograms::purge()
         return !each.valid();
     };
     _former.erase(std::remove_if(_former.begin(), _former.end(), gone), _former.end());
+}
+
+std::vector<std::string> FollowingPrograms::takeComplaints(bool colors)
+{
+    if (!colors) return {};
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return std::exchange(_complaints, {});
 }
 
 std::vector<osg::ref_ptr<osg::Program>> FollowingPrograms::programs()

@@ -3,6 +3,7 @@
 #include <osgGeoFX/scene/detail/OwnPrograms.h>
 
 #include <osgGeoFX/effect/detail/TileNormals.h>
+#include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 
 #include <algorithm>
 #include <cctype>
@@ -13,8 +14,6 @@ namespace osgGeoFX
 
 namespace
 {
-
-constexpr const char* function = "geofx_vertex";
 
 bool placesVertices(const osg::Shader& shader)
 {
@@ -67,11 +66,10 @@ bool OwnPrograms::isOwn(const osg::StateAttribute* program)
     return !known || !(known->isFixedFunction() || known->getName() == TileNormals::program);
 }
 
-bool OwnPrograms::calls(const std::string& source)
+bool OwnPrograms::calls(const std::string& source, const std::string& name)
 {
-    if (source.find(function) == std::string::npos) return false;
+    if (source.find(name) == std::string::npos) return false;
     const std::string text = withoutComments(source);
-    const std::string name = function;
     for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
     {
         const std::size_t end = at + name.size();
@@ -100,7 +98,13 @@ bool OwnPrograms::callsFunctions(const osg::StateAttribute& program)
     known.current = true;
     const auto* shaders = dynamic_cast<const osg::Program*>(&program);
     if (!shaders) return known.calls = false;
-    // OSG does not count the changes of a shader, so the texts are compared.
+    const std::shared_ptr<const ProgramAdaptation> adaptation = AdaptedPrograms::instance().of(*shaders);
+    if (adaptation)
+    {
+        known.sources.clear();
+        return known.calls = adaptation->refusal().empty();
+    }
+    // A shader does not count its changes.
     const unsigned int count = shaders->getNumShaders();
     bool same = known.sources.size() == count;
     for (unsigned int i = 0; same && i < count; ++i)

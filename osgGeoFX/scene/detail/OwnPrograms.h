@@ -23,8 +23,8 @@ public:
     /// drawing to OpenGL's fixed functions. The program of a database's tiles (TileNormals) does the same as these
     /// functions, so it is none of its own either. Other engines have other classes for programs.
     static bool isOwn(const osg::StateAttribute* program);
-    /// Whether a stage that places vertices calls geofx_vertex(). False for any class but osg::Program, since its
-    /// shaders are not known.
+    /// Whether a stage that places vertices calls geofx_vertex(), or the program is drawn adapted (AdaptedPrograms). A class that is
+    /// no osg::Program does not tell, and so does not.
     bool callsFunctions(const osg::StateAttribute& program);
     /// Whether a program draws by itself and does not call the functions.
     bool isStranger(const osg::StateAttribute* program)
@@ -36,8 +36,8 @@ public:
 
     /// A description for messages: the program's name, else its shaders' names, with the node where it draws.
     static std::string describe(const osg::StateAttribute& program, const osg::NodePath& path);
-    /// Whether a shader's text calls geofx_vertex(). Comments and declarations do not count.
-    static bool calls(const std::string& source);
+    /// Whether a shader's text calls a function that returns a vec4, comments and declarations apart.
+    static bool calls(const std::string& source, const std::string& name = "geofx_vertex");
 
 private:
     using Sources = std::vector<std::pair<const osg::Shader*, std::string>>;

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osg/Program>
+#include <osg/observer_ptr>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** What is to be done to a copy of an application's program for its vertices to go where a scene's effects move them, and for its
+    colors to be those that they make. It is the same for all effects: their functions come on top. Never changes.
+
+    The text of a shader that has a `main` stays as it is, under another name for `main`; ours calls it, and then looks at what it has
+    written (shaders/stages/adapted.glsl). */
+class ProgramAdaptation
+{
+public:
+    explicit ProgramAdaptation(const osg::Program& program);
+
+    /// Whether it was made for what the program has now.
+    bool isOf(const osg::Program& program) const;
+    /// Why the program is drawn where it is, as the end of a sentence; empty where it can be adapted.
+    const std::string& refusal() const { return _refusal; }
+    /// Why its colors stay as they are, although its vertices move; empty where there is nothing to tell.
+    const std::string& colorRefusal() const { return _colorRefusal; }
+    /// Puts a copy of the program right.
+    void apply(osg::Program& copy) const;
+
+private:
+    struct Stage;
+    struct Color;
+    void adapt(const osg::Program& program);
+    void adaptPlaces(const Stage& last);
+    void adaptEmissions(const Stage& geometry);
+    void adaptColors(const osg::Program& program, const Stage& fragment, bool ownDepth);
+    void addMain(const Stage& last, const std::string& main, bool ownDepth);
+    void refuse(const std::string& reason) { _refusal = reason; }
+    void replace(const osg::Shader& shader, const std::string& text);
+
+    using Replacement = std::pair<osg::ref_ptr<const osg::Shader>, osg::ref_ptr<osg::Shader>>;
+    std::vector<std::pair<osg::ref_ptr<const osg::Shader>, std::string>> _sources; ///< those that it was made for
+    std::vector<std::pair<std::string, unsigned int>> _bindings;                   ///< of the fragments' outputs
+    std::vector<Replacement> _replaced;
+    std::vector<osg::ref_ptr<osg::Shader>> _added;
+    std::string _refusal, _colorRefusal;
+};
+
+/** Which programs scenes draw as adapted (EffectScene::adapt): those of the whole process, since scenes share them. The programs
+    themselves are left as they are: threads may be drawing with them. Thread-safe. */
+class AdaptedPrograms
+{
+public:
+    static AdaptedPrograms& instance();
+
+    void add(const osg::Program& program);
+    /// Null for one that was not added.
+    std::shared_ptr<const ProgramAdaptation> of(const osg::Program& program);
+
+private:
+    struct Known
+    {
+        osg::observer_ptr<const osg::Program> program;
+        std::shared_ptr<const ProgramAdaptation> adaptation;
+    };
+    std::mutex _mutex;
+    std::map<const osg::Program*, Known> _known;
+    std::size_t _purgeSize = 64;
+};
+
+} // namespace osgGeoFX
