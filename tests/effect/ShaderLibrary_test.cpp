@@ -137,9 +137,19 @@ void expectProgramAccepted(const osg::Program* program, Random& random, double s
     expectAccepted(geofx::test::runProgram(arguments));
 }
 
+/// The scene's program, with the functions of all stages.
 void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random, double share)
 {
-    expectProgramAccepted(EffectProgram::create(effects), random, share);
+    const osg::ref_ptr<osg::Program> program = EffectProgram::create(effects);
+    ASSERT_TRUE(program);
+    program->addShader(new osg::Shader(osg::Shader::TESSEVALUATION,
+                                       "#version 400 compatibility\nlayout(triangles) in;\nvoid main() {}\n"));
+    program->addShader(new osg::Shader(osg::Shader::GEOMETRY,
+                                       "#version 330 compatibility\nlayout(triangles) in;\n"
+                                       "layout(triangle_strip, max_vertices = 3) out;\nvoid main() {}\n"));
+    EffectProgram::addFunctions(*program, effects);
+    EXPECT_EQ(program->getNumShaders(), 8u);
+    expectProgramAccepted(program, random, share);
 }
 
 /// What CloseUps draws with: triangles as they are, copied into layers, divided and copied, and anchors' walls and lines.

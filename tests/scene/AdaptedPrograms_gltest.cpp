@@ -8,7 +8,8 @@
 #include <osg/ClipNode>
 #include <osg/Depth>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
-#include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/SurfaceEffect.h>
 
 #include <cstring>
 
@@ -17,6 +18,41 @@ using namespace geofx::test;
 
 namespace
 {
+
+/// Colors by what the attributes say.
+class Checkers : public SurfaceEffect
+{
+public:
+    Checkers()
+    {
+        ShaderLibrary::add("test/checkers.vert.glsl", "out vec2 SLOT_at;\n"
+                                                      "void SLOT_locate(vec3 p) { SLOT_at = gl_MultiTexCoord0.xy; }\n");
+        ShaderLibrary::add("test/checkers.frag.glsl",
+                           "in vec2 SLOT_at;\n"
+                           "vec4 SLOT_color(vec4 color) { return vec4(fract(SLOT_at), color.b, color.a); }\n");
+    }
+    Checkers(const Checkers& other, const osg::CopyOp& copy) : SurfaceEffect(other, copy) {}
+    META_Object(geofxTest, Checkers);
+    const Properties& properties() const override
+    {
+        static const Properties all = {enabledProperty()};
+        return all;
+    }
+    std::string vertexFile() const override { return "test/checkers.vert.glsl"; }
+    std::string fragmentFile() const override { return "test/checkers.frag.glsl"; }
+    bool fill(osg::StateSet&, const std::string&, const SurfaceView&) override { return true; }
+
+protected:
+    ~Checkers() override = default;
+};
+
+osg::ref_ptr<osg::Program> makeProgram(const char* vertex, const char* fragment)
+{
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->addShader(new osg::Shader(osg::Shader::VERTEX, vertex));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, fragment));
+    return program;
+}
 
 class AdaptedProgramsTest : public BentGround
 {
@@ -325,4 +361,64 @@ TEST_F(AdaptedProgramsTest, TessellationStagesAreAdapted)
     EXPECT_LE(apart(*render(scene), *expected), 5);
     scene->getEffect(0)->setEnabled(false);
     EXPECT_GT(differing(*render(scene), *expected), WIDTH * HEIGHT / 4);
+}
+
+// Attributes do not reach these stages: the application says what an effect would read.
+TEST_F(AdaptedProgramsTest, LaterStagesTellTextureCoordinates)
+{
+    const auto scene = [](osg::Program* program)
+    {
+        const osg::ref_ptr<EffectScene> result = new EffectScene;
+        result->addEffect(new Checkers);
+        result->addChild(makeGround());
+        if (program) result->getChild(0)->getOrCreateStateSet()->setAttribute(program);
+        return result;
+    };
+    const osg::ref_ptr<osg::Image> expected = render(scene(nullptr));
+    EXPECT_GT(differing(*expected, *render(makePlain({makeGround()}))), WIDTH * HEIGHT / 4);
+    for (const bool byHand : {true, false})
+    {
+        SCOPED_TRACE(byHand);
+        HostProgram host("#version 330 compatibility\n",
+                         "gl_TexCoord[0] = gl_MultiTexCoord0;\n    gl_Position = gl_Vertex;");
+        host.geometry = std::string("#version 330 compatibility\nDEFINES\n") +
+                        (byHand ? "void geofx_texture(vec4 coordinates);\n" : "") +
+                        "layout(triangles) in;\nlayout(triangle_strip, max_vertices = 3) out;\n"
+                        "void main()\n{\n    for (int i = 0; i < 3; ++i)\n    {\n" +
+                        (byHand ? "        geofx_texture(gl_in[i].gl_TexCoord[0]);\n" : "") +
+                        "        vec4 eye = gl_ModelViewMatrix * gl_in[i].gl_Position;\n"
+                        "        gl_Position = gl_ProjectionMatrix * DEFORM(eye);\n"
+                        "        gl_FrontColor = gl_in[i].gl_FrontColor;\n"
+                        "        gl_TexCoord[0] = gl_in[i].gl_TexCoord[0];\n"
+                        "        EmitVertex();\n    }\n    EndPrimitive();\n}\n";
+        const osg::ref_ptr<osg::Program> program = host.make(byHand);
+        if (byHand)
+            EffectScene::addFunctions(*program);
+        else
+            EffectScene::adapt(*program);
+        EXPECT_LE(apart(*render(scene(program)), *expected), 5);
+    }
+}
+
+// The core profile's language, with attributes and matrices of the application's, in a context that has both.
+TEST_F(AdaptedProgramsTest, CoreShadersAreAdaptedInCompatibilityContexts)
+{
+    const osg::Camera& camera = *viewer().getCamera();
+    const osg::ref_ptr<osg::Program> program =
+        makeProgram("#version 330 core\nlayout(location = 0) in vec4 place;\nlayout(location = 3) in vec4 tint;\n"
+                    "uniform mat4 toPicture;\nout vec4 shade;\n"
+                    "void main() { gl_Position = toPicture * place; shade = tint; }\n",
+                    "#version 330 core\nin vec4 shade;\nout vec4 color;\nvoid main() { color = shade; }\n");
+    EffectScene::adapt(*program);
+    const osg::ref_ptr<osg::Geometry> ground = makeGround();
+    ground->setInitialBound(ground->getBoundingBox());
+    ground->setVertexAttribArray(0, ground->getVertexArray(), osg::Array::BIND_PER_VERTEX);
+    ground->setVertexAttribArray(3, ground->getColorArray(), osg::Array::BIND_PER_VERTEX);
+    ground->setVertexArray(nullptr);
+    ground->setColorArray(nullptr);
+    ground->getOrCreateStateSet()->setAttribute(program);
+    ground->getStateSet()->addUniform(
+        new osg::Uniform("toPicture", osg::Matrixf(camera.getViewMatrix() * camera.getProjectionMatrix())));
+    const osg::ref_ptr<osg::Image> expected = render(makeScene({makeGround()}));
+    EXPECT_LE(apart(*render(makeScene({ground})), *expected), 5);
 }

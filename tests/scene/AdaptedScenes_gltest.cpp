@@ -214,8 +214,7 @@ TEST_F(AdaptedScenesTest, WhatCannotBeAdaptedStaysAndSaysWhy)
     fragmentOnly.vertices.clear();
     expectRefused(fragmentOnly.make(false), "it has no vertex shader");
     expectRefused(with("run();\n}\n#define main start\nvoid main() {",
-                       "void run() { gl_Position = ftransform(); }\n")
-                      .get(),
+                       "void run() { gl_Position = ftransform(); gl_FrontColor = gl_Color; }\n"),
                   "its vertex shader defines main by a directive");
     expectRefused(with("gl_Position = vec4(gl_Vertex.xy / 200.0, 0.0, 1.0);"), "no matrix takes its vertices");
     expectRefused(with("gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;",

@@ -130,13 +130,22 @@ bool ProgramAdaptation::isOf(const osg::Program& program) const
 
 void ProgramAdaptation::apply(osg::Program& copy) const
 {
-    for (const auto& [former, shader] : _replaced)
+    for (const auto& [former, text] : _replaced)
     {
-        copy.removeShader(const_cast<osg::Shader*>(former.get()));
-        copy.addShader(shader);
+        for (unsigned int i = 0; i < copy.getNumShaders(); ++i)
+        {
+            if (copy.getShader(i) != former) continue;
+            const osg::ref_ptr<osg::Shader> ours = osg::clone(former, osg::CopyOp::SHALLOW_COPY);
+            ours->setShaderSource(text);
+            copy.removeShader(copy.getShader(i));
+            copy.addShader(ours);
+            break;
+        }
     }
-    for (const osg::ref_ptr<osg::Shader>& shader : _added)
-        copy.addShader(shader);
+    if (_main.empty()) return;
+    osg::ref_ptr<osg::Shader> main = new osg::Shader(_lastStage, _main);
+    main->setName(file);
+    copy.addShader(main);
 }
 
 void ProgramAdaptation::adapt(const osg::Program& program)
@@ -199,7 +208,7 @@ void ProgramAdaptation::adaptPlaces(const Stage& last)
     for (const Stage::Unit& unit : last.units)
     {
         if (unit.text.names("main"))
-            replace(*unit.shader, unit.text.withDirective("#define main geofx_hostMain"));
+            _replaced.emplace_back(unit.shader, unit.text.withDirective("#define main geofx_hostMain"));
     }
 }
 
@@ -219,7 +228,7 @@ void ProgramAdaptation::adaptEmissions(const Stage& geometry)
         std::string text = unit.text.withDirective("#define EmitVertex geofx_emitVertex");
         if (!unit.text.addDeclaration("void geofx_emitVertex();", text))
             return refuse("its geometry shader has an #extension behind its first declaration");
-        replace(*unit.shader, text);
+        _replaced.emplace_back(unit.shader, text);
     }
 }
 
@@ -241,10 +250,8 @@ void ProgramAdaptation::addMain(const Stage& last, const std::string& main, bool
     const ShaderLibrary library;
     const char* version = last.type == osg::Shader::TESSEVALUATION ? "#version 400 compatibility\n"
                                                                    : "#version 330 compatibility\n";
-    osg::ref_ptr<osg::Shader> shader = new osg::Shader(
-        last.type, library.assemble(version + defines + library.read(file) + main, file));
-    shader->setName(file);
-    _added.push_back(shader);
+    _lastStage = last.type;
+    _main = library.assemble(version + defines + library.read(file) + main, file);
 }
 
 /// What the fragment stage puts out as its color, and the shader whose text knows it by that name.
@@ -311,15 +318,8 @@ void ProgramAdaptation::adaptColors(const osg::Program& program, const Stage& fr
                 text += "    " + color.name + " = geofx_fragment(" + color.name + ", vec4(0.0));\n";
             text += "}\n";
         }
-        replace(*unit.shader, text);
+        _replaced.emplace_back(unit.shader, text);
     }
-}
-
-void ProgramAdaptation::replace(const osg::Shader& shader, const std::string& text)
-{
-    osg::ref_ptr<osg::Shader> ours = osg::clone(&shader, osg::CopyOp::SHALLOW_COPY);
-    ours->setShaderSource(text);
-    _replaced.emplace_back(&shader, ours);
 }
 
 AdaptedPrograms& AdaptedPrograms::instance()

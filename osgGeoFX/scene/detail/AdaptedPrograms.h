@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osg/Program>
+#include <osg/Shader>
 #include <osg/observer_ptr>
 
 #include <map>
@@ -43,13 +44,14 @@ private:
     void adaptColors(const osg::Program& program, const Stage& fragment, bool ownDepth);
     void addMain(const Stage& last, const std::string& main, bool ownDepth);
     void refuse(const std::string& reason) { _refusal = reason; }
-    void replace(const osg::Shader& shader, const std::string& text);
 
-    using Replacement = std::pair<osg::ref_ptr<const osg::Shader>, osg::ref_ptr<osg::Shader>>;
-    std::vector<std::pair<osg::ref_ptr<const osg::Shader>, std::string>> _sources; ///< those that it was made for
-    std::vector<std::pair<std::string, unsigned int>> _bindings;                   ///< of the fragments' outputs
-    std::vector<Replacement> _replaced;
-    std::vector<osg::ref_ptr<osg::Shader>> _added;
+    // Texts, and no shaders: those have objects of OpenGL, which go with the copies.
+    using Text = std::pair<const osg::Shader*, std::string>;
+    std::vector<Text> _sources;                                  ///< those that it was made for
+    std::vector<std::pair<std::string, unsigned int>> _bindings; ///< of the fragments' outputs
+    std::vector<Text> _replaced;                                 ///< by their former shaders
+    osg::Shader::Type _lastStage = osg::Shader::UNDEFINED;       ///< that places vertices
+    std::string _main;                                           ///< what it gets more
     std::string _refusal, _colorRefusal;
 };
 

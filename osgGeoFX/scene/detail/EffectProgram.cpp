@@ -75,10 +75,11 @@ bool hasStage(const osg::Program& program, osg::Shader::Type stage)
 /// The vertex stage's functions in a later stage, which has no attributes.
 std::string inLaterStage(std::string text, osg::Shader::Type stage)
 {
-    const std::string version = "#version 330 compatibility\n";
-    const std::string later =
-        stage == osg::Shader::TESSEVALUATION ? "#version 400 compatibility\n" : version;
-    text.replace(0, version.size(), later + "#define GEOFX_LATER_STAGE\n");
+    std::string start = stage == osg::Shader::TESSEVALUATION ? "#version 400 compatibility\n"
+                                                             : "#version 330 compatibility\n";
+    start += "#define GEOFX_LATER_STAGE\n";
+    // The version is the first line.
+    text.replace(0, text.rfind("#version", 0) == 0 ? text.find('\n') + 1 : 0, start);
     return replaced(text, "gl_MultiTexCoord0", "geofx_textureCoordinates");
 }
 

@@ -97,7 +97,12 @@ osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& pro
     copy.original = &program;
     copy.functions = _functions;
     copy.adaptation = adaptation;
-    copy.program = copyOf(*original, *_functions, adaptation.get());
+    {
+        // OSG's shaders know their programs, without a lock, and scenes share shaders.
+        static std::mutex shaders;
+        const std::lock_guard<std::mutex> sharing(shaders);
+        copy.program = copyOf(*original, *_functions, adaptation.get());
+    }
     if (adaptation && !adaptation->colorRefusal().empty())
     {
         std::string sentence = OwnPrograms::describe(program, {}) + " is adapted, but keeps its colors: ";

@@ -134,7 +134,7 @@ bool ShaderText::assignsFrom(const std::string& variable, const std::string& wor
     bool found = false;
     for (std::size_t i = 0; i + 1 < _tokens.size(); ++i)
     {
-        if (_tokens[i].text != variable || !is(i + 1, "=")) continue;
+        if (_tokens[i].text != variable || !is(i + 1, "=") || is(i + 2, "=")) continue;
         std::size_t end = i + 2;
         bool from = false;
         for (; end < _tokens.size() && !is(end, ";"); ++end)
