@@ -104,15 +104,17 @@ struct EffectScene::Drawing
         known = own.get();
         const auto* program = dynamic_cast<const osg::Program*>(own.get());
         const auto adaptation = program ? AdaptedPrograms::instance().of(*program) : nullptr;
-        const std::string why =
-            adaptation ? " cannot be adapted, since " + adaptation->refusal() : " does not call geofx_vertex()";
-        OSG_WARN << "osgGeoFX: " << OwnPrograms::describe(*own, stranger.path) << why
-                 << ", so what it draws stays where it is, without the scene's effects. "
-                 << (program && !adaptation ? "Let the kit adapt it (EffectScene::adapt), or let" : "Let")
-                 << " its vertex shader call geofx_vertex() (EffectScene::addFunctions), or put what it draws below an "
-                    "osgGeoFX::RigidReference, or leave it out with setDefine(\"GEOFX_DEFORMATION\", OFF) in its "
-                    "state set."
-                 << std::endl;
+        const std::string why = adaptation ? " cannot be adapted, since " + adaptation->refusal()
+                                           : " does not call geofx_vertex()";
+        OSG_WARN
+            << "osgGeoFX: " << OwnPrograms::describe(*own, stranger.path) << why
+            << ", so what it draws stays where it is, without the scene's effects. "
+            << (program && !adaptation ? "Let the kit adapt it (EffectScene::adapt), or let" : "Let")
+            << " its vertex shader call geofx_vertex() (EffectScene::addFunctions), or put what it draws "
+               "below an "
+               "osgGeoFX::RigidReference, or leave it out with setDefine(\"GEOFX_DEFORMATION\", OFF) in its "
+               "state set."
+            << std::endl;
     }
 
     std::mutex mutex;

@@ -142,8 +142,8 @@ void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random
 {
     const osg::ref_ptr<osg::Program> program = EffectProgram::create(effects);
     ASSERT_TRUE(program);
-    program->addShader(new osg::Shader(osg::Shader::TESSEVALUATION,
-                                       "#version 400 compatibility\nlayout(triangles) in;\nvoid main() {}\n"));
+    program->addShader(new osg::Shader(
+        osg::Shader::TESSEVALUATION, "#version 400 compatibility\nlayout(triangles) in;\nvoid main() {}\n"));
     program->addShader(new osg::Shader(osg::Shader::GEOMETRY,
                                        "#version 330 compatibility\nlayout(triangles) in;\n"
                                        "layout(triangle_strip, max_vertices = 3) out;\nvoid main() {}\n"));

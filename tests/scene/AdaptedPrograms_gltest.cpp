@@ -25,11 +25,13 @@ class Checkers : public SurfaceEffect
 public:
     Checkers()
     {
-        ShaderLibrary::add("test/checkers.vert.glsl", "out vec2 SLOT_at;\n"
-                                                      "void SLOT_locate(vec3 p) { SLOT_at = gl_MultiTexCoord0.xy; }\n");
-        ShaderLibrary::add("test/checkers.frag.glsl",
-                           "in vec2 SLOT_at;\n"
-                           "vec4 SLOT_color(vec4 color) { return vec4(fract(SLOT_at), color.b, color.a); }\n");
+        ShaderLibrary::add("test/checkers.vert.glsl",
+                           "out vec2 SLOT_at;\n"
+                           "void SLOT_locate(vec3 p) { SLOT_at = gl_MultiTexCoord0.xy; }\n");
+        ShaderLibrary::add(
+            "test/checkers.frag.glsl",
+            "in vec2 SLOT_at;\n"
+            "vec4 SLOT_color(vec4 color) { return vec4(fract(SLOT_at), color.b, color.a); }\n");
     }
     Checkers(const Checkers& other, const osg::CopyOp& copy) : SurfaceEffect(other, copy) {}
     META_Object(geofxTest, Checkers);
@@ -124,11 +126,13 @@ const char* const versions[] = {"",
                                 "#version 450 compatibility\n"};
 
 /// As a fixed-function stage would, as shaders have it.
-constexpr const char* multiplied = "gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * gl_Vertex);";
+constexpr const char* multiplied =
+    "gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * gl_Vertex);";
 /// Moved by a wave of its own.
-constexpr const char* displaced = "vec4 place = gl_Vertex;\n"
-                                  "    place.z += 3.0 * sin(place.x / 9.0 + wave);\n"
-                                  "    gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * place);";
+constexpr const char* displaced =
+    "vec4 place = gl_Vertex;\n"
+    "    place.z += 3.0 * sin(place.x / 9.0 + wave);\n"
+    "    gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * place);";
 
 } // namespace
 
@@ -170,17 +174,19 @@ TEST_F(AdaptedProgramsTest, PicturesOfAskewFrustumToo)
 TEST_F(AdaptedProgramsTest, ColorsComeFromAnyOutput)
 {
     const std::string vertex = "#version 330 compatibility\n";
-    const auto output = [&](const std::string& version, const std::string& declarations,
-                            const std::string& statement)
+    const auto output =
+        [&](const std::string& version, const std::string& declarations, const std::string& statement)
     {
         HostProgram host(vertex, multiplied);
-        host.fragments = {version + "DEFINES\n" + declarations + "void main()\n{\n    " + statement + "\n}\n"};
+        host.fragments = {version + "DEFINES\n" + declarations + "void main()\n{\n    " + statement +
+                          "\n}\n"};
         return host;
     };
     const std::string late = "#version 420 compatibility\n";
     compare(output("#version 120\n", "", "gl_FragData[0] = TINT(gl_Color);"), true);
     compare(output(vertex, "out vec4 color;\n", "color = TINT(gl_Color);"), true);
-    compare(output(vertex, "layout(location = 0) out vec4 color; // and nothing else\n", "color = TINT(gl_Color);"),
+    compare(output(vertex, "layout(location = 0) out vec4 color; // and nothing else\n",
+                   "color = TINT(gl_Color);"),
             true);
     compare(output(vertex,
                    "layout(location = 1) out vec4 glow;\nlayout(location = 0) out vec4 color;\n"
@@ -200,8 +206,8 @@ TEST_F(AdaptedProgramsTest, ColorsComeFromAnyOutput)
                    "    if (gl_Color.r < 0.6) return;\n    gl_FragColor = TINT(gl_Color);"),
             true);
     // The application says which is which.
-    HostProgram bound = output(vertex, "out vec4 glow;\nout vec4 color;\n",
-                               "glow = vec4(1.0);\n    color = TINT(gl_Color);");
+    HostProgram bound =
+        output(vertex, "out vec4 glow;\nout vec4 color;\n", "glow = vec4(1.0);\n    color = TINT(gl_Color);");
     bound.locations = {{"color", 0}, {"glow", 1}};
     compare(bound, true);
 }
@@ -210,37 +216,43 @@ TEST_F(AdaptedProgramsTest, ShadersMayBeSeveralAndSayMainInOtherPlaces)
 {
     HostProgram host("#version 120\n", multiplied);
     host.vertices = {
-        "// main() is below\n/* void main() { } */\n#version 120\n#extension GL_ARB_texture_rectangle : enable\n"
+        "// main() is below\n/* void main() { } */\n#version 120\n#extension GL_ARB_texture_rectangle : "
+        "enable\n"
         "DEFINES\nvec4 mainPlace(vec4 at);\n#define main_color gl_Color\n"
         "void main(void)\n{\n    gl_Position = mainPlace(gl_Vertex);\n    gl_FrontColor = main_color;\n}\n",
         "#version 130\nDEFINES\nvec4 mainPlace(vec4 at)\n{\n    // not main()\n"
         "    return gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * at);\n}"};
-    host.fragments = {"DEFINES\nvec4 shade();\n#define ENTRY void main()\nENTRY { gl_FragColor = TINT(shade()); }// end",
-                      "vec4 shade() { return gl_Color; }"};
+    host.fragments = {
+        "DEFINES\nvec4 shade();\n#define ENTRY void main()\nENTRY { gl_FragColor = TINT(shade()); }// end",
+        "vec4 shade() { return gl_Color; }"};
     compare(host, true);
     // The color is another shader's than main()'s.
-    host.fragments = {"#version 330 compatibility\nvoid shade();\nvoid main() { shade(); }\n",
-                      "#version 330 compatibility\nDEFINES\nout vec4 color;\nvoid shade() { color = TINT(gl_Color); }\n"};
+    host.fragments = {
+        "#version 330 compatibility\nvoid shade();\nvoid main() { shade(); }\n",
+        "#version 330 compatibility\nDEFINES\nout vec4 color;\nvoid shade() { color = TINT(gl_Color); }\n"};
     compare(host, true);
 }
 
 // Fragments show their depth, which is that of the same formula at the new place.
 TEST_F(AdaptedProgramsTest, DepthsFollowTheHostsFormula)
 {
-    const std::string log = "gl_Position.z = (log2(max(1e-6, 1.0 + gl_Position.w)) * 0.17 - 1.0) * gl_Position.w;";
-    for (const std::string& formula :
-         {std::string(), log, std::string("gl_Position.z = gl_Position.w;"),
-          std::string("gl_Position.z -= 0.01 * gl_Position.w;")})
+    const std::string log =
+        "gl_Position.z = (log2(max(1e-6, 1.0 + gl_Position.w)) * 0.17 - 1.0) * gl_Position.w;";
+    for (const std::string& formula : {std::string(), log, std::string("gl_Position.z = gl_Position.w;"),
+                                       std::string("gl_Position.z -= 0.01 * gl_Position.w;")})
     {
         SCOPED_TRACE(formula);
-        HostProgram host("#version 120\n", std::string(displaced) + "\n    " + formula, "uniform float wave;\n");
-        host.fragments = {"#version 120\nDEFINES\nvoid main()\n{\n    float depth = gl_FragCoord.z;\n"
-                          "    gl_FragColor = TINT(vec4(depth, fract(depth * 64.0), fract(depth * 4096.0), 1.0));\n}\n"};
+        HostProgram host("#version 120\n", std::string(displaced) + "\n    " + formula,
+                         "uniform float wave;\n");
+        host.fragments = {
+            "#version 120\nDEFINES\nvoid main()\n{\n    float depth = gl_FragCoord.z;\n"
+            "    gl_FragColor = TINT(vec4(depth, fract(depth * 64.0), fract(depth * 4096.0), 1.0));\n}\n"};
         compare(host, false);
     }
     // Logarithms for another purpose.
     compare(HostProgram("#version 120\n",
-                        std::string(displaced) + "\n    gl_TexCoord[0] = vec4(log2(2.0 + gl_Vertex.x * gl_Vertex.x));",
+                        std::string(displaced) +
+                            "\n    gl_TexCoord[0] = vec4(log2(2.0 + gl_Vertex.x * gl_Vertex.x));",
                         "uniform float wave;\n"),
             false);
 }
@@ -248,7 +260,8 @@ TEST_F(AdaptedProgramsTest, DepthsFollowTheHostsFormula)
 // Things whose fragments have logarithmic depths among things whose vertices have.
 TEST_F(AdaptedProgramsTest, DepthsOfFragmentsFollow)
 {
-    const std::string vertex = "gl_Position.z = (log2(max(1e-6, 1.0 + gl_Position.w)) * 0.17 - 1.0) * gl_Position.w;";
+    const std::string vertex =
+        "gl_Position.z = (log2(max(1e-6, 1.0 + gl_Position.w)) * 0.17 - 1.0) * gl_Position.w;";
     for (const char* version : {"#version 120\n", "#version 330 compatibility\n"})
     {
         SCOPED_TRACE(version);
@@ -315,13 +328,14 @@ TEST_F(AdaptedProgramsTest, GeometryStagesAreAdapted)
 {
     HostProgram host("#version 330 compatibility\n", "gl_Position = gl_Vertex;");
     // Each triangle a little smaller, and as light as its vertices are.
-    host.geometry = "#version 330 compatibility\n#ifdef GL_ES\nprecision highp float;\n#endif\nDEFINES\n"
-                    "layout(triangles) in;\nlayout(triangle_strip, max_vertices = 3) out;\nuniform float wave;\n"
-                    "void main()\n{\n    for (int i = 0; i < 3; ++i)\n    {\n"
-                    "        vec4 place = gl_in[i].gl_Position;\n        place.z += 2.0 + wave;\n"
-                    "        gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * place);\n"
-                    "        gl_FrontColor = gl_in[i].gl_FrontColor;\n        EmitVertex();\n    }\n"
-                    "    EndPrimitive();\n}\n";
+    host.geometry =
+        "#version 330 compatibility\n#ifdef GL_ES\nprecision highp float;\n#endif\nDEFINES\n"
+        "layout(triangles) in;\nlayout(triangle_strip, max_vertices = 3) out;\nuniform float wave;\n"
+        "void main()\n{\n    for (int i = 0; i < 3; ++i)\n    {\n"
+        "        vec4 place = gl_in[i].gl_Position;\n        place.z += 2.0 + wave;\n"
+        "        gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * place);\n"
+        "        gl_FrontColor = gl_in[i].gl_FrontColor;\n        EmitVertex();\n    }\n"
+        "    EndPrimitive();\n}\n";
     compare(host, false);
 }
 
@@ -333,12 +347,13 @@ TEST_F(AdaptedProgramsTest, TessellationStagesAreAdapted)
                    "    gl_out[gl_InvocationID].gl_FrontColor = gl_in[gl_InvocationID].gl_FrontColor;\n"
                    "    gl_TessLevelOuter[0] = gl_TessLevelOuter[1] = gl_TessLevelOuter[2] = 2.0;\n"
                    "    gl_TessLevelInner[0] = 2.0;\n}\n";
-    host.evaluation = "#version 400 compatibility\nDEFINES\nlayout(triangles, equal_spacing, ccw) in;\nvoid main()\n{\n"
-                      "    vec3 w = gl_TessCoord;\n    vec4 place = w.x * gl_in[0].gl_Position + "
-                      "w.y * gl_in[1].gl_Position + w.z * gl_in[2].gl_Position;\n"
-                      "    gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * place);\n"
-                      "    gl_FrontColor = w.x * gl_in[0].gl_FrontColor + w.y * gl_in[1].gl_FrontColor + "
-                      "w.z * gl_in[2].gl_FrontColor;\n}\n";
+    host.evaluation =
+        "#version 400 compatibility\nDEFINES\nlayout(triangles, equal_spacing, ccw) in;\nvoid main()\n{\n"
+        "    vec3 w = gl_TessCoord;\n    vec4 place = w.x * gl_in[0].gl_Position + "
+        "w.y * gl_in[1].gl_Position + w.z * gl_in[2].gl_Position;\n"
+        "    gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * place);\n"
+        "    gl_FrontColor = w.x * gl_in[0].gl_FrontColor + w.y * gl_in[1].gl_FrontColor + "
+        "w.z * gl_in[2].gl_FrontColor;\n}\n";
     const auto patched = [&](bool byHand)
     {
         const osg::ref_ptr<osg::Program> program = host.make(byHand);
@@ -404,11 +419,11 @@ TEST_F(AdaptedProgramsTest, LaterStagesTellTextureCoordinates)
 TEST_F(AdaptedProgramsTest, CoreShadersAreAdaptedInCompatibilityContexts)
 {
     const osg::Camera& camera = *viewer().getCamera();
-    const osg::ref_ptr<osg::Program> program =
-        makeProgram("#version 330 core\nlayout(location = 0) in vec4 place;\nlayout(location = 3) in vec4 tint;\n"
-                    "uniform mat4 toPicture;\nout vec4 shade;\n"
-                    "void main() { gl_Position = toPicture * place; shade = tint; }\n",
-                    "#version 330 core\nin vec4 shade;\nout vec4 color;\nvoid main() { color = shade; }\n");
+    const osg::ref_ptr<osg::Program> program = makeProgram(
+        "#version 330 core\nlayout(location = 0) in vec4 place;\nlayout(location = 3) in vec4 tint;\n"
+        "uniform mat4 toPicture;\nout vec4 shade;\n"
+        "void main() { gl_Position = toPicture * place; shade = tint; }\n",
+        "#version 330 core\nin vec4 shade;\nout vec4 color;\nvoid main() { color = shade; }\n");
     EffectScene::adapt(*program);
     const osg::ref_ptr<osg::Geometry> ground = makeGround();
     ground->setInitialBound(ground->getBoundingBox());

@@ -73,8 +73,9 @@ osg::ref_ptr<osg::Geometry> half(osg::Geometry& whole, bool left)
         const osg::Vec3 middle = (vertices[all[i]] + vertices[all[i + 1]] + vertices[all[i + 2]]) / 3.0f;
         // A line with many corners.
         const bool isLeft = middle.x() + 20.0f * std::sin(middle.y() / 15.0f) < 0.0f;
-        if (isLeft == left) some->insert(some->end(), all.begin() + static_cast<std::ptrdiff_t>(i),
-                                         all.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+        if (isLeft == left)
+            some->insert(some->end(), all.begin() + static_cast<std::ptrdiff_t>(i),
+                         all.begin() + static_cast<std::ptrdiff_t>(i) + 3);
     }
     part->setPrimitiveSet(0, some);
     return part;
@@ -83,7 +84,8 @@ osg::ref_ptr<osg::Geometry> half(osg::Geometry& whole, bool left)
 class AdaptedScenesTest : public BentGround
 {
 protected:
-    static osg::ref_ptr<osg::Program> makeAdapted(const HostProgram& host = HostProgram("#version 120\n", fixed))
+    static osg::ref_ptr<osg::Program> makeAdapted(const HostProgram& host = HostProgram("#version 120\n",
+                                                                                        fixed))
     {
         const osg::ref_ptr<osg::Program> program = host.make(false);
         EffectScene::adapt(*program);
@@ -216,7 +218,8 @@ TEST_F(AdaptedScenesTest, WhatCannotBeAdaptedStaysAndSaysWhy)
     expectRefused(with("run();\n}\n#define main start\nvoid main() {",
                        "void run() { gl_Position = ftransform(); gl_FrontColor = gl_Color; }\n"),
                   "its vertex shader defines main by a directive");
-    expectRefused(with("gl_Position = vec4(gl_Vertex.xy / 200.0, 0.0, 1.0);"), "no matrix takes its vertices");
+    expectRefused(with("gl_Position = vec4(gl_Vertex.xy / 200.0, 0.0, 1.0);"),
+                  "no matrix takes its vertices");
     expectRefused(with("gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;",
                        "out gl_PerVertex { vec4 gl_Position; vec4 gl_FrontColor; };\n"),
                   "it declares gl_PerVertex anew");
@@ -225,10 +228,11 @@ TEST_F(AdaptedScenesTest, WhatCannotBeAdaptedStaysAndSaysWhy)
                                  "void main() { gl_FragColor = gl_Color; gl_FragDepth = 0.25; }\n"};
     expectRefused(depth.make(false), "its fragment shader writes a gl_FragDepth that cannot follow");
     HostProgram streams(version, "gl_Position = ftransform();");
-    streams.geometry = "#version 400 compatibility\nlayout(triangles) in;\n"
-                       "layout(points, max_vertices = 3) out;\nvoid main()\n{\n"
-                       "    for (int i = 0; i < 3; ++i)\n    {\n        gl_Position = gl_in[i].gl_Position;\n"
-                       "        gl_FrontColor = gl_in[i].gl_FrontColor;\n        EmitStreamVertex(0);\n    }\n}\n";
+    streams.geometry =
+        "#version 400 compatibility\nlayout(triangles) in;\n"
+        "layout(points, max_vertices = 3) out;\nvoid main()\n{\n"
+        "    for (int i = 0; i < 3; ++i)\n    {\n        gl_Position = gl_in[i].gl_Position;\n"
+        "        gl_FrontColor = gl_in[i].gl_FrontColor;\n        EmitStreamVertex(0);\n    }\n}\n";
     expectRefused(streams.make(false), "its geometry shader emits vertices in another way");
 }
 
@@ -236,7 +240,8 @@ TEST_F(AdaptedScenesTest, WhatCannotBeAdaptedStaysAndSaysWhy)
 TEST_F(AdaptedScenesTest, DepthsOfTheFragmentsPlaceFollowByThemselves)
 {
     HostProgram host("#version 120\n", fixed);
-    host.fragments = {"#version 120\nvoid main() { gl_FragColor = gl_Color; gl_FragDepth = gl_FragCoord.z; }\n"};
+    host.fragments = {
+        "#version 120\nvoid main() { gl_FragColor = gl_Color; gl_FragDepth = gl_FragCoord.z; }\n"};
     const osg::ref_ptr<osg::Node> box = makeBox(12, {20, 20, 0});
     EXPECT_TRUE(same(*render(makeScene({groundWith(makeAdapted(host)), box})),
                      *render(makeScene({makeGround(), box}))));

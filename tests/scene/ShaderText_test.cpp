@@ -22,7 +22,8 @@ TEST(ShaderText, VersionsAreFoundBehindComments)
 
 TEST(ShaderText, WordsAreThoseOutsideOfComments)
 {
-    const ShaderText text("#define COLOR gl_FragColor\n// main\n/* log2( \n */ float remain, main2;\nstart();");
+    const ShaderText text(
+        "#define COLOR gl_FragColor\n// main\n/* log2( \n */ float remain, main2;\nstart();");
     EXPECT_TRUE(text.names("gl_FragColor"));
     EXPECT_TRUE(text.names("start"));
     for (const char* word : {"main", "log2", "gl_Frag", ""})
@@ -72,7 +73,8 @@ TEST(ShaderText, AssignmentsTellWhereValuesComeFrom)
     const char* const from = "gl_FragCoord";
     EXPECT_TRUE(ShaderText("gl_FragDepth = 0.5 * gl_FragCoord.z;").assignsFrom("gl_FragDepth", from));
     EXPECT_FALSE(ShaderText("gl_FragDepth = far; x = gl_FragCoord.x;").assignsFrom("gl_FragDepth", from));
-    EXPECT_FALSE(ShaderText("gl_FragDepth = gl_FragCoord.z; gl_FragDepth = far;").assignsFrom("gl_FragDepth", from));
+    EXPECT_FALSE(
+        ShaderText("gl_FragDepth = gl_FragCoord.z; gl_FragDepth = far;").assignsFrom("gl_FragDepth", from));
     EXPECT_FALSE(ShaderText("if (gl_FragDepth == gl_FragCoord.z) x = 1;").assignsFrom("gl_FragDepth", from));
     EXPECT_FALSE(ShaderText("void main() {}").assignsFrom("gl_FragDepth", from));
 }

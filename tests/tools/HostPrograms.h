@@ -33,8 +33,8 @@ struct HostProgram
         {
             if (text.empty()) return;
             const std::string word = "DEFINES";
-            const std::string vertex = withCalls ? "vec4 geofx_vertex(vec4 eye);\n#define DEFORM geofx_vertex"
-                                                 : "#define DEFORM";
+            const std::string vertex =
+                withCalls ? "vec4 geofx_vertex(vec4 eye);\n#define DEFORM geofx_vertex" : "#define DEFORM";
             const std::string fragment = withCalls ? "vec4 geofx_fragment(vec4 color, vec4 map);\n"
                                                      "#define TINT(color) geofx_fragment(color, vec4(0.0))"
                                                    : "#define TINT";

@@ -62,17 +62,13 @@ struct ProgramAdaptation::Stage
                            [&](const Unit& each)
                            { return OwnPrograms::calls(each.shader->getShaderSource(), function); });
     }
-    bool isLogarithmic() const
-    {
-        return (names("log2") || names("log")) && !names("gl_FragCoord");
-    }
+    bool isLogarithmic() const { return (names("log2") || names("log")) && !names("gl_FragCoord"); }
     /// A depth that does not come from the fragment's place, and so would stay behind.
     bool writesOwnDepth() const
     {
         return any(
-            [](const ShaderText& text) {
-                return text.names("gl_FragDepth") && !text.assignsFrom("gl_FragDepth", "gl_FragCoord");
-            });
+            [](const ShaderText& text)
+            { return text.names("gl_FragDepth") && !text.assignsFrom("gl_FragDepth", "gl_FragCoord"); });
     }
     /// The first shader with a `main`.
     const Unit* mainUnit() const
@@ -125,7 +121,8 @@ bool ProgramAdaptation::isOf(const osg::Program& program) const
     const auto& bindings = program.getFragDataBindingList();
     return next == _sources.size() &&
            std::equal(bindings.begin(), bindings.end(), _bindings.begin(), _bindings.end(),
-                      [](const auto& a, const auto& b) { return a.first == b.first && a.second == b.second; });
+                      [](const auto& a, const auto& b)
+                      { return a.first == b.first && a.second == b.second; });
 }
 
 void ProgramAdaptation::apply(osg::Program& copy) const
@@ -181,16 +178,18 @@ void ProgramAdaptation::adapt(const osg::Program& program)
     const bool ownDepth = fragment.writesOwnDepth();
     if (ownDepth && !fragment.isLogarithmic())
         return refuse("its fragment shader writes a gl_FragDepth that cannot follow what moves");
-    const std::string refusal = fragment.empty() ? std::string() : fragment.mainRefusal("its fragment shader");
+    const std::string refusal =
+        fragment.empty() ? std::string() : fragment.mainRefusal("its fragment shader");
     if (ownDepth && !refusal.empty()) return refuse(refusal);
     if (&last == &geometry)
         adaptEmissions(geometry);
     else
         adaptPlaces(last);
     if (!_refusal.empty()) return;
-    addMain(last, &last == &geometry ? "void geofx_emitVertex()\n{\n    geofx_moveHost();\n    EmitVertex();\n}\n"
-                                     : "void geofx_hostMain();\nvoid main()\n{\n    geofx_hostMain();\n"
-                                       "    geofx_moveHost();\n}\n",
+    addMain(last,
+            &last == &geometry ? "void geofx_emitVertex()\n{\n    geofx_moveHost();\n    EmitVertex();\n}\n"
+                               : "void geofx_hostMain();\nvoid main()\n{\n    geofx_hostMain();\n"
+                                 "    geofx_moveHost();\n}\n",
             ownDepth);
     if (fragment.empty())
         _colorRefusal = "it has no fragment shader";
@@ -295,7 +294,8 @@ void ProgramAdaptation::adaptColors(const osg::Program& program, const Stage& fr
 {
     Color color(program, fragment);
     const bool called = fragment.calls("geofx_fragment");
-    if (color.unclear) _colorRefusal = "the text of its fragment shader does not tell which output is the color";
+    if (color.unclear)
+        _colorRefusal = "the text of its fragment shader does not tell which output is the color";
     if (color.unclear || called) color.name.clear();
     if (color.name.empty() && !ownDepth) return;
     const Stage::Unit* const place = color.name.empty() ? fragment.mainUnit() : color.unit;

@@ -40,7 +40,7 @@ private:
     struct Copy
     {
         osg::observer_ptr<const osg::StateAttribute> original;
-        osg::ref_ptr<const osg::Program> functions; ///< those that it has
+        osg::ref_ptr<const osg::Program> functions;          ///< those that it has
         std::shared_ptr<const ProgramAdaptation> adaptation; ///< with which it was made
         osg::ref_ptr<osg::Program> program;
         osg::ref_ptr<osg::StateSet> state;

@@ -32,8 +32,9 @@ std::string withoutComments(const std::string& text)
         std::size_t end = line ? text.find('\n', i) : text.find("*/", i + 2);
         end = end == std::string::npos ? text.size() : end + (line ? 0 : 2);
         std::replace_if(
-            result.begin() + static_cast<std::ptrdiff_t>(i), result.begin() + static_cast<std::ptrdiff_t>(end),
-            [](char letter) { return letter != '\n'; }, ' ');
+            result.begin() + static_cast<std::ptrdiff_t>(i),
+            result.begin() + static_cast<std::ptrdiff_t>(end), [](char letter) { return letter != '\n'; },
+            ' ');
         i = end;
     }
     return result;
@@ -99,8 +100,7 @@ bool ShaderText::is(std::size_t token, const char* text) const
 
 bool ShaderText::names(const std::string& word) const
 {
-    return std::any_of(_tokens.begin(), _tokens.end(),
-                       [&](const Token& each) { return each.text == word; });
+    return std::any_of(_tokens.begin(), _tokens.end(), [&](const Token& each) { return each.text == word; });
 }
 
 bool ShaderText::namesLike(const std::string& beginning) const
@@ -203,7 +203,8 @@ std::vector<ShaderText::Output> ShaderText::outputs() const
 
 std::string ShaderText::withDirective(const std::string& directive) const
 {
-    const auto lines = std::count(_source.begin(), _source.begin() + static_cast<std::ptrdiff_t>(_afterVersion), '\n');
+    const auto lines =
+        std::count(_source.begin(), _source.begin() + static_cast<std::ptrdiff_t>(_afterVersion), '\n');
     // Before version 330 #line counted from the line behind it.
     const bool early = _version < 330;
     std::string text = _source.substr(0, _afterVersion);
