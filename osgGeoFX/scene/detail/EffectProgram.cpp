@@ -58,6 +58,8 @@ std::string fileOf(osg::Shader::Type stage)
     return stage == osg::Shader::FRAGMENT ? "stages/functions.frag" : "stages/functions.vert";
 }
 
+constexpr const char* passName = "osgGeoFX pass";
+
 /// Those that have functions.
 constexpr osg::Shader::Type functionStages[] = {osg::Shader::VERTEX, osg::Shader::TESSEVALUATION,
                                                 osg::Shader::GEOMETRY, osg::Shader::FRAGMENT};
@@ -418,6 +420,18 @@ bool EffectProgram::isFunctions(const osg::Shader& shader)
     return shader.getName() == fileOf(shader.getType());
 }
 
+bool EffectProgram::isPassOfTwoStages(const osg::Program& program)
+{
+    if (program.getName() != passName) return false;
+    bool two = true;
+    for (unsigned int i = 0; i < program.getNumShaders(); ++i)
+    {
+        const osg::Shader::Type stage = program.getShader(i)->getType();
+        two = two && (stage == osg::Shader::VERTEX || stage == osg::Shader::FRAGMENT);
+    }
+    return two;
+}
+
 bool EffectProgram::hasFunctions(const osg::Program& program)
 {
     for (unsigned int i = 0; i < program.getNumShaders(); ++i)
@@ -441,13 +455,14 @@ osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects, const P
     {
         const ShaderLibrary library;
         osg::ref_ptr<osg::Program> program = new osg::Program;
-        program->setName("osgGeoFX pass");
+        program->setName(passName);
         for (const osg::Shader::Type stage :
              {osg::Shader::VERTEX, osg::Shader::TESSCONTROL, osg::Shader::TESSEVALUATION,
               osg::Shader::GEOMETRY, osg::Shader::FRAGMENT})
         {
             const std::string text = passFunctions(effects, pass, prefix, stage);
-            if (!text.empty()) add(*program, stage, text, "functions of " + prefix);
+            const bool own = stage == osg::Shader::VERTEX || stage == osg::Shader::FRAGMENT;
+            if (!text.empty()) add(*program, stage, text, own ? fileOf(stage) : "functions of " + prefix);
         }
         const auto addMain = [&](osg::Shader::Type stage, const std::string& own, const char* standIn)
         {

@@ -38,6 +38,8 @@ public:
     /// Whether a shader is one of those that addFunctions() adds; create() has such, too.
     static bool isFunctions(const osg::Shader& shader);
     static bool hasFunctions(const osg::Program& program);
+    /// Whether it is one that create() has made for a pass that has no stages between vertices and fragments.
+    static bool isPassOfTwoStages(const osg::Program& program);
     /// A program for geometry that has none. A new one each time, since one that is in use must not change. Null, after a
     /// warning, where a shader file is missing.
     static osg::ref_ptr<osg::Program> create(const Effects& effects);

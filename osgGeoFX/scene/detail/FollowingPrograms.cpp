@@ -34,8 +34,16 @@ std::vector<std::string> feedback(const osg::Program& program)
     return names;
 }
 
+bool hasBlocksOf(const osg::Program& copy, const osg::Program& program)
+{
+    const osg::Program::UniformBlockBindingList& all = copy.getUniformBlockBindingList();
+    const osg::Program::UniformBlockBindingList& wanted = program.getUniformBlockBindingList();
+    return std::includes(all.begin(), all.end(), wanted.begin(), wanted.end());
+}
+
 /// Whether a copy still has what the application has put into its program. `adapted`: its shaders are known to be those.
-bool isCopyOf(const osg::Program& copy, const osg::Program& program, bool adapted)
+bool isCopyOf(const osg::Program& copy, const osg::Program& program, const osg::Program& functions,
+              bool adapted)
 {
     for (const GLenum parameter :
          {GL_GEOMETRY_VERTICES_OUT_EXT, GL_GEOMETRY_INPUT_TYPE_EXT, GL_GEOMETRY_OUTPUT_TYPE_EXT})
@@ -46,8 +54,10 @@ bool isCopyOf(const osg::Program& copy, const osg::Program& program, bool adapte
     const osg::ShaderDefines& wanted = program.getShaderDefines();
     return (adapted || ownShaders(copy) == ownShaders(program)) && copy.getName() == program.getName() &&
            copy.getAttribBindingList() == program.getAttribBindingList() &&
-           copy.getFragDataBindingList() == program.getFragDataBindingList() &&
-           copy.getUniformBlockBindingList() == program.getUniformBlockBindingList() &&
+           copy.getFragDataBindingList() == program.getFragDataBindingList() && hasBlocksOf(copy, program) &&
+           hasBlocksOf(copy, functions) &&
+           copy.getUniformBlockBindingList().size() ==
+               program.getUniformBlockBindingList().size() + functions.getUniformBlockBindingList().size() &&
            copy.getTransformFeedBackMode() == program.getTransformFeedBackMode() &&
            feedback(copy) == feedback(program) &&
            std::includes(defines.begin(), defines.end(), wanted.begin(), wanted.end());
@@ -65,8 +75,11 @@ osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Progra
     // They are the same for all, and compiled once.
     EffectProgram::addFunctionsOf(functions, *copy);
     // What OSG's own copy leaves out.
-    for (const auto& [name, binding] : program.getUniformBlockBindingList())
-        copy->addBindUniformBlock(name, binding);
+    for (const osg::Program* each : {&functions, &program})
+    {
+        for (const auto& [name, binding] : each->getUniformBlockBindingList())
+            copy->addBindUniformBlock(name, binding);
+    }
     const osg::ShaderDefines& defines = program.getShaderDefines();
     copy->getShaderDefines().insert(defines.begin(), defines.end());
     return copy;
@@ -80,7 +93,8 @@ void FollowingPrograms::follow(const osg::Program& functions)
     _functions = &functions;
 }
 
-osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& program)
+osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& program,
+                                                  const osg::Program* drawing)
 {
     const auto* original = dynamic_cast<const osg::Program*>(&program);
     if (!original) return nullptr;
@@ -88,26 +102,30 @@ osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& pro
     if (adaptation && !adaptation->refusal().empty()) adaptation = nullptr;
     if (!adaptation && !EffectProgram::hasFunctions(*original)) return nullptr;
     const std::lock_guard<std::mutex> lock(_mutex);
-    if (!_functions) return nullptr;
-    Copy& copy = _copies[&program];
-    if (copy.original.valid() && copy.functions == _functions && copy.adaptation == adaptation &&
-        isCopyOf(*copy.program, *original, adaptation != nullptr))
+    // A pass that needs stages of its own, for which the application's program has no place, draws it as the scene does.
+    const bool inPass = drawing && EffectProgram::isPassOfTwoStages(*drawing);
+    if (!inPass && !_functions) return nullptr;
+    const osg::Program& functions = inPass ? *drawing : *_functions;
+    Copy& copy = _copies[{&program, inPass ? drawing : nullptr}];
+    if (copy.original.valid() && copy.functions.get() == &functions && copy.adaptation == adaptation &&
+        isCopyOf(*copy.program, *original, functions, adaptation != nullptr))
         return copy.state;
     if (copy.program) _former.emplace_back(copy.program);
     copy.original = &program;
-    copy.functions = _functions;
+    copy.functions = &functions;
     copy.adaptation = adaptation;
     {
         // OSG's shaders know their programs, without a lock, and scenes share shaders.
         static std::mutex shaders;
         const std::lock_guard<std::mutex> sharing(shaders);
-        copy.program = copyOf(*original, *_functions, adaptation.get());
+        copy.program = copyOf(*original, functions, adaptation.get());
     }
     if (adaptation && !adaptation->colorRefusal().empty())
     {
         std::string sentence = OwnPrograms::describe(program, {}) + " is adapted, but keeps its colors: ";
         sentence += adaptation->colorRefusal() + ". Let its fragment shader call geofx_fragment().";
-        _complaints.push_back(sentence);
+        if (std::find(_complaints.begin(), _complaints.end(), sentence) == _complaints.end())
+            _complaints.push_back(sentence);
     }
     copy.state = new osg::StateSet;
     // Whatever put the program into force.
@@ -122,7 +140,7 @@ void FollowingPrograms::purge()
 {
     for (auto each = _copies.begin(); each != _copies.end();)
     {
-        const bool lives = each->second.original.valid();
+        const bool lives = each->second.original.valid() && each->second.functions.valid();
         if (!lives) _former.emplace_back(each->second.program);
         each = lives ? std::next(each) : _copies.erase(each);
     }

@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -30,7 +31,8 @@ public:
     void follow(const osg::Program& functions);
     /// With which to draw what a program is in force for; never changes. Null where it is to be drawn with the program itself: it
     /// has no functions and is not adapted, or there are none to follow yet.
-    osg::ref_ptr<osg::StateSet> of(const osg::StateAttribute& program);
+    /// `drawing`: with which the scene, or a pass, draws what has no program; null for the scene's.
+    osg::ref_ptr<osg::StateSet> of(const osg::StateAttribute& program, const osg::Program* drawing = nullptr);
     /// Sentences on programs whose colors cannot be adapted, each once, where effects color.
     std::vector<std::string> takeComplaints(bool colors);
     /// Those that may have GL objects.
@@ -49,7 +51,8 @@ private:
 
     std::mutex _mutex;
     osg::ref_ptr<const osg::Program> _functions;
-    std::map<const osg::StateAttribute*, Copy> _copies;
+    /// By programs, and by passes; null for the scene's.
+    std::map<std::pair<const osg::StateAttribute*, const osg::Program*>, Copy> _copies;
     std::vector<std::string> _complaints;
     std::vector<osg::observer_ptr<osg::Program>> _former; ///< frames that are on their way may hold them
 };

@@ -74,7 +74,7 @@ osg::StateSet* LookCache::followingOf(const osg::StateAttribute* program)
 {
     if (!program || !_following) return nullptr;
     const auto [found, isNew] = _copies.try_emplace(program);
-    if (isNew) found->second = _following->of(*program);
+    if (isNew) found->second = _following->of(*program, _program);
     return found->second;
 }
 
