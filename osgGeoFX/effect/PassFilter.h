@@ -24,7 +24,7 @@ public:
     /** The states to draw a drawable with, once with each; none if the drawable is not wanted. They stand above the
         drawable's own state set, so a value that must win needs OVERRIDE. `box`: undeformed, in eye space.
         `modelView`: from the frame of the drawable to eye space. `ownProgram`: a program of the application draws
-        it. A drawable whose program does not call geofx_vertex() is never drawn. */
+        it. A drawable whose program does not call geofx_vertex(), and is not adapted, is never drawn. */
     virtual const std::vector<osg::StateSet*>& states(const osg::Drawable& drawable, const EyeBox& box,
                                                       const osg::Matrixd& modelView, bool ownProgram) = 0;
     /// Called for each node with levels of detail that is not outside.
