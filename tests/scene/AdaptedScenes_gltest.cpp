@@ -16,6 +16,7 @@
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/ProgramAdapter.h>
+#include <osgText/Text>
 
 #include <atomic>
 #include <cstring>
@@ -416,6 +417,27 @@ TEST_F(AdaptedScenesTest, AVisitorAdaptsASubgraph)
     const osg::ref_ptr<osg::Image> drawn = render(makeScene({root}));
     EXPECT_TRUE(same(*drawn, *render(makeScene({makeGround(), makeBox(8, {-20, -50, 0}),
                                                 makeBox(8, {20, -50, 0}), makeBox(8, {0, -20, 0})}))));
+}
+
+// Labels have a program of OSG's, which leaves the version to OSG.
+TEST_F(AdaptedScenesTest, LabelsAreAdapted)
+{
+    const osg::ref_ptr<osgText::Text> label = new osgText::Text;
+    label->setText("AHA");
+    label->setCharacterSize(30.0f);
+    label->setPosition({-40.0f, 60.0f, 0.0f});
+    label->setAxisAlignment(osgText::TextBase::XZ_PLANE);
+    const osg::ref_ptr<osg::Image> expected = render(makePlain({label}));
+    EXPECT_GT(covered(*expected), 100);
+    ProgramAdapter adapter;
+    static_cast<osg::Node*>(label.get())->accept(adapter);
+    EXPECT_EQ(adapter.met(), 1u);
+    const osg::ref_ptr<EffectScene> scene = makeScene({label});
+    const osg::ref_ptr<osg::Image> bent = render(scene);
+    EXPECT_GT(covered(*bent), 50);
+    EXPECT_GT(differing(*bent, *expected), 100);
+    scene->getEffect(0)->setEnabled(false);
+    EXPECT_TRUE(same(*render(scene), *expected));
 }
 
 // The tiles of a pager get programs by a loader of the application's; the listener adapts them before they are drawn.

@@ -87,6 +87,8 @@ TEST(ShaderText, DirectivesGoBehindTheVersion)
               "// x\n#version 120\n#define A\n#line 2\nvoid main() {}");
     EXPECT_EQ(ShaderText("#version 330\n#extension X : enable\n").withDirective("#define A"),
               "#version 330\n#define A\n#line 2\n#extension X : enable\n");
+    EXPECT_EQ(ShaderText("$OSG_GLSL_VERSION\nvoid main() {}").withDirective("#define A"),
+              "$OSG_GLSL_VERSION\n#define A\n#line 1\nvoid main() {}");
     EXPECT_EQ(ShaderText("#version 330").withDirective("#define A"), "#version 330\n#define A\n#line 1\n");
 }
 

@@ -85,10 +85,16 @@ void ShaderText::tokenize()
 
 void ShaderText::readVersion()
 {
+    const auto startOfNextLine = [&](std::size_t token)
+    {
+        const std::size_t end = _code.find('\n', _tokens[token].at);
+        return end == std::string::npos ? _code.size() : end + 1;
+    };
+    // OSG puts a version there, as osgText's shaders have it.
+    if (is(0, "$") && is(1, "OSG_GLSL_VERSION")) _afterVersion = startOfNextLine(1);
     if (_tokens.size() < 3 || !is(0, "#") || !is(1, "version")) return;
     _version = std::atoi(_tokens[2].text.c_str());
-    const std::size_t end = _code.find('\n', _tokens[2].at);
-    _afterVersion = end == std::string::npos ? _code.size() : end + 1;
+    _afterVersion = startOfNextLine(2);
     const bool profile = _tokens.size() > 3 && _tokens[3].at < _afterVersion;
     _embedded = _version == 100 || (profile && _tokens[3].text == "es");
 }
