@@ -139,7 +139,7 @@ EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
       _roleCallback(other._roleCallback), _terrainFrame(other._terrainFrame),
-      _drawing(std::make_unique<Drawing>())
+      _engineCulling(other._engineCulling), _drawing(std::make_unique<Drawing>())
 {
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
     {
@@ -293,6 +293,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     if (!now || now->units() != units) now = std::make_unique<CameraState>(effects, mapUnit, units);
     osg::StateSet& state = now->set();
     now->fill(snapshots, view, mapUnit);
+    now->setHorizonClipping(_engineCulling != OPEN);
     const bool surfaces = now->fillSurfaces(effects, view, outer);
 
     CompensatingCullVisitor::Task task;
@@ -302,6 +303,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
     if (!view.image.ofView) task.image = &view.image;
     task.untouched = _drawing->untouched;
     task.tileError = view.ground.tileError;
+    task.open = _engineCulling == OPEN && _compensation && !task.chain->empty();
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
     const bool draws = surfaces || _debugBounds || !task.chain->empty();

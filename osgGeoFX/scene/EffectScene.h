@@ -108,6 +108,18 @@ public:
     /// Decides on the role of each camera, after CameraEffects; null, the default, for none.
     void setRoleCallback(const CameraRoleCallback* callback) { _roleCallback = callback; }
     const CameraRoleCallback* getRoleCallback() const { return _roleCallback.get(); }
+    /** How terrain engines below the group cull that have culling stacks of their own, such as osgEarth's.
+
+        They make these of the cull visitor's mode and projection, and know nothing of the deformation. */
+    enum EngineCulling
+    {
+        AS_IT_IS, ///< the engines cull what they think is out of sight; right where there are none, or nothing is deformed
+        OPEN ///< the engines cull nothing, neither by the frustum nor by the horizon; the group still does
+    };
+    /// AS_IT_IS by default. OPEN takes effect where a deformation is enabled. It also keeps a clamp callback of the host's
+    /// from cutting off what the group draws, and holds osgEarth's horizon clip plane (oe_ClipPlane_plane) neutral.
+    void setEngineCulling(EngineCulling culling) { _engineCulling = culling; }
+    EngineCulling getEngineCulling() const { return _engineCulling; }
     /// AUTOMATIC by default.
     void setTerrainFrame(TerrainFrame frame) { _terrainFrame = frame; }
     TerrainFrame getTerrainFrame() const { return _terrainFrame; }
@@ -176,6 +188,7 @@ private:
     bool _nestedCameras = false;
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     TerrainFrame _terrainFrame = AUTOMATIC;
+    EngineCulling _engineCulling = AS_IT_IS;
     std::unique_ptr<Drawing> _drawing;
 };
 

@@ -105,6 +105,16 @@ void CameraState::fillImage(const ViewGeometry& view)
     put("geofx_viewProjection", view.projection);
 }
 
+void CameraState::setHorizonClipping(bool on)
+{
+    constexpr const char* plane = "oe_ClipPlane_plane";
+    if (on)
+        _set->removeUniform(plane);
+    else if (!_set->getUniform(plane))
+        _set->addUniform(new osg::Uniform(plane, osg::Vec4f(0.0f, 0.0f, 0.0f, 1.0f)),
+                         osg::StateAttribute::OVERRIDE);
+}
+
 void CameraState::fill(const CameraSnapshots& snapshots, const ViewGeometry& view, int mapUnit)
 {
     fillImage(view);

@@ -49,6 +49,8 @@ public:
     const std::shared_ptr<const TextureUnits>& units() const { return _units; }
     osg::StateSet& set() const { return *_set; }
     void fill(const CameraSnapshots& snapshots, const ViewGeometry& view, int mapUnit);
+    /// Whether osgEarth may clip at its horizon.
+    void setHorizonClipping(bool on);
     /// Of the effects that color surfaces; whether there are any at work.
     bool fillSurfaces(const EffectProgram::Effects& effects, const ViewGeometry& geometry,
                       osgUtil::CullVisitor& outer);

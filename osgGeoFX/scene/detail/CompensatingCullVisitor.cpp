@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/DrawableCompanion.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/detail/CullVisitorAccess.h>
+#include <osgGeoFX/scene/detail/OpenCulling.h>
 
 #include <osg/OcclusionQueryNode>
 #include <osg/Projection>
@@ -106,6 +107,8 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     {
         setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
     }
+    // Of this mode, engines make culling stacks of their own.
+    if (task.open) setCullingMode(NO_CULLING);
     pushMatrices(outer);
 
     _mode = Mode();
@@ -130,7 +133,8 @@ void CompensatingCullVisitor::pushMatrices(osgUtil::CullVisitor& outer)
     setVisibility(outer);
     // OSG's own tests, which the base class makes, pass everything.
     if (_task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
-    pushReferenceViewPoint(outer.getReferenceViewPoint());
+    _outerViewPoint = outer.getReferenceViewPoint();
+    pushReferenceViewPoint(_task.open ? raisedViewPoint() : outer.getReferenceViewPoint());
     // OSG knows a matrix by its address, and each stage loads another one behind its back: stages must not share any.
     osg::RefMatrix* modelView =
         _task.stage ? createOrReuseMatrix(own ? own->modelView : osg::Matrixd(*outer.getModelViewMatrix()))
@@ -182,6 +186,7 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
     }
     else if (found)
     {
+        if (_task.open) keepFromBeingCut(outer, depths.nearest(), depths.farthest());
         outer.setCalculatedNearPlane(std::min(outer.getCalculatedNearPlane(), depths.nearest()));
         outer.setCalculatedFarPlane(std::max(outer.getCalculatedFarPlane(), depths.farthest()));
     }
@@ -272,8 +277,9 @@ bool CompensatingCullVisitor::partsInSight(const osg::Node& node, const Ball& un
 void CompensatingCullVisitor::apply(osg::Node& node)
 {
     const Scope scope(*this, node);
-    // A pass needs nothing of nodes that hold no geometry.
-    if (!scope.skip() && !(_task.findsNearAndFar && drawByHost(node))) CullVisitor::apply(node);
+    // A host may collect it even if it is out of sight. A pass needs nothing of nodes that hold no geometry.
+    if (_task.findsNearAndFar && drawByHost(node)) return;
+    if (!scope.skip()) CullVisitor::apply(node);
 }
 
 void CompensatingCullVisitor::apply(osg::Geode& node)

@@ -61,6 +61,7 @@ public:
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;
+        bool open = false;      ///< nothing else is to cull: EffectScene::OPEN
         double tileError = 0.0; ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
         bool findsNearAndFar = true;           ///< false: the camera's stay as they are
@@ -214,6 +215,8 @@ private:
     bool isForeign(const osgUtil::StateGraph& graph) const;
     void setVisibility(const osgUtil::CullVisitor& outer);
     void pushMatrices(osgUtil::CullVisitor& outer);
+    /// Where everything is above the horizon, for those who look for the view point.
+    osg::Vec3 raisedViewPoint() const;
     /// From where levels of detail are chosen, in the view's eye space.
     osg::Vec3d viewPoint() const;
     /// Whether parts of a node that is out of sight, deformed, are in sight since they are not.
@@ -257,6 +260,7 @@ private:
     OwnPrograms _programs;
     UndeformedParts _undeformedParts;
     std::vector<Stranger> _strangers;
+    osg::Vec3d _outerViewPoint;            ///< the outer visitor's reference view point, in eye space
     osgUtil::CullVisitor* _host = nullptr; ///< the outer visitor, if it is of a class of its own
     osg::ref_ptr<osg::StateSet> _ofHost = new osg::StateSet; ///< above what the host adds to the render graph
     osgUtil::StateGraph* _top = nullptr;                     ///< below which all is ours

@@ -58,7 +58,7 @@ void CompensatingCullVisitor::lend(NodeType& node, bool traverses, bool culls)
     {
         // It would cull what is drawn elsewhere, and take its depth.
         host.getCurrentCullingSet().setCullingMask(NO_CULLING);
-        host.setComputeNearFarMode(DO_NOT_COMPUTE_NEAR_FAR);
+        CullVisitorAccess::nearFarMode(host) = DO_NOT_COMPUTE_NEAR_FAR;
     }
     if (!traverses) host.setTraversalMode(TRAVERSE_NONE);
 
@@ -67,7 +67,7 @@ void CompensatingCullVisitor::lend(NodeType& node, bool traverses, bool culls)
     _traversalOrderNumber = CullVisitorAccess::order(host);
     host.setTraversalMode(mode);
     host.popModelViewMatrix();
-    host.setComputeNearFarMode(nearFar);
+    CullVisitorAccess::nearFarMode(host) = nearFar;
     host.getNodePath() = path;
     CullVisitorAccess::overrides(host) = overrides;
     CullVisitorAccess::bins(host) = bins;

@@ -164,11 +164,19 @@ bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
     return _sight.outOfSight(*_mode.chain, EyeBox::of(bounds, matrix), _mode.planes);
 }
 
+osg::Vec3 CompensatingCullVisitor::raisedViewPoint() const
+{
+    // As far above the eye as a thousand Earths are wide: all of the globe's side below is in sight.
+    constexpr double high = 1e10;
+    const osg::Vec3d& up = _task.view->up;
+    return osg::Vec3((_task.image ? osg::Matrixd::transform3x3(up, _task.image->toEye) : up) * high);
+}
+
 osg::Vec3d CompensatingCullVisitor::viewPoint() const
 {
     // In eye space: the origin but for cameras that inherit another one's. All images of a view have the view's own
     // levels of detail.
-    return _task.image ? osg::Vec3d() : osg::Vec3d(getReferenceViewPoint());
+    return _task.image ? osg::Vec3d() : _outerViewPoint;
 }
 
 float CompensatingCullVisitor::getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const

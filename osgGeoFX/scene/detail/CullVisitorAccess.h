@@ -9,7 +9,8 @@
 namespace osgGeoFX
 {
 
-/// Members of OSG's cull visitor that have no accessors; a pointer to member may be formed in a derived class.
+/// Members of OSG's cull visitor that have no accessors, or whose setters keep the visitor from inheriting the camera's settings in
+/// later frames. A pointer to member may be formed in a derived class.
 struct CullVisitorAccess : public osgUtil::CullVisitor
 {
     static unsigned int& order(osgUtil::CullVisitor& visitor)
@@ -27,6 +28,14 @@ struct CullVisitorAccess : public osgUtil::CullVisitor
     static osgUtil::StateGraph*& graph(osgUtil::CullVisitor& visitor)
     {
         return visitor.*(&CullVisitorAccess::_currentStateGraph);
+    }
+    static osg::ref_ptr<ClampProjectionMatrixCallback>& clampCallback(osgUtil::CullVisitor& visitor)
+    {
+        return visitor.*(&CullVisitorAccess::_clampProjectionMatrixCallback);
+    }
+    static ComputeNearFarMode& nearFarMode(osgUtil::CullVisitor& visitor)
+    {
+        return visitor.*(&CullVisitorAccess::_computeNearFar);
     }
     static osgUtil::RenderBin*& bin(osgUtil::CullVisitor& visitor)
     {
