@@ -41,6 +41,15 @@ EyeBox around(const Hull& hull, const EyeBox& former)
     return box;
 }
 
+/// The distance within which a node of another engine shows the finer one of its two levels, which need not be loaded yet; 0
+/// where it has no such levels.
+double rangeOfFiner(const osg::LOD& node)
+{
+    if (node.getRangeMode() != osg::LOD::DISTANCE_FROM_EYE_POINT || node.getNumRanges() != 2) return 0.0;
+    const unsigned int finer = node.getMinRange(0) < node.getMinRange(1) ? 0 : 1;
+    return node.getMinRange(finer) <= 0.0f ? static_cast<double>(node.getMaxRange(finer)) : 0.0;
+}
+
 } // namespace
 
 DeformationChain::~DeformationChain() = default;
@@ -141,13 +150,20 @@ bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
 double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
 {
     if (_tileEdge <= 0.0 || _snapshots.empty()) return HUGE_VAL;
-    if (!TileInfo::coarseOf(node)) return blockLimit(node, ball);
+    double range = 0.0;
+    if (TileInfo::coarseOf(node))
+        range = static_cast<double>(node.getMaxRange(1));
+    else if (_ownTiles || TileInfo::meshesOf(node))
+        return blockLimit(node, ball);
+    else
+        range = rangeOfFiner(node);
+    if (!(range > 0.0)) return HUGE_VAL;
     const double share = longestEdge(ball) / (_tileEdge * ball.radius);
     if (!(share < 1.0)) return HUGE_VAL;
     // An edge misses its curve by its square. So to a pager the finer tiles are as urgent as those of relief that is as many times
     // too coarse; a sea far too coarse for a bend that is new would else wait for relief that is nearly right.
     constexpr double least = 0.001, most = 0.999;
-    return std::clamp(share * share, least, most) * static_cast<double>(node.getMaxRange(1));
+    return std::clamp(share * share, least, most) * range;
 }
 
 /// Within it, the block's mesh has edges that are short enough.

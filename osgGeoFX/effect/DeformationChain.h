@@ -28,11 +28,13 @@ public:
         _looksAtBoxes = _looksAtBoxes || snapshot->looksAtBoxes();
         _snapshots.push_back(std::move(snapshot));
     }
-    /// Sets the values of Ground::tileEdge and Ground::tileError, which lodLimit() needs.
-    void setTiles(double edge, double error)
+    /// Sets the values of Ground::tileEdge and Ground::tileError, which lodLimit() needs. `ownTiles`: whether they are
+    /// those of the kit's tiles only; otherwise they hold for any node with two levels.
+    void setTiles(double edge, double error, bool ownTiles = true)
     {
         _tileEdge = edge;
         _tileError = error;
+        _ownTiles = ownTiles;
     }
     bool empty() const { return _snapshots.empty(); }
     const std::vector<osg::ref_ptr<const DeformationSnapshot>>& snapshots() const { return _snapshots; }
@@ -84,6 +86,7 @@ private:
     bool _looksAtBoxes = false;
     double _tileEdge = 0.0;
     double _tileError = 0.0;
+    bool _ownTiles = true;
 };
 
 /// Whether a subgraph is deformed. This depends on the define GEOFX_DEFORMATION and on the program, in the state sets

@@ -22,11 +22,12 @@ struct OSGGEOFX_EXPORT Ground
     double minHeight = 0.0; ///< heights of the terrain, metres; both are 0 if unknown
     double maxHeight = 0.0;
     /// How far finer tiles can stick out of a coarser tile's box, for each metre by which the coarser tile's LOD range
-    /// exceeds its radius. 0 if the database is not one of the kit.
+    /// exceeds its radius. 0 if unknown. Of other databases whose `tileEdge` is stated, a usual value.
     double tileError = 0.0;
-    /// The longest edge of a tile's mesh, as a share of the tile's radius. 0 if the database is not one of the kit.
+    /// The longest edge of a tile's mesh, as a share of the tile's radius. 0 if neither the database nor the application
+    /// says so.
     double tileEdge = 0.0;
-    bool heightsKnown = false; ///< whether the database tells its heights
+    bool heightsKnown = false; ///< whether the database or the application tells the heights
     /// The latitude of the middle of a geocentric database of the kit, radians; otherwise 45° north. Effects that
     /// depend on the climate use it.
     double latitude = 0.25 * osg::PI;

@@ -138,7 +138,7 @@ EffectScene::EffectScene() : _drawing(std::make_unique<Drawing>())
 EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
-      _roleCallback(other._roleCallback), _terrainFrame(other._terrainFrame),
+      _roleCallback(other._roleCallback), _groundDescription(other._groundDescription),
       _engineCulling(other._engineCulling), _drawing(std::make_unique<Drawing>())
 {
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
@@ -188,6 +188,19 @@ void EffectScene::addFunctions(osg::Program& program)
 void EffectScene::adapt(osg::Program& program)
 {
     AdaptedPrograms::instance().add(program);
+}
+
+bool EffectScene::setGround(const GroundDescription& description)
+{
+    const std::string fault = description.fault();
+    if (!fault.empty())
+    {
+        OSG_WARN << "osgGeoFX: EffectScene::setGround: " << fault << " The former description stays."
+                 << std::endl;
+        return false;
+    }
+    _groundDescription = description;
+    return true;
 }
 
 Ground EffectScene::ground(const osg::NodePath& above) const

@@ -15,6 +15,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace osgGeoFX
@@ -85,6 +86,23 @@ public:
         PROJECTED
     };
 
+    /** What an application says of terrain that is not one of the kit's databases, which say all of this themselves.
+        What is left open here follows from the database, where it says so. */
+    struct OSGGEOFX_EXPORT GroundDescription
+    {
+        TerrainFrame frame = AUTOMATIC;
+        /// The least and the greatest height of the ground, metres above the ellipsoid, or above z = 0 where the frame is
+        /// projected; −12 000…100 000. State both or neither. Without them, a bend does not know what would fold over.
+        std::optional<double> minHeight, maxHeight;
+        /// The least number of edges of triangles along a side of a tile, 1…4,096. 0, the default: unknown. Where it is
+        /// known, tiles with two levels of detail become finer where a deformation bends them more than their triangles
+        /// can follow. Where there are no finer tiles, MeshRefiner helps.
+        int tileCells = 0;
+
+        /// A sentence that tells why the description cannot be right, and the remedy; empty where it can.
+        std::string fault() const;
+    };
+
     /// Adds an effect after the others. Null, and an effect that the scene already has, are refused with a warning.
     bool addEffect(Effect* effect);
     /// Removes an effect. False if the scene does not have it.
@@ -121,8 +139,12 @@ public:
     void setEngineCulling(EngineCulling culling) { _engineCulling = culling; }
     EngineCulling getEngineCulling() const { return _engineCulling; }
     /// AUTOMATIC by default.
-    void setTerrainFrame(TerrainFrame frame) { _terrainFrame = frame; }
-    TerrainFrame getTerrainFrame() const { return _terrainFrame; }
+    void setTerrainFrame(TerrainFrame frame) { _groundDescription.frame = frame; }
+    TerrainFrame getTerrainFrame() const { return _groundDescription.frame; }
+    /// States what the ground is like. It includes the terrain frame. A description with a fault is refused with a
+    /// warning, and the former one stays. Call it between frames.
+    bool setGround(const GroundDescription& description);
+    const GroundDescription& getGround() const { return _groundDescription; }
 
     /** Adds the functions geofx_vertex, geofx_normal and geofx_fragment to a program, as functions that do nothing. An
         EffectScene does not draw with this program, but with a copy that has the functions of its own effects. So
@@ -165,7 +187,7 @@ public:
     /// Lets effects process a tile on the thread of the pager that reads it, instead of in the first frame that shows
     /// it. This applies to the effects that the scene has now. It may be called again.
     void listenTo(TileGuard& guard);
-    /// What is known of the ground. `above`: the nodes above the group.
+    /// What is known of the ground, stated or found. `above`: the nodes above the group.
     Ground ground(const osg::NodePath& above = {}) const;
 
     void traverse(osg::NodeVisitor& visitor) override;
@@ -187,7 +209,7 @@ private:
     bool _debugBounds = false;
     bool _nestedCameras = false;
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
-    TerrainFrame _terrainFrame = AUTOMATIC;
+    GroundDescription _groundDescription;
     EngineCulling _engineCulling = AS_IT_IS;
     std::unique_ptr<Drawing> _drawing;
 };

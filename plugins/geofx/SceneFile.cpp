@@ -35,7 +35,11 @@ public:
         SceneFile result;
         xmlNode* terrain = child(root, "terrain");
         result.place = _xml.place(terrain);
-        if (xmlNode* database = child(terrain, "database")) result.database = _xml.path(database, "file");
+        if (xmlNode* database = child(terrain, "database"))
+        {
+            result.database = _xml.path(database, "file");
+            result.ground = ground(database);
+        }
         if (xmlNode* rasterNode = child(terrain, "rasters")) result.rasters = rasters(rasterNode);
         if (xmlNode* view = child(root, "homeView")) result.homeView = homeView(view);
         if (xmlNode* sunNode = child(root, "sun"))
@@ -55,6 +59,20 @@ private:
     {
         const std::array<double, 4> rgba = SceneXml::color(node, name);
         return {rgba[0], rgba[1], rgba[2]};
+    }
+
+    EffectScene::GroundDescription ground(xmlNode* node) const
+    {
+        EffectScene::GroundDescription result;
+        const std::string frame = attributeOf(node, "frame");
+        if (frame == "geocentric") result.frame = EffectScene::GEOCENTRIC;
+        if (frame == "projected") result.frame = EffectScene::PROJECTED;
+        if (!attributeOf(node, "minHeight").empty()) result.minHeight = real(node, "minHeight");
+        if (!attributeOf(node, "maxHeight").empty()) result.maxHeight = real(node, "maxHeight");
+        result.tileCells = integer(node, "tileCells");
+        const std::string fault = result.fault();
+        if (!fault.empty()) _xml.fail(node, fault);
+        return result;
     }
 
     SceneRasters rasters(xmlNode* node) const

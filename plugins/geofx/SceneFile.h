@@ -6,6 +6,7 @@
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
+#include <osgGeoFX/scene/EffectScene.h>
 
 #include <osg/ref_ptr>
 
@@ -212,6 +213,7 @@ struct SceneFile
     // One of these two.
     std::optional<ScenePath> database;
     std::optional<SceneRasters> rasters;
+    EffectScene::GroundDescription ground; ///< what is stated of the database
 
     std::optional<SceneView> homeView;
     std::optional<SceneSun> sun;

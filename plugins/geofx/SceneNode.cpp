@@ -147,6 +147,7 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
     else
     {
         effects = new EffectScene;
+        effects->setGround(scene.ground);
         for (const osg::ref_ptr<Effect>& effect : scene.effects)
             effects->addEffect(effect);
         group = effects;

@@ -78,6 +78,44 @@ bool writeTerrainFrame(osgDB::OutputStream& stream, const EffectScene& scene)
     return true;
 }
 
+bool hasGround(const EffectScene& scene)
+{
+    return scene.getGround().minHeight || scene.getGround().tileCells != 0;
+}
+
+/// Whether heights are stated, both heights, and the number of cells.
+bool readGround(osgDB::InputStream& stream, EffectScene& scene)
+{
+    std::string stated, texts[2];
+    EffectScene::GroundDescription ground = scene.getGround();
+    stream >> stated >> texts[0] >> texts[1] >> ground.tileCells;
+    double heights[2] = {};
+    bool good = stated == "HEIGHTS" || stated == "UNKNOWN";
+    for (int i = 0; i < 2; ++i)
+        good = parseExact(texts[i], heights[i]) && good;
+    if (stated == "HEIGHTS")
+    {
+        ground.minHeight = heights[0];
+        ground.maxHeight = heights[1];
+    }
+    const std::string fault =
+        good ? ground.fault() : "Ground must be HEIGHTS or UNKNOWN, two heights and a number of cells.";
+    if (fault.empty())
+        scene.setGround(ground);
+    else
+        OSG_WARN << "osgGeoFX: A file is wrong: EffectScene: " << fault << " The default stays." << std::endl;
+    return true;
+}
+
+bool writeGround(osgDB::OutputStream& stream, const EffectScene& scene)
+{
+    const EffectScene::GroundDescription& ground = scene.getGround();
+    stream << std::string(ground.minHeight ? "HEIGHTS" : "UNKNOWN")
+           << exactText(ground.minHeight.value_or(0.0)) << exactText(ground.maxHeight.value_or(0.0))
+           << ground.tileCells << std::endl;
+    return true;
+}
+
 bool hasReference(const RigidReference& node)
 {
     return node.getReference() != osg::Vec3d();
@@ -130,6 +168,8 @@ void addSceneProperties(const char*, osgDB::ObjectWrapper* wrapper)
     addFlag(*wrapper, "DebugBounds", &EffectScene::getDebugBounds, &EffectScene::setDebugBounds);
     addFlag(*wrapper, "NestedCameras", &EffectScene::getNestedCameras, &EffectScene::setNestedCameras);
     wrapper->addSerializer(new Effects("TerrainFrame", hasTerrainFrame, readTerrainFrame, writeTerrainFrame),
+                           osgDB::BaseSerializer::RW_USER);
+    wrapper->addSerializer(new Effects("Ground", hasGround, readGround, writeGround),
                            osgDB::BaseSerializer::RW_USER);
 }
 

@@ -257,6 +257,50 @@ TEST(DeformationMeasures, BlocksTakeTheCoarsestMeshWhoseEdgesAreShortEnough)
     EXPECT_EQ(nothing->lodLimit(*blockOf({1e3, 1e4}), {osg::Vec3d(0.0, 0.0, -10.0), 1.0}), HUGE_VAL);
 }
 
+TEST(DeformationMeasures, TilesOfOthersBecomeFinerAsThoseOfTheKit)
+{
+    // The finer level of the kit's tiles comes last, that of others as their makers like it.
+    const auto levels = [](bool finerFirst, const char* name)
+    {
+        const osg::ref_ptr<osg::LOD> node = new osg::LOD;
+        const osg::ref_ptr<osg::MatrixTransform> mesh = new osg::MatrixTransform;
+        mesh->setName(name);
+        if (finerFirst) node->addChild(new osg::Group, 0.0f, 700.0f);
+        node->addChild(mesh, 700.0f, 1e9f);
+        if (!finerFirst) node->addChild(new osg::Group, 0.0f, 700.0f);
+        return node;
+    };
+    const osg::ref_ptr<osg::LOD> own = levels(false, "tile 0/0/0");
+    int limited = 0;
+    forSamples(200,
+               [&](Random& random)
+               {
+                   const osgGeoFX::ViewGeometry view = randomView(random);
+                   const Fold fold(random, view);
+                   ASSERT_TRUE(fold.snapshot);
+                   const osg::ref_ptr<DeformationChain> chain = new DeformationChain;
+                   chain->add(fold.snapshot);
+                   const Ball ball{fold.bend.point(0.5 * fold.bend.size, 0.0, 0.0), 0.3 * fold.bend.size};
+                   chain->setTiles(0.5, 1e-3);
+                   const double limit = chain->lodLimit(*own, ball);
+                   for (const bool finerFirst : {false, true})
+                   {
+                       const osg::ref_ptr<osg::LOD> foreign = levels(finerFirst, "");
+                       EXPECT_EQ(chain->lodLimit(*foreign, ball), HUGE_VAL) << "a house in the kit's terrain";
+                       chain->setTiles(0.5, 1e-3, false);
+                       EXPECT_EQ(chain->lodLimit(*foreign, ball), limit);
+                       foreign->setRangeMode(osg::LOD::PIXEL_SIZE_ON_SCREEN);
+                       EXPECT_EQ(chain->lodLimit(*foreign, ball), HUGE_VAL);
+                       foreign->setRangeMode(osg::LOD::DISTANCE_FROM_EYE_POINT);
+                       foreign->addChild(new osg::Group, 0.0f, 10.0f);
+                       EXPECT_EQ(chain->lodLimit(*foreign, ball), HUGE_VAL) << "of three, no one knows which";
+                       chain->setTiles(0.5, 1e-3);
+                   }
+                   if (limit < 700.0) ++limited;
+               });
+    EXPECT_GT(limited, 50);
+}
+
 TEST(DeformationMeasures, EdgesThatAreShortEnoughMissTheirImagesByTheTolerance)
 {
     // A tile as the kit's databases have them: a coarse mesh beside finer levels.

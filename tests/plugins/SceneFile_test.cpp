@@ -98,6 +98,24 @@ TEST(SceneFile, ReadsAllThatASceneSays)
     EXPECT_EQ(*scene.background, (osgGeoFX::SceneColor{1.0, 128.0 / 255.0, 0.0}));
 }
 
+TEST(SceneFile, ReadsWhatIsStatedOfADatabaseOfAnotherMaker)
+{
+    const SceneFile scene = parsed("<geofx version='1'><terrain><database file='a.osgb' frame='geocentric' "
+                                   "minHeight='-2.5' maxHeight='2110' tileCells='24'/></terrain></geofx>");
+    EXPECT_EQ(scene.ground.frame, osgGeoFX::EffectScene::GEOCENTRIC);
+    EXPECT_EQ(scene.ground.minHeight, -2.5);
+    EXPECT_EQ(scene.ground.maxHeight, 2110.0);
+    EXPECT_EQ(scene.ground.tileCells, 24);
+    const SceneFile projected =
+        parsed("<geofx version='1'><terrain><database file='a.osgb' frame='projected'/>"
+               "</terrain></geofx>");
+    EXPECT_EQ(projected.ground.frame, osgGeoFX::EffectScene::PROJECTED);
+    const SceneFile plain = parsed(sceneWith(""));
+    EXPECT_EQ(plain.ground.frame, osgGeoFX::EffectScene::AUTOMATIC);
+    EXPECT_FALSE(plain.ground.minHeight || plain.ground.maxHeight);
+    EXPECT_EQ(plain.ground.tileCells, 0);
+}
+
 TEST(SceneFile, HasTheSchemasDefaults)
 {
     const SceneFile scene = parsed(rastersWith("", "<dem file='a.tif'/>"));
@@ -235,6 +253,23 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:2: <terrain>: ", "expected: <database> or <rasters>."},
         Mistake{"TwoTerrains", sceneWith(terrain),
                 "x.geofx:2: <terrain>: ", "expected: at most one each of <terrain>"},
+        Mistake{"UnknownFrame",
+                "<geofx version='1'><terrain>\n<database file='a' frame='flat'/></terrain></geofx>",
+                "x.geofx:2: <database>: frame=\"flat\" ", "\"geocentric\" (coordinates are metres"},
+        Mistake{"OneHeight",
+                "<geofx version='1'><terrain>\n<database file='a' minHeight='1'/></terrain></geofx>",
+                "x.geofx:2: <database>: ", "minHeight and maxHeight must be stated together"},
+        Mistake{"HeightsUpsideDown",
+                "<geofx version='1'><terrain>\n<database file='a' minHeight='2' "
+                "maxHeight='1'/></terrain></geofx>",
+                "x.geofx:2: <database>: ", "minHeight must not be above maxHeight"},
+        Mistake{"HeightOutOfRange",
+                "<geofx version='1'><terrain>\n<database file='a' minHeight='2' "
+                "maxHeight='1e9'/></terrain></geofx>",
+                "x.geofx:2: <database>: maxHeight=", "metres, from -12000 to 100000"},
+        Mistake{"HalfACell",
+                "<geofx version='1'><terrain>\n<database file='a' tileCells='2.5'/></terrain></geofx>",
+                "x.geofx:2: <database>: tileCells=", "a whole number from 1 to 4096"},
         Mistake{"DatabaseAndRasters",
                 "<geofx version='1'><terrain><database file='a'/>\n<rasters><dem "
                 "file='b'/></rasters></terrain></geofx>",

@@ -142,6 +142,26 @@ TEST_F(ScenePlugin, EffectsStandAboveTerrainAndSun)
     EXPECT_NE(others->getEffect(0), effects->getEffect(0));
 }
 
+TEST_F(ScenePlugin, WhatTheSceneStatesOfTheGroundReachesTheEffects)
+{
+    const TempDir folder;
+    // As other engines have it: geocentric, and nothing that says so.
+    writeTerrain(folder, new osg::CoordinateSystemNode, osg::Vec3d(6378137.0, 0.0, 0.0));
+    const auto file = folder.write("a.geofx", "<geofx version='1'><terrain><database file='terrain.osgb' "
+                                              "frame='geocentric' minHeight='-4' maxHeight='1500' "
+                                              "tileCells='8'/></terrain>"
+                                              "<effects><birdsEyeView/></effects></geofx>");
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file.string());
+    const auto* effects = dynamic_cast<const osgGeoFX::EffectScene*>(node.get());
+    ASSERT_TRUE(effects);
+    const osgGeoFX::Ground ground = effects->ground();
+    EXPECT_TRUE(ground.ellipsoid);
+    EXPECT_TRUE(ground.heightsKnown);
+    EXPECT_EQ(ground.minHeight, -4.0);
+    EXPECT_EQ(ground.maxHeight, 1500.0);
+    EXPECT_EQ(ground.tileEdge, 0.25);
+}
+
 TEST_F(ScenePlugin, ASceneWithoutEffectsIsAPlainGroup)
 {
     const TempDir folder;

@@ -82,6 +82,33 @@ TEST_F(SerializersInput, WrongValuesLeaveTheDefaultWithAWarning)
     EXPECT_EQ(read->getProperty("mapUnit"), 1.0);
 }
 
+TEST_F(SerializersInput, AWrongGroundLeavesTheDefaultWithAWarning)
+{
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    ASSERT_TRUE(scene->setGround({EffectScene::GEOCENTRIC, 1.0, 2.0, 3}));
+    const std::string file = (_folder / "ground.osgt").string();
+    ASSERT_TRUE(osgDB::writeNodeFile(*scene, file));
+    const std::string good = contentOf(file), line = "Ground HEIGHTS 1 2 3";
+    ASSERT_NE(good.find(line), std::string::npos) << good;
+    for (const char* wrong : {"Ground HEIGHTS 2 1 3", "Ground DEPTHS 1 2 3", "Ground HEIGHTS 1 2x 3",
+                              "Ground HEIGHTS 1 2 -3", "Ground HEIGHTS 1 nan 3"})
+    {
+        SCOPED_TRACE(wrong);
+        std::string text = good;
+        text.replace(text.find(line), line.size(), wrong);
+        osg::ref_ptr<osg::Node> node;
+        const auto said = _watch.messagesOf(
+            [&] { node = osgDB::readRefNodeFile(_folder.write("wrong.osgt", text).string()); });
+        auto* read = dynamic_cast<EffectScene*>(node.get());
+        ASSERT_TRUE(read);
+        EXPECT_FALSE(read->getGround().minHeight);
+        EXPECT_EQ(read->getGround().tileCells, 0);
+        EXPECT_EQ(read->getTerrainFrame(), EffectScene::GEOCENTRIC) << "what else the file says is taken";
+        ASSERT_EQ(said.size(), 1u);
+        EXPECT_NE(said[0].find("osgGeoFX: A file is wrong: EffectScene: "), std::string::npos) << said[0];
+    }
+}
+
 TEST_F(SerializersInput, OsgsOptionsForItsFormatsWork)
 {
     const osg::ref_ptr<EffectScene> scene = fullScene();

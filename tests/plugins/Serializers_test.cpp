@@ -187,6 +187,18 @@ const std::vector<Setting<EffectScene>>& sceneSettings()
          [](auto& s) { return s.getTerrainFrame(); }, EffectScene::AUTOMATIC, EffectScene::GEOCENTRIC},
         {[](auto& s) { s.setTerrainFrame(EffectScene::PROJECTED); },
          [](auto& s) { return s.getTerrainFrame(); }, EffectScene::AUTOMATIC, EffectScene::PROJECTED},
+        {[](auto& s) {
+             s.setGround({EffectScene::AUTOMATIC, -7.25, 1.0 / 3.0, 0});
+         },
+         [](auto& s) { return s.getGround().minHeight.value_or(-1e30); }, -1e30, -7.25},
+        {[](auto& s) {
+             s.setGround({EffectScene::AUTOMATIC, -7.25, 1.0 / 3.0, 0});
+         },
+         [](auto& s) { return s.getGround().maxHeight.value_or(-1e30); }, -1e30, 1.0 / 3.0},
+        {[](auto& s) {
+             s.setGround({EffectScene::AUTOMATIC, std::nullopt, std::nullopt, 32});
+         },
+         [](auto& s) { return s.getGround().tileCells; }, 0.0, 32.0},
         {[](auto& s) { s.addEffect(new BirdsEyeView); }, [](auto& s) { return s.getNumEffects(); }, 0.0, 1.0},
     };
     return all;

@@ -4,6 +4,7 @@
 // What an EffectScene finds out of the ground below it, and how much of the graph it looks at for that: by counting, not by time.
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <tools/NotifyWatch.h>
 
 #include <gtest/gtest.h>
 #include <osg/CoordinateSystemNode>
@@ -11,6 +12,8 @@
 #include <osg/MatrixTransform>
 #include <osg/ValueObject>
 
+#include <cmath>
+#include <functional>
 #include <string>
 
 using namespace osgGeoFX;
@@ -218,4 +221,67 @@ TEST(GroundSearch, AGlobeWithoutASystemHasOneEllipsoid)
     EXPECT_EQ(first.ellipsoid, scene->ground().ellipsoid)
         << "effects tell by it whether the ground has changed";
     EXPECT_EQ(first.ellipsoid->getRadiusEquator(), osg::WGS_84_RADIUS_EQUATOR);
+}
+
+TEST(GroundSearch, WhatIsStatedComesFirstAndADatabaseFillsTheRest)
+{
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    EffectScene::GroundDescription stated;
+    stated.minHeight = -3.0;
+    stated.maxHeight = 2110.0;
+    stated.tileCells = 16;
+    ASSERT_TRUE(scene->setGround(stated));
+    Ground ground = scene->ground();
+    EXPECT_TRUE(ground.heightsKnown);
+    EXPECT_EQ(ground.minHeight, -3.0);
+    EXPECT_EQ(ground.maxHeight, 2110.0);
+    EXPECT_EQ(ground.tileEdge, 0.125) << "the diagonal of one of 16 cells, in halves of the tile's";
+    EXPECT_GT(ground.tileError, 0.0) << "without an error no edge would be short enough";
+    EXPECT_FALSE(ground.ellipsoid);
+    EXPECT_FALSE(ground.terrain.valid());
+
+    // A database of the kit below: its ellipsoid and latitude, and the heights that were stated.
+    scene->addChild(makeTerrainRoot(567.0));
+    ground = scene->ground();
+    EXPECT_EQ(radiusOf(ground), 6.4e6);
+    EXPECT_TRUE(ground.terrain.valid());
+    EXPECT_EQ(ground.maxHeight, 2110.0);
+    // Nothing but the frame is stated.
+    stated = {};
+    stated.frame = EffectScene::PROJECTED;
+    ASSERT_TRUE(scene->setGround(stated));
+    EXPECT_EQ(scene->getTerrainFrame(), EffectScene::PROJECTED);
+    ground = scene->ground();
+    EXPECT_FALSE(ground.ellipsoid);
+    EXPECT_EQ(ground.maxHeight, 567.0);
+    EXPECT_EQ(ground.tileEdge, 0.0);
+}
+
+TEST(GroundSearch, ADescriptionThatCannotBeRightIsRefusedInASentence)
+{
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    EffectScene::GroundDescription good;
+    good.minHeight = 1.0;
+    good.maxHeight = 2.0;
+    ASSERT_TRUE(scene->setGround(good));
+    geofx::test::NotifyWatch watch;
+    const auto refused =
+        [&](const std::string& why, const std::function<void(EffectScene::GroundDescription&)>& change)
+    {
+        EffectScene::GroundDescription bad = good;
+        change(bad);
+        const auto said = watch.messagesOf([&] { EXPECT_FALSE(scene->setGround(bad)); });
+        ASSERT_EQ(said.size(), 1u);
+        EXPECT_NE(said[0].find(why), std::string::npos) << said[0];
+        EXPECT_EQ(scene->getGround().maxHeight, 2.0) << "the former one stays";
+        EXPECT_EQ(scene->getGround().tileCells, 0);
+    };
+    refused("together", [](auto& each) { each.maxHeight.reset(); });
+    refused("together", [](auto& each) { each.minHeight.reset(); });
+    refused("must not be above", [](auto& each) { each.maxHeight = 0.5; });
+    refused("-12000 to 100000", [](auto& each) { each.minHeight = -12001.0; });
+    refused("-12000 to 100000", [](auto& each) { each.maxHeight = 1e5 + 1.0; });
+    refused("-12000 to 100000", [](auto& each) { each.maxHeight = std::nan(""); });
+    refused("tileCells", [](auto& each) { each.tileCells = -1; });
+    refused("tileCells", [](auto& each) { each.tileCells = 4097; });
 }

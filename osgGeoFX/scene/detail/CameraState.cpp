@@ -56,7 +56,7 @@ CameraSnapshots::CameraSnapshots(const EffectProgram::Effects& effects, const Vi
 osg::ref_ptr<DeformationChain> CameraSnapshots::chain(const Ground& ground) const
 {
     osg::ref_ptr<DeformationChain> result = new DeformationChain;
-    result->setTiles(ground.tileEdge, ground.tileError);
+    result->setTiles(ground.tileEdge, ground.tileError, ground.terrain.get() != nullptr);
     for (const Placed& placed : _all)
     {
         if (placed.snapshot) result->add(placed.snapshot);

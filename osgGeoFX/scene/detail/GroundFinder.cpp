@@ -30,6 +30,21 @@ bool isTerrainRoot(const osg::Node& node)
            isSystem(node);
 }
 
+/// What an application states comes before what a database says.
+void addStated(const EffectScene::GroundDescription& stated, Ground& ground)
+{
+    if (stated.minHeight)
+    {
+        ground.heightsKnown = true;
+        ground.minHeight = *stated.minHeight;
+        ground.maxHeight = *stated.maxHeight;
+    }
+    if (stated.tileCells == 0) return;
+    ground.tileEdge = 2.0 / stated.tileCells;
+    // Two pixels of a picture with 1,000 of them for a radian, as in the kit's databases.
+    if (ground.tileError == 0.0) ground.tileError = 0.002;
+}
+
 } // namespace
 
 GroundFinder::GroundFinder() : _systems(&isSystem, deepestSystem), _terrains(&isTerrainRoot, deepestTerrain)
@@ -88,7 +103,23 @@ Ground GroundFinder::find(const EffectScene& scene, const osg::NodePath& above)
         // The diagonal of a cell, and half of the tile's.
         if (info->tileCells > 0) ground.tileEdge = 2.0 / info->tileCells;
     }
+    addStated(scene.getGround(), ground);
     return ground;
+}
+
+std::string EffectScene::GroundDescription::fault() const
+{
+    constexpr double lowest = -12000.0, highest = 100000.0;
+    constexpr int mostCells = 4096;
+    if (minHeight.has_value() != maxHeight.has_value())
+        return "minHeight and maxHeight must be stated together, or neither of them.";
+    if (minHeight && !(*minHeight >= lowest && *minHeight <= *maxHeight && *maxHeight <= highest))
+        return "minHeight and maxHeight must be metres from -12000 to 100000, and minHeight must not be "
+               "above "
+               "maxHeight.";
+    if (tileCells < 0 || tileCells > mostCells)
+        return "tileCells must be a whole number from 1 to 4096, or 0 where it is unknown.";
+    return {};
 }
 
 } // namespace osgGeoFX
