@@ -38,6 +38,7 @@
 #include <osgGeoFX/scene/DeformedIntersector.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/MeshRefiner.h>
 #include <osgGeoFX/scene/ProgramAdapter.h>
 #include <osgGeoFX/scene/RigidReference.h>
 

@@ -51,6 +51,8 @@ public:
     }
     const Properties& properties() const override;
     std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const override;
+    double mostCurvatureOf(Curve curve, const CameraRange& cameras) const override;
+    double heightShare(const Ground& ground, double curvature) const override;
 
 protected:
     ~BlendedView() override;

@@ -33,6 +33,7 @@ public:
 
     const Properties& properties() const override;
     std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const override;
+    double mostCurvatureOf(Curve curve, const CameraRange& cameras) const override;
 
 protected:
     ~PedestrianView() override;

@@ -91,7 +91,16 @@ public:
     /// The same for a given curve, which may differ from this view's own curve.
     virtual std::optional<BendPlacement> placementOf(Curve curve, const ViewGeometry& view) const = 0;
 
+    /// The largest curvature, 1/metre, that the bend has for any of the cameras. The default is that at which the ground
+    /// would fold.
+    virtual double mostCurvatureOf(Curve curve, const CameraRange& cameras) const;
+    /// The largest distance of the ground from T, as a share of the radius of a bend with this curvature, 1/metre; 0.3 if
+    /// the heights or the level of T are not known.
+    virtual double heightShare(const Ground& ground, double curvature) const;
+
     osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
+    double longestEdge(const CameraRange& cameras, double tolerance) const override;
+    double mostGrowth(const Ground& ground) const override;
     std::string vertexFile() const override { return "stages/bendview.glsl"; }
     /// Empty if the context has the same style as the focus.
     std::string fragmentFile() const override;
@@ -111,6 +120,10 @@ protected:
     /// The largest curvature, 1/metre, at which nothing folds over in a bend with the sign of `angle`. `reach` is a
     /// distance on T from the eye, metres: on a globe the ground falls away below T within it.
     double mostCurvature(const ViewGeometry& view, double angle, double reach) const;
+    /// The curvature at which the ground would fold in a bend with the sign of `angle`, with the margin that bends keep.
+    double foldCurvature(const Ground& ground, double angle) const;
+    /// The least height above T, metres, of the cameras' eyes.
+    double leastPlaneHeight(const CameraRange& cameras) const;
     /// The direction D of the view in T, in eye space. Its length falls from 1 to 0 as the camera's roll approaches
     /// 90°.
     static osg::Vec3d heading(const ViewGeometry& view);

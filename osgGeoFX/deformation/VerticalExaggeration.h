@@ -40,6 +40,8 @@ public:
     const Properties& properties() const override;
     osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
     void changeGround(Ground& ground) const override;
+    double longestEdge(const CameraRange& cameras, double tolerance) const override;
+    double mostGrowth(const Ground& ground) const override;
     std::string vertexFile() const override { return "stages/exaggeration.glsl"; }
     std::string normalFile() const override { return vertexFile(); }
 

@@ -165,6 +165,18 @@ public:
     /// Changes the ground to what it is after this deformation, for the deformations that follow in the scene.
     virtual void changeGround(Ground&) const {}
 
+    /// The longest edge, metres, that a flat mesh of the ground may have anywhere, whichever of the cameras looks;
+    /// HUGE_VAL, the default, for no limit. Only the ends of an edge are deformed, so the edge misses its curved image.
+    /// The error must not exceed `tolerance`, a share of the distance from the eye, where nothing folds and edges climb
+    /// by at most a quarter of their length; steeper ones are short in any mesh of a ground. DeformationSnapshot::longestEdge()
+    /// tells the same for one camera and place, and is larger.
+    virtual double longestEdge(const CameraRange&, [[maybe_unused]] double tolerance) const
+    {
+        return HUGE_VAL;
+    }
+    /// The largest factor by which an edge of the ground grows, for the deformations that follow; 1 by default.
+    virtual double mostGrowth(const Ground&) const { return 1.0; }
+
     /// The vertex shader file. `SLOT_` in it stands for the prefix of its names.
     virtual std::string vertexFile() const = 0;
     /// The fragment shader file with `vec4 SLOT_restyle(vec4 color, vec4 map, float style)`; empty, the default, for

@@ -34,6 +34,16 @@ struct OSGGEOFX_EXPORT Ground
     osg::observer_ptr<const osg::Node> terrain; ///< the root of the kit's database; null for other databases
 };
 
+/// The cameras that a mesh is made for before it is drawn: all those with one lens above a ground. They may look anywhere
+/// and be rolled by up to 60°.
+/// @ingroup effect
+struct OSGGEOFX_EXPORT CameraRange
+{
+    Ground ground;
+    osg::Matrixd projection;  ///< of all of them
+    double distance = 1000.0; ///< no eye is nearer to the ground, metres; > 0
+};
+
 /** One view of a terrain, in double precision and in its eye space (x right, y up, −z forward, metres).
 
     Coordinates in eye space are small compared with those of a geocentric world. A modelview matrix that scales is

@@ -236,6 +236,7 @@ public:
 
     const Properties& properties() const override;
     osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
+    double longestEdge(const CameraRange& cameras, double tolerance) const override;
     std::string vertexFile() const override { return "stages/panorama.glsl"; }
 
     using Deformation::asPassEffect;

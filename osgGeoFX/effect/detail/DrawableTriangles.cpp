@@ -278,6 +278,7 @@ DrawableTriangles::DrawableTriangles(const osg::Drawable& drawable)
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : geometry->getPrimitiveSetList())
     {
         primitives->accept(static_cast<osg::PrimitiveIndexFunctor&>(reader));
+        _setEnds.push_back(_corners.size());
         const int instances = primitives->getNumInstances();
         if (!_parts.empty() && _parts.back().instances == instances)
             _parts.back().end = _corners.size();

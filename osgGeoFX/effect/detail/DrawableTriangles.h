@@ -34,6 +34,9 @@ public:
     };
     const std::vector<Part>& parts() const { return _parts; }
 
+    /// Of a geometry, where the triangles of each of its primitive sets end in corners().
+    const std::vector<std::size_t>& setEnds() const { return _setEnds; }
+
     /// Whether these triangles are everything that the drawable draws, at the places where it draws. False with
     /// points, lines or instances, with a bounding box that its owner set (a shader may move the vertices), and if
     /// anything could not be read.
@@ -47,6 +50,7 @@ private:
     std::vector<osg::Vec3d> _positions;
     std::vector<unsigned int> _corners;
     std::vector<Part> _parts;
+    std::vector<std::size_t> _setEnds;
     bool _tellAll = true;
 };
 

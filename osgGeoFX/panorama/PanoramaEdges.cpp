@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// How long the edges of a mesh may be that is made before a camera is known.
+#include <osgGeoFX/panorama/PanoramaMap.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// From D2 to where nothing shows any more, of D2; as in PanoramaSnapshot.cpp.
+constexpr double endOfHeights = 1.25;
+/// Of x, s and height on a globe, for each metre of its curvature: as in PanoramaSnapshot.cpp, up to 60° of arc.
+constexpr double globeCurvature = 2.1 * 4.1 * 1.55;
+
+} // namespace
+
+double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) const
+{
+    if (!_projection) return HUGE_VAL;
+    const osgGeoFX::Ground& ground = cameras.ground;
+    const bool perspective = cameras.projection(3, 3) == 0.0;
+    const double wide = std::abs(cameras.projection(0, 0)), high = std::abs(cameras.projection(1, 1));
+    double base = _baseHeight;
+    if (_baseFromTerrain && ground.heightsKnown) base = std::max(base, ground.minHeight);
+    // The least radius; all that follows is at most what it is there.
+    const double eye = cameras.distance + std::min(0.0, ground.minHeight - base);
+    double radius = _viewRadius;
+    if (radius == 0.0) radius = perspective ? std::max(eye, 1.0) / wide : 1.0 / wide;
+    const double nearest = radius * (perspective ? wide : 1.0);
+    const double curve = _curveDistance * radius, horizon = _horizonDistance * radius;
+    const double across = 1.0 / radius;
+    const double along = 4.0 * _horizonLine / (curve + horizon);
+    const double lift = _exaggeration * high / wide / radius;
+    const double arch = 2.0 * std::abs(_horizonBend);
+    const double fading = (endOfHeights - 1.0) * horizon;
+    const double tallest =
+        ground.heightsKnown ? std::max(std::abs(ground.maxHeight - base), std::abs(ground.minHeight - base))
+                            : 0.0;
+    const double globe = ground.ellipsoid ? globeCurvature / ground.ellipsoid->getRadiusPolar() : 0.0;
+
+    // Derivatives of the picture's x and y along an edge, for each metre of it and of its square.
+    const double x2 = across * globe;
+    const double y1 = std::hypot(along, lift) + 1.5 * lift * tallest / fading + arch * 1.5708 * across;
+    const double y2 = along / (horizon - curve) + (along + lift) * globe +
+                      lift * (6.0 * tallest / (fading * fading) + 1.5 / fading) +
+                      arch * (2.4675 * across * across + 1.5708 * x2);
+    // In eye space, for each metre of distance: the picture's, the way through the depths, and that before the base.
+    const double widthX = 1.0 / wide / (perspective ? 1.0 : nearest);
+    const double widthY = 1.0 / high / (perspective ? 1.0 : nearest);
+    double second = x2 * widthX + y2 * widthY +
+                    (2.0 / nearest + globe) / nearest * std::hypot(1.0, 1.0 / wide, 1.0 / high);
+    if (perspective) second += 2.0 * (across / wide + y1 / high) / nearest;
+    return std::sqrt(8.0 * tolerance / second);
+}
+
+} // namespace osgGeoFX
