@@ -20,6 +20,7 @@ constexpr double globeCurvature = 2.1 * 4.1 * 1.55;
 
 } // namespace
 
+// Behind the end of heights all ground is gathered in one point of the horizon; how it comes there is not looked at.
 double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) const
 {
     if (!_projection) return HUGE_VAL;

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// A ground of about 100 triangles over 100 km, split as its deformation asks for, against one of 16 times as many triangles: where they are
+// drawn, how far away, and that nothing shows through.
+#include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/MeshRefiner.h>
+#include <tools/GlFixture.h>
+#include <tools/RandomSamples.h>
+
+#include <osg/Geometry>
+#include <osg/MatrixTransform>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+using namespace geofx::test;
+using namespace osgGeoFX;
+using osg::Vec3d;
+
+namespace
+{
+
+constexpr int WIDTH = 240, HEIGHT = 160, POSTS = 8;
+constexpr double SIZE = 1e5, NEAR_PLANE = 500.0, FAR_PLANE = 6e5;
+/// A pixel's error in the corner of the picture, as a share of the distance.
+const double TOLERANCE = 2.0 * std::tan(0.35) / HEIGHT;
+
+/// 98 triangles with gentle hills and a sea, in four geometries with frames of their own.
+osg::ref_ptr<osg::Group> makeGround(const std::vector<double>& heights)
+{
+    const osg::ref_ptr<osg::Group> root = new osg::Group;
+    for (unsigned int part = 0; part < 4; ++part)
+    {
+        const Vec3d origin((part % 2) * 0.5 * SIZE, (part / 2) * 0.5 * SIZE, 0.0);
+        const osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
+        const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+        for (unsigned int i = 0; i < POSTS * POSTS; ++i)
+            vertices->push_back(osg::Vec3(
+                Vec3d(i % POSTS * SIZE / (POSTS - 1), i / POSTS * SIZE / (POSTS - 1), heights[i]) - origin));
+        const osg::ref_ptr<osg::DrawElementsUInt> corners = new osg::DrawElementsUInt(GL_TRIANGLES);
+        for (unsigned int y = 0; y + 1 < POSTS; ++y)
+        {
+            for (unsigned int x = 0; x + 1 < POSTS; ++x)
+            {
+                if ((x >= POSTS / 2) != (part % 2 == 1) || (y >= POSTS / 2) != (part / 2 == 1)) continue;
+                const unsigned int a = y * POSTS + x;
+                for (const unsigned int corner : {a, a + 1, a + POSTS + 1, a, a + POSTS + 1, a + POSTS})
+                    corners->push_back(corner);
+            }
+        }
+        geometry->setVertexArray(vertices);
+        geometry->addPrimitiveSet(corners);
+        geometry->setUseDisplayList(false);
+        geometry->setUseVertexBufferObjects(true);
+        const osg::ref_ptr<osg::MatrixTransform> frame =
+            new osg::MatrixTransform(osg::Matrixd::translate(origin));
+        frame->addChild(geometry);
+        root->addChild(frame);
+    }
+    root->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    return root;
+}
+
+osg::ref_ptr<Effect> makeEffect(const std::string& kind, Random& random)
+{
+    if (kind == "verticalExaggeration")
+    {
+        const osg::ref_ptr<VerticalExaggeration> effect = new VerticalExaggeration;
+        effect->setFactor(random.uniform(2.0, 5.0));
+        return effect;
+    }
+    if (kind == "panoramaMap")
+    {
+        const osg::ref_ptr<PanoramaMap> effect = new PanoramaMap;
+        effect->setPaint(false);
+        effect->setSky(false);
+        effect->setWater(false);
+        effect->setStrokes(false);
+        effect->setHorizonLine(random.uniform(0.6, 0.9));
+        return effect;
+    }
+    const osg::ref_ptr<BlendedView> blended = new BlendedView;
+    BirdsEyeView& bird = *blended->getBirdsEyeView();
+    PedestrianView& pedestrian = *blended->getPedestrianView();
+    bird.setFocusLine(random.uniform(0.1, 0.35));
+    bird.setHorizonLine(random.uniform(0.65, 0.9));
+    pedestrian.setBendAngle(random.uniform(0.5, 1.4));
+    pedestrian.setFocusDistance(random.uniform(0.0, 15000.0));
+    pedestrian.setZoneWidth(random.uniform(15000.0, 40000.0));
+    if (kind == "birdsEyeView") return &bird;
+    if (kind == "pedestrianView") return &pedestrian;
+    blended->setHighHeight(60000.0);
+    blended->setLowHeight(random.uniform(1000.0, 40000.0));
+    return blended;
+}
+
+class MeshRefinerPicture : public GlFixture
+{
+protected:
+    MeshRefinerPicture() : GlFixture(WIDTH, HEIGHT) {}
+
+    /// Distances before the eye, metres; HUGE_VAL where nothing is drawn.
+    std::vector<double> distancesOf(osg::Node* node)
+    {
+        const osg::ref_ptr<ImageCapture> capture =
+            ImageCapture::attach(viewer().getCamera(), ImageCapture::Format::DepthFloat);
+        capture->request();
+        render(node);
+        const osg::ref_ptr<osg::Image> image = capture->take();
+        capture->detach(viewer().getCamera());
+        std::vector<double> distances;
+        for (int i = 0; i < WIDTH * HEIGHT; ++i)
+        {
+            const auto depth = static_cast<double>(reinterpret_cast<const float*>(image->data())[i]);
+            const double ndc = 2.0 * depth - 1.0;
+            distances.push_back(depth >= 1.0 ? HUGE_VAL
+                                             : 2.0 * FAR_PLANE * NEAR_PLANE /
+                                                   (FAR_PLANE + NEAR_PLANE - ndc * (FAR_PLANE - NEAR_PLANE)));
+        }
+        return distances;
+    }
+
+    /// The number of pixels of one picture of which nothing like it lies within a pixel in the other.
+    static int strangers(const std::vector<double>& picture, const std::vector<double>& other)
+    {
+        int count = 0;
+        for (int y = 1; y + 1 < HEIGHT; ++y)
+        {
+            for (int x = 1; x + 1 < WIDTH; ++x)
+            {
+                const double here = picture[static_cast<std::size_t>(y * WIDTH + x)];
+                double low = HUGE_VAL, high = 0.0;
+                bool open = false;
+                for (int i = 0; i < 9; ++i)
+                {
+                    const double there =
+                        other[static_cast<std::size_t>((y + i / 3 - 1) * WIDTH + x + i % 3 - 1)];
+                    open = open || there == HUGE_VAL;
+                    if (there == HUGE_VAL) continue;
+                    low = std::min(low, there);
+                    high = std::max(high, there);
+                }
+                // A 24-bit depth buffer tells distances of 100 km to a metre. Where the ground ends, farther ground may show for
+                // less than a pixel.
+                const bool found =
+                    here == HUGE_VAL ? open : here >= low * 0.999 && (open || here <= high * 1.001);
+                count += found ? 0 : 1;
+            }
+        }
+        return count;
+    }
+
+    void compare(const std::string& kind, int sample)
+    {
+        SCOPED_TRACE(kind + " " + std::to_string(sample));
+        Random random(static_cast<std::uint64_t>(sample));
+        std::vector<double> heights(POSTS * POSTS);
+        for (double& each : heights)
+            each = std::max(0.0, random.uniform(-600.0, 1000.0));
+        EffectScene::GroundDescription stated{EffectScene::PROJECTED, 0.0, 1000.0, 0};
+        const double height = random.uniform(15000.0, 50000.0);
+        const Vec3d eye(random.uniform(0.2, 0.8) * SIZE, random.uniform(-0.3, 0.3) * SIZE, height);
+        const double heading = random.uniform(-0.6, 0.6);
+        const Vec3d to = eye + Vec3d(std::sin(heading), std::cos(heading), -random.uniform(0.4, 1.2)) * 1e4;
+        osg::Camera& camera = *viewer().getCamera();
+        camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        camera.setViewMatrixAsLookAt(eye, to, Vec3d(0.0, 0.0, 1.0));
+        camera.setProjectionMatrixAsPerspective(40.0, static_cast<double>(WIDTH) / HEIGHT, NEAR_PLANE,
+                                                FAR_PLANE);
+        CameraRange range;
+        range.projection = camera.getProjectionMatrix();
+        range.distance = height - 1000.0;
+        std::array<std::vector<double>, 2> pictures;
+        std::array<std::size_t, 2> triangles{};
+        for (const std::size_t finer : {0u, 1u})
+        {
+            Random same(static_cast<std::uint64_t>(sample) + 1000);
+            const osg::ref_ptr<EffectScene> scene = new EffectScene;
+            ASSERT_TRUE(scene->setGround(stated));
+            scene->addEffect(makeEffect(kind, same));
+            range.ground = scene->ground();
+            const osg::ref_ptr<osg::Group> ground = makeGround(heights);
+            const double longest = std::min(MeshRefiner::longestEdge(*scene, range, TOLERANCE), 2e4);
+            const osg::ref_ptr<MeshRefiner> refiner = new MeshRefiner(finer ? longest / 4.0 : longest);
+            ASSERT_TRUE(refiner->setMostTriangles(10000000));
+            refiner->refine(*ground);
+            triangles[finer] = refiner->refinedTriangles();
+            scene->addChild(ground);
+            pictures[finer] = distancesOf(scene);
+        }
+        const auto drawn = std::count_if(pictures[1].begin(), pictures[1].end(),
+                                         [](double each) { return each < HUGE_VAL; });
+        EXPECT_GT(drawn, WIDTH * HEIGHT / 20) << "there is something to compare";
+        EXPECT_EQ(strangers(pictures[0], pictures[1]), 0) << triangles[0] << " triangles";
+        EXPECT_EQ(strangers(pictures[1], pictures[0]), 0) << "of " << triangles[1] << " triangles";
+        RecordProperty(kind + std::to_string(sample), std::to_string(triangles[0]));
+    }
+};
+
+} // namespace
+
+TEST_F(MeshRefinerPicture, IsThatOfAMeshOfSixteenTimesAsManyTriangles)
+{
+    const int count = fullTest() ? 100 : 3;
+    for (const char* kind :
+         {"birdsEyeView", "pedestrianView", "blendedView", "verticalExaggeration", "panoramaMap"})
+    {
+        for (int sample = 0; sample < count && !HasFailure(); ++sample)
+            compare(kind, sample);
+    }
+}
+
+TEST_F(MeshRefinerPicture, IsNotThatOfTheCoarseMesh)
+{
+    // So that the test above sees anything at all.
+    osg::Camera& camera = *viewer().getCamera();
+    camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    camera.setViewMatrixAsLookAt(Vec3d(0.5 * SIZE, 0.0, 2e4), Vec3d(0.5 * SIZE, 2e4, 0.0),
+                                 Vec3d(0.0, 0.0, 1.0));
+    camera.setProjectionMatrixAsPerspective(40.0, static_cast<double>(WIDTH) / HEIGHT, NEAR_PLANE, FAR_PLANE);
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    scene->setTerrainFrame(EffectScene::PROJECTED);
+    const osg::ref_ptr<BirdsEyeView> view = new BirdsEyeView;
+    scene->addEffect(view);
+    const osg::ref_ptr<osg::Group> ground = makeGround(std::vector<double>(POSTS * POSTS, 0.0));
+    scene->addChild(ground);
+    const std::vector<double> coarse = distancesOf(scene);
+    const osg::ref_ptr<MeshRefiner> refiner = new MeshRefiner(500.0);
+    refiner->refine(*ground);
+    EXPECT_GT(strangers(coarse, distancesOf(scene)), WIDTH * HEIGHT / 50);
+}
