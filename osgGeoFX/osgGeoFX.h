@@ -73,6 +73,7 @@
 #include <osgGeoFX/closeup/SurfaceData.h>
 #include <osgGeoFX/closeup/SurfaceDerivation.h>
 
+#include <osgGeoFX/panorama/MaterialCover.h>
 #include <osgGeoFX/panorama/PanoramaBrush.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>

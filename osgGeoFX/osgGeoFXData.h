@@ -8,6 +8,7 @@
 #include <osgGeoFX/geodata/FileSources.h>
 #include <osgGeoFX/geodata/LandCoverTable.h>
 #include <osgGeoFX/geodata/MappingRaster.h>
+#include <osgGeoFX/geodata/MaterialLegend.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>

@@ -175,6 +175,20 @@ protected:
         CameraRange range;
         range.projection = camera.getProjectionMatrix();
         range.distance = height - 1000.0;
+        {
+            // Ground that is folded up may come nearer to the eye than that below it.
+            Random same(static_cast<std::uint64_t>(sample) + 1000);
+            const osg::ref_ptr<EffectScene> scene = new EffectScene;
+            ASSERT_TRUE(scene->setGround(stated));
+            scene->addEffect(makeEffect(kind, same));
+            const auto chain = scene->deformation(camera.getViewMatrix(), camera.getProjectionMatrix());
+            for (int i = 0; i < 51 * 51 * 2; ++i)
+            {
+                const Vec3d place(i % 51 * SIZE / 50, i / 51 % 51 * SIZE / 50, i < 51 * 51 ? 0.0 : 1000.0);
+                const Vec3d eyePlace = place * camera.getViewMatrix();
+                range.distance = std::min(range.distance, 0.9 * chain->deform(eyePlace).length());
+            }
+        }
         std::array<std::vector<double>, 2> pictures;
         std::array<std::size_t, 2> triangles{};
         for (const std::size_t finer : {0u, 1u})
