@@ -246,19 +246,33 @@ TEST(MeshRefiner, OpensNoCrackBetweenGeometriesAndSets)
 TEST(MeshRefiner, KeepsBordersClosedWhereTheLimitIsMet)
 {
     NotifyWatch watch;
+    constexpr double longestWished = 250.0;
+    // A limit that some of the geometries meet and others do not.
+    std::vector<std::size_t> counts;
+    {
+        Random random(5);
+        Patchwork patchwork(random);
+        const osg::ref_ptr<MeshRefiner> refiner = new MeshRefiner(longestWished);
+        refiner->refine(*patchwork.root);
+        for (const auto& part : patchwork.parts)
+            counts.push_back(cornersOf(*part.first).size() / 3);
+    }
+    const auto [least, most] = std::minmax_element(counts.begin(), counts.end());
+    const std::size_t limit = (*least + *most) / 2;
+    ASSERT_LT(*least + 1000, *most);
     Random random(5);
     Patchwork patchwork(random);
-    const osg::ref_ptr<MeshRefiner> refiner = new MeshRefiner(250.0);
-    ASSERT_TRUE(refiner->setMostTriangles(20000));
+    const osg::ref_ptr<MeshRefiner> refiner = new MeshRefiner(longestWished);
+    ASSERT_TRUE(refiner->setMostTriangles(static_cast<unsigned int>(limit)));
     const auto said = watch.messagesOf([&] { refiner->refine(*patchwork.root); });
     ASSERT_EQ(said.size(), 1u) << "once, for five geometries";
-    EXPECT_NE(said[0].find("20000 triangles"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find(std::to_string(limit) + " triangles"), std::string::npos) << said[0];
     EXPECT_NE(said[0].find("setMostTriangles"), std::string::npos) << said[0];
     EXPECT_EQ(patchwork.openEdges(), 0);
     double longest = 0.0;
     for (const auto& [geometry, frame] : patchwork.parts)
     {
-        EXPECT_LE(cornersOf(*geometry).size() / 3, 20000u);
+        EXPECT_LE(cornersOf(*geometry).size() / 3, limit);
         longest = std::max(longest, longestOf(*geometry, frame));
     }
     EXPECT_GT(longest, 300.0) << "the limit is met";
@@ -461,8 +475,10 @@ TEST(MeshRefiner, AsksTheDeformationsThatAreOn)
     const double one = MeshRefiner::longestEdge(*scene, cameras, 0.001);
     EXPECT_GT(one, 10.0);
     EXPECT_NEAR(both, one / 4.0, 1e-6 * one) << "the edges that are bent are four times as long";
-    // A parabola's error is its second derivative: half the tolerance, edges shorter by the root of two.
-    EXPECT_NEAR(MeshRefiner::longestEdge(*scene, cameras, 0.0005), one / std::sqrt(2.0), 1e-6 * one);
+    // A curve's error goes with the square of the edge, that of a kink with the edge.
+    const double strict = MeshRefiner::longestEdge(*scene, cameras, 0.0005);
+    EXPECT_LT(strict, one / std::sqrt(2.0) + 1e-6);
+    EXPECT_GT(strict, one / 2.0);
     ASSERT_TRUE(view->setEnabled(false));
     EXPECT_EQ(MeshRefiner::longestEdge(*scene, cameras, 0.001), HUGE_VAL);
 }
