@@ -167,9 +167,9 @@ public:
 
     /// The longest edge, metres, that a flat mesh of the ground may have anywhere, whichever of the cameras looks;
     /// HUGE_VAL, the default, for no limit. Only the ends of an edge are deformed, so the edge misses its curved image.
-    /// The error must not exceed `tolerance`, a share of the distance from the eye, where nothing folds and edges climb
-    /// by at most a quarter of their length; steeper ones are short in any mesh of a ground. DeformationSnapshot::longestEdge()
-    /// tells the same for one camera and place, and is larger.
+    /// The error across the surface must not exceed `tolerance`, a share of the distance from the eye, where nothing folds
+    /// and edges climb by at most a quarter of their length; steeper ones are short in any mesh of a ground. Along the
+    /// surface, what is drawn on it may move by more. DeformationSnapshot::longestEdge() tells the same for one camera.
     virtual double longestEdge(const CameraRange&, [[maybe_unused]] double tolerance) const
     {
         return HUGE_VAL;
