@@ -36,6 +36,7 @@ class EffectScene;
 
     **What it does.** An edge is split into 2, 4, 8… equal parts, by its length alone, until none is longer than wished.
     So what shares an edge, in one geometry, in several or in two tiles, splits it at the same points, and no crack opens.
+    Tiles with frames of their own stay as closed as they were: floats differ in the last bits.
     New vertices lie on the old triangles: the ground keeps its shape, on a globe, too, where the middle of an edge of
     10 km lies 2 m below the arc. They have the mean of their neighbours in all arrays that are bound per vertex; normals
     keep their length, and integers for shaders (osg::Array::getPreserveDataType()) are those of a neighbour. Arrays with
