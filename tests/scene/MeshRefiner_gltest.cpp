@@ -78,6 +78,8 @@ osg::ref_ptr<Effect> makeEffect(const std::string& kind, Random& random)
         effect->setWater(false);
         effect->setStrokes(false);
         effect->setHorizonLine(random.uniform(0.6, 0.9));
+        // So large that all of the ground lies before where the map gathers it in one point of the horizon.
+        effect->setViewRadius(random.uniform(35000.0, 50000.0));
         return effect;
     }
     const osg::ref_ptr<BlendedView> blended = new BlendedView;
