@@ -5,6 +5,7 @@
 // them. example_flightgear --place LON,LAT,HEIGHT,HEADING,PITCH [--effect 'KIND PROPERTY=VALUE ...'] [--output picture.png]
 #include "flightgear/Check.h"
 #include "flightgear/Scenery.h"
+#include "flightgear/Still.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
@@ -94,9 +95,7 @@ int run(const Arguments& arguments)
     if (arguments.output.empty()) return show(scene, view);
     const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
     if (!renderer) throw std::runtime_error(error);
-    osgGeoFX::FrameStatistics statistics;
-    const osg::ref_ptr<osg::Image> image = renderer->render(view, 0.0, statistics, error);
-    if (!image) throw std::runtime_error(error);
+    const osg::ref_ptr<osg::Image> image = flightgear::drawStill(*renderer, view);
     if (!osgDB::writeImageFile(*image, arguments.output))
         throw std::runtime_error("\"" + arguments.output + "\" cannot be written; name another file.");
     return 0;

@@ -81,6 +81,7 @@ const std::vector<std::pair<std::string, std::string>> settings = {
     {"/sim/rendering/shaders/water", "1"},
     {"/sim/rendering/point-sprites", "true"},
     {"/sim/startup/season", "summer"},
+    {"/environment/snow-level-m", "8000"},
 };
 
 osg::ref_ptr<osg::LightSource> makeSun(const Place& place)
