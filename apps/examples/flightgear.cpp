@@ -5,9 +5,7 @@
 // them. example_flightgear --place LON,LAT,HEIGHT,HEADING,PITCH [--effect 'KIND PROPERTY=VALUE ...'] [--output picture.png]
 #include "flightgear/Check.h"
 #include "flightgear/Scenery.h"
-#include "flightgear/Still.h"
 
-#include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/ViewPoint.h>
 
@@ -86,16 +84,13 @@ int run(const Arguments& arguments)
     if (!scene.reference || !eye->viewMatrix(*scene.reference, view))
         throw std::runtime_error("--place: it lies outside of the Earth's surface.");
 
-    osgGeoFX::SceneRenderer::Options options;
-    options.fieldOfView = arguments.fieldOfView;
-    options.readers = 1; // SimGear's loaders share geometry
-    if (std::sscanf(arguments.size.c_str(), "%dx%d", &options.width, &options.height) != 2)
+    flightgear::Frame frame;
+    frame.fieldOfView = arguments.fieldOfView;
+    if (std::sscanf(arguments.size.c_str(), "%dx%d", &frame.width, &frame.height) != 2)
         throw std::runtime_error("--size: write it as 1600x900.");
-    if (arguments.check > 0) return flightgear::check(scene, *eye, arguments.check, options);
+    if (arguments.check > 0) return flightgear::check(scene, *eye, arguments.check, frame, arguments.output);
     if (arguments.output.empty()) return show(scene, view);
-    const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
-    if (!renderer) throw std::runtime_error(error);
-    const osg::ref_ptr<osg::Image> image = flightgear::drawStill(*renderer, view);
+    const osg::ref_ptr<osg::Image> image = flightgear::Drawing(scene, frame).draw(view);
     if (!osgDB::writeImageFile(*image, arguments.output))
         throw std::runtime_error("\"" + arguments.output + "\" cannot be written; name another file.");
     return 0;
@@ -107,15 +102,19 @@ int main(int argc, char** argv)
 {
     Arguments arguments;
     CLI::App app("FlightGear's scenery with the kit's effects.");
-    app.add_option("--place", arguments.place, "Where the camera is: LON,LAT,HEIGHT,HEADING,PITCH (degrees, metres)");
+    app.add_option("--place", arguments.place,
+                   "Where the camera is: LON,LAT,HEIGHT,HEADING,PITCH (degrees, metres)");
     app.add_option("--radius", arguments.radius, "How far around it tiles are loaded, metres");
-    app.add_option("--effect", arguments.effects, "An effect, as \"birdsEyeView focusLine=0.3\"; as often as wanted");
+    app.add_option("--effect", arguments.effects,
+                   "An effect, as \"birdsEyeView focusLine=0.3\"; as often as wanted");
     app.add_option("--output", arguments.output, "Draws one picture into this file, without a window");
     app.add_option("--size", arguments.size, "Of the picture, WxH");
     app.add_option("--fov", arguments.fieldOfView, "Vertical field of view, degrees");
     app.add_option("--data", arguments.data, "FlightGear's data folder");
     app.add_option("--set", arguments.settings, "A setting of FlightGear's, /path/of/property=value");
-    app.add_option("--check", arguments.check, "Compares pictures of this many random cameras, and draws none");
+    app.add_option(
+        "--check", arguments.check,
+        "Compares pictures of this many random cameras; --output is a folder for those that differ");
     CLI11_PARSE(app, argc, argv);
     try
     {

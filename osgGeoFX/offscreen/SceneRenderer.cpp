@@ -153,8 +153,7 @@ void SceneRenderer::Parts::setUpScene(const Scene& scene)
     root->getOrCreateStateSet()->setRenderBinDetails(0, "TraversalOrderBin");
     root->addChild(scene.node.get());
     viewer->setSceneData(root);
-    const unsigned int cores = std::max(2u, std::thread::hardware_concurrency());
-    viewer->getDatabasePager()->setUpThreads(options.readers > 0 ? options.readers : cores, 0);
+    viewer->getDatabasePager()->setUpThreads(std::max(2u, std::thread::hardware_concurrency()), 0);
     monitor = std::make_unique<PagerMonitor>(viewer->getDatabasePager(), scene.guard.get(), 1);
 }
 

@@ -58,8 +58,6 @@ public:
         bool cull = true;          ///< false: neither frustum nor small-feature culling
         bool waitForTiles = true;
         double timeout = 600.0;      ///< seconds for each image
-        /// Threads that read tiles; 0 for one per core, at least two. Loaders that are not thread-safe need one.
-        unsigned int readers = 0;
         bool countTriangles = false; ///< fill triangles, drawables and tilesDrawn; costs a little
         bool leastTriangles = false; ///< fill leastTriangles; reads the whole database first
         ImageCapture::Format format = ImageCapture::Format::Rgb;

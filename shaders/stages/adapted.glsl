@@ -15,7 +15,7 @@ void geofx_texture(vec4 coordinates);
 #endif
 
 #ifdef GEOFX_HOST_DEPTH
-out float geofx_hostW;
+out vec2 geofx_hostPlace; // z and w as the application has them
 #endif
 
 // Parallel projections have the same w everywhere.
@@ -79,7 +79,7 @@ void geofx_moveHost()
 {
     vec4 written = gl_Position;
 #ifdef GEOFX_HOST_DEPTH
-    geofx_hostW = written.w;
+    geofx_hostPlace = written.zw;
 #endif
     vec4 eye = geofx_eyeOf(written);
 #ifdef GEOFX_HOST_VERTEX

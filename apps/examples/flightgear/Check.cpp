@@ -1,8 +1,175 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "Check.h"
+
+#include <osgGeoFX/viewer/EffectKinds.h>
+
+#include <osgDB/WriteFile>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <stdexcept>
+
 namespace flightgear
 {
-int check(const osgGeoFX::Scene&, const osgGeoFX::ViewPoint&, int, const osgGeoFX::SceneRenderer::Options&)
+
+namespace
 {
-    return 0;
+
+std::vector<osg::Matrixd> randomViews(const osgGeoFX::Scene& scene, const osgGeoFX::ViewPoint& place,
+                                      int count)
+{
+    std::mt19937 random(17);
+    const auto between = [&](double low, double high)
+    {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    std::vector<osg::Matrixd> views;
+    while (static_cast<int>(views.size()) < count)
+    {
+        osgGeoFX::ViewPoint eye = place;
+        const double away = between(0.0, 10000.0) / 6371000.0;
+        const double bearing = between(0.0, 2.0 * osg::PI);
+        eye.latitude += away * std::cos(bearing);
+        eye.longitude += away * std::sin(bearing) / std::cos(place.latitude);
+        eye.height = 1200.0 * std::pow(6.0, between(0.0, 1.0));
+        eye.heading = between(0.0, 2.0 * osg::PI);
+        eye.pitch = osg::DegreesToRadians(between(-60.0, 0.0));
+        osg::Matrixd view;
+        if (!eye.viewMatrix(*scene.reference, view))
+            throw std::runtime_error("--check: a camera lies outside of the Earth's surface.");
+        views.push_back(view);
+    }
+    return views;
 }
+
+/// Pixels that differ by more than a few levels.
+int differing(const osg::Image& a, const osg::Image& b)
+{
+    int count = 0;
+    for (int y = 0; y < a.t(); ++y)
+        for (int x = 0; x < a.s(); ++x)
+        {
+            const unsigned char *one = a.data(x, y), *other = b.data(x, y);
+            int most = 0;
+            for (int channel = 0; channel < 3; ++channel)
+                most = std::max(most, std::abs(one[channel] - other[channel]));
+            count += most > 6 ? 1 : 0;
+        }
+    return count;
 }
+
+class Checker
+{
+public:
+    Checker(const osgGeoFX::Scene& scene, Drawing& drawing, std::vector<osg::Matrixd> views,
+            std::string folder)
+        : _scene(scene), _drawing(drawing), _views(std::move(views)), _folder(std::move(folder))
+    {
+    }
+
+    /// With an effect, against the host's own picture; `most`: pixels that may differ.
+    void comparesWithHost(const std::string& effect, int most)
+    {
+        const osg::ref_ptr<osgGeoFX::Effect> made = add(effect);
+        compare(effect + " against the host's own picture", most,
+                [&](bool first) { _drawing.setWithEffects(first); });
+        _drawing.setWithEffects(true);
+        _scene.effects->removeEffect(made);
+    }
+    /// With culling against without. An empty effect: the scene's own.
+    void comparesCulling(const std::string& effect)
+    {
+        const osg::ref_ptr<osgGeoFX::Effect> made = effect.empty() ? nullptr : add(effect);
+        culling(effect.empty() ? "the scene's own effects" : effect);
+        if (made) _scene.effects->removeEffect(made);
+    }
+    /// The same for the host's own picture.
+    void comparesHostsCulling()
+    {
+        _drawing.setWithEffects(false);
+        culling("the host itself");
+        _drawing.setWithEffects(true);
+    }
+    int faults() const { return _faults; }
+
+private:
+    void culling(const std::string& what)
+    {
+        // Without the culling of small features, which is meant to be seen by those who look for it.
+        using osg::CullSettings;
+        compare(what + ", culling on against off", 0,
+                [&](bool first)
+                {
+                    _drawing.camera().setCullingMode(first ? CullSettings::VIEW_FRUSTUM_SIDES_CULLING
+                                                           : CullSettings::NO_CULLING);
+                });
+        _drawing.camera().setCullingMode(CullSettings::DEFAULT_CULLING);
+    }
+    osg::ref_ptr<osgGeoFX::Effect> add(const std::string& line)
+    {
+        std::string error;
+        osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::parseEffect(line, error);
+        if (!effect) throw std::runtime_error(error);
+        _scene.effects->addEffect(effect);
+        return effect;
+    }
+    template<class Set>
+    void compare(const std::string& what, int most, const Set& set)
+    {
+        int worst = 0, wrong = 0;
+        for (std::size_t i = 0; i < _views.size(); ++i)
+        {
+            set(true);
+            const osg::ref_ptr<osg::Image> one = _drawing.draw(_views[i]);
+            set(false);
+            const osg::ref_ptr<osg::Image> other = _drawing.draw(_views[i]);
+            const int count = most == 0 ? (same(*one, *other) ? 0 : std::max(1, differing(*one, *other)))
+                                        : differing(*one, *other);
+            worst = std::max(worst, count);
+            if (count <= most) continue;
+            ++wrong;
+            if (_folder.empty()) continue;
+            const std::string name = _folder + "/" + std::to_string(_faults) + "-" + std::to_string(i);
+            osgDB::writeImageFile(*one, name + "a.png");
+            osgDB::writeImageFile(*other, name + "b.png");
+        }
+        _faults += wrong > 0 ? 1 : 0;
+        std::cout << (wrong > 0 ? "WRONG " : "ok    ") << what << ": " << _views.size() << " cameras, "
+                  << wrong << " wrong, at most " << worst << " pixels differ" << std::endl;
+    }
+
+    const osgGeoFX::Scene& _scene;
+    Drawing& _drawing;
+    const std::vector<osg::Matrixd> _views;
+    const std::string _folder;
+    int _faults = 0;
+};
+
+} // namespace
+
+int check(const osgGeoFX::Scene& scene, const osgGeoFX::ViewPoint& place, int cameras, const Frame& frame,
+          const std::string& folder)
+{
+    Drawing drawing(scene, frame);
+    // Culling must not change what depths there are.
+    drawing.camera().setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    Checker checker(scene, drawing, randomViews(scene, place, cameras), folder);
+    if (scene.effects->getNumEffects() > 0)
+        checker.comparesCulling("");
+    else
+    {
+        checker.comparesWithHost("verticalExaggeration factor=1", 0);
+        checker.comparesWithHost("verticalExaggeration factor=1.000001", frame.width * frame.height / 500);
+        checker.comparesHostsCulling();
+        for (const char* effect : {"birdsEyeView", "pedestrianView", "blendedView",
+                                   "verticalExaggeration factor=3", "panoramaMap"})
+            checker.comparesCulling(effect);
+    }
+    return checker.faults() == 0 ? 0 : 1;
+}
+
+} // namespace flightgear

@@ -4,16 +4,18 @@
 // Compares pictures of SimGear's scenery with and without the kit's work.
 #pragma once
 
-#include <osgGeoFX/offscreen/SceneRenderer.h>
+#include "Drawing.h"
+
+#include <osgGeoFX/viewer/ViewPoint.h>
 
 namespace flightgear
 {
 
-/** Draws the scene from random cameras within 15 km of a place, and compares:
-    - an effect that hardly moves anything with the host's own picture, to a few levels of 255;
-    - each deformation and the scene's own effects with culling and without it, bit for bit.
-    Says what differs. Returns 0 if nothing does, else 1. */
-int check(const osgGeoFX::Scene& scene, const osgGeoFX::ViewPoint& place, int cameras,
-          const osgGeoFX::SceneRenderer::Options& options);
+/** Draws the scene from random cameras within 10 km of a place, and compares:
+    - effects that do nothing, or move things by a millimetre, with the host's own picture;
+    - each of the kit's effects that needs nothing else, and the scene's own, with culling and without.
+    Says what differs. Returns 0 if nothing does, else 1. `folder`: where pictures that differ go; empty for nowhere. */
+int check(const osgGeoFX::Scene& scene, const osgGeoFX::ViewPoint& place, int cameras, const Frame& frame,
+          const std::string& folder);
 
 } // namespace flightgear

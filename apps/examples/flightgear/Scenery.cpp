@@ -139,7 +139,8 @@ Scenery::Scenery(const std::string& root, const std::vector<std::pair<std::strin
     simgear::SGModelLib::init(root, &tree);
     const SGPath materials = folder / tree.getStringValue("/sim/rendering/materials-file");
     if (!_parts->materials->load(folder, materials, &tree))
-        throw std::runtime_error("FlightGear's materials (" + materials.utf8Str() + ") cannot be read; install them.");
+        throw std::runtime_error("FlightGear's materials (" + materials.utf8Str() +
+                                 ") cannot be read; install them.");
 
     simgear::SGReaderWriterOptions& options = *_parts->options;
     options.getDatabasePathList() = {(folder / "Scenery").utf8Str(), root};
@@ -174,7 +175,8 @@ osg::ref_ptr<osg::Group> Scenery::load(const Place& place, double radius) const
         if (tile) world->addChild(tile);
     }
     if (world->getNumChildren() == 0)
-        throw std::runtime_error("No tile can be read around this place; name another one, or a larger radius.");
+        throw std::runtime_error(
+            "No tile can be read around this place; name another one, or a larger radius.");
     world->addChild(makeSun(place));
     setSurroundings(*world->getOrCreateStateSet());
     return world;

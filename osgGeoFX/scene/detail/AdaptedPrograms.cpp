@@ -70,6 +70,13 @@ struct ProgramAdaptation::Stage
             [](const ShaderText& text)
             { return text.names("gl_FragDepth") && !text.assignsFrom("gl_FragDepth", "gl_FragCoord"); });
     }
+    /// How the depths are made that scenes can move.
+    FragmentDepth depth() const
+    {
+        if (!writesOwnDepth()) return FragmentDepth::OF_PLACE;
+        if (isLogarithmic()) return FragmentDepth::LOGARITHMIC;
+        return names("gl_ProjectionMatrix") ? FragmentDepth::PROJECTED : FragmentDepth::UNKNOWN;
+    }
     /// The first shader with a `main`.
     const Unit* mainUnit() const
     {
@@ -175,12 +182,12 @@ void ProgramAdaptation::adapt(const osg::Program& program)
     if (last.any([](const ShaderText& text) { return text.declaresOut("gl_PerVertex"); }))
         return refuse("it declares gl_PerVertex anew");
 
-    const bool ownDepth = fragment.writesOwnDepth();
-    if (ownDepth && !fragment.isLogarithmic())
+    const FragmentDepth depth = fragment.depth();
+    if (depth == FragmentDepth::UNKNOWN)
         return refuse("its fragment shader writes a gl_FragDepth that cannot follow what moves");
     const std::string refusal =
         fragment.empty() ? std::string() : fragment.mainRefusal("its fragment shader");
-    if (ownDepth && !refusal.empty()) return refuse(refusal);
+    if (depth != FragmentDepth::OF_PLACE && !refusal.empty()) return refuse(refusal);
     if (&last == &geometry)
         adaptEmissions(geometry);
     else
@@ -190,13 +197,13 @@ void ProgramAdaptation::adapt(const osg::Program& program)
             &last == &geometry ? "void geofx_emitVertex()\n{\n    geofx_moveHost();\n    EmitVertex();\n}\n"
                                : "void geofx_hostMain();\nvoid main()\n{\n    geofx_hostMain();\n"
                                  "    geofx_moveHost();\n}\n",
-            ownDepth);
+            depth);
     if (fragment.empty())
         _colorRefusal = "it has no fragment shader";
     else if (!refusal.empty())
         _colorRefusal = refusal;
     else
-        adaptColors(program, fragment, ownDepth);
+        adaptColors(program, fragment, depth);
 }
 
 void ProgramAdaptation::adaptPlaces(const Stage& last)
@@ -231,7 +238,7 @@ void ProgramAdaptation::adaptEmissions(const Stage& geometry)
     }
 }
 
-void ProgramAdaptation::addMain(const Stage& last, const std::string& main, bool ownDepth)
+void ProgramAdaptation::addMain(const Stage& last, const std::string& main, FragmentDepth depth)
 {
     const bool vertices = last.type == osg::Shader::VERTEX;
     std::string defines;
@@ -245,7 +252,7 @@ void ProgramAdaptation::addMain(const Stage& last, const std::string& main, bool
     define(!vertices && last.names("gl_TexCoord"), "GEOFX_HOST_TEXTURE");
     define(last.names("gl_ClipVertex") || last.names("gl_ClipDistance"), "GEOFX_HOST_CLIPS");
     define(last.names("log2") || last.names("log"), "GEOFX_HOST_LOG");
-    define(ownDepth, "GEOFX_HOST_DEPTH");
+    define(depth != FragmentDepth::OF_PLACE, "GEOFX_HOST_DEPTH");
     const ShaderLibrary library;
     const char* version = last.type == osg::Shader::TESSEVALUATION ? "#version 400 compatibility\n"
                                                                    : "#version 330 compatibility\n";
@@ -290,13 +297,14 @@ struct ProgramAdaptation::Color
     }
 };
 
-void ProgramAdaptation::adaptColors(const osg::Program& program, const Stage& fragment, bool ownDepth)
+void ProgramAdaptation::adaptColors(const osg::Program& program, const Stage& fragment, FragmentDepth depth)
 {
     Color color(program, fragment);
     const bool called = fragment.calls("geofx_fragment");
     if (color.unclear)
         _colorRefusal = "the text of its fragment shader does not tell which output is the color";
     if (color.unclear || called) color.name.clear();
+    const bool ownDepth = depth != FragmentDepth::OF_PLACE;
     if (color.name.empty() && !ownDepth) return;
     const Stage::Unit* const place = color.name.empty() ? fragment.mainUnit() : color.unit;
     for (const Stage::Unit& unit : fragment.units)
@@ -309,11 +317,21 @@ void ProgramAdaptation::adaptColors(const osg::Program& program, const Stage& fr
         {
             text += "\n#undef main\n";
             if (ownDepth)
-                text += std::string(unit.text.version() < 130 ? "varying" : "in") + " float geofx_hostW;\n";
+                text +=
+                    std::string(unit.text.version() < 130 ? "varying" : "in") + " vec2 geofx_hostPlace;\n";
             if (!color.name.empty()) text += "vec4 geofx_fragment(vec4 color, vec4 map);\n";
             text += "void geofx_hostMain();\nvoid main()\n{\n    geofx_hostMain();\n";
-            if (ownDepth)
-                text += "    gl_FragDepth *= log2(1.0 + 1.0 / gl_FragCoord.w) / log2(1.0 + geofx_hostW);\n";
+            if (depth == FragmentDepth::LOGARITHMIC)
+                text +=
+                    "    gl_FragDepth *= log2(1.0 + 1.0 / gl_FragCoord.w) / log2(1.0 + geofx_hostPlace.y);\n";
+            // As many metres nearer or farther than its place. Depth grows as the distance over its square.
+            if (depth == FragmentDepth::PROJECTED)
+                text += "    float geofx_far = geofx_hostPlace.y * gl_FragCoord.w;\n"
+                        "    float geofx_former = 0.5 * (gl_DepthRange.diff * geofx_hostPlace.x / "
+                        "geofx_hostPlace.y + "
+                        "gl_DepthRange.near + gl_DepthRange.far);\n"
+                        "    if (gl_FragDepth != gl_FragCoord.z)\n        gl_FragDepth = gl_FragCoord.z + "
+                        "geofx_far * geofx_far * (gl_FragDepth - geofx_former);\n";
             if (!color.name.empty())
                 text += "    " + color.name + " = geofx_fragment(" + color.name + ", vec4(0.0));\n";
             text += "}\n";

@@ -16,6 +16,15 @@
 namespace osgGeoFX
 {
 
+/// How an application's fragments come to their depths.
+enum class FragmentDepth
+{
+    OF_PLACE,    ///< the fragment's own, or made of it
+    LOGARITHMIC, ///< of a variable
+    PROJECTED,   ///< of a place beside the fragment's
+    UNKNOWN
+};
+
 /** What is to be done to a copy of an application's program for its vertices to go where a scene's effects move them, and for its
     colors to be those that they make. It is the same for all effects: their functions come on top. Never changes.
 
@@ -41,8 +50,8 @@ private:
     void adapt(const osg::Program& program);
     void adaptPlaces(const Stage& last);
     void adaptEmissions(const Stage& geometry);
-    void adaptColors(const osg::Program& program, const Stage& fragment, bool ownDepth);
-    void addMain(const Stage& last, const std::string& main, bool ownDepth);
+    void adaptColors(const osg::Program& program, const Stage& fragment, FragmentDepth depth);
+    void addMain(const Stage& last, const std::string& main, FragmentDepth depth);
     void refuse(const std::string& reason) { _refusal = reason; }
 
     // Texts, and no shaders: those have objects of OpenGL, which go with the copies.
