@@ -52,6 +52,7 @@ osgGeoFX::Scene makeScene(const flightgear::Scenery& scenery, const osgGeoFX::Vi
     std::string error;
     std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::adopt(world, error);
     if (!scene) throw std::runtime_error(error);
+    scene->effects->setFirstTextureUnit(16); // FlightGear's shaders read units 0 to 8
     return *scene;
 }
 

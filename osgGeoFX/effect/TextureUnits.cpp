@@ -75,7 +75,7 @@ std::string TextureUnits::inconsistency(const std::vector<TextureUnitWish>& wish
     return {};
 }
 
-TextureUnits TextureUnits::of(const Effects& effects)
+TextureUnits TextureUnits::of(const Effects& effects, int lowest)
 {
     std::vector<std::vector<TextureUnitWish>> wishes(effects.size());
     std::vector<std::size_t> order;
@@ -138,7 +138,7 @@ TextureUnits TextureUnits::of(const Effects& effects)
             {
                 return each != ofCover && table.isFree(each, effect, wish.everywhere);
             };
-            int given = free(wish.preferred) ? wish.preferred : first;
+            int given = wish.preferred >= lowest && free(wish.preferred) ? wish.preferred : lowest;
             while (given <= last && !free(given))
                 ++given;
             if (given > last) return;
@@ -151,7 +151,7 @@ TextureUnits TextureUnits::of(const Effects& effects)
         result.complete.push_back(std::find(units.begin(), units.end(), -1) == units.end());
         if (result.complete.back()) continue;
         say(i, nameOf(*effects[i], i) + " is not drawn: the other effects have all texture units from " +
-                   std::to_string(first) + " to " + std::to_string(last) +
+                   std::to_string(lowest) + " to " + std::to_string(last) +
                    ". Remove effects, or put the mappings of several sets into one.");
     }
     return result;

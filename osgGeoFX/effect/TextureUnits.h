@@ -64,8 +64,8 @@ struct OSGGEOFX_EXPORT TextureUnits
     std::vector<bool> complete;         ///< whether each effect has all units that it needs
     std::vector<std::string> sentences; ///< the requests of enabled effects that could not be met
 
-    /// Assigns units to the effects of a scene.
-    static TextureUnits of(const Effects& effects);
+    /// Assigns units to the effects of a scene. `lowest`: of those that it may choose, `first` to `last`.
+    static TextureUnits of(const Effects& effects, int lowest = first);
     /// A property for a unit; −1, the default, is for the scene's choice.
     static Property property(const std::string& name, const std::string& description);
     /// A sentence if an effect's own requests do not fit each other, or if one is for a unit of the geometry.

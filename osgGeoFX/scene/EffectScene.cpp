@@ -59,7 +59,7 @@ struct EffectScene::Drawing
     }
 
     /// The same ones as long as the list of effects and what they get stay as they are.
-    std::shared_ptr<const TextureUnits> unitsOf(const EffectProgram::Effects& effects)
+    std::shared_ptr<const TextureUnits> unitsOf(const EffectProgram::Effects& effects, int lowest)
     {
         std::shared_ptr<const TextureUnits> changed;
         {
@@ -67,11 +67,12 @@ struct EffectScene::Drawing
             std::vector<unsigned int> now(effects.size());
             std::transform(effects.begin(), effects.end(), now.begin(),
                            [](const osg::ref_ptr<Effect>& each) { return each->revision(); });
-            const bool sameList = units && effects == unitEffects;
+            const bool sameList = units && effects == unitEffects && lowest == lowestUnit;
             if (sameList && now == unitRevisions) return units;
             unitRevisions = now;
             unitEffects = effects;
-            changed = std::make_shared<const TextureUnits>(TextureUnits::of(effects));
+            lowestUnit = lowest;
+            changed = std::make_shared<const TextureUnits>(TextureUnits::of(effects, lowest));
             if (!sameList || changed->ofEffects != units->ofEffects || changed->complete != units->complete)
                 units = changed;
             else
@@ -120,6 +121,7 @@ struct EffectScene::Drawing
     std::mutex mutex;
     PerCamera<Camera> cameras;
     std::shared_ptr<const TextureUnits> units;
+    int lowestUnit = TextureUnits::first;
     EffectProgram::Effects unitEffects; ///< those that the units were given to, and
     std::vector<unsigned int> unitRevisions;
     GroundFinder ground;
@@ -138,8 +140,9 @@ EffectScene::EffectScene() : _drawing(std::make_unique<Drawing>())
 EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
-      _roleCallback(other._roleCallback), _groundDescription(other._groundDescription),
-      _engineCulling(other._engineCulling), _drawing(std::make_unique<Drawing>())
+      _firstTextureUnit(other._firstTextureUnit), _roleCallback(other._roleCallback),
+      _groundDescription(other._groundDescription), _engineCulling(other._engineCulling),
+      _drawing(std::make_unique<Drawing>())
 {
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
     {
@@ -183,6 +186,18 @@ void EffectScene::addFunctions(osg::Program& program)
     {
         OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
     }
+}
+
+bool EffectScene::setFirstTextureUnit(int unit)
+{
+    if (unit < TextureUnits::first || unit > TextureUnits::last)
+    {
+        OSG_WARN << "osgGeoFX: " << unit << " cannot be the first texture unit of a scene; name one from "
+                 << TextureUnits::first << " to " << TextureUnits::last << "." << std::endl;
+        return false;
+    }
+    _firstTextureUnit = unit;
+    return true;
 }
 
 void EffectScene::adapt(osg::Program& program)
@@ -298,7 +313,7 @@ bool EffectScene::cull(osgUtil::CullVisitor& outer)
         own.used = 0;
         own.passes.startFrame(outer);
     }
-    const std::shared_ptr<const TextureUnits> units = _drawing->unitsOf(_effects);
+    const std::shared_ptr<const TextureUnits> units = _drawing->unitsOf(_effects, _firstTextureUnit);
     const int mapUnit = mapUnitOf(effects);
     if (own.used == own.states.size()) own.states.emplace_back();
     std::unique_ptr<CameraState>& now = own.states[own.used];

@@ -123,6 +123,13 @@ public:
     /// such as a shadow map's. False by default.
     void setNestedCameras(bool on) { _nestedCameras = on; }
     bool getNestedCameras() const { return _nestedCameras; }
+    /** Sets the lowest texture unit that the scene chooses for its effects, 4 to 31; 4 by default. Those below belong to what
+        it draws. An application whose own shaders read more units than 0 to 3 names the first that none of them reads;
+        otherwise its textures and the effects' get into each other's place. Units that an effect's property names stay:
+        such an application also sets PanoramaMap's coverUnit. False, with a warning, for any other number. Call it
+        between frames. */
+    bool setFirstTextureUnit(int unit);
+    int getFirstTextureUnit() const { return _firstTextureUnit; }
     /// Decides on the role of each camera, after CameraEffects; null, the default, for none.
     void setRoleCallback(const CameraRoleCallback* callback) { _roleCallback = callback; }
     const CameraRoleCallback* getRoleCallback() const { return _roleCallback.get(); }
@@ -208,6 +215,7 @@ private:
     bool _compensation = true;
     bool _debugBounds = false;
     bool _nestedCameras = false;
+    int _firstTextureUnit = 4;
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     GroundDescription _groundDescription;
     EngineCulling _engineCulling = AS_IT_IS;
