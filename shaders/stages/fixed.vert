@@ -11,6 +11,7 @@
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_TEXGEN_0, GEOFX_TEXGEN_1, GEOFX_TEXGEN_2, GEOFX_TEXGEN_3)
 #pragma import_defines(GEOFX_MAP, GEOFX_PAINTED, GEOFX_NORMAL_MAP)
+#pragma import_defines(GEOFX_NO_NORMAL)
 
 // What is painted anew needs no light and no textures.
 #ifdef GEOFX_PAINTED
@@ -84,7 +85,10 @@ void main()
     // The effects turn a normal of length 1. Without GL_NORMALIZE, OpenGL lights with the length that the normal has.
     float size = length(normal);
     normal = size > 0.0 ? normal / size : normal;
+#ifndef GEOFX_NO_NORMAL
+    // One that was left over tells effects nothing.
     normal = size > 0.0 ? geofx_normal(eye, normal) : normal;
+#endif
 #ifndef GEOFX_NORMALIZE
     normal *= size;
 #endif

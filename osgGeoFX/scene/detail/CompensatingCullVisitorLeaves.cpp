@@ -156,7 +156,7 @@ void CompensatingCullVisitor::adoptLeaves(osgUtil::RenderBin& bin, osgUtil::Stat
                     osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED);
             own.meet(*_lightPoints);
         }
-        osg::StateSet* look = _looks.lookFor(own);
+        osg::StateSet* look = _looks.lookFor(drawable, own);
         adopt(bin, graph, *leaf, bounds, look, look ? look : _looks.followingOf(_mode.deformation.program));
     }
     if (graph.leaves_empty())

@@ -443,7 +443,7 @@ FixedFunctionLook::Key FixedFunctionLook::key() const
     Key key = {lights,
                (twoSided ? 1 : 0) | (localViewer ? 2 : 0) | (colorSum ? 4 : 0) | (normalize ? 8 : 0) |
                    (rescale ? 16 : 0) | (map ? 32 : 0) | (pointSize ? 64 : 0) | (specular ? 128 : 0) |
-                   (normalMap ? 256 : 0),
+                   (normalMap ? 256 : 0) | (noNormal ? 512 : 0),
                colorMaterial, fog};
     std::copy(std::begin(texture), std::end(texture), key.begin() + 4);
     std::copy(std::begin(texGen), std::end(texGen), key.begin() + 4 + units);
@@ -476,6 +476,7 @@ osg::ref_ptr<osg::StateSet> FixedFunctionLook::createStateSet(osg::Program* prog
     define("GEOFX_FOG", fog > 0, fog);
     define("GEOFX_MAP", map, 1);
     define("GEOFX_NORMAL_MAP", normalMap, 1);
+    define("GEOFX_NO_NORMAL", noNormal, 1);
     for (int i = 0; i < units; ++i)
     {
         const std::string unit = std::to_string(i);

@@ -33,6 +33,7 @@ struct FixedFunctionLook
     int texture[units] = {};  ///< the code of an environment in stages/fixed.frag; 0 for none
     int texGen[units] = {};   ///< the code of generated coordinates in stages/fixed.vert; 0 for none
     bool normalMap = false;   ///< fragments have normals of their own (TileNormals)
+    bool noNormal = false;    ///< the geometry has no normals, and OpenGL any of those drawn before
     bool map = false;         ///< the map's unit has a texture
     bool unsupported = false; ///< something is in force that the shaders do not know
 

@@ -4,10 +4,23 @@
 
 #include <osgGeoFX/scene/detail/FollowingPrograms.h>
 
+#include <osg/Geometry>
 #include <osg/Notify>
 
 namespace osgGeoFX
 {
+
+namespace
+{
+
+bool hasNoNormal(const osg::Drawable& drawable)
+{
+    const osg::Geometry* geometry = drawable.asGeometry();
+    return geometry &&
+           (!geometry->getNormalArray() || geometry->getNormalArray()->getBinding() == osg::Array::BIND_OFF);
+}
+
+} // namespace
 
 void LookCache::begin(osg::Program* program, FollowingPrograms* following, int mapUnit)
 {
@@ -34,20 +47,28 @@ osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const osgUtil::
         _state.meetAll(graph);
     }
     // The meshes of a tile share one state set.
-    if (otherGraph || drawable.getStateSet() != _ownState)
+    const bool noNormal = hasNoNormal(drawable);
+    if (otherGraph || drawable.getStateSet() != _ownState || noNormal != _ownNoNormal)
     {
+        _ownNoNormal = noNormal;
         _ownState = drawable.getStateSet();
         FixedFunctionState state = _state;
         if (_ownState) state.meet(*_ownState);
-        _ownLook = lookFor(state);
+        _ownLook = lookFor(state, noNormal);
     }
     return _ownLook;
 }
 
-osg::StateSet* LookCache::lookFor(const FixedFunctionState& state)
+osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const FixedFunctionState& state)
+{
+    return lookFor(state, hasNoNormal(drawable));
+}
+
+osg::StateSet* LookCache::lookFor(const FixedFunctionState& state, bool noNormal)
 {
     if (!_program) return nullptr;
-    const FixedFunctionLook look = state.look(_mapUnit);
+    FixedFunctionLook look = state.look(_mapUnit);
+    look.noNormal = noNormal && !look.ownProgram;
     if (look.ownProgram) return nullptr;
     if (look.unsupported && !_warned)
     {

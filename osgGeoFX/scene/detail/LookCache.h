@@ -29,11 +29,13 @@ public:
 
     /// The look of a drawable. Null for one that a program of its own draws.
     osg::StateSet* lookFor(const osg::Drawable& drawable, const osgUtil::StateGraph& graph);
-    osg::StateSet* lookFor(const FixedFunctionState& state);
+    osg::StateSet* lookFor(const osg::Drawable& drawable, const FixedFunctionState& state);
     /// The copy of the program in force that has the effects' functions. Null for a program that draws without them.
     osg::StateSet* followingOf(const osg::StateAttribute* program);
 
 private:
+    osg::StateSet* lookFor(const FixedFunctionState& state, bool noNormal);
+
     osg::ref_ptr<osg::Program> _program;
     int _mapUnit = -1;
     std::map<FixedFunctionLook::Key, osg::ref_ptr<osg::StateSet>> _looks;
@@ -46,6 +48,7 @@ private:
     FixedFunctionState _state;
     const osg::StateSet* _ownState = nullptr; ///< that of the last drawable
     osg::StateSet* _ownLook = nullptr;
+    bool _ownNoNormal = false;
     bool _warned = false;
 };
 
