@@ -173,7 +173,8 @@ public:
 
         What can be adapted: GLSL 1.10 to 4.60 in a compatibility context; one or several shaders for each stage;
         displaced vertices; a depth with an offset, or the logarithmic one, `z = (log2(max(1e-6, 1 + w)) * F - 1) * w`,
-        in the vertex stage or as gl_FragDepth from a variable; clip vertices and distances; a tessellation evaluation
+        in the vertex stage or as gl_FragDepth from a variable; a gl_FragDepth that gl_ProjectionMatrix gives to a place
+        beside the fragment's; clip vertices and distances; a tessellation evaluation
         stage; a geometry stage of GLSL 1.50 or later. The eye position has w = 1, unless gl_Position is that of
         gl_Vertex. The color is gl_FragColor, gl_FragData[0], or the `out vec4` at location 0.
 

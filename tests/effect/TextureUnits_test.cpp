@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/TextureUnits.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/scene/EffectScene.h>
 #include <tools/NotifyWatch.h>
 #include <tools/RandomSamples.h>
 
@@ -96,6 +97,38 @@ TEST(TextureUnits, OfTheTerrainAreNoOnesElse)
               "ProjectiveMappings (effect 1 of the scene) cannot have texture unit 7 as its dataUnit, for "
               "PanoramaMap (effect 2 of the scene) has it; the scene gives it another one. Set one that is "
               "free, or -1 for the scene's choice.");
+}
+
+TEST(TextureUnits, ThoseBelowTheLowestBelongToTheApplication)
+{
+    const osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
+    const Effects effects = {new ProjectiveMappings, map};
+    EXPECT_EQ(TextureUnits::of(effects, 16).ofEffects,
+              (std::vector<Units>{{16, 17, 18}, {19, 20, 21, 22, 23, 7}}));
+    EXPECT_EQ(TextureUnits::of(effects, 6).ofEffects,
+              (std::vector<Units>{{8, 9, 10}, {6, 11, 12, 14, 15, 7}}));
+    const Effects many(4, new CloseUps);
+    const TextureUnits few = TextureUnits::of(many, 30);
+    EXPECT_FALSE(few.complete[0]);
+    ASSERT_FALSE(few.sentences.empty());
+    EXPECT_NE(few.sentences[0].find("all texture units from 30 to 31"), std::string::npos);
+}
+
+TEST(TextureUnits, AScenesLowestIsOneThatItMayChoose)
+{
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    EXPECT_EQ(scene->getFirstTextureUnit(), 4);
+    EXPECT_TRUE(scene->setFirstTextureUnit(31));
+    for (const int unit : {3, 32, -1})
+    {
+        geofx::test::NotifyWatch watch;
+        const auto messages = watch.messagesOf([&] { EXPECT_FALSE(scene->setFirstTextureUnit(unit)); });
+        ASSERT_EQ(messages.size(), 1u);
+        EXPECT_NE(messages[0].find("cannot be the first texture unit"), std::string::npos);
+    }
+    EXPECT_EQ(scene->getFirstTextureUnit(), 31);
+    const osg::ref_ptr<EffectScene> copy = new EffectScene(*scene);
+    EXPECT_EQ(copy->getFirstTextureUnit(), 31);
 }
 
 TEST(TextureUnits, CloseUpsAreDrawnOneAfterTheOther)

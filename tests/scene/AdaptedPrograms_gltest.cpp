@@ -296,6 +296,45 @@ TEST_F(AdaptedProgramsTest, DepthsOfFragmentsFollow)
     }
 }
 
+// Things whose fragments have the depth of a place beside theirs, as relief maps do.
+TEST_F(AdaptedProgramsTest, ProjectedDepthsOfFragmentsFollow)
+{
+    const auto picture = [&](bool byHand, double nearer)
+    {
+        const osg::ref_ptr<osg::Program> ground = HostProgram("#version 120\n", multiplied).make(byHand);
+        HostProgram own("#version 120\n",
+                        "place = DEFORM(gl_ModelViewMatrix * gl_Vertex);\n"
+                        "    gl_Position = gl_ProjectionMatrix * place;",
+                        "varying vec4 place;\n");
+        own.fragments = {"#version 120\nDEFINES\nvarying vec4 place;\nvoid main()\n{\n"
+                         "    gl_FragColor = TINT(gl_Color);\n    vec3 at = place.xyz / place.w;\n"
+                         "    vec4 clip = gl_ProjectionMatrix * vec4(at - " +
+                         std::to_string(nearer) +
+                         " * normalize(at), 1.0);\n"
+                         "    if (gl_Color.r > 0.5)\n        gl_FragDepth = 0.5 * (clip.z / clip.w + 1.0);\n"
+                         "    else\n        gl_FragDepth = gl_FragCoord.z;\n}\n"};
+        const osg::ref_ptr<osg::Program> boxes = own.make(byHand);
+        for (osg::Program* each : {ground.get(), boxes.get()})
+        {
+            if (byHand)
+                EffectScene::addFunctions(*each);
+            else
+                EffectScene::adapt(*each);
+        }
+        const osg::ref_ptr<EffectScene> scene = sceneWith(ground);
+        for (const double y : {-60.0, -20.0, 30.0, 80.0})
+        {
+            const osg::ref_ptr<osg::MatrixTransform> box = makeBox(9, {y / 4, y, -6});
+            box->getOrCreateStateSet()->setAttribute(boxes);
+            scene->addChild(box);
+        }
+        return render(scene);
+    };
+    const osg::ref_ptr<osg::Image> drawn = picture(false, 5.0);
+    EXPECT_LE(apart(*drawn, *picture(true, 5.0)), 12);
+    EXPECT_GT(apart(*drawn, *picture(true, 0.0)), 60);
+}
+
 // Planes cut the ground as it lies, whether the host's shader tells where that is or not.
 TEST_F(AdaptedProgramsTest, ClipPlanesCutAsWithoutProgram)
 {

@@ -5,6 +5,7 @@
 // lights, and draws a kind of drawable in its own way. All of that goes on below a scene with effects.
 #include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <tools/BentGround.h>
 #include <tools/ImageComparison.h>
 
@@ -194,6 +195,40 @@ TEST_F(HostCullVisitors, CollectWhatTheyCollect)
     EXPECT_TRUE(same(*image, *render(expected)));
     closeUps->setEnabled(false);
     EXPECT_GT(differing(*image, *render(scene)), 500);
+}
+
+TEST_F(HostCullVisitors, WithoutNormalsNothingIsLeftOver)
+{
+    // A painted thing without normals, after one out of sight with any; drawn by the host and by the kit.
+    for (const bool told : {false, true})
+    {
+        SCOPED_TRACE(told);
+        const auto picture = [&](const osg::Vec3& normal)
+        {
+            const osg::ref_ptr<osg::Geometry> before = new osg::Geometry(*makeBox(1.0f));
+            const osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array(osg::Array::BIND_OVERALL, 1);
+            normals->front() = normal;
+            before->setNormalArray(normals);
+            before->setCullingActive(false);
+            const osg::ref_ptr<osg::MatrixTransform> away =
+                new osg::MatrixTransform(osg::Matrixd::translate(0.0, -2000.0, 0.0));
+            away->addChild(before);
+            away->setCullingActive(false);
+            const osg::ref_ptr<osg::Geometry> made = makeGround();
+            EXPECT_EQ(made->getNormalArray(), nullptr);
+            const osg::ref_ptr<osg::Geometry> after =
+                told ? new HostDrawable(*made, look({0.8f, 0.2f, 0.1f, 1.0f})) : made;
+            const osg::ref_ptr<EffectScene> scene = new EffectScene;
+            scene->addEffect(new PanoramaMap);
+            scene->addChild(away);
+            scene->addChild(after);
+            scene->getOrCreateStateSet()->setRenderBinDetails(0, "TraversalOrderBin");
+            return render(scene);
+        };
+        const osg::ref_ptr<osg::Image> image = picture({0, 0, 1});
+        EXPECT_GT(covered(*image), 500);
+        EXPECT_TRUE(same(*image, *picture({0.9f, -0.3f, 0.3f})));
+    }
 }
 
 TEST_F(HostCullVisitors, NearAndFarHoldWhatTheyDraw)
