@@ -24,7 +24,7 @@ namespace osgGeoFX
     left.setEnabled(*closeUps, false);
     @endcode
 
-    Change it between frames. It is not written to files.
+    Change it between frames. Files keep none of its settings.
 
     @ingroup scene */
 class OSGGEOFX_EXPORT CameraEffects : public osg::Object

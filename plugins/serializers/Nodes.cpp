@@ -4,6 +4,7 @@
 // Wrappers of the nodes.
 #include "PropertySerializers.h"
 
+#include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/RigidReference.h>
 
@@ -192,6 +193,12 @@ const osgDB::RegisterCustomWrapperProxy referenceWrapper([]() -> osg::Object* { 
                                                          "osg::Object osg::Node osg::Group "
                                                          "osgGeoFX::RigidReference",
                                                          &addReferenceProperties);
+/// A camera that is written has one among its user data. OSG would warn of a class without a wrapper.
+void addNothing(const char*, osgDB::ObjectWrapper*) {}
+
+const osgDB::RegisterCustomWrapperProxy cameraWrapper([]() -> osg::Object* { return new CameraEffects; },
+                                                      serializerDomain, "osgGeoFX::CameraEffects",
+                                                      "osg::Object osgGeoFX::CameraEffects", &addNothing);
 
 } // namespace
 
