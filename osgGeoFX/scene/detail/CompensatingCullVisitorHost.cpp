@@ -18,14 +18,15 @@ namespace
 {
 
 /// Whether a class comes with OSG or the kit, so that no host has a use for it of its own.
-bool comesWithOsg(const osg::Object& object)
+bool comesWithOsg(const osg::Object* object)
 {
     // A class of a host's that does not say its library has that of its base class, but not its namespace.
-    if (!std::strstr(typeid(object).name(), "osg")) return false;
+    if (!std::strstr(typeid(*object).name(), "osg")) return false;
     static const char* const libraries[] = {"osg",         "osgText", "osgSim",       "osgTerrain",
                                             "osgParticle", "osgFX",   "osgAnimation", "osgGeoFX"};
+    const char* const own = object->libraryName();
     return std::any_of(std::begin(libraries), std::end(libraries),
-                       [&](const char* library) { return std::strcmp(object.libraryName(), library) == 0; });
+                       [own](const char* library) { return std::strcmp(own, library) == 0; });
 }
 
 } // namespace
@@ -78,7 +79,7 @@ void CompensatingCullVisitor::lend(NodeType& node, bool traverses, bool culls)
 template<typename NodeType>
 bool CompensatingCullVisitor::drawByHost(NodeType& node)
 {
-    if (!_host || !_mode.ours || comesWithOsg(node)) return false;
+    if (!_host || !_mode.ours || comesWithOsg(&node)) return false;
     // Below a state of its own, so that its leaves are told from ours.
     pushStateSet(_ofHost);
     lend(node, true, false);
@@ -90,7 +91,7 @@ template<typename NodeType>
 void CompensatingCullVisitor::tellHost(NodeType& node)
 {
     // Once in a frame: what a host collects there it would collect again in each pass.
-    if (_host && _mode.ours && _task.findsNearAndFar && !comesWithOsg(node)) lend(node, false, false);
+    if (_host && _mode.ours && _task.findsNearAndFar && !comesWithOsg(&node)) lend(node, false, false);
 }
 
 template<typename NodeType>
