@@ -37,6 +37,7 @@
 #include <osgGeoFX/scene/CameraRole.h>
 #include <osgGeoFX/scene/DeformedIntersector.h>
 #include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/scene/EffectCullCallback.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/MeshRefiner.h>
 #include <osgGeoFX/scene/ProgramAdapter.h>

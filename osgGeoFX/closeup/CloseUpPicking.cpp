@@ -24,12 +24,6 @@ constexpr double flatScale = 1e-6;
 constexpr double highestGround = 1e5;
 constexpr double wholeMask = 0.9999;
 
-osg::NodePath pathTo(EffectScene& scene)
-{
-    const osg::NodePathList paths = scene.getParentalNodePaths();
-    return paths.empty() ? osg::NodePath() : paths.front();
-}
-
 /// A ray of the picture in eye space, from the eye where there is perspective; the direction has unit length.
 struct PixelRay
 {
@@ -44,8 +38,7 @@ class Picture
 {
 public:
     Picture(EffectScene& scene, const osg::Camera& camera)
-        : _view(scene, camera),
-          _geometry(_view.modelView(), camera.getProjectionMatrix(), scene.ground(pathTo(scene))),
+        : _view(scene, camera), _geometry(_view.modelView(), camera.getProjectionMatrix(), _view.ground()),
           _toWorld(osg::Matrixd::inverse(_view.modelView()))
     {
         if (const osg::Viewport* port = camera.getViewport()) _size.set(port->width(), port->height());
@@ -211,8 +204,7 @@ std::optional<LiftedHit> meet(EffectScene& scene, CloseUp& closeUp, const Pictur
         new DeformedLineIntersector(start + direction * stretch.first, direction);
     const osg::ref_ptr<LiftedGroundVisitor> visitor =
         new LiftedGroundVisitor(line, *drawn, picture.view().modelView(), lodScale);
-    for (unsigned int i = 0; i < scene.getNumChildren(); ++i)
-        scene.getChild(i)->accept(*visitor);
+    scene.getTerrain()->traverse(*visitor);
     const osg::Matrixd worldToRegion = picture.view().modelView() * item.toRegion();
     for (const Found& found : line->intersections())
     {

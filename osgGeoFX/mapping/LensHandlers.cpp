@@ -60,15 +60,17 @@ LensFollowsNode::~LensFollowsNode() = default;
 
 void LensFollowsNode::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 {
-    // The mappings' frame is that of the scene's children.
+    osg::ref_ptr<EffectScene> scene;
+    _scene.lock(scene);
+    // The mappings' frame is that of the terrain's children.
     osg::NodePath path = visitor->getNodePath();
-    const auto above = std::find(path.begin(), path.end(), _scene.get());
+    const osg::ref_ptr<osg::Group> terrain = scene ? scene->getTerrain() : nullptr;
+    const auto above = std::find(path.begin(), path.end(), terrain.get());
     if (above != path.end()) path.erase(path.begin(), above + 1);
     const osg::Vec3d world = node->getBound().center() *
                              (node->asTransform() ? osg::computeLocalToWorld({path.begin(), path.end() - 1})
                                                   : osg::computeLocalToWorld(path));
-    osg::ref_ptr<EffectScene> scene;
-    if (_scene.lock(scene))
+    if (scene)
     {
         const osg::Vec3d place = _mappings->placeOf(world, scene->ground().ellipsoid);
         _lens->setCenter({place.x(), place.y()});

@@ -106,7 +106,7 @@ void PanoramaManipulator::home(double)
         setByInverseMatrix(osg::Matrixd::lookAt(_homeEye, _homeCenter, _homeUp));
         return;
     }
-    const osg::BoundingSphere bound = _scene->getBound();
+    const osg::BoundingSphere bound = _scene->getTerrain()->getBound();
     if (!bound.valid()) return;
     _pose.setHeading(0.0);
     setCenter(bound.center());

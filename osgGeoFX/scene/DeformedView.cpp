@@ -10,10 +10,10 @@ namespace osgGeoFX
 namespace
 {
 
-/// What stands between the world of the viewer and the scene.
-osg::NodePath pathTo(EffectScene& scene)
+/// What stands between the world of the viewer and the children of a terrain.
+osg::NodePath pathTo(const osg::Group& terrain)
 {
-    const osg::NodePathList paths = scene.getParentalNodePaths();
+    const osg::NodePathList paths = terrain.getParentalNodePaths();
     return paths.empty() ? osg::NodePath() : paths.front();
 }
 
@@ -40,9 +40,10 @@ DeformedView::DeformedView(EffectScene& scene, const osg::Matrixd& view, const o
                            double width, double height, double lodScale)
     : _scene(&scene), _projection(projection), _width(width), _height(height), _lodScale(lodScale)
 {
-    const osg::NodePath path = pathTo(scene);
+    const osg::NodePath path = pathTo(*scene.getTerrain());
     _modelView = frameOf(path) * view;
     _toWorld.invert(_modelView);
+    _ground = scene.ground(path);
     _chain = scene.deformation(_modelView, projection, path);
 }
 
@@ -78,8 +79,7 @@ std::optional<DeformedLineIntersector::Intersection> DeformedView::pick(double x
     const osg::ref_ptr<DeformedIntersectionVisitor> visitor =
         new DeformedIntersectionVisitor(ray, *_chain, _modelView, _lodScale);
     visitor->setTraversalMask(mask);
-    for (unsigned int i = 0; i < _scene->getNumChildren(); ++i)
-        _scene->getChild(i)->accept(*visitor);
+    _scene->getTerrain()->traverse(*visitor);
     if (ray->intersections().empty()) return std::nullopt;
     return ray->intersections().front();
 }

@@ -56,11 +56,14 @@ public:
 
     /// The camera's deformation.
     const DeformationChain& chain() const { return *_chain; }
+    /// What is known of the ground.
+    const Ground& ground() const { return _ground; }
     /// The matrix from the frame of the scene's children to eye space.
     const osg::Matrixd& modelView() const { return _modelView; }
 
 private:
     osg::ref_ptr<EffectScene> _scene;
+    Ground _ground;
     osg::ref_ptr<const DeformationChain> _chain;
     osg::Matrixd _modelView;
     osg::Matrixd _toWorld;

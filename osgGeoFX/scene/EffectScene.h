@@ -11,9 +11,12 @@
 #include <osg/Group>
 #include <osg/Program>
 #include <osg/Shader>
+#include <osg/observer_ptr>
 #include <osgUtil/CullVisitor>
 
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +24,7 @@
 namespace osgGeoFX
 {
 
-class CameraEffects;
+class SceneDrawing;
 class TileGuard;
 
 /** The group that a program puts above its terrain to use the kit's effects.
@@ -119,6 +122,10 @@ public:
     /// False by default.
     void setDebugBounds(bool on) { _debugBounds = on; }
     bool getDebugBounds() const { return _debugBounds; }
+    /// Whether programs that know nothing of effects are adapted as the scene meets them, as adapt() does: those below the
+    /// group, and those that nodes above it put into force, such as the shadow techniques of osgShadow. False by default.
+    void setAdaptsPrograms(bool on) { _adaptsPrograms = on; }
+    bool getAdaptsPrograms() const { return _adaptsPrograms; }
     /// Whether cameras that would be UNDEFORMED by default are VIEWs: cameras above the group other than the view's own,
     /// such as a shadow map's. False by default.
     void setNestedCameras(bool on) { _nestedCameras = on; }
@@ -175,7 +182,7 @@ public:
         displaced vertices; a depth with an offset, or the logarithmic one, `z = (log2(max(1e-6, 1 + w)) * F - 1) * w`,
         in the vertex stage or as gl_FragDepth from a variable; a gl_FragDepth that gl_ProjectionMatrix gives to a place
         beside the fragment's; clip vertices and distances; a tessellation evaluation
-        stage; a geometry stage of GLSL 1.50 or later. The eye position has w = 1, unless gl_Position is that of
+        stage; a geometry stage of GLSL 1.50 or later; a fragment stage alone, whose vertices OpenGL's fixed functions place. The eye position has w = 1, unless gl_Position is that of
         gl_Vertex. The color is gl_FragColor, gl_FragData[0], or the `out vec4` at location 0.
 
         A scene draws a program that cannot be adapted where it is, and culls it undeformed; a warning names the
@@ -198,6 +205,11 @@ public:
     /// What is known of the ground, stated or found. `above`: the nodes above the group.
     Ground ground(const osg::NodePath& above = {}) const;
 
+    /// The node whose children are drawn with the effects: the group itself, or the one whose EffectCullCallback drew them
+    /// last. Threads: may be called from any thread.
+    osg::ref_ptr<osg::Group> getTerrain();
+    osg::ref_ptr<const osg::Group> getTerrain() const;
+
     void traverse(osg::NodeVisitor& visitor) override;
     osg::BoundingSphere computeBound() const override;
     void resizeGLObjectBuffers(unsigned int size) override;
@@ -207,20 +219,25 @@ protected:
     ~EffectScene() override;
 
 private:
-    struct Drawing;
-    bool cull(osgUtil::CullVisitor& outer);
-    /// Empty where the camera shows the scene without effects.
-    std::optional<CameraRole> roleOf(osgUtil::CullVisitor& outer, const CameraEffects* own) const;
+    friend class EffectCullCallback;
+    /// Culls what is below a terrain. `traverse` goes on below it. False if the camera draws it without effects; nothing has
+    /// been culled then.
+    bool cull(osgUtil::CullVisitor& outer, osg::Group& terrain,
+              const std::function<void(osg::NodeVisitor&)>& traverse);
+    void setTerrain(osg::Group& terrain);
 
     std::vector<osg::ref_ptr<Effect>> _effects;
     bool _compensation = true;
     bool _debugBounds = false;
     bool _nestedCameras = false;
+    bool _adaptsPrograms = false;
     int _firstTextureUnit = 4;
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     GroundDescription _groundDescription;
     EngineCulling _engineCulling = AS_IT_IS;
-    std::unique_ptr<Drawing> _drawing;
+    std::unique_ptr<SceneDrawing> _drawing;
+    mutable std::mutex _terrainMutex;
+    osg::observer_ptr<osg::Group> _terrain; ///< of an EffectCullCallback
 };
 
 } // namespace osgGeoFX

@@ -4,7 +4,9 @@
 // Wrappers of the nodes.
 #include "PropertySerializers.h"
 
+#include <osgGeoFX/effect/TextureUnits.h>
 #include <osgGeoFX/scene/CameraEffects.h>
+#include <osgGeoFX/scene/EffectCullCallback.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/RigidReference.h>
 
@@ -117,6 +119,48 @@ bool writeGround(osgDB::OutputStream& stream, const EffectScene& scene)
     return true;
 }
 
+bool hasEngineCulling(const EffectScene& scene)
+{
+    return scene.getEngineCulling() != EffectScene::AS_IT_IS;
+}
+
+bool readEngineCulling(osgDB::InputStream& stream, EffectScene& scene)
+{
+    std::string name;
+    stream >> name;
+    if (name == "OPEN")
+        scene.setEngineCulling(EffectScene::OPEN);
+    else
+        OSG_WARN << "osgGeoFX: A file is wrong: EffectScene: EngineCulling must be OPEN, not \"" << name
+                 << "\". The default stays." << std::endl;
+    return true;
+}
+
+bool writeEngineCulling(osgDB::OutputStream& stream, const EffectScene&)
+{
+    stream << std::string("OPEN") << std::endl;
+    return true;
+}
+
+bool hasFirstTextureUnit(const EffectScene& scene)
+{
+    return scene.getFirstTextureUnit() != TextureUnits::first;
+}
+
+bool readFirstTextureUnit(osgDB::InputStream& stream, EffectScene& scene)
+{
+    int unit = 0;
+    stream >> unit;
+    scene.setFirstTextureUnit(unit);
+    return true;
+}
+
+bool writeFirstTextureUnit(osgDB::OutputStream& stream, const EffectScene& scene)
+{
+    stream << scene.getFirstTextureUnit() << std::endl;
+    return true;
+}
+
 bool hasReference(const RigidReference& node)
 {
     return node.getReference() != osg::Vec3d();
@@ -172,6 +216,13 @@ void addSceneProperties(const char*, osgDB::ObjectWrapper* wrapper)
                            osgDB::BaseSerializer::RW_USER);
     wrapper->addSerializer(new Effects("Ground", hasGround, readGround, writeGround),
                            osgDB::BaseSerializer::RW_USER);
+    addFlag(*wrapper, "AdaptsPrograms", &EffectScene::getAdaptsPrograms, &EffectScene::setAdaptsPrograms);
+    wrapper->addSerializer(
+        new Effects("EngineCulling", hasEngineCulling, readEngineCulling, writeEngineCulling),
+        osgDB::BaseSerializer::RW_USER);
+    wrapper->addSerializer(
+        new Effects("FirstTextureUnit", hasFirstTextureUnit, readFirstTextureUnit, writeFirstTextureUnit),
+        osgDB::BaseSerializer::RW_USER);
 }
 
 void addReferenceProperties(const char*, osgDB::ObjectWrapper* wrapper)
@@ -193,6 +244,47 @@ const osgDB::RegisterCustomWrapperProxy referenceWrapper([]() -> osg::Object* { 
                                                          "osg::Object osg::Node osg::Group "
                                                          "osgGeoFX::RigidReference",
                                                          &addReferenceProperties);
+/// OSG's own serializers cast objects in a way that a virtual base class forbids.
+class CallbackSerializer : public osgDB::BaseSerializer
+{
+public:
+    CallbackSerializer() : osgDB::BaseSerializer(READ_WRITE_PROPERTY), _name("Scene") {}
+    const std::string& getName() const override { return _name; }
+    bool read(osgDB::InputStream& stream, osg::Object& object) override
+    {
+        auto& callback = dynamic_cast<EffectCullCallback&>(object);
+        if (!stream.isBinary() && !stream.matchString(_name)) return true;
+        stream >> stream.BEGIN_BRACKET;
+        const osg::ref_ptr<EffectScene> scene = stream.readObjectOfType<EffectScene>();
+        callback.setScene(scene);
+        stream >> stream.END_BRACKET;
+        return true;
+    }
+    bool write(osgDB::OutputStream& stream, const osg::Object& object) override
+    {
+        if (!stream.isBinary()) stream << stream.PROPERTY(_name.c_str());
+        stream << stream.BEGIN_BRACKET << std::endl;
+        stream.writeObject(dynamic_cast<const EffectCullCallback&>(object).getScene());
+        stream << stream.END_BRACKET << std::endl;
+        return true;
+    }
+
+private:
+    const std::string _name;
+};
+
+void addCallbackProperties(const char*, osgDB::ObjectWrapper* wrapper)
+{
+    wrapper->addSerializer(new CallbackSerializer, osgDB::BaseSerializer::RW_OBJECT);
+}
+
+const osgDB::RegisterCustomWrapperProxy callbackWrapper([]() -> osg::Object*
+                                                        { return new EffectCullCallback; },
+                                                        serializerDomain, "osgGeoFX::EffectCullCallback",
+                                                        "osg::Object osg::Callback osg::NodeCallback "
+                                                        "osgGeoFX::EffectCullCallback",
+                                                        &addCallbackProperties);
+
 /// A camera that is written has one among its user data. OSG would warn of a class without a wrapper.
 void addNothing(const char*, osgDB::ObjectWrapper*) {}
 

@@ -3,6 +3,8 @@
 //
 // Every class of the kit through osgDB's ASCII, binary and XML files, by the plugin osgdb_serializers_osggeofx.
 #include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/scene/CameraEffects.h>
+#include <osgGeoFX/scene/EffectCullCallback.h>
 #include <plugins/SerializerFixture.h>
 #include <tools/RandomSamples.h>
 #include <tools/RunProgram.h>
@@ -31,9 +33,11 @@ using geofx::test::Random;
 using geofx::test::Serializers;
 using osgGeoFX::BirdsEyeView;
 using osgGeoFX::BlendedView;
+using osgGeoFX::CameraEffects;
 using osgGeoFX::createEffect;
 using osgGeoFX::createPropertyHolder;
 using osgGeoFX::Effect;
+using osgGeoFX::EffectCullCallback;
 using osgGeoFX::EffectScene;
 using osgGeoFX::Property;
 using osgGeoFX::PropertyHolder;
@@ -43,7 +47,8 @@ using osgGeoFX::RigidReference;
 TEST_F(Serializers, ThereIsAWrapperForEachClass)
 {
     auto* wrappers = osgDB::Registry::instance()->getObjectWrapperManager();
-    std::vector<osg::ref_ptr<osg::Object>> objects = {new EffectScene, new RigidReference};
+    std::vector<osg::ref_ptr<osg::Object>> objects = {new EffectScene, new RigidReference,
+                                                      new EffectCullCallback, new CameraEffects};
     for (const std::string& kind : propertyHolderKinds())
         objects.emplace_back(createPropertyHolder(kind));
     for (const auto& object : objects)
@@ -183,6 +188,7 @@ const std::vector<Setting<EffectScene>>& sceneSettings()
         {[](auto& s) { s.setCompensation(false); }, [](auto& s) { return s.getCompensation(); }, 1.0, 0.0},
         {[](auto& s) { s.setDebugBounds(true); }, [](auto& s) { return s.getDebugBounds(); }, 0.0, 1.0},
         {[](auto& s) { s.setNestedCameras(true); }, [](auto& s) { return s.getNestedCameras(); }, 0.0, 1.0},
+        {[](auto& s) { s.setAdaptsPrograms(true); }, [](auto& s) { return s.getAdaptsPrograms(); }, 0.0, 1.0},
         {[](auto& s) { s.setTerrainFrame(EffectScene::GEOCENTRIC); },
          [](auto& s) { return s.getTerrainFrame(); }, EffectScene::AUTOMATIC, EffectScene::GEOCENTRIC},
         {[](auto& s) { s.setTerrainFrame(EffectScene::PROJECTED); },
@@ -199,6 +205,10 @@ const std::vector<Setting<EffectScene>>& sceneSettings()
              s.setGround({EffectScene::AUTOMATIC, std::nullopt, std::nullopt, 32});
          },
          [](auto& s) { return s.getGround().tileCells; }, 0.0, 32.0},
+        {[](auto& s) { s.setEngineCulling(EffectScene::OPEN); }, [](auto& s) { return s.getEngineCulling(); },
+         EffectScene::AS_IT_IS, EffectScene::OPEN},
+        {[](auto& s) { s.setFirstTextureUnit(9); }, [](auto& s) { return s.getFirstTextureUnit(); }, 4.0,
+         9.0},
         {[](auto& s) { s.addEffect(new BirdsEyeView); }, [](auto& s) { return s.getNumEffects(); }, 0.0, 1.0},
     };
     return all;
@@ -259,6 +269,28 @@ TEST_F(Serializers, NodesKeepEverySetting)
         };
         expectSettings<EffectScene>(sceneSettings(), copy);
         expectSettings<RigidReference>(referenceSettings(), copy);
+    }
+}
+
+TEST_F(Serializers, ACallbackComesBackWithItsScene)
+{
+    for (const std::string& format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Group> terrain = new osg::Group;
+        terrain->setCullingActive(false);
+        const osg::ref_ptr<EffectScene> effects = fullScene();
+        effects->removeChildren(0, effects->getNumChildren());
+        terrain->addCullCallback(new EffectCullCallback(effects));
+        const osg::ref_ptr<osg::Group> read = throughFile(*terrain, format);
+        ASSERT_TRUE(read);
+        EXPECT_FALSE(read->isCullingActive());
+        auto* callback = dynamic_cast<EffectCullCallback*>(read->getCullCallback());
+        ASSERT_TRUE(callback);
+        ASSERT_EQ(callback->getScene()->getNumEffects(), effects->getNumEffects());
+        for (unsigned int i = 0; i < effects->getNumEffects(); ++i)
+            EXPECT_EQ(callback->getScene()->getEffect(i)->getCompoundClassName(),
+                      effects->getEffect(i)->getCompoundClassName());
     }
 }
 

@@ -42,7 +42,11 @@ TEST(AdaptedPrograms, ReasonsAreTold)
 {
     EXPECT_EQ(refusalOf(place, color), "");
     EXPECT_EQ(refusalOf(place, ""), "");
-    EXPECT_EQ(refusalOf("", color), "it has no vertex shader");
+    EXPECT_EQ(refusalOf("", ""), "it has no vertex shader");
+    EXPECT_EQ(refusalOf("", color), "");
+    EXPECT_NE(refusalOf("", "void main() { gl_FragDepth = 0.5; }").find("no vertex shader of its own"),
+              std::string::npos);
+    EXPECT_EQ(refusalOf("", color, "#version 150\nvoid main() { EmitVertex(); }"), "it has no vertex shader");
     EXPECT_EQ(refusalOf("#version 300 es\n" + place, color), "it is written for OpenGL ES");
     EXPECT_EQ(refusalOf("void start() { gl_Position = ftransform(); }", color),
               "its vertex shader has no main()");

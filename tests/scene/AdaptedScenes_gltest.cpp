@@ -4,13 +4,18 @@
 // Adapted programs in their scenes: several scenes and no scene, threads that draw, what cannot be adapted, culling and picking,
 // subgraphs and pagers.
 #include <tools/HostPrograms.h>
+#include <tools/ImageComparison.h>
 #include <tools/PagedScene.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 #include <tools/ThreadedViews.h>
 
 #include <osg/Geode>
+#include <osg/LightSource>
+#include <osg/Material>
 #include <osg/PagedLOD>
+#include <osg/TexGen>
+#include <osg/Texture2D>
 #include <osgDB/ReadFile>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
@@ -206,6 +211,80 @@ TEST_F(AdaptedScenesTest, CopiesFollowTheirProgram)
     }
 }
 
+// OpenGL's fixed functions place the vertices of a program with a fragment stage alone. The kit's stand in for them.
+TEST_F(AdaptedScenesTest, FragmentsAloneAreAdapted)
+{
+    osg::ref_ptr<osg::Image> squares = new osg::Image;
+    squares->allocateImage(8, 8, 1, GL_RGB, GL_UNSIGNED_BYTE);
+    for (int i = 0; i < 8 * 8 * 3; ++i)
+        squares->data()[i] = static_cast<unsigned char>((i / 3 + i / 24) % 2 ? 250 : 90 + i % 3 * 40);
+    const osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
+    sun->getLight()->setPosition({0.5f, -0.4f, 0.7f, 0.0f});
+    // Coordinates of a texture by the place in eye space, light, and colors.
+    const auto dress = [&](osg::Geometry& geometry)
+    {
+        osg::StateSet& state = *geometry.getOrCreateStateSet();
+        state.setTextureAttributeAndModes(1, new osg::Texture2D(squares));
+        osg::ref_ptr<osg::TexGen> places = new osg::TexGen;
+        places->setMode(osg::TexGen::EYE_LINEAR);
+        places->setPlane(osg::TexGen::S, {0.05, 0.0, 0.0, 0.3});
+        places->setPlane(osg::TexGen::T, {0.0, 0.03, 0.03, 0.1});
+        state.setTextureAttributeAndModes(1, places);
+        state.setMode(GL_LIGHTING, osg::StateAttribute::ON);
+        state.setMode(GL_LIGHT0, osg::StateAttribute::ON);
+        osg::ref_ptr<osg::Material> material = new osg::Material;
+        material->setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
+        state.setAttributeAndModes(material);
+        return &geometry;
+    };
+    const auto ofProgram = [&]
+    {
+        HostProgram fragments("#version 120\n", fixed);
+        fragments.vertices.clear();
+        fragments.fragments = {"#version 120\nuniform sampler2D squares;\nvoid main()\n{\n"
+                               "    gl_FragColor = gl_Color * texture2DProj(squares, gl_TexCoord[1]);\n}\n"};
+        const osg::ref_ptr<osg::Program> program = fragments.make(false);
+        EffectScene::adapt(*program);
+        const osg::ref_ptr<osg::Geometry> ground = makeGround();
+        dress(*ground);
+        ground->getStateSet()->setAttributeAndModes(program);
+        ground->getStateSet()->addUniform(new osg::Uniform("squares", 1));
+        return ground;
+    };
+    const auto below = [&](const osg::ref_ptr<EffectScene>& scene)
+    {
+        scene->addChild(sun);
+        return scene;
+    };
+    const ImageTolerance rounding{1.0f / 255.0f, 0.0, 1.0f / 255.0f};
+    const osg::ref_ptr<osg::Image> expected = render(below(makeScene({dress(*makeGround())})));
+    EXPECT_TRUE(imagesMatch(*render(below(makeScene({ofProgram()}))), *expected, rounding, "bent"));
+    const osg::ref_ptr<osg::Image> colored = render(below(painted({dress(*makeGround())})));
+    EXPECT_GT(differing(*colored, *expected), WIDTH * HEIGHT / 10);
+    EXPECT_TRUE(imagesMatch(*render(below(painted({ofProgram()}))), *colored, rounding, "painted"));
+    // Alone, OpenGL's own stage places it.
+    EXPECT_TRUE(imagesMatch(*render(makePlain({ofProgram(), sun})),
+                            *render(makePlain({dress(*makeGround()), sun})), rounding, "plain"));
+}
+
+// With setAdaptsPrograms() the scene adapts what it meets, above it and below.
+TEST_F(AdaptedScenesTest, ScenesAdaptWhatTheyMeet)
+{
+    const osg::ref_ptr<osg::Image> expected = render(makeScene({makeGround()}));
+    const auto strange = [&]
+    {
+        return HostProgram("#version 120\n", fixed).make(false);
+    };
+    const osg::ref_ptr<EffectScene> below = makeScene({groundWith(strange())});
+    below->setAdaptsPrograms(true);
+    EXPECT_TRUE(same(*render(below), *expected));
+    const osg::ref_ptr<EffectScene> scene = makeScene({makeGround()});
+    scene->setAdaptsPrograms(true);
+    const osg::ref_ptr<osg::Group> above = makePlain({scene});
+    above->getOrCreateStateSet()->setAttributeAndModes(strange());
+    EXPECT_TRUE(same(*render(above), *expected));
+}
+
 TEST_F(AdaptedScenesTest, WhatCannotBeAdaptedStaysAndSaysWhy)
 {
     const std::string version = "#version 330 compatibility\n";
@@ -213,9 +292,10 @@ TEST_F(AdaptedScenesTest, WhatCannotBeAdaptedStaysAndSaysWhy)
     {
         return HostProgram(version, place, declarations).make(false);
     };
-    HostProgram fragmentOnly(version, fixed);
-    fragmentOnly.vertices.clear();
-    expectRefused(fragmentOnly.make(false), "it has no vertex shader");
+    HostProgram depthAlone(version, fixed);
+    depthAlone.vertices.clear();
+    depthAlone.fragments = {version + "void main() { gl_FragColor = gl_Color; gl_FragDepth = 0.25; }\n"};
+    expectRefused(depthAlone.make(false), "its fragment shader writes a gl_FragDepth, and no vertex shader");
     expectRefused(with("run();\n}\n#define main start\nvoid main() {",
                        "void run() { gl_Position = ftransform(); gl_FrontColor = gl_Color; }\n"),
                   "its vertex shader defines main by a directive");

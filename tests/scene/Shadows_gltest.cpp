@@ -3,11 +3,13 @@
 //
 // Scenes with effects below the shadow techniques of OSG, whose cameras have no parents: what the light sees is not bent.
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/scene/DeformedView.h>
 #include <tools/BentGround.h>
 #include <tools/ImageComparison.h>
 
 #include <osg/LightSource>
 #include <osg/Program>
+#include <osgShadow/LightSpacePerspectiveShadowMap>
 #include <osgShadow/ShadowMap>
 #include <osgShadow/ShadowedScene>
 #include <osgShadow/StandardShadowMap>
@@ -15,6 +17,8 @@
 
 #include <cmath>
 #include <functional>
+#include <iostream>
+#include <utility>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -60,6 +64,14 @@ std::vector<Technique> techniques()
              []
              {
                  osg::ref_ptr<osgShadow::StandardShadowMap> map = new osgShadow::StandardShadowMap;
+                 map->setTextureSize({2048, 2048});
+                 return map;
+             }},
+            {"LightSpacePerspectiveShadowMapDB",
+             []
+             {
+                 osg::ref_ptr<osgShadow::LightSpacePerspectiveShadowMapDB> map =
+                     new osgShadow::LightSpacePerspectiveShadowMapDB;
                  map->setTextureSize({2048, 2048});
                  return map;
              }},
@@ -197,6 +209,62 @@ protected:
         return count;
     }
 
+    /// Whether a place is on a block, or very near.
+    static bool isOf(const Block& block, const osg::Vec3d& world)
+    {
+        const osg::Vec3d from = world - osg::Vec3d(block.place);
+        const double reach = 0.5 * static_cast<double>(block.size) + 0.5;
+        return std::abs(from.x()) < reach && std::abs(from.y()) < reach && from.z() > 0.5;
+    }
+    static bool isDarker(const osg::Image& with, const osg::Image& without, int x, int y)
+    {
+        const unsigned char* a = with.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+        const unsigned char* b = without.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+        return a[0] + a[1] + a[2] < b[0] + b[1] + b[2] - 24;
+    }
+    /// Whether a neighbour is in the shadow where the pixel is not, or the other way round.
+    static bool isAtBorder(const osg::Image& with, const osg::Image& without, int x, int y)
+    {
+        const bool dark = isDarker(with, without, x, y);
+        for (int j = std::max(0, y - 1); j <= std::min(HEIGHT - 1, y + 1); ++j)
+        {
+            for (int i = std::max(0, x - 1); i <= std::min(WIDTH - 1, x + 1); ++i)
+            {
+                if (isDarker(with, without, i, j) != dark) return true;
+            }
+        }
+        return false;
+    }
+
+    /// A place on the ground that is seen in two pictures: the pixels that show it.
+    struct SamePlace
+    {
+        std::pair<int, int> bent, straight;
+    };
+    /// What both pictures of the viewer's camera show, the caster left out.
+    std::vector<SamePlace> samePlaces(EffectScene& bent, EffectScene& straight, const Block& caster)
+    {
+        const DeformedView there(bent, *viewer().getCamera());
+        const DeformedView here(straight, *viewer().getCamera());
+        std::vector<SamePlace> places;
+        for (int y = 0; y < HEIGHT; y += 2)
+        {
+            for (int x = 0; x < WIDTH; x += 2)
+            {
+                const auto hit = there.pick(x + 0.5, y + 0.5);
+                osg::Vec2d pixel;
+                if (!hit || isOf(caster, hit->world) || !here.project(hit->world, pixel)) continue;
+                const int column = static_cast<int>(std::floor(pixel.x()));
+                const int row = static_cast<int>(std::floor(pixel.y()));
+                if (column < 0 || row < 0 || column >= WIDTH || row >= HEIGHT) continue;
+                const auto seen = here.pick(column + 0.5, row + 0.5);
+                if (!seen || isOf(caster, seen->world) || (seen->world - hit->world).length() > 1.5) continue;
+                places.push_back({{x, y}, {column, row}});
+            }
+        }
+        return places;
+    }
+
 private:
     // OSG 3.6.5 waits for itself for ever where a technique goes before the views that it was drawn in (osg::Identifier).
     std::vector<osg::ref_ptr<osgShadow::ShadowTechnique>> _kept;
@@ -224,8 +292,51 @@ TEST_F(Shadows, LieWhereTheUndeformedWorldHasThem)
     }
 }
 
-// Techniques bring shaders that know nothing of the effects. What is drawn with them is not deformed, neither for the view nor
-// for the light. (ViewDependentShadowMap puts its program into the state after the scene has been culled, when the kit's own shaders
+// The scene adapts the programs of techniques. Each pixel of the bent picture that the caster darkens shows a place that it darkens in
+// the straight picture.
+TEST_F(Shadows, OfTechniquesWithTheirOwnShadersLieOnTheBentGround)
+{
+    const Blocks blocks = {{18.0f, {-40.0f, -45.0f, 0.0f}}, {16.0f, {0.0f, -40.0f, 0.0f}}};
+    const auto world = [&](bool bent, bool caster)
+    {
+        const osg::ref_ptr<EffectScene> scene = bentScene(caster ? blocks : Blocks{blocks[1]});
+        scene->setAdaptsPrograms(true);
+        for (unsigned int i = 0; i < scene->getNumEffects(); ++i)
+            scene->getEffect(i)->setEnabled(bent);
+        return scene;
+    };
+    const std::vector<SamePlace> places = samePlaces(*world(true, true), *world(false, true), blocks[0]);
+    EXPECT_GT(places.size(), WIDTH * HEIGHT / 16u);
+    for (const Technique& technique : techniques())
+    {
+        if (technique.name == std::string("ViewDependentShadowMap")) continue;
+        SCOPED_TRACE(technique.name);
+        const auto picture = [&](bool bent, bool caster)
+        {
+            return render(shadowed(*world(bent, caster), technique));
+        };
+        const osg::ref_ptr<osg::Image> bent = picture(true, true), bentLit = picture(true, false);
+        const osg::ref_ptr<osg::Image> straight = picture(false, true), straightLit = picture(false, false);
+        EXPECT_GT(off(*bent, *straight), WIDTH * HEIGHT / 10);
+        std::size_t dark = 0, wrong = 0;
+        for (const SamePlace& place : places)
+        {
+            const auto [x, y] = place.straight;
+            const bool here = isDarker(*straight, *straightLit, x, y);
+            const bool there = isDarker(*bent, *bentLit, place.bent.first, place.bent.second);
+            dark += here ? 1 : 0;
+            // At a border, the pixels of the two pictures show places that are not quite the same.
+            wrong += here != there && !isAtBorder(*straight, *straightLit, x, y) ? 1 : 0;
+        }
+        std::cout << technique.name << ": " << wrong << " of " << places.size() << " pixels are wrong, "
+                  << dark << " are in the shadow\n";
+        EXPECT_GT(dark, 60u);
+        EXPECT_LE(wrong, places.size() / 200);
+    }
+}
+
+// Techniques bring shaders that know nothing of the effects. Where the scene does not adapt them, what they draw is not deformed, neither
+// for the view nor for the light. (ViewDependentShadowMap puts its program into the state after the scene has been culled, when the kit's own shaders
 // stand for the fixed functions; with it, a scene needs a program of its own, as above.)
 TEST_F(Shadows, OfTechniquesWithTheirOwnShadersAreThoseOfAPlainGroup)
 {

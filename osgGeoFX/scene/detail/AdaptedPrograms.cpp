@@ -17,6 +17,7 @@ namespace
 {
 
 constexpr const char* file = "stages/adapted.glsl";
+constexpr const char* fixedFile = "stages/fixed.vert";
 
 bool isRead(const osg::Shader& shader)
 {
@@ -148,7 +149,7 @@ void ProgramAdaptation::apply(osg::Program& copy) const
     }
     if (_main.empty()) return;
     osg::ref_ptr<osg::Shader> main = new osg::Shader(_lastStage, _main);
-    main->setName(file);
+    main->setName(_fixedVertices ? fixedFile : file);
     copy.addShader(main);
 }
 
@@ -158,7 +159,6 @@ void ProgramAdaptation::adapt(const osg::Program& program)
     const Stage tessellation(program, osg::Shader::TESSEVALUATION);
     const Stage geometry(program, osg::Shader::GEOMETRY);
     const Stage fragment(program, osg::Shader::FRAGMENT);
-    if (vertex.empty()) return refuse("it has no vertex shader");
     for (const Stage* stage : {&vertex, &tessellation, &geometry, &fragment})
     {
         if (stage->any([](const ShaderText& text) { return text.embedded(); }))
@@ -167,6 +167,10 @@ void ProgramAdaptation::adapt(const osg::Program& program)
                         [](const Stage::Unit& unit) { return unit.shader->getShaderBinary() != nullptr; }))
             return refuse("it has a shader without a text");
     }
+    if (vertex.empty())
+        return tessellation.empty() && geometry.empty() && !fragment.empty()
+                   ? adaptFragments(program, fragment)
+                   : refuse("it has no vertex shader");
     const Stage& last = !geometry.empty() ? geometry : !tessellation.empty() ? tessellation : vertex;
     // One that was written for us gets the functions and nothing else.
     if (vertex.calls("geofx_vertex") || tessellation.calls("geofx_vertex") || geometry.calls("geofx_vertex"))
@@ -204,6 +208,19 @@ void ProgramAdaptation::adapt(const osg::Program& program)
         _colorRefusal = refusal;
     else
         adaptColors(program, fragment, depth);
+}
+
+void ProgramAdaptation::adaptFragments(const osg::Program& program, const Stage& fragment)
+{
+    if (fragment.depth() != FragmentDepth::OF_PLACE)
+        return refuse(
+            "its fragment shader writes a gl_FragDepth, and no vertex shader of its own says of what");
+    const ShaderLibrary library;
+    _fixedVertices = true;
+    _lastStage = osg::Shader::VERTEX;
+    _main = library.assemble(library.read(fixedFile), fixedFile);
+    _colorRefusal = fragment.mainRefusal("its fragment shader");
+    if (_colorRefusal.empty()) adaptColors(program, fragment, FragmentDepth::OF_PLACE);
 }
 
 void ProgramAdaptation::adaptPlaces(const Stage& last)

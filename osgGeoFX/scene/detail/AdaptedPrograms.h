@@ -41,6 +41,9 @@ public:
     const std::string& refusal() const { return _refusal; }
     /// Why its colors stay as they are, although its vertices move; empty where there is nothing to tell.
     const std::string& colorRefusal() const { return _colorRefusal; }
+    /// Whether it has a fragment stage alone. A copy then has the kit's stand-in for the fixed vertex stage, whose defines
+    /// a FixedFunctionLook sets.
+    bool hasFixedVertices() const { return _fixedVertices; }
     /// Puts a copy of the program right.
     void apply(osg::Program& copy) const;
 
@@ -48,6 +51,7 @@ private:
     struct Stage;
     struct Color;
     void adapt(const osg::Program& program);
+    void adaptFragments(const osg::Program& program, const Stage& fragment);
     void adaptPlaces(const Stage& last);
     void adaptEmissions(const Stage& geometry);
     void adaptColors(const osg::Program& program, const Stage& fragment, FragmentDepth depth);
@@ -61,6 +65,7 @@ private:
     std::vector<Text> _replaced;                                 ///< by their former shaders
     osg::Shader::Type _lastStage = osg::Shader::UNDEFINED;       ///< that places vertices
     std::string _main;                                           ///< what it gets more
+    bool _fixedVertices = false;
     std::string _refusal, _colorRefusal;
 };
 

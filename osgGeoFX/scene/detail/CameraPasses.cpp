@@ -68,14 +68,14 @@ void CameraPasses::startFrame(osgUtil::CullVisitor& outer)
     startFrame(_parts, outer);
 }
 
-void CameraPasses::draw(osgUtil::CullVisitor& outer, osg::Group& scene,
-                        const CompensatingCullVisitor::Task& task, const ScenePass::Drawing& drawing)
+void CameraPasses::draw(osgUtil::CullVisitor& outer, const CompensatingCullVisitor::Task& task,
+                        const ScenePass::Drawing& drawing)
 {
     const CompensatingCullVisitor::Task pass = taskOf(task, drawing);
     if (drawing.filter)
-        of(_parts, drawing.program, outer).run(outer, scene, pass, *drawing.filter);
+        of(_parts, drawing.program, outer).run(outer, pass, *drawing.filter);
     else
-        of(_wholes, drawing.program, outer).run(outer, scene, pass);
+        of(_wholes, drawing.program, outer).run(outer, pass);
 }
 
 void CameraPasses::draw(osgUtil::CullVisitor& outer, const std::vector<ScenePass::Piece>& pieces,
@@ -108,7 +108,7 @@ osg::ref_ptr<osg::Program> CameraPass::sceneProgram() const
 
 void CameraPass::draw(const Drawing& drawing) const
 {
-    _traversal.passes.draw(outer, scene, _traversal.task, drawing);
+    _traversal.passes.draw(outer, _traversal.task, drawing);
 }
 
 void CameraPass::draw(const std::vector<Piece>& pieces, const Drawing& drawing) const

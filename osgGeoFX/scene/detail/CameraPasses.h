@@ -24,7 +24,7 @@ public:
     unsigned int frame() const { return _frame; }
 
     /// Draws a pass within one traversal. `task` is what the scene itself was culled with.
-    void draw(osgUtil::CullVisitor& outer, osg::Group& scene, const CompensatingCullVisitor::Task& task,
+    void draw(osgUtil::CullVisitor& outer, const CompensatingCullVisitor::Task& task,
               const ScenePass::Drawing& drawing);
     void draw(osgUtil::CullVisitor& outer, const std::vector<ScenePass::Piece>& pieces,
               const CompensatingCullVisitor::Task& task, const ScenePass::Drawing& drawing);

@@ -70,6 +70,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
 {
     _task = task;
     setHost(outer);
+    _programs.setAdapting(task.adapts);
     _looks.begin(task.program, task.following, task.mapUnit);
 
     setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
@@ -197,7 +198,7 @@ void CompensatingCullVisitor::end(osgUtil::CullVisitor& outer)
     popViewport();
 }
 
-void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task)
+void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const Task& task)
 {
     begin(outer, task);
     for (DrawableCompanion* each : task.companions)
@@ -205,8 +206,7 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene
     if (task.state) pushStateSet(task.state);
     if (task.passState) pushStateSet(task.passState);
     _top = _currentStateGraph;
-    for (unsigned int i = 0; i < scene.getNumChildren(); ++i)
-        scene.getChild(i)->accept(*this);
+    task.traverse(*this);
     if (task.passState) popStateSet();
     if (task.state) popStateSet();
     if (task.debugBounds)

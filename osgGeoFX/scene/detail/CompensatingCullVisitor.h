@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,9 +45,13 @@ class CompensatingCullVisitor : public osgUtil::CullVisitor
 public:
     CompensatingCullVisitor();
 
+    /// Goes on below a scene's terrain.
+    using Traverse = std::function<void(osg::NodeVisitor&)>;
+
     /// What a scene wants for one traversal.
     struct Task
     {
+        Traverse traverse;
         osg::ref_ptr<const DeformationChain> chain;
         osg::StateSet* state = nullptr; ///< uniforms and defines of the effects; null where they draw nothing
         osg::Program* program = nullptr; ///< for what has none
@@ -61,6 +66,7 @@ public:
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;
+        bool adapts = false;    ///< EffectScene::getAdaptsPrograms()
         bool open = false;      ///< nothing else is to cull: EffectScene::OPEN
         double tileError = 0.0; ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
@@ -73,8 +79,8 @@ public:
     bool startsFrame(osgUtil::CullVisitor& outer);
     /// Forgets what was drawn in the last frame; where startsFrame() says so, or that of another visitor of the same camera.
     void startFrame(osgUtil::CullVisitor& outer);
-    /// Traverses a group's children in the place of `outer`.
-    void run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task);
+    /// Traverses a scene's terrain in the place of `outer`.
+    void run(osgUtil::CullVisitor& outer, const Task& task);
     /// Draws pieces in the place of a scene.
     void run(osgUtil::CullVisitor& outer, const std::vector<ScenePass::Piece>& pieces, const Task& task);
 

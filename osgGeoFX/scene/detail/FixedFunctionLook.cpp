@@ -400,6 +400,44 @@ FixedFunctionLook FixedFunctionState::look(int mapUnit) const
         look.ownProgram = true;
         return look;
     }
+    meetLights(look);
+    look.unsupported = _beyond;
+    if (on(FogMode)) look.fog = fogOf(_attributes[Fog]);
+    for (unsigned int i = 0; i < FixedFunctionLook::units; ++i)
+    {
+        if (on(OtherTexture + 8 * i)) look.unsupported = true;
+        if (!on(Texture2D + 8 * i)) continue;
+        look.texture[i] = environment(i, look.unsupported);
+        if (look.texture[i] > 0) look.texGen[i] = texGen(i);
+    }
+    const osg::Texture* normals = texture2D(_attributes[Image + 3 * TileNormals::unit]);
+    look.normalMap = normals && normals->getName() == TileNormals::texture;
+    look.map = mapUnit >= 0 && mapUnit < FixedFunctionLook::units &&
+               texture2D(_attributes[Image + 3 * static_cast<unsigned int>(mapUnit)]);
+    return look;
+}
+
+const osg::StateAttribute* FixedFunctionState::program() const
+{
+    return _attributes[Program];
+}
+
+FixedFunctionLook FixedFunctionState::vertexLook() const
+{
+    FixedFunctionLook look;
+    meetLights(look);
+    // Fragments may read the distance and all coordinates, whatever modes there are.
+    look.fog = on(FogMode) ? fogOf(_attributes[Fog]) : 1;
+    for (unsigned int i = 0; i < FixedFunctionLook::units; ++i)
+    {
+        look.texture[i] = 1;
+        look.texGen[i] = texGen(i);
+    }
+    return look;
+}
+
+void FixedFunctionState::meetLights(FixedFunctionLook& look) const
+{
     if (on(Lighting))
     {
         look.lights = static_cast<int>(_on >> Light0 & 0xFFu);
@@ -422,20 +460,6 @@ FixedFunctionLook FixedFunctionState::look(int mapUnit) const
     {
         look.pointSize = point->getDistanceAttenuation() != osg::Vec3(1.0f, 0.0f, 0.0f);
     }
-    look.unsupported = _beyond;
-    if (on(FogMode)) look.fog = fogOf(_attributes[Fog]);
-    for (unsigned int i = 0; i < FixedFunctionLook::units; ++i)
-    {
-        if (on(OtherTexture + 8 * i)) look.unsupported = true;
-        if (!on(Texture2D + 8 * i)) continue;
-        look.texture[i] = environment(i, look.unsupported);
-        if (look.texture[i] > 0) look.texGen[i] = texGen(i);
-    }
-    const osg::Texture* normals = texture2D(_attributes[Image + 3 * TileNormals::unit]);
-    look.normalMap = normals && normals->getName() == TileNormals::texture;
-    look.map = mapUnit >= 0 && mapUnit < FixedFunctionLook::units &&
-               texture2D(_attributes[Image + 3 * static_cast<unsigned int>(mapUnit)]);
-    return look;
 }
 
 FixedFunctionLook::Key FixedFunctionLook::key() const

@@ -51,12 +51,17 @@ public:
     /// Takes in the state sets from the root down to a node of the state graph.
     void meetAll(const osgUtil::StateGraph& state);
     FixedFunctionLook look(int mapUnit) const;
+    /// What the vertex stage does for a program that has a fragment stage alone: everything that OpenGL's own would do.
+    FixedFunctionLook vertexLook() const;
+    /// The program in force; null for none.
+    const osg::StateAttribute* program() const;
 
 private:
     enum ModeBit : unsigned int;
     enum Attribute : unsigned int;
     static constexpr unsigned int attributes = 17;
 
+    void meetLights(FixedFunctionLook& look) const;
     void meetMode(GLenum mode, unsigned int flags);
     void meetTextureMode(unsigned int unit, GLenum mode, unsigned int flags);
     void setMode(unsigned int bit, unsigned int flags);

@@ -136,6 +136,13 @@ osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& pro
     return state;
 }
 
+bool FollowingPrograms::hasFixedVertices(const osg::StateAttribute& program)
+{
+    const auto* original = dynamic_cast<const osg::Program*>(&program);
+    const auto adaptation = original ? AdaptedPrograms::instance().of(*original) : nullptr;
+    return adaptation && adaptation->hasFixedVertices();
+}
+
 void FollowingPrograms::purge()
 {
     for (auto each = _copies.begin(); each != _copies.end();)

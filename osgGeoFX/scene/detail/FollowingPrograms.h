@@ -33,6 +33,8 @@ public:
     /// has no functions and is not adapted, or there are none to follow yet.
     /// `drawing`: with which the scene, or a pass, draws what has no program; null for the scene's.
     osg::ref_ptr<osg::StateSet> of(const osg::StateAttribute& program, const osg::Program* drawing = nullptr);
+    /// Whether the copy of a program has the stand-in for the fixed vertex stage, which needs the defines of a look (LookCache).
+    static bool hasFixedVertices(const osg::StateAttribute& program);
     /// Sentences on programs whose colors cannot be adapted, each once, where effects color.
     std::vector<std::string> takeComplaints(bool colors);
     /// Those that may have GL objects.

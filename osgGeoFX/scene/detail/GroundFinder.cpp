@@ -51,20 +51,20 @@ GroundFinder::GroundFinder() : _systems(&isSystem, deepestSystem), _terrains(&is
 {
 }
 
-const osg::CoordinateSystemNode* GroundFinder::systemBelow(const osg::Group& scene)
+const osg::CoordinateSystemNode* GroundFinder::systemBelow(const osg::Group& top)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    return dynamic_cast<const osg::CoordinateSystemNode*>(_systems.find(scene));
+    return dynamic_cast<const osg::CoordinateSystemNode*>(_systems.find(top));
 }
 
-/// What a terrain says of itself: that whose root the coordinate system is, else the first one below the scene. Read again
+/// What a terrain says of itself: that whose root the coordinate system is, else the first one below `top`. Read again
 /// only where the root has other user values than the last time.
-std::optional<TerrainInfo> GroundFinder::terrainOf(const osg::Group& scene,
+std::optional<TerrainInfo> GroundFinder::terrainOf(const osg::Group& top,
                                                    const osg::CoordinateSystemNode* system)
 {
     if (!system) return std::nullopt;
     const std::lock_guard<std::mutex> lock(_mutex);
-    const osg::Node* root = isTerrainRoot(*system) ? system : _terrains.find(scene);
+    const osg::Node* root = isTerrainRoot(*system) ? system : _terrains.find(top);
     const osg::UserDataContainer* values = root ? root->getUserDataContainer() : nullptr;
     if (!values) return std::nullopt;
     if (values == _terrainValues) return _terrain;
@@ -78,7 +78,7 @@ std::optional<TerrainInfo> GroundFinder::terrainOf(const osg::Group& scene,
     return info;
 }
 
-Ground GroundFinder::find(const EffectScene& scene, const osg::NodePath& above)
+Ground GroundFinder::find(const EffectScene& scene, const osg::Group& terrain, const osg::NodePath& above)
 {
     const osg::CoordinateSystemNode* system = nullptr;
     for (const osg::Node* node : above)
@@ -86,12 +86,12 @@ Ground GroundFinder::find(const EffectScene& scene, const osg::NodePath& above)
         const auto* found = dynamic_cast<const osg::CoordinateSystemNode*>(node);
         if (found) system = found;
     }
-    if (!system) system = systemBelow(scene);
+    if (!system) system = systemBelow(terrain);
     Ground ground;
     const EffectScene::TerrainFrame frame = scene.getTerrainFrame();
     if (system && frame != EffectScene::PROJECTED) ground.ellipsoid = system->getEllipsoidModel();
     if (!ground.ellipsoid && frame == EffectScene::GEOCENTRIC) ground.ellipsoid = _globe;
-    if (const std::optional<TerrainInfo> info = terrainOf(scene, system))
+    if (const std::optional<TerrainInfo> info = terrainOf(terrain, system))
     {
         ground.heightsKnown = true;
         ground.terrain = info->root;

@@ -23,13 +23,13 @@ class GroundFinder
 {
 public:
     GroundFinder();
-    /// `above`: the nodes above the scene.
-    Ground find(const EffectScene& scene, const osg::NodePath& above);
+    /// What a scene states, and what is said by its terrain and by the nodes above this.
+    Ground find(const EffectScene& scene, const osg::Group& terrain, const osg::NodePath& above);
 
 private:
-    /// The first coordinate system below the scene; null where there is none.
-    const osg::CoordinateSystemNode* systemBelow(const osg::Group& scene);
-    std::optional<TerrainInfo> terrainOf(const osg::Group& scene, const osg::CoordinateSystemNode* system);
+    /// The first coordinate system at `top` or below it; null where there is none.
+    const osg::CoordinateSystemNode* systemBelow(const osg::Group& top);
+    std::optional<TerrainInfo> terrainOf(const osg::Group& top, const osg::CoordinateSystemNode* system);
 
     std::mutex _mutex;
     NodeFinder _systems, _terrains;

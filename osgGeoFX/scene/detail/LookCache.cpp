@@ -67,9 +67,15 @@ osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const FixedFunc
 osg::StateSet* LookCache::lookFor(const FixedFunctionState& state, bool noNormal)
 {
     if (!_program) return nullptr;
+    osg::Program* program = _program;
     FixedFunctionLook look = state.look(_mapUnit);
-    look.noNormal = noNormal && !look.ownProgram;
-    if (look.ownProgram) return nullptr;
+    if (look.ownProgram)
+    {
+        program = copyOf(*state.program()).fixedVertices;
+        if (!program) return nullptr;
+        look = state.vertexLook();
+    }
+    look.noNormal = noNormal;
     if (look.unsupported && !_warned)
     {
         _warned = true;
@@ -80,11 +86,11 @@ osg::StateSet* LookCache::lookFor(const FixedFunctionState& state, bool noNormal
                "a shader that calls geofx_vertex()."
             << std::endl;
     }
-    const FixedFunctionLook::Key key = look.key();
+    const Key key(program, look.key());
     if (!_look || key != _lookKey)
     {
         osg::ref_ptr<osg::StateSet>& set = _looks[key];
-        if (!set) set = look.createStateSet(_program);
+        if (!set) set = look.createStateSet(program);
         _look = set;
         _lookKey = key;
     }
@@ -93,10 +99,18 @@ osg::StateSet* LookCache::lookFor(const FixedFunctionState& state, bool noNormal
 
 osg::StateSet* LookCache::followingOf(const osg::StateAttribute* program)
 {
-    if (!program || !_following) return nullptr;
-    const auto [found, isNew] = _copies.try_emplace(program);
-    if (isNew) found->second = _following->of(*program, _program);
-    return found->second;
+    return program && _following ? copyOf(*program).state : nullptr;
+}
+
+const LookCache::Copy& LookCache::copyOf(const osg::StateAttribute& program)
+{
+    const auto [found, isNew] = _copies.try_emplace(&program);
+    Copy& copy = found->second;
+    if (isNew && _following) copy.state = _following->of(program, _program);
+    if (isNew && copy.state && FollowingPrograms::hasFixedVertices(program))
+        copy.fixedVertices =
+            static_cast<osg::Program*>(copy.state->getAttribute(osg::StateAttribute::PROGRAM));
+    return copy;
 }
 
 } // namespace osgGeoFX

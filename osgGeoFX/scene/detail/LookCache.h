@@ -11,6 +11,7 @@
 #include <osgUtil/StateGraph>
 
 #include <map>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -18,8 +19,9 @@ namespace osgGeoFX
 class FollowingPrograms;
 
 /** The state sets that drawables below effects are drawn with. A drawable without a program gets a look, which stands
-    in for OpenGL's fixed functions. A drawable with a program of the application gets a copy of that program. These
-    state sets stay the same as long as the scene's program does. For one thread at a time. */
+    in for OpenGL's fixed functions. A drawable with a program of the application gets a copy of that program. If this
+    has a fragment stage alone, the drawable gets a look whose vertex stage stands in for the fixed one. These state
+    sets stay the same as long as the scene's program does. For one thread at a time. */
 class LookCache
 {
 public:
@@ -27,23 +29,32 @@ public:
     /// none.
     void begin(osg::Program* program, FollowingPrograms* following, int mapUnit);
 
-    /// The look of a drawable. Null for one that a program of its own draws.
+    /// The look of a drawable. Null for one whose vertices a program of its own places.
     osg::StateSet* lookFor(const osg::Drawable& drawable, const osgUtil::StateGraph& graph);
     osg::StateSet* lookFor(const osg::Drawable& drawable, const FixedFunctionState& state);
-    /// The copy of the program in force that has the effects' functions. Null for a program that draws without them.
+    /// The copy of the program in force that has the effects' functions, for a drawable without a look. Null for a program
+    /// that draws without them.
     osg::StateSet* followingOf(const osg::StateAttribute* program);
 
 private:
+    /// What is drawn in the place of a program of the application, in this traversal.
+    struct Copy
+    {
+        osg::ref_ptr<osg::StateSet> state; ///< null where nothing is
+        osg::Program* fixedVertices =
+            nullptr; ///< the copy itself, if it has the stand-in for the fixed vertex stage
+    };
+    const Copy& copyOf(const osg::StateAttribute& program);
     osg::StateSet* lookFor(const FixedFunctionState& state, bool noNormal);
 
     osg::ref_ptr<osg::Program> _program;
     int _mapUnit = -1;
-    std::map<FixedFunctionLook::Key, osg::ref_ptr<osg::StateSet>> _looks;
+    using Key = std::pair<const osg::Program*, FixedFunctionLook::Key>;
+    std::map<Key, osg::ref_ptr<osg::StateSet>> _looks;
     osg::StateSet* _look = nullptr; ///< the last one; neighbours mostly look alike
-    FixedFunctionLook::Key _lookKey{};
+    Key _lookKey{};
     FollowingPrograms* _following = nullptr;
-    std::map<const osg::StateAttribute*, osg::ref_ptr<osg::StateSet>>
-        _copies;                                 ///< by program, in this traversal
+    std::map<const osg::StateAttribute*, Copy> _copies;
     const osgUtil::StateGraph* _graph = nullptr; ///< the node whose state _state has
     FixedFunctionState _state;
     const osg::StateSet* _ownState = nullptr; ///< that of the last drawable

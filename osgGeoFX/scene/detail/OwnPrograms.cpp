@@ -98,6 +98,7 @@ bool OwnPrograms::callsFunctions(const osg::StateAttribute& program)
     known.current = true;
     const auto* shaders = dynamic_cast<const osg::Program*>(&program);
     if (!shaders) return known.calls = false;
+    if (_adapting) AdaptedPrograms::instance().add(*shaders);
     const std::shared_ptr<const ProgramAdaptation> adaptation = AdaptedPrograms::instance().of(*shaders);
     if (adaptation)
     {

@@ -31,6 +31,8 @@ public:
     {
         return isOwn(program) && !callsFunctions(*program);
     }
+    /// Whether programs that do not call the functions are adapted as they are met. False by default.
+    void setAdapting(bool on) { _adapting = on; }
     /// Starts a frame. Each program is looked at once in a frame.
     void startFrame();
 
@@ -48,6 +50,7 @@ private:
         bool calls = false;
         bool current = false; ///< whether this frame has looked at it
     };
+    bool _adapting = false;
     std::map<const osg::StateAttribute*, Known> _known;
 };
 

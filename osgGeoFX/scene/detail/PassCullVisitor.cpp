@@ -9,11 +9,10 @@ namespace osgGeoFX
 
 PassCullVisitor::~PassCullVisitor() = default;
 
-void PassCullVisitor::run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task,
-                          PassFilter& filter)
+void PassCullVisitor::run(osgUtil::CullVisitor& outer, const Task& task, PassFilter& filter)
 {
     _filter = &filter;
-    CompensatingCullVisitor::run(outer, scene, task);
+    CompensatingCullVisitor::run(outer, task);
 }
 
 bool PassCullVisitor::outOfSight(const osg::Node& node)
@@ -25,6 +24,11 @@ bool PassCullVisitor::outOfSight(const osg::Node& node)
 void PassCullVisitor::meetLevels(const osg::LOD& node)
 {
     _filter->meet(node);
+}
+
+bool PassCullVisitor::drawsItself() const
+{
+    return OwnPrograms::isOwn(_mode.deformation.program);
 }
 
 osg::Drawable* PassCullVisitor::drawn(osg::Drawable& drawable, const std::vector<osg::StateSet*>& states)
@@ -41,7 +45,7 @@ void PassCullVisitor::place(osg::Drawable& drawable)
     const EyeBox box = EyeBox::of(bounds, modelView);
     if (_filter->outside(box.ball())) return;
     osg::StateSet* look = _looks.lookFor(drawable, *_currentStateGraph);
-    const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, look == nullptr);
+    const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, drawsItself());
     osg::Drawable* const copy = drawn(drawable, states);
     if (!copy) return;
     for (osg::StateSet* state : states)
@@ -53,14 +57,14 @@ void PassCullVisitor::place(osg::Drawable& drawable)
 }
 
 void PassCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph, osgUtil::RenderLeaf& leaf,
-                            const osg::BoundingBox& bounds, osg::StateSet* look, osg::StateSet* above)
+                            const osg::BoundingBox& bounds, osg::StateSet*, osg::StateSet* above)
 {
     if (!bounds.valid()) return;
     osg::Drawable& drawable = *leaf._drawable;
     const osg::Matrixd modelView = inView(leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd());
     const EyeBox box = EyeBox::of(bounds, modelView);
     if (_filter->outside(box.ball())) return;
-    const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, look == nullptr);
+    const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, drawsItself());
     osg::Drawable* const copy = drawn(drawable, states);
     if (!copy) return;
     for (osg::StateSet* state : states)

@@ -14,7 +14,7 @@ class PassFilter;
 class PassCullVisitor : public CompensatingCullVisitor
 {
 public:
-    void run(osgUtil::CullVisitor& outer, osg::Group& scene, const Task& task, PassFilter& filter);
+    void run(osgUtil::CullVisitor& outer, const Task& task, PassFilter& filter);
 
     using CompensatingCullVisitor::apply;
     void apply(osg::Camera&) override {}
@@ -35,6 +35,8 @@ protected:
 private:
     using CompensatingCullVisitor::run;
 
+    /// Whether a program of the application is in force.
+    bool drawsItself() const;
     /// The drawable that is drawn in place of another one; null for none.
     osg::Drawable* drawn(osg::Drawable& drawable, const std::vector<osg::StateSet*>& states);
 

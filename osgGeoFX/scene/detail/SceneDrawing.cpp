@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/detail/SceneDrawing.h>
+
+#include <osgGeoFX/effect/PassEffect.h>
+#include <osgGeoFX/scene/CameraEffects.h>
+#include <osgGeoFX/scene/detail/AdaptedPrograms.h>
+#include <osgGeoFX/scene/detail/CameraRoles.h>
+
+#include <osg/Notify>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+bool drawsPasses(const SceneDrawing::Effects& effects)
+{
+    return std::any_of(effects.begin(), effects.end(),
+                       [](const auto& each) { return each->getEnabled() && each->asPassEffect(); });
+}
+
+/// Whether there are enabled effects that move geometry, be it for this camera or for others.
+bool deforms(const SceneDrawing::Effects& effects)
+{
+    return std::any_of(effects.begin(), effects.end(),
+                       [](const auto& each) { return each->getEnabled() && each->asDeformation(); });
+}
+
+int mapUnitOf(const SceneDrawing::Effects& effects)
+{
+    for (const auto& effect : effects)
+    {
+        const Deformation* deformation = effect->asDeformation();
+        if (deformation && effect->getEnabled() && deformation->mapUnit() >= 0) return deformation->mapUnit();
+    }
+    return -1;
+}
+
+/// The effects that a camera draws in the places of a scene's.
+SceneDrawing::Effects effectsFor(const SceneDrawing::Effects& effects, const CameraEffects& camera)
+{
+    SceneDrawing::Effects result = effects;
+    for (osg::ref_ptr<Effect>& effect : result)
+        effect = camera.effectFor(*effect);
+    return result;
+}
+
+/// Empty where the camera shows the scene without effects.
+std::optional<CameraRole> roleOf(const EffectScene& scene, osgUtil::CullVisitor& outer,
+                                 const CameraEffects* own)
+{
+    CameraRole role = defaultRole(outer);
+    if (scene.getNestedCameras() && role.getKind() == CameraRole::UNDEFORMED) role = CameraRole::view();
+    const osg::Camera& camera = *outer.getCurrentCamera();
+    if (own && own->getRole()) role = *own->getRole();
+    if (const CameraRoleCallback* callback = scene.getRoleCallback())
+        role = callback->role(camera, outer, role);
+    if (role.getKind() == CameraRole::UNDEFORMED) return std::nullopt;
+    return role;
+}
+
+} // namespace
+
+/// One traversal of one camera.
+class SceneDrawing::Traversal
+{
+public:
+    /// `listed`: the effects of the scene; `effects`: what the camera draws in their places.
+    Traversal(SceneDrawing& drawing, EffectScene& scene, const Effects& listed, const Effects& effects,
+              osgUtil::CullVisitor& outer, const ViewGeometry& view, const Traverse& traverse)
+        : _drawing(drawing), _scene(scene), _listed(listed), _effects(effects), _outer(outer), _view(view),
+          _traverse(traverse), _units(drawing.unitsOf(listed, scene.getFirstTextureUnit()))
+    {
+    }
+
+    bool run();
+
+private:
+    using Task = CompensatingCullVisitor::Task;
+
+    Task taskOf(const osg::ref_ptr<const DeformationChain>& chain, int mapUnit) const;
+    template<typename Action>
+    void forPasses(const CameraPass::Traversal& traversal, const Action& action) const;
+    /// Culls with the visitor of the kit.
+    void drawScene(Camera& own, Task task, const CameraPass::Traversal& passes, bool draws,
+                   bool surfaces) const;
+
+    SceneDrawing& _drawing;
+    EffectScene& _scene;
+    const Effects& _listed;
+    const Effects& _effects;
+    osgUtil::CullVisitor& _outer;
+    const ViewGeometry& _view;
+    const Traverse& _traverse;
+    const std::shared_ptr<const TextureUnits> _units;
+};
+
+SceneDrawing::SceneDrawing()
+{
+    _untouched->setDefine("GEOFX_DEFORMATION", osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
+}
+
+/// The same ones as long as the list of effects and what they get stay as they are.
+std::shared_ptr<const TextureUnits> SceneDrawing::unitsOf(const Effects& effects, int lowest)
+{
+    std::shared_ptr<const TextureUnits> changed;
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        std::vector<unsigned int> now(effects.size());
+        std::transform(effects.begin(), effects.end(), now.begin(),
+                       [](const osg::ref_ptr<Effect>& each) { return each->revision(); });
+        const bool sameList = _units && effects == _unitEffects && lowest == _lowestUnit;
+        if (sameList && now == _unitRevisions) return _units;
+        _unitRevisions = now;
+        _unitEffects = effects;
+        _lowestUnit = lowest;
+        changed = std::make_shared<const TextureUnits>(TextureUnits::of(effects, lowest));
+        if (!sameList || changed->ofEffects != _units->ofEffects || changed->complete != _units->complete)
+            _units = changed;
+        else
+            changed = _units;
+    }
+    for (const std::string& sentence : changed->sentences)
+        sayOnce(sentence);
+    return changed;
+}
+
+void SceneDrawing::sayOnce(const std::string& sentence)
+{
+    if (sentence.empty()) return;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    // Numbers change from frame to frame; the rest tells what it is about.
+    std::string kind;
+    std::copy_if(sentence.begin(), sentence.end(), std::back_inserter(kind),
+                 [](char letter) { return letter < '0' || letter > '9'; });
+    if (_said.insert(kind).second) OSG_WARN << "osgGeoFX: " << sentence << std::endl;
+}
+
+/// Once for each program, whatever it is called.
+void SceneDrawing::warnOf(const CompensatingCullVisitor::Stranger& stranger)
+{
+    osg::ref_ptr<const osg::StateAttribute> own;
+    if (!stranger.program.lock(own)) return;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    osg::observer_ptr<const osg::StateAttribute>& known = _strangers[own.get()];
+    if (known.valid()) return;
+    known = own.get();
+    const auto* program = dynamic_cast<const osg::Program*>(own.get());
+    const auto adaptation = program ? AdaptedPrograms::instance().of(*program) : nullptr;
+    const std::string why =
+        adaptation ? " cannot be adapted, since " + adaptation->refusal() : " does not call geofx_vertex()";
+    OSG_WARN << "osgGeoFX: " << OwnPrograms::describe(*own, stranger.path) << why
+             << ", so what it draws stays where it is, without the scene's effects. "
+             << (program && !adaptation ? "Let the kit adapt it (EffectScene::adapt), or let" : "Let")
+             << " its vertex shader call geofx_vertex() (EffectScene::addFunctions), or put what it draws "
+                "below an "
+                "osgGeoFX::RigidReference, or leave it out with setDefine(\"GEOFX_DEFORMATION\", OFF) in its "
+                "state set."
+             << std::endl;
+}
+
+void SceneDrawing::Camera::startFrame(osgUtil::CullVisitor& outer)
+{
+    used = 0;
+    passes.startFrame(outer);
+}
+
+CameraState& SceneDrawing::Camera::nextState(const Effects& effects, int mapUnit,
+                                             const std::shared_ptr<const TextureUnits>& units)
+{
+    if (used == states.size()) states.emplace_back();
+    std::unique_ptr<CameraState>& state = states[used];
+    // Made anew for other effects, which would find the uniforms and textures of the former ones under their names.
+    if (!state || state->units() != units) state = std::make_unique<CameraState>(effects, mapUnit, units);
+    return *state;
+}
+
+CompensatingCullVisitor::Task
+SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chain, int mapUnit) const
+{
+    Task task;
+    task.traverse = _traverse;
+    task.chain = chain;
+    task.mapUnit = mapUnit;
+    task.view = &_view;
+    if (!_view.image.ofView) task.image = &_view.image;
+    task.untouched = _drawing._untouched;
+    task.adapts = _scene.getAdaptsPrograms();
+    task.tileError = _view.ground.tileError;
+    task.open = _scene.getEngineCulling() == EffectScene::OPEN && _scene.getCompensation() && !chain->empty();
+    // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
+    // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
+    task.compensate = _scene.getCompensation() && (_scene.getDebugBounds() || deforms(_effects));
+    return task;
+}
+
+template<typename Action>
+void SceneDrawing::Traversal::forPasses(const CameraPass::Traversal& traversal, const Action& action) const
+{
+    for (std::size_t i = 0; i < _effects.size(); ++i)
+    {
+        PassEffect* effect = _effects[i]->asPassEffect();
+        if (!effect || !_effects[i]->getEnabled() || !_units->complete[i]) continue;
+        const std::string prefix = EffectProgram::prefix(i);
+        action(*effect, CameraPass(traversal, prefix, _units->ofEffects[i]));
+    }
+}
+
+void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass::Traversal& passes,
+                                        bool draws, bool surfaces) const
+{
+    FollowingPrograms& following = _drawing.programs.following();
+    if (draws)
+    {
+        task.program = _drawing.programs.programOf(_listed);
+        task.following = &following;
+        task.state = passes.task.state;
+        forPasses(passes,
+                  [&](PassEffect& effect, const ScenePass& pass)
+                  {
+                      DrawableCompanion* companion = effect.companion(pass);
+                      if (companion) task.companions.push_back(companion);
+                  });
+    }
+    task.debugBounds = _scene.getDebugBounds();
+    own.visitor->run(_outer, task);
+    _drawing.sayOnce(own.visitor->complaint());
+    for (const auto& stranger : own.visitor->strangers())
+        _drawing.warnOf(stranger);
+    for (const std::string& sentence : following.takeComplaints(surfaces))
+        _drawing.sayOnce(sentence);
+}
+
+bool SceneDrawing::Traversal::run()
+{
+    const CameraSnapshots snapshots(_effects, _view);
+    const int mapUnit = mapUnitOf(_effects);
+    Camera& own = _drawing._cameras.of(_outer);
+    if (own.visitor->startsFrame(_outer)) own.startFrame(_outer);
+    CameraState& state = own.nextState(_effects, mapUnit, _units);
+    state.fill(snapshots, _view, mapUnit);
+    state.setHorizonClipping(_scene.getEngineCulling() != EffectScene::OPEN);
+    const bool surfaces = state.fillSurfaces(_effects, _view, _outer);
+
+    const Task task = taskOf(snapshots.chain(_view.ground), mapUnit);
+    const bool draws = surfaces || _scene.getDebugBounds() || !task.chain->empty();
+    const bool culls = draws || task.compensate;
+    if (!culls && !drawsPasses(_effects)) return false;
+
+    ++own.used;
+    Task passTask = task;
+    passTask.state = &state.set();
+    passTask.following = &_drawing.programs.following();
+    passTask.compensate = _scene.getCompensation();
+    const CameraPass::Traversal passes = {_outer, _scene, _view, passTask, own.passes, _drawing.programs,
+                                          _listed};
+    if (culls)
+        drawScene(own, task, passes, draws, surfaces);
+    else
+        _traverse(_outer);
+    forPasses(passes, [](PassEffect& effect, const ScenePass& pass) { effect.cull(pass); });
+    return true;
+}
+
+void SceneDrawing::computeBoundsBelow(const osg::Group& top)
+{
+    for (unsigned int i = 0; i < top.getNumChildren(); ++i)
+    {
+        const osg::Node& child = *top.getChild(i);
+        child.getBound();
+        if (const osg::Group* inner = child.asGroup()) computeBoundsBelow(*inner);
+    }
+}
+
+void SceneDrawing::completeBounds(const EffectScene& scene, const osg::Group& top,
+                                  const osg::FrameStamp* stamp)
+{
+    // Two threads may be about to cull what a pager has brought, here or in another scene.
+    static std::mutex mutex;
+    const std::lock_guard<std::mutex> lock(mutex);
+    // A scene's own bound is computed with all of those below it. Another node's does not tell whether they are known.
+    if (&top != &scene && (!stamp || _boundsFrame != stamp->getFrameNumber()))
+    {
+        computeBoundsBelow(top);
+        if (stamp) _boundsFrame = stamp->getFrameNumber();
+    }
+    top.getBound();
+}
+
+bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer,
+                        osg::Group& top, const Traverse& traverse)
+{
+    if (dynamic_cast<CompensatingCullVisitor*>(&outer)) return false;
+    if (!outer.getRenderStage() || !outer.getCurrentCamera()) return false;
+    const CameraEffects* const special = CameraEffects::find(*outer.getCurrentCamera());
+    const Effects shown = special ? effectsFor(effects, *special) : effects;
+    const bool wanted =
+        std::any_of(shown.begin(), shown.end(), [](const auto& each) { return each->getEnabled(); });
+    const std::optional<CameraRole> role = wanted ? roleOf(scene, outer, special) : std::nullopt;
+    if (!role) return false;
+    if (scene.getCompensation()) completeBounds(scene, top, outer.getFrameStamp());
+    const ViewGeometry view = viewOf(outer, *role, ground.find(scene, top, outer.getNodePath()));
+    return Traversal(*this, scene, effects, shown, outer, view, traverse).run();
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/PerCamera.h>
+#include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/detail/CameraPasses.h>
+#include <osgGeoFX/scene/detail/CameraState.h>
+#include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
+#include <osgGeoFX/scene/detail/GroundFinder.h>
+#include <osgGeoFX/scene/detail/ProgramCache.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/// Draws the terrain of an EffectScene with its effects, for any number of cameras at once. Thread-safe.
+class SceneDrawing
+{
+public:
+    using Effects = EffectProgram::Effects;
+    using Traverse = CompensatingCullVisitor::Traverse;
+
+    SceneDrawing();
+
+    /// Culls what is below `top`, where `outer` has come to. `traverse` goes on below it. False if the camera draws it
+    /// without effects; nothing has been culled then.
+    bool cull(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer, osg::Group& top,
+              const Traverse& traverse);
+
+    /// Computes the bounds of all nodes below one, whatever is known of those above them: a node with a bound of its own
+    /// says nothing of its children.
+    static void computeBoundsBelow(const osg::Group& top);
+
+    GroundFinder ground;
+    ProgramCache programs;
+
+private:
+    class Traversal;
+    /// For one cull visitor of OSG: so for one camera, and one of the frames that are on their way.
+    struct Camera
+    {
+        osg::ref_ptr<CompensatingCullVisitor> visitor = new CompensatingCullVisitor;
+        CameraPasses passes;
+        std::vector<std::unique_ptr<CameraState>> states; ///< one for each traversal of a frame
+        std::size_t used = 0;
+
+        void startFrame(osgUtil::CullVisitor& outer);
+        CameraState& nextState(const Effects& effects, int mapUnit,
+                               const std::shared_ptr<const TextureUnits>& units);
+    };
+
+    std::shared_ptr<const TextureUnits> unitsOf(const Effects& effects, int lowest);
+    void completeBounds(const EffectScene& scene, const osg::Group& top, const osg::FrameStamp* stamp);
+    void sayOnce(const std::string& sentence);
+    void warnOf(const CompensatingCullVisitor::Stranger& stranger);
+
+    std::mutex _mutex;
+    PerCamera<Camera> _cameras;
+    std::shared_ptr<const TextureUnits> _units;
+    int _lowestUnit = TextureUnits::first;
+    Effects _unitEffects; ///< those that the units were given to, and
+    std::vector<unsigned int> _unitRevisions;
+    osg::ref_ptr<osg::StateSet> _untouched = new osg::StateSet;
+    std::optional<unsigned int> _boundsFrame; ///< the frame that another node's bounds were completed in
+    std::set<std::string> _said;
+    std::map<const osg::StateAttribute*, osg::observer_ptr<const osg::StateAttribute>> _strangers;
+};
+
+} // namespace osgGeoFX
