@@ -128,17 +128,17 @@ bool readEngineCulling(osgDB::InputStream& stream, EffectScene& scene)
 {
     std::string name;
     stream >> name;
-    if (name == "OPEN")
-        scene.setEngineCulling(EffectScene::OPEN);
+    if (name == "OPEN" || name == "PROXY")
+        scene.setEngineCulling(name == "OPEN" ? EffectScene::OPEN : EffectScene::PROXY);
     else
-        OSG_WARN << "osgGeoFX: A file is wrong: EffectScene: EngineCulling must be OPEN, not \"" << name
-                 << "\". The default stays." << std::endl;
+        OSG_WARN << "osgGeoFX: A file is wrong: EffectScene: EngineCulling must be OPEN or PROXY, not \""
+                 << name << "\". The default stays." << std::endl;
     return true;
 }
 
-bool writeEngineCulling(osgDB::OutputStream& stream, const EffectScene&)
+bool writeEngineCulling(osgDB::OutputStream& stream, const EffectScene& scene)
 {
-    stream << std::string("OPEN") << std::endl;
+    stream << std::string(scene.getEngineCulling() == EffectScene::OPEN ? "OPEN" : "PROXY") << std::endl;
     return true;
 }
 

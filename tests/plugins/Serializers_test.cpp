@@ -207,6 +207,8 @@ const std::vector<Setting<EffectScene>>& sceneSettings()
          [](auto& s) { return s.getGround().tileCells; }, 0.0, 32.0},
         {[](auto& s) { s.setEngineCulling(EffectScene::OPEN); }, [](auto& s) { return s.getEngineCulling(); },
          EffectScene::AS_IT_IS, EffectScene::OPEN},
+        {[](auto& s) { s.setEngineCulling(EffectScene::PROXY); },
+         [](auto& s) { return s.getEngineCulling(); }, EffectScene::AS_IT_IS, EffectScene::PROXY},
         {[](auto& s) { s.setFirstTextureUnit(9); }, [](auto& s) { return s.getFirstTextureUnit(); }, 4.0,
          9.0},
         {[](auto& s) { s.addEffect(new BirdsEyeView); }, [](auto& s) { return s.getNumEffects(); }, 0.0, 1.0},

@@ -3,8 +3,11 @@
 //
 // Terrain engines that cull for themselves, below a scene with effects: with EffectScene::OPEN nothing that the deformed
 // picture shows is missing, to the last bit.
+#include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <tools/CloseUpStage.h>
 #include <tools/FakeEngine.h>
 #include <tools/GlRequired.h>
@@ -50,6 +53,21 @@ protected:
         }
         return part;
     }
+    /// One color all over the ground.
+    static osg::ref_ptr<ProjectiveMapping> makePaint()
+    {
+        osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
+        mapping->setRectangle(osg::Vec2d(0.0, 0.0), 500.0, 300.0, 0.3);
+        mapping->getTransfer()->setSource(ColorTransfer::CONSTANT);
+        mapping->getTransfer()->setConstant(osg::Vec4d(0.9, 0.1, 0.1, 1.0));
+        return mapping;
+    }
+    /// Where nothing is deformed, the engine is left to its own ways.
+    bool isDeformed()
+    {
+        const osg::Camera& camera = *viewer().getCamera();
+        return !_scene->deformation(camera.getViewMatrix(), camera.getProjectionMatrix())->empty();
+    }
     /// With everything drawn that there is.
     osg::ref_ptr<osg::Image> drawAll()
     {
@@ -88,6 +106,7 @@ TEST_F(EngineCulling, OpenLosesNothing)
         {
             SCOPED_TRACE("camera " + std::to_string(i));
             lookAnyhow(random);
+            if (!isDeformed()) continue;
             const osg::ref_ptr<osg::Image> expected = drawAll();
             _scene->setEngineCulling(EffectScene::AS_IT_IS);
             if (!same(*draw(), *expected)) ++lost;
@@ -107,6 +126,63 @@ TEST_F(EngineCulling, OpenLosesNothing)
     look({300.0, -1800.0, 1200.0}, {0.0, 900.0, 0.0}, 15.0);
     draw();
     EXPECT_LT(_engine->drawn, cells * cells);
+}
+
+// What the engine gets to cull by contains all that the picture shows, and not much more.
+TEST_F(EngineCulling, AProxyLosesNothingAndKeepsLittleElse)
+{
+    EffectScene::GroundDescription ground;
+    ground.minHeight = -90.0;
+    ground.maxHeight = 90.0;
+    ASSERT_TRUE(_scene->setGround(ground));
+    const osg::ref_ptr<VerticalExaggeration> high = new VerticalExaggeration;
+    high->setFactor(6.0);
+    const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+    const osg::ref_ptr<PedestrianView> pedestrian = new PedestrianView;
+    const osg::ref_ptr<BlendedView> blended = new BlendedView;
+    const osg::ref_ptr<PanoramaMap> panorama = new PanoramaMap;
+    panorama->setRipples(0.0);
+    const osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
+    mappings->addMapping(makePaint());
+    _closeUps->addCloseUp(makeCloseUp({-300.0, 200.0}));
+    const int count = fullTest() ? 200 : 12;
+    int all = 0, allNeeded = 0;
+    for (const std::vector<Effect*>& effects :
+         {std::vector<Effect*>{high}, std::vector<Effect*>{bend}, std::vector<Effect*>{pedestrian},
+          std::vector<Effect*>{blended}, std::vector<Effect*>{panorama}, std::vector<Effect*>{bend, mappings},
+          std::vector<Effect*>{high, bend, _closeUps}})
+    {
+        SCOPED_TRACE(effects.back()->className());
+        for (Effect* each : effects)
+            _scene->addEffect(each);
+        Random random(11);
+        int open = 0, proxy = 0, needed = 0;
+        for (int i = 0; i < count; ++i)
+        {
+            SCOPED_TRACE("camera " + std::to_string(i));
+            lookAnyhow(random);
+            if (!isDeformed()) continue;
+            const osg::ref_ptr<osg::Image> expected = drawAll();
+            _scene->setEngineCulling(EffectScene::OPEN);
+            EXPECT_TRUE(same(*draw(), *expected));
+            open += _engine->drawn;
+            needed += _engine->kept;
+            _scene->setEngineCulling(EffectScene::PROXY);
+            EXPECT_TRUE(same(*draw(), *expected));
+            proxy += _engine->drawn;
+        }
+        std::cout << effects.back()->className() << ": the engine draws " << open << " tiles open, " << proxy
+                  << " with a proxy; " << needed << " are needed, " << static_cast<double>(proxy) / needed
+                  << '\n';
+        EXPECT_LT(proxy, open);
+        // The passes of close-ups let engines cull nothing, since a lifted region lies anywhere.
+        if (effects.back() == _closeUps.get()) continue;
+        all += proxy;
+        allNeeded += needed;
+        for (Effect* each : effects)
+            _scene->removeEffect(each);
+    }
+    EXPECT_LT(all, 1.3 * allNeeded);
 }
 
 TEST_F(EngineCulling, ClampCallbacksCutNothingOff)

@@ -35,7 +35,8 @@ public:
     }
 
     bool culls = true; ///< false: it draws all tiles
-    int drawn = 0;     ///< tiles in the last traversal
+    int drawn = 0;     ///< tiles in all traversals of the last frame
+    int kept = 0;      ///< those of which the visitor draws something
 
     void traverse(osg::NodeVisitor& visitor) override
     {
@@ -52,14 +53,20 @@ public:
         stack.pushModelViewMatrix(new osg::RefMatrix(*cull->getModelViewMatrix()),
                                   osg::Transform::ABSOLUTE_RF);
         const osg::Vec3d eye = cull->getViewPointLocal();
-        drawn = 0;
+        if (const unsigned int frame = cull->getFrameStamp()->getFrameNumber(); frame != _frame)
+        {
+            _frame = frame;
+            drawn = kept = 0;
+        }
         for (const Tile& tile : _tiles)
         {
             const osg::BoundingBox& box = tile.fine->getBoundingBox();
             if (culls && (stack.isCulled(box) || belowHorizon(eye, box))) continue;
             ++drawn;
             const bool near = cull->getDistanceToViewPoint(box.center(), true) < static_cast<float>(_range);
+            const unsigned int before = leavesIn(*cull->getCurrentRenderBin());
             (near ? tile.fine : tile.coarse)->accept(visitor);
+            if (leavesIn(*cull->getCurrentRenderBin()) > before) ++kept;
         }
         stack.popModelViewMatrix();
         stack.popProjectionMatrix();
@@ -67,6 +74,13 @@ public:
     }
 
 private:
+    static unsigned int leavesIn(const osgUtil::RenderBin& bin)
+    {
+        std::size_t count = 0;
+        for (const osgUtil::StateGraph* graph : const_cast<osgUtil::RenderBin&>(bin).getStateGraphList())
+            count += graph->_leaves.size();
+        return static_cast<unsigned int>(count);
+    }
     /// On a planet that is small enough for this to matter.
     static bool belowHorizon(const osg::Vec3d& eye, const osg::BoundingBox& box)
     {
@@ -76,6 +90,7 @@ private:
 
     const std::vector<Tile> _tiles;
     const double _range;
+    unsigned int _frame = 0;
 };
 
 /// Clamps the far plane to the horizon of a FakeEngine, as hosts do that know it.

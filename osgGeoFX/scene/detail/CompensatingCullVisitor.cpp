@@ -34,12 +34,38 @@ bool holdsGeometryOnly(const osg::Transform& node)
 
 } // namespace
 
+CompensatingCullVisitor::Lens::Lens(CompensatingCullVisitor& visitor, const osg::Node& node)
+    : _visitor(visitor)
+{
+    // What is not moved is culled by the picture itself.
+    const bool engine = !comesWithOsg(&node) && visitor._mode.ours && !visitor._mode.chain->empty();
+    if (engine == visitor._proxied) return;
+    _changes = true;
+    _formerMode = visitor.getCullingMode();
+    visitor._proxied = engine;
+    visitor.pushProjectionMatrix(engine ? visitor._proxy.get() : visitor._projection.get());
+    visitor.getProjectionCullingStack().back().setCullingMask(NO_CULLING);
+    visitor.pushModelViewMatrix(visitor.getModelViewMatrix(), osg::Transform::RELATIVE_RF);
+    visitor.getCurrentCullingSet().setCullingMask(NO_CULLING);
+    visitor.setCullingMode(engine ? visitor._outerCullingMode & VIEW_FRUSTUM_CULLING : NO_CULLING);
+}
+
+CompensatingCullVisitor::Lens::~Lens()
+{
+    if (!_changes) return;
+    _visitor.setCullingMode(_formerMode);
+    _visitor.popModelViewMatrix();
+    _visitor.popProjectionMatrix();
+    _visitor._proxied = !_visitor._proxied;
+}
+
 CompensatingCullVisitor::Scope::Scope(CompensatingCullVisitor& visitor, const osg::Node& node)
     : _visitor(visitor), _former(visitor._mode)
 {
     if (!visitor._mode.ours) return;
     visitor.meet(node.getStateSet());
     if (visitor._task.compensate) _skip = visitor.outOfSight(node);
+    if (visitor._task.proxy && !_skip) _lens.emplace(visitor, node);
 }
 
 CompensatingCullVisitor::CompensatingCullVisitor() : _nothing(new DeformationChain) {}
@@ -102,6 +128,8 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _entry = _currentStateGraph;
 
     _outerCullingMode = outer.getCullingMode();
+    // A pass of parts that a filter chooses lets engines cull nothing.
+    _task.proxy = task.proxy && cullsByPicture() && (_outerCullingMode & VIEW_FRUSTUM_CULLING);
     const bool findsDepths = task.findsNearAndFar || task.ownView;
     _outerNearFar = findsDepths ? outer.getComputeNearFarMode() : DO_NOT_COMPUTE_NEAR_FAR;
     if (task.compensate)
@@ -130,16 +158,20 @@ void CompensatingCullVisitor::pushMatrices(osgUtil::CullVisitor& outer)
 {
     const ViewGeometry* own = _task.ownView;
     pushViewport(outer.getViewport());
-    pushProjectionMatrix(own ? createOrReuseMatrix(own->projection) : outer.getProjectionMatrix());
+    _projection = own ? createOrReuseMatrix(own->projection) : outer.getProjectionMatrix();
+    _proxied = false;
+    pushProjectionMatrix(_projection);
     setVisibility(outer);
     // OSG's own tests, which the base class makes, pass everything.
     if (_task.compensate) getProjectionCullingStack().back().setCullingMask(NO_CULLING);
     _outerViewPoint = outer.getReferenceViewPoint();
-    pushReferenceViewPoint(_task.open ? raisedViewPoint() : outer.getReferenceViewPoint());
     // OSG knows a matrix by its address, and each stage loads another one behind its back: stages must not share any.
     osg::RefMatrix* modelView =
         _task.stage ? createOrReuseMatrix(own ? own->modelView : osg::Matrixd(*outer.getModelViewMatrix()))
                     : outer.getModelViewMatrix();
+    pushReferenceViewPoint(_task.proxy  ? setProxy(*modelView)
+                           : _task.open ? raisedViewPoint()
+                                        : outer.getReferenceViewPoint());
     pushModelViewMatrix(modelView, osg::Transform::RELATIVE_RF);
     if (_task.compensate) getCurrentCullingSet().setCullingMask(NO_CULLING);
 }
@@ -405,6 +437,8 @@ void CompensatingCullVisitor::passUntouched(NodeType& node)
         CullVisitor::apply(node);
         return;
     }
+    std::optional<Lens> lens;
+    if (_task.proxy) lens.emplace(*this, node);
     const Mode formerMode = _mode;
     const osg::CullSettings formerSettings(*this);
     osgUtil::StateGraph* const formerGraph = _currentStateGraph;

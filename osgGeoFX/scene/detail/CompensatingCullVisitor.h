@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,9 +67,11 @@ public:
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;
-        bool adapts = false;    ///< EffectScene::getAdaptsPrograms()
-        bool open = false;      ///< nothing else is to cull: EffectScene::OPEN
-        double tileError = 0.0; ///< Ground::tileError
+        bool adapts = false;       ///< EffectScene::getAdaptsPrograms()
+        bool open = false;         ///< nothing else is to cull: EffectScene::OPEN or PROXY
+        bool proxy = false;        ///< engines cull by a ProxyFrustum: EffectScene::PROXY
+        osg::BoundingSphere bound; ///< of the terrain, for this frustum
+        double tileError = 0.0;    ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
         bool findsNearAndFar = true;           ///< false: the camera's stay as they are
         osgUtil::RenderStage* stage = nullptr; ///< where it draws; null for where `outer` does
@@ -179,6 +182,22 @@ protected:
     LookCache _looks;
 
 private:
+    /// For as long as a node is visited: the matrices that it may cull by. Those of nodes that come with OSG are the picture's. Others
+    /// may be terrain engines, and get the proxy frustum.
+    class Lens
+    {
+    public:
+        Lens(CompensatingCullVisitor& visitor, const osg::Node& node);
+        ~Lens();
+        Lens(const Lens&) = delete;
+        Lens& operator=(const Lens&) = delete;
+
+    private:
+        CompensatingCullVisitor& _visitor;
+        bool _changes = false;
+        CullingMode _formerMode = 0;
+    };
+
     /// For as long as a node is visited: its mode, and whether it is out of sight.
     class Scope
     {
@@ -194,6 +213,7 @@ private:
         CompensatingCullVisitor& _visitor;
         const Mode _former;
         bool _skip = false;
+        std::optional<Lens> _lens;
     };
 
     /// For what is below an object that was moved as a whole: the way back.
@@ -223,6 +243,8 @@ private:
     void pushMatrices(osgUtil::CullVisitor& outer);
     /// Where everything is above the horizon, for those who look for the view point.
     osg::Vec3 raisedViewPoint() const;
+    /// Sets the proxy frustum, and returns the view point that goes with it.
+    osg::Vec3 setProxy(const osg::Matrixd& modelView);
     /// From where levels of detail are chosen, in the view's eye space.
     osg::Vec3d viewPoint() const;
     /// Whether parts of a node that is out of sight, deformed, are in sight since they are not.
@@ -237,6 +259,8 @@ private:
     template<typename NodeType>
     void passUntouched(NodeType& node);
     void drawCompanions(osg::Drawable& drawable, double depth);
+    /// Whether a class comes with OSG or the kit, so that no host and no engine has a use for it of its own.
+    static bool comesWithOsg(const osg::Object* object);
     /// Finds out whether the outer visitor does more than OSG's.
     void setHost(osgUtil::CullVisitor& outer);
     /// Lets the host apply a node with this visitor's matrices, state graph and bins. `traverses`: also to what is below
@@ -256,6 +280,9 @@ private:
 
     Visibility _sight;
     DrawableSight _drawables = DrawableSight(_sight);
+    osg::ref_ptr<osg::RefMatrix> _projection,
+        _proxy;            ///< that of the picture, and the one that engines cull by
+    bool _proxied = false; ///< whether the second one is in force
     CullingMode _outerCullingMode = 0;
     ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;
     bool _mayBeSmall = false; ///< what is looked at is never left out for being small

@@ -14,11 +14,7 @@
 namespace osgGeoFX
 {
 
-namespace
-{
-
-/// Whether a class comes with OSG or the kit, so that no host has a use for it of its own.
-bool comesWithOsg(const osg::Object* object)
+bool CompensatingCullVisitor::comesWithOsg(const osg::Object* object)
 {
     // A class of a host's that does not say its library has that of its base class, but not its namespace.
     if (!std::strstr(typeid(*object).name(), "osg")) return false;
@@ -28,8 +24,6 @@ bool comesWithOsg(const osg::Object* object)
     return std::any_of(std::begin(libraries), std::end(libraries),
                        [own](const char* library) { return std::strcmp(own, library) == 0; });
 }
-
-} // namespace
 
 void CompensatingCullVisitor::setHost(osgUtil::CullVisitor& outer)
 {

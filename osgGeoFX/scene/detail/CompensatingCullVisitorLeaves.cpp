@@ -55,8 +55,14 @@ std::size_t CompensatingCullVisitor::graphsIn(osgUtil::RenderBin& bin)
 
 void CompensatingCullVisitor::addLeaf(osg::Drawable& drawable, osg::RefMatrix* matrix, double depth)
 {
-    if (_currentStateGraph->leaves_empty()) _ownGraphs.push_back(_currentStateGraph);
-    addDrawableAndDepth(&drawable, matrix, static_cast<float>(depth));
+    if (_currentStateGraph->leaves_empty())
+    {
+        _ownGraphs.push_back(_currentStateGraph);
+        _currentRenderBin->addStateGraph(_currentStateGraph);
+    }
+    // As the base class has it, with the picture's projection even where engines cull by another one.
+    _currentStateGraph->addLeaf(createOrReuseRenderLeaf(&drawable, _projection.get(), matrix,
+                                                        static_cast<float>(depth)));
 }
 
 void CompensatingCullVisitor::addLeaf(osg::Drawable& drawable, osg::StateSet* own, osg::StateSet* look,
@@ -143,6 +149,7 @@ void CompensatingCullVisitor::adoptLeaves(osgUtil::RenderBin& bin, osgUtil::Stat
     for (const auto& leaf : leaves)
     {
         osg::Drawable& drawable = *leaf->_drawable;
+        if (_proxy && leaf->_projection == _proxy) leaf->_projection = _projection;
         // Light points do not say that they have moved.
         const osg::BoundingBox bounds =
             isLightPoints(drawable) ? drawable.computeBoundingBox() : drawable.getBoundingBox();

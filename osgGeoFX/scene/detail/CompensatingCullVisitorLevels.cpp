@@ -4,6 +4,8 @@
 // Levels of detail, and the tiles of the kit's databases.
 #include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
 
+#include <osgGeoFX/scene/detail/ProxyFrustum.h>
+
 #include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <osg/LOD>
@@ -170,6 +172,18 @@ osg::Vec3 CompensatingCullVisitor::raisedViewPoint() const
     constexpr double high = 1e10;
     const osg::Vec3d& up = _task.view->up;
     return osg::Vec3((_task.image ? osg::Matrixd::transform3x3(up, _task.image->toEye) : up) * high);
+}
+
+osg::Vec3 CompensatingCullVisitor::setProxy(const osg::Matrixd& modelView)
+{
+    const ViewGeometry& view = *_task.view;
+    const osg::Vec3d up = _task.image ? osg::Matrixd::transform3x3(view.up, _task.image->toEye) : view.up;
+    const ProxyFrustum::Terrain terrain = {
+        _task.bound, modelView, _task.image ? _task.image->toView : osg::Matrixd(), up, view.ground};
+    const ProxyFrustum proxy(terrain, [this](const EyeBox& box)
+                             { return _sight.outOfSight(*_task.chain, box, _sight.all()); });
+    _proxy = createOrReuseMatrix(proxy.projection());
+    return proxy.viewPoint() ? osg::Vec3(*proxy.viewPoint()) : raisedViewPoint();
 }
 
 osg::Vec3d CompensatingCullVisitor::viewPoint() const

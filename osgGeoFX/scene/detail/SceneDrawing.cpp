@@ -51,6 +51,15 @@ SceneDrawing::Effects effectsFor(const SceneDrawing::Effects& effects, const Cam
     return result;
 }
 
+/// In their own frame, whatever the node does.
+osg::BoundingSphere boundOfChildren(const osg::Group& node)
+{
+    osg::BoundingSphere all;
+    for (unsigned int i = 0; i < node.getNumChildren(); ++i)
+        all.expandBy(node.getChild(i)->getBound());
+    return all;
+}
+
 /// Empty where the camera shows the scene without effects.
 std::optional<CameraRole> roleOf(const EffectScene& scene, osgUtil::CullVisitor& outer,
                                  const CameraEffects* own)
@@ -73,9 +82,10 @@ class SceneDrawing::Traversal
 public:
     /// `listed`: the effects of the scene; `effects`: what the camera draws in their places.
     Traversal(SceneDrawing& drawing, EffectScene& scene, const Effects& listed, const Effects& effects,
-              osgUtil::CullVisitor& outer, const ViewGeometry& view, const Traverse& traverse)
+              osgUtil::CullVisitor& outer, const ViewGeometry& view, const osg::BoundingSphere& bound,
+              const Traverse& traverse)
         : _drawing(drawing), _scene(scene), _listed(listed), _effects(effects), _outer(outer), _view(view),
-          _traverse(traverse), _units(drawing.unitsOf(listed, scene.getFirstTextureUnit()))
+          _bound(bound), _traverse(traverse), _units(drawing.unitsOf(listed, scene.getFirstTextureUnit()))
     {
     }
 
@@ -97,6 +107,7 @@ private:
     const Effects& _effects;
     osgUtil::CullVisitor& _outer;
     const ViewGeometry& _view;
+    const osg::BoundingSphere _bound; ///< of the terrain's children, in their frame
     const Traverse& _traverse;
     const std::shared_ptr<const TextureUnits> _units;
 };
@@ -193,7 +204,10 @@ SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chai
     task.untouched = _drawing._untouched;
     task.adapts = _scene.getAdaptsPrograms();
     task.tileError = _view.ground.tileError;
-    task.open = _scene.getEngineCulling() == EffectScene::OPEN && _scene.getCompensation() && !chain->empty();
+    task.open =
+        _scene.getEngineCulling() != EffectScene::AS_IT_IS && _scene.getCompensation() && !chain->empty();
+    task.proxy = task.open && _scene.getEngineCulling() == EffectScene::PROXY;
+    task.bound = _bound;
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
     task.compensate = _scene.getCompensation() && (_scene.getDebugBounds() || deforms(_effects));
@@ -245,7 +259,7 @@ bool SceneDrawing::Traversal::run()
     if (own.visitor->startsFrame(_outer)) own.startFrame(_outer);
     CameraState& state = own.nextState(_effects, mapUnit, _units);
     state.fill(snapshots, _view, mapUnit);
-    state.setHorizonClipping(_scene.getEngineCulling() != EffectScene::OPEN);
+    state.setHorizonClipping(_scene.getEngineCulling() == EffectScene::AS_IT_IS);
     const bool surfaces = state.fillSurfaces(_effects, _view, _outer);
 
     const Task task = taskOf(snapshots.chain(_view.ground), mapUnit);
@@ -306,7 +320,7 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
     if (!role) return false;
     if (scene.getCompensation()) completeBounds(scene, top, outer.getFrameStamp());
     const ViewGeometry view = viewOf(outer, *role, ground.find(scene, top, outer.getNodePath()));
-    return Traversal(*this, scene, effects, shown, outer, view, traverse).run();
+    return Traversal(*this, scene, effects, shown, outer, view, boundOfChildren(top), traverse).run();
 }
 
 } // namespace osgGeoFX

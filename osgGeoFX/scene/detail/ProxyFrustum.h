@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/Deformation.h>
+#include <osgGeoFX/effect/ViewGeometry.h>
+
+#include <osg/BoundingSphere>
+#include <osg/Matrixd>
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** What an undeformed camera would have to see so that nothing is missing in the deformed picture.
+
+    Terrain engines cull by what they know: a projection, a modelview matrix and a view point. This class finds the
+    projection and the view point that contain all ground which the deformed picture shows. It starts with a box around the
+    terrain, and leaves out what is out of sight. It splits the boxes that reach furthest, until they are small. So the
+    result is conservative at any time, and tighter with each step. The result is a pyramid with its tip at the eye, or a box if something behind the
+    eye is shown. */
+class ProxyFrustum
+{
+public:
+    struct Terrain
+    {
+        osg::BoundingSphere bound; ///< of the terrain's children, in their frame
+        osg::Matrixd modelView;    ///< from that frame to the eye space of the camera
+        osg::Matrixd toView;       ///< from there to the view's
+        osg::Vec3d up;             ///< in the eye space of the camera
+        const Ground& ground;
+    };
+    /// Whether a box, undeformed, in the view's eye space, is out of sight once it is deformed.
+    using OutOfSight = std::function<bool(const EyeBox&)>;
+
+    ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight);
+
+    /// From the eye space of the camera to clip coordinates.
+    const osg::Matrixd& projection() const { return _projection; }
+    /// A point above the eye, in the eye space of the camera, from which all that is shown is above the horizon. Empty if no
+    /// height is enough, or if there is no ellipsoid.
+    const std::optional<osg::Vec3d>& viewPoint() const { return _viewPoint; }
+
+private:
+    static constexpr std::size_t sides = 6;
+    static constexpr std::size_t shapes = 3;
+    enum : std::size_t
+    {
+        Own,   ///< a pyramid with sides along those of the picture
+        Level, ///< one with level sides
+        Box
+    };
+    using Reach =
+        std::array<double, sides>; ///< how far something goes to each side; a larger number is further out
+    struct Shape
+    {
+        osg::Matrixd frame; ///< from the eye space of the camera; −z is forward
+        bool parallel = false;
+    };
+    struct Cell
+    {
+        osg::BoundingBox box;            ///< in the terrain's frame
+        std::array<Reach, shapes> reach; ///< infinite where a corner does not lie in front of the tip
+        double coarseness = 0;           ///< its size over its distance from the eye
+    };
+
+    void setShapes();
+    std::optional<Cell> cellOf(const osg::BoundingBox& box) const;
+    Reach reachOf(const Shape& shape, const osg::BoundingBox& box) const;
+    bool awayFromGround(const osg::BoundingBox& box) const;
+    void refine();
+    void split(std::size_t index);
+    Reach reachOf(std::size_t shape) const;
+    osg::Matrixd projectionOf(std::size_t shape) const;
+    void setProjection();
+    void setViewPoint();
+
+    const Terrain& _terrain;
+    const OutOfSight& _outOfSight;
+    std::array<Shape, shapes> _shapes;
+    std::vector<Cell> _cells;
+    osg::Matrixd _projection;
+    std::optional<osg::Vec3d> _viewPoint;
+};
+
+} // namespace osgGeoFX
