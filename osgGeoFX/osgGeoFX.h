@@ -42,6 +42,7 @@
 #include <osgGeoFX/scene/MeshRefiner.h>
 #include <osgGeoFX/scene/ProgramAdapter.h>
 #include <osgGeoFX/scene/RigidReference.h>
+#include <osgGeoFX/scene/ShaderHost.h>
 
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/BlendedView.h>

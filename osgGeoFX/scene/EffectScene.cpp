@@ -25,7 +25,7 @@ EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
       _adaptsPrograms(other._adaptsPrograms), _firstTextureUnit(other._firstTextureUnit),
-      _roleCallback(other._roleCallback), _groundDescription(other._groundDescription),
+      _shaderHost(other._shaderHost), _roleCallback(other._roleCallback), _groundDescription(other._groundDescription),
       _engineCulling(other._engineCulling), _drawing(std::make_unique<SceneDrawing>())
 {
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
@@ -82,6 +82,12 @@ bool EffectScene::setFirstTextureUnit(int unit)
     }
     _firstTextureUnit = unit;
     return true;
+}
+
+void EffectScene::setShaderHost(ShaderHost* host)
+{
+    _shaderHost = host;
+    _drawing->programs.dirty();
 }
 
 void EffectScene::adapt(osg::Program& program)

@@ -7,6 +7,7 @@
 #include <osgGeoFX/effect/Effect.h>
 #include <osgGeoFX/effect/ViewGeometry.h>
 #include <osgGeoFX/scene/CameraRole.h>
+#include <osgGeoFX/scene/ShaderHost.h>
 
 #include <osg/Group>
 #include <osg/Program>
@@ -137,6 +138,10 @@ public:
         between frames. */
     bool setFirstTextureUnit(int unit);
     int getFirstTextureUnit() const { return _firstTextureUnit; }
+    /// Gives the texts of the effects to an engine that assembles its shaders itself; null, the default, for none.
+    void setShaderHost(ShaderHost* host);
+    ShaderHost* getShaderHost() { return _shaderHost.get(); }
+    const ShaderHost* getShaderHost() const { return _shaderHost.get(); }
     /// Decides on the role of each camera, after CameraEffects; null, the default, for none.
     void setRoleCallback(const CameraRoleCallback* callback) { _roleCallback = callback; }
     const CameraRoleCallback* getRoleCallback() const { return _roleCallback.get(); }
@@ -237,6 +242,7 @@ private:
     bool _nestedCameras = false;
     bool _adaptsPrograms = false;
     int _firstTextureUnit = 4;
+    osg::ref_ptr<ShaderHost> _shaderHost;
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     GroundDescription _groundDescription;
     EngineCulling _engineCulling = AS_IT_IS;

@@ -97,6 +97,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _task = task;
     setHost(outer);
     _programs.setAdapting(task.adapts);
+    _programs.setHost(task.shaderHost);
     _looks.begin(task.program, task.following, task.mapUnit);
 
     setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));

@@ -24,6 +24,7 @@ namespace osgGeoFX
 {
 
 class DrawableCompanion;
+class ShaderHost;
 class FollowingPrograms;
 class RigidReference;
 
@@ -67,9 +68,11 @@ public:
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;
-        bool adapts = false;       ///< EffectScene::getAdaptsPrograms()
-        bool open = false;         ///< nothing else is to cull: EffectScene::OPEN or PROXY
-        bool proxy = false;        ///< engines cull by a ProxyFrustum: EffectScene::PROXY
+        const ShaderHost* shaderHost =
+            nullptr;         ///< EffectScene::getShaderHost(); null in passes, whose functions it has not
+        bool adapts = false; ///< EffectScene::getAdaptsPrograms()
+        bool open = false;   ///< nothing else is to cull: EffectScene::OPEN or PROXY
+        bool proxy = false;  ///< engines cull by a ProxyFrustum: EffectScene::PROXY
         osg::BoundingSphere bound; ///< of the terrain, for this frustum
         double tileError = 0.0;    ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;

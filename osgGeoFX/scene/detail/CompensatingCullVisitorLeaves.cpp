@@ -61,8 +61,8 @@ void CompensatingCullVisitor::addLeaf(osg::Drawable& drawable, osg::RefMatrix* m
         _currentRenderBin->addStateGraph(_currentStateGraph);
     }
     // As the base class has it, with the picture's projection even where engines cull by another one.
-    _currentStateGraph->addLeaf(createOrReuseRenderLeaf(&drawable, _projection.get(), matrix,
-                                                        static_cast<float>(depth)));
+    _currentStateGraph->addLeaf(
+        createOrReuseRenderLeaf(&drawable, _projection.get(), matrix, static_cast<float>(depth)));
 }
 
 void CompensatingCullVisitor::addLeaf(osg::Drawable& drawable, osg::StateSet* own, osg::StateSet* look,

@@ -355,6 +355,14 @@ std::string EffectProgram::functions(const Effects& effects, osg::Shader::Type s
     return later ? inLaterStage(std::move(text), stage) : text;
 }
 
+std::string EffectProgram::hostText(const Effects& effects, osg::Shader::Type stage)
+{
+    std::string text = functions(effects, stage);
+    // The line is left empty, so that a compiler's messages name the right one.
+    if (text.compare(0, 8, "#version") == 0) text.erase(0, text.find('\n'));
+    return text;
+}
+
 std::string EffectProgram::passFunctions(const Effects& effects, const PassShaders& pass,
                                          const std::string& prefix, osg::Shader::Type stage)
 {

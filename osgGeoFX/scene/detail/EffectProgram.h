@@ -31,6 +31,8 @@ public:
     /// The text of a function shader, of the vertex, tessellation evaluation, geometry or fragment stage; ShaderError as
     /// ShaderLibrary has it.
     static std::string functions(const Effects& effects, osg::Shader::Type stage);
+    /// The same without `#version`, for the vertex and the fragment stage.
+    static std::string hostText(const Effects& effects, osg::Shader::Type stage);
     /// Adds the functions of effects to the stages of a program that have none yet; ShaderError.
     static void addFunctions(osg::Program& program, const Effects& effects);
     /// Those that another program has.

@@ -3,6 +3,7 @@
 #include <osgGeoFX/scene/detail/OwnPrograms.h>
 
 #include <osgGeoFX/effect/detail/TileNormals.h>
+#include <osgGeoFX/scene/ShaderHost.h>
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 
 #include <algorithm>
@@ -91,6 +92,7 @@ void OwnPrograms::startFrame()
 
 bool OwnPrograms::callsFunctions(const osg::StateAttribute& program)
 {
+    if (_host && _host->draws(program)) return true;
     Known& known = _known[&program];
     if (known.current && known.program.valid()) return known.calls;
     if (!known.program.valid()) known = {};

@@ -14,6 +14,8 @@
 namespace osgGeoFX
 {
 
+class ShaderHost;
+
 /** Finds out how an application's own programs use the kit's functions. A program that places vertices without
     geofx_vertex() draws its geometry undeformed. For one thread at a time. */
 class OwnPrograms
@@ -33,6 +35,8 @@ public:
     }
     /// Whether programs that do not call the functions are adapted as they are met. False by default.
     void setAdapting(bool on) { _adapting = on; }
+    /// An engine that knows which of its programs call the functions; null for none.
+    void setHost(const ShaderHost* host) { _host = host; }
     /// Starts a frame. Each program is looked at once in a frame.
     void startFrame();
 
@@ -51,6 +55,7 @@ private:
         bool current = false; ///< whether this frame has looked at it
     };
     bool _adapting = false;
+    const ShaderHost* _host = nullptr;
     std::map<const osg::StateAttribute*, Known> _known;
 };
 

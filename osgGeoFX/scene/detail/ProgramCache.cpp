@@ -47,6 +47,17 @@ osg::ref_ptr<osg::Program> ProgramCache::programOf(const Effects& effects)
     return _program;
 }
 
+void ProgramCache::tell(ShaderHost& host, const Effects& effects)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    // Without a key a shader file is missing, and the host keeps the last texts that worked.
+    if (_key.empty() || (_host == &host && _toldKey == _key)) return;
+    host.use({EffectProgram::hostText(effects, osg::Shader::VERTEX),
+              EffectProgram::hostText(effects, osg::Shader::FRAGMENT)});
+    _host = &host;
+    _toldKey = _key;
+}
+
 osg::ref_ptr<osg::Program> ProgramCache::passProgramOf(const Effects& effects, const PassShaders& shaders,
                                                        const std::string& prefix)
 {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/effect/ScenePass.h>
+#include <osgGeoFX/scene/ShaderHost.h>
 #include <osgGeoFX/scene/detail/EffectProgram.h>
 #include <osgGeoFX/scene/detail/FollowingPrograms.h>
 
@@ -26,6 +27,8 @@ public:
 
     /// The program for geometry that has none. Null, after a warning, if a shader file is missing.
     osg::ref_ptr<osg::Program> programOf(const Effects& effects);
+    /// Gives the texts of the effects to a host that has other ones. After programOf().
+    void tell(ShaderHost& host, const Effects& effects);
     /// The program of a pass of the effect with this prefix.
     osg::ref_ptr<osg::Program> passProgramOf(const Effects& effects, const PassShaders& shaders,
                                              const std::string& prefix);
@@ -53,6 +56,8 @@ private:
     Effects _effects; ///< the effects at the last call of changed(); their revisions come next
     std::vector<unsigned int> _revisions;
     std::string _key;
+    osg::ref_ptr<ShaderHost> _host; ///< that was told last, and
+    std::string _toldKey;           ///< the key of what it was told
     bool _made = false;
     osg::ref_ptr<osg::Program> _program;
     std::map<std::string, PassProgram> _passes;

@@ -234,6 +234,11 @@ void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass
     {
         task.program = _drawing.programs.programOf(_listed);
         task.following = &following;
+        if (ShaderHost* host = _scene.getShaderHost())
+        {
+            _drawing.programs.tell(*host, _listed);
+            task.shaderHost = host;
+        }
         task.state = passes.task.state;
         forPasses(passes,
                   [&](PassEffect& effect, const ScenePass& pass)

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// An engine that assembles its shaders itself, and draws with programs of a class of its own, as osgEarth does.
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/scene/ShaderHost.h>
+#include <tools/BentGround.h>
+
+#include <osg/Program>
+
+#include <mutex>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+/// A program that is no osg::Program, but draws with one.
+class EngineProgram : public osg::StateAttribute
+{
+public:
+    EngineProgram() = default;
+    EngineProgram(const EngineProgram& other, const osg::CopyOp& copy) : osg::StateAttribute(other, copy) {}
+    META_StateAttribute(engine, EngineProgram, PROGRAM);
+    int compare(const osg::StateAttribute& other) const override
+    {
+        return this < &other ? -1 : this > &other;
+    }
+
+    void apply(osg::State& state) const override { inner->apply(state); }
+    void releaseGLObjects(osg::State* state) const override { inner->releaseGLObjects(state); }
+    void resizeGLObjectBuffers(unsigned int size) override { inner->resizeGLObjectBuffers(size); }
+
+    osg::ref_ptr<osg::Program> inner;
+};
+
+/// The engine: it joins pieces of text.
+class Engine : public ShaderHost
+{
+public:
+    Engine()
+    {
+        assemble({"vec4 geofx_vertex(vec4 eye) { return eye; }\n",
+                  "vec4 geofx_fragment(vec4 color, vec4) { return color; }\n"});
+    }
+    void use(const ShaderTexts& texts) override
+    {
+        ++told;
+        assemble(texts);
+    }
+    bool draws(const osg::StateAttribute& attribute) const override { return &attribute == program.get(); }
+
+    const osg::ref_ptr<EngineProgram> program = new EngineProgram;
+    int told = 0;
+
+private:
+    void assemble(const ShaderTexts& texts)
+    {
+        const std::string version = "#version 330 compatibility\n#line 1\n";
+        program->inner = new osg::Program;
+        program->inner->addShader(new osg::Shader(
+            osg::Shader::VERTEX,
+            version + texts.vertex +
+                "void engine_view(inout vec4 eye) { eye = geofx_vertex(eye); }\n"
+                "void main()\n{\n    vec4 eye = gl_ModelViewMatrix * gl_Vertex;\n"
+                "    vec4 placed = eye;\n    engine_view(placed);\n"
+                "    gl_Position = placed == eye ? ftransform() : gl_ProjectionMatrix * placed;\n"
+                "    gl_FrontColor = gl_Color;\n}\n"));
+        program->inner->addShader(
+            new osg::Shader(osg::Shader::FRAGMENT,
+                            version + texts.fragment +
+                                "void main() { gl_FragColor = geofx_fragment(gl_Color, vec4(0.0)); }\n"));
+    }
+};
+
+class ShaderHosts : public BentGround
+{
+protected:
+    osg::ref_ptr<osg::Geometry> engineGround() const
+    {
+        osg::ref_ptr<osg::Geometry> ground = makeGround();
+        ground->getOrCreateStateSet()->setAttribute(_engine->program);
+        return ground;
+    }
+    static osg::ref_ptr<ProjectiveMappings> makePaint()
+    {
+        osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
+        mapping->setRectangle(osg::Vec2d(0.0, 0.0), 80.0, 60.0, 0.3);
+        mapping->getTransfer()->setSource(ColorTransfer::CONSTANT);
+        mapping->getTransfer()->setConstant(osg::Vec4d(0.9, 0.1, 0.1, 1.0));
+        osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
+        mappings->addMapping(mapping);
+        return mappings;
+    }
+
+    const osg::ref_ptr<Engine> _engine = new Engine;
+};
+
+} // namespace
+
+TEST_F(ShaderHosts, DrawWhatTheKitDraws)
+{
+    const osg::ref_ptr<EffectScene> kits = makeScene({makeGround()});
+    const osg::ref_ptr<EffectScene> engines = makeScene({engineGround()});
+    engines->setShaderHost(_engine);
+    EXPECT_TRUE(same(*render(engines), *render(kits)));
+    EXPECT_EQ(_engine->told, 1);
+    EXPECT_TRUE(same(*render(engines), *render(kits)));
+    EXPECT_EQ(_engine->told, 1);
+    // Another effect needs other texts. Switching it off does not.
+    const osg::ref_ptr<ProjectiveMappings> paint = makePaint();
+    const osg::ref_ptr<osg::Image> plain = render(kits);
+    kits->addEffect(paint);
+    engines->addEffect(paint);
+    const osg::ref_ptr<osg::Image> painted = render(kits);
+    EXPECT_GT(differing(*painted, *plain), 500);
+    EXPECT_TRUE(same(*render(engines), *painted));
+    EXPECT_EQ(_engine->told, 2);
+    paint->setEnabled(false);
+    EXPECT_TRUE(same(*render(engines), *plain));
+    EXPECT_EQ(_engine->told, 2);
+    // Outside of scenes nothing happens, with the texts of the effects, too.
+    EXPECT_TRUE(same(*render(makePlain({engineGround()})), *render(makePlain({makeGround()}))));
+}
+
+TEST_F(ShaderHosts, TextsHaveNoVersion)
+{
+    class Listener : public ShaderHost
+    {
+    public:
+        void use(const ShaderTexts& given) override { texts = given; }
+        bool draws(const osg::StateAttribute&) const override { return false; }
+        ShaderTexts texts;
+    };
+    const osg::ref_ptr<Listener> listener = new Listener;
+    const osg::ref_ptr<EffectScene> scene = makeScene({makeGround()});
+    scene->setShaderHost(listener);
+    render(scene);
+    for (const std::string& text : {listener->texts.vertex, listener->texts.fragment})
+    {
+        EXPECT_EQ(text.find("#version"), std::string::npos);
+        EXPECT_EQ(text.find("void main"), std::string::npos);
+    }
+    EXPECT_NE(listener->texts.vertex.find("vec4 geofx_vertex(vec4 eyePosition)"), std::string::npos);
+    EXPECT_NE(listener->texts.fragment.find("vec4 geofx_fragment(vec4 color, vec4 map)"), std::string::npos);
+}
+
+// Without the host's word, a program of another class is a stranger.
+TEST_F(ShaderHosts, WhatTheyDoNotDrawStaysWhereItIs)
+{
+    const osg::ref_ptr<EffectScene> scene = makeScene({engineGround()});
+    osg::ref_ptr<osg::Image> drawn;
+    const std::vector<std::string> said = watch().messagesOf([&] { drawn = render(scene); });
+    EXPECT_TRUE(same(*drawn, *render(makePlain({makeGround()}))));
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said.front().find("engine::EngineProgram"), std::string::npos) << said.front();
+}
