@@ -33,7 +33,7 @@ public:
     void releaseGLObjects(osg::State* state) const override { inner->releaseGLObjects(state); }
     void resizeGLObjectBuffers(unsigned int size) override { inner->resizeGLObjectBuffers(size); }
 
-    osg::ref_ptr<osg::Program> inner;
+    osg::ref_ptr<osg::Program> inner = new osg::Program; // as a default, the fixed functions
 };
 
 /// The engine: it joins pieces of text.
