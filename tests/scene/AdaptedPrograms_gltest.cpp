@@ -113,6 +113,27 @@ protected:
         plain->addChild(still->getChild(0));
         EXPECT_GT(differing(*expected, *render(plain)), WIDTH * HEIGHT / 4);
     }
+
+    /// A picture of a ground and of boxes in it, each with a program, with calls by hand or adapted.
+    osg::ref_ptr<osg::Image> withBoxes(const osg::ref_ptr<osg::Program>& ground,
+                                       const osg::ref_ptr<osg::Program>& boxes, bool byHand)
+    {
+        for (osg::Program* each : {ground.get(), boxes.get()})
+        {
+            if (byHand)
+                EffectScene::addFunctions(*each);
+            else
+                EffectScene::adapt(*each);
+        }
+        const osg::ref_ptr<EffectScene> scene = sceneWith(ground);
+        for (const double y : {-60.0, -20.0, 30.0, 80.0})
+        {
+            const osg::ref_ptr<osg::MatrixTransform> box = makeBox(9, {y / 4, y, -6});
+            box->getOrCreateStateSet()->setAttribute(boxes);
+            scene->addChild(box);
+        }
+        return render(scene);
+    }
 };
 
 /// Those that Mesa's compatibility contexts have.
@@ -275,22 +296,7 @@ TEST_F(AdaptedProgramsTest, DepthsOfFragmentsFollow)
             own.fragments = {std::string(version) + "DEFINES\n" + (old ? "varying" : "in") +
                              " float far;\nvoid main()\n{\n    gl_FragColor = TINT(gl_Color);\n"
                              "    gl_FragDepth = 0.5 * 0.17 * log2(far);\n}\n"};
-            const osg::ref_ptr<osg::Program> boxes = own.make(byHand);
-            for (osg::Program* each : {ground.get(), boxes.get()})
-            {
-                if (byHand)
-                    EffectScene::addFunctions(*each);
-                else
-                    EffectScene::adapt(*each);
-            }
-            const osg::ref_ptr<EffectScene> scene = sceneWith(ground);
-            for (const double y : {-60.0, -20.0, 30.0, 80.0})
-            {
-                const osg::ref_ptr<osg::MatrixTransform> box = makeBox(9, {y / 4, y, -6});
-                box->getOrCreateStateSet()->setAttribute(boxes);
-                scene->addChild(box);
-            }
-            return render(scene);
+            return withBoxes(ground, own.make(byHand), byHand);
         };
         EXPECT_LE(apart(*picture(false), *picture(true)), 5);
     }
@@ -313,22 +319,7 @@ TEST_F(AdaptedProgramsTest, ProjectedDepthsOfFragmentsFollow)
                          " * normalize(at), 1.0);\n"
                          "    if (gl_Color.r > 0.5)\n        gl_FragDepth = 0.5 * (clip.z / clip.w + 1.0);\n"
                          "    else\n        gl_FragDepth = gl_FragCoord.z;\n}\n"};
-        const osg::ref_ptr<osg::Program> boxes = own.make(byHand);
-        for (osg::Program* each : {ground.get(), boxes.get()})
-        {
-            if (byHand)
-                EffectScene::addFunctions(*each);
-            else
-                EffectScene::adapt(*each);
-        }
-        const osg::ref_ptr<EffectScene> scene = sceneWith(ground);
-        for (const double y : {-60.0, -20.0, 30.0, 80.0})
-        {
-            const osg::ref_ptr<osg::MatrixTransform> box = makeBox(9, {y / 4, y, -6});
-            box->getOrCreateStateSet()->setAttribute(boxes);
-            scene->addChild(box);
-        }
-        return render(scene);
+        return withBoxes(ground, own.make(byHand), byHand);
     };
     const osg::ref_ptr<osg::Image> drawn = picture(false, 5.0);
     EXPECT_LE(apart(*drawn, *picture(true, 5.0)), 12);
