@@ -158,7 +158,7 @@ const Properties& CloseUps::properties() const
             TextureUnits::property("tableUnit", "the texture unit of the tables").of<&Self::_tableUnit>(),
             TextureUnits::property("surfaceUnit", "the texture unit of the surface data")
                 .of<&Self::_surfaceUnit>(),
-            Property::integer("blockBinding", "the binding point of the uniform block", 0, 35)
+            TextureUnits::blockProperty("blockBinding", "the binding point of the uniform block")
                 .of<&Self::_blockBinding>(),
         });
     return all;
@@ -205,7 +205,7 @@ void CloseUps::cull(const ScenePass& pass)
                               _depthTest,
                               _maxLayers,
                               {pass.units[0], pass.units[1], pass.units[2]},
-                              static_cast<unsigned int>(_blockBinding)};
+                              static_cast<unsigned int>(pass.blocks[0])};
     CloseUpCamera& camera = _drawing->cameras.of(pass.outer, pass.scene);
     const std::string sentence = camera.cull(pass, task);
     _drawing->saw(camera.statistics(), sentence);

@@ -106,7 +106,7 @@ public:
     int getMaskUnit() const { return _maskUnit; }
     int getTableUnit() const { return _tableUnit; }
     int getSurfaceUnit() const { return _surfaceUnit; }
-    /// The binding point of the uniform block, 0…35. Default: 7.
+    /// The binding point of the uniform block, 0…35. With the default, −1, the scene chooses one: 7 if it is free.
     bool setBlockBinding(int binding) { return assign("blockBinding", binding); }
     int getBlockBinding() const { return _blockBinding; }
 
@@ -124,6 +124,10 @@ public:
 
     const Properties& properties() const override;
     std::vector<TextureUnitWish> textureUnits() const override;
+    std::vector<UniformBlockWish> uniformBlocks() const override
+    {
+        return {{"blockBinding", _blockBinding, 7}};
+    }
     void cull(const ScenePass& pass) override;
     void resizeGLObjectBuffers(unsigned int size) override;
     void releaseGLObjects(osg::State* state) const override;
@@ -143,7 +147,7 @@ private:
     int _supersampling = 1;
     bool _depthTest = true;
     int _maxLayers = 2048;
-    int _maskUnit = -1, _tableUnit = -1, _surfaceUnit = -1, _blockBinding = 7;
+    int _maskUnit = -1, _tableUnit = -1, _surfaceUnit = -1, _blockBinding = -1;
     std::unique_ptr<Drawing> _drawing;
 };
 

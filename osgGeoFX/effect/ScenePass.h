@@ -43,7 +43,7 @@ struct PassShaders
     /// fixed functions is used.
     std::string vertexMain, fragmentMain;
     std::vector<std::pair<std::string, unsigned int>>
-        blocks; ///< uniform blocks: names without the prefix, and binding points
+        blocks; ///< uniform blocks: names without the prefix, and binding points (ScenePass::blocks)
 };
 
 /** The interface through which an effect draws the scene again. It tells what one culling camera knows, and it
@@ -60,11 +60,12 @@ public:
         outer; ///< the camera's, at the EffectScene: for viewports, matrices, and the effect's own drawables
     osg::Group& scene; ///< the EffectScene
     const ViewGeometry& view;
-    const DeformationChain& chain; ///< the deformations of this camera
-    osg::StateSet& state;          ///< the uniforms and defines of all effects for this camera
-    const std::string& prefix;     ///< the prefix of the effect's uniforms and defines
-    const std::vector<int>& units; ///< the effect's texture units (TextureUser)
-    bool compensate;               ///< EffectScene::getCompensation()
+    const DeformationChain& chain;  ///< the deformations of this camera
+    osg::StateSet& state;           ///< the uniforms and defines of all effects for this camera
+    const std::string& prefix;      ///< the prefix of the effect's uniforms and defines
+    const std::vector<int>& units;  ///< the effect's texture units (TextureUser)
+    const std::vector<int>& blocks; ///< the binding points of its uniform blocks (TextureUser)
+    bool compensate;                ///< EffectScene::getCompensation()
     /// Changes when the camera begins a new frame. If it differs from the last time, the former frame has been drawn,
     /// and the objects that it was drawn with may be used again. A camera may call several times in one frame.
     unsigned int frame;
@@ -111,9 +112,10 @@ public:
 protected:
     ScenePass(osgUtil::CullVisitor& visitor, osg::Group& group, const ViewGeometry& geometry,
               const DeformationChain& deformations, osg::StateSet& stateSet, const std::string& names,
-              const std::vector<int>& textureUnits, bool compensation, unsigned int number)
+              const std::vector<int>& textureUnits, const std::vector<int>& blockBindings, bool compensation,
+              unsigned int number)
         : outer(visitor), scene(group), view(geometry), chain(deformations), state(stateSet), prefix(names),
-          units(textureUnits), compensate(compensation), frame(number)
+          units(textureUnits), blocks(blockBindings), compensate(compensation), frame(number)
     {
     }
 };

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -14,14 +14,84 @@ TextureUser::~TextureUser() = default;
 namespace
 {
 
-/// Who has which units.
-class Table
+/// A request for a number of one kind: a texture unit, or a binding point.
+struct Wish
+{
+    const char* property;
+    int wanted, preferred;
+    bool everywhere, ofTerrain;
+};
+using Wishes = std::vector<std::vector<Wish>>; ///< of each effect
+
+/// Numbers of one kind.
+struct Kind
+{
+    const char* one; ///< "texture unit"
+    int lowest, last;
+    int reserved; ///< is given only to who asks for it; −1 for none
+};
+
+std::string nameOf(const Effect& effect, std::size_t place)
+{
+    return std::string(effect.className()) + " (effect " + std::to_string(place + 1) + " of the scene)";
+}
+
+/// Gives numbers of one kind to effects.
+class Giver
 {
 public:
-    /// Where it is free for an effect that needs it there.
-    bool isFree(int unit, std::size_t effect, bool everywhere) const
+    Giver(const TextureUnits::Effects& effects, const std::vector<std::size_t>& order, const Wishes& wishes,
+          const Kind& kind, TextureUnits& result)
+        : _effects(effects), _order(order), _wishes(wishes), _kind(kind), _result(result)
     {
-        const auto [begin, end] = _taken.equal_range(unit);
+        for (const auto& each : wishes)
+            _given.emplace_back(each.size(), -1);
+    }
+
+    std::vector<TextureUnits::Units> give()
+    {
+        // Several effects may read what the terrain has on one unit; no one else may have it.
+        eachWish(
+            [&](std::size_t effect, const Wish& wish, int& number)
+            {
+                if (wish.ofTerrain) take(number = wish.wanted, effect, true);
+            });
+        eachWish(
+            [&](std::size_t effect, const Wish& wish, int& number)
+            {
+                if (wish.ofTerrain || wish.wanted < 0) return;
+                if (isFree(wish.wanted, effect, wish.everywhere))
+                    take(number = wish.wanted, effect, wish.everywhere);
+                else
+                    refuse(effect, wish);
+            });
+        eachWish(
+            [&](std::size_t effect, const Wish& wish, int& number)
+            {
+                if (number < 0) choose(effect, wish, number);
+            });
+        for (std::size_t i = 0; i < _effects.size(); ++i)
+        {
+            if (std::find(_given[i].begin(), _given[i].end(), -1) != _given[i].end()) leaveOut(i);
+        }
+        return _given;
+    }
+
+private:
+    template<typename Action>
+    void eachWish(const Action& action)
+    {
+        for (const std::size_t i : _order)
+        {
+            for (std::size_t j = 0; j < _wishes[i].size(); ++j)
+                action(i, _wishes[i][j], _given[i][j]);
+        }
+    }
+
+    /// Where it is free for an effect that needs it there.
+    bool isFree(int number, std::size_t effect, bool everywhere) const
+    {
+        const auto [begin, end] = _taken.equal_range(number);
         return std::all_of(begin, end,
                            [&](const auto& entry)
                            {
@@ -30,27 +100,59 @@ public:
                                return bothInPasses && entry.second.effect != effect;
                            });
     }
-    std::optional<std::size_t> holder(int unit) const
+    void take(int number, std::size_t effect, bool everywhere)
     {
-        const auto found = _taken.find(unit);
-        if (found == _taken.end()) return std::nullopt;
-        return found->second.effect;
+        _taken.insert({number, {effect, everywhere}});
     }
-    void take(int unit, std::size_t effect, bool everywhere) { _taken.insert({unit, {effect, everywhere}}); }
 
-private:
+    void choose(std::size_t effect, const Wish& wish, int& number)
+    {
+        const auto free = [&](int each)
+        {
+            return each != _kind.reserved && isFree(each, effect, wish.everywhere);
+        };
+        int chosen = wish.preferred >= _kind.lowest && free(wish.preferred) ? wish.preferred : _kind.lowest;
+        while (chosen <= _kind.last && !free(chosen))
+            ++chosen;
+        if (chosen <= _kind.last) take(number = chosen, effect, wish.everywhere);
+    }
+
+    void say(std::size_t effect, const std::string& sentence)
+    {
+        if (_effects[effect]->getEnabled()) _result.sentences.push_back(sentence);
+    }
+    void refuse(std::size_t effect, const Wish& wish)
+    {
+        const std::size_t holder = _taken.find(wish.wanted)->second.effect;
+        say(effect, nameOf(*_effects[effect], effect) + " cannot have " + _kind.one + " " +
+                        std::to_string(wish.wanted) + " as its " + wish.property + ", for " +
+                        nameOf(*_effects[holder], holder) +
+                        " has it; the scene gives it another one. Set one that is free, or -1 for the "
+                        "scene's choice.");
+    }
+    void leaveOut(std::size_t effect)
+    {
+        _result.complete[effect] = false;
+        say(effect, nameOf(*_effects[effect], effect) + " is not drawn: the other effects have all " +
+                        _kind.one + "s from " + std::to_string(_kind.lowest) + " to " +
+                        std::to_string(_kind.last) +
+                        ". Remove effects, or put the mappings of several sets into one.");
+    }
+
     struct Holder
     {
         std::size_t effect;
         bool everywhere;
     };
+
+    const TextureUnits::Effects& _effects;
+    const std::vector<std::size_t>& _order;
+    const Wishes& _wishes;
+    const Kind& _kind;
+    TextureUnits& _result;
+    std::vector<TextureUnits::Units> _given;
     std::multimap<int, Holder> _taken;
 };
-
-std::string nameOf(const Effect& effect, std::size_t place)
-{
-    return std::string(effect.className()) + " (effect " + std::to_string(place + 1) + " of the scene)";
-}
 
 } // namespace
 
@@ -58,6 +160,12 @@ Property TextureUnits::property(const std::string& name, const std::string& desc
 {
     return Property::integer(name, description + "; -1 takes one that the scene's effects have free", -1,
                              last);
+}
+
+Property TextureUnits::blockProperty(const std::string& name, const std::string& description)
+{
+    return Property::integer(name, description + "; -1 takes one that the scene's effects have free", -1,
+                             lastBlock);
 }
 
 std::string TextureUnits::inconsistency(const std::vector<TextureUnitWish>& wishes)
@@ -75,85 +183,28 @@ std::string TextureUnits::inconsistency(const std::vector<TextureUnitWish>& wish
     return {};
 }
 
-TextureUnits TextureUnits::of(const Effects& effects, int lowest)
+TextureUnits TextureUnits::of(const Effects& effects, int lowest, int lowestBlock)
 {
-    std::vector<std::vector<TextureUnitWish>> wishes(effects.size());
+    Wishes units(effects.size()), blocks(effects.size());
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
-        if (const auto* user = dynamic_cast<const TextureUser*>(effects[i].get()))
-            wishes[i] = user->textureUnits();
         order.push_back(i);
+        const auto* user = dynamic_cast<const TextureUser*>(effects[i].get());
+        if (!user) continue;
+        for (const TextureUnitWish& wish : user->textureUnits())
+            units[i].push_back({wish.property, wish.unit, wish.preferred, wish.everywhere, wish.ofTerrain});
+        for (const UniformBlockWish& wish : user->uniformBlocks())
+            blocks[i].push_back({wish.property, wish.binding, wish.preferred, true, false});
     }
     std::stable_partition(order.begin(), order.end(),
                           [&](std::size_t i) { return effects[i]->getEnabled(); });
-
     TextureUnits result;
-    result.ofEffects.resize(effects.size());
-    for (std::size_t i = 0; i < effects.size(); ++i)
-        result.ofEffects[i].assign(wishes[i].size(), -1);
-    Table table;
-    const auto say = [&](std::size_t effect, const std::string& sentence)
-    {
-        if (effects[effect]->getEnabled()) result.sentences.push_back(sentence);
-    };
-    const auto eachWish = [&](const auto& action)
-    {
-        for (const std::size_t i : order)
-        {
-            for (std::size_t j = 0; j < wishes[i].size(); ++j)
-                action(i, wishes[i][j], result.ofEffects[i][j]);
-        }
-    };
-    // Several effects may read what the terrain has on one unit; no one else may have it.
-    eachWish(
-        [&](std::size_t effect, const TextureUnitWish& wish, int& unit)
-        {
-            if (!wish.ofTerrain) return;
-            unit = wish.unit;
-            table.take(unit, effect, true);
-        });
-    eachWish(
-        [&](std::size_t effect, const TextureUnitWish& wish, int& unit)
-        {
-            if (wish.ofTerrain || wish.unit < 0) return;
-            if (table.isFree(wish.unit, effect, wish.everywhere))
-            {
-                unit = wish.unit;
-                table.take(unit, effect, wish.everywhere);
-                return;
-            }
-            const std::size_t holder = table.holder(wish.unit).value_or(effect);
-            say(effect, nameOf(*effects[effect], effect) + " cannot have texture unit " +
-                            std::to_string(wish.unit) + " as its " + wish.property + ", for " +
-                            nameOf(*effects[holder], holder) +
-                            " has it; the scene gives it another one. Set one that is free, or -1 for the "
-                            "scene's choice.");
-        });
-    eachWish(
-        [&](std::size_t effect, const TextureUnitWish& wish, int& unit)
-        {
-            if (unit >= 0) return;
-            const auto free = [&](int each)
-            {
-                return each != ofCover && table.isFree(each, effect, wish.everywhere);
-            };
-            int given = wish.preferred >= lowest && free(wish.preferred) ? wish.preferred : lowest;
-            while (given <= last && !free(given))
-                ++given;
-            if (given > last) return;
-            unit = given;
-            table.take(unit, effect, wish.everywhere);
-        });
-    for (std::size_t i = 0; i < effects.size(); ++i)
-    {
-        const Units& units = result.ofEffects[i];
-        result.complete.push_back(std::find(units.begin(), units.end(), -1) == units.end());
-        if (result.complete.back()) continue;
-        say(i, nameOf(*effects[i], i) + " is not drawn: the other effects have all texture units from " +
-                   std::to_string(lowest) + " to " + std::to_string(last) +
-                   ". Remove effects, or put the mappings of several sets into one.");
-    }
+    result.complete.assign(effects.size(), true);
+    const Kind unit = {"texture unit", lowest, last, ofCover};
+    const Kind block = {"uniform block binding", lowestBlock, lastBlock, -1};
+    result.ofEffects = Giver(effects, order, units, unit, result).give();
+    result.ofBlocks = Giver(effects, order, blocks, block, result).give();
     return result;
 }
 

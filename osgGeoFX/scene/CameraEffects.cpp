@@ -16,13 +16,14 @@ namespace osgGeoFX
 namespace
 {
 
-/// Whether the programs and the texture units of a scene serve for either effect.
+/// Whether the programs, the texture units and the binding points of a scene serve for either effect.
 bool interchangeable(const Effect& one, const osg::ref_ptr<Effect>& second)
 {
     const osg::ref_ptr<Effect> first = const_cast<Effect*>(&one);
+    const TextureUnits units = TextureUnits::of({first}), others = TextureUnits::of({second});
     return std::string(one.className()) == second->className() &&
            EffectProgram::key({first}) == EffectProgram::key({second}) &&
-           TextureUnits::of({first}).ofEffects == TextureUnits::of({second}).ofEffects;
+           units.ofEffects == others.ofEffects && units.ofBlocks == others.ofBlocks;
 }
 
 } // namespace

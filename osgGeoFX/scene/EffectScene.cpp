@@ -25,6 +25,7 @@ EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
       _adaptsPrograms(other._adaptsPrograms), _firstTextureUnit(other._firstTextureUnit),
+      _firstBlockBinding(other._firstBlockBinding),
       _shaderHost(other._shaderHost), _roleCallback(other._roleCallback), _groundDescription(other._groundDescription),
       _engineCulling(other._engineCulling), _drawing(std::make_unique<SceneDrawing>())
 {
@@ -88,6 +89,19 @@ void EffectScene::setShaderHost(ShaderHost* host)
 {
     _shaderHost = host;
     _drawing->programs.dirty();
+}
+
+bool EffectScene::setFirstBlockBinding(int binding)
+{
+    if (binding < 0 || binding > TextureUnits::lastBlock)
+    {
+        OSG_WARN << "osgGeoFX: " << binding
+                 << " cannot be the first uniform block binding of a scene; name one from 0 to "
+                 << TextureUnits::lastBlock << "." << std::endl;
+        return false;
+    }
+    _firstBlockBinding = binding;
+    return true;
 }
 
 void EffectScene::adapt(osg::Program& program)

@@ -138,6 +138,12 @@ public:
         between frames. */
     bool setFirstTextureUnit(int unit);
     int getFirstTextureUnit() const { return _firstTextureUnit; }
+    /** Sets the lowest binding point that the scene chooses for uniform blocks of its effects, 0 to 35; 7 by default. An
+        application whose own programs have blocks at 7 or above names the first binding point that none of them has.
+        Binding points that an effect's property names stay. False, with a warning, for any other number. Call it between
+        frames. */
+    bool setFirstBlockBinding(int binding);
+    int getFirstBlockBinding() const { return _firstBlockBinding; }
     /// Gives the texts of the effects to an engine that assembles its shaders itself; null, the default, for none.
     void setShaderHost(ShaderHost* host);
     ShaderHost* getShaderHost() { return _shaderHost.get(); }
@@ -242,6 +248,7 @@ private:
     bool _nestedCameras = false;
     bool _adaptsPrograms = false;
     int _firstTextureUnit = 4;
+    int _firstBlockBinding = 7;
     osg::ref_ptr<ShaderHost> _shaderHost;
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     GroundDescription _groundDescription;

@@ -161,6 +161,25 @@ bool writeFirstTextureUnit(osgDB::OutputStream& stream, const EffectScene& scene
     return true;
 }
 
+bool hasFirstBlockBinding(const EffectScene& scene)
+{
+    return scene.getFirstBlockBinding() != TextureUnits::firstBlock;
+}
+
+bool readFirstBlockBinding(osgDB::InputStream& stream, EffectScene& scene)
+{
+    int binding = 0;
+    stream >> binding;
+    scene.setFirstBlockBinding(binding);
+    return true;
+}
+
+bool writeFirstBlockBinding(osgDB::OutputStream& stream, const EffectScene& scene)
+{
+    stream << scene.getFirstBlockBinding() << std::endl;
+    return true;
+}
+
 bool hasReference(const RigidReference& node)
 {
     return node.getReference() != osg::Vec3d();
@@ -222,6 +241,9 @@ void addSceneProperties(const char*, osgDB::ObjectWrapper* wrapper)
         osgDB::BaseSerializer::RW_USER);
     wrapper->addSerializer(
         new Effects("FirstTextureUnit", hasFirstTextureUnit, readFirstTextureUnit, writeFirstTextureUnit),
+        osgDB::BaseSerializer::RW_USER);
+    wrapper->addSerializer(
+        new Effects("FirstBlockBinding", hasFirstBlockBinding, readFirstBlockBinding, writeFirstBlockBinding),
         osgDB::BaseSerializer::RW_USER);
 }
 

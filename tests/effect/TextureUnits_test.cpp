@@ -131,6 +131,53 @@ TEST(TextureUnits, AScenesLowestIsOneThatItMayChoose)
     EXPECT_EQ(copy->getFirstTextureUnit(), 31);
 }
 
+TEST(TextureUnits, EachUniformBlockHasABindingOfItsOwn)
+{
+    const osg::ref_ptr<CloseUps> first = new CloseUps;
+    const osg::ref_ptr<CloseUps> second = new CloseUps;
+    const Effects effects = {new BirdsEyeView, first, second};
+    EXPECT_EQ(TextureUnits::of(effects).ofBlocks, (std::vector<Units>{{}, {7}, {8}}));
+    EXPECT_EQ(TextureUnits::of(effects, 4, 20).ofBlocks, (std::vector<Units>{{}, {20}, {21}}));
+    EXPECT_EQ(TextureUnits::of(effects, 4, 0).ofBlocks, (std::vector<Units>{{}, {7}, {0}}));
+    // What a property names stays, also below the first that the scene may choose.
+    second->setBlockBinding(7);
+    EXPECT_EQ(TextureUnits::of(effects).ofBlocks, (std::vector<Units>{{}, {8}, {7}}));
+    EXPECT_EQ(TextureUnits::of(effects, 4, 20).ofBlocks, (std::vector<Units>{{}, {20}, {7}}));
+    EXPECT_TRUE(TextureUnits::of(effects).sentences.empty());
+    first->setBlockBinding(7);
+    const TextureUnits both = TextureUnits::of(effects);
+    EXPECT_EQ(both.ofBlocks, (std::vector<Units>{{}, {7}, {8}}));
+    ASSERT_EQ(both.sentences.size(), 1u);
+    EXPECT_EQ(
+        both.sentences[0],
+        "CloseUps (effect 3 of the scene) cannot have uniform block binding 7 as its blockBinding, for "
+        "CloseUps "
+        "(effect 2 of the scene) has it; the scene gives it another one. Set one that is free, or -1 for the "
+        "scene's choice.");
+    second->setBlockBinding(-1);
+    const TextureUnits few = TextureUnits::of(Effects{new CloseUps, new CloseUps}, 4, 35);
+    EXPECT_EQ(few.complete, (std::vector<bool>{true, false}));
+    ASSERT_EQ(few.sentences.size(), 1u);
+    EXPECT_NE(few.sentences[0].find("all uniform block bindings from 35 to 35"), std::string::npos);
+}
+
+TEST(TextureUnits, AScenesFirstBindingIsOneThatEveryGpuHas)
+{
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    EXPECT_EQ(scene->getFirstBlockBinding(), 7);
+    EXPECT_TRUE(scene->setFirstBlockBinding(0));
+    for (const int binding : {-1, 36})
+    {
+        geofx::test::NotifyWatch watch;
+        const auto messages = watch.messagesOf([&] { EXPECT_FALSE(scene->setFirstBlockBinding(binding)); });
+        ASSERT_EQ(messages.size(), 1u);
+        EXPECT_NE(messages[0].find("cannot be the first uniform block binding"), std::string::npos);
+    }
+    EXPECT_EQ(scene->getFirstBlockBinding(), 0);
+    const osg::ref_ptr<EffectScene> copy = new EffectScene(*scene);
+    EXPECT_EQ(copy->getFirstBlockBinding(), 0);
+}
+
 TEST(TextureUnits, CloseUpsAreDrawnOneAfterTheOther)
 {
     const Effects effects = {new CloseUps, new CloseUps};

@@ -211,6 +211,8 @@ const std::vector<Setting<EffectScene>>& sceneSettings()
          [](auto& s) { return s.getEngineCulling(); }, EffectScene::AS_IT_IS, EffectScene::PROXY},
         {[](auto& s) { s.setFirstTextureUnit(9); }, [](auto& s) { return s.getFirstTextureUnit(); }, 4.0,
          9.0},
+        {[](auto& s) { s.setFirstBlockBinding(20); }, [](auto& s) { return s.getFirstBlockBinding(); }, 7.0,
+         20.0},
         {[](auto& s) { s.addEffect(new BirdsEyeView); }, [](auto& s) { return s.getNumEffects(); }, 0.0, 1.0},
     };
     return all;

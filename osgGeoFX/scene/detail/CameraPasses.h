@@ -65,7 +65,8 @@ public:
         ProgramCache& programs;
         const ProgramCache::Effects& effects;
     };
-    CameraPass(const Traversal& traversal, const std::string& names, const std::vector<int>& textureUnits);
+    CameraPass(const Traversal& traversal, const std::string& names, const std::vector<int>& textureUnits,
+               const std::vector<int>& blockBindings);
 
     osg::ref_ptr<osg::Program> program(const PassShaders& shaders) const override;
     osg::ref_ptr<osg::Program> sceneProgram() const override;

@@ -85,7 +85,7 @@ public:
               osgUtil::CullVisitor& outer, const ViewGeometry& view, const osg::BoundingSphere& bound,
               const Traverse& traverse)
         : _drawing(drawing), _scene(scene), _listed(listed), _effects(effects), _outer(outer), _view(view),
-          _bound(bound), _traverse(traverse), _units(drawing.unitsOf(listed, scene.getFirstTextureUnit()))
+          _bound(bound), _traverse(traverse), _units(drawing.unitsOf(listed, scene))
     {
     }
 
@@ -118,21 +118,25 @@ SceneDrawing::SceneDrawing()
 }
 
 /// The same ones as long as the list of effects and what they get stay as they are.
-std::shared_ptr<const TextureUnits> SceneDrawing::unitsOf(const Effects& effects, int lowest)
+std::shared_ptr<const TextureUnits> SceneDrawing::unitsOf(const Effects& effects, const EffectScene& scene)
 {
+    const int lowest = scene.getFirstTextureUnit(), lowestBlock = scene.getFirstBlockBinding();
     std::shared_ptr<const TextureUnits> changed;
     {
         const std::lock_guard<std::mutex> lock(_mutex);
         std::vector<unsigned int> now(effects.size());
         std::transform(effects.begin(), effects.end(), now.begin(),
                        [](const osg::ref_ptr<Effect>& each) { return each->revision(); });
-        const bool sameList = _units && effects == _unitEffects && lowest == _lowestUnit;
+        const bool sameList =
+            _units && effects == _unitEffects && lowest == _lowestUnit && lowestBlock == _lowestBlock;
         if (sameList && now == _unitRevisions) return _units;
         _unitRevisions = now;
         _unitEffects = effects;
         _lowestUnit = lowest;
-        changed = std::make_shared<const TextureUnits>(TextureUnits::of(effects, lowest));
-        if (!sameList || changed->ofEffects != _units->ofEffects || changed->complete != _units->complete)
+        _lowestBlock = lowestBlock;
+        changed = std::make_shared<const TextureUnits>(TextureUnits::of(effects, lowest, lowestBlock));
+        if (!sameList || changed->ofEffects != _units->ofEffects || changed->ofBlocks != _units->ofBlocks ||
+            changed->complete != _units->complete)
             _units = changed;
         else
             changed = _units;
@@ -222,7 +226,7 @@ void SceneDrawing::Traversal::forPasses(const CameraPass::Traversal& traversal, 
         PassEffect* effect = _effects[i]->asPassEffect();
         if (!effect || !_effects[i]->getEnabled() || !_units->complete[i]) continue;
         const std::string prefix = EffectProgram::prefix(i);
-        action(*effect, CameraPass(traversal, prefix, _units->ofEffects[i]));
+        action(*effect, CameraPass(traversal, prefix, _units->ofEffects[i], _units->ofBlocks[i]));
     }
 }
 

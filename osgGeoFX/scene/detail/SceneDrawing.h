@@ -57,7 +57,7 @@ private:
                                const std::shared_ptr<const TextureUnits>& units);
     };
 
-    std::shared_ptr<const TextureUnits> unitsOf(const Effects& effects, int lowest);
+    std::shared_ptr<const TextureUnits> unitsOf(const Effects& effects, const EffectScene& scene);
     void completeBounds(const EffectScene& scene, const osg::Group& top, const osg::FrameStamp* stamp);
     void sayOnce(const std::string& sentence);
     void warnOf(const CompensatingCullVisitor::Stranger& stranger);
@@ -65,7 +65,7 @@ private:
     std::mutex _mutex;
     PerCamera<Camera> _cameras;
     std::shared_ptr<const TextureUnits> _units;
-    int _lowestUnit = TextureUnits::first;
+    int _lowestUnit = TextureUnits::first, _lowestBlock = TextureUnits::firstBlock;
     Effects _unitEffects; ///< those that the units were given to, and
     std::vector<unsigned int> _unitRevisions;
     osg::ref_ptr<osg::StateSet> _untouched = new osg::StateSet;
