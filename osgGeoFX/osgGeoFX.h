@@ -13,6 +13,7 @@
 
 #include <osgGeoFX/effect/Deformation.h>
 #include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/DepthConvention.h>
 #include <osgGeoFX/effect/DrawableCompanion.h>
 #include <osgGeoFX/effect/Effect.h>
 #include <osgGeoFX/effect/GlslFunctions.h>

@@ -47,10 +47,11 @@ double secondOf(double curvature, double share)
     return curvature * 0.5 * (along + std::sqrt(along * along + 4.0));
 }
 
-osg::Vec3d rayOf(const osg::Matrixd& inverse, double line, osg::Vec3d& origin)
+osg::Vec3d rayOf(const osg::Matrixd& projection, double line, osg::Vec3d& origin)
 {
-    origin = osg::Vec3d(0.0, 2.0 * line - 1.0, -1.0) * inverse;
-    osg::Vec3d direction = osg::Vec3d(0.0, 2.0 * line - 1.0, 1.0) * inverse - origin;
+    osg::Vec3d direction;
+    ViewGeometry::ray(projection, osg::Matrixd::inverse(projection), 0.0, 2.0 * line - 1.0, origin,
+                      direction);
     direction.normalize();
     return direction;
 }
@@ -117,10 +118,9 @@ double PerspectiveBend::mostGrowth(const Ground&) const
 double BirdsEyeView::mostCurvatureOf(Curve, const CameraRange& cameras) const
 {
     const double folds = foldCurvature(cameras.ground, -1.0);
-    const osg::Matrixd inverse = osg::Matrixd::inverse(cameras.projection);
     osg::Vec3d low, high;
-    const osg::Vec3d focus = rayOf(inverse, _focusLine, low);
-    const osg::Vec3d horizon = rayOf(inverse, _horizonLine, high);
+    const osg::Vec3d focus = rayOf(cameras.projection, _focusLine, low);
+    const osg::Vec3d horizon = rayOf(cameras.projection, _horizonLine, high);
     // How far the tangents of the bend meet from its ends, at least: two rays from the eye are H·sin(Δ)/(sin(ν1)·sin(ν2))
     // apart on T; parallel ones, their distance at least.
     double reach = 0.0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/DepthConvention.h>
 #include <osgGeoFX/effect/ViewGeometry.h>
 
 #include <osg/Drawable>
@@ -65,7 +66,10 @@ public:
     const std::string& prefix;      ///< the prefix of the effect's uniforms and defines
     const std::vector<int>& units;  ///< the effect's texture units (TextureUser)
     const std::vector<int>& blocks; ///< the binding points of its uniform blocks (TextureUser)
-    bool compensate;                ///< EffectScene::getCompensation()
+    /// Which of two depths is the nearer one for this camera. `state` has what shaders need; state sets that are not below it
+    /// get it by CameraDepth::put().
+    const CameraDepth& depth;
+    bool compensate; ///< EffectScene::getCompensation()
     /// Changes when the camera begins a new frame. If it differs from the last time, the former frame has been drawn,
     /// and the objects that it was drawn with may be used again. A camera may call several times in one frame.
     unsigned int frame;
@@ -112,10 +116,11 @@ public:
 protected:
     ScenePass(osgUtil::CullVisitor& visitor, osg::Group& group, const ViewGeometry& geometry,
               const DeformationChain& deformations, osg::StateSet& stateSet, const std::string& names,
-              const std::vector<int>& textureUnits, const std::vector<int>& blockBindings, bool compensation,
-              unsigned int number)
+              const std::vector<int>& textureUnits, const std::vector<int>& blockBindings,
+              const CameraDepth& cameraDepth, bool compensation, unsigned int number)
         : outer(visitor), scene(group), view(geometry), chain(deformations), state(stateSet), prefix(names),
-          units(textureUnits), blocks(blockBindings), compensate(compensation), frame(number)
+          units(textureUnits), blocks(blockBindings), depth(cameraDepth), compensate(compensation),
+          frame(number)
     {
     }
 };

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/effect/ViewGeometry.h>
 
+#include <osgGeoFX/effect/DepthConvention.h>
+
 #include <osg/Vec2d>
 
 #include <algorithm>
@@ -77,9 +79,12 @@ void ViewGeometry::picturePart(osg::Vec2d& low, osg::Vec2d& high) const
     high.set(1.0, 1.0);
     if (image.ofView) return;
     const osg::Matrixd toPicture = osg::Matrixd::inverse(image.projection) * image.toView * projection;
-    // The far plane stands for infinity.
-    const osg::Vec4d first = osg::Vec4d(-1.0, -1.0, 1.0, 1.0) * toPicture;
-    const osg::Vec4d last = osg::Vec4d(1.0, 1.0, 1.0, 1.0) * toPicture;
+    // The far plane stands for infinity. A reversed depth there may be 0 or −1; infinity itself has one depth.
+    double farthest = 1.0;
+    if (CameraDepth::reverses(image.projection))
+        farthest = image.projection(3, 3) == 0.0 ? -image.projection(2, 2) : 0.0;
+    const osg::Vec4d first = osg::Vec4d(-1.0, -1.0, farthest, 1.0) * toPicture;
+    const osg::Vec4d last = osg::Vec4d(1.0, 1.0, farthest, 1.0) * toPicture;
     if (!(first.w() > 0.0) || !(last.w() > 0.0)) return;
     const osg::Vec2d from(first.x() / first.w(), first.y() / first.w());
     const osg::Vec2d to(last.x() / last.w(), last.y() / last.w());
@@ -90,8 +95,21 @@ void ViewGeometry::picturePart(osg::Vec2d& low, osg::Vec2d& high) const
 
 void ViewGeometry::ray(double x, double y, osg::Vec3d& origin, osg::Vec3d& direction) const
 {
-    origin = osg::Vec3d(x, y, -1.0) * inverseProjection;
-    direction = osg::Vec3d(x, y, 1.0) * inverseProjection - origin;
+    ray(projection, inverseProjection, x, y, origin, direction);
+}
+
+void ViewGeometry::ray(const osg::Matrixd& projection, const osg::Matrixd& inverse, double x, double y,
+                       osg::Vec3d& origin, osg::Vec3d& direction)
+{
+    if (!CameraDepth::reverses(projection))
+    {
+        origin = osg::Vec3d(x, y, -1.0) * inverse;
+        direction = osg::Vec3d(x, y, 1.0) * inverse - origin;
+        return;
+    }
+    // The far plane may be anywhere, and at infinity.
+    origin = osg::Vec3d(x, y, 1.0) * inverse;
+    direction = projection(3, 3) == 0.0 ? origin : osg::Vec3d(x, y, -1.0) * inverse - origin;
 }
 
 } // namespace osgGeoFX

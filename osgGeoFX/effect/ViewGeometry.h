@@ -91,6 +91,9 @@ struct OSGGEOFX_EXPORT ViewGeometry
     /// The ray through a point of the viewport, x and y from −1 to 1. It begins on the near plane; the direction is not
     /// normalised. It works with any projection.
     void ray(double x, double y, osg::Vec3d& origin, osg::Vec3d& direction) const;
+    /// The same for a projection and its inverse.
+    static void ray(const osg::Matrixd& projection, const osg::Matrixd& inverse, double x, double y,
+                    osg::Vec3d& origin, osg::Vec3d& direction);
 };
 
 } // namespace osgGeoFX

@@ -29,7 +29,8 @@ bool interchangeable(const Effect& one, const osg::ref_ptr<Effect>& second)
 } // namespace
 
 CameraEffects::CameraEffects(const CameraEffects& other, const osg::CopyOp& copy)
-    : osg::Object(other, copy), _role(other._role), _replacements(other._replacements)
+    : osg::Object(other, copy), _role(other._role), _depthConvention(other._depthConvention),
+      _replacements(other._replacements)
 {
 }
 
@@ -51,6 +52,19 @@ const CameraEffects* CameraEffects::find(const osg::Camera& camera)
         if (const auto* found = dynamic_cast<const CameraEffects*>(data->getUserObject(i))) return found;
     }
     return nullptr;
+}
+
+bool CameraEffects::setDepthConvention(const DepthConvention& convention)
+{
+    const std::string fault = convention.fault();
+    if (!fault.empty())
+    {
+        OSG_WARN << "osgGeoFX: CameraEffects::setDepthConvention: " << fault
+                 << " The former convention stays." << std::endl;
+        return false;
+    }
+    _depthConvention = convention;
+    return true;
 }
 
 void CameraEffects::setEnabled(const Effect& effect, bool on)

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/DepthConvention.h>
 #include <osgGeoFX/effect/Effect.h>
 #include <osgGeoFX/scene/CameraRole.h>
 
@@ -14,7 +15,8 @@
 namespace osgGeoFX
 {
 
-/** What EffectScenes do differently for one camera: its role, and effects that are off or have other values.
+/** What EffectScenes do differently for one camera: its role, its depths, and effects that are off or have other
+    values.
 
     The object is attached to the camera itself, so whoever owns the camera says it, without knowing the scenes.
 
@@ -45,6 +47,14 @@ public:
     void clearRole() { _role.reset(); }
     const std::optional<CameraRole>& getRole() const { return _role; }
 
+    /// What depths this camera has, in the place of EffectScene::setDepthConvention(): for a shadow map or a picture in the
+    /// picture whose depths are the projection's while the view's are logarithmic. A convention with a fault is refused:
+    /// false, after a warning.
+    bool setDepthConvention(const DepthConvention& convention);
+    /// Lets the camera have the depths of the scenes again, as it does by default.
+    void clearDepthConvention() { _depthConvention.reset(); }
+    const std::optional<DepthConvention>& getDepthConvention() const { return _depthConvention; }
+
     /// Draws an effect of a scene for this camera, or leaves it out. An effect that is not enabled stays off. True, the
     /// default, also takes a replacement away.
     void setEnabled(const Effect& effect, bool on);
@@ -61,6 +71,7 @@ protected:
 
 private:
     std::optional<CameraRole> _role;
+    std::optional<DepthConvention> _depthConvention;
     std::map<osg::ref_ptr<const Effect>, osg::ref_ptr<Effect>> _replacements;
 };
 

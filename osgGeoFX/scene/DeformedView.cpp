@@ -70,12 +70,12 @@ std::optional<DeformedLineIntersector::Intersection> DeformedView::pick(double x
     inverse.invert(_projection);
     const double ndcX = 2.0 * x / _width - 1.0;
     const double ndcY = 2.0 * y / _height - 1.0;
-    const osg::Vec3d onNear = osg::Vec3d(ndcX, ndcY, -1.0) * inverse;
-    const osg::Vec3d onFar = osg::Vec3d(ndcX, ndcY, 1.0) * inverse;
+    osg::Vec3d onNear, direction;
+    ViewGeometry::ray(_projection, inverse, ndcX, ndcY, onNear, direction);
     // From the eye, not from the near plane: a viewer moves that plane with what it draws.
     const bool perspective = _projection(3, 3) == 0.0;
     const osg::Vec3d origin = perspective ? osg::Vec3d() : onNear;
-    const osg::ref_ptr<DeformedLineIntersector> ray = new DeformedLineIntersector(origin, onFar - onNear);
+    const osg::ref_ptr<DeformedLineIntersector> ray = new DeformedLineIntersector(origin, direction);
     const osg::ref_ptr<DeformedIntersectionVisitor> visitor =
         new DeformedIntersectionVisitor(ray, *_chain, _modelView, _lodScale);
     visitor->setTraversalMask(mask);

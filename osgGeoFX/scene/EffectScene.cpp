@@ -25,9 +25,10 @@ EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
       _adaptsPrograms(other._adaptsPrograms), _firstTextureUnit(other._firstTextureUnit),
-      _firstBlockBinding(other._firstBlockBinding),
-      _shaderHost(other._shaderHost), _roleCallback(other._roleCallback), _groundDescription(other._groundDescription),
-      _engineCulling(other._engineCulling), _drawing(std::make_unique<SceneDrawing>())
+      _firstBlockBinding(other._firstBlockBinding), _depthConvention(other._depthConvention),
+      _shaderHost(other._shaderHost), _roleCallback(other._roleCallback),
+      _groundDescription(other._groundDescription), _engineCulling(other._engineCulling),
+      _drawing(std::make_unique<SceneDrawing>())
 {
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
     {
@@ -101,6 +102,19 @@ bool EffectScene::setFirstBlockBinding(int binding)
         return false;
     }
     _firstBlockBinding = binding;
+    return true;
+}
+
+bool EffectScene::setDepthConvention(const DepthConvention& convention)
+{
+    const std::string fault = convention.fault();
+    if (!fault.empty())
+    {
+        OSG_WARN << "osgGeoFX: EffectScene::setDepthConvention: " << fault << " The former convention stays."
+                 << std::endl;
+        return false;
+    }
+    _depthConvention = convention;
     return true;
 }
 

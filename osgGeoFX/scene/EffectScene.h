@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/Export.h>
 #include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/DepthConvention.h>
 #include <osgGeoFX/effect/Effect.h>
 #include <osgGeoFX/effect/ViewGeometry.h>
 #include <osgGeoFX/scene/CameraRole.h>
@@ -144,6 +145,12 @@ public:
         frames. */
     bool setFirstBlockBinding(int binding);
     int getFirstBlockBinding() const { return _firstBlockBinding; }
+    /** What the application's own programs write as depth. Geometry without a shader, sky, strokes, and close-ups with
+        their layers and walls then get the same kind of depth, with or without effects. It holds for cameras that are not
+        UNDEFORMED; CameraEffects says otherwise for one camera. Depths of the projection by default, which may be
+        reversed. False, after a warning, for a convention with a fault. Call it between frames. */
+    bool setDepthConvention(const DepthConvention& convention);
+    const DepthConvention& getDepthConvention() const { return _depthConvention; }
     /// Gives the texts of the effects to an engine that assembles its shaders itself; null, the default, for none.
     void setShaderHost(ShaderHost* host);
     ShaderHost* getShaderHost() { return _shaderHost.get(); }
@@ -249,6 +256,7 @@ private:
     bool _adaptsPrograms = false;
     int _firstTextureUnit = 4;
     int _firstBlockBinding = 7;
+    DepthConvention _depthConvention;
     osg::ref_ptr<ShaderHost> _shaderHost;
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     GroundDescription _groundDescription;

@@ -180,6 +180,39 @@ bool writeFirstBlockBinding(osgDB::OutputStream& stream, const EffectScene& scen
     return true;
 }
 
+constexpr const char* depthKinds[] = {"OF_PROJECTION", "LOGARITHMIC", "LOGARITHMIC_BY_FRAGMENT"};
+
+bool hasDepthConvention(const EffectScene& scene)
+{
+    return scene.getDepthConvention() != DepthConvention();
+}
+
+bool readDepthConvention(osgDB::InputStream& stream, EffectScene& scene)
+{
+    std::string kind, farDistance;
+    stream >> kind >> farDistance;
+    DepthConvention convention;
+    const auto* end = std::end(depthKinds);
+    const auto* found = std::find(std::begin(depthKinds), end, kind);
+    const bool good = found != end && parseExact(farDistance, convention.farDistance);
+    if (found != end) convention.kind = static_cast<DepthConvention::Kind>(found - std::begin(depthKinds));
+    const std::string fault =
+        good ? convention.fault()
+             : "DepthConvention must be OF_PROJECTION, LOGARITHMIC or LOGARITHMIC_BY_FRAGMENT, and a number.";
+    if (fault.empty())
+        scene.setDepthConvention(convention);
+    else
+        OSG_WARN << "osgGeoFX: A file is wrong: EffectScene: " << fault << " The default stays." << std::endl;
+    return true;
+}
+
+bool writeDepthConvention(osgDB::OutputStream& stream, const EffectScene& scene)
+{
+    const DepthConvention& convention = scene.getDepthConvention();
+    stream << std::string(depthKinds[convention.kind]) << exactText(convention.farDistance) << std::endl;
+    return true;
+}
+
 bool hasReference(const RigidReference& node)
 {
     return node.getReference() != osg::Vec3d();
@@ -244,6 +277,9 @@ void addSceneProperties(const char*, osgDB::ObjectWrapper* wrapper)
         osgDB::BaseSerializer::RW_USER);
     wrapper->addSerializer(
         new Effects("FirstBlockBinding", hasFirstBlockBinding, readFirstBlockBinding, writeFirstBlockBinding),
+        osgDB::BaseSerializer::RW_USER);
+    wrapper->addSerializer(
+        new Effects("DepthConvention", hasDepthConvention, readDepthConvention, writeDepthConvention),
         osgDB::BaseSerializer::RW_USER);
 }
 

@@ -8,6 +8,7 @@
 // scene/detail/AdaptedPrograms.cpp says what the application's text does: GEOFX_HOST_VERTEX, it reads gl_Vertex;
 // GEOFX_HOST_NORMAL, it reads gl_Normal; GEOFX_HOST_CLIPS, it writes what clip planes cut; GEOFX_HOST_LOG, it works with logarithms;
 // GEOFX_HOST_DEPTH, its fragments have a depth of their own; GEOFX_HOST_TEXTURE, it writes gl_TexCoord in a later stage.
+#include "stages/depth.glsl"
 vec4 geofx_vertex(vec4 eyePosition);
 vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);
 #ifdef GEOFX_LATER_STAGE
@@ -64,7 +65,12 @@ float geofx_depth(vec4 written, vec4 from, vec4 to)
 {
     float difference = abs(written.z - from.z) / (abs(from.z) + abs(from.w));
     if (difference <= 1e-6) return to.z;
+#ifdef GEOFX_REVERSED_DEPTH
+    // A sky, at the far plane, which glClipControl may have moved from -w to 0.
+    if (written.z == 0.0 || written.z == -written.w) return written.z == 0.0 ? 0.0 : -to.w;
+#else
     if (written.z == written.w) return to.w; // a sky, at the far plane
+#endif
 #ifdef GEOFX_HOST_LOG
     // (log2(1 + w) F - 1) w with the F that it wrote.
     if (difference > 1e-5 && abs(written.w) > 1e-4)
@@ -72,7 +78,12 @@ float geofx_depth(vec4 written, vec4 from, vec4 to)
 #endif
     // As much nearer or farther than the projection has it; not beyond the far plane for that.
     float shifted = to.z + (written.z / written.w - from.z / from.w) * to.w;
+#ifdef GEOFX_REVERSED_DEPTH
+    if (written.z < -written.w) return shifted;
+    return max(shifted, min(to.z, written.z < 0.0 ? -to.w : 0.0));
+#else
     return written.z <= written.w ? min(shifted, max(to.z, to.w)) : shifted;
+#endif
 }
 
 void geofx_moveHost()

@@ -4,6 +4,7 @@
 //
 // An anchor along a region's border. The first texture coordinate is the share of the way from the ground to the
 // close-up. The second one is 1 for the line on the ground.
+#include "stages/depth.glsl"
 vec4 geofx_vertex(vec4 eyePosition);
 void SLOT_setShare(float share);
 
@@ -17,5 +18,6 @@ void main()
     // Lines lie on the ground, which must not hide them between their ends.
     if (gl_MultiTexCoord0.y > 0.5) position.xyz *= 0.9985;
     gl_Position = gl_ProjectionMatrix * position;
+    GEOFX_PUT_DEPTH(gl_Position);
     gl_ClipVertex = gl_ModelViewMatrix * gl_Vertex;
 }

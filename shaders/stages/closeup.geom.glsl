@@ -15,6 +15,7 @@ out vec3 SLOT_place;
 flat out int SLOT_target;
 GEOFX_VARYINGS
 #include "stages/view.glsl"
+#include "stages/depth.glsl"
 
 uniform ivec4 SLOT_targets; // up to three items, and how many they are
 uniform int SLOT_only;      // if layers are drawn one by one, the one to draw: 0 the close-up's, 1 its anchor's; else -1
@@ -29,6 +30,7 @@ void SLOT_emit(int target, vec3 positions[3], vec3 places[3])
         vec3 eye = geofx_inEye(positions[i]);
         gl_Layer = int(target == 2 * item ? shift.z : shift.w);
         gl_Position = gl_ProjectionMatrix * vec4(eye, 1.0);
+        GEOFX_PUT_DEPTH(gl_Position);
         gl_Position.xy += shift.xy * gl_Position.w;
         gl_ClipVertex = vec4(geofx_inEye(SLOT_located_in[i]), 1.0); // clip planes cut the ground as it lies
         gl_FrontColor = gl_in[i].gl_FrontColor;

@@ -1,6 +1,7 @@
 #version 330 compatibility
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "stages/depth.glsl"
 uniform sampler2DArray geofx_layerColors;
 uniform sampler2DArray geofx_layerDepths;
 uniform ivec4 geofx_layerOrigin; // the layer's first pixel, the layer, and samples along a pixel's side
@@ -23,7 +24,7 @@ vec4 geofx_layerAt(ivec3 origin, out float depth)
     int samples = geofx_layerOrigin.w;
     ivec2 first = (ivec2(floor(gl_FragCoord.xy)) - origin.xy) * samples;
     vec4 sum = vec4(0.0);
-    depth = 1.0;
+    depth = GEOFX_FARTHEST;
     for (int y = 0; y < samples; ++y)
     {
         for (int x = 0; x < samples; ++x)
@@ -31,7 +32,7 @@ vec4 geofx_layerAt(ivec3 origin, out float depth)
             ivec3 texel = ivec3(first + ivec2(x, y), origin.z);
             vec4 color = texelFetch(geofx_layerColors, texel, 0);
             sum += vec4(color.rgb * color.a, color.a);
-            if (color.a > 0.0) depth = min(depth, texelFetch(geofx_layerDepths, texel, 0).r);
+            if (color.a > 0.0) depth = geofx_nearest(depth, texelFetch(geofx_layerDepths, texel, 0).r);
         }
     }
     return sum / float(samples * samples);
@@ -50,9 +51,9 @@ bool geofx_othersBehind(float depth)
         float edgeAlpha = geofx_layerAt(origin, edge).a;
         bool anchored = geofx_layerAt(origin + ivec3(0, 0, 1), anchor).a > 0.0;
         // An edge lies over its own anchor, wherever the anchor is.
-        if (anchored) edge = min(edge, anchor);
+        if (anchored) edge = geofx_nearest(edge, anchor);
         bool edged = edgeAlpha > 0.0 && edgeAlpha <= geofx_otherCovers[i];
-        if ((anchored && anchor > depth) || (edged && edge > depth)) return true;
+        if ((anchored && geofx_isBehind(anchor, depth)) || (edged && geofx_isBehind(edge, depth))) return true;
     }
     return false;
 }
@@ -68,7 +69,7 @@ void main()
         float from = depth;
         if (geofx_layerAnchor >= 0 &&
             geofx_layerAt(ivec3(geofx_layerOrigin.xy, geofx_layerAnchor), anchor).a > 0.0)
-            from = min(from, anchor);
+            from = geofx_nearest(from, anchor);
         if (geofx_othersBehind(from) != (geofx_layerTurn == 2)) discard;
     }
     gl_FragColor = sum * geofx_layerOpacity;

@@ -22,6 +22,7 @@
 #undef GEOFX_FOG
 #endif
 
+#include "stages/depth.glsl"
 vec4 geofx_fragment(vec4 color, vec4 map);
 
 #if defined(GEOFX_LIGHTS) && defined(GEOFX_NORMAL_MAP)
@@ -132,4 +133,5 @@ void main()
     color.rgb = mix(gl_Fog.color.rgb, clamp(color.rgb, 0.0, 1.0), clamp(clear, 0.0, 1.0));
 #endif
     gl_FragColor = color;
+    GEOFX_PUT_FRAGMENT_DEPTH;
 }

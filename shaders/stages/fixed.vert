@@ -38,6 +38,7 @@ vec4 geofx_vertex(vec4 eyePosition);
 vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);
 
 #include "stages/fixed.light.glsl"
+#include "stages/depth.glsl"
 
 #ifdef GEOFX_GENERATES
 // Generated texture coordinates, OpenGL 2.1, Section 2.11.4. `code` is 1 object linear, 2 eye linear, 3 sphere map, 4
@@ -76,6 +77,7 @@ void main()
     vec4 deformed = geofx_vertex(eye);
     // A vertex that stays where it is goes exactly where OpenGL's own stage would put it.
     gl_Position = deformed == eye ? ftransform() : gl_ProjectionMatrix * deformed;
+    GEOFX_PUT_DEPTH(gl_Position);
     gl_ClipVertex = eye;
 
     vec3 normal = gl_NormalMatrix * gl_Normal;

@@ -11,5 +11,5 @@ void main()
 {
     place = mix(geofx_skyPart.xy, geofx_skyPart.zw, 0.5 * gl_Vertex.xy + 0.5);
     gl_ClipVertex = vec4(0.0); // no plane above the scene cuts the sky
-    gl_Position = vec4(gl_Vertex.xy, 1.0, 1.0);
+    gl_Position = vec4(gl_Vertex.xy, 0.5, 1.0); // anywhere: the range of depths is the far plane alone
 }

@@ -6,6 +6,7 @@
 // of a stroke and its look, which is the same for all of it. SLOT_ stands for the effect's prefix.
 #include "lib/strokes.glsl"
 #include "stages/view.glsl"
+#include "stages/depth.glsl"
 
 vec4 geofx_vertex(vec4 eyePosition);
 // Of undeformed places in the view's eye space: pixels for each metre of the ground, the mean of across and along; the light on the ground, -1
@@ -98,7 +99,7 @@ void main()
     nearer.z += min(height / max(groundScale, 1e-9), 0.5 * abs(moved.z));
     nearer = gl_ProjectionMatrix * nearer;
     gl_Position = gl_ProjectionMatrix * moved;
-    if (nearer.w > 0.0) gl_Position.z = nearer.z / nearer.w * gl_Position.w;
+    if (nearer.w > 0.0) gl_Position.z = geofx_depthOf(nearer, gl_Position);
     vec4 picture = geofx_inPicture(moved);
     float y = 0.5 + 0.5 * picture.y / max(picture.w, 1e-6);
     float light = SLOT_strokeLight(ground, geofx_directionInView(normalize(gl_NormalMatrix * gl_Normal)), y) +

@@ -36,6 +36,7 @@ using osgGeoFX::BlendedView;
 using osgGeoFX::CameraEffects;
 using osgGeoFX::createEffect;
 using osgGeoFX::createPropertyHolder;
+using osgGeoFX::DepthConvention;
 using osgGeoFX::Effect;
 using osgGeoFX::EffectCullCallback;
 using osgGeoFX::EffectScene;
@@ -213,6 +214,15 @@ const std::vector<Setting<EffectScene>>& sceneSettings()
          9.0},
         {[](auto& s) { s.setFirstBlockBinding(20); }, [](auto& s) { return s.getFirstBlockBinding(); }, 7.0,
          20.0},
+        {[](auto& s) {
+             s.setDepthConvention({DepthConvention::LOGARITHMIC_BY_FRAGMENT, 0.0});
+         },
+         [](auto& s) { return s.getDepthConvention().kind; }, DepthConvention::OF_PROJECTION,
+         DepthConvention::LOGARITHMIC_BY_FRAGMENT},
+        {[](auto& s) {
+             s.setDepthConvention({DepthConvention::LOGARITHMIC, 1e7 / 3.0});
+         },
+         [](auto& s) { return s.getDepthConvention().farDistance; }, 0.0, 1e7 / 3.0},
         {[](auto& s) { s.addEffect(new BirdsEyeView); }, [](auto& s) { return s.getNumEffects(); }, 0.0, 1.0},
     };
     return all;

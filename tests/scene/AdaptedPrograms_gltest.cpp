@@ -3,6 +3,7 @@
 //
 // Programs that know nothing of the effects (EffectScene::adapt): pictures of them against pictures of the same programs with the
 // calls written by hand.
+#include <tools/DepthKinds.h>
 #include <tools/HostPrograms.h>
 
 #include <osg/ClipNode>
@@ -116,7 +117,8 @@ protected:
 
     /// A picture of a ground and of boxes in it, each with a program, with calls by hand or adapted.
     osg::ref_ptr<osg::Image> withBoxes(const osg::ref_ptr<osg::Program>& ground,
-                                       const osg::ref_ptr<osg::Program>& boxes, bool byHand)
+                                       const osg::ref_ptr<osg::Program>& boxes, bool byHand,
+                                       osg::Depth::Function notBehind = osg::Depth::LEQUAL)
     {
         for (osg::Program* each : {ground.get(), boxes.get()})
         {
@@ -132,6 +134,7 @@ protected:
             box->getOrCreateStateSet()->setAttribute(boxes);
             scene->addChild(box);
         }
+        scene->getChild(0)->getStateSet()->setAttribute(new osg::Depth(notBehind));
         return render(scene);
     }
 };
@@ -305,6 +308,7 @@ TEST_F(AdaptedProgramsTest, DepthsOfFragmentsFollow)
 // Things whose fragments have the depth of a place beside theirs, as relief maps do.
 TEST_F(AdaptedProgramsTest, ProjectedDepthsOfFragmentsFollow)
 {
+    bool reversed = false;
     const auto picture = [&](bool byHand, double nearer)
     {
         const osg::ref_ptr<osg::Program> ground = HostProgram("#version 120\n", multiplied).make(byHand);
@@ -317,13 +321,55 @@ TEST_F(AdaptedProgramsTest, ProjectedDepthsOfFragmentsFollow)
                          "    vec4 clip = gl_ProjectionMatrix * vec4(at - " +
                          std::to_string(nearer) +
                          " * normalize(at), 1.0);\n"
-                         "    if (gl_Color.r > 0.5)\n        gl_FragDepth = 0.5 * (clip.z / clip.w + 1.0);\n"
+                         "    if (gl_Color.r > 0.5)\n        gl_FragDepth = " +
+                         (reversed ? "clip.z / clip.w" : "0.5 * (clip.z / clip.w + 1.0)") +
+                         ";\n"
                          "    else\n        gl_FragDepth = gl_FragCoord.z;\n}\n"};
-        return withBoxes(ground, own.make(byHand), byHand);
+        return withBoxes(ground, own.make(byHand), byHand,
+                         reversed ? osg::Depth::GEQUAL : osg::Depth::LEQUAL);
     };
-    const osg::ref_ptr<osg::Image> drawn = picture(false, 5.0);
-    EXPECT_LE(apart(*drawn, *picture(true, 5.0)), 12);
-    EXPECT_GT(apart(*drawn, *picture(true, 0.0)), 60);
+    for (const bool otherWay : {false, true})
+    {
+        SCOPED_TRACE(otherWay);
+        reversed = otherWay;
+        const osg::ref_ptr<EffectScene> unused = new EffectScene;
+        if (reversed) DepthKind{"", DepthKind::REVERSED, true}.setUp(*viewer().getCamera(), *unused);
+        const osg::ref_ptr<osg::Image> drawn = picture(false, 5.0);
+        EXPECT_LE(apart(*drawn, *picture(true, 5.0)), 12);
+        EXPECT_GT(apart(*drawn, *picture(true, 0.0)), 60);
+    }
+}
+
+// With reversed depths, too: an offset, and a sky at the far plane.
+TEST_F(AdaptedProgramsTest, ReversedDepthsFollow)
+{
+    const osg::ref_ptr<EffectScene> unused = new EffectScene;
+    DepthKind{"", DepthKind::REVERSED, true}.setUp(*viewer().getCamera(), *unused);
+    const auto picture = [&](bool byHand, const std::string& formula)
+    {
+        HostProgram host("#version 120\n",
+                         "gl_Position = gl_ProjectionMatrix * DEFORM(gl_ModelViewMatrix * gl_Vertex);\n    " +
+                             formula);
+        host.fragments = {
+            "#version 120\nDEFINES\nvoid main()\n{\n    float depth = gl_FragCoord.z;\n"
+            "    gl_FragColor = TINT(vec4(depth, fract(depth * 16.0), fract(depth * 256.0), 1.0));\n}\n"};
+        const osg::ref_ptr<osg::Program> program = host.make(byHand);
+        if (byHand)
+            EffectScene::addFunctions(*program);
+        else
+            EffectScene::adapt(*program);
+        const osg::ref_ptr<EffectScene> scene = sceneWith(program);
+        scene->getChild(0)->getStateSet()->setAttribute(new osg::Depth(osg::Depth::GEQUAL));
+        return render(scene);
+    };
+    for (const std::string& formula : {std::string(), std::string("gl_Position.z += 0.002 * gl_Position.w;"),
+                                       std::string("gl_Position.z = 0.0;")})
+    {
+        SCOPED_TRACE(formula);
+        const osg::ref_ptr<osg::Image> expected = picture(true, formula);
+        EXPECT_GT(covered(*expected), WIDTH * HEIGHT / 2);
+        EXPECT_LE(apart(*picture(false, formula), *expected), 12);
+    }
 }
 
 // Planes cut the ground as it lies, whether the host's shader tells where that is or not.

@@ -54,7 +54,7 @@ void Composition::put(const VisibleCloseUp& visible, What what, Turn turn, const
     const CloseUpItem& item = items[visible.item];
     if (!item.showsCloseUp() || !visible.lifted) return;
     const double covered = coverOf(visible);
-    layers.show(pass.outer, program,
+    layers.show(pass.outer, program, pass.depth,
                 {visible.layer, *visible.lifted, osg::Vec2i(visible.part.x, visible.part.y), task.samples,
                  task.opacity, task.depthTest, what != What::Edges, what == What::Covered ? covered : 0.0,
                  what == What::Edges ? covered : 1.0, turn, visible.layer + 1, others});
@@ -63,7 +63,7 @@ void Composition::put(const VisibleCloseUp& visible, What what, Turn turn, const
 void Composition::putAnchor(const VisibleCloseUp& visible, Turn turn, const Others& others) const
 {
     if (!items[visible.item].marksGround()) return;
-    layers.show(pass.outer, program,
+    layers.show(pass.outer, program, pass.depth,
                 {visible.layer + 1, visible.part, osg::Vec2i(visible.part.x, visible.part.y), task.samples,
                  task.opacity, task.depthTest, false, 0.0, 1.0, turn, -1, others});
 }

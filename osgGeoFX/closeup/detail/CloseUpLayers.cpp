@@ -58,11 +58,13 @@ int rounded(int texels)
 
 CloseUpLayers::CloseUpLayers() : _square(createSquare(0.0f)) {}
 
-void CloseUpLayers::resize(int layers, int width, int height, int perArray)
+void CloseUpLayers::resize(int layers, int width, int height, int perArray, const CameraDepth& depth)
 {
     width = rounded(width);
     height = rounded(height);
-    const bool fits = width <= _width && height <= _height && layers <= _layers && perArray == _perArray;
+    const GLenum depthFormat = depth.format();
+    const bool fits = width <= _width && height <= _height && layers <= _layers && perArray == _perArray &&
+                      depthFormat == _depthFormat;
     // Layers that are much too large give their memory back.
     const bool wasteful = 4.0 * layers * width * height < 1.0 * _layers * _width * _height;
     if (fits && !wasteful) return;
@@ -70,14 +72,15 @@ void CloseUpLayers::resize(int layers, int width, int height, int perArray)
     _width = width;
     _height = height;
     _perArray = perArray;
+    _depthFormat = depthFormat;
     _arrays.clear();
     for (int first = 0; first < layers; first += perArray)
     {
         const int count = std::min(perArray, layers - first);
         Array array;
         array.colors = createTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height, count);
-        array.depths =
-            createTexture(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, width, height, count);
+        array.depths = createTexture(static_cast<GLint>(depthFormat), GL_DEPTH_COMPONENT, GL_FLOAT, width,
+                                     height, count);
         array.all =
             createTarget(*array.colors, *array.depths, osg::Camera::FACE_CONTROLLED_BY_GEOMETRY_SHADER);
         for (int layer = 0; layer < count; ++layer)
@@ -93,12 +96,12 @@ void CloseUpLayers::startFrame()
     _showsUsed = 0;
 }
 
-osgUtil::RenderStage* CloseUpLayers::newStage(osgUtil::CullVisitor& outer)
+osgUtil::RenderStage* CloseUpLayers::newStage(osgUtil::CullVisitor& outer, const CameraDepth& depth)
 {
     if (_stagesUsed == _stages.size()) _stages.push_back(new osgUtil::RenderStage);
     osgUtil::RenderStage& stage = *_stages[_stagesUsed++];
     // The scene's lights shine in the layers, too.
-    startStage(stage, outer, osg::Vec4(0.0f, 0.0f, 0.0f, 0.0f));
+    startStage(stage, outer, depth, osg::Vec4(0.0f, 0.0f, 0.0f, 0.0f));
     return &stage;
 }
 
@@ -123,7 +126,8 @@ void CloseUpLayers::draw(osgUtil::CullVisitor& outer, osgUtil::RenderStage& stag
     outer.getCurrentRenderBin()->getStage()->addPreRenderStage(&stage, stageOrder);
 }
 
-void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, const Show& what)
+void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, const CameraDepth& depth,
+                         const Show& what)
 {
     if (_showsUsed == _shows.size()) _shows.push_back(new osg::StateSet);
     osg::StateSet& state = *_shows[_showsUsed++];
@@ -136,9 +140,10 @@ void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, con
     state.setAttributeAndModes(program, on);
     state.setAttributeAndModes(new osg::BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA), on);
     state.setAttributeAndModes(
-        new osg::Depth(what.depthTest ? osg::Depth::LEQUAL : osg::Depth::ALWAYS, 0.0, 1.0, what.depthWrite),
+        new osg::Depth(what.depthTest ? depth.notBehind() : osg::Depth::ALWAYS, 0.0, 1.0, what.depthWrite),
         on);
     state.setMode(GL_DEPTH_TEST, on);
+    depth.put(state);
     state.setMode(GL_CULL_FACE, off);
     state.setMode(GL_ALPHA_TEST, off);
     state.setTextureAttribute(colorUnit, array.colors, forced);

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/DepthConvention.h>
+
 #include <osg/FrameBufferObject>
 #include <osg/Geometry>
 #include <osg/Program>
@@ -36,7 +38,7 @@ public:
 
     /// Makes room for layers of a size, texels, in arrays of at most `perArray` layers. They are drawn `samples`
     /// times as wide and high as the picture.
-    void resize(int layers, int width, int height, int perArray);
+    void resize(int layers, int width, int height, int perArray, const CameraDepth& depth);
     int width() const { return _width; }
     int height() const { return _height; }
 
@@ -44,7 +46,7 @@ public:
     void startFrame();
     /// A new stage with the view and the lights of `outer`. draw() says later which layers it draws into, so these
     /// need no size yet.
-    osgUtil::RenderStage* newStage(osgUtil::CullVisitor& outer);
+    osgUtil::RenderStage* newStage(osgUtil::CullVisitor& outer, const CameraDepth& depth);
     /// The viewport that places the picture in a layer; −1: in all layers. `corner` is the pixel at the layer's first
     /// texel, and a pixel's side has `samples` samples. The drawn state needs it, since the camera puts its own
     /// viewport there.
@@ -85,7 +87,7 @@ public:
     /// Whether two layers are in one texture array.
     bool together(int layer, int other) const { return layer / _perArray == other / _perArray; }
     /// Puts a layer into the camera's picture.
-    void show(osgUtil::CullVisitor& outer, osg::Program* program, const Show& what);
+    void show(osgUtil::CullVisitor& outer, osg::Program* program, const CameraDepth& depth, const Show& what);
     void resizeGLObjectBuffers(unsigned int size);
     void releaseGLObjects(osg::State* state) const;
 
@@ -99,6 +101,7 @@ private:
     osg::ref_ptr<osg::Geometry> _square;
     std::vector<Array> _arrays;
     int _layers = 0, _width = 0, _height = 0, _perArray = 0;
+    GLenum _depthFormat = 0;
     std::vector<osg::ref_ptr<osgUtil::RenderStage>> _stages;
     std::size_t _stagesUsed = 0;
     std::vector<osg::ref_ptr<osg::StateSet>> _shows;

@@ -27,7 +27,7 @@ public:
     void simplify();
     bool tessellated() const { return _tessellated; }
 
-    osgUtil::RenderStage* newStage() const { return traversal.layers.newStage(pass.outer); }
+    osgUtil::RenderStage* newStage() const { return traversal.layers.newStage(pass.outer, pass.depth); }
     /// Finds everything over the regions, as detailed as the overview is, and draws it into the stage with the states
     /// that `statesOf` gives.
     RegionSurvey survey(const RegionFilter::StatesOf& statesOf, osgUtil::RenderStage* stage) const;

@@ -41,12 +41,14 @@ constexpr int mirrorOrder = -5;
 /// The sky is drawn after opaque geometry, and so only where nothing else is.
 constexpr int skyBin = 8;
 
-osg::ref_ptr<osg::Texture2D> createTarget(int width, int height, bool depth)
+osg::ref_ptr<osg::Texture2D> createTarget(int width, int height, GLenum format)
 {
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
     texture->setTextureSize(width, height);
-    texture->setInternalFormat(depth ? GL_DEPTH_COMPONENT24 : GL_RGBA8);
+    texture->setInternalFormat(static_cast<GLint>(format));
+    const bool depth = format == GL_DEPTH_COMPONENT24 || format == GL_DEPTH_COMPONENT32F;
     if (depth) texture->setSourceFormat(GL_DEPTH_COMPONENT);
+    if (depth) texture->setSourceType(GL_FLOAT);
     const auto filter = depth ? osg::Texture::NEAREST : osg::Texture::LINEAR;
     texture->setFilter(osg::Texture::MIN_FILTER, filter);
     texture->setFilter(osg::Texture::MAG_FILTER, filter);
@@ -75,17 +77,19 @@ public:
         };
         const int width = side(viewport.width(), 0.5 * (high.x() - low.x()));
         const int height = side(viewport.height(), 0.5 * (high.y() - low.y()));
-        if (!_colors || _colors->getTextureWidth() != width || _colors->getTextureHeight() != height)
+        const GLenum depthFormat = pass.depth.format();
+        if (!_colors || _colors->getTextureWidth() != width || _colors->getTextureHeight() != height ||
+            static_cast<GLenum>(_depths->getInternalFormat()) != depthFormat)
         {
-            _colors = createTarget(width, height, false);
-            _depths = createTarget(width, height, true);
+            _colors = createTarget(width, height, GL_RGBA8);
+            _depths = createTarget(width, height, depthFormat);
             _target = new osg::FrameBufferObject;
             _target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(_colors));
             _target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(_depths));
             _viewport = new osg::Viewport(0, 0, width, height);
         }
         if (!_stage) _stage = new osgUtil::RenderStage;
-        startStage(*_stage, outer, osg::Vec4(0.6f, 0.7f, 0.85f, 1.0f));
+        startStage(*_stage, outer, pass.depth, osg::Vec4(0.6f, 0.7f, 0.85f, 1.0f));
         _stage->setViewport(_viewport);
         _stage->setFrameBufferObject(_target);
         outer.getCurrentRenderBin()->getStage()->addPreRenderStage(_stage, mirrorOrder);
@@ -151,8 +155,10 @@ struct Sky
         osg::StateSet& state = mirror.skyState(mirrored);
         state.setRenderBinDetails(skyBin, "RenderBin");
         state.setAttributeAndModes(program, osg::StateAttribute::ON | forced);
-        state.setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL, 0.0, 1.0, false),
-                                   osg::StateAttribute::ON | forced);
+        // All of it is at the far plane, wherever in clip space that is.
+        state.setAttributeAndModes(
+            new osg::Depth(pass.depth.notBehind(), pass.depth.farthest(), pass.depth.farthest(), false),
+            osg::StateAttribute::ON | forced);
         state.setMode(GL_DEPTH_TEST, osg::StateAttribute::ON | forced);
         state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
         state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);

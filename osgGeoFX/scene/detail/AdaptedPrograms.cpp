@@ -332,7 +332,7 @@ void ProgramAdaptation::adaptColors(const osg::Program& program, const Stage& fr
             hasMain ? unit.text.withDirective("#define main geofx_hostMain") : unit.shader->getShaderSource();
         if (&unit == place)
         {
-            text += "\n#undef main\n";
+            text += "\n#undef main\n#pragma import_defines(GEOFX_REVERSED_DEPTH)\n";
             if (ownDepth)
                 text +=
                     std::string(unit.text.version() < 130 ? "varying" : "in") + " vec2 geofx_hostPlace;\n";
@@ -343,12 +343,20 @@ void ProgramAdaptation::adaptColors(const osg::Program& program, const Stage& fr
                     "    gl_FragDepth *= log2(1.0 + 1.0 / gl_FragCoord.w) / log2(1.0 + geofx_hostPlace.y);\n";
             // As many metres nearer or farther than its place. Depth grows as the distance over its square.
             if (depth == FragmentDepth::PROJECTED)
-                text += "    float geofx_far = geofx_hostPlace.y * gl_FragCoord.w;\n"
-                        "    float geofx_former = 0.5 * (gl_DepthRange.diff * geofx_hostPlace.x / "
-                        "geofx_hostPlace.y + "
-                        "gl_DepthRange.near + gl_DepthRange.far);\n"
-                        "    if (gl_FragDepth != gl_FragCoord.z)\n        gl_FragDepth = gl_FragCoord.z + "
-                        "geofx_far * geofx_far * (gl_FragDepth - geofx_former);\n";
+                text +=
+                    "    float geofx_far = geofx_hostPlace.y * gl_FragCoord.w;\n"
+                    "    float geofx_former = 0.5 * (gl_DepthRange.diff * geofx_hostPlace.x / "
+                    "geofx_hostPlace.y + "
+                    "gl_DepthRange.near + gl_DepthRange.far);\n"
+                    // With glClipControl; where depths are reversed, the two are apart.
+                    "#ifdef GEOFX_REVERSED_DEPTH\n"
+                    "    float geofx_other = gl_DepthRange.near + gl_DepthRange.diff * geofx_hostPlace.x / "
+                    "geofx_hostPlace.y;\n"
+                    "    if (abs(gl_FragDepth - geofx_other) < abs(gl_FragDepth - geofx_former))\n"
+                    "        geofx_former = geofx_other;\n"
+                    "#endif\n"
+                    "    if (gl_FragDepth != gl_FragCoord.z)\n        gl_FragDepth = gl_FragCoord.z + "
+                    "geofx_far * geofx_far * (gl_FragDepth - geofx_former);\n";
             if (!color.name.empty())
                 text += "    " + color.name + " = geofx_fragment(" + color.name + ", vec4(0.0));\n";
             text += "}\n";

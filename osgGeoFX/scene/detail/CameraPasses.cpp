@@ -90,8 +90,8 @@ void CameraPasses::draw(osgUtil::CullVisitor& outer, const std::vector<ScenePass
 CameraPass::CameraPass(const Traversal& traversal, const std::string& names,
                        const std::vector<int>& textureUnits, const std::vector<int>& blockBindings)
     : ScenePass(traversal.outer, traversal.scene, traversal.view, *traversal.task.chain,
-                *traversal.task.state, names, textureUnits, blockBindings, traversal.task.compensate,
-                traversal.passes.frame()),
+                *traversal.task.state, names, textureUnits, blockBindings, traversal.task.depth,
+                traversal.task.compensate, traversal.passes.frame()),
       _traversal(traversal)
 {
 }

@@ -115,9 +115,11 @@ void CameraState::setHorizonClipping(bool on)
                          osg::StateAttribute::OVERRIDE);
 }
 
-void CameraState::fill(const CameraSnapshots& snapshots, const ViewGeometry& view, int mapUnit)
+void CameraState::fill(const CameraSnapshots& snapshots, const ViewGeometry& view, const CameraDepth& depth,
+                       int mapUnit)
 {
     fillImage(view);
+    depth.put(*_set);
     _set->getOrCreateUniform("geofx_map", osg::Uniform::INT)->set(std::max(mapUnit, 0));
     setDefine(*_set, "GEOFX_DEFORMATION", true);
     const std::vector<CameraSnapshots::Placed>& all = snapshots.all();

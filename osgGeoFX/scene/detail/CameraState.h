@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/DepthConvention.h>
 #include <osgGeoFX/effect/TextureUnits.h>
 #include <osgGeoFX/scene/detail/EffectProgram.h>
 
@@ -48,7 +49,8 @@ public:
     /// The texture units of the effects that this state was made for.
     const std::shared_ptr<const TextureUnits>& units() const { return _units; }
     osg::StateSet& set() const { return *_set; }
-    void fill(const CameraSnapshots& snapshots, const ViewGeometry& view, int mapUnit);
+    void fill(const CameraSnapshots& snapshots, const ViewGeometry& view, const CameraDepth& depth,
+              int mapUnit);
     /// Whether osgEarth may clip at its horizon.
     void setHorizonClipping(bool on);
     /// Of the effects that color surfaces; whether there are any at work.

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -184,11 +185,18 @@ void CompensatingCullVisitor::setVisibility(const osgUtil::CullVisitor& outer)
     camera.projection = *getProjectionMatrix();
     camera.image = _task.image;
     camera.viewport = getViewport();
-    if (culls && (_outerCullingMode & VIEW_FRUSTUM_CULLING))
-        camera.planes = &getProjectionCullingStack().back().getFrustum();
     camera.sides = (_outerCullingMode & VIEW_FRUSTUM_SIDES_CULLING) != 0;
-    camera.nearPlane = (_outerCullingMode & NEAR_PLANE_CULLING) != 0;
-    camera.farPlane = (_outerCullingMode & FAR_PLANE_CULLING) != 0;
+    const bool cut = _task.depth.cutByProjection();
+    camera.nearPlane = cut && (_outerCullingMode & NEAR_PLANE_CULLING) != 0;
+    camera.farPlane = cut && (_outerCullingMode & FAR_PLANE_CULLING) != 0;
+    // These are the planes of the depths −1 and 1. A reversed far plane may also be at 0; what lies between is not culled.
+    if (_task.depth.reversed()) std::swap(camera.nearPlane, camera.farPlane);
+    if (culls && (_outerCullingMode & VIEW_FRUSTUM_CULLING))
+    {
+        _planes.setToUnitFrustum(camera.nearPlane, camera.farPlane);
+        _planes.transformProvidingInverse(camera.projection);
+        camera.planes = &_planes;
+    }
     if (culls && (_outerCullingMode & SMALL_FEATURE_CULLING))
         camera.smallPixels = static_cast<double>(outer.getSmallFeatureCullingPixelSize());
     for (const DrawableCompanion* each : _task.companions)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/DepthConvention.h>
 #include <osgGeoFX/effect/ScenePass.h>
 #include <osgGeoFX/scene/detail/DrawableSight.h>
 #include <osgGeoFX/scene/detail/LookCache.h>
@@ -64,7 +65,8 @@ public:
         const ViewGeometry::Image* image = nullptr;
         const ViewGeometry* view = nullptr; ///< that is drawn
         const ViewGeometry* ownView =
-            nullptr; ///< the view whose own image is drawn in the place of the camera's
+            nullptr;       ///< the view whose own image is drawn in the place of the camera's
+        CameraDepth depth; ///< of the camera
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;
@@ -281,6 +283,7 @@ private:
     template<typename NodeType>
     void passToHost(NodeType& node);
 
+    osg::Polytope _planes; ///< those of the camera's frustum that cull
     Visibility _sight;
     DrawableSight _drawables = DrawableSight(_sight);
     osg::ref_ptr<osg::RefMatrix> _projection,

@@ -24,7 +24,8 @@ osg::ref_ptr<osg::Geometry> createSquare(float low)
     return square;
 }
 
-void startStage(osgUtil::RenderStage& stage, osgUtil::CullVisitor& outer, const osg::Vec4& clearColor)
+void startStage(osgUtil::RenderStage& stage, osgUtil::CullVisitor& outer, const CameraDepth& depth,
+                const osg::Vec4& clearColor)
 {
     stage.reset();
     osgUtil::RenderStage& camera = *outer.getCurrentRenderBin()->getStage();
@@ -36,7 +37,7 @@ void startStage(osgUtil::RenderStage& stage, osgUtil::CullVisitor& outer, const 
     stage.setColorMask(new osg::ColorMask);
     stage.setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     stage.setClearColor(clearColor);
-    stage.setClearDepth(1.0);
+    stage.setClearDepth(depth.farthest());
 }
 
 } // namespace osgGeoFX

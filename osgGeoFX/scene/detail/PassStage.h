@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/DepthConvention.h>
+
 #include <osg/Geometry>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderStage>
@@ -14,6 +16,7 @@ osg::ref_ptr<osg::Geometry> createSquare(float low);
 
 /// Empties a stage that draws into images of its own. The stage gets the camera's lights and view. It clears color
 /// and depth.
-void startStage(osgUtil::RenderStage& stage, osgUtil::CullVisitor& outer, const osg::Vec4& clearColor);
+void startStage(osgUtil::RenderStage& stage, osgUtil::CullVisitor& outer, const CameraDepth& depth,
+                const osg::Vec4& clearColor);
 
 } // namespace osgGeoFX

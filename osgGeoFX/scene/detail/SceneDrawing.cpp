@@ -82,10 +82,10 @@ class SceneDrawing::Traversal
 public:
     /// `listed`: the effects of the scene; `effects`: what the camera draws in their places.
     Traversal(SceneDrawing& drawing, EffectScene& scene, const Effects& listed, const Effects& effects,
-              osgUtil::CullVisitor& outer, const ViewGeometry& view, const osg::BoundingSphere& bound,
-              const Traverse& traverse)
+              osgUtil::CullVisitor& outer, const ViewGeometry& view, const CameraDepth& depth,
+              const osg::BoundingSphere& bound, const Traverse& traverse)
         : _drawing(drawing), _scene(scene), _listed(listed), _effects(effects), _outer(outer), _view(view),
-          _bound(bound), _traverse(traverse), _units(drawing.unitsOf(listed, scene))
+          _depth(depth), _bound(bound), _traverse(traverse), _units(drawing.unitsOf(listed, scene))
     {
     }
 
@@ -107,6 +107,7 @@ private:
     const Effects& _effects;
     osgUtil::CullVisitor& _outer;
     const ViewGeometry& _view;
+    const CameraDepth& _depth;
     const osg::BoundingSphere _bound; ///< of the terrain's children, in their frame
     const Traverse& _traverse;
     const std::shared_ptr<const TextureUnits> _units;
@@ -204,6 +205,7 @@ SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chai
     task.chain = chain;
     task.mapUnit = mapUnit;
     task.view = &_view;
+    task.depth = _depth;
     if (!_view.image.ofView) task.image = &_view.image;
     task.untouched = _drawing._untouched;
     task.adapts = _scene.getAdaptsPrograms();
@@ -267,12 +269,13 @@ bool SceneDrawing::Traversal::run()
     Camera& own = _drawing._cameras.of(_outer);
     if (own.visitor->startsFrame(_outer)) own.startFrame(_outer);
     CameraState& state = own.nextState(_effects, mapUnit, _units);
-    state.fill(snapshots, _view, mapUnit);
+    state.fill(snapshots, _view, _depth, mapUnit);
     state.setHorizonClipping(_scene.getEngineCulling() == EffectScene::AS_IT_IS);
     const bool surfaces = state.fillSurfaces(_effects, _view, _outer);
 
     const Task task = taskOf(snapshots.chain(_view.ground), mapUnit);
-    const bool draws = surfaces || _scene.getDebugBounds() || !task.chain->empty();
+    // What has no shader writes no logarithmic depth by itself.
+    const bool draws = surfaces || _scene.getDebugBounds() || !task.chain->empty() || _depth.logarithmic();
     const bool culls = draws || task.compensate;
     if (!culls && !drawsPasses(_effects)) return false;
 
@@ -323,13 +326,17 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
     if (!outer.getRenderStage() || !outer.getCurrentCamera()) return false;
     const CameraEffects* const special = CameraEffects::find(*outer.getCurrentCamera());
     const Effects shown = special ? effectsFor(effects, *special) : effects;
+    const CameraDepth depth(special && special->getDepthConvention() ? *special->getDepthConvention()
+                                                                     : scene.getDepthConvention(),
+                            *outer.getProjectionMatrix());
     const bool wanted =
+        depth.logarithmic() ||
         std::any_of(shown.begin(), shown.end(), [](const auto& each) { return each->getEnabled(); });
     const std::optional<CameraRole> role = wanted ? roleOf(scene, outer, special) : std::nullopt;
     if (!role) return false;
     if (scene.getCompensation()) completeBounds(scene, top, outer.getFrameStamp());
     const ViewGeometry view = viewOf(outer, *role, ground.find(scene, top, outer.getNodePath()));
-    return Traversal(*this, scene, effects, shown, outer, view, boundOfChildren(top), traverse).run();
+    return Traversal(*this, scene, effects, shown, outer, view, depth, boundOfChildren(top), traverse).run();
 }
 
 } // namespace osgGeoFX

@@ -28,7 +28,8 @@ public:
         const osg::Viewport* viewport = nullptr;    ///< null: sizes in pixels are unknown
         const osg::Polytope* planes =
             nullptr; ///< of the frustum, in the camera's eye space; null: they cull nothing
-        bool sides = true, nearPlane = true, farPlane = true; ///< which of them there are
+        /// Which of them there are: those of the picture's sides, of the depths −1 and 1.
+        bool sides = true, nearPlane = true, farPlane = true;
         double smallPixels = 0.0; ///< what is smaller is out of sight; 0: nothing is too small
         double reach = 0.0;       ///< how far beyond its own part of the picture a thing may draw, pixels
     };
