@@ -69,6 +69,9 @@ public:
     /// Which of two depths is the nearer one for this camera. `state` has what shaders need; state sets that are not below it
     /// get it by CameraDepth::put().
     const CameraDepth& depth;
+    /// The format of color textures that lose nothing of what the camera draws into: GL_RGBA8, or one with 16 bits or with
+    /// floats. In the last two, shaders see the define GEOFX_HDR: colors may be above 1.
+    GLenum colorFormat;
     bool compensate; ///< EffectScene::getCompensation()
     /// Changes when the camera begins a new frame. If it differs from the last time, the former frame has been drawn,
     /// and the objects that it was drawn with may be used again. A camera may call several times in one frame.
@@ -117,10 +120,10 @@ protected:
     ScenePass(osgUtil::CullVisitor& visitor, osg::Group& group, const ViewGeometry& geometry,
               const DeformationChain& deformations, osg::StateSet& stateSet, const std::string& names,
               const std::vector<int>& textureUnits, const std::vector<int>& blockBindings,
-              const CameraDepth& cameraDepth, bool compensation, unsigned int number)
+              const CameraDepth& cameraDepth, GLenum format, bool compensation, unsigned int number)
         : outer(visitor), scene(group), view(geometry), chain(deformations), state(stateSet), prefix(names),
-          units(textureUnits), blocks(blockBindings), depth(cameraDepth), compensate(compensation),
-          frame(number)
+          units(textureUnits), blocks(blockBindings), depth(cameraDepth), colorFormat(format),
+          compensate(compensation), frame(number)
     {
     }
 };

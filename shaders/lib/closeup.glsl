@@ -68,14 +68,21 @@ GEOFX_INLINE Number geofx_coverage(Number distance, Number pixel)
     return clamp(distance / max(pixel, Number(1e-9)) + Number(0.5), Number(0), Number(1));
 }
 
-// Saturation about the grey of equal luma (ITU-R BT.709), contrast about middle grey, then brightness.
-GEOFX_INLINE Rgb geofx_restyle(Rgb color, Number saturation, Number contrast, Number brightness)
+// Saturation about the grey of equal luma (ITU-R BT.709), contrast about middle grey, then brightness. The result may be
+// below 0 or above 1.
+GEOFX_INLINE Rgb geofx_restyleBright(Rgb color, Number saturation, Number contrast, Number brightness)
 {
     Number luma = dot(color, Rgb(Number(0.2126), Number(0.7152), Number(0.0722)));
     Rgb grey = Rgb(luma, luma, luma);
     Rgb middle = Rgb(Number(0.5), Number(0.5), Number(0.5));
     Rgb result = (grey + (color - grey) * saturation - middle) * contrast + middle;
-    return clamp(result + Rgb(brightness, brightness, brightness), Rgb(0, 0, 0), Rgb(1, 1, 1));
+    return result + Rgb(brightness, brightness, brightness);
+}
+
+// The same, from 0 to 1.
+GEOFX_INLINE Rgb geofx_restyle(Rgb color, Number saturation, Number contrast, Number brightness)
+{
+    return clamp(geofx_restyleBright(color, saturation, contrast, brightness), Rgb(0, 0, 0), Rgb(1, 1, 1));
 }
 
 // The light of a sun on a surface. A share of it comes from everywhere.

@@ -3,6 +3,7 @@
 //
 // CloseUps in the fragment stage: cuts fragments away, and applies the close-up's own data, light and style.
 #pragma import_defines(SLOT_DATA)
+#pragma import_defines(GEOFX_HDR)
 
 uniform sampler2D SLOT_tables;       // a row for each color table and each anchor
 uniform sampler2DArray SLOT_surfaces; // values times their weight, which is the alpha
@@ -156,7 +157,12 @@ vec4 SLOT_finish(vec4 color)
         if (texel.a > 0.004) result *= geofx_sunlight(normalize(texel.rgb / texel.a), sun);
     }
 #endif
+#ifdef GEOFX_HDR
+    result = max(geofx_restyleBright(max(result, vec3(0.0)), style.x, style.y, style.z), vec3(0.0));
+    opacity = clamp(opacity, 0.0, 1.0);
+#else
     result = geofx_restyle(clamp(result, vec3(0.0), vec3(1.0)), style.x, style.y, style.z);
+#endif
     // The line around the close-up has the color of its region.
     if (anchor.x > 0.0 && sharp) result = mix(result, tint.rgb, line);
     return vec4(result, opacity * cover * style.w);

@@ -9,6 +9,14 @@
 #pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP, GEOFX_PAINTED)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_NORMAL_MAP)
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE)
+#pragma import_defines(GEOFX_HDR)
+
+// OpenGL bounds the colors of fragments where the frame buffer does, too (ARB_color_buffer_float).
+#ifdef GEOFX_HDR
+#define bounded(color) (color)
+#else
+#define bounded(color) clamp(color, 0.0, 1.0)
+#endif
 
 // What is painted anew needs no light and no textures.
 #ifdef GEOFX_PAINTED
@@ -116,7 +124,7 @@ void main()
     color = environment(GEOFX_TEXTURE_3, color, texture2DProj(geofx_texture3, tame(gl_TexCoord[3])), gl_TextureEnvColor[3]);
 #endif
 #ifdef GEOFX_COLOR_SUM
-    color.rgb = clamp(color.rgb + secondary.rgb, 0.0, 1.0);
+    color.rgb = bounded(color.rgb + secondary.rgb);
 #endif
 #ifdef GEOFX_MAP
     color = geofx_fragment(color, primary * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
@@ -130,7 +138,7 @@ void main()
     if ((GEOFX_FOG & 3) == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;
     if ((GEOFX_FOG & 3) == 2) clear = exp(-gl_Fog.density * distance);
     if ((GEOFX_FOG & 3) == 3) clear = exp(-gl_Fog.density * gl_Fog.density * distance * distance);
-    color.rgb = mix(gl_Fog.color.rgb, clamp(color.rgb, 0.0, 1.0), clamp(clear, 0.0, 1.0));
+    color.rgb = mix(gl_Fog.color.rgb, bounded(color.rgb), clamp(clear, 0.0, 1.0));
 #endif
     gl_FragColor = color;
     GEOFX_PUT_FRAGMENT_DEPTH;

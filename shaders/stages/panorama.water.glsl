@@ -3,6 +3,7 @@
 //
 // The water of panorama maps, after Section 3.4 of Brown and Samavati (2017): on the ground, and where there is no
 // ground.
+#pragma import_defines(GEOFX_HDR)
 #include "lib/painting.glsl"
 
 const vec3 geofx_deepWater = vec3(0.07, 0.32, 0.60);
@@ -53,7 +54,10 @@ vec3 geofx_water(geofx_WaterPlace place, vec4 water, float seconds, sampler2D br
     float grazing = place.far * place.far;
     float strength = clamp(water.y * (1.0 + 0.7 * calm * ripple.y + 0.8 * grazing * grazing), 0.0, 1.0);
     // White clouds have hardly any hue. In water they are blue.
-    vec3 cool = min(seen / weights * vec3(0.80, 0.95, 1.15), vec3(1.0));
+    vec3 cool = seen / weights * vec3(0.80, 0.95, 1.15);
+#ifndef GEOFX_HDR
+    cool = min(cool, vec3(1.0));
+#endif
     // The brush shows, and the picture's base is darker, as on land.
     float tone = (1.0 + 0.28 * calm * ripple.x) * (1.0 - 0.28 * geofx_share(1.0 - place.picture.y / GEOFX_BOTTOM_SHARE));
     return tone * geofx_waterMix(geofx_waterBody(place.shore, water.x), cool, strength);

@@ -168,7 +168,7 @@ void CloseUpFrame::allocate()
     }
     const int samples = _task.samples;
     _traversal.layers.resize(static_cast<int>(2 * _visible.size()), width * samples, height * samples,
-                             _perArray, _pass.depth);
+                             _perArray, _pass.depth, _pass.colorFormat);
     CloseUpItems& values = _traversal.states.values;
     for (std::size_t i = 0; i < _items.size(); ++i)
         values.set(i, {}); // a close-up out of sight draws nothing

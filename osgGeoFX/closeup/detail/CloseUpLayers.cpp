@@ -58,13 +58,14 @@ int rounded(int texels)
 
 CloseUpLayers::CloseUpLayers() : _square(createSquare(0.0f)) {}
 
-void CloseUpLayers::resize(int layers, int width, int height, int perArray, const CameraDepth& depth)
+void CloseUpLayers::resize(int layers, int width, int height, int perArray, const CameraDepth& depth,
+                           GLenum colorFormat)
 {
     width = rounded(width);
     height = rounded(height);
     const GLenum depthFormat = depth.format();
     const bool fits = width <= _width && height <= _height && layers <= _layers && perArray == _perArray &&
-                      depthFormat == _depthFormat;
+                      depthFormat == _depthFormat && colorFormat == _colorFormat;
     // Layers that are much too large give their memory back.
     const bool wasteful = 4.0 * layers * width * height < 1.0 * _layers * _width * _height;
     if (fits && !wasteful) return;
@@ -73,12 +74,14 @@ void CloseUpLayers::resize(int layers, int width, int height, int perArray, cons
     _height = height;
     _perArray = perArray;
     _depthFormat = depthFormat;
+    _colorFormat = colorFormat;
     _arrays.clear();
     for (int first = 0; first < layers; first += perArray)
     {
         const int count = std::min(perArray, layers - first);
         Array array;
-        array.colors = createTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height, count);
+        array.colors =
+            createTexture(static_cast<GLint>(colorFormat), GL_RGBA, GL_FLOAT, width, height, count);
         array.depths = createTexture(static_cast<GLint>(depthFormat), GL_DEPTH_COMPONENT, GL_FLOAT, width,
                                      height, count);
         array.all =

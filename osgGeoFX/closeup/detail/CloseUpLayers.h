@@ -38,7 +38,8 @@ public:
 
     /// Makes room for layers of a size, texels, in arrays of at most `perArray` layers. They are drawn `samples`
     /// times as wide and high as the picture.
-    void resize(int layers, int width, int height, int perArray, const CameraDepth& depth);
+    void resize(int layers, int width, int height, int perArray, const CameraDepth& depth,
+                GLenum colorFormat);
     int width() const { return _width; }
     int height() const { return _height; }
 
@@ -101,7 +102,7 @@ private:
     osg::ref_ptr<osg::Geometry> _square;
     std::vector<Array> _arrays;
     int _layers = 0, _width = 0, _height = 0, _perArray = 0;
-    GLenum _depthFormat = 0;
+    GLenum _depthFormat = 0, _colorFormat = 0;
     std::vector<osg::ref_ptr<osgUtil::RenderStage>> _stages;
     std::size_t _stagesUsed = 0;
     std::vector<osg::ref_ptr<osg::StateSet>> _shows;

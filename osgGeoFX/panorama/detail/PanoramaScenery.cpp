@@ -10,6 +10,7 @@
 #include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 #include <osgGeoFX/panorama/detail/StrokeCompanion.h>
 #include <osgGeoFX/scene/detail/PassStage.h>
+#include <osgGeoFX/scene/detail/TargetFormat.h>
 
 #include <osg/Depth>
 #include <osg/FrameBufferObject>
@@ -47,8 +48,11 @@ osg::ref_ptr<osg::Texture2D> createTarget(int width, int height, GLenum format)
     texture->setTextureSize(width, height);
     texture->setInternalFormat(static_cast<GLint>(format));
     const bool depth = format == GL_DEPTH_COMPONENT24 || format == GL_DEPTH_COMPONENT32F;
-    if (depth) texture->setSourceFormat(GL_DEPTH_COMPONENT);
-    if (depth) texture->setSourceType(GL_FLOAT);
+    if (format != GL_RGBA8)
+    {
+        texture->setSourceFormat(depth ? GL_DEPTH_COMPONENT : GL_RGBA);
+        texture->setSourceType(GL_FLOAT);
+    }
     const auto filter = depth ? osg::Texture::NEAREST : osg::Texture::LINEAR;
     texture->setFilter(osg::Texture::MIN_FILTER, filter);
     texture->setFilter(osg::Texture::MAG_FILTER, filter);
@@ -79,9 +83,10 @@ public:
         const int height = side(viewport.height(), 0.5 * (high.y() - low.y()));
         const GLenum depthFormat = pass.depth.format();
         if (!_colors || _colors->getTextureWidth() != width || _colors->getTextureHeight() != height ||
-            static_cast<GLenum>(_depths->getInternalFormat()) != depthFormat)
+            static_cast<GLenum>(_depths->getInternalFormat()) != depthFormat ||
+            static_cast<GLenum>(_colors->getInternalFormat()) != pass.colorFormat)
         {
-            _colors = createTarget(width, height, GL_RGBA8);
+            _colors = createTarget(width, height, pass.colorFormat);
             _depths = createTarget(width, height, depthFormat);
             _target = new osg::FrameBufferObject;
             _target->setAttachment(osg::Camera::COLOR_BUFFER, osg::FrameBufferAttachment(_colors));
@@ -160,6 +165,8 @@ struct Sky
             new osg::Depth(pass.depth.notBehind(), pass.depth.farthest(), pass.depth.farthest(), false),
             osg::StateAttribute::ON | forced);
         state.setMode(GL_DEPTH_TEST, osg::StateAttribute::ON | forced);
+        state.setDefine("GEOFX_HDR", holdsBrightColors(pass.colorFormat) ? osg::StateAttribute::ON
+                                                                         : osg::StateAttribute::OFF);
         state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
         state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
         const bool showsMirror = reflects(map) && !mirrored;

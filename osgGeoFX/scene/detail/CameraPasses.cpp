@@ -91,7 +91,7 @@ CameraPass::CameraPass(const Traversal& traversal, const std::string& names,
                        const std::vector<int>& textureUnits, const std::vector<int>& blockBindings)
     : ScenePass(traversal.outer, traversal.scene, traversal.view, *traversal.task.chain,
                 *traversal.task.state, names, textureUnits, blockBindings, traversal.task.depth,
-                traversal.task.compensate, traversal.passes.frame()),
+                traversal.task.colorFormat, traversal.task.compensate, traversal.passes.frame()),
       _traversal(traversal)
 {
 }

@@ -105,6 +105,11 @@ void CameraState::fillImage(const ViewGeometry& view)
     put("geofx_viewProjection", view.projection);
 }
 
+void CameraState::setBright(bool on)
+{
+    setDefine(*_set, "GEOFX_HDR", on);
+}
+
 void CameraState::setHorizonClipping(bool on)
 {
     constexpr const char* plane = "oe_ClipPlane_plane";

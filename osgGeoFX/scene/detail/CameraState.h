@@ -51,6 +51,8 @@ public:
     osg::StateSet& set() const { return *_set; }
     void fill(const CameraSnapshots& snapshots, const ViewGeometry& view, const CameraDepth& depth,
               int mapUnit);
+    /// Whether colors above 1 stay what they are.
+    void setBright(bool on);
     /// Whether osgEarth may clip at its horizon.
     void setHorizonClipping(bool on);
     /// Of the effects that color surfaces; whether there are any at work.

@@ -65,8 +65,9 @@ public:
         const ViewGeometry::Image* image = nullptr;
         const ViewGeometry* view = nullptr; ///< that is drawn
         const ViewGeometry* ownView =
-            nullptr;       ///< the view whose own image is drawn in the place of the camera's
-        CameraDepth depth; ///< of the camera
+            nullptr;                   ///< the view whose own image is drawn in the place of the camera's
+        CameraDepth depth;             ///< of the camera
+        GLenum colorFormat = GL_RGBA8; ///< targetFormat()
         int mapUnit = -1;
         bool compensate = true;
         bool debugBounds = false;

@@ -6,6 +6,7 @@
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 #include <osgGeoFX/scene/detail/CameraRoles.h>
+#include <osgGeoFX/scene/detail/TargetFormat.h>
 
 #include <osg/Notify>
 
@@ -206,6 +207,7 @@ SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chai
     task.mapUnit = mapUnit;
     task.view = &_view;
     task.depth = _depth;
+    task.colorFormat = targetFormat(_outer);
     if (!_view.image.ofView) task.image = &_view.image;
     task.untouched = _drawing._untouched;
     task.adapts = _scene.getAdaptsPrograms();
@@ -270,6 +272,7 @@ bool SceneDrawing::Traversal::run()
     if (own.visitor->startsFrame(_outer)) own.startFrame(_outer);
     CameraState& state = own.nextState(_effects, mapUnit, _units);
     state.fill(snapshots, _view, _depth, mapUnit);
+    state.setBright(holdsBrightColors(targetFormat(_outer)));
     state.setHorizonClipping(_scene.getEngineCulling() == EffectScene::AS_IT_IS);
     const bool surfaces = state.fillSurfaces(_effects, _view, _outer);
 
