@@ -7,9 +7,9 @@
 namespace osgGeoFX
 {
 
-osg::ref_ptr<MaterialCover> readMaterialCover(const std::string& file)
+osg::ref_ptr<MaterialCover> readMaterialCover(const std::string& file, unsigned int unit)
 {
-    const osg::ref_ptr<MaterialCover> result = new MaterialCover;
+    const osg::ref_ptr<MaterialCover> result = new MaterialCover(unit);
     for (const LandCoverClass& each : readLandCoverTable(file))
     {
         // A class without a name is no one's material.

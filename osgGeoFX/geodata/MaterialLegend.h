@@ -13,8 +13,10 @@ namespace osgGeoFX
 {
 
 /// What lies on materials that bear the names of a land-cover table's classes. With "flightgear", they are those of
-/// FlightGear's terrain. `file` and errors are those of readLandCoverTable(). Thread-safe.
+/// FlightGear's terrain. `file` and errors are those of readLandCoverTable(). `unit`: the texture unit, as
+/// PanoramaMap::coverUnit has it. Thread-safe.
 /// @ingroup geodata
-OSGGEOFXDATA_EXPORT osg::ref_ptr<MaterialCover> readMaterialCover(const std::string& file);
+OSGGEOFXDATA_EXPORT osg::ref_ptr<MaterialCover> readMaterialCover(const std::string& file,
+                                                                  unsigned int unit = 7);
 
 } // namespace osgGeoFX

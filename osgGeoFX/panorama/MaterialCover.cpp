@@ -8,9 +8,12 @@
 #include <osg/Material>
 #include <osg/NodeVisitor>
 #include <osg/Notify>
+#include <osg/PagedLOD>
+#include <osg/ProxyNode>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -43,6 +46,7 @@ bool isShare(double value)
 
 } // namespace
 
+/// Gives covers to what has a name, and tells what else holds no ground.
 class MaterialCover::Visitor : public osg::NodeVisitor
 {
 public:
@@ -51,20 +55,41 @@ public:
         setNodeMaskOverride(~0u);
     }
 
-    void apply(osg::Node& node) override
+    void apply(osg::Node& node) override { visit(node, false); }
+    // What is not there yet may be ground.
+    void apply(osg::PagedLOD& node) override { visit(node, true); }
+    void apply(osg::ProxyNode& node) override { visit(node, true); }
+
+    /// Objects beside ground, each the topmost node that has none; to be called after the traversal.
+    const std::vector<osg::ref_ptr<osg::Node>>& objects() const { return _objects; }
+
+    static osg::StateSet& ownState(osg::Node& node)
     {
-        if (const Entry* entry = _cover.entryOf(node))
-        {
-            const osg::StateSet* shared = node.getStateSet();
-            if (shared && shared->getNumParents() > 1)
-                node.setStateSet(osg::clone(shared, osg::CopyOp::SHALLOW_COPY));
-            node.getOrCreateStateSet()->setTextureAttribute(_cover._unit, entry->texture);
-        }
-        traverse(node);
+        const osg::StateSet* shared = node.getStateSet();
+        if (shared && shared->getNumParents() > 1)
+            node.setStateSet(osg::clone(shared, osg::CopyOp::SHALLOW_COPY));
+        return *node.getOrCreateStateSet();
     }
 
 private:
+    void visit(osg::Node& node, bool mayHoldGround)
+    {
+        bool ground = false;
+        if (const Entry* entry = _cover.entryOf(node, ground))
+            ownState(node).setTextureAttribute(_cover._unit, entry->texture);
+        const bool former = _ground;
+        const std::size_t first = _objects.size();
+        _ground = ground || mayHoldGround;
+        traverse(node);
+        // All below what has a name is ground, and where there is none below it, the node is one object.
+        if (ground || !_ground) _objects.resize(first);
+        if (!_ground) _objects.emplace_back(&node);
+        _ground = _ground || former;
+    }
+
     MaterialCover& _cover;
+    bool _ground = false; ///< whether the current node, or what has been seen beside it, holds ground
+    std::vector<osg::ref_ptr<osg::Node>> _objects;
 };
 
 MaterialCover::~MaterialCover() = default;
@@ -88,16 +113,18 @@ const GroundCover* MaterialCover::getCover(const std::string& material) const
     return found == _entries.end() ? nullptr : &found->second.cover;
 }
 
-const MaterialCover::Entry* MaterialCover::entryOf(const osg::Node& node)
+const MaterialCover::Entry* MaterialCover::entryOf(const osg::Node& node, bool& ground)
 {
     const auto known = [&](const std::string& name)
     {
         const auto found = _entries.find(name);
+        ground = ground || found != _entries.end();
         return found == _entries.end() ? nullptr : &found->second;
     };
     if (_naming)
     {
         const std::string name = _naming(node);
+        ground = !name.empty();
         const Entry* entry = name.empty() ? nullptr : known(name);
         if (entry || name.empty()) return entry;
         const std::lock_guard<std::mutex> lock(_mutex);
@@ -116,6 +143,9 @@ void MaterialCover::apply(osg::Node& node)
 {
     Visitor visitor(*this);
     node.accept(visitor);
+    if (!_keepsObjects) return;
+    for (const osg::ref_ptr<osg::Node>& each : visitor.objects())
+        Visitor::ownState(*each).setDefine("GEOFX_PAINTED", osg::StateAttribute::OFF);
 }
 
 std::set<std::string> MaterialCover::unknownMaterials() const

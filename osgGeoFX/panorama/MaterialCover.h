@@ -64,6 +64,12 @@ public:
     /// Sets how names are found; null is the default way.
     void setNaming(Naming naming) { _naming = std::move(naming); }
 
+    /// Whether objects, such as trees, houses and lamps, keep their look in panorama maps; false by default: they are
+    /// painted, too, as if they were ground. An object is what has no name, holds nothing that has one, and is not below
+    /// one. With setNaming(), names that are not known are names, too, so ground of unknown kind is painted.
+    void setKeepsObjects(bool on) { _keepsObjects = on; }
+    bool getKeepsObjects() const { return _keepsObjects; }
+
     /// Gives a node and all below it their covers.
     void apply(osg::Node& node);
     void tileRead(osg::Node& tile) override { apply(tile); }
@@ -81,9 +87,11 @@ private:
         GroundCover cover;
         osg::ref_ptr<osg::Texture2D> texture;
     };
-    const Entry* entryOf(const osg::Node& node);
+    /// `ground`: becomes true where the node is ground, of whatever kind.
+    const Entry* entryOf(const osg::Node& node, bool& ground);
 
     const unsigned int _unit;
+    bool _keepsObjects = false;
     Naming _naming;
     std::map<std::string, Entry> _entries;
     mutable std::mutex _mutex;

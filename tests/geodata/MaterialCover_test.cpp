@@ -11,6 +11,7 @@
 #include <osg/Geode>
 #include <osg/Geometry>
 #include <osg/Material>
+#include <osg/PagedLOD>
 
 #include <cmath>
 #include <optional>
@@ -63,6 +64,12 @@ TEST(MaterialCover, NamesOfFlightGearAreForestsTownsIceAndWater)
     EXPECT_FALSE(coverOf(*other)) << "heights and slopes decide";
     EXPECT_FALSE(coverOf(*tile));
     EXPECT_THROW(readMaterialCover("no/such/table.csv"), BuildError);
+    // An engine whose shaders read unit 7 has another one.
+    const osg::ref_ptr<osg::Geode> lake = new osg::Geode;
+    lake->setName("Lake");
+    readMaterialCover("flightgear", 31)->apply(*lake);
+    EXPECT_TRUE(coverOf(*lake, 31));
+    EXPECT_FALSE(coverOf(*lake, 7));
 }
 
 TEST(MaterialCover, NamesAreThoseOfNodesStateSetsAndMaterials)
@@ -124,6 +131,45 @@ TEST(MaterialCover, AStateSetThatOthersShareStaysAsItIs)
     EXPECT_TRUE(coverOf(*sea));
     EXPECT_FALSE(coverOf(*land));
     EXPECT_EQ(sea->getStateSet()->getMode(GL_BLEND), static_cast<unsigned int>(osg::StateAttribute::ON));
+}
+
+TEST(MaterialCover, ObjectsAreWhatHoldsNoGround)
+{
+    const osg::ref_ptr<MaterialCover> cover = new MaterialCover;
+    ASSERT_TRUE(cover->setCover("Ocean", {0.0, 0.0, 0.0, true}));
+    cover->setNaming([](const osg::Node& node) { return node.getName(); });
+    const auto add = [](osg::Group& to, const std::string& name)
+    {
+        const osg::ref_ptr<osg::Group> node = new osg::Group;
+        node->setName(name);
+        to.addChild(node);
+        return node;
+    };
+    const auto keepsLook = [](const osg::Node& node)
+    {
+        const osg::StateSet* state = node.getStateSet();
+        return state && state->getDefineList().count("GEOFX_PAINTED") == 1 &&
+               state->getDefineList().at("GEOFX_PAINTED").second == osg::StateAttribute::OFF;
+    };
+    const osg::ref_ptr<osg::Group> root = new osg::Group;
+    const auto tile = add(*root, ""), sea = add(*tile, "Ocean"), unknown = add(*tile, "Moon"),
+               town = add(*tile, ""), house = add(*town, ""), ofSea = add(*sea, "");
+    const osg::ref_ptr<osg::PagedLOD> later = new osg::PagedLOD;
+    later->setFileName(0, "later.osgb");
+    tile->addChild(later);
+    cover->apply(*root);
+    EXPECT_FALSE(keepsLook(*town)) << "only where it is wanted";
+    cover->setKeepsObjects(true);
+    cover->apply(*root);
+    EXPECT_TRUE(keepsLook(*town));
+    for (const auto& each : {root, tile, sea, unknown, house, ofSea})
+        EXPECT_FALSE(keepsLook(*each)) << each->getName();
+    EXPECT_FALSE(keepsLook(*later)) << "what it reads may be ground";
+    // A tile of objects alone.
+    const osg::ref_ptr<osg::Group> objects = new osg::Group;
+    add(*objects, "");
+    cover->apply(*objects);
+    EXPECT_TRUE(keepsLook(*objects));
 }
 
 TEST(MaterialCover, SharesThatCannotBeAreRefusedInASentence)

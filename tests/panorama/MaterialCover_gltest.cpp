@@ -10,6 +10,7 @@
 #include <osg/Geometry>
 
 #include <cmath>
+#include <cstring>
 
 using namespace geofx::test;
 using namespace osgGeoFX;
@@ -52,22 +53,31 @@ protected:
 
     osg::ref_ptr<osg::Image> draw(const std::vector<osg::ref_ptr<osg::Geometry>>& plains, bool named)
     {
+        const osg::ref_ptr<osg::Group> ground = new osg::Group;
+        for (const auto& each : plains)
+            ground->addChild(each);
+        if (named) makeCover()->apply(*ground);
+        return draw(*ground, false);
+    }
+    static osg::ref_ptr<MaterialCover> makeCover()
+    {
         const osg::ref_ptr<MaterialCover> cover = new MaterialCover;
         cover->setCover("Ocean", {0.0, 0.0, 0.0, true});
         cover->setCover("Forest", {1.0, 0.0, 0.0, false});
         cover->setCover("Glacier", {0.0, 0.0, 1.0, false});
-        const osg::ref_ptr<osg::Group> ground = new osg::Group;
-        for (const auto& each : plains)
-            ground->addChild(each);
-        if (named) cover->apply(*ground);
+        return cover;
+    }
+    osg::ref_ptr<osg::Image> draw(osg::Group& ground, bool strokes)
+    {
         const osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
-        map->setStrokes(false);
+        map->setStrokes(strokes);
+        map->setRipples(0.0); // they move
         map->setViewRadius(10000.0);
         map->setEdge(PanoramaMap::SEA);
         _scene = new EffectScene;
         _scene->setTerrainFrame(EffectScene::PROJECTED);
         _scene->addEffect(map);
-        _scene->addChild(ground);
+        _scene->addChild(&ground);
         osg::Camera& camera = *viewer().getCamera();
         camera.setViewMatrixAsLookAt(osg::Vec3d(0.0, 0.0, 8000.0), osg::Vec3d(0.0, 8000.0, 0.0),
                                      osg::Vec3d(0.0, 0.0, 1.0));
@@ -90,6 +100,16 @@ protected:
             }
         }
         return sum / count;
+    }
+
+    /// How many pixels differ.
+    static int differing(const osg::Image& a, const osg::Image& b)
+    {
+        int count = 0;
+        for (unsigned int y = 0; y < HEIGHT; ++y)
+            for (unsigned int x = 0; x < WIDTH; ++x)
+                count += std::memcmp(a.data(x, y), b.data(x, y), 3) != 0 ? 1 : 0;
+        return count;
     }
 
 private:
@@ -129,4 +149,49 @@ TEST_F(MaterialPicture, ForestsAndIceArePaintedByTheirNames)
     EXPECT_GT(forest.y(), forest.x()) << "green";
     EXPECT_LT((colorOf(*none, false) - colorOf(*none, true)).length(), 20.0)
         << "without names both are fields";
+}
+
+TEST_F(MaterialPicture, TreesStandInAForestWhicheverNodeHasItsName)
+{
+    const auto picture = [&](bool above, bool strokes, bool painted)
+    {
+        const osg::ref_ptr<osg::Group> node = new osg::Group, ground = new osg::Group;
+        node->addChild(makePlain(above ? "" : "Forest", -40000.0f, 40000.0f));
+        ground->addChild(node);
+        if (above) node->setName("Forest");
+        makeCover()->apply(*ground);
+        if (!painted) node->getOrCreateStateSet()->setDefine("GEOFX_PAINTED", osg::StateAttribute::OFF);
+        return draw(*ground, strokes);
+    };
+    const osg::ref_ptr<osg::Image> own = picture(false, true, true), bare = picture(false, false, true);
+    EXPECT_GT(differing(*own, *bare), 1000) << "trees";
+    EXPECT_EQ(differing(*picture(true, true, true), *own), 0);
+    EXPECT_EQ(differing(*picture(true, true, false), *picture(true, false, false)), 0)
+        << "no trees on what keeps its look";
+}
+
+TEST_F(MaterialPicture, ObjectsKeepTheirLookWhereThatIsWanted)
+{
+    // A red wall on the ground, without a name.
+    const auto picture = [&](bool keep)
+    {
+        const osg::ref_ptr<osg::Geometry> wall = makePlain("", -40000.0f, 0.0f);
+        for (osg::Vec3& place : static_cast<osg::Vec3Array&>(*wall->getVertexArray()))
+            place.z() = 2.0f;
+        const osg::ref_ptr<osg::Vec4Array> red = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1);
+        red->front().set(1.0f, 0.0f, 0.0f, 1.0f);
+        wall->setColorArray(red);
+        const osg::ref_ptr<osg::Group> ground = new osg::Group, objects = new osg::Group;
+        ground->addChild(makePlain("Forest", -40000.0f, 40000.0f));
+        ground->addChild(objects);
+        objects->addChild(wall);
+        objects->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+        const osg::ref_ptr<MaterialCover> cover = makeCover();
+        cover->setKeepsObjects(keep);
+        cover->apply(*ground);
+        return draw(*ground, false);
+    };
+    const osg::Vec3d kept = colorOf(*picture(true), false), painted = colorOf(*picture(false), false);
+    EXPECT_LT((kept - osg::Vec3d(255.0, 0.0, 0.0)).length(), 1.0);
+    EXPECT_GT(painted.y(), painted.x()) << "green";
 }

@@ -20,6 +20,8 @@ public:
 
     /// Whether there is a texture that can be read.
     bool valid() const { return _image.valid(); }
+    /// Whether it has one texel, and so is the same at all coordinates.
+    bool uniform() const { return _image && _image->s() == 1 && _image->t() == 1; }
     /// The texel at texture coordinates (those of unit 0), filtered and clamped to the border; (0, 0, 0, 1) without a
     /// texture.
     glsl::Rgba at(double s, double t) const;

@@ -40,6 +40,23 @@ double growthOf(const ScenePass& pass, const PanoramaMap& map, const osg::Vec2d&
         glsl::geofx_strokeWanted(map.getStrokeSpacing(), map.getStrokeStep(), groundScale));
 }
 
+/// Whether a geometry has a cover, of its own or of a node above it, and no node up to there says that it is not to be
+/// painted. By first parents, as CoverSampler has it.
+bool isGround(const osg::Geometry& geometry, unsigned int coverUnit)
+{
+    for (const osg::Node* node = &geometry; node;
+         node = node->getNumParents() > 0 ? node->getParent(0) : nullptr)
+    {
+        const osg::StateSet* state = node->getStateSet();
+        if (!state) continue;
+        const auto define = state->getDefineList().find("GEOFX_PAINTED");
+        if (define != state->getDefineList().end() && !(define->second.second & osg::StateAttribute::ON))
+            return false;
+        if (state->getTextureAttribute(coverUnit, osg::StateAttribute::TEXTURE)) return true;
+    }
+    return false;
+}
+
 /// Half the length of the longest stroke, a cliff's, over the size. Half that of a road's over the spacing, seen at a
 /// slant.
 constexpr double longestStroke = 2.0, longestLine = 1.5;
@@ -93,9 +110,7 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
 osg::Drawable* StrokeCompanion::companion(osg::Drawable& drawable, const osg::Matrixd& modelView)
 {
     osg::Geometry* terrain = drawable.asGeometry();
-    if (!terrain || !terrain->getStateSet() ||
-        !terrain->getStateSet()->getTextureAttribute(_coverUnit, osg::StateAttribute::TEXTURE))
-        return nullptr;
+    if (!terrain || !isGround(*terrain, _coverUnit)) return nullptr;
     // The geometry keeps them alive.
     osg::Drawable* const strokes = _maker->strokes(*terrain, modelView * _toWorld).get();
     if (!strokes) return nullptr;

@@ -18,7 +18,7 @@ namespace osgGeoFX
 {
 
 /** Draws the strokes of each terrain tile that one camera sees. A tile is a geometry with a texture of its cover at
-    PanoramaMap's coverUnit. Other geometries have no strokes. */
+    PanoramaMap's coverUnit, which may be that of a node above. Other geometries have no strokes. */
 class StrokeCompanion final : public DrawableCompanion
 {
 public:

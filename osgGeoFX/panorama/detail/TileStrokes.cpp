@@ -143,7 +143,10 @@ glsl::geofx_Cover Painter::coverAt(const StrokeSpot& spot, double steepness) con
 {
     if (_cover.valid())
     {
-        if (const std::optional<osg::Vec3d> at = between(_mesh.getTexCoordArray(0), spot))
+        // One texel for a whole mesh needs no coordinates.
+        const std::optional<osg::Vec3d> at =
+            _cover.uniform() ? osg::Vec3d() : between(_mesh.getTexCoordArray(0), spot);
+        if (at)
         {
             const glsl::Rgba texel = _cover.at(at->x(), at->y());
             if (glsl::geofx_coverKnown(texel)) return glsl::geofx_coverOf(texel);
