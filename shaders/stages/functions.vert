@@ -16,6 +16,7 @@
 // EffectScene puts the code of its effects in the place of the words in capitals.
 #pragma import_defines(GEOFX_DEFORMATION)
 #pragma import_defines(GEOFX_PLACED)
+#pragma import_defines(GEOFX_NEARER)
 #pragma import_defines(GEOFX_NORMAL_MAP)
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
@@ -35,6 +36,18 @@ out vec3 geofx_groundPlace; // undeformed, in the view's eye space
 #ifdef GEOFX_PLACED
 uniform mat4 geofx_unplaced; // of an object that was moved as a whole: back to where it stands
 #endif
+#ifdef GEOFX_NEARER
+uniform float geofx_nearer; // of a thing that is drawn before others at its place: the share of its distance
+#endif
+// A place in the view's eye space in the camera's.
+vec4 geofx_drawnAt(vec3 position)
+{
+#ifdef GEOFX_NEARER
+    return vec4(geofx_nearer * geofx_inEye(position), 1.0);
+#else
+    return vec4(geofx_inEye(position), 1.0);
+#endif
+}
 GEOFX_EFFECT_FUNCTIONS
 vec4 geofx_vertex(vec4 eyePosition)
 {
@@ -57,12 +70,12 @@ GEOFX_LOCATE_CALLS
 GEOFX_DEFORM_CALLS
 #endif
 GEOFX_MOVE_CALLS
-#ifdef GEOFX_IMAGE
+#if defined(GEOFX_IMAGE) && !defined(GEOFX_NEARER)
     // Not by way of the view: what stays where it is goes exactly where others put it.
     if (position == former) return eyePosition;
 #endif
-#ifdef GEOFX_DEFORMATION
-    return vec4(geofx_inEye(position), 1.0);
+#if defined(GEOFX_DEFORMATION) || defined(GEOFX_NEARER)
+    return geofx_drawnAt(position);
 #else
     return eyePosition;
 #endif

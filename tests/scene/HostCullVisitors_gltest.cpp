@@ -5,6 +5,7 @@
 // lights, and draws a kind of drawable in its own way. All of that goes on below a scene with effects.
 #include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/MaterialCover.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <tools/BentGround.h>
 #include <tools/ImageComparison.h>
@@ -231,6 +232,45 @@ TEST_F(HostCullVisitors, WithoutNormalsNothingIsLeftOver)
         EXPECT_GT(covered(*image), 500);
         EXPECT_TRUE(same(*image, *picture({0.9f, -0.3f, 0.3f})));
     }
+}
+
+TEST_F(HostCullVisitors, WhatEffectsDrawWithAThingTheyDrawWithTheHosts)
+{
+    // Trees of a panorama map on the host's ground.
+    osg::Camera& camera = *viewer().getCamera();
+    const auto picture = [&](bool told, bool strokes)
+    {
+        const osg::ref_ptr<MaterialCover> cover = new MaterialCover;
+        cover->setCover("Forest", {1.0, 0.0, 0.0, false});
+        const osg::ref_ptr<osg::StateSet> red = look({0.8f, 0.2f, 0.1f, 1.0f});
+        const osg::ref_ptr<osg::Group> ground = new osg::Group;
+        for (const double x : {-160.0, 160.0})
+        {
+            const osg::ref_ptr<osg::Geode> half = told ? new HostGeode(red) : new osg::Geode;
+            if (!told) half->setStateSet(red);
+            half->addDrawable(makeGround());
+            half->setName("Forest");
+            const osg::ref_ptr<osg::MatrixTransform> place =
+                new osg::MatrixTransform(osg::Matrixd::translate(x, 0.0, 0.0));
+            place->addChild(half);
+            ground->addChild(place);
+        }
+        cover->apply(*ground);
+        const osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
+        map->setViewRadius(80.0);
+        map->setStrokeStep(2.0);
+        map->setStrokes(strokes);
+        map->setWater(false);
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        scene->addEffect(map);
+        scene->addChild(ground);
+        return render(scene);
+    };
+    const osg::ref_ptr<osg::Image> image = picture(true, true);
+    EXPECT_TRUE(same(*image, *picture(false, true)));
+    EXPECT_GT(differing(*image, *picture(true, false)), 500);
+    camera.setCullingMode(osg::CullSettings::NO_CULLING);
+    EXPECT_TRUE(same(*image, *picture(true, true)));
 }
 
 TEST_F(HostCullVisitors, NearAndFarHoldWhatTheyDraw)

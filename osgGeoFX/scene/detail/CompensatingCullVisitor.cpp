@@ -21,9 +21,30 @@ namespace osgGeoFX
 namespace
 {
 
+/// The factor by which a transform takes things nearer to the eye or away from it; 1 where it does anything else.
+/// `above`, `below`: to eye space.
+double nearness(const osg::Matrixd& above, const osg::Matrixd& below)
+{
+    constexpr double close = 1e-6;
+    const auto row = [](const osg::Matrixd& matrix, int i)
+    {
+        return osg::Vec3d(matrix(i, 0), matrix(i, 1), matrix(i, 2));
+    };
+    const double factor = row(below, 0).length() / row(above, 0).length();
+    if (!(std::abs(factor - 1.0) > close)) return 1.0;
+    for (int i = 0; i < 3; ++i)
+        if (!((row(below, i) - row(above, i) * factor).length() <= close * row(above, i).length()))
+            return 1.0;
+    const osg::Vec3d eye = osg::Vec3d() * osg::Matrixd::inverse(above);
+    // OSG tells hosts where the eye is in floats.
+    return (eye * below).length() <= close * (1.0 + eye.length()) ? factor : 1.0;
+}
+
 /// Whether a transform's children ask for nothing but its matrix: geometry, and no callbacks.
 bool holdsGeometryOnly(const osg::Transform& node)
 {
+    // Others may do something that depends on the eye.
+    if (!node.asMatrixTransform() && !node.asPositionAttitudeTransform()) return false;
     if (node.getCullCallback() || node.getReferenceFrame() != osg::Transform::RELATIVE_RF) return false;
     for (unsigned int i = 0; i < node.getNumChildren(); ++i)
     {
@@ -89,6 +110,7 @@ void CompensatingCullVisitor::startFrame(osgUtil::CullVisitor& outer)
     _frame = outer.getFrameStamp() ? outer.getFrameStamp()->getFrameNumber() : 0;
     reset();
     _placedUsed = 0;
+    _nearerUsed = 0;
     _programs.startFrame();
     _drawables.purge();
 }
@@ -419,14 +441,36 @@ void CompensatingCullVisitor::apply(osg::Transform& node)
     if (state) pushStateSet(state);
     osg::RefMatrix* matrix = createOrReuseMatrix(*getModelViewMatrix());
     node.computeLocalToWorldMatrix(*matrix, this);
+    // What is drawn nearer to the eye than it is, so that the ground does not hide it, is deformed where it is.
+    const bool moves = node.getReferenceFrame() == osg::Transform::RELATIVE_RF && !_mode.chain->empty();
+    const double nearer = moves ? nearness(*getModelViewMatrix(), *matrix) : 1.0;
+    if (nearer != 1.0)
+    {
+        matrix->set(*getModelViewMatrix());
+        _mode.nearer *= nearer;
+        pushStateSet(nearerBy(_mode.nearer));
+    }
     pushModelViewMatrix(matrix, node.getReferenceFrame());
     const double formerScale = _scale;
     _scale = largestScale(*matrix);
     handle_cull_callbacks_and_traverse(node);
     _scale = formerScale;
     popModelViewMatrix();
+    if (nearer != 1.0) popStateSet();
     if (state) popStateSet();
     popCurrentMask();
+}
+
+osg::StateSet* CompensatingCullVisitor::nearerBy(double factor)
+{
+    if (_nearerUsed == _nearer.size())
+    {
+        _nearer.push_back(new osg::StateSet);
+        _nearer.back()->setDefine("GEOFX_NEARER");
+    }
+    osg::StateSet* state = _nearer[_nearerUsed++];
+    state->getOrCreateUniform("geofx_nearer", osg::Uniform::FLOAT)->set(static_cast<float>(factor));
+    return state;
 }
 
 void CompensatingCullVisitor::apply(osg::OcclusionQueryNode& node)
@@ -512,7 +556,7 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
         CullVisitor::apply(drawable);
         if (empty && !graph->leaves_empty()) _ownGraphs.push_back(graph);
         if (look) popStateSet();
-        drawCompanions(drawable, 0.0);
+        drawCompanions(drawable, getModelViewMatrix(), 0.0);
         _mode = former;
         return;
     }
@@ -530,14 +574,14 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     _mode = former;
 }
 
-void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, double depth)
+void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, osg::RefMatrix* modelView, double depth)
 {
     for (DrawableCompanion* each : _task.companions)
     {
-        osg::Drawable* companion = each->companion(drawable, viewMatrix());
+        osg::Drawable* companion = each->companion(drawable, inView(*modelView));
         if (!companion) continue;
         pushStateSet(each->state());
-        addLeaf(*companion, getModelViewMatrix(), depth);
+        addLeaf(*companion, modelView, depth);
         popStateSet();
     }
 }

@@ -139,9 +139,11 @@ protected:
         bool stranger = false;       ///< the program in force does not call the functions
         bool tile = false;           ///< a drawable's own size tells whether its node is too small
         Visibility::Mask planes = 0; ///< frustum planes that bounds may still cross
-        bool ours = true;            ///< false below cameras: OSG's culling, no state of ours
-        double lodRadius = 0.0;      ///< of the LOD that is asking for distances
-        double lodLimit = HUGE_VAL;  ///< what it hears at most
+        double nearer =
+            1.0; ///< the share of its distance at which a thing is drawn, so that nothing at its place hides it
+        bool ours = true;           ///< false below cameras: OSG's culling, no state of ours
+        double lodRadius = 0.0;     ///< of the LOD that is asking for distances
+        double lodLimit = HUGE_VAL; ///< what it hears at most
     };
 
     /// Whether the borders of the camera's picture cull; false where something else says what is wanted.
@@ -228,6 +230,8 @@ private:
     {
         return std::find(_placed.begin(), _placed.end(), state) != _placed.end();
     }
+    /// For what is drawn at another distance than its own.
+    osg::StateSet* nearerBy(double factor);
     /// Takes a state set's word on whether what is below it is deformed.
     void meet(const osg::StateSet* state);
     void meetAll(const osgUtil::StateGraph& state);
@@ -264,7 +268,12 @@ private:
     void applyPart(osg::Node& part);
     template<typename NodeType>
     void passUntouched(NodeType& node);
-    void drawCompanions(osg::Drawable& drawable, double depth);
+    /// Draws what effects draw together with a drawable. `modelView`: to the camera's eye space.
+    void drawCompanions(osg::Drawable& drawable, osg::RefMatrix* modelView, double depth);
+    /// Remembers a leaf for what effects draw together with it.
+    void noteAdopted(osgUtil::StateGraph& graph, const osgUtil::RenderLeaf& leaf);
+    /// The state above what a node has put into the render graph by itself, without that of a host.
+    osgUtil::StateGraph* stateAbove(osgUtil::StateGraph& graph) const;
     /// Whether a class comes with OSG or the kit, so that no host and no engine has a use for it of its own.
     static bool comesWithOsg(const osg::Object* object);
     /// Finds out whether the outer visitor does more than OSG's.
@@ -297,6 +306,8 @@ private:
     osg::Vec3d _middle;       ///< where that of the node goes which outOfSight() tested last
     std::vector<osg::ref_ptr<osg::StateSet>> _placed; ///< one for each such object of a frame
     std::size_t _placedUsed = 0;
+    std::vector<osg::ref_ptr<osg::StateSet>> _nearer; ///< one for each such transform of a frame
+    std::size_t _nearerUsed = 0;
     OwnPrograms _programs;
     UndeformedParts _undeformedParts;
     std::vector<Stranger> _strangers;
@@ -306,6 +317,16 @@ private:
     osgUtil::StateGraph* _top = nullptr;                     ///< below which all is ours
     std::vector<const osgUtil::StateGraph*> _ownGraphs;      ///< that got their first leaf here
     std::size_t _graphsBefore = 0;                           ///< with leaves, when the run began
+    struct Adopted
+    {
+        osgUtil::StateGraph* above; ///< of the nodes above it
+        osg::Drawable* drawable;
+        osg::RefMatrix* modelView;
+        double depth;
+        unsigned int order; ///< of the traversal
+    };
+    std::vector<Adopted> _adopted; ///< what nodes have put into the render graph, once for each place
+    std::set<std::pair<const osg::Drawable*, const osg::RefMatrix*>> _adoptedPlaces;
     osg::ref_ptr<osg::StateSet> _lightPoints; ///< the modes that osgSim's light points set themselves
     osgUtil::StateGraph* _entry = nullptr;    ///< the outer visitor's, where our state begins
     unsigned int _frame = 0;

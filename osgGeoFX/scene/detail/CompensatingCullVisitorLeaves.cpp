@@ -92,7 +92,7 @@ void CompensatingCullVisitor::place(osg::Drawable& drawable)
     const DrawableSight::Place where = {*_mode.chain, matrix, _scale, _mode.planes, _mode.tile};
     if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
     addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
-    drawCompanions(drawable, depth);
+    drawCompanions(drawable, getModelViewMatrix(), depth);
 }
 
 void CompensatingCullVisitor::noteStranger()
@@ -111,6 +111,28 @@ void CompensatingCullVisitor::adoptLeaves()
     if (graphsIn(stage) == _graphsBefore + _ownGraphs.size()) return;
     std::sort(_ownGraphs.begin(), _ownGraphs.end());
     adoptLeaves(stage);
+    // Not before: what they add would look like more of it. In the order of the nodes: that of state graphs depends on
+    // which leaves are in sight.
+    std::stable_sort(_adopted.begin(), _adopted.end(),
+                     [](const Adopted& a, const Adopted& b) { return a.order < b.order; });
+    osgUtil::StateGraph* const former = _currentStateGraph;
+    for (const Adopted& each : _adopted)
+    {
+        _currentStateGraph = each.above;
+        drawCompanions(*each.drawable, each.modelView, each.depth);
+    }
+    _currentStateGraph = former;
+    _adopted.clear();
+    _adoptedPlaces.clear();
+}
+
+osgUtil::StateGraph* CompensatingCullVisitor::stateAbove(osgUtil::StateGraph& graph) const
+{
+    for (osgUtil::StateGraph* each = &graph; each && each != _top; each = each->_parent)
+    {
+        if (each->getStateSet() == _ofHost) return each->_parent;
+    }
+    return _top;
 }
 
 bool CompensatingCullVisitor::isForeign(const osgUtil::StateGraph& graph) const
@@ -185,10 +207,25 @@ void CompensatingCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph
         // Whoever has put it there did not know where it goes.
         const bool culled = leaf._drawable->isCullingActive() && _outerCullingMode != NO_CULLING;
         if (culled && _sight.outOfSight(*_mode.chain, box, _sight.all())) return;
-        if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR)
-            _drawables.depths().add(box, _mode.chain->bound(box.ball()), *_mode.chain);
+        const Ball deformed = _mode.chain->bound(box.ball());
+        if (_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR) _drawables.depths().add(box, deformed, *_mode.chain);
+        // What is transparent is drawn in the order in which it is seen.
+        if (!_mode.chain->empty())
+            leaf._depth = static_cast<float>(_drawables.depths().depthOf(deformed.center));
     }
     put(bin, graph, above ? *graph.find_or_insert(above) : graph, &leaf);
+    noteAdopted(graph, leaf);
+}
+
+void CompensatingCullVisitor::noteAdopted(osgUtil::StateGraph& graph, const osgUtil::RenderLeaf& leaf)
+{
+    if (_task.companions.empty() || !leaf._modelview) return;
+    osg::Drawable* const drawable = &*leaf._drawable;
+    osg::RefMatrix* const modelView = leaf._modelview.get();
+    // A host that draws it in several passes has a leaf for each.
+    if (!_adoptedPlaces.emplace(drawable, modelView).second) return;
+    _adopted.push_back({stateAbove(graph), drawable, modelView, static_cast<double>(leaf._depth),
+                        leaf._traversalOrderNumber});
 }
 
 void CompensatingCullVisitor::apply(osg::Billboard& node)

@@ -207,7 +207,7 @@ void addMove(Parts& parts, const EffectProgram::Effects& effects, const ShaderLi
                              (tessellated ? "_vertex\n" : "_in\n");
     }
     parts.functions += joined(library, pass.vertex, prefix);
-    parts.move = "    return vec4(geofx_inEye(" + prefix + "move(located, position)), 1.0);\n";
+    parts.move = "    return geofx_drawnAt(" + prefix + "move(located, position));\n";
 }
 
 /// Adds what a pass has in the fragment stage.

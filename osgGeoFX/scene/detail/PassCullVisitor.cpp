@@ -71,8 +71,11 @@ void PassCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph,
     {
         osgUtil::StateGraph* target = graph.find_or_insert(state);
         if (above) target = target->find_or_insert(above);
-        put(bin, graph, *target,
-            createOrReuseRenderLeaf(copy, leaf._projection.get(), leaf._modelview.get(), leaf._depth));
+        osgUtil::RenderLeaf* const made =
+            createOrReuseRenderLeaf(copy, leaf._projection.get(), leaf._modelview.get(), leaf._depth);
+        // Leaves come in the order of state graphs, which depends on what is in sight.
+        made->_traversalOrderNumber = leaf._traversalOrderNumber;
+        put(bin, graph, *target, made);
     }
 }
 
