@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "Check.h"
 
-#include <osgGeoFX/viewer/EffectKinds.h>
+#include "Effects.h"
 
 #include <osgDB/WriteFile>
 
@@ -62,6 +62,41 @@ int differing(const osg::Image& a, const osg::Image& b)
     return count;
 }
 
+struct Named
+{
+    std::string name;
+    osg::ref_ptr<osgGeoFX::Effect> effect;
+};
+
+/// A picture of squares in two colors.
+osg::ref_ptr<osg::Image> chequers()
+{
+    constexpr int side = 64;
+    const osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(side, side, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            image->setColor((x / 8 + y / 8) % 2 ? osg::Vec4(0.9f, 0.2f, 0.1f, 1.0f)
+                                                : osg::Vec4(1.0f, 0.9f, 0.3f, 1.0f),
+                            static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+    return image;
+}
+
+/// All kinds of effects, over a place.
+std::vector<Named> everyEffect(const osgGeoFX::ViewPoint& place)
+{
+    std::vector<Named> all;
+    for (const char* line : {"birdsEyeView", "pedestrianView", "blendedView", "verticalExaggeration factor=3",
+                             "panoramaMap edge=sea"})
+        all.push_back({line, makeEffect(line)});
+    const double longitude = osg::RadiansToDegrees(place.longitude),
+                 latitude = osg::RadiansToDegrees(place.latitude);
+    all.push_back({"closeUps", makeCloseUps({std::to_string(longitude) + "," + std::to_string(latitude) +
+                                             ",4000,2500,1.6"})});
+    all.push_back({"projectiveMappings", makeMapping(longitude, latitude, 8000.0, 20.0, *chequers())});
+    return all;
+}
+
 class Checker
 {
 public:
@@ -74,18 +109,19 @@ public:
     /// With an effect, against the host's own picture; `most`: pixels that may differ.
     void comparesWithHost(const std::string& effect, int most)
     {
-        const osg::ref_ptr<osgGeoFX::Effect> made = add(effect);
+        const osg::ref_ptr<osgGeoFX::Effect> made = makeEffect(effect);
+        _scene.effects->addEffect(made);
         compare(effect + " against the host's own picture", most,
                 [&](bool first) { _drawing.setWithEffects(first); });
         _drawing.setWithEffects(true);
         _scene.effects->removeEffect(made);
     }
-    /// With culling against without. An empty effect: the scene's own.
-    void comparesCulling(const std::string& effect)
+    /// With culling against without: the scene's own effects, and one more.
+    void comparesCulling(const std::string& name, osgGeoFX::Effect* effect = nullptr)
     {
-        const osg::ref_ptr<osgGeoFX::Effect> made = effect.empty() ? nullptr : add(effect);
-        culling(effect.empty() ? "the scene's own effects" : effect);
-        if (made) _scene.effects->removeEffect(made);
+        if (effect) _scene.effects->addEffect(effect);
+        culling(name);
+        if (effect) _scene.effects->removeEffect(effect);
     }
     /// The same for the host's own picture.
     void comparesHostsCulling()
@@ -108,14 +144,6 @@ private:
                                                            : CullSettings::NO_CULLING);
                 });
         _drawing.camera().setCullingMode(CullSettings::DEFAULT_CULLING);
-    }
-    osg::ref_ptr<osgGeoFX::Effect> add(const std::string& line)
-    {
-        std::string error;
-        osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::parseEffect(line, error);
-        if (!effect) throw std::runtime_error(error);
-        _scene.effects->addEffect(effect);
-        return effect;
     }
     template<class Set>
     void compare(const std::string& what, int most, const Set& set)
@@ -156,24 +184,34 @@ private:
 
 } // namespace
 
-int check(const osgGeoFX::Scene& scene, const osgGeoFX::ViewPoint& place, int cameras, const Frame& frame,
-          const std::string& folder)
+int check(const osgGeoFX::Scene& scene, Ground& ground, const osgGeoFX::ViewPoint& place,
+          const CheckOptions& options, const Frame& frame)
 {
+    const double nearest = options.nearest > 0.0 ? options.nearest : 1000.0;
+    const bool own = scene.effects->getNumEffects() > 0;
+    const std::vector<Named> effects = own ? std::vector<Named>() : everyEffect(place);
+    double longest = ground.longestEdge(frame, nearest);
+    for (const Named& each : effects)
+    {
+        scene.effects->addEffect(each.effect);
+        longest = std::min(longest, ground.longestEdge(frame, nearest));
+        scene.effects->removeEffect(each.effect);
+    }
+    ground.refine(longest);
     Drawing drawing(scene, frame);
     // Culling must not change what depths there are.
     drawing.camera().setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-    Checker checker(scene, drawing, randomViews(scene, place, cameras), folder);
-    if (scene.effects->getNumEffects() > 0)
-        checker.comparesCulling("");
-    else
+    Checker checker(scene, drawing, randomViews(scene, place, options.cameras), options.folder);
+    if (own)
     {
-        checker.comparesWithHost("verticalExaggeration factor=1", 0);
-        checker.comparesWithHost("verticalExaggeration factor=1.000001", frame.width * frame.height / 500);
-        checker.comparesHostsCulling();
-        for (const char* effect : {"birdsEyeView", "pedestrianView", "blendedView",
-                                   "verticalExaggeration factor=3", "panoramaMap coverUnit=31"})
-            checker.comparesCulling(effect);
+        checker.comparesCulling("the scene's own effects");
+        return checker.faults() == 0 ? 0 : 1;
     }
+    checker.comparesWithHost("verticalExaggeration factor=1", 0);
+    checker.comparesWithHost("verticalExaggeration factor=1.000001", frame.width * frame.height / 500);
+    checker.comparesHostsCulling();
+    for (const Named& each : effects)
+        checker.comparesCulling(each.name, each.effect);
     return checker.faults() == 0 ? 0 : 1;
 }
 

@@ -5,17 +5,25 @@
 #pragma once
 
 #include "Drawing.h"
+#include "Ground.h"
 
 #include <osgGeoFX/viewer/ViewPoint.h>
 
 namespace flightgear
 {
 
+struct CheckOptions
+{
+    int cameras = 50;
+    double nearest = 0.0; ///< for which large triangles are split, metres; 0: 1000
+    std::string folder;   ///< where pictures that differ go; empty for nowhere
+};
+
 /** Draws the scene from random cameras within 10 km of a place, and compares:
     - effects that do nothing, or move things by a millimetre, with the host's own picture;
-    - each of the kit's effects that needs nothing else, and the scene's own, with culling and without.
-    Says what differs. Returns 0 if nothing does, else 1. `folder`: where pictures that differ go; empty for nowhere. */
-int check(const osgGeoFX::Scene& scene, const osgGeoFX::ViewPoint& place, int cameras, const Frame& frame,
-          const std::string& folder);
+    - each of the kit's effects, or the scene's own where it has any, with culling and without.
+    Says what differs. Returns 0 if nothing does, else 1. */
+int check(const osgGeoFX::Scene& scene, Ground& ground, const osgGeoFX::ViewPoint& place,
+          const CheckOptions& options, const Frame& frame);
 
 } // namespace flightgear

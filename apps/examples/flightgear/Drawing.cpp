@@ -4,6 +4,14 @@
 
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
 
+#include <osgUtil/RenderBin>
+#include <osgUtil/RenderLeaf>
+#include <osgUtil/StateGraph>
+
+#include <simgear/scene/util/SGNodeMasks.hxx>
+
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -24,7 +32,54 @@ public:
     }
 };
 
+/// Draws from back to front, and in the order of the nodes where leaves are equally far.
+class SteadyBin : public osgUtil::RenderBin
+{
+public:
+    SteadyBin() : osgUtil::RenderBin(SORT_BACK_TO_FRONT) {}
+    SteadyBin(const SteadyBin& other, const osg::CopyOp& copy) : osgUtil::RenderBin(other, copy) {}
+    osg::Object* cloneType() const override { return new SteadyBin; }
+    osg::Object* clone(const osg::CopyOp& copy) const override { return new SteadyBin(*this, copy); }
+
+    void sortBackToFront() override
+    {
+        copyLeavesFromStateGraphListToRenderLeafList();
+        std::sort(_renderLeafList.begin(), _renderLeafList.end(),
+                  [](const osgUtil::RenderLeaf* a, const osgUtil::RenderLeaf* b)
+                  {
+                      return a->_depth != b->_depth ? a->_depth > b->_depth
+                                                    : a->_traversalOrderNumber < b->_traversalOrderNumber;
+                  });
+    }
+};
+
+/// OSG draws in the order of states, which is that of the first leaf of each that is in sight, and leaves that are equally
+/// far as std::sort leaves them. Where two triangles meet in a pixel, culling would change the picture.
+void sortSteadily()
+{
+    using osgUtil::RenderBin;
+    RenderBin::setDefaultRenderBinSortMode(RenderBin::TRAVERSAL_ORDER);
+    RenderBin::addRenderBinPrototype("DepthSortedBin", new SteadyBin);
+}
+
 } // namespace
+
+void hideLamps(osg::Camera& camera)
+{
+    using namespace simgear;
+    camera.setCullMask(camera.getCullMask() &
+                       ~(GROUNDLIGHTS0_BIT | GROUNDLIGHTS1_BIT | GROUNDLIGHTS2_BIT | RUNWAYLIGHTS_BIT));
+}
+
+osg::Matrixd Frame::projection() const
+{
+    return osg::Matrixd::perspective(fieldOfView, static_cast<double>(width) / height, 5.0, 250000.0);
+}
+
+double Frame::pixel() const
+{
+    return 2.0 * std::tan(0.5 * osg::DegreesToRadians(fieldOfView)) / height;
+}
 
 bool same(const osg::Image& a, const osg::Image& b)
 {
@@ -34,20 +89,20 @@ bool same(const osg::Image& a, const osg::Image& b)
 
 Drawing::Drawing(const osgGeoFX::Scene& scene, const Frame& frame) : _viewer(new StillViewer)
 {
+    sortSteadily();
     const osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = frame.width;
     traits->height = frame.height;
     traits->stencil = 8;
+    traits->samples = static_cast<unsigned int>(frame.samples);
     const osg::ref_ptr<osgGeoFX::EglGraphicsContext> context = new osgGeoFX::EglGraphicsContext(traits);
     if (!context->valid()) throw std::runtime_error(context->error());
     camera().setGraphicsContext(context);
     camera().setViewport(0, 0, frame.width, frame.height);
-    camera().setProjectionMatrixAsPerspective(frame.fieldOfView,
-                                              static_cast<double>(frame.width) / frame.height, 5.0, 250000.0);
+    camera().setProjectionMatrix(frame.projection());
+    if (!frame.lamps) hideLamps(camera());
     scene.setUpView(*_viewer);
     _capture = osgGeoFX::ImageCapture::attach(&camera());
-    // Sorting by state would draw in the order of addresses in memory.
-    _root->getOrCreateStateSet()->setRenderBinDetails(0, "TraversalOrderBin");
     _root->addChild(scene.effects);
     _root->addChild(scene.effects->getChild(0), false);
     _viewer->setThreadingModel(osgViewer::Viewer::SingleThreaded);

@@ -9,6 +9,7 @@
 #include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/Image>
+#include <osg/Matrixd>
 #include <osg/Switch>
 #include <osgViewer/Viewer>
 
@@ -21,7 +22,16 @@ struct Frame
 {
     int width = 1600, height = 900;
     double fieldOfView = 40.0; ///< vertical, degrees
+    int samples = 4;
+    bool lamps = false; ///< of towns and runways
+
+    osg::Matrixd projection() const;
+    /// The size of a pixel, as a share of the distance of what it shows.
+    double pixel() const;
 };
+
+/// FlightGear shows its lamps at night.
+void hideLamps(osg::Camera& camera);
 
 /// Whether two pictures have the same bytes.
 bool same(const osg::Image& a, const osg::Image& b);
