@@ -54,12 +54,14 @@ public:
 };
 
 /// OSG draws in the order of states, which is that of the first leaf of each that is in sight, and leaves that are equally
-/// far as std::sort leaves them. Where two triangles meet in a pixel, culling would change the picture.
-void sortSteadily()
+/// far as std::sort leaves them. Where two triangles meet in a pixel, culling would change the picture. A viewer has a
+/// bin of its own, so this comes first.
+StillViewer* makeViewer()
 {
     using osgUtil::RenderBin;
     RenderBin::setDefaultRenderBinSortMode(RenderBin::TRAVERSAL_ORDER);
     RenderBin::addRenderBinPrototype("DepthSortedBin", new SteadyBin);
+    return new StillViewer;
 }
 
 } // namespace
@@ -87,9 +89,8 @@ bool same(const osg::Image& a, const osg::Image& b)
            std::memcmp(a.data(), b.data(), a.getTotalSizeInBytes()) == 0;
 }
 
-Drawing::Drawing(const osgGeoFX::Scene& scene, const Frame& frame) : _viewer(new StillViewer)
+Drawing::Drawing(const osgGeoFX::Scene& scene, const Frame& frame) : _viewer(makeViewer())
 {
-    sortSteadily();
     const osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = frame.width;
     traits->height = frame.height;
