@@ -60,6 +60,8 @@ StillViewer* makeViewer()
 {
     using osgUtil::RenderBin;
     RenderBin::setDefaultRenderBinSortMode(RenderBin::TRAVERSAL_ORDER);
+    for (const char* name : {"RenderBin", "StateSortedBin"})
+        RenderBin::addRenderBinPrototype(name, new RenderBin(RenderBin::TRAVERSAL_ORDER));
     RenderBin::addRenderBinPrototype("DepthSortedBin", new SteadyBin);
     return new StillViewer;
 }
