@@ -20,14 +20,16 @@ namespace osgGeoFX
 class ContextWatch : public osg::StateAttribute
 {
 public:
-    /// OSG tells attributes apart by this number. OSG's own numbers are small.
-    static constexpr Type watchType = static_cast<Type>(0x67656f46);
+    /// OSG tells attributes apart by this number and by the member. It is the largest one that the type holds; OSG's own are smaller.
+    static constexpr Type watchType = static_cast<Type>(127);
 
     ContextWatch() = default;
     explicit ContextWatch(const std::vector<osg::ref_ptr<Effect>>& effects);
     ContextWatch(const ContextWatch& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_StateAttribute(osgGeoFX, ContextWatch, watchType);
 
+    /// Of two attributes of one type.
+    unsigned int getMember() const override { return 0x67656f46; }
     int compare(const osg::StateAttribute& other) const override;
     void apply(osg::State& state) const override;
 
