@@ -81,7 +81,8 @@ TEST_F(SurfaceDataLayers, OfNoUseAreRefused)
     const osg::ref_ptr<osg::Image> good = layerImage(8, 6);
     ASSERT_TRUE(data->addLayer("a", SurfaceData::HEIGHT, good));
     const unsigned int before = data->revision();
-    const auto refuses = [&](const std::string& name, osg::Image* image, const std::string& words)
+    const auto refuses =
+        [&](const std::string& name, const osg::ref_ptr<osg::Image>& image, const std::string& words)
     {
         return isRefused([&] { return data->addLayer(name, SurfaceData::VALUE, image); }, words);
     };

@@ -112,7 +112,7 @@ TEST_F(SerializersMappings, KeepColorTables)
             SCOPED_TRACE(std::to_string(seed) + " " + format);
             expectSameTable(throughFile(*table, format), table);
         }
-        expectSameTable(osg::clone(table.get(), osg::CopyOp::DEEP_COPY_ALL), table);
+        expectSameTable(osg::ref_ptr<ColorTable>(osg::clone(table.get(), osg::CopyOp::DEEP_COPY_ALL)), table);
     }
     for (const std::string& name : ColorTable::names())
     {
