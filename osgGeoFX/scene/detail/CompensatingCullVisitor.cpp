@@ -121,7 +121,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     setHost(outer);
     _programs.setAdapting(task.adapts);
     _programs.setHost(task.shaderHost);
-    _looks.begin(task.program, task.following, task.mapUnit);
+    _looks.begin(task.program, task.following, task.mapUnit, task.normals);
 
     setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
     setTraversalNumber(outer.getTraversalNumber());

@@ -70,6 +70,7 @@ public:
         GLenum colorFormat = GL_RGBA8; ///< targetFormat()
         int mapUnit = -1;
         bool compensate = true;
+        bool normals = false; ///< whether effects look at normals
         bool debugBounds = false;
         const ShaderHost* shaderHost =
             nullptr;         ///< EffectScene::getShaderHost(); null in passes, whose functions it has not

@@ -22,7 +22,7 @@ bool hasNoNormal(const osg::Drawable& drawable)
 
 } // namespace
 
-void LookCache::begin(osg::Program* program, FollowingPrograms* following, int mapUnit)
+void LookCache::begin(osg::Program* program, FollowingPrograms* following, int mapUnit, bool normals)
 {
     if (_program != program)
     {
@@ -31,6 +31,7 @@ void LookCache::begin(osg::Program* program, FollowingPrograms* following, int m
         _look = nullptr;
     }
     _mapUnit = mapUnit;
+    _normals = normals;
     _following = following;
     _copies.clear();
     _graph = nullptr;
@@ -47,7 +48,8 @@ osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const osgUtil::
         _state.meetAll(graph);
     }
     // The meshes of a tile share one state set.
-    const bool noNormal = hasNoNormal(drawable);
+    // Each look at a geometry's arrays costs as much as culling the geometry.
+    const bool noNormal = _normals && hasNoNormal(drawable);
     if (otherGraph || drawable.getStateSet() != _ownState || noNormal != _ownNoNormal)
     {
         _ownNoNormal = noNormal;
@@ -61,7 +63,7 @@ osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const osgUtil::
 
 osg::StateSet* LookCache::lookFor(const osg::Drawable& drawable, const FixedFunctionState& state)
 {
-    return lookFor(state, hasNoNormal(drawable));
+    return lookFor(state, _normals && hasNoNormal(drawable));
 }
 
 osg::StateSet* LookCache::lookFor(const FixedFunctionState& state, bool noNormal)

@@ -26,8 +26,8 @@ class LookCache
 {
 public:
     /// Starts a traversal. A new program clears all looks; without a program nothing has a look. `mapUnit`: −1 for
-    /// none.
-    void begin(osg::Program* program, FollowingPrograms* following, int mapUnit);
+    /// none. `normals`: whether effects look at normals, so that it matters which drawables have none.
+    void begin(osg::Program* program, FollowingPrograms* following, int mapUnit, bool normals);
 
     /// The look of a drawable. Null for one whose vertices a program of its own places.
     osg::StateSet* lookFor(const osg::Drawable& drawable, const osgUtil::StateGraph& graph);
@@ -60,6 +60,7 @@ private:
     const osg::StateSet* _ownState = nullptr; ///< that of the last drawable
     osg::StateSet* _ownLook = nullptr;
     bool _ownNoNormal = false;
+    bool _normals = false;
     bool _warned = false;
 };
 

@@ -3,6 +3,7 @@
 #include <osgGeoFX/scene/detail/SceneDrawing.h>
 
 #include <osgGeoFX/effect/PassEffect.h>
+#include <osgGeoFX/effect/SurfaceEffect.h>
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 #include <osgGeoFX/scene/detail/CameraRoles.h>
@@ -50,6 +51,16 @@ SceneDrawing::Effects effectsFor(const SceneDrawing::Effects& effects, const Cam
     for (osg::ref_ptr<Effect>& effect : result)
         effect = camera.effectFor(*effect);
     return result;
+}
+
+bool lookAtNormals(const SceneDrawing::Effects& effects)
+{
+    return std::any_of(effects.begin(), effects.end(),
+                       [](const auto& each)
+                       {
+                           const SurfaceEffect* surface = each->asSurfaceEffect();
+                           return each->getEnabled() && surface && surface->looksAtNormals();
+                       });
 }
 
 /// In their own frame, whatever the node does.
@@ -210,6 +221,7 @@ SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chai
     task.colorFormat = targetFormat(_outer);
     if (!_view.image.ofView) task.image = &_view.image;
     task.untouched = _drawing._untouched;
+    task.normals = lookAtNormals(_effects);
     task.adapts = _scene.getAdaptsPrograms();
     task.tileError = _view.ground.tileError;
     task.open =
