@@ -193,6 +193,8 @@ void EffectScene::listenTo(TileGuard& guard)
 void EffectScene::traverse(osg::NodeVisitor& visitor)
 {
     osgUtil::CullVisitor* culling = visitor.asCullVisitor();
+    // An EffectCullCallback may have drawn another terrain before.
+    if (culling) setTerrain(*this);
     if (culling && cull(*culling, *this, [this](osg::NodeVisitor& inner) { osg::Group::traverse(inner); }))
         return;
     osg::Group::traverse(visitor);

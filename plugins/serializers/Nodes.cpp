@@ -142,43 +142,28 @@ bool writeEngineCulling(osgDB::OutputStream& stream, const EffectScene& scene)
     return true;
 }
 
-bool hasFirstTextureUnit(const EffectScene& scene)
+/// A whole number of a scene, which refuses what it cannot be.
+template<int (EffectScene::*get)() const, bool (EffectScene::*set)(int), int defaultValue>
+struct SceneNumber
 {
-    return scene.getFirstTextureUnit() != TextureUnits::first;
-}
-
-bool readFirstTextureUnit(osgDB::InputStream& stream, EffectScene& scene)
-{
-    int unit = 0;
-    stream >> unit;
-    scene.setFirstTextureUnit(unit);
-    return true;
-}
-
-bool writeFirstTextureUnit(osgDB::OutputStream& stream, const EffectScene& scene)
-{
-    stream << scene.getFirstTextureUnit() << std::endl;
-    return true;
-}
-
-bool hasFirstBlockBinding(const EffectScene& scene)
-{
-    return scene.getFirstBlockBinding() != TextureUnits::firstBlock;
-}
-
-bool readFirstBlockBinding(osgDB::InputStream& stream, EffectScene& scene)
-{
-    int binding = 0;
-    stream >> binding;
-    scene.setFirstBlockBinding(binding);
-    return true;
-}
-
-bool writeFirstBlockBinding(osgDB::OutputStream& stream, const EffectScene& scene)
-{
-    stream << scene.getFirstBlockBinding() << std::endl;
-    return true;
-}
+    static bool has(const EffectScene& scene) { return (scene.*get)() != defaultValue; }
+    static bool read(osgDB::InputStream& stream, EffectScene& scene)
+    {
+        int value = 0;
+        stream >> value;
+        (scene.*set)(value);
+        return true;
+    }
+    static bool write(osgDB::OutputStream& stream, const EffectScene& scene)
+    {
+        stream << (scene.*get)() << std::endl;
+        return true;
+    }
+};
+using FirstTextureUnit =
+    SceneNumber<&EffectScene::getFirstTextureUnit, &EffectScene::setFirstTextureUnit, TextureUnits::first>;
+using FirstBlockBinding = SceneNumber<&EffectScene::getFirstBlockBinding, &EffectScene::setFirstBlockBinding,
+                                      TextureUnits::firstBlock>;
 
 constexpr const char* depthKinds[] = {"OF_PROJECTION", "LOGARITHMIC", "LOGARITHMIC_BY_FRAGMENT"};
 
@@ -272,12 +257,12 @@ void addSceneProperties(const char*, osgDB::ObjectWrapper* wrapper)
     wrapper->addSerializer(
         new Effects("EngineCulling", hasEngineCulling, readEngineCulling, writeEngineCulling),
         osgDB::BaseSerializer::RW_USER);
-    wrapper->addSerializer(
-        new Effects("FirstTextureUnit", hasFirstTextureUnit, readFirstTextureUnit, writeFirstTextureUnit),
-        osgDB::BaseSerializer::RW_USER);
-    wrapper->addSerializer(
-        new Effects("FirstBlockBinding", hasFirstBlockBinding, readFirstBlockBinding, writeFirstBlockBinding),
-        osgDB::BaseSerializer::RW_USER);
+    wrapper->addSerializer(new Effects("FirstTextureUnit", FirstTextureUnit::has, FirstTextureUnit::read,
+                                       FirstTextureUnit::write),
+                           osgDB::BaseSerializer::RW_USER);
+    wrapper->addSerializer(new Effects("FirstBlockBinding", FirstBlockBinding::has, FirstBlockBinding::read,
+                                       FirstBlockBinding::write),
+                           osgDB::BaseSerializer::RW_USER);
     wrapper->addSerializer(
         new Effects("DepthConvention", hasDepthConvention, readDepthConvention, writeDepthConvention),
         osgDB::BaseSerializer::RW_USER);

@@ -18,7 +18,6 @@
 #include <osg/Texture2D>
 #include <osgDB/ReadFile>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
-#include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/ProgramAdapter.h>
 #include <osgText/Text>
@@ -40,18 +39,6 @@ osg::ref_ptr<VerticalExaggeration> makeLift()
     osg::ref_ptr<VerticalExaggeration> lift = new VerticalExaggeration;
     lift->setFactor(4.0);
     return lift;
-}
-
-/// One color all over the ground.
-osg::ref_ptr<ProjectiveMappings> makePaint()
-{
-    osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
-    mapping->setRectangle(osg::Vec2d(0.0, 0.0), 80.0, 60.0, 0.3);
-    mapping->getTransfer()->setSource(ColorTransfer::CONSTANT);
-    mapping->getTransfer()->setConstant(osg::Vec4d(0.9, 0.1, 0.1, 1.0));
-    osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
-    mappings->addMapping(mapping);
-    return mappings;
 }
 
 bool contains(const std::string& text, const std::string& part)

@@ -87,11 +87,13 @@ TEST_F(EffectCullCallbacks, DrawWhatTheGroupDraws)
             osg::Camera& camera = *viewer().getCamera();
             const osg::Matrixd given = camera.getProjectionMatrix();
             const osg::ref_ptr<osg::Image> expected = draw();
+            EXPECT_EQ(_scene->getTerrain(), _scene);
             const osg::Matrixd projection = camera.getProjectionMatrix();
             camera.setProjectionMatrix(given);
             hang(*terrain);
             EXPECT_TRUE(same(*draw(), *expected));
             EXPECT_EQ(camera.getProjectionMatrix(), projection);
+            EXPECT_EQ(_scene->getTerrain(), terrain);
             putBack(*terrain);
             terrain->setCullCallback(nullptr);
         }

@@ -3,7 +3,6 @@
 //
 // An engine that assembles its shaders itself, and draws with programs of a class of its own, as osgEarth does.
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
-#include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/ShaderHost.h>
 #include <tools/BentGround.h>
 
@@ -83,16 +82,6 @@ protected:
         osg::ref_ptr<osg::Geometry> ground = makeGround();
         ground->getOrCreateStateSet()->setAttribute(_engine->program);
         return ground;
-    }
-    static osg::ref_ptr<ProjectiveMappings> makePaint()
-    {
-        osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
-        mapping->setRectangle(osg::Vec2d(0.0, 0.0), 80.0, 60.0, 0.3);
-        mapping->getTransfer()->setSource(ColorTransfer::CONSTANT);
-        mapping->getTransfer()->setConstant(osg::Vec4d(0.9, 0.1, 0.1, 1.0));
-        osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
-        mappings->addMapping(mapping);
-        return mappings;
     }
 
     const osg::ref_ptr<Engine> _engine = new Engine;

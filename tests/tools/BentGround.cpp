@@ -123,6 +123,17 @@ osg::ref_ptr<osgGeoFX::BirdsEyeView> BentGround::makeBend()
     return bend;
 }
 
+osg::ref_ptr<osgGeoFX::ProjectiveMappings> BentGround::makePaint()
+{
+    osg::ref_ptr<osgGeoFX::ProjectiveMapping> mapping = new osgGeoFX::ProjectiveMapping;
+    mapping->setRectangle(osg::Vec2d(0.0, 0.0), 80.0, 60.0, 0.3);
+    mapping->getTransfer()->setSource(osgGeoFX::ColorTransfer::CONSTANT);
+    mapping->getTransfer()->setConstant(osg::Vec4d(0.9, 0.1, 0.1, 1.0));
+    osg::ref_ptr<osgGeoFX::ProjectiveMappings> mappings = new osgGeoFX::ProjectiveMappings;
+    mappings->addMapping(mapping);
+    return mappings;
+}
+
 osg::ref_ptr<osgGeoFX::EffectScene>
 BentGround::makeScene(const std::vector<osg::ref_ptr<osg::Node>>& children)
 {

@@ -5,6 +5,7 @@
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <tools/GlFixture.h>
 
@@ -30,6 +31,8 @@ protected:
     static osg::ref_ptr<osg::MatrixTransform> makeBox(float size, const osg::Vec3d& place);
 
     static osg::ref_ptr<osgGeoFX::BirdsEyeView> makeBend();
+    /// One color all over the middle of the ground.
+    static osg::ref_ptr<osgGeoFX::ProjectiveMappings> makePaint();
     /// A scene with a bend and some children.
     static osg::ref_ptr<osgGeoFX::EffectScene>
     makeScene(const std::vector<osg::ref_ptr<osg::Node>>& children);
