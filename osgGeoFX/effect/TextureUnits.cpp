@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace osgGeoFX
@@ -27,9 +28,16 @@ using Wishes = std::vector<std::vector<Wish>>; ///< of each effect
 struct Kind
 {
     const char* one; ///< "texture unit"
-    int lowest, last;
+    std::vector<int> choice; ///< what may be chosen, ascending
     int reserved; ///< is given only to who asks for it; −1 for none
 };
+
+std::vector<int> range(int lowest, int last)
+{
+    std::vector<int> numbers(static_cast<std::size_t>(last - lowest + 1));
+    std::iota(numbers.begin(), numbers.end(), lowest);
+    return numbers;
+}
 
 std::string nameOf(const Effect& effect, std::size_t place)
 {
@@ -111,10 +119,10 @@ private:
         {
             return each != _kind.reserved && isFree(each, effect, wish.everywhere);
         };
-        int chosen = wish.preferred >= _kind.lowest && free(wish.preferred) ? wish.preferred : _kind.lowest;
-        while (chosen <= _kind.last && !free(chosen))
-            ++chosen;
-        if (chosen <= _kind.last) take(number = chosen, effect, wish.everywhere);
+        const std::vector<int>& choice = _kind.choice;
+        auto chosen = std::find(choice.begin(), choice.end(), wish.preferred);
+        if (chosen == choice.end() || !free(*chosen)) chosen = std::find_if(choice.begin(), choice.end(), free);
+        if (chosen != choice.end()) take(number = *chosen, effect, wish.everywhere);
     }
 
     void say(std::size_t effect, const std::string& sentence)
@@ -133,9 +141,12 @@ private:
     void leaveOut(std::size_t effect)
     {
         _result.complete[effect] = false;
-        say(effect, nameOf(*_effects[effect], effect) + " is not drawn: the other effects have all " +
-                        _kind.one + "s from " + std::to_string(_kind.lowest) + " to " +
-                        std::to_string(_kind.last) +
+        const bool any = !_kind.choice.empty();
+        say(effect, nameOf(*_effects[effect], effect) + " is not drawn: " +
+                        (any ? "the other effects have all " + std::string(_kind.one) + "s from " +
+                                   std::to_string(_kind.choice.front()) + " to " +
+                                   std::to_string(_kind.choice.back()) + " that the scene may choose"
+                             : "there is no " + std::string(_kind.one) + " that the scene may choose") +
                         ". Remove effects, or put the mappings of several sets into one.");
     }
 
@@ -185,6 +196,11 @@ std::string TextureUnits::inconsistency(const std::vector<TextureUnitWish>& wish
 
 TextureUnits TextureUnits::of(const Effects& effects, int lowest, int lowestBlock)
 {
+    return of(effects, range(lowest, last), lowestBlock);
+}
+
+TextureUnits TextureUnits::of(const Effects& effects, const Units& choice, int lowestBlock)
+{
     Wishes units(effects.size()), blocks(effects.size());
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < effects.size(); ++i)
@@ -201,8 +217,8 @@ TextureUnits TextureUnits::of(const Effects& effects, int lowest, int lowestBloc
                           [&](std::size_t i) { return effects[i]->getEnabled(); });
     TextureUnits result;
     result.complete.assign(effects.size(), true);
-    const Kind unit = {"texture unit", lowest, last, ofCover};
-    const Kind block = {"uniform block binding", lowestBlock, lastBlock, -1};
+    const Kind unit = {"texture unit", choice, ofCover};
+    const Kind block = {"uniform block binding", range(lowestBlock, lastBlock), -1};
     result.ofEffects = Giver(effects, order, units, unit, result).give();
     result.ofBlocks = Giver(effects, order, blocks, block, result).give();
     return result;

@@ -84,6 +84,8 @@ struct OSGGEOFX_EXPORT TextureUnits
     /// Assigns units and binding points to the effects of a scene. `lowest`, `lowestBlock`: of those that it may choose,
     /// `first` to `last` and 0 to `lastBlock`.
     static TextureUnits of(const Effects& effects, int lowest = first, int lowestBlock = firstBlock);
+    /// The same with those texture units that it may choose, ascending.
+    static TextureUnits of(const Effects& effects, const Units& choice, int lowestBlock = firstBlock);
     /// A property for a unit; −1, the default, is for the scene's choice.
     static Property property(const std::string& name, const std::string& description);
     /// The same for the binding point of a uniform block.

@@ -24,7 +24,7 @@ EffectScene::EffectScene() : _drawing(std::make_unique<SceneDrawing>())
 EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
-      _adaptsPrograms(other._adaptsPrograms), _firstTextureUnit(other._firstTextureUnit),
+      _adaptsPrograms(other._adaptsPrograms), _firstTextureUnit(other._firstTextureUnit), _textureUnits(other._textureUnits),
       _firstBlockBinding(other._firstBlockBinding), _depthConvention(other._depthConvention),
       _shaderHost(other._shaderHost), _roleCallback(other._roleCallback),
       _groundDescription(other._groundDescription), _engineCulling(other._engineCulling),
@@ -83,6 +83,22 @@ bool EffectScene::setFirstTextureUnit(int unit)
         return false;
     }
     _firstTextureUnit = unit;
+    return true;
+}
+
+bool EffectScene::setTextureUnits(const std::vector<int>& units)
+{
+    std::vector<int> sorted = units;
+    std::sort(sorted.begin(), sorted.end());
+    const bool twice = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+    if (twice ||
+        (!sorted.empty() && (sorted.front() < TextureUnits::first || sorted.back() > TextureUnits::last)))
+    {
+        OSG_WARN << "osgGeoFX: the texture units that a scene may choose must be from " << TextureUnits::first
+                 << " to " << TextureUnits::last << ", each named once; the former ones stay." << std::endl;
+        return false;
+    }
+    _textureUnits = std::move(sorted);
     return true;
 }
 

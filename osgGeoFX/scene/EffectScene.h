@@ -139,6 +139,12 @@ public:
         between frames. */
     bool setFirstTextureUnit(int unit);
     int getFirstTextureUnit() const { return _firstTextureUnit; }
+    /** Sets the texture units that the scene may choose for its effects, for an engine that gives them out one by one, as
+        osgEarth's TerrainResources do; 4 to 31, each once. Unit 7 is not chosen; what terrain databases have there, PanoramaMap's
+        coverUnit says. Empty, the default: all from getFirstTextureUnit() on. Units that an effect's property names stay.
+        Files do not keep it. False, with a warning, for other numbers. Call it between frames. */
+    bool setTextureUnits(const std::vector<int>& units);
+    const std::vector<int>& getTextureUnits() const { return _textureUnits; }
     /** Sets the lowest binding point that the scene chooses for uniform blocks of its effects, 0 to 35; 7 by default. An
         application whose own programs have blocks at 7 or above names the first binding point that none of them has.
         Binding points that an effect's property names stay. False, with a warning, for any other number. Call it between
@@ -255,6 +261,7 @@ private:
     bool _nestedCameras = false;
     bool _adaptsPrograms = false;
     int _firstTextureUnit = 4;
+    std::vector<int> _textureUnits; ///< ascending
     int _firstBlockBinding = 7;
     DepthConvention _depthConvention;
     osg::ref_ptr<ShaderHost> _shaderHost;

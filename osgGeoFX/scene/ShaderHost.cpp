@@ -7,4 +7,11 @@ namespace osgGeoFX
 
 ShaderHost::~ShaderHost() = default;
 
+void ShaderHost::use(const ShaderTexts&) {}
+
+osg::ref_ptr<osg::StateSet> ShaderHost::addition(const ShaderTexts&)
+{
+    return nullptr;
+}
+
 } // namespace osgGeoFX

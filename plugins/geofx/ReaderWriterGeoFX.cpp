@@ -12,11 +12,9 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 #include <osgDB/Registry>
-#include <osgDB/fstream>
 
 #include <algorithm>
 #include <exception>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -46,15 +44,12 @@ public:
         const std::string path = osgDB::findDataFile(file, options);
         if (path.empty()) return ReadResult::FILE_NOT_FOUND;
 
-        osgDB::ifstream stream(path.c_str(), std::ios::in | std::ios::binary);
-        std::string text(largestScene + 1, '\0'); // one more: what is too long is seen to be
-        stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-        text.resize(static_cast<std::size_t>(stream.gcount()));
+        const std::string text = readSceneText(path);
         // Absolute, so that what is paged later is found from any current folder.
         const std::string real = osgDB::getRealPath(path);
         const std::string folder = osgDB::getFilePath(real);
         SceneResult result = parseScene(text, path, folder);
-        if (result.scene) result.errors = faultsOfFiles(*result.scene, folder, consents(options));
+        if (result.scene) result.errors = faultsOfFiles(*result.scene, folder, options);
         if (!result.errors.empty()) return failure(result.errors);
 
         std::string error;
@@ -101,25 +96,6 @@ private:
         }
         bool _twice;
     };
-
-    static bool consents(const Options* options)
-    {
-        std::istringstream words(options ? options->getOptionString() : std::string());
-        for (std::string word; words >> word;)
-            if (word == allowOutside) return true;
-        return false;
-    }
-
-    /// Files that lie elsewhere are not even looked for.
-    static std::vector<std::string> faultsOfFiles(const SceneFile& scene, const std::string& folder,
-                                                  bool anywhere)
-    {
-        std::vector<std::string> errors;
-        if (!anywhere) errors = outsidePaths(scene, folder);
-        if (errors.empty()) errors = missingFiles(scene);
-        if (errors.empty() && !anywhere) errors = outsideSources(scene, folder);
-        return errors;
-    }
 
     static ReadResult failure(const std::vector<std::string>& errors)
     {

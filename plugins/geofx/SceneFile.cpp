@@ -40,12 +40,26 @@ public:
             result.database = _xml.path(database, "file");
             result.ground = ground(database);
         }
+        if (xmlNode* engine = child(terrain, "engine"))
+        {
+            const bool open = attributeOf(engine, "culling") == "open";
+            result.engine = SceneEngine{open ? EffectScene::OPEN : EffectScene::PROXY};
+            result.ground = ground(engine);
+        }
         if (xmlNode* rasterNode = child(terrain, "rasters")) result.rasters = rasters(rasterNode);
-        if (xmlNode* view = child(root, "homeView")) result.homeView = homeView(view);
+        if (xmlNode* view = child(root, "homeView"))
+        {
+            result.homeView = homeView(view);
+            result.homeViewPlace = _xml.place(view);
+        }
         if (xmlNode* sunNode = child(root, "sun"))
             result.sun = SceneSun{_xml.place(sunNode), real(sunNode, "azimuth"), real(sunNode, "elevation"),
                                   color(sunNode, "color"), color(sunNode, "ambient")};
-        if (xmlNode* background = child(root, "background")) result.background = color(background, "color");
+        if (xmlNode* background = child(root, "background"))
+        {
+            result.background = color(background, "color");
+            result.backgroundPlace = _xml.place(background);
+        }
         if (xmlNode* effectsNode = child(root, "effects")) effects(effectsNode, result);
         return result;
     }
@@ -69,7 +83,7 @@ private:
         if (frame == "projected") result.frame = EffectScene::PROJECTED;
         if (!attributeOf(node, "minHeight").empty()) result.minHeight = real(node, "minHeight");
         if (!attributeOf(node, "maxHeight").empty()) result.maxHeight = real(node, "maxHeight");
-        result.tileCells = integer(node, "tileCells");
+        if (!attributeOf(node, "tileCells").empty()) result.tileCells = integer(node, "tileCells");
         const std::string fault = result.fault();
         if (!fault.empty()) _xml.fail(node, fault);
         return result;
@@ -175,13 +189,55 @@ std::string ScenePlace::message(const std::string& text) const
     return file + ":" + std::to_string(line) + ": <" + element + ">: " + text;
 }
 
-SceneResult parseScene(const std::string& text, const std::string& file, const std::string& folder)
+namespace
 {
-    SceneResult result;
-    const XmlDocument document = readSceneXml(text, file, result.errors);
+
+SceneResult parse(const XmlDocument& document, const std::string& file, const std::string& folder,
+                  SceneResult result)
+{
     if (document)
         result.scene =
             Reader(SceneXml(file, folder, result.errors)).scene(xmlDocGetRootElement(document.get()));
+    if (!result.errors.empty()) result.scene.reset();
+    return result;
+}
+
+} // namespace
+
+SceneResult parseScene(const std::string& text, const std::string& file, const std::string& folder)
+{
+    SceneResult result;
+    const XmlDocument document = readSceneXml(text, file, SceneElement::OUTERMOST, result.errors);
+    result = parse(document, file, folder, std::move(result));
+    if (result.scene && result.scene->engine)
+    {
+        result.errors.push_back(result.scene->place.message(
+            "<engine> stands for the terrain of an osgEarth map, and this file is no .earth file; expected: <database> "
+            "or <rasters>."));
+        result.scene.reset();
+    }
+    return result;
+}
+
+SceneResult parseEngineScene(const std::string& text, const std::string& file, const std::string& folder)
+{
+    SceneResult result;
+    const XmlDocument document = readSceneXml(text, file, SceneElement::ANYWHERE, result.errors);
+    result = parse(document, file, folder, std::move(result));
+    if (!result.scene) return result;
+    const SceneFile& scene = *result.scene;
+    if (!scene.engine)
+        result.errors.push_back(
+            scene.place.message("the map has a terrain of its own; expected: <engine/>."));
+    if (scene.homeView)
+        result.errors.push_back(scene.homeViewPlace.message(
+            "the map has viewpoints of its own; expected: a <viewpoints> in the <map> instead."));
+    if (scene.sun)
+        result.errors.push_back(scene.sun->place.message(
+            "the map has a sky of its own; expected: a <sky> in the <map> instead."));
+    if (scene.background)
+        result.errors.push_back(scene.backgroundPlace.message(
+            "the background is the program's; expected: no <background> in an .earth file."));
     if (!result.errors.empty()) result.scene.reset();
     return result;
 }

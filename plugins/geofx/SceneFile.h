@@ -204,20 +204,28 @@ struct ScenePanorama
     std::vector<Lines> lines;
 };
 
+/// The terrain of the engine whose file the scene is a part of.
+struct SceneEngine
+{
+    EffectScene::EngineCulling culling = EffectScene::PROXY;
+};
+
 /** What a .geofx file says; geofx.xsd.in and data/properties.md have the meaning, range and default of everything.
 
     All functions may be called from any thread. The effects belong to whoever has the value. */
 struct SceneFile
 {
     ScenePlace place; ///< of <terrain>
-    // One of these two.
+    // One of these three.
     std::optional<ScenePath> database;
     std::optional<SceneRasters> rasters;
-    EffectScene::GroundDescription ground; ///< what is stated of the database
+    std::optional<SceneEngine> engine;
+    EffectScene::GroundDescription ground; ///< what is stated of the database, or of the engine's ground
 
     std::optional<SceneView> homeView;
     std::optional<SceneSun> sun;
     std::optional<SceneColor> background;
+    ScenePlace homeViewPlace, backgroundPlace;
     std::vector<osg::ref_ptr<Effect>> effects; ///< in their order
     std::vector<SceneMappings> mappings;       ///< of the effects among them that have mappings
     std::vector<SceneCloseUps> closeUps;       ///< of the effects among them that have close-ups
@@ -236,6 +244,10 @@ constexpr std::size_t largestScene = 16 * 1024 * 1024;
 
 /// Reads the text of a scene. `file` is for messages; relative paths start at `folder`. No file is opened.
 SceneResult parseScene(const std::string& text, const std::string& file, const std::string& folder);
+
+/// Reads the scene that is a part of an engine's file, such as an .earth file: its first element <geofx>. Its terrain is the
+/// engine's.
+SceneResult parseEngineScene(const std::string& text, const std::string& file, const std::string& folder);
 
 /// All files that the scene names, in its order; not the names of ready legends, nor the cache.
 std::vector<ScenePath> filesOf(const SceneFile& scene);

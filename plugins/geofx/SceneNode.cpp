@@ -115,10 +115,13 @@ void addSun(osg::Group& group, const SceneSun& sun, const osg::Vec3d& direction)
     state->setAttributeAndModes(model);
 }
 
-/// Gives the effects what only files and the terrain know. False, with a sentence in `error`.
-bool loadEffects(const SceneFile& scene, const EffectScene& node, const osg::Node& terrain,
-                 std::string& error)
+} // namespace
+
+bool addEffects(const SceneFile& scene, EffectScene& node, const osg::Node& terrain, std::string& error)
 {
+    node.setGround(scene.ground);
+    for (const osg::ref_ptr<Effect>& effect : scene.effects)
+        node.addEffect(effect);
     try
     {
         SceneTerrain ground(node, terrain);
@@ -134,8 +137,6 @@ bool loadEffects(const SceneFile& scene, const EffectScene& node, const osg::Nod
     }
 }
 
-} // namespace
-
 osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terrain, std::string& error)
 {
     osg::ref_ptr<osg::Group> group;
@@ -147,14 +148,11 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
     else
     {
         effects = new EffectScene;
-        effects->setGround(scene.ground);
-        for (const osg::ref_ptr<Effect>& effect : scene.effects)
-            effects->addEffect(effect);
         group = effects;
     }
     group->setName("osgGeoFX scene");
     group->addChild(terrain);
-    if (effects && !loadEffects(scene, *effects, *terrain, error)) return nullptr;
+    if (effects && !addEffects(scene, *effects, *terrain, error)) return nullptr;
     if (scene.homeView)
     {
         const SceneView& view = *scene.homeView;

@@ -9,6 +9,10 @@
 namespace osgGeoFX
 {
 
+/// Gives an EffectScene the effects of a scene, with what only files and the terrain know. The terrain is a child of the node
+/// already. False, with a sentence in `error`, where something is missing.
+bool addEffects(const SceneFile& scene, EffectScene& node, const osg::Node& terrain, std::string& error);
+
 /** The node of a scene: a group named "osgGeoFX scene" with the terrain and, for a sun, a directional light
    with number 0, which takes the place of a viewer's headlight. Where the scene has effects, the group is an
    EffectScene.

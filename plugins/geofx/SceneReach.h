@@ -4,6 +4,8 @@
 
 #include "SceneFile.h"
 
+#include <osgDB/Options>
+
 namespace osgGeoFX
 {
 
@@ -32,5 +34,13 @@ struct SourcesRequest
 /// One sentence for each file of the scene that takes its data from outside the folder, such as a GDAL virtual raster. They are asked
 /// of osgdb_geofxdata; without it nothing is known, and nothing of the kind can be read.
 std::vector<std::string> outsideSources(const SceneFile& scene, const std::string& folder);
+
+/// The text of a scene's file; longer than largestScene where the file is. Empty where it cannot be read.
+std::string readSceneText(const std::string& path);
+
+/// One sentence for each file of the scene that cannot be used: outside the folder without the program's consent in the
+/// options, or missing. Files that lie elsewhere are not even looked for.
+std::vector<std::string> faultsOfFiles(const SceneFile& scene, const std::string& folder,
+                                       const osgDB::Options* options);
 
 } // namespace osgGeoFX

@@ -3,7 +3,10 @@
 #include "SceneLoading.h"
 #include "SceneReach.h"
 
+#include <osgDB/fstream>
+
 #include <set>
+#include <sstream>
 
 namespace osgGeoFX
 {
@@ -54,6 +57,29 @@ std::vector<std::string> outsideSources(const SceneFile& scene, const std::strin
                                             "program with --allow-outside, or give "
                                             "OSG the option string \"allowOutside\"."));
     }
+    return errors;
+}
+
+std::string readSceneText(const std::string& path)
+{
+    osgDB::ifstream stream(path.c_str(), std::ios::in | std::ios::binary);
+    std::string text(largestScene + 1, '\0'); // one more: what is too long is seen to be
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    return text;
+}
+
+std::vector<std::string> faultsOfFiles(const SceneFile& scene, const std::string& folder,
+                                       const osgDB::Options* options)
+{
+    bool anywhere = false;
+    std::istringstream words(options ? options->getOptionString() : std::string());
+    for (std::string word; words >> word;)
+        anywhere = anywhere || word == allowOutside;
+    std::vector<std::string> errors;
+    if (!anywhere) errors = outsidePaths(scene, folder);
+    if (errors.empty()) errors = missingFiles(scene);
+    if (errors.empty() && !anywhere) errors = outsideSources(scene, folder);
     return errors;
 }
 

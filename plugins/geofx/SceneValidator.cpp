@@ -320,6 +320,18 @@ void markGiven(xmlNode* parent)
     }
 }
 
+/// The first element <geofx> below a node; null for none.
+xmlNode* firstScene(xmlNode* parent)
+{
+    for (xmlNode* node = parent->children; node; node = node->next)
+    {
+        if (node->type != XML_ELEMENT_NODE) continue;
+        if (is(node, "geofx")) return node;
+        if (xmlNode* below = firstScene(node)) return below;
+    }
+    return nullptr;
+}
+
 void validate(xmlDoc* document, Findings& findings)
 {
     markGiven(xmlDocGetRootElement(document));
@@ -347,7 +359,8 @@ bool isGiven(xmlNode* element, const char* name)
     return attribute && attribute->_private;
 }
 
-XmlDocument readSceneXml(const std::string& text, const std::string& file, std::vector<std::string>& errors)
+XmlDocument readSceneXml(const std::string& text, const std::string& file, SceneElement which,
+                         std::vector<std::string>& errors)
 {
     // The types of the schema are made at their first use, which two threads must not do at once.
     static std::once_flag once;
@@ -375,6 +388,16 @@ XmlDocument readSceneXml(const std::string& text, const std::string& file, std::
     xmlNode* root = document ? xmlDocGetRootElement(document.get()) : nullptr;
     if (!root && errors.empty()) findings.add(1, "geofx", "nothing stands here; expected: a scene in XML.");
     if (!errors.empty()) return nullptr;
+    if (which == SceneElement::ANYWHERE && !is(root, "geofx"))
+    {
+        root = firstScene(root);
+        if (!root)
+        {
+            findings.add(1, "geofx", "the file has no scene; expected: an element <geofx>.");
+            return nullptr;
+        }
+        xmlFreeNode(xmlDocSetRootElement(document.get(), root));
+    }
 
     const std::string version = attributeOf(root, "version");
     if (xmlGetIntSubset(document.get()))

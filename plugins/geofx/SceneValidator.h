@@ -27,9 +27,17 @@ std::string attributeOf(xmlNode* element, const char* name);
 /// Whether the person has written an attribute; the schema's defaults are not.
 bool isGiven(xmlNode* element, const char* name);
 
+/// Which element of a text is the scene.
+enum class SceneElement
+{
+    OUTERMOST,
+    ANYWHERE ///< the first <geofx> of the text, whatever stands around it
+};
+
 /** A scene's XML, checked against the schema and with the schema's defaults filled in. Null, with sentences
    in `errors` that name `file`, where it is no scene of this version. Nothing but `text` is read: no DTD, no
-   entity and no schema that the text names. */
-XmlDocument readSceneXml(const std::string& text, const std::string& file, std::vector<std::string>& errors);
+   entity and no schema that the text names. The scene is the outermost element of the document. */
+XmlDocument readSceneXml(const std::string& text, const std::string& file, SceneElement which,
+                         std::vector<std::string>& errors);
 
 } // namespace osgGeoFX

@@ -12,10 +12,24 @@
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
 in float geofx_styleBlend;
-#ifdef GEOFX_NORMAL_MAP
-// What lies on the ground is lit by the normals of a texture, in the frame of the geometry: effect/detail/TileNormals.h.
-in vec2 geofx_normalPlace;
+#if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_NORMAL_MAP)
+// What lies on the ground is lit by normals of fragments: an engine's own (osgGeoFX/scene/ShaderHost.h), or those of a
+// texture in the frame of the geometry (effect/detail/TileNormals.h).
+#define GEOFX_FRAGMENT_NORMAL
 in vec3 geofx_groundPlace;
+
+vec3 geofx_ground()
+{
+    return geofx_inEye(geofx_groundPlace);
+}
+#endif
+#ifdef GEOFX_HOST_NORMAL
+vec3 geofx_eyeNormal()
+{
+    return geofx_directionInView(GEOFX_HOST_NORMAL);
+}
+#elif defined(GEOFX_NORMAL_MAP)
+in vec2 geofx_normalPlace;
 uniform sampler2D geofx_normals;
 
 vec3 geofx_eyeNormal()
@@ -27,18 +41,13 @@ vec3 geofx_eyeNormal()
     return geofx_directionInView(gl_NormalMatrix * normalize(normal));
 }
 
-vec3 geofx_ground()
-{
-    return geofx_inEye(geofx_groundPlace);
-}
-
 float geofx_normalSize()
 {
     return length(geofx_eyeNormal());
 }
 #endif
 GEOFX_EFFECT_FUNCTIONS
-#ifdef GEOFX_NORMAL_MAP
+#ifdef GEOFX_FRAGMENT_NORMAL
 vec3 geofx_turnedNormal()
 {
     vec3 normal = normalize(geofx_eyeNormal());

@@ -20,6 +20,9 @@
 #pragma import_defines(GEOFX_NORMAL_MAP)
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
+#ifdef GEOFX_HOST_NORMAL
+#undef GEOFX_NORMAL_MAP
+#endif
 #ifdef GEOFX_LATER_STAGE
 #undef GEOFX_NORMAL_MAP
 vec4 geofx_textureCoordinates = vec4(0.0);
@@ -29,9 +32,12 @@ void geofx_texture(vec4 coordinates)
 }
 #endif
 out float geofx_styleBlend;
+#if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_NORMAL_MAP)
+#define GEOFX_FRAGMENT_NORMAL // of which fragments take care
+out vec3 geofx_groundPlace;   // undeformed, in the view's eye space
+#endif
 #ifdef GEOFX_NORMAL_MAP
-out vec2 geofx_normalPlace;  // in the texture of normals
-out vec3 geofx_groundPlace; // undeformed, in the view's eye space
+out vec2 geofx_normalPlace; // in the texture of normals
 #endif
 #ifdef GEOFX_PLACED
 uniform mat4 geofx_unplaced; // of an object that was moved as a whole: back to where it stands
@@ -54,6 +60,8 @@ vec4 geofx_vertex(vec4 eyePosition)
     geofx_styleBlend = 0.0;
 #ifdef GEOFX_NORMAL_MAP
     geofx_normalPlace = (gl_TextureMatrix[2] * gl_MultiTexCoord0).xy;
+#endif
+#ifdef GEOFX_FRAGMENT_NORMAL
     geofx_groundPlace = geofx_inView(eyePosition.xyz / eyePosition.w);
 #endif
     vec3 located = eyePosition.xyz / eyePosition.w;

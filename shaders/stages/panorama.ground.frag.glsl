@@ -3,7 +3,7 @@
 //
 // The painting of a panorama map's ground, after Sections 3.2, 3.4 and 3.5 of Brown and Samavati (2017). SLOT_ stands for the
 // effect's prefix.
-#pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR, GEOFX_NORMAL_MAP)
+#pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR)
 #include "stages/panorama.water.glsl"
 #include "stages/panorama.edge.glsl"
 
@@ -78,7 +78,7 @@ vec2 SLOT_gone(float noise, float y, float wet, float shore)
 // As in SLOT_face().
 vec4 SLOT_facingHere()
 {
-#ifdef GEOFX_NORMAL_MAP
+#ifdef GEOFX_FRAGMENT_NORMAL
     vec3 vertical = normalize(SLOT_facing.xyz);
     vec3 normal = normalize(geofx_eyeNormal());
     float upward = dot(normal, vertical);

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // What the painting of a panorama map's ground needs of each vertex. SLOT_ stands for the effect's prefix.
-#pragma import_defines(GEOFX_NORMAL_MAP)
 uniform vec4 SLOT_light;  // towards the light, in eye space; the factor by which slopes are lit as steeper
 uniform vec4 SLOT_brushX; // from eye space to the brush's picture
 uniform vec4 SLOT_brushY;
@@ -28,7 +27,7 @@ void SLOT_locate(vec3 position)
 
 void SLOT_face(vec3 normal)
 {
-#ifndef GEOFX_NORMAL_MAP
+#ifndef GEOFX_FRAGMENT_NORMAL
     float upward = dot(normal, SLOT_vertical);
     float level = length(normal - upward * SLOT_vertical);
     SLOT_facing = vec4(normalize(normal + (1.0 / SLOT_light.w - 1.0) * upward * SLOT_vertical),

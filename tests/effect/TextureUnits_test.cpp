@@ -131,6 +131,33 @@ TEST(TextureUnits, AScenesLowestIsOneThatItMayChoose)
     EXPECT_EQ(copy->getFirstTextureUnit(), 31);
 }
 
+TEST(TextureUnits, AnEngineGivesThemOneByOne)
+{
+    const Effects effects = {new ProjectiveMappings, new CloseUps};
+    // Preferred ones first; close-ups draw in passes, and may not have what mappings have everywhere.
+    EXPECT_EQ(TextureUnits::of(effects, Units{5, 9, 12, 17, 20, 23}).ofEffects,
+              (std::vector<Units>{{5, 9, 17}, {20, 12, 23}}));
+    const TextureUnits few = TextureUnits::of(effects, Units{5, 7, 9, 12});
+    EXPECT_TRUE(few.complete[0]);
+    EXPECT_FALSE(few.complete[1]);
+    ASSERT_FALSE(few.sentences.empty());
+    EXPECT_NE(few.sentences[0].find("all texture units from 5 to 12 that the scene may choose"), std::string::npos)
+        << few.sentences[0];
+
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    EXPECT_TRUE(scene->getTextureUnits().empty());
+    EXPECT_TRUE(scene->setTextureUnits({12, 5, 31}));
+    for (const std::vector<int>& wrong : {std::vector<int>{3}, {32}, {8, 8}})
+    {
+        geofx::test::NotifyWatch watch;
+        const auto messages = watch.messagesOf([&] { EXPECT_FALSE(scene->setTextureUnits(wrong)); });
+        ASSERT_EQ(messages.size(), 1u);
+        EXPECT_NE(messages[0].find("each named once"), std::string::npos);
+    }
+    EXPECT_EQ(scene->getTextureUnits(), (std::vector<int>{5, 12, 31}));
+    EXPECT_EQ((new EffectScene(*scene))->getTextureUnits(), scene->getTextureUnits());
+}
+
 TEST(TextureUnits, EachUniformBlockHasABindingOfItsOwn)
 {
     const osg::ref_ptr<CloseUps> first = new CloseUps;

@@ -101,7 +101,7 @@ void CloseUpLayers::startFrame()
 
 osgUtil::RenderStage* CloseUpLayers::newStage(osgUtil::CullVisitor& outer, const CameraDepth& depth)
 {
-    if (_stagesUsed == _stages.size()) _stages.push_back(new osgUtil::RenderStage);
+    if (_stagesUsed == _stages.size()) _stages.push_back(createStage());
     osgUtil::RenderStage& stage = *_stages[_stagesUsed++];
     // The scene's lights shine in the layers, too.
     startStage(stage, outer, depth, osg::Vec4(0.0f, 0.0f, 0.0f, 0.0f));

@@ -10,8 +10,9 @@ namespace osgGeoFX
 RegionSurvey MultiPass::survey()
 {
     _regions.choosePrograms(false);
-    // Without state sets nothing is drawn.
-    return _regions.survey([](const std::vector<std::size_t>&, std::vector<osg::StateSet*>&) {}, nullptr);
+    // Without state sets nothing is drawn. The stage is for its camera alone.
+    return _regions.survey([](const std::vector<std::size_t>&, std::vector<osg::StateSet*>&) {},
+                           _regions.newStage());
 }
 
 void MultiPass::draw(VisibleCloseUp& visible, RegionContents& found)

@@ -93,7 +93,7 @@ public:
             _target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(_depths));
             _viewport = new osg::Viewport(0, 0, width, height);
         }
-        if (!_stage) _stage = new osgUtil::RenderStage;
+        if (!_stage) _stage = createStage();
         startStage(*_stage, outer, pass.depth, osg::Vec4(0.6f, 0.7f, 0.85f, 1.0f));
         _stage->setViewport(_viewport);
         _stage->setFrameBufferObject(_target);

@@ -108,7 +108,14 @@ osg::ref_ptr<osg::Program> CameraPass::sceneProgram() const
 
 void CameraPass::draw(const Drawing& drawing) const
 {
-    _traversal.passes.draw(outer, _traversal.task, drawing);
+    CompensatingCullVisitor::Task task = _traversal.task;
+    osg::ref_ptr<osg::StateSet> addition;
+    if (_traversal.shaderHost)
+        addition =
+            _traversal.programs.additionOf(*_traversal.shaderHost, _traversal.effects, drawing.program);
+    task.shaderHost = addition ? _traversal.shaderHost : nullptr;
+    task.hostAddition = addition;
+    _traversal.passes.draw(outer, task, drawing);
 }
 
 void CameraPass::draw(const std::vector<Piece>& pieces, const Drawing& drawing) const

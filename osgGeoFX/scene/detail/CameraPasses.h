@@ -64,6 +64,7 @@ public:
         CameraPasses& passes;
         ProgramCache& programs;
         const ProgramCache::Effects& effects;
+        ShaderHost* shaderHost; ///< EffectScene::getShaderHost()
     };
     CameraPass(const Traversal& traversal, const std::string& names, const std::vector<int>& textureUnits,
                const std::vector<int>& blockBindings);

@@ -122,6 +122,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _programs.setAdapting(task.adapts);
     _programs.setHost(task.shaderHost);
     _looks.begin(task.program, task.following, task.mapUnit, task.normals);
+    _looks.setHost(task.shaderHost, task.hostAddition);
 
     setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
     setTraversalNumber(outer.getTraversalNumber());

@@ -73,7 +73,8 @@ public:
         bool normals = false; ///< whether effects look at normals
         bool debugBounds = false;
         const ShaderHost* shaderHost =
-            nullptr;         ///< EffectScene::getShaderHost(); null in passes, whose functions it has not
+            nullptr; ///< EffectScene::getShaderHost(); null in passes whose functions it has not
+        osg::StateSet* hostAddition = nullptr; ///< ShaderHost::addition(); null for none
         bool adapts = false; ///< EffectScene::getAdaptsPrograms()
         bool open = false;   ///< nothing else is to cull: EffectScene::OPEN or PROXY
         bool proxy = false;  ///< engines cull by a ProxyFrustum: EffectScene::PROXY

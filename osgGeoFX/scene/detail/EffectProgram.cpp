@@ -303,6 +303,13 @@ const std::vector<std::string>& relayFiles(const PassShaders& pass, osg::Shader:
     return stage == osg::Shader::TESSCONTROL ? pass.tessellationControl : pass.tessellationEvaluation;
 }
 
+std::string withoutVersion(std::string text)
+{
+    // The line is left empty, so that a compiler's messages name the right one.
+    if (text.compare(0, 8, "#version") == 0) text.erase(0, text.find('\n'));
+    return text;
+}
+
 osg::ref_ptr<osg::Shader> functionShader(osg::Shader::Type stage, const std::string& text)
 {
     osg::ref_ptr<osg::Shader> shader = new osg::Shader(stage, text);
@@ -357,10 +364,13 @@ std::string EffectProgram::functions(const Effects& effects, osg::Shader::Type s
 
 std::string EffectProgram::hostText(const Effects& effects, osg::Shader::Type stage)
 {
-    std::string text = functions(effects, stage);
-    // The line is left empty, so that a compiler's messages name the right one.
-    if (text.compare(0, 8, "#version") == 0) text.erase(0, text.find('\n'));
-    return text;
+    return withoutVersion(functions(effects, stage));
+}
+
+std::string EffectProgram::hostText(const Effects& effects, const PassShaders& pass,
+                                    const std::string& prefix, osg::Shader::Type stage)
+{
+    return withoutVersion(passFunctions(effects, pass, prefix, stage));
 }
 
 std::string EffectProgram::passFunctions(const Effects& effects, const PassShaders& pass,

@@ -33,6 +33,9 @@ public:
     static std::string functions(const Effects& effects, osg::Shader::Type stage);
     /// The same without `#version`, for the vertex and the fragment stage.
     static std::string hostText(const Effects& effects, osg::Shader::Type stage);
+    /// The same with what the effect of that prefix draws a pass with, if the pass has these two stages alone.
+    static std::string hostText(const Effects& effects, const PassShaders& pass, const std::string& prefix,
+                                osg::Shader::Type stage);
     /// Adds the functions of effects to the stages of a program that have none yet; ShaderError.
     static void addFunctions(osg::Program& program, const Effects& effects);
     /// Those that another program has.

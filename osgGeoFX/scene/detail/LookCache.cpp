@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/LookCache.h>
 
+#include <osgGeoFX/scene/ShaderHost.h>
 #include <osgGeoFX/scene/detail/FollowingPrograms.h>
 
 #include <osg/Geometry>
@@ -99,8 +100,15 @@ osg::StateSet* LookCache::lookFor(const FixedFunctionState& state, bool noNormal
     return _look;
 }
 
+void LookCache::setHost(const ShaderHost* host, osg::StateSet* addition)
+{
+    _host = addition ? host : nullptr;
+    _addition = addition;
+}
+
 osg::StateSet* LookCache::followingOf(const osg::StateAttribute* program)
 {
+    if (program && _host && _host->draws(*program)) return _addition;
     return program && _following ? copyOf(*program).state : nullptr;
 }
 

@@ -17,6 +17,7 @@ namespace osgGeoFX
 {
 
 class FollowingPrograms;
+class ShaderHost;
 
 /** The state sets that drawables below effects are drawn with. A drawable without a program gets a look, which stands
     in for OpenGL's fixed functions. A drawable with a program of the application gets a copy of that program. If this
@@ -28,12 +29,14 @@ public:
     /// Starts a traversal. A new program clears all looks; without a program nothing has a look. `mapUnit`: −1 for
     /// none. `normals`: whether effects look at normals, so that it matters which drawables have none.
     void begin(osg::Program* program, FollowingPrograms* following, int mapUnit, bool normals);
+    /// What is drawn below the programs of an engine that assembles its shaders itself; null for nothing. After begin().
+    void setHost(const ShaderHost* host, osg::StateSet* addition);
 
     /// The look of a drawable. Null for one whose vertices a program of its own places.
     osg::StateSet* lookFor(const osg::Drawable& drawable, const osgUtil::StateGraph& graph);
     osg::StateSet* lookFor(const osg::Drawable& drawable, const FixedFunctionState& state);
-    /// The copy of the program in force that has the effects' functions, for a drawable without a look. Null for a program
-    /// that draws without them.
+    /// The copy of the program in force that has the effects' functions, or what its engine adds to it, for a drawable
+    /// without a look. Null for a program that draws without them.
     osg::StateSet* followingOf(const osg::StateAttribute* program);
 
 private:
@@ -54,6 +57,8 @@ private:
     osg::StateSet* _look = nullptr; ///< the last one; neighbours mostly look alike
     Key _lookKey{};
     FollowingPrograms* _following = nullptr;
+    const ShaderHost* _host = nullptr;
+    osg::StateSet* _addition = nullptr;
     std::map<const osg::StateAttribute*, Copy> _copies;
     const osgUtil::StateGraph* _graph = nullptr; ///< the node whose state _state has
     FixedFunctionState _state;

@@ -14,7 +14,12 @@ namespace osgGeoFX
 /// A square in the plane z = 0 from (low, low) to (1, 1). A program can fill the viewport, or a part of it, with it.
 osg::ref_ptr<osg::Geometry> createSquare(float low);
 
-/// Empties a stage that draws into images of its own. The stage gets the camera's lights and view. It clears color
+/** A stage with a camera of its own, a copy of the camera that a pass is drawn for. Engines keep what they draw by
+    camera, as osgEarth's terrain does, so a pass with the camera itself would take away what that one draws. The camera
+    has no buffers and no callbacks, and sets nothing up. */
+osg::ref_ptr<osgUtil::RenderStage> createStage();
+
+/// Empties a stage of createStage() that draws into images of its own. The stage gets the camera's lights and view. It clears color
 /// and depth.
 void startStage(osgUtil::RenderStage& stage, osgUtil::CullVisitor& outer, const CameraDepth& depth,
                 const osg::Vec4& clearColor);

@@ -47,15 +47,40 @@ osg::ref_ptr<osg::Program> ProgramCache::programOf(const Effects& effects)
     return _program;
 }
 
-void ProgramCache::tell(ShaderHost& host, const Effects& effects)
+osg::ref_ptr<osg::StateSet> ProgramCache::tell(ShaderHost& host, const Effects& effects)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     // Without a key a shader file is missing, and the host keeps the last texts that worked.
-    if (_key.empty() || (_host == &host && _toldKey == _key)) return;
-    host.use({EffectProgram::hostText(effects, osg::Shader::VERTEX),
-              EffectProgram::hostText(effects, osg::Shader::FRAGMENT)});
+    if (_key.empty() || (_host == &host && _toldKey == _key)) return _addition;
+    const ShaderTexts texts = {EffectProgram::hostText(effects, osg::Shader::VERTEX),
+                               EffectProgram::hostText(effects, osg::Shader::FRAGMENT)};
+    host.use(texts);
+    _addition = host.addition(texts);
     _host = &host;
     _toldKey = _key;
+    return _addition;
+}
+
+osg::ref_ptr<osg::StateSet> ProgramCache::additionOf(ShaderHost& host, const Effects& effects,
+                                                     const osg::Program* program)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    if (!program) return nullptr;
+    if (program == _program) return _host == &host ? _addition : nullptr;
+    const auto found =
+        std::find_if(_passes.begin(), _passes.end(),
+                     [program](const auto& entry) { return entry.second.program == program; });
+    if (found == _passes.end()) return nullptr;
+    PassProgram& pass = found->second;
+    if (pass.host == &host) return pass.addition;
+    pass.host = &host;
+    pass.addition = nullptr;
+    if (EffectProgram::isPassOfTwoStages(*program) && pass.shaders.vertexMain.empty() &&
+        pass.shaders.fragmentMain.empty())
+        pass.addition = host.addition(
+            {EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::VERTEX),
+             EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::FRAGMENT)});
+    return pass.addition;
 }
 
 osg::ref_ptr<osg::Program> ProgramCache::passProgramOf(const Effects& effects, const PassShaders& shaders,
@@ -67,7 +92,7 @@ osg::ref_ptr<osg::Program> ProgramCache::passProgramOf(const Effects& effects, c
     if (!found.made || found.effects != key)
     {
         retire(found.program);
-        found = {true, key, EffectProgram::create(effects, shaders, prefix)};
+        found = {true, key, EffectProgram::create(effects, shaders, prefix), shaders, prefix};
     }
     return found.program;
 }

@@ -27,8 +27,13 @@ public:
 
     /// The program for geometry that has none. Null, after a warning, if a shader file is missing.
     osg::ref_ptr<osg::Program> programOf(const Effects& effects);
-    /// Gives the texts of the effects to a host that has other ones. After programOf().
-    void tell(ShaderHost& host, const Effects& effects);
+    /// Gives the texts of the effects to a host that has other ones. After programOf(). Returns the state with its addition;
+    /// null if it has none.
+    osg::ref_ptr<osg::StateSet> tell(ShaderHost& host, const Effects& effects);
+    /// The state with a host's addition for a pass that passProgramOf() has given a program; null if it has none, or if the
+    /// pass has more stages than the host. Also for the program of the scene itself.
+    osg::ref_ptr<osg::StateSet> additionOf(ShaderHost& host, const Effects& effects,
+                                           const osg::Program* program);
     /// The program of a pass of the effect with this prefix.
     osg::ref_ptr<osg::Program> passProgramOf(const Effects& effects, const PassShaders& shaders,
                                              const std::string& prefix);
@@ -45,6 +50,10 @@ private:
         bool made = false;
         std::string effects; ///< the key of the effects that it was made for
         osg::ref_ptr<osg::Program> program;
+        PassShaders shaders = {};
+        std::string prefix = {};
+        osg::ref_ptr<ShaderHost> host = {}; ///< that was asked for its addition
+        osg::ref_ptr<osg::StateSet> addition = {};
     };
     /// Whether an effect or the list of effects has changed since the last call.
     bool changed(const Effects& effects);
@@ -58,6 +67,7 @@ private:
     std::string _key;
     osg::ref_ptr<ShaderHost> _host; ///< that was told last, and
     std::string _toldKey;           ///< the key of what it was told
+    osg::ref_ptr<osg::StateSet> _addition;
     bool _made = false;
     osg::ref_ptr<osg::Program> _program;
     std::map<std::string, PassProgram> _passes;

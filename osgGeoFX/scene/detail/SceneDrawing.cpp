@@ -134,6 +134,7 @@ SceneDrawing::SceneDrawing()
 std::shared_ptr<const TextureUnits> SceneDrawing::unitsOf(const Effects& effects, const EffectScene& scene)
 {
     const int lowest = scene.getFirstTextureUnit(), lowestBlock = scene.getFirstBlockBinding();
+    const TextureUnits::Units& choice = scene.getTextureUnits();
     std::shared_ptr<const TextureUnits> changed;
     {
         const std::lock_guard<std::mutex> lock(_mutex);
@@ -141,13 +142,17 @@ std::shared_ptr<const TextureUnits> SceneDrawing::unitsOf(const Effects& effects
         std::transform(effects.begin(), effects.end(), now.begin(),
                        [](const osg::ref_ptr<Effect>& each) { return each->revision(); });
         const bool sameList =
-            _units && effects == _unitEffects && lowest == _lowestUnit && lowestBlock == _lowestBlock;
+            _units && effects == _unitEffects && lowest == _lowestUnit && lowestBlock == _lowestBlock &&
+            choice == _choice;
         if (sameList && now == _unitRevisions) return _units;
         _unitRevisions = now;
         _unitEffects = effects;
         _lowestUnit = lowest;
         _lowestBlock = lowestBlock;
-        changed = std::make_shared<const TextureUnits>(TextureUnits::of(effects, lowest, lowestBlock));
+        _choice = choice;
+        changed = std::make_shared<const TextureUnits>(choice.empty()
+                                                           ? TextureUnits::of(effects, lowest, lowestBlock)
+                                                           : TextureUnits::of(effects, choice, lowestBlock));
         if (!sameList || changed->ofEffects != _units->ofEffects || changed->ofBlocks != _units->ofBlocks ||
             changed->complete != _units->complete)
             _units = changed;
@@ -250,14 +255,16 @@ void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass
                                         bool draws, bool surfaces) const
 {
     FollowingPrograms& following = _drawing.programs.following();
+    osg::ref_ptr<osg::StateSet> hostAddition;
     if (draws)
     {
         task.program = _drawing.programs.programOf(_listed);
         task.following = &following;
         if (ShaderHost* host = _scene.getShaderHost())
         {
-            _drawing.programs.tell(*host, _listed);
+            hostAddition = _drawing.programs.tell(*host, _listed);
             task.shaderHost = host;
+            task.hostAddition = hostAddition;
         }
         task.state = passes.task.state;
         forPasses(passes,
@@ -299,8 +306,8 @@ bool SceneDrawing::Traversal::run()
     passTask.state = &state.set();
     passTask.following = &_drawing.programs.following();
     passTask.compensate = _scene.getCompensation();
-    const CameraPass::Traversal passes = {_outer, _scene, _view, passTask, own.passes, _drawing.programs,
-                                          _listed};
+    const CameraPass::Traversal passes = {
+        _outer, _scene, _view, passTask, own.passes, _drawing.programs, _listed, _scene.getShaderHost()};
     if (culls)
         drawScene(own, task, passes, draws, surfaces);
     else

@@ -66,6 +66,7 @@ private:
     PerCamera<Camera> _cameras;
     std::shared_ptr<const TextureUnits> _units;
     int _lowestUnit = TextureUnits::first, _lowestBlock = TextureUnits::firstBlock;
+    TextureUnits::Units _choice;
     Effects _unitEffects; ///< those that the units were given to, and
     std::vector<unsigned int> _unitRevisions;
     osg::ref_ptr<osg::StateSet> _untouched = new osg::StateSet;

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The extension <geofx> of osgEarth: a scene's effects in an .earth file, for everything that the map draws.
+#include "HostUnits.h"
+#include "VirtualProgramHost.h"
+
+#include "../geofx/SceneFile.h"
+#include "../geofx/SceneNode.h"
+#include "../geofx/SceneReach.h"
+
+#include <osgGeoFX/scene/EffectScene.h>
+
+#include <osgDB/FileNameUtils>
+#include <osgDB/FileUtils>
+#include <osgEarth/Extension>
+#include <osgEarth/MapNode>
+#include <osgEarth/NodeUtils>
+#include <osgEarth/TerrainEngineNode>
+
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+// osgEarth's interfaces have no virtual destructors; nobody deletes by them.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wnon-virtual-dtor"
+
+/** Puts an EffectScene above a MapNode.
+
+    The element is read again from the .earth file, as scene files are, since osgEarth's own reader makes all names lower
+    case. All faults of it are warnings with the file and the line; the map is drawn without effects then.
+
+    Threads: as for osgEarth's extensions, which are added and removed between frames. */
+class GeoFXExtension : public osgEarth::Extension, public osgEarth::ExtensionInterface<osgEarth::MapNode>
+{
+public:
+    META_OE_Extension(osgGeoFX, GeoFXExtension, geofx);
+    GeoFXExtension() = default;
+    explicit GeoFXExtension(const osgEarth::ConfigOptions& options) : _config(options) {}
+
+    void setDBOptions(const osgDB::Options* options) override { _options = options; }
+    const osgEarth::ConfigOptions& getConfigOptions() const override { return _config; }
+
+    bool connect(osgEarth::MapNode* map) override
+    {
+        SceneResult read = readScene();
+        for (const std::string& error : read.errors)
+            OSG_WARN << "osgGeoFX: " << error << std::endl;
+        if (!map || !read.scene) return false;
+        _scene = new EffectScene;
+        _scene->setName("osgGeoFX scene");
+        osgEarth::insertParent(_scene.get(), map);
+        std::string error;
+        if (!addEffects(*read.scene, *_scene, *map, error))
+        {
+            OSG_WARN << "osgGeoFX: " << error << std::endl;
+            disconnect(map);
+            return false;
+        }
+        if (!takeUnits(*map, error)) OSG_WARN << "osgGeoFX: " << error << std::endl;
+        closeSeams(*map);
+        _scene->setShaderHost(new VirtualProgramHost);
+        _scene->setEngineCulling(read.scene->engine->culling);
+        return true;
+    }
+
+    bool disconnect(osgEarth::MapNode*) override
+    {
+        if (!_scene) return false;
+        osgEarth::removeGroup(_scene.get());
+        _scene = nullptr;
+        return true;
+    }
+
+protected:
+    ~GeoFXExtension() override = default;
+
+private:
+    SceneResult readScene() const
+    {
+        const std::string file = _config.getConfig().referrer();
+        SceneResult result;
+        const std::string path = osgDB::findDataFile(file, _options.get());
+        if (file.empty() || path.empty())
+        {
+            result.errors.push_back(
+                "osgGeoFX reads <geofx> from the .earth file itself, and \"" + file +
+                "\" is not a file; load the map from a file, or put an osgGeoFX::EffectScene above the "
+                "MapNode.");
+            return result;
+        }
+        const std::string folder = osgDB::getFilePath(osgDB::getRealPath(path));
+        result = parseEngineScene(readSceneText(path), path, folder);
+        if (!result.scene) return result;
+        result.errors = faultsOfFiles(*result.scene, folder, _options.get());
+        if (!result.errors.empty()) result.scene.reset();
+        return result;
+    }
+
+    /// Between tiles of several levels, whose vertices do not move towards each other while effects are drawn.
+    static void closeSeams(osgEarth::MapNode& map)
+    {
+        constexpr float ofTileWidth = 0.05f;
+        auto* engine = dynamic_cast<osgEarth::TerrainEngineNode*>(map.getTerrainEngine());
+        if (!engine) return;
+        // The engine has a copy of the map's.
+        osgEarth::TerrainOptionsAPI options = engine->getOptions();
+        if (options.getHeightFieldSkirtRatio() <= 0.0f) options.setHeightFieldSkirtRatio(ofTileWidth);
+    }
+
+    bool takeUnits(osgEarth::MapNode& map, std::string& error)
+    {
+        const osgEarth::TerrainEngine* engine = map.getTerrainEngine();
+        osgEarth::TerrainResources* resources = engine ? engine->getResources() : nullptr;
+        if (!resources) return true;
+        return _units.reserve(*resources, *_scene, error);
+    }
+
+    osgEarth::ConfigOptions _config;
+    osg::ref_ptr<const osgDB::Options> _options;
+    osg::ref_ptr<EffectScene> _scene;
+    HostUnits _units;
+};
+#pragma GCC diagnostic pop
+
+REGISTER_OSGEARTH_EXTENSION(osgearth_geofx, GeoFXExtension)
+
+} // namespace osgGeoFX

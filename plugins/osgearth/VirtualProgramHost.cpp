@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "VirtualProgramHost.h"
+
+#include <osgEarth/VirtualProgram>
+
+#include <cfloat>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+const char* const vertexCall = R"(
+void geofx_osgearth_vertex(inout vec4 vertex)
+{
+    vertex = geofx_vertex(vertex);
+}
+)";
+
+/// osgEarth's own normal of a fragment, which terrain has from a texture. Each function's source is a shader of its own, and
+/// shares what stands outside of functions.
+const char* const normalOfHost = R"(
+vec3 geofx_hostNormal;
+#define GEOFX_HOST_NORMAL geofx_hostNormal
+)";
+
+const char* const normalCall = R"(
+vec3 vp_Normal;
+vec3 geofx_hostNormal;
+vec3 geofx_turnedNormal();
+void geofx_osgearth_normal(inout vec4 color)
+{
+    geofx_hostNormal = vp_Normal;
+    vp_Normal = geofx_turnedNormal();
+}
+)";
+
+const char* const colorCall = R"(
+void geofx_osgearth_color(inout vec4 color)
+{
+    color = geofx_fragment(color, vec4(0.0));
+}
+)";
+
+} // namespace
+
+osg::ref_ptr<osg::StateSet> VirtualProgramHost::addition(const ShaderTexts& texts)
+{
+    using osgEarth::VirtualProgram;
+    osg::ref_ptr<VirtualProgram> program = new VirtualProgram;
+    program->setName("osgGeoFX");
+    program->setInheritShaders(true);
+    program->setFunction("geofx_osgearth_vertex", "#define GEOFX_HOST_NORMAL\n" + texts.vertex + vertexCall,
+                         VirtualProgram::LOCATION_VERTEX_VIEW, FLT_MAX);
+    program->setFunction("geofx_osgearth_normal", normalCall, VirtualProgram::LOCATION_FRAGMENT_LIGHTING,
+                         -FLT_MAX);
+    program->setFunction("geofx_osgearth_color", normalOfHost + texts.fragment + colorCall,
+                         VirtualProgram::LOCATION_FRAGMENT_LIGHTING, FLT_MAX);
+    osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    state->setAttribute(program, osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
+    for (const char* morphing : {"OE_TERRAIN_MORPH_GEOMETRY", "OE_TERRAIN_MORPH_IMAGERY"})
+        state->setDefine(morphing, osg::StateAttribute::OFF | osg::StateAttribute::PROTECTED);
+    return state;
+}
+
+bool VirtualProgramHost::draws(const osg::StateAttribute& program) const
+{
+    return dynamic_cast<const osgEarth::VirtualProgram*>(&program) != nullptr;
+}
+
+} // namespace osgGeoFX
