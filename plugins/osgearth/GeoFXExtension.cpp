@@ -10,6 +10,7 @@
 #include "../geofx/SceneReach.h"
 
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/EngineTiles.h>
 
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
@@ -61,7 +62,7 @@ public:
             return false;
         }
         if (!takeUnits(*map, error)) OSG_WARN << "osgGeoFX: " << error << std::endl;
-        closeSeams(*map);
+        refineWhatIsSeen(*map);
         _scene->setShaderHost(new VirtualProgramHost);
         _scene->setEngineCulling(read.scene->engine->culling);
         return true;
@@ -100,15 +101,20 @@ private:
         return result;
     }
 
-    /// Between tiles of several levels, whose vertices do not move towards each other while effects are drawn.
-    static void closeSeams(osgEarth::MapNode& map)
+    /// The engine's own levels go by distances and by a frustum that contains all that is shown.
+    static void refineWhatIsSeen(osgEarth::MapNode& map)
     {
-        constexpr float ofTileWidth = 0.05f;
-        auto* engine = dynamic_cast<osgEarth::TerrainEngineNode*>(map.getTerrainEngine());
+        osgEarth::TerrainEngine* engine = map.getTerrainEngine();
         if (!engine) return;
-        // The engine has a copy of the map's.
-        osgEarth::TerrainOptionsAPI options = engine->getOptions();
-        if (options.getHeightFieldSkirtRatio() <= 0.0f) options.setHeightFieldSkirtRatio(ofTileWidth);
+        engine->setComputeTileRangeCallback([](osg::Node* tile, osg::NodeVisitor& visitor)
+                                            { return isTileOutOfSight(*tile, visitor) ? 0.0f : -1.0f; });
+        engine->setComputeTilePixelSizeCallback([](osg::Node* tile, osg::NodeVisitor& visitor)
+                                                { return isTileOutOfSight(*tile, visitor) ? 1e-6f : -1.0f; });
+        if (engine->getOptions().getHeightFieldSkirtRatio() <= 0.0f)
+            OSG_WARN << "osgGeoFX: the map's terrain has no skirts, so seams between its levels of detail may "
+                        "show under the effects of <geofx>; write <terrain skirt_ratio=\"0.05\"/> in the "
+                        "<options> of the map."
+                     << std::endl;
     }
 
     bool takeUnits(osgEarth::MapNode& map, std::string& error)

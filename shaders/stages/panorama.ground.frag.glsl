@@ -110,7 +110,11 @@ vec4 SLOT_color(vec4 color)
     vec4 fine = texture(SLOT_brush, SLOT_texels.zw);
     vec4 coarse = texture(SLOT_brush, 0.5 * SLOT_texels.zw);
     vec4 brush = 2.0 * mix(fine, coarse, SLOT_hand.y) - 1.0;
+#ifdef GEOFX_HOST_NORMAL
+    vec3 towards = SLOT_light.xyz; // an engine has lights of its own
+#else
     vec3 towards = SLOT_hand.w > 0.5 ? normalize(gl_LightSource[0].position.xyz) : SLOT_light.xyz;
+#endif
     vec3 turned = normalize(facing.xyz + SLOT_hand.x * (brush.x * normalize(SLOT_brushX.xyz) +
                                                     brush.y * normalize(SLOT_brushY.xyz)));
     vec2 picture = (gl_FragCoord.xy - SLOT_window.xy) * SLOT_window.zw;

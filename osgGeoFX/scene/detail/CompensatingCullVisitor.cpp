@@ -326,6 +326,16 @@ bool CompensatingCullVisitor::outOfSight(const osg::Node& node)
     return out && !partsInSight(node, undeformed);
 }
 
+bool CompensatingCullVisitor::leavesOut(const osg::Node& node)
+{
+    if (!_mode.ours || !_task.compensate) return false;
+    const Mode former = _mode;
+    _mode.planes = _sight.all();
+    const bool out = outOfSight(node);
+    _mode = former;
+    return out;
+}
+
 bool CompensatingCullVisitor::partsInSight(const osg::Node& node, const Ball& undeformed)
 {
     if (_mode.chain->empty()) return false;

@@ -107,6 +107,9 @@ public:
     /// What is to be said once, from the last run; empty as a rule.
     const std::string& complaint() const { return _drawables.complaint(); }
 
+    /// Whether a node at the current matrix is out of sight; nothing of it has been culled then.
+    bool leavesOut(const osg::Node& node);
+
     using osgUtil::CullVisitor::apply;
     void apply(osg::Node& node) override;
     void apply(osg::Geode& node) override;

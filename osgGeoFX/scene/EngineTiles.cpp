@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/scene/EngineTiles.h>
+
+#include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
+
+namespace osgGeoFX
+{
+
+bool isTileOutOfSight(const osg::Node& tile, osg::NodeVisitor& visitor)
+{
+    auto* const ours = dynamic_cast<CompensatingCullVisitor*>(&visitor);
+    return ours && ours->leavesOut(tile);
+}
+
+} // namespace osgGeoFX

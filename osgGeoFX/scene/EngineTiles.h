@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+
+#include <osg/Node>
+#include <osg/NodeVisitor>
+
+namespace osgGeoFX
+{
+
+/** Whether a tile of a terrain engine is out of sight, so that finer tiles need not be loaded for it.
+
+    For engines below an EffectScene that choose levels of detail by themselves, and ask a callback for each tile, as osgEarth
+    does (`TerrainEngine::setComputeTileRangeCallback`): a range of 0 keeps such a tile as it is. The engine's own frustum and
+    distances know less. A deformation may need a much wider frustum than the picture, and the levels of a panorama map
+    do not fall with the distance.
+
+    `tile`: its bounding sphere is in the frame of the visitor's current modelview matrix. `visitor`: the cull visitor that
+    the engine is traversed by. False for visitors of another kind than the scene's own, so the callback may stay where
+    effects are off. In a pass, such as a close-up's, the tile is out of sight where the pass needs nothing of it.
+
+    Threads: as for the visitor.
+
+    @ingroup scene */
+OSGGEOFX_EXPORT bool isTileOutOfSight(const osg::Node& tile, osg::NodeVisitor& visitor);
+
+} // namespace osgGeoFX
