@@ -267,8 +267,26 @@ double PanoramaSnapshot::longestEdge(const Ball& ball, double tolerance) const
     return std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
 }
 
+bool PanoramaSnapshot::isAroundTheEarth(const Ball& ball, const osg::Vec2d& room) const
+{
+    const double k = _view.globe.curvature;
+    if (!(k > 0.0)) return false;
+    const glm::dvec3 center = -(_view.globe.height + 1.0 / k) * _view.globe.up;
+    const glm::dvec3 away = toGlm(ball.center) - center;
+    const double distance = glm::length(away);
+    if (ball.radius >= distance) return false;
+    // Verticals of the ellipsoid miss the center by a little. The projection is equidistant, so an arc is a distance.
+    constexpr double flat = 0.02;
+    const double angle = std::acos(std::clamp(glm::dot(away, _view.globe.up) / distance, -1.0, 1.0));
+    const double least = angle - (1.0 + flat) * std::asin(ball.radius / distance) - flat * angle;
+    const double shown =
+        std::hypot((beside + room.x()) / _view.across, 2.0 * _view.end - _view.horizon) * k * (1.0 + flat);
+    return least > shown;
+}
+
 bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
 {
+    if (isAroundTheEarth(ball, room)) return true;
     const Extent extent = extentOf(ball);
     const double nearS = extent.place.y - extent.reach;
     const double farS = extent.place.y + extent.reach;

@@ -177,6 +177,9 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _scale = largestScale(*getModelViewMatrix());
     _drawables.begin(
         {_outerNearFar != DO_NOT_COMPUTE_NEAR_FAR, _outerCullingMode != NO_CULLING, task.debugBounds});
+    // The drawables of engines are as large as the terrain, and say nothing of near and far.
+    if (_task.open && _outerNearFar != DO_NOT_COMPUTE_NEAR_FAR && std::isfinite(_proxyDepths.second))
+        _drawables.depths().include(_proxyDepths.first, _proxyDepths.second);
 }
 
 void CompensatingCullVisitor::pushMatrices(osgUtil::CullVisitor& outer)
@@ -194,7 +197,8 @@ void CompensatingCullVisitor::pushMatrices(osgUtil::CullVisitor& outer)
     osg::RefMatrix* modelView =
         _task.stage ? createOrReuseMatrix(own ? own->modelView : osg::Matrixd(*outer.getModelViewMatrix()))
                     : outer.getModelViewMatrix();
-    pushReferenceViewPoint(_task.proxy  ? setProxy(*modelView)
+    const osg::Vec3 proxyPoint = _task.open ? setProxy(*modelView) : osg::Vec3();
+    pushReferenceViewPoint(_task.proxy  ? proxyPoint
                            : _task.open ? raisedViewPoint()
                                         : outer.getReferenceViewPoint());
     pushModelViewMatrix(modelView, osg::Transform::RELATIVE_RF);

@@ -19,6 +19,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -304,6 +305,7 @@ private:
     osg::ref_ptr<osg::RefMatrix> _projection,
         _proxy;            ///< that of the picture, and the one that engines cull by
     bool _proxied = false; ///< whether the second one is in force
+    std::pair<double, double> _proxyDepths; ///< near and far of the ground that is shown
     CullingMode _outerCullingMode = 0;
     ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;
     bool _mayBeSmall = false; ///< what is looked at is never left out for being small

@@ -7,6 +7,7 @@
 #include <osgGeoFX/scene/detail/CullVisitorAccess.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <iterator>
 #include <typeinfo>
@@ -16,13 +17,17 @@ namespace osgGeoFX
 
 bool CompensatingCullVisitor::comesWithOsg(const osg::Object* object)
 {
-    // A class of a host's that does not say its library has that of its base class, but not its namespace.
-    if (!std::strstr(typeid(*object).name(), "osg")) return false;
     static const char* const libraries[] = {"osg",         "osgText", "osgSim",       "osgTerrain",
                                             "osgParticle", "osgFX",   "osgAnimation", "osgGeoFX"};
     const char* const own = object->libraryName();
-    return std::any_of(std::begin(libraries), std::end(libraries),
-                       [own](const char* library) { return std::strcmp(own, library) == 0; });
+    const auto library = std::find_if(std::begin(libraries), std::end(libraries),
+                                      [own](const char* each) { return std::strcmp(own, each) == 0; });
+    if (library == std::end(libraries)) return false;
+    // A class of a host's that does not say its library has that of its base class, but not its namespace. A name between
+    // letters is part of another one, as in osgEarth.
+    const char* const name = typeid(*object).name();
+    const char* const found = std::strstr(name, *library);
+    return found && !std::isalpha(static_cast<unsigned char>(found[std::strlen(*library)]));
 }
 
 void CompensatingCullVisitor::setHost(osgUtil::CullVisitor& outer)

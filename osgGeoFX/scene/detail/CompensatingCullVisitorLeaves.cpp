@@ -89,7 +89,8 @@ void CompensatingCullVisitor::place(osg::Drawable& drawable)
 {
     double depth = 0.0;
     const osg::Matrixd matrix = viewMatrix();
-    const DrawableSight::Place where = {*_mode.chain, matrix, _scale, _mode.planes, _mode.tile};
+    const bool ofEngine = _task.open && !_mode.chain->empty() && !comesWithOsg(&drawable);
+    const DrawableSight::Place where = {*_mode.chain, matrix, _scale, _mode.planes, _mode.tile, !ofEngine};
     if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
     addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
     drawCompanions(drawable, getModelViewMatrix(), depth);

@@ -181,8 +181,16 @@ osg::Vec3 CompensatingCullVisitor::setProxy(const osg::Matrixd& modelView)
     const ProxyFrustum::Terrain terrain = {
         _task.bound, modelView, _task.image ? _task.image->toView : osg::Matrixd(), up, view.ground};
     const ProxyFrustum proxy(terrain, [this](const EyeBox& box)
-                             { return _sight.outOfSight(*_task.chain, box, _sight.all()); });
+                             { return _sight.outOfSight(*_task.chain, box, _sight.all()); },
+                             [this](const EyeBox& box)
+                             {
+                                 const Ball ball = _task.chain->bound(box.ball());
+                                 const osg::Vec4d along = _sight.depths();
+                                 const double depth = along * osg::Vec4d(ball.center, 1.0);
+                                 return std::pair(depth - ball.radius, depth + ball.radius);
+                             });
     _proxy = createOrReuseMatrix(proxy.projection());
+    _proxyDepths = proxy.depths();
     return proxy.viewPoint() ? osg::Vec3(*proxy.viewPoint()) : raisedViewPoint();
 }
 

@@ -30,7 +30,7 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
         const Ball roughly = place.chain.bound({osg::Vec3d(sphere.center()) * place.modelView,
                                                 static_cast<double>(sphere.radius()) * place.scale});
         depth = _depths.depthOf(roughly.center);
-        if (!_wishes.depths || _depths.covers(roughly)) return true;
+        if (!_wishes.depths || !place.depthCounts || _depths.covers(roughly)) return true;
     }
     const EyeBox box = EyeBox::of(bounds, place.modelView);
     const Ball deformed = place.chain.bound(box.ball());
@@ -47,7 +47,7 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     {
         if (_complaint.empty()) _complaint = snapshot->complaint(box);
     }
-    if (_wishes.depths) _depths.add(box, deformed, place.chain);
+    if (_wishes.depths && place.depthCounts) _depths.add(box, deformed, place.chain);
     if (_wishes.bounds) _bounds.add(box, place.chain);
     return true;
 }

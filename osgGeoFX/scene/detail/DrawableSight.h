@@ -37,6 +37,7 @@ public:
         double scale;                  ///< of that
         Visibility::Mask planes;       ///< that it may cross
         bool smallCounts;              ///< whether its size tells
+        bool depthCounts = true;       ///< for near and far
     };
     /// False if the drawable is out of sight. Otherwise `depth` is the depth of its middle, metres.
     bool inSight(const osg::Drawable& drawable, const Place& place, double& depth);

@@ -201,7 +201,8 @@ void DepthRange::measure(Candidate& candidate)
         nearest = std::min(nearest, depthOf(point));
         farthest = std::max(farthest, depthOf(point));
     }
-    include(nearest - _hull.margin, farthest + _hull.margin);
+    if (std::isfinite(nearest - _hull.margin) && std::isfinite(farthest + _hull.margin))
+        include(nearest - _hull.margin, farthest + _hull.margin);
     // The candidate is done.
     candidate.nearest = DBL_MAX;
     candidate.farthest = -DBL_MAX;

@@ -34,8 +34,8 @@ enum Side : std::size_t
 
 } // namespace
 
-ProxyFrustum::ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight)
-    : _terrain(terrain), _outOfSight(outOfSight)
+ProxyFrustum::ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight, const DepthsOf& depthsOf)
+    : _terrain(terrain), _outOfSight(outOfSight), _depthsOf(depthsOf)
 {
     osg::BoundingBox all;
     all.expandBy(terrain.bound);
@@ -50,6 +50,17 @@ ProxyFrustum::ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight)
     refine();
     setProjection();
     if (terrain.ground.ellipsoid) setViewPoint();
+}
+
+std::pair<double, double> ProxyFrustum::depths() const
+{
+    double nearest = HUGE_VAL, farthest = -HUGE_VAL;
+    for (const Cell& cell : _cells)
+    {
+        nearest = std::min(nearest, -cell.depths[0]);
+        farthest = std::max(farthest, cell.depths[1]);
+    }
+    return {nearest, farthest};
 }
 
 bool ProxyFrustum::awayFromGround(const osg::BoundingBox& box) const
@@ -118,6 +129,10 @@ std::optional<ProxyFrustum::Cell> ProxyFrustum::cellOf(const osg::BoundingBox& b
     for (std::size_t i = 0; i < shapes; ++i)
         cell.reach[i] = reachOf(_shapes[i], box);
     cell.coarseness = size / std::max(middle.length() - 0.5 * size, 0.1 * size);
+    const auto [nearest, farthest] = _depthsOf(EyeBox::of(box, _terrain.modelView * _terrain.toView));
+    // What is behind the eye does not count, and what cannot be told is to be split.
+    cell.depths = {std::isnan(nearest) ? HUGE_VAL : -std::max(nearest, 0.0),
+                   std::isnan(farthest) ? HUGE_VAL : farthest};
     return cell;
 }
 
@@ -140,24 +155,34 @@ void ProxyFrustum::split(std::size_t index)
     if (second) _cells.push_back(*second);
 }
 
+std::size_t ProxyFrustum::worstCell() const
+{
+    constexpr std::size_t ofShapes = Box * sides, measures = ofShapes + 2;
+    const auto reach = [](const Cell& cell, std::size_t measure)
+    {
+        return measure < ofShapes ? cell.reach[measure / sides][measure % sides]
+                                  : cell.depths[measure - ofShapes];
+    };
+    std::size_t worst = 0;
+    for (std::size_t measure = 0; measure < measures; ++measure)
+    {
+        std::size_t furthest = 0;
+        for (std::size_t j = 1; j < _cells.size(); ++j)
+        {
+            const double further = reach(_cells[j], measure) - reach(_cells[furthest], measure);
+            if (further > 0.0 || (!(further < 0.0) && _cells[j].coarseness > _cells[furthest].coarseness))
+                furthest = j;
+        }
+        if (_cells[furthest].coarseness > _cells[worst].coarseness || measure == 0) worst = furthest;
+    }
+    return worst;
+}
+
 void ProxyFrustum::refine()
 {
     for (int step = 0; step < mostSplits && !_cells.empty(); ++step)
     {
-        // The coarsest one of those that reach furthest to some side of some shape.
-        std::size_t worst = 0;
-        for (std::size_t i = 0; i < Box * sides; ++i)
-        {
-            const std::size_t shape = i / sides, side = i % sides;
-            std::size_t furthest = 0;
-            for (std::size_t j = 1; j < _cells.size(); ++j)
-            {
-                const double further = _cells[j].reach[shape][side] - _cells[furthest].reach[shape][side];
-                if (further > 0.0 || (!(further < 0.0) && _cells[j].coarseness > _cells[furthest].coarseness))
-                    furthest = j;
-            }
-            if (_cells[furthest].coarseness > _cells[worst].coarseness || i == 0) worst = furthest;
-        }
+        const std::size_t worst = worstCell();
         if (_cells[worst].coarseness <= fineness) break;
         split(worst);
     }

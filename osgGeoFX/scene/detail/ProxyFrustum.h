@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -38,13 +39,20 @@ public:
     /// Whether a box, undeformed, in the view's eye space, is out of sight once it is deformed.
     using OutOfSight = std::function<bool(const EyeBox&)>;
 
-    ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight);
+    /// The least and the greatest depth that a box has once it is deformed; any numbers, also infinite ones.
+    using DepthsOf = std::function<std::pair<double, double>(const EyeBox&)>;
+
+    ProxyFrustum(const Terrain& terrain, const OutOfSight& outOfSight, const DepthsOf& depthsOf);
 
     /// From the eye space of the camera to clip coordinates.
     const osg::Matrixd& projection() const { return _projection; }
     /// A point above the eye, in the eye space of the camera, from which all that is shown is above the horizon. Empty if no
     /// height is enough, or if there is no ellipsoid.
     const std::optional<osg::Vec3d>& viewPoint() const { return _viewPoint; }
+
+    /// The least and the greatest depth of the deformed ground that is shown, metres; the first one is the greater one where
+    /// nothing is.
+    std::pair<double, double> depths() const;
 
 private:
     static constexpr std::size_t sides = 6;
@@ -67,6 +75,7 @@ private:
         osg::BoundingBox box;            ///< in the terrain's frame
         std::array<Reach, shapes> reach; ///< infinite where a corner does not lie in front of the tip
         double coarseness = 0;           ///< its size over its distance from the eye
+        std::array<double, 2> depths{};  ///< how far forward and back it goes, deformed; a larger number is further out
     };
 
     void setShapes();
@@ -74,6 +83,8 @@ private:
     Reach reachOf(const Shape& shape, const osg::BoundingBox& box) const;
     bool awayFromGround(const osg::BoundingBox& box) const;
     void refine();
+    /// The coarsest one of the cells that reach furthest, by each of several measures.
+    std::size_t worstCell() const;
     void split(std::size_t index);
     Reach reachOf(std::size_t shape) const;
     osg::Matrixd projectionOf(std::size_t shape) const;
@@ -82,6 +93,7 @@ private:
 
     const Terrain& _terrain;
     const OutOfSight& _outOfSight;
+    const DepthsOf& _depthsOf;
     std::array<Shape, shapes> _shapes;
     std::vector<Cell> _cells;
     osg::Matrixd _projection;
