@@ -40,6 +40,7 @@
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectCullCallback.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/EngineTiles.h>
 #include <osgGeoFX/scene/MeshRefiner.h>
 #include <osgGeoFX/scene/ProgramAdapter.h>
 #include <osgGeoFX/scene/RigidReference.h>

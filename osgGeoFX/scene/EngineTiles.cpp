@@ -13,4 +13,10 @@ bool isTileOutOfSight(const osg::Node& tile, osg::NodeVisitor& visitor)
     return ours && ours->leavesOut(tile);
 }
 
+double tilePixelSize(const osg::Node& tile, osg::NodeVisitor& visitor)
+{
+    auto* const ours = dynamic_cast<CompensatingCullVisitor*>(&visitor);
+    return ours ? ours->pixelSize(tile) : -1.0;
+}
+
 } // namespace osgGeoFX

@@ -26,4 +26,13 @@ namespace osgGeoFX
     @ingroup scene */
 OSGGEOFX_EXPORT bool isTileOutOfSight(const osg::Node& tile, osg::NodeVisitor& visitor);
 
+/** How large the deformed picture shows a tile's bounding sphere, for engines that choose levels by that: pixels, as
+    osg::CullStack::clampedPixelSize() measures them, over the visitor's LOD scale. What the engine's own culling stack says is of
+    its frustum and not of the picture (`TerrainEngine::setComputeTilePixelSizeCallback`).
+
+    0 where isTileOutOfSight() is true. Negative for visitors that are not the scene's own, and where nothing is deformed.
+
+    @ingroup scene */
+OSGGEOFX_EXPORT double tilePixelSize(const osg::Node& tile, osg::NodeVisitor& visitor);
+
 } // namespace osgGeoFX

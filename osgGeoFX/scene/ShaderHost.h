@@ -10,6 +10,8 @@
 #include <osg/ref_ptr>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -38,6 +40,8 @@ struct ShaderTexts
         - `vec3 geofx_turnedNormal()`, with GEOFX_HOST_NORMAL: the normal of the deformed ground in the camera's eye space,
           to light with. */
     std::string fragment;
+    /// The uniform blocks of the texts, and the binding points that the programs must give them.
+    std::vector<std::pair<std::string, unsigned int>> blocks = {};
 };
 
 /** An engine that assembles its shaders itself, such as osgEarth with its VirtualProgram.

@@ -19,6 +19,7 @@
 #include <osgEarth/NodeUtils>
 #include <osgEarth/TerrainEngineNode>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -108,8 +109,14 @@ private:
         if (!engine) return;
         engine->setComputeTileRangeCallback([](osg::Node* tile, osg::NodeVisitor& visitor)
                                             { return isTileOutOfSight(*tile, visitor) ? 0.0f : -1.0f; });
-        engine->setComputeTilePixelSizeCallback([](osg::Node* tile, osg::NodeVisitor& visitor)
-                                                { return isTileOutOfSight(*tile, visitor) ? 1e-6f : -1.0f; });
+        engine->setComputeTilePixelSizeCallback(
+            [](osg::Node* tile, osg::NodeVisitor& visitor)
+            {
+                // osgEarth measures half of a tile's width; 0 would mean its own measure.
+                constexpr double halfWidth = 0.7, none = 1e-6;
+                const double size = tilePixelSize(*tile, visitor);
+                return static_cast<float>(size < 0.0 ? size : std::max(halfWidth * size, none));
+            });
         if (engine->getOptions().getHeightFieldSkirtRatio() <= 0.0f)
             OSG_WARN << "osgGeoFX: the map's terrain has no skirts, so seams between its levels of detail may "
                         "show under the effects of <geofx>; write <terrain skirt_ratio=\"0.05\"/> in the "

@@ -58,6 +58,8 @@ osg::ref_ptr<osg::StateSet> VirtualProgramHost::addition(const ShaderTexts& text
                          -FLT_MAX);
     program->setFunction("geofx_osgearth_color", normalOfHost + texts.fragment + colorCall,
                          VirtualProgram::LOCATION_FRAGMENT_LIGHTING, FLT_MAX);
+    for (const auto& [name, binding] : texts.blocks)
+        program->getTemplate()->addBindUniformBlock(name, binding);
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     state->setAttribute(program, osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
     for (const char* morphing : {"OE_TERRAIN_MORPH_GEOMETRY", "OE_TERRAIN_MORPH_IMAGERY"})

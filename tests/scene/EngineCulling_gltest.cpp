@@ -128,6 +128,40 @@ TEST_F(EngineCulling, OpenLosesNothing)
     EXPECT_LT(_engine->drawn, cells * cells);
 }
 
+// Tiles of which the picture shows nothing stay coarse, and all others are as fine as they were.
+TEST_F(EngineCulling, TilesThatAreOutOfSightAreToldFromOthers)
+{
+    const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+    const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({-300.0, 200.0});
+    _closeUps->addCloseUp(closeUp);
+    _scene->setEngineCulling(EffectScene::OPEN);
+    for (const std::vector<Effect*>& effects : {std::vector<Effect*>{bend}, std::vector<Effect*>{bend, _closeUps}})
+    {
+        for (Effect* each : effects)
+            _scene->addEffect(each);
+        Random random(8);
+        int all = 0, told = 0;
+        for (int i = 0; i < 10; ++i)
+        {
+            SCOPED_TRACE("camera " + std::to_string(i));
+            lookAnyhow(random);
+            if (!isDeformed()) continue;
+            _engine->asks = false;
+            const osg::ref_ptr<osg::Image> expected = draw();
+            all += _engine->fine;
+            _engine->asks = true;
+            EXPECT_TRUE(same(*draw(), *expected));
+            told += _engine->fine;
+        }
+        EXPECT_LT(told, 0.7 * all);
+        EXPECT_GT(told, 0);
+        for (Effect* each : effects)
+            _scene->removeEffect(each);
+    }
+    osg::ref_ptr<osgUtil::CullVisitor> plain = new osgUtil::CullVisitor;
+    EXPECT_FALSE(isTileOutOfSight(*_engine, *plain));
+}
+
 // What the engine gets to cull by contains all that the picture shows, and not much more.
 TEST_F(EngineCulling, AProxyLosesNothingAndKeepsLittleElse)
 {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // An engine that assembles its shaders itself, and draws with programs of a class of its own, as osgEarth does.
+#include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/scene/ShaderHost.h>
 #include <tools/BentGround.h>
@@ -42,7 +43,8 @@ public:
     Engine()
     {
         assemble({"vec4 geofx_vertex(vec4 eye) { return eye; }\n",
-                  "vec4 geofx_fragment(vec4 color, vec4 map) { return color + 0.0 * map; }\n"});
+                  "vec4 geofx_fragment(vec4 color, vec4 map) { return color + 0.0 * map; }\n",
+                  {}});
     }
     void use(const ShaderTexts& texts) override
     {
@@ -134,6 +136,135 @@ TEST_F(ShaderHosts, TextsHaveNoVersion)
     }
     EXPECT_NE(listener->texts.vertex.find("vec4 geofx_vertex(vec4 eyePosition)"), std::string::npos);
     EXPECT_NE(listener->texts.fragment.find("vec4 geofx_fragment(vec4 color, vec4 map)"), std::string::npos);
+}
+
+namespace
+{
+
+/// An engine whose programs are made of all those above them in the scene graph, as osgEarth's are.
+class AddingProgram : public osg::StateAttribute
+{
+public:
+    explicit AddingProgram(ShaderTexts added = {}) : texts(std::move(added)) {}
+    AddingProgram(const AddingProgram& other, const osg::CopyOp& copy)
+        : osg::StateAttribute(other, copy), texts(other.texts)
+    {
+    }
+    META_StateAttribute(engine, AddingProgram, PROGRAM);
+    int compare(const osg::StateAttribute& other) const override
+    {
+        return this < &other ? -1 : this > &other;
+    }
+    void apply(osg::State& state) const override
+    {
+        const auto& known = state.getAttributeVec(this);
+        ShaderTexts all = {"vec4 geofx_vertex(vec4 eye) { return eye; }\n",
+                           "vec4 geofx_fragment(vec4 color, vec4 map) { return color + 0.0 * map; }\n",
+                           {}};
+        for (const auto& each : known)
+        {
+            const auto* program = dynamic_cast<const AddingProgram*>(each.first);
+            if (program && !program->texts.vertex.empty()) all = program->texts;
+        }
+        if (!texts.vertex.empty()) all = texts;
+        if (!_joined || _vertex != all.vertex)
+        {
+            _vertex = all.vertex;
+            const std::string version = "#version 330 compatibility\n#line 1\n";
+            _joined = new osg::Program;
+            _joined->addShader(
+                new osg::Shader(osg::Shader::VERTEX,
+                                version + all.vertex +
+                                    "void main()\n{\n    vec4 eye = gl_ModelViewMatrix * gl_Vertex;\n"
+                                    "    vec4 placed = geofx_vertex(eye);\n"
+                                    "    gl_Position = placed == eye ? ftransform() : gl_ProjectionMatrix * placed;\n"
+                                    "    gl_FrontColor = gl_Color;\n}\n"));
+            _joined->addShader(
+                new osg::Shader(osg::Shader::FRAGMENT,
+                                version + all.fragment +
+                                    "void main() { gl_FragColor = geofx_fragment(gl_Color, vec4(0.0)); }\n"));
+            for (const auto& [name, binding] : all.blocks)
+                _joined->addBindUniformBlock(name, binding);
+        }
+        _joined->apply(state);
+    }
+
+    ShaderTexts texts;
+
+protected:
+    ~AddingProgram() override = default;
+
+private:
+    mutable osg::ref_ptr<osg::Program> _joined;
+    mutable std::string _vertex;
+};
+
+class AddingEngine : public ShaderHost
+{
+public:
+    osg::ref_ptr<osg::StateSet> addition(const ShaderTexts& texts) override
+    {
+        ++asked;
+        osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+        state->setAttribute(new AddingProgram(texts), osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
+        return state;
+    }
+    bool draws(const osg::StateAttribute& program) const override
+    {
+        return dynamic_cast<const AddingProgram*>(&program) != nullptr;
+    }
+    int asked = 0;
+};
+
+} // namespace
+
+// An addition is drawn below the engine's own programs, and nothing of them changes.
+TEST_F(ShaderHosts, AddToWhatTheyHave)
+{
+    const osg::ref_ptr<osg::Geometry> ground = makeGround();
+    // An override, such as a picker's, does not keep the effects from it.
+    ground->getOrCreateStateSet()->setAttribute(new AddingProgram,
+                                                osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE);
+    const osg::ref_ptr<AddingEngine> engine = new AddingEngine;
+    const osg::ref_ptr<EffectScene> kits = makeScene({makeGround()});
+    const osg::ref_ptr<EffectScene> engines = makeScene({ground});
+    engines->setShaderHost(engine);
+    EXPECT_TRUE(same(*render(engines), *render(kits)));
+    EXPECT_TRUE(same(*render(engines), *render(kits)));
+    EXPECT_EQ(engine->asked, 1);
+    const osg::ref_ptr<ProjectiveMappings> paint = makePaint();
+    kits->addEffect(paint);
+    engines->addEffect(paint);
+    EXPECT_TRUE(same(*render(engines), *render(kits)));
+    EXPECT_EQ(engine->asked, 2);
+    EXPECT_TRUE(same(*render(makePlain({ground})), *render(makePlain({makeGround()}))));
+}
+
+// Passes ask for additions of their own, so close-ups lift what such an engine draws.
+TEST_F(ShaderHosts, AddToPassesToo)
+{
+    const auto withCloseUp = [&](osg::Geometry* ground, ShaderHost* host)
+    {
+        const osg::ref_ptr<CloseUp> closeUp = new CloseUp;
+        closeUp->getRegion()->setCenter({0.0, 0.0});
+        closeUp->getRegion()->setSize(60.0, 60.0);
+        closeUp->setOffset({0.0, 0.0, 60.0});
+        const osg::ref_ptr<CloseUps> closeUps = new CloseUps;
+        closeUps->setPipeline(CloseUps::MULTI_PASS);
+        closeUps->setTessellation(1);
+        closeUps->addCloseUp(closeUp);
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        scene->addEffect(closeUps);
+        scene->addChild(ground);
+        scene->setShaderHost(host);
+        return render(scene);
+    };
+    const osg::ref_ptr<osg::Image> plain = render(makePlain({makeGround()}));
+    const osg::ref_ptr<osg::Geometry> ground = makeGround();
+    ground->getOrCreateStateSet()->setAttribute(new AddingProgram);
+    const osg::ref_ptr<osg::Image> kits = withCloseUp(makeGround(), nullptr);
+    EXPECT_GT(differing(*kits, *plain), 300);
+    EXPECT_TRUE(same(*withCloseUp(ground, new AddingEngine), *kits));
 }
 
 // Without the host's word, a program of another class is a stranger.

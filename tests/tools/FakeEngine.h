@@ -6,6 +6,7 @@
 #include <osg/CullStack>
 #include <osg/Geometry>
 #include <osg/Group>
+#include <osgGeoFX/scene/EngineTiles.h>
 #include <osgUtil/CullVisitor>
 
 #include <algorithm>
@@ -35,6 +36,8 @@ public:
     }
 
     bool culls = true; ///< false: it draws all tiles
+    bool asks = false; ///< whether it draws coarse what the kit says is out of sight
+    int fine = 0;      ///< fine tiles in all traversals of the last frame
     int drawn = 0;     ///< tiles in all traversals of the last frame
     int kept = 0;      ///< those of which the visitor draws something
 
@@ -56,14 +59,16 @@ public:
         if (const unsigned int frame = cull->getFrameStamp()->getFrameNumber(); frame != _frame)
         {
             _frame = frame;
-            drawn = kept = 0;
+            drawn = kept = fine = 0;
         }
         for (const Tile& tile : _tiles)
         {
             const osg::BoundingBox& box = tile.fine->getBoundingBox();
             if (culls && (stack.isCulled(box) || belowHorizon(eye, box))) continue;
             ++drawn;
-            const bool near = cull->getDistanceToViewPoint(box.center(), true) < static_cast<float>(_range);
+            const bool near = cull->getDistanceToViewPoint(box.center(), true) < static_cast<float>(_range) &&
+                              !(asks && osgGeoFX::isTileOutOfSight(*tile.fine, visitor));
+            fine += near ? 1 : 0;
             const unsigned int before = leavesIn(*cull->getCurrentRenderBin());
             (near ? tile.fine : tile.coarse)->accept(visitor);
             if (leavesIn(*cull->getCurrentRenderBin()) > before) ++kept;

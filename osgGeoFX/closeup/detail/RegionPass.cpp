@@ -5,6 +5,7 @@
 #include <osg/LineWidth>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace osgGeoFX
@@ -48,6 +49,20 @@ bool culls(const ScenePass& pass)
     return pass.compensate && (pass.outer.getCullingMode() & osg::CullSettings::VIEW_FRUSTUM_CULLING) != 0;
 }
 
+/// Engines draw a whole terrain as one drawable, whose bounds say nothing of the heights over a region. Nothing there is
+/// much higher or lower than the ground that they state.
+void limitHeights(const Ground& ground, const RegionOfInterest& region, RegionContents& found)
+{
+    if (!ground.heightsKnown || found.empty()) return;
+    constexpr double ofThings = 500.0;
+    const double base = region.getBaseHeight();
+    const double size = std::hypot(region.getWidth(), region.getDepth());
+    const double radius = ground.ellipsoid ? ground.ellipsoid->getRadiusPolar() : HUGE_VAL;
+    const double drop = size * size / (2.0 * radius); // the Earth's curve below the region's plane
+    found.lowest = std::max(found.lowest, ground.minHeight - base - drop - ofThings);
+    found.highest = std::min(found.highest, ground.maxHeight - base + ofThings);
+}
+
 } // namespace
 
 RegionPass::RegionPass(const ScenePass& scenePass, const CloseUpTask& task, CloseUpTraversal& needed,
@@ -77,6 +92,8 @@ RegionSurvey RegionPass::run(std::vector<std::size_t> wanted, const RegionFilter
 {
     RegionFilter filter(items, std::move(wanted), culls(pass), traversal.copies, _tessellated, statesOf);
     pass.draw({traversal.program, &traversal.states.base(), stage, chain, &filter});
+    for (std::size_t i = 0; i < items.size(); ++i)
+        limitHeights(pass.view.ground, *items[i].closeUp().getRegion(), filter.found.contents[i]);
     return std::move(filter.found);
 }
 

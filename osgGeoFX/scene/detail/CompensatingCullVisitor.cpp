@@ -340,6 +340,17 @@ bool CompensatingCullVisitor::leavesOut(const osg::Node& node)
     return out;
 }
 
+double CompensatingCullVisitor::pixelSize(const osg::Node& node)
+{
+    if (!_mode.ours || !_task.compensate || _mode.chain->empty()) return -1.0;
+    if (leavesOut(node)) return 0.0;
+    const Ball ball = eyeBall(node.getBound());
+    const double distance = std::max(_mode.chain->lodDistance(ball, viewPoint()), 1e-3);
+    // Straight ahead, since the distance says already where in the picture it is.
+    const double pixel = _sight.radiusOfPixel(osg::Vec3d(0.0, 0.0, -distance));
+    return ball.radius / std::max(std::abs(pixel), 1e-30) / static_cast<double>(getLODScale());
+}
+
 bool CompensatingCullVisitor::partsInSight(const osg::Node& node, const Ball& undeformed)
 {
     if (_mode.chain->empty()) return false;

@@ -110,6 +110,8 @@ public:
 
     /// Whether a node at the current matrix is out of sight; nothing of it has been culled then.
     bool leavesOut(const osg::Node& node);
+    /// The size in pixels of a node's deformed bounding sphere, as tilePixelSize() has it.
+    double pixelSize(const osg::Node& node);
 
     using osgUtil::CullVisitor::apply;
     void apply(osg::Node& node) override;

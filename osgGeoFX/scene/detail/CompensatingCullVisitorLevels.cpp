@@ -191,6 +191,11 @@ osg::Vec3 CompensatingCullVisitor::setProxy(const osg::Matrixd& modelView)
                              });
     _proxy = createOrReuseMatrix(proxy.projection());
     _proxyDepths = proxy.depths();
+    // Bounds of large boxes are loose. No deformation makes a globe larger than some Earths.
+    constexpr double earths = 4.0;
+    if (view.ground.ellipsoid)
+        _proxyDepths.second =
+            std::min(_proxyDepths.second, earths * view.ground.ellipsoid->getRadiusEquator() + view.eyeHeight);
     return proxy.viewPoint() ? osg::Vec3(*proxy.viewPoint()) : raisedViewPoint();
 }
 

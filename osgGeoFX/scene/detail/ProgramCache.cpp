@@ -77,9 +77,13 @@ osg::ref_ptr<osg::StateSet> ProgramCache::additionOf(ShaderHost& host, const Eff
     pass.addition = nullptr;
     if (EffectProgram::isPassOfTwoStages(*program) && pass.shaders.vertexMain.empty() &&
         pass.shaders.fragmentMain.empty())
-        pass.addition = host.addition(
-            {EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::VERTEX),
-             EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::FRAGMENT)});
+    {
+        ShaderTexts texts = {EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::VERTEX),
+                             EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::FRAGMENT)};
+        for (const auto& [name, binding] : pass.shaders.blocks)
+            texts.blocks.emplace_back(pass.prefix + name, binding);
+        pass.addition = host.addition(texts);
+    }
     return pass.addition;
 }
 

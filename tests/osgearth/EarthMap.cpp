@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "EarthMap.h"
+
+#include <osgGeoFX/offscreen/EglGraphicsContext.h>
+#include <tools/TempDir.h>
+#include <tools/TestRasters.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/Math>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+#include <osgEarth/GLUtils>
+#include <osgEarth/Registry>
+#include <osgEarth/weejobs.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+namespace geofx::test
+{
+
+namespace
+{
+
+/// osgEarth makes a context of its own to see what the driver can do.
+class EglContexts : public osg::GraphicsContext::WindowingSystemInterface
+{
+public:
+    unsigned int getNumScreens(const osg::GraphicsContext::ScreenIdentifier&) override { return 1; }
+    void getScreenSettings(const osg::GraphicsContext::ScreenIdentifier&,
+                           osg::GraphicsContext::ScreenSettings& settings) override
+    {
+        settings.width = 1920;
+        settings.height = 1080;
+    }
+    bool setScreenSettings(const osg::GraphicsContext::ScreenIdentifier&,
+                           const osg::GraphicsContext::ScreenSettings&) override
+    {
+        return false;
+    }
+    void enumerateScreenSettings(const osg::GraphicsContext::ScreenIdentifier&,
+                                 osg::GraphicsContext::ScreenSettingsList&) override
+    {
+    }
+    osg::GraphicsContext* createGraphicsContext(osg::GraphicsContext::Traits* traits) override
+    {
+        osg::ref_ptr<osgGeoFX::EglGraphicsContext> context = new osgGeoFX::EglGraphicsContext(traits);
+        return context->valid() ? context.release() : nullptr;
+    }
+};
+
+void initialize()
+{
+    static const bool once = []
+    {
+        const auto systems = osg::GraphicsContext::getWindowingSystemInterfaces();
+        systems->getInterfaces().insert(systems->getInterfaces().begin(), new EglContexts);
+        osgEarth::initialize();
+        // Loaded at its first use, and not in silence.
+        osgDB::Registry::instance()->getImageProcessorForExtension("fastdxt");
+        return true;
+    }();
+    (void)once;
+}
+
+class Capture : public osg::Camera::DrawCallback
+{
+public:
+    void operator()(osg::RenderInfo&) const override
+    {
+        image->readPixels(0, 0, 320, 200, GL_RGB, GL_UNSIGNED_BYTE);
+    }
+    const osg::ref_ptr<osg::Image> image = new osg::Image;
+};
+
+class SceneFinder : public osg::NodeVisitor
+{
+public:
+    SceneFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    void apply(osg::Group& node) override
+    {
+        if (!found) found = dynamic_cast<osgGeoFX::EffectScene*>(&node);
+        if (!found && !dynamic_cast<osgEarth::MapNode*>(&node)) traverse(node);
+    }
+    osgGeoFX::EffectScene* found = nullptr;
+};
+
+} // namespace
+
+EarthMaps::EarthMaps() : _folder(std::make_unique<TempDir>()) {}
+EarthMaps::~EarthMaps() = default;
+
+void EarthMaps::SetUp()
+{
+    initialize();
+    constexpr int side = 400;
+    writeRelief(_folder->path() / "hills.tif", side, side, 10.0, 1.0, 1.0 / side);
+    TestRaster(side, side, 3, GDT_Byte)
+        .placed(10.0, 1.0, 1.0 / side, 1.0 / side)
+        .crs("EPSG:4326")
+        .fill([](int column, int row, int band)
+              { return 60.0 + 40.0 * ((column / (8 + 5 * band) + row / (11 - 3 * band)) % 4); })
+        .write(_folder->path() / "picture.tif");
+}
+
+std::string EarthMaps::extension(const std::string& effects, const std::string& culling)
+{
+    return "<geofx version=\"1\"><terrain><engine minHeight=\"-10\" maxHeight=\"1100\" culling=\"" + culling +
+           "\"/></terrain><effects>" + effects + "</effects></geofx>";
+}
+
+bool EarthMaps::startViewer()
+{
+    // One for all tests: osgEarth keeps OpenGL objects by context, and does not expect a context to go.
+    // It stays until the program ends, after osgEarth's own registries.
+    static auto* const viewer = new osg::ref_ptr<osgViewer::Viewer>;
+    if ((_viewer = *viewer)) return true;
+    const osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+    traits->width = WIDTH;
+    traits->height = HEIGHT;
+    traits->depth = 24;
+    traits->alpha = 8;
+    traits->pbuffer = true;
+    traits->doubleBuffer = false;
+    const osg::ref_ptr<osgGeoFX::EglGraphicsContext> context = new osgGeoFX::EglGraphicsContext(traits);
+    if (!context->valid())
+    {
+        ADD_FAILURE() << context->error();
+        return false;
+    }
+    _viewer = *viewer = new osgViewer::Viewer;
+    _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    camera().setGraphicsContext(context);
+    camera().setViewport(0, 0, WIDTH, HEIGHT);
+    camera().setDrawBuffer(GL_FRONT);
+    camera().setReadBuffer(GL_FRONT);
+    camera().setClearColor({0.7f, 0.8f, 0.9f, 1.0f});
+    _viewer->setRealizeOperation(new osgEarth::GL3RealizeOperation);
+    _viewer->realize();
+    return true;
+}
+
+bool EarthMaps::show(const std::string& geofx, const std::string& terrainOptions)
+{
+    _file = (_folder->path() / "map.earth").string();
+    std::ofstream(_file) << "<map name=\"hills\" version=\"3\">\n<options><terrain " << terrainOptions
+                         << " color=\"#7f9f5f\"/></options>\n"
+                         << "<GDALImage name=\"picture\"><url>picture.tif</url></GDALImage>\n"
+                         << "<GDALElevation name=\"hills\"><url>hills.tif</url></GDALElevation>\n"
+                         << geofx << "\n</map>\n";
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(_file);
+    _map = osgEarth::MapNode::get(node.get());
+    if (!_map)
+    {
+        ADD_FAILURE() << "no map";
+        return false;
+    }
+    if (!startViewer()) return false;
+    _root = new osg::Group;
+    _root->addChild(node);
+    _viewer->setSceneData(_root);
+    setProjection(20.0, 2e7);
+    camera().setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    // The map puts its extensions in place in the first frame.
+    _viewer->frame();
+    return true;
+}
+
+void EarthMaps::setProjection(double near, double far)
+{
+    _projection.makePerspective(40.0, static_cast<double>(WIDTH) / HEIGHT, near, far);
+}
+
+osgGeoFX::EffectScene* EarthMaps::scene()
+{
+    SceneFinder finder;
+    _root->accept(finder);
+    return finder.found;
+}
+
+osg::ref_ptr<osg::Image> EarthMaps::draw(double longitude, double latitude, double height, double heading,
+                                         double pitch)
+{
+    osg::Matrixd ground;
+    osg::EllipsoidModel().computeLocalToWorldTransformFromLatLongHeight(
+        osg::DegreesToRadians(latitude), osg::DegreesToRadians(longitude), height, ground);
+    const osg::Matrixd turn =
+        osg::Matrixd::rotate(osg::DegreesToRadians(90.0 + pitch), osg::Vec3d(1.0, 0.0, 0.0)) *
+        osg::Matrixd::rotate(-osg::DegreesToRadians(heading), osg::Vec3d(0.0, 0.0, 1.0));
+    camera().setViewMatrix(osg::Matrixd::inverse(turn * ground));
+    // Tiles are loaded, then merged, then drawn.
+    constexpr int still = 10, most = 2000;
+    for (int i = 0, quiet = 0; i < most && quiet < still; ++i)
+    {
+        // What computes near and far leaves them in the projection.
+        camera().setProjectionMatrix(_projection);
+        _viewer->frame();
+        const bool busy = jobs::get_metrics()->total() > 0;
+        quiet = busy ? 0 : quiet + 1;
+        if (busy) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    const osg::ref_ptr<Capture> capture = new Capture;
+    camera().setFinalDrawCallback(capture);
+    camera().setProjectionMatrix(_projection);
+    _viewer->frame();
+    camera().setFinalDrawCallback(nullptr);
+    return capture->image;
+}
+
+int EarthMaps::differing(const osg::Image& a, const osg::Image& b)
+{
+    int count = 0;
+    for (int y = 0; y < HEIGHT; ++y)
+    {
+        for (int x = 0; x < WIDTH; ++x)
+            count += std::equal(a.data(x, y), a.data(x, y) + 3, b.data(x, y)) ? 0 : 1;
+    }
+    return count;
+}
+
+} // namespace geofx::test

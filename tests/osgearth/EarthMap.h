@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/scene/EffectScene.h>
+
+#include <osgEarth/MapNode>
+#include <osgViewer/Viewer>
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+namespace geofx::test
+{
+
+class TempDir;
+
+/** Maps of osgEarth in an OpenGL context without a window: hills of 1 degree at the equator, 0…1000 m high, in several
+    colors and without light, on a globe. */
+class EarthMaps : public testing::Test
+{
+protected:
+    static constexpr int WIDTH = 320, HEIGHT = 200;
+
+    EarthMaps();
+    ~EarthMaps() override;
+    void SetUp() override;
+
+    /// Writes an .earth file with an extension's element, and shows it. False, after a failure, if it cannot be read.
+    bool show(const std::string& geofx, const std::string& terrainOptions = "skirt_ratio=\"0.05\"");
+    /// What scene files have in <effects>, as an extension.
+    static std::string extension(const std::string& effects, const std::string& culling = "proxy");
+    /// A picture from a place, degrees and metres, when all tiles have come.
+    osg::ref_ptr<osg::Image> draw(double longitude, double latitude, double height, double heading,
+                                  double pitch);
+    /// Pixels that differ.
+    static int differing(const osg::Image& a, const osg::Image& b);
+
+    osgViewer::Viewer& viewer() { return *_viewer; }
+    osg::Camera& camera() { return *_viewer->getCamera(); }
+    /// The scene of the extension; null for none.
+    osgGeoFX::EffectScene* scene();
+    osgEarth::MapNode& map() { return *_map; }
+    const std::string& file() const { return _file; }
+    /// The projection that each picture begins with.
+    void setProjection(double near, double far);
+
+private:
+    bool startViewer();
+
+    std::unique_ptr<TempDir> _folder;
+    std::string _file;
+    osg::ref_ptr<osgEarth::MapNode> _map;
+    osg::ref_ptr<osg::Group> _root;
+    osg::ref_ptr<osgViewer::Viewer> _viewer;
+    osg::Matrixd _projection;
+};
+
+} // namespace geofx::test

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The extension <geofx> of osgEarth's maps.
+#include "EarthMap.h"
+
+#include <osgEarth/TerrainEngineNode>
+#include <tools/NotifyWatch.h>
+#include <tools/RandomSamples.h>
+
+#include <algorithm>
+#include <string>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+const char* const effects[] = {
+    "<birdsEyeView/>",
+    "<pedestrianView/>",
+    "<verticalExaggeration factor=\"3\"/>",
+    "<panoramaMap ripples=\"0\"/>",
+    "<projectiveMappings><transfer name=\"red\" source=\"constant\" constantColor=\"#e01010\"/><mapping transfer=\"red\" west=\"10.4\" south=\"0.4\" east=\"10.6\" north=\"0.6\"/></projectiveMappings>",
+    "<closeUps pipeline=\"multiPass\"><closeUp offsetHeight=\"4000\" scaleX=\"2\" scaleY=\"2\"><region longitude=\"10.5\" "
+    "latitude=\"0.5\" width=\"9000\" depth=\"9000\"/></closeUp></closeUps>",
+};
+
+class GeoFXExtension : public EarthMaps, public testing::WithParamInterface<const char*>
+{
+};
+
+} // namespace
+
+// Each effect changes what osgEarth draws, and says nothing.
+TEST_P(GeoFXExtension, ShowsTheEffect)
+{
+    NotifyWatch watch;
+    ASSERT_TRUE(show(""));
+    const osg::ref_ptr<osg::Image> plain = draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+    ASSERT_TRUE(show(extension(GetParam())));
+    ASSERT_TRUE(scene());
+    EXPECT_EQ(scene()->getNumEffects(), 1u);
+    EXPECT_GT(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *plain), 300);
+    // Without the effect all is as it was.
+    scene()->getEffect(0)->setEnabled(false);
+    EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *plain), 20);
+}
+
+// Nothing that the picture shows is missing where osgEarth culls for itself.
+TEST_P(GeoFXExtension, CullsNothingThatIsSeen)
+{
+    ASSERT_TRUE(show(extension(GetParam())));
+    ASSERT_TRUE(scene());
+    const osg::CullSettings::CullingMode mode = camera().getCullingMode();
+    Random random(3);
+    const int count = fullTest() ? 50 : 3;
+    for (int i = 0; i < count; ++i)
+    {
+        const double longitude = random.uniform(10.1, 10.9), latitude = random.uniform(0.1, 0.9);
+        const double height = random.logarithmic(2500.0, 60000.0);
+        const double heading = random.uniform(0.0, 360.0), pitch = random.uniform(-60.0, 5.0);
+        SCOPED_TRACE(std::to_string(longitude) + " " + std::to_string(latitude) + " " + std::to_string(height) +
+                     " " + std::to_string(heading) + " " + std::to_string(pitch));
+        // The levels of a panorama map do not fall with the distance, so a whole globe that nothing culls has no end.
+        const bool bounded = std::string(GetParam()).find("panoramaMap") == std::string::npos;
+        if (bounded) camera().setCullingMode(osg::CullSettings::NO_CULLING);
+        scene()->setEngineCulling(EffectScene::OPEN);
+        const osg::ref_ptr<osg::Image> all = draw(longitude, latitude, height, heading, pitch);
+        camera().setCullingMode(mode);
+        // osgEarth sorts its tiles by addresses, so skirts that coincide with ground may come first or last.
+        EXPECT_LE(differing(*draw(longitude, latitude, height, heading, pitch), *all), 4);
+        scene()->setEngineCulling(EffectScene::PROXY);
+        EXPECT_LE(differing(*draw(longitude, latitude, height, heading, pitch), *all), 4);
+    }
+}
+
+// The drawables of the terrain are as large as the Earth. Near and far are those of the ground that is shown.
+TEST_P(GeoFXExtension, FindsNearAndFar)
+{
+    ASSERT_TRUE(show(extension(GetParam())));
+    ASSERT_TRUE(scene());
+    const osg::ref_ptr<osg::Image> fixed = draw(10.5, 0.2, 9000.0, 20.0, -12.0);
+    camera().setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
+    camera().setNearFarRatio(1e-5);
+    // Depths are rounded otherwise.
+    EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 20.0, -12.0), *fixed), WIDTH * HEIGHT / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, GeoFXExtension, testing::ValuesIn(effects));
+
+TEST_F(EarthMaps, AFaultIsASentenceAndTheMapIsDrawn)
+{
+    NotifyWatch watch;
+    ASSERT_TRUE(show(""));
+    const osg::ref_ptr<osg::Image> plain = draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+    const std::vector<std::string> said =
+        watch.messagesOf([&] { EXPECT_TRUE(show(extension("<birdsEyeView focusLane=\"0.4\"/>"))); });
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_NE(said[0].find(file() + ":5: <birdsEyeView>: the attribute \"focusLane\" is not known"),
+              std::string::npos)
+        << said[0];
+    EXPECT_FALSE(scene());
+    EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *plain), 20);
+}
+
+TEST_F(EarthMaps, TerrainWithoutSkirtsGetsAWarning)
+{
+    NotifyWatch watch;
+    const std::vector<std::string> said =
+        watch.messagesOf([&] { EXPECT_TRUE(show(extension("<birdsEyeView/>"), "")); });
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    EXPECT_NE(said[0].find("skirt_ratio"), std::string::npos);
+    EXPECT_TRUE(scene());
+}
+
+// Levels by the size of tiles in the picture go by the deformed picture, too.
+TEST_F(EarthMaps, LevelsByPixelsStopWhereNothingIsSeen)
+{
+    ASSERT_TRUE(show(extension("<verticalExaggeration factor=\"3\"/>"),
+                     "skirt_ratio=\"0.05\" lod_method=\"screen_space\""));
+    const osg::ref_ptr<osg::Image> picture = draw(10.5, 0.2, 9000.0, 0.0, -32.0);
+    scene()->setEngineCulling(EffectScene::OPEN);
+    EXPECT_LE(differing(*draw(10.5, 0.2, 9000.0, 0.0, -32.0), *picture), 4);
+}
+
+TEST_F(EarthMaps, UnitsAreOsgEarthsAndAreGivenBack)
+{
+    const auto free = [&]
+    {
+        std::vector<int> units;
+        int unit = 0;
+        osgEarth::TerrainResources& resources = *map().getTerrainEngine()->getResources();
+        while (resources.reserveTextureImageUnit(unit))
+            units.push_back(unit);
+        for (const int each : units)
+            resources.releaseTextureImageUnit(each);
+        return units;
+    };
+    ASSERT_TRUE(show(extension(std::string(effects[3]) + effects[4])));
+    const std::vector<int> during = free();
+    for (const int unit : scene()->getTextureUnits())
+        EXPECT_EQ(std::count(during.begin(), during.end(), unit), 0) << unit;
+    EXPECT_EQ(scene()->getTextureUnits().size(), 8u);
+    map().clearExtensions();
+    EXPECT_FALSE(scene());
+    EXPECT_EQ(free().size(), during.size() + 9);
+}
