@@ -27,9 +27,9 @@ using Wishes = std::vector<std::vector<Wish>>; ///< of each effect
 /// Numbers of one kind.
 struct Kind
 {
-    const char* one; ///< "texture unit"
+    const char* one;         ///< "texture unit"
     std::vector<int> choice; ///< what may be chosen, ascending
-    int reserved; ///< is given only to who asks for it; −1 for none
+    int reserved;            ///< is given only to who asks for it; −1 for none
 };
 
 std::vector<int> range(int lowest, int last)
@@ -121,7 +121,8 @@ private:
         };
         const std::vector<int>& choice = _kind.choice;
         auto chosen = std::find(choice.begin(), choice.end(), wish.preferred);
-        if (chosen == choice.end() || !free(*chosen)) chosen = std::find_if(choice.begin(), choice.end(), free);
+        if (chosen == choice.end() || !free(*chosen))
+            chosen = std::find_if(choice.begin(), choice.end(), free);
         if (chosen != choice.end()) take(number = *chosen, effect, wish.everywhere);
     }
 

@@ -24,11 +24,11 @@ EffectScene::EffectScene() : _drawing(std::make_unique<SceneDrawing>())
 EffectScene::EffectScene(const EffectScene& other, const osg::CopyOp& copy)
     : osg::Group(other, copy), _effects(other._effects), _compensation(other._compensation),
       _debugBounds(other._debugBounds), _nestedCameras(other._nestedCameras),
-      _adaptsPrograms(other._adaptsPrograms), _firstTextureUnit(other._firstTextureUnit), _textureUnits(other._textureUnits),
-      _firstBlockBinding(other._firstBlockBinding), _depthConvention(other._depthConvention),
-      _shaderHost(other._shaderHost), _roleCallback(other._roleCallback),
-      _groundDescription(other._groundDescription), _engineCulling(other._engineCulling),
-      _drawing(std::make_unique<SceneDrawing>())
+      _adaptsPrograms(other._adaptsPrograms), _firstTextureUnit(other._firstTextureUnit),
+      _textureUnits(other._textureUnits), _firstBlockBinding(other._firstBlockBinding),
+      _depthConvention(other._depthConvention), _shaderHost(other._shaderHost),
+      _roleCallback(other._roleCallback), _groundDescription(other._groundDescription),
+      _engineCulling(other._engineCulling), _drawing(std::make_unique<SceneDrawing>())
 {
     if (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS)
     {

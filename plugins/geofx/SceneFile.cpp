@@ -211,9 +211,10 @@ SceneResult parseScene(const std::string& text, const std::string& file, const s
     result = parse(document, file, folder, std::move(result));
     if (result.scene && result.scene->engine)
     {
-        result.errors.push_back(result.scene->place.message(
-            "<engine> stands for the terrain of an osgEarth map, and this file is no .earth file; expected: <database> "
-            "or <rasters>."));
+        result.errors.push_back(
+            result.scene->place.message("<engine> stands for the terrain of an osgEarth map, and this file "
+                                        "is no .earth file; expected: <database> "
+                                        "or <rasters>."));
         result.scene.reset();
     }
     return result;

@@ -118,10 +118,11 @@ private:
                 return static_cast<float>(size < 0.0 ? size : std::max(halfWidth * size, none));
             });
         if (engine->getOptions().getHeightFieldSkirtRatio() <= 0.0f)
-            OSG_WARN << "osgGeoFX: the map's terrain has no skirts, so seams between its levels of detail may "
-                        "show under the effects of <geofx>; write <terrain skirt_ratio=\"0.05\"/> in the "
-                        "<options> of the map."
-                     << std::endl;
+            OSG_WARN
+                << "osgGeoFX: the map's terrain has no skirts, so seams between its levels of detail may "
+                   "show under the effects of <geofx>; write <terrain skirt_ratio=\"0.05\"/> in the "
+                   "<options> of the map."
+                << std::endl;
     }
 
     bool takeUnits(osgEarth::MapNode& map, std::string& error)

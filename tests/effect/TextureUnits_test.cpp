@@ -141,7 +141,8 @@ TEST(TextureUnits, AnEngineGivesThemOneByOne)
     EXPECT_TRUE(few.complete[0]);
     EXPECT_FALSE(few.complete[1]);
     ASSERT_FALSE(few.sentences.empty());
-    EXPECT_NE(few.sentences[0].find("all texture units from 5 to 12 that the scene may choose"), std::string::npos)
+    EXPECT_NE(few.sentences[0].find("all texture units from 5 to 12 that the scene may choose"),
+              std::string::npos)
         << few.sentences[0];
 
     const osg::ref_ptr<EffectScene> scene = new EffectScene;

@@ -22,8 +22,10 @@ const char* const effects[] = {
     "<pedestrianView/>",
     "<verticalExaggeration factor=\"3\"/>",
     "<panoramaMap ripples=\"0\"/>",
-    "<projectiveMappings><transfer name=\"red\" source=\"constant\" constantColor=\"#e01010\"/><mapping transfer=\"red\" west=\"10.4\" south=\"0.4\" east=\"10.6\" north=\"0.6\"/></projectiveMappings>",
-    "<closeUps pipeline=\"multiPass\"><closeUp offsetHeight=\"4000\" scaleX=\"2\" scaleY=\"2\"><region longitude=\"10.5\" "
+    "<projectiveMappings><transfer name=\"red\" source=\"constant\" constantColor=\"#e01010\"/><mapping "
+    "transfer=\"red\" west=\"10.4\" south=\"0.4\" east=\"10.6\" north=\"0.6\"/></projectiveMappings>",
+    "<closeUps pipeline=\"multiPass\"><closeUp offsetHeight=\"4000\" scaleX=\"2\" scaleY=\"2\"><region "
+    "longitude=\"10.5\" "
     "latitude=\"0.5\" width=\"9000\" depth=\"9000\"/></closeUp></closeUps>",
 };
 
@@ -61,8 +63,8 @@ TEST_P(GeoFXExtension, CullsNothingThatIsSeen)
         const double longitude = random.uniform(10.1, 10.9), latitude = random.uniform(0.1, 0.9);
         const double height = random.logarithmic(2500.0, 60000.0);
         const double heading = random.uniform(0.0, 360.0), pitch = random.uniform(-60.0, 5.0);
-        SCOPED_TRACE(std::to_string(longitude) + " " + std::to_string(latitude) + " " + std::to_string(height) +
-                     " " + std::to_string(heading) + " " + std::to_string(pitch));
+        SCOPED_TRACE(std::to_string(longitude) + " " + std::to_string(latitude) + " " +
+                     std::to_string(height) + " " + std::to_string(heading) + " " + std::to_string(pitch));
         // The levels of a panorama map do not fall with the distance, so a whole globe that nothing culls has no end.
         const bool bounded = std::string(GetParam()).find("panoramaMap") == std::string::npos;
         if (bounded) camera().setCullingMode(osg::CullSettings::NO_CULLING);

@@ -46,10 +46,11 @@ SceneFile parsed(const std::string& text)
 TEST(SceneFile, MayBeAPartOfAnEnginesFile)
 {
     using osgGeoFX::parseEngineScene;
-    const std::string map = "<map name='x'>\n  <Options Foo='bar'/>\n  <Extensions>\n    <geofx version='1'>\n"
-                            "      <terrain><engine minHeight='-5' maxHeight='900' culling='open'/></terrain>\n"
-                            "      <effects>\n        <birdsEyeView focusLine='0.4'/>\n      </effects>\n"
-                            "    </geofx>\n  </Extensions>\n</map>\n";
+    const std::string map =
+        "<map name='x'>\n  <Options Foo='bar'/>\n  <Extensions>\n    <geofx version='1'>\n"
+        "      <terrain><engine minHeight='-5' maxHeight='900' culling='open'/></terrain>\n"
+        "      <effects>\n        <birdsEyeView focusLine='0.4'/>\n      </effects>\n"
+        "    </geofx>\n  </Extensions>\n</map>\n";
     const SceneResult read = parseEngineScene(map, "x.earth", "/maps");
     ASSERT_TRUE(read.scene) << ::testing::PrintToString(read.errors);
     ASSERT_TRUE(read.scene->engine);
@@ -80,8 +81,9 @@ TEST(SceneFile, MayBeAPartOfAnEnginesFile)
     EXPECT_NE(errorOf(mapWith(engine + "<sun azimuth='0' elevation='5'/>")).find("<sky>"), std::string::npos);
     EXPECT_NE(errorOf(mapWith(engine + "<background color='#ffffff'/>")).find("<background>"),
               std::string::npos);
-    EXPECT_NE(errorOf(mapWith(engine + "<homeView longitude='0' latitude='0' height='9'/>")).find("<viewpoints>"),
-              std::string::npos);
+    EXPECT_NE(
+        errorOf(mapWith(engine + "<homeView longitude='0' latitude='0' height='9'/>")).find("<viewpoints>"),
+        std::string::npos);
     // A scene file has a terrain of its own.
     const SceneResult alone = parseScene("<geofx version='1'>" + engine + "</geofx>", "x.geofx", "/scenes");
     EXPECT_FALSE(alone.scene);

@@ -135,7 +135,8 @@ TEST_F(EngineCulling, TilesThatAreOutOfSightAreToldFromOthers)
     const osg::ref_ptr<CloseUp> closeUp = makeCloseUp({-300.0, 200.0});
     _closeUps->addCloseUp(closeUp);
     _scene->setEngineCulling(EffectScene::OPEN);
-    for (const std::vector<Effect*>& effects : {std::vector<Effect*>{bend}, std::vector<Effect*>{bend, _closeUps}})
+    for (const std::vector<Effect*>& effects :
+         {std::vector<Effect*>{bend}, std::vector<Effect*>{bend, _closeUps}})
     {
         for (Effect* each : effects)
             _scene->addEffect(each);

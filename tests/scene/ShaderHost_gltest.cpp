@@ -172,13 +172,13 @@ public:
             _vertex = all.vertex;
             const std::string version = "#version 330 compatibility\n#line 1\n";
             _joined = new osg::Program;
-            _joined->addShader(
-                new osg::Shader(osg::Shader::VERTEX,
-                                version + all.vertex +
-                                    "void main()\n{\n    vec4 eye = gl_ModelViewMatrix * gl_Vertex;\n"
-                                    "    vec4 placed = geofx_vertex(eye);\n"
-                                    "    gl_Position = placed == eye ? ftransform() : gl_ProjectionMatrix * placed;\n"
-                                    "    gl_FrontColor = gl_Color;\n}\n"));
+            _joined->addShader(new osg::Shader(
+                osg::Shader::VERTEX,
+                version + all.vertex +
+                    "void main()\n{\n    vec4 eye = gl_ModelViewMatrix * gl_Vertex;\n"
+                    "    vec4 placed = geofx_vertex(eye);\n"
+                    "    gl_Position = placed == eye ? ftransform() : gl_ProjectionMatrix * placed;\n"
+                    "    gl_FrontColor = gl_Color;\n}\n"));
             _joined->addShader(
                 new osg::Shader(osg::Shader::FRAGMENT,
                                 version + all.fragment +
@@ -206,7 +206,8 @@ public:
     {
         ++asked;
         osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
-        state->setAttribute(new AddingProgram(texts), osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
+        state->setAttribute(new AddingProgram(texts),
+                            osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
         return state;
     }
     bool draws(const osg::StateAttribute& program) const override

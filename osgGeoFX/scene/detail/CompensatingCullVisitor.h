@@ -76,11 +76,11 @@ public:
         const ShaderHost* shaderHost =
             nullptr; ///< EffectScene::getShaderHost(); null in passes whose functions it has not
         osg::StateSet* hostAddition = nullptr; ///< ShaderHost::addition(); null for none
-        bool adapts = false; ///< EffectScene::getAdaptsPrograms()
-        bool open = false;   ///< nothing else is to cull: EffectScene::OPEN or PROXY
-        bool proxy = false;  ///< engines cull by a ProxyFrustum: EffectScene::PROXY
-        osg::BoundingSphere bound; ///< of the terrain, for this frustum
-        double tileError = 0.0;    ///< Ground::tileError
+        bool adapts = false;                   ///< EffectScene::getAdaptsPrograms()
+        bool open = false;                     ///< nothing else is to cull: EffectScene::OPEN or PROXY
+        bool proxy = false;                    ///< engines cull by a ProxyFrustum: EffectScene::PROXY
+        osg::BoundingSphere bound;             ///< of the terrain, for this frustum
+        double tileError = 0.0;                ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
         bool findsNearAndFar = true;           ///< false: the camera's stay as they are
         osgUtil::RenderStage* stage = nullptr; ///< where it draws; null for where `outer` does
@@ -305,8 +305,8 @@ private:
     Visibility _sight;
     DrawableSight _drawables = DrawableSight(_sight);
     osg::ref_ptr<osg::RefMatrix> _projection,
-        _proxy;            ///< that of the picture, and the one that engines cull by
-    bool _proxied = false; ///< whether the second one is in force
+        _proxy;                             ///< that of the picture, and the one that engines cull by
+    bool _proxied = false;                  ///< whether the second one is in force
     std::pair<double, double> _proxyDepths; ///< near and far of the ground that is shown
     CullingMode _outerCullingMode = 0;
     ComputeNearFarMode _outerNearFar = DO_NOT_COMPUTE_NEAR_FAR;

@@ -180,22 +180,22 @@ osg::Vec3 CompensatingCullVisitor::setProxy(const osg::Matrixd& modelView)
     const osg::Vec3d up = _task.image ? osg::Matrixd::transform3x3(view.up, _task.image->toEye) : view.up;
     const ProxyFrustum::Terrain terrain = {
         _task.bound, modelView, _task.image ? _task.image->toView : osg::Matrixd(), up, view.ground};
-    const ProxyFrustum proxy(terrain, [this](const EyeBox& box)
-                             { return _sight.outOfSight(*_task.chain, box, _sight.all()); },
-                             [this](const EyeBox& box)
-                             {
-                                 const Ball ball = _task.chain->bound(box.ball());
-                                 const osg::Vec4d along = _sight.depths();
-                                 const double depth = along * osg::Vec4d(ball.center, 1.0);
-                                 return std::pair(depth - ball.radius, depth + ball.radius);
-                             });
+    const ProxyFrustum proxy(
+        terrain, [this](const EyeBox& box) { return _sight.outOfSight(*_task.chain, box, _sight.all()); },
+        [this](const EyeBox& box)
+        {
+            const Ball ball = _task.chain->bound(box.ball());
+            const osg::Vec4d along = _sight.depths();
+            const double depth = along * osg::Vec4d(ball.center, 1.0);
+            return std::pair(depth - ball.radius, depth + ball.radius);
+        });
     _proxy = createOrReuseMatrix(proxy.projection());
     _proxyDepths = proxy.depths();
     // Bounds of large boxes are loose. No deformation makes a globe larger than some Earths.
     constexpr double earths = 4.0;
     if (view.ground.ellipsoid)
-        _proxyDepths.second =
-            std::min(_proxyDepths.second, earths * view.ground.ellipsoid->getRadiusEquator() + view.eyeHeight);
+        _proxyDepths.second = std::min(_proxyDepths.second,
+                                       earths * view.ground.ellipsoid->getRadiusEquator() + view.eyeHeight);
     return proxy.viewPoint() ? osg::Vec3(*proxy.viewPoint()) : raisedViewPoint();
 }
 

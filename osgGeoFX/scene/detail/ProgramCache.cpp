@@ -67,9 +67,8 @@ osg::ref_ptr<osg::StateSet> ProgramCache::additionOf(ShaderHost& host, const Eff
     const std::lock_guard<std::mutex> lock(_mutex);
     if (!program) return nullptr;
     if (program == _program) return _host == &host ? _addition : nullptr;
-    const auto found =
-        std::find_if(_passes.begin(), _passes.end(),
-                     [program](const auto& entry) { return entry.second.program == program; });
+    const auto found = std::find_if(_passes.begin(), _passes.end(),
+                                    [program](const auto& entry) { return entry.second.program == program; });
     if (found == _passes.end()) return nullptr;
     PassProgram& pass = found->second;
     if (pass.host == &host) return pass.addition;
@@ -78,8 +77,9 @@ osg::ref_ptr<osg::StateSet> ProgramCache::additionOf(ShaderHost& host, const Eff
     if (EffectProgram::isPassOfTwoStages(*program) && pass.shaders.vertexMain.empty() &&
         pass.shaders.fragmentMain.empty())
     {
-        ShaderTexts texts = {EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::VERTEX),
-                             EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::FRAGMENT)};
+        ShaderTexts texts = {
+            EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::VERTEX),
+            EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::FRAGMENT)};
         for (const auto& [name, binding] : pass.shaders.blocks)
             texts.blocks.emplace_back(pass.prefix + name, binding);
         pass.addition = host.addition(texts);

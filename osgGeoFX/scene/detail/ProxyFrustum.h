@@ -75,7 +75,8 @@ private:
         osg::BoundingBox box;            ///< in the terrain's frame
         std::array<Reach, shapes> reach; ///< infinite where a corner does not lie in front of the tip
         double coarseness = 0;           ///< its size over its distance from the eye
-        std::array<double, 2> depths{};  ///< how far forward and back it goes, deformed; a larger number is further out
+        std::array<double, 2>
+            depths{}; ///< how far forward and back it goes, deformed; a larger number is further out
     };
 
     void setShapes();

@@ -141,9 +141,8 @@ std::shared_ptr<const TextureUnits> SceneDrawing::unitsOf(const Effects& effects
         std::vector<unsigned int> now(effects.size());
         std::transform(effects.begin(), effects.end(), now.begin(),
                        [](const osg::ref_ptr<Effect>& each) { return each->revision(); });
-        const bool sameList =
-            _units && effects == _unitEffects && lowest == _lowestUnit && lowestBlock == _lowestBlock &&
-            choice == _choice;
+        const bool sameList = _units && effects == _unitEffects && lowest == _lowestUnit &&
+                              lowestBlock == _lowestBlock && choice == _choice;
         if (sameList && now == _unitRevisions) return _units;
         _unitRevisions = now;
         _unitEffects = effects;
