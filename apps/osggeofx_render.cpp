@@ -46,6 +46,7 @@ struct Arguments
     unsigned int frames = 0;
     std::vector<std::string> effects;
     bool inset = false;
+    bool sky = false;
     bool noCull = false;
     bool noCompensation = false;
     bool debugBounds = false;
@@ -112,6 +113,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
                          "List the effects with all their properties");
     app.add_flag("--inset", arguments.inset,
                  "Put the same view without effects, a quarter as wide, into the lower right corner");
+    app.add_flag("--sky", arguments.sky,
+                 "Put a sky around the Earth in place of the plain background (geocentric scenes)");
     app.add_flag("--no-compensation", arguments.noCompensation,
                  "Cull as if nothing were deformed, to see what that would draw");
     app.add_flag("--debug-bounds", arguments.debugBounds, "Draw the deformed bounds that culling decides on");
@@ -319,9 +322,10 @@ void run(Arguments& arguments)
 
     const osg::ref_ptr<osgDB::Options> reading =
         new osgDB::Options(arguments.allowOutside ? "allowOutside" : "");
-    const std::optional<osgGeoFX::Scene> scene =
+    std::optional<osgGeoFX::Scene> scene =
         osgGeoFX::Scene::load(arguments.scene, error, arguments.allowOutside ? reading.get() : nullptr);
     if (!scene) throw Failure(badInput, error);
+    if (arguments.sky && !scene->addSky(error)) throw Failure(badInput, "--sky: " + error);
     addEffects(arguments, *scene->effects);
     scene->effects->listenTo(*scene->guard);
     osgGeoFX::SceneRenderer::Options& options = arguments.renderer;

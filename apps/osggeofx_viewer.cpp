@@ -41,6 +41,7 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
                                "Add an effect to the scene's, as in osggeofx_render; as often as wanted.");
+    usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
     usage.addCommandLineOption("--help-effects", "List the effects with all their properties.");
     usage.addCommandLineOption("--allow-outside",
                                "Let a .geofx scene name files outside its own folder, and addresses.");
@@ -98,6 +99,7 @@ int main(int argc, char** argv)
     if (!effectFault.empty()) return refuse("--effect: " + effectFault);
     const osg::ref_ptr<osgDB::Options> reading =
         arguments.read("--allow-outside") ? new osgDB::Options("allowOutside") : nullptr;
+    const bool sky = arguments.read("--sky");
     double fieldOfView = 0.0;
     const bool fieldOfViewGiven = arguments.read("--fov", fieldOfView);
     const osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> manipulators =
@@ -141,6 +143,7 @@ int main(int argc, char** argv)
         return refuse(error);
     }
 
+    if (sky && !scene->addSky(error)) return refuse("--sky: " + error);
     for (const auto& effect : effects)
         scene->effects->addEffect(effect);
     scene->effects->listenTo(*scene->guard);

@@ -88,6 +88,7 @@
 
 #include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
+#include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/EffectPanel.h>

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/viewer/Scene.h>
 
+#include <osgGeoFX/viewer/EarthSky.h>
+
 #include <osg/BoundingBox>
 #include <osg/LOD>
 #include <osg/Math>
@@ -167,6 +169,23 @@ std::optional<Scene> Scene::adopt(osg::Node* node, std::string& error)
     }
     scene.effects->listenTo(*scene.guard);
     return scene;
+}
+
+bool Scene::addSky(std::string& error)
+{
+    if (!reference || !reference->isGeocentric())
+    {
+        error =
+            "The scene has no round Earth to put a sky around; leave out the sky, or build its terrain with "
+            "--geocentric.";
+        return false;
+    }
+    osg::ref_ptr<osg::Group> both = new osg::Group;
+    const osg::Vec4& air = settings.background;
+    both->addChild(makeEarthSky(osg::EllipsoidModel(), osg::Vec3(air.r(), air.g(), air.b())));
+    both->addChild(node);
+    node = both;
+    return true;
 }
 
 void Scene::setUpView(osg::View& view) const

@@ -65,6 +65,10 @@ struct OSGGEOFX_EXPORT Scene
     /// scene data nor the camera's pose.
     void setUpView(osg::View& view) const;
 
+    /// Puts a sky around the Earth (makeEarthSky()) behind the scene. The color of its deep air is the background's.
+    /// False, with a sentence in `error`, if the scene is not geocentric. Call it before the scene is shown, once.
+    bool addSky(std::string& error);
+
     /// The LOD scale that keeps the terrain's pixel-error bound; 1 for a scene without a terrain of osggeofx_build.
     /// `height` is the height of the viewport in pixels, `fieldOfView` is vertical, in radians.
     float lodScale(double height, double fieldOfView) const;

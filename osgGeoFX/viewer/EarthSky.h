@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/Node>
+#include <osg/Vec3>
+
+namespace osgGeoFX
+{
+
+/** Makes a sky for a geocentric scene, at any height from the ground to beyond orbit: black space, a blue rim around
+    the Earth that thins out by exp(-height / 8 km), and the sky of a bright day near the ground. Where no terrain is
+    drawn, the Earth is a blue sea in haze. `air` is the color of deep air, as at the horizon, 0 to 1.
+
+    The node is drawn before everything else of its camera. It writes no depth and does not count for near and far, so
+    it never fights with the terrain. It takes the place of the camera's clear color; hide the node to have that again.
+    Put it beside an EffectScene, not below: deformations do not bend it. A panorama map's own sky is drawn over it.
+    It is for perspective cameras. Light is the same all around; there is no night. Each camera that culls has its own
+    state, so the node may be shared by cameras and threads. */
+OSGGEOFX_EXPORT osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid,
+                                                     const osg::Vec3& air);
+
+} // namespace osgGeoFX

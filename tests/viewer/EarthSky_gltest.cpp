@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+// The sky around the Earth, against air that the test adds up along the ray.
+#include <osgGeoFX/viewer/EarthSky.h>
+#include <tools/GlFixture.h>
+
+#include <osg/Geometry>
+#include <osg/Math>
+#include <osg/ShapeDrawable>
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+
+const osg::Vec3 air(0.72f, 0.80f, 0.88f);
+const osg::Vec3d scatter = osg::Vec3d(5.8e-6, 13.5e-6, 33.1e-6) * 2.5;
+constexpr double SCALE_HEIGHT = 8.0e3;
+
+/// What a ray meets of air, in metres of air as dense as at the sea, from an eye on a ball of the Earth's size. Where
+/// it ends on the ball, `hits` is set.
+double airAlong(const osg::Vec3d& eye, const osg::Vec3d& ray, double radius, bool& hits)
+{
+    const double middle = -(eye * ray), offset2 = eye.length2() - middle * middle;
+    hits = offset2 < radius * radius && middle > 0.0;
+    const double end = hits ? middle - std::sqrt(radius * radius - offset2) : std::max(middle, 0.0) + 3e6;
+    const double start = std::max(0.0, middle - 3e6);
+    double sum = 0.0;
+    constexpr int STEPS = 20000;
+    const double step = (end - start) / STEPS;
+    for (int i = 0; i < STEPS; ++i)
+        sum += step * std::exp(-((eye + ray * (start + (i + 0.5) * step)).length() - radius) / SCALE_HEIGHT);
+    return sum;
+}
+
+class EarthSky : public geofx::test::GlFixture
+{
+protected:
+    static constexpr double RADIUS = 6378137.0;
+
+    void SetUp() override
+    {
+        GlFixture::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        _sky = osgGeoFX::makeEarthSky(osg::EllipsoidModel(RADIUS, RADIUS), air);
+        viewer().getCamera()->setClearColor(osg::Vec4(1.0f, 0.0f, 1.0f, 1.0f));
+    }
+
+    /// The eye over the equator. Pitch is counted from the level, upwards; degrees.
+    osg::ref_ptr<osg::Image> look(osg::Node* scene, double height, double pitch, double fieldOfView)
+    {
+        const double angle = osg::DegreesToRadians(pitch);
+        _eye.set(RADIUS + height, 0.0, 0.0);
+        _view = osg::Matrixd::lookAt(_eye, _eye + osg::Vec3d(std::sin(angle), 0.0, std::cos(angle)) * RADIUS,
+                                     osg::Vec3d(std::cos(angle), 0.0, -std::sin(angle)));
+        viewer().getCamera()->setViewMatrix(_view);
+        viewer().getCamera()->setProjectionMatrixAsPerspective(fieldOfView, 1.0, 1.0, 1e6);
+        _tangent = std::tan(osg::DegreesToRadians(0.5 * fieldOfView));
+        return render(scene);
+    }
+
+    osg::Vec3d ray(double column, double row) const
+    {
+        osg::Vec3d direction(((column + 0.5) / 128.0 - 1.0) * _tangent,
+                             ((row + 0.5) / 128.0 - 1.0) * _tangent, -1.0);
+        direction = osg::Matrixd::transform3x3(direction, osg::Matrixd::inverse(_view));
+        direction.normalize();
+        return direction;
+    }
+
+    osg::ref_ptr<osg::Node> _sky;
+    osg::Vec3d _eye;
+    osg::Matrixd _view;
+    double _tangent = 1.0;
+};
+
+} // namespace
+
+TEST_F(EarthSky, AirThinsOutAlongTheRay)
+{
+    struct View
+    {
+        double height, pitch, fieldOfView;
+    };
+    int rim = 0, space = 0, ground = 0;
+    for (const View& v : {View{2.0, 10.0, 60.0}, View{2000.0, 0.0, 30.0}, View{20e3, -4.5, 20.0},
+                          View{200e3, -14.0, 6.0}, View{2e6, -40.4, 3.0}, View{20e6, -76.0, 2.0}})
+    {
+        SCOPED_TRACE(v.height);
+        const osg::ref_ptr<osg::Image> image = look(_sky, v.height, v.pitch, v.fieldOfView);
+        for (int row = 1; row < 256; row += 3)
+        {
+            // Not where the horizon runs through the pixel.
+            bool below = false, above = false;
+            airAlong(_eye, ray(128, row - 1), RADIUS, below);
+            airAlong(_eye, ray(128, row + 1), RADIUS, above);
+            if (below != above) continue;
+            bool hits = false;
+            const double metres = airAlong(_eye, ray(128, row), RADIUS, hits);
+            const osg::Vec4 seen = image->getColor(128, row);
+            for (unsigned int channel = 0; channel < 3; ++channel)
+            {
+                const double sea[] = {0.10, 0.19, 0.33};
+                const double veil = 1.0 - std::exp(-metres * scatter[channel]);
+                const double expected =
+                    (hits ? sea[channel] : 0.0) * (1.0 - veil) + static_cast<double>(air[channel]) * veil;
+                // A byte's rounding, and what a parabola for the round Earth costs.
+                ASSERT_NEAR(static_cast<double>(seen[channel]), expected, 0.03)
+                    << "row " << row << ", channel " << channel << ", " << metres << " m of air";
+            }
+            ground += hits;
+            space += !hits && metres < 1.0;
+            rim += !hits && metres > 1e4 && metres < 3e5;
+        }
+    }
+    // The views meet all three kinds.
+    EXPECT_GT(rim, 20);
+    EXPECT_GT(space, 20);
+    EXPECT_GT(ground, 50);
+}
+
+TEST_F(EarthSky, NearAndFarAreThoseOfTheSceneAndNothingIsHidden)
+{
+    osg::ref_ptr<osg::Geode> ball = new osg::Geode;
+    ball->addDrawable(
+        new osg::ShapeDrawable(new osg::Sphere(osg::Vec3(6478137.0f, 0.0f, 20000.0f), 2000.0f)));
+    look(ball, 100e3, 0.0, 30.0);
+    double left, right, bottom, top, near, far, skyNear, skyFar;
+    viewer().getCamera()->getProjectionMatrixAsFrustum(left, right, bottom, top, near, far);
+    osg::ref_ptr<osg::Group> both = new osg::Group;
+    both->addChild(ball); // drawn first, if bins did not say otherwise
+    both->addChild(_sky);
+    const osg::ref_ptr<osg::Image> alone = look(ball, 100e3, 0.0, 30.0),
+                                   withSky = look(both, 100e3, 0.0, 30.0);
+    viewer().getCamera()->getProjectionMatrixAsFrustum(left, right, bottom, top, skyNear, skyFar);
+    EXPECT_EQ(near, skyNear);
+    EXPECT_EQ(far, skyFar);
+    int ballPixels = 0;
+    for (unsigned int row = 0; row < 256; ++row)
+        for (unsigned int column = 0; column < 256; ++column)
+        {
+            const osg::Vec4 before = alone->getColor(column, row);
+            if (before == osg::Vec4(1.0f, 0.0f, 1.0f, 1.0f)) continue;
+            ++ballPixels;
+            ASSERT_EQ(before, withSky->getColor(column, row)) << column << " " << row;
+        }
+    EXPECT_GT(ballPixels, 1000);
+}
