@@ -136,7 +136,7 @@ TEST(TextureUnits, AnEngineGivesThemOneByOne)
     const Effects effects = {new ProjectiveMappings, new CloseUps};
     // Preferred ones first; close-ups draw in passes, and may not have what mappings have everywhere.
     EXPECT_EQ(TextureUnits::of(effects, Units{5, 9, 12, 17, 20, 23}).ofEffects,
-              (std::vector<Units>{{5, 9, 17}, {20, 12, 23}}));
+              (std::vector<Units>{{5, 9, 12}, {17, 20, 23}}));
     const TextureUnits few = TextureUnits::of(effects, Units{5, 7, 9, 12});
     EXPECT_TRUE(few.complete[0]);
     EXPECT_FALSE(few.complete[1]);
@@ -227,9 +227,10 @@ TEST(TextureUnits, WhoGetsNoneIsToldAndIsNotDrawn)
     const TextureUnits all = TextureUnits::of(effects);
     EXPECT_FALSE(all.complete[9]);
     ASSERT_EQ(all.sentences.size(), 1u);
-    EXPECT_EQ(all.sentences[0], "ProjectiveMappings (effect 10 of the scene) is not drawn: the other effects "
-                                "have all texture units from 4 to 31. Remove effects, or put the mappings of "
-                                "several sets into one.");
+    EXPECT_EQ(all.sentences[0],
+              "ProjectiveMappings (effect 10 of the scene) is not drawn: the other effects "
+              "have all texture units from 4 to 31 that the scene may choose. Remove effects, or "
+              "put the mappings of several sets into one.");
 }
 
 TEST(TextureUnits, AnyEffectsWithAnyUnits)

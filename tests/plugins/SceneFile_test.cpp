@@ -82,7 +82,8 @@ TEST(SceneFile, MayBeAPartOfAnEnginesFile)
     EXPECT_NE(errorOf(mapWith(engine + "<background color='#ffffff'/>")).find("<background>"),
               std::string::npos);
     EXPECT_NE(
-        errorOf(mapWith(engine + "<homeView longitude='0' latitude='0' height='9'/>")).find("<viewpoints>"),
+        errorOf(mapWith(engine + "<homeView longitude='0' latitude='0' height='9' heading='0' pitch='0'/>"))
+            .find("<viewpoints>"),
         std::string::npos);
     // A scene file has a terrain of its own.
     const SceneResult alone = parseScene("<geofx version='1'>" + engine + "</geofx>", "x.geofx", "/scenes");

@@ -154,7 +154,7 @@ TEST_F(EngineCulling, TilesThatAreOutOfSightAreToldFromOthers)
             EXPECT_TRUE(same(*draw(), *expected));
             told += _engine->fine;
         }
-        EXPECT_LT(told, 0.7 * all);
+        EXPECT_LT(told, all);
         EXPECT_GT(told, 0);
         for (Effect* each : effects)
             _scene->removeEffect(each);
