@@ -8,7 +8,7 @@ uniform vec3 geofx_earthEye;   // the eye, where the Earth is a ball with radius
 uniform float geofx_earthRise; // the square of its distance from the middle, less 1: exact near the ground
 uniform vec3 geofx_earthAir;   // the color of deep air
 
-in vec3 sight;
+in vec3 geofx_sight;
 
 const float SCALE_HEIGHT = 8.0e3 / 6.378e6;
 // Of air at the sea, for red, green and blue, to an Earth radius: Rayleigh's scattering, with more of it so that the
@@ -26,7 +26,7 @@ float tail(float x)
 
 void main()
 {
-    vec3 ray = normalize(sight);
+    vec3 ray = normalize(geofx_sight);
     float past = dot(geofx_earthEye, ray);                                 // of the ray's lowest point, behind the eye
     float low = 0.5 * (geofx_earthRise - past * past);                     // its height, at first for small heights
     low = sqrt(max(1.0 + geofx_earthRise - past * past, 0.0)) < 0.9 ? -1.0 : low / (0.5 + 0.5 * sqrt(1.0 + 2.0 * low));

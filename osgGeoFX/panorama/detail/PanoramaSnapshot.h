@@ -51,7 +51,8 @@ protected:
     ~PanoramaSnapshot() override;
 
 private:
-    /// Whether a ball lies farther around the Earth than anything that the picture shows.
+    /// Whether a ball lies farther around the Earth than anything that the picture shows. Ground beyond the end is a line
+    /// on the horizon, which covers nothing.
     bool isAroundTheEarth(const Ball& ball, const osg::Vec2d& room) const;
     struct Extent;
     Extent extentOf(const Ball& ball) const;
