@@ -160,13 +160,13 @@ TEST(PanoramaGlobe, NothingIsHiddenThatThePictureShows)
                     ball.center + randomDirection(random) * (ball.radius * random.uniform(0.0, 1.0));
                 const glm::dvec3 place = glsl::geofx_panoramaPlace(found.frame->view(), toGlm(point));
                 const glm::dvec3 picture = glsl::geofx_panoramaPicture(found.frame->view(), place);
-                // What lies behind the Earth is no part of the picture, wherever the projection puts it.
+                // Beyond 60 degrees of arc, ground is no part of the picture, wherever the projection puts it.
                 const glsl::geofx_Exaggeration& globe = found.frame->view().globe;
                 const glm::dvec3 away = toGlm(point) + (globe.height + 1.0 / globe.curvature) * globe.up;
-                constexpr double behind = 0.2;
-                if (glm::dot(away, globe.up) < behind * glm::length(away)) continue;
-                // Beyond the end, ground is a line on the horizon that covers nothing, and then one point of it.
-                if (place.y > found.frame->view().end) continue;
+                constexpr double promised = 0.5; // its cosine
+                if (glm::dot(away, globe.up) < promised * glm::length(away)) continue;
+                // All that lies beyond the end is one point on the horizon.
+                if (place.y > 2.0 * found.frame->view().end - found.frame->view().horizon) continue;
                 EXPECT_FALSE(std::abs(picture.x) < 1.0 && std::abs(picture.y) < 1.0)
                     << "radius " << ball.radius;
             }

@@ -299,7 +299,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NoTerrain", "<geofx version='1'><background color='#000000'/></geofx>",
                 "x.geofx:1: <geofx>: ", "expected: <terrain>"},
         Mistake{"EmptyTerrain", "<geofx version='1'>\n<terrain/></geofx>",
-                "x.geofx:2: <terrain>: ", "expected: <database> or <rasters>."},
+                "x.geofx:2: <terrain>: ", "expected: <database> or <rasters> or <engine>."},
         Mistake{"TwoTerrains", sceneWith(terrain),
                 "x.geofx:2: <terrain>: ", "expected: at most one each of <terrain>"},
         Mistake{"UnknownFrame",
@@ -322,7 +322,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"DatabaseAndRasters",
                 "<geofx version='1'><terrain><database file='a'/>\n<rasters><dem "
                 "file='b'/></rasters></terrain></geofx>",
-                "x.geofx:2: <rasters>: ", "expected: only one of <database>, <rasters>."},
+                "x.geofx:2: <rasters>: ", "expected: only one of <database>, <rasters>, <engine>."},
         Mistake{"UnknownElement", sceneWith("<panorama/>"),
                 "x.geofx:2: <panorama>: this element is not known in <geofx>",
                 "expected: <terrain>, <homeView>, <sun>, <background>, <effects>."},

@@ -108,6 +108,13 @@ osgUtil::RenderStage* CloseUpLayers::newStage(osgUtil::CullVisitor& outer, const
     return &stage;
 }
 
+osgUtil::RenderStage* CloseUpLayers::surveyStage(osgUtil::CullVisitor& outer, const CameraDepth& depth)
+{
+    if (!_surveyStage) _surveyStage = createStage();
+    startStage(*_surveyStage, outer, depth, osg::Vec4());
+    return _surveyStage;
+}
+
 osg::ref_ptr<osg::Viewport> CloseUpLayers::viewport(osgUtil::CullVisitor& outer, int layer,
                                                     const osg::Vec2i& corner, int samples)
 {

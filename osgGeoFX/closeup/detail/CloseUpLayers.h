@@ -48,6 +48,8 @@ public:
     /// A new stage with the view and the lights of `outer`. draw() says later which layers it draws into, so these
     /// need no size yet.
     osgUtil::RenderStage* newStage(osgUtil::CullVisitor& outer, const CameraDepth& depth);
+    /// A stage that is not drawn, for traversals that look at the scene.
+    osgUtil::RenderStage* surveyStage(osgUtil::CullVisitor& outer, const CameraDepth& depth);
     /// The viewport that places the picture in a layer; −1: in all layers. `corner` is the pixel at the layer's first
     /// texel, and a pixel's side has `samples` samples. The drawn state needs it, since the camera puts its own
     /// viewport there.
@@ -104,6 +106,7 @@ private:
     int _layers = 0, _width = 0, _height = 0, _perArray = 0;
     GLenum _depthFormat = 0, _colorFormat = 0;
     std::vector<osg::ref_ptr<osgUtil::RenderStage>> _stages;
+    osg::ref_ptr<osgUtil::RenderStage> _surveyStage;
     std::size_t _stagesUsed = 0;
     std::vector<osg::ref_ptr<osg::StateSet>> _shows;
     std::size_t _showsUsed = 0;

@@ -12,7 +12,7 @@ RegionSurvey MultiPass::survey()
     _regions.choosePrograms(false);
     // Without state sets nothing is drawn. The stage is for its camera alone.
     return _regions.survey([](const std::vector<std::size_t>&, std::vector<osg::StateSet*>&) {},
-                           _regions.newStage());
+                           _regions.surveyStage());
 }
 
 void MultiPass::draw(VisibleCloseUp& visible, RegionContents& found)

@@ -28,6 +28,7 @@ public:
     bool tessellated() const { return _tessellated; }
 
     osgUtil::RenderStage* newStage() const { return traversal.layers.newStage(pass.outer, pass.depth); }
+    osgUtil::RenderStage* surveyStage() const { return traversal.layers.surveyStage(pass.outer, pass.depth); }
     /// Finds everything over the regions, as detailed as the overview is, and draws it into the stage with the states
     /// that `statesOf` gives.
     RegionSurvey survey(const RegionFilter::StatesOf& statesOf, osgUtil::RenderStage* stage) const;

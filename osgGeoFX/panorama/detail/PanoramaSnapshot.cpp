@@ -279,9 +279,15 @@ bool PanoramaSnapshot::isAroundTheEarth(const Ball& ball, const osg::Vec2d& room
     constexpr double flat = 0.02;
     const double angle = std::acos(std::clamp(glm::dot(away, _view.globe.up) / distance, -1.0, 1.0));
     const double least = angle - (1.0 + flat) * std::asin(ball.radius / distance) - flat * angle;
-    const double shown =
-        std::hypot((beside + room.x()) / _view.across, 2.0 * _view.end - _view.horizon) * k * (1.0 + flat);
-    return least > shown;
+    // What stands before the base may rise into the picture, by its height above the base.
+    constexpr double bulge = 22e3; // of the equator above the poles
+    const double height = std::abs(distance - 1.0 / k) + ball.radius + std::abs(_view.base) + bulge;
+    const double before = (std::abs(_view.lift) * height + room.y()) / _view.along;
+    const double along = std::max(2.0 * _view.end - _view.horizon, before);
+    const double shown = std::hypot((beside + room.x()) / _view.across, along) * k * (1.0 + flat);
+    // Nearer, what is beside the picture and what is behind it count each for itself: a triangle may reach from one to the other.
+    const double promised = osg::PI / 3.0;
+    return least > std::max(shown, promised);
 }
 
 bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const

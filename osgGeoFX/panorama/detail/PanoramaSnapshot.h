@@ -51,8 +51,8 @@ protected:
     ~PanoramaSnapshot() override;
 
 private:
-    /// Whether a ball lies farther around the Earth than anything that the picture shows. Ground beyond the end is a line
-    /// on the horizon, which covers nothing.
+    /// Whether a ball lies farther around the Earth than anything that the picture shows, and more than 60 degrees of arc
+    /// away, where places on the ground no longer tell left from right.
     bool isAroundTheEarth(const Ball& ball, const osg::Vec2d& room) const;
     struct Extent;
     Extent extentOf(const Ball& ball) const;
