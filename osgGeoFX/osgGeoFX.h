@@ -36,6 +36,7 @@
 
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/CameraRole.h>
+#include <osgGeoFX/scene/CoreProfile.h>
 #include <osgGeoFX/scene/DeformedIntersector.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectCullCallback.h>

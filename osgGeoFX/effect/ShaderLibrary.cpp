@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/effect/ShaderLibrary.h>
 
+#include <osgGeoFX/effect/detail/ProfileProgram.h>
+
 #include <BakedShaders.h>
 
 #include <osg/Notify>
@@ -197,9 +199,7 @@ std::string ShaderLibrary::assemble(const std::string& text, const std::string& 
 
 osg::ref_ptr<osg::Shader> ShaderLibrary::createShader(osg::Shader::Type type, const std::string& name) const
 {
-    osg::ref_ptr<osg::Shader> shader = new osg::Shader(type, source(name));
-    shader->setName(name);
-    return shader;
+    return ProfileProgram::createShader(type, source(name), name);
 }
 
 osg::ref_ptr<osg::Program> ShaderLibrary::createProgram(const std::string& name,
@@ -209,7 +209,7 @@ osg::ref_ptr<osg::Program> ShaderLibrary::createProgram(const std::string& name,
     try
     {
         const ShaderLibrary library;
-        osg::ref_ptr<osg::Program> program = new osg::Program;
+        osg::ref_ptr<osg::Program> program = new ProfileProgram;
         program->setName(name);
         program->addShader(library.createShader(osg::Shader::VERTEX, vertexFile));
         program->addShader(library.createShader(osg::Shader::FRAGMENT, fragmentFile));

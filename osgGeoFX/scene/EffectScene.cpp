@@ -66,7 +66,7 @@ void EffectScene::addFunctions(osg::Program& program)
 {
     try
     {
-        EffectProgram::addFunctions(program, EffectProgram::Effects());
+        EffectProgram::addIdleFunctions(program);
     }
     catch (const ShaderError& error)
     {

@@ -110,8 +110,8 @@ vec4 SLOT_color(vec4 color)
     vec4 fine = texture(SLOT_brush, SLOT_texels.zw);
     vec4 coarse = texture(SLOT_brush, 0.5 * SLOT_texels.zw);
     vec4 brush = 2.0 * mix(fine, coarse, SLOT_hand.y) - 1.0;
-#ifdef GEOFX_HOST_NORMAL
-    vec3 towards = SLOT_light.xyz; // an engine has lights of its own
+#if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_CORE)
+    vec3 towards = SLOT_light.xyz; // the lights are those of an engine, or of a program of the application
 #else
     vec3 towards = SLOT_hand.w > 0.5 ? normalize(gl_LightSource[0].position.xyz) : SLOT_light.xyz;
 #endif

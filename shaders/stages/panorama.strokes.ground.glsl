@@ -34,7 +34,11 @@ float SLOT_strokeLight(vec3 position, vec3 normal, float y)
 {
     vec3 vertical = normalize(geofx_exaggerationGradient(SLOT_view().globe, position));
     vec3 steep = normalize(normal + (1.0 / SLOT_light.w - 1.0) * dot(normal, vertical) * vertical);
+#ifdef GEOFX_CORE
+    vec3 towards = SLOT_light.xyz;
+#else
     vec3 towards = SLOT_hand.w > 0.5 ? normalize(gl_LightSource[0].position.xyz) : SLOT_light.xyz;
+#endif
     return geofx_paintLight(dot(steep, towards), y, SLOT_slopes.w);
 }
 

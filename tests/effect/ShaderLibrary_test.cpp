@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // Assembling shader text without OpenGL, and what glslangValidator thinks of the kit's shaders.
 #include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/detail/ProfileProgram.h>
 #include <osgGeoFX/scene/detail/EffectProgram.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <tools/RandomSamples.h>
@@ -23,6 +24,7 @@
 using geofx::test::Random;
 using geofx::test::TempDir;
 using osgGeoFX::EffectProgram;
+using osgGeoFX::ProfileProgram;
 using osgGeoFX::ShaderError;
 using osgGeoFX::ShaderLibrary;
 
@@ -106,7 +108,24 @@ std::string validatorsText(const osg::Shader& shader)
     return text;
 }
 
-/// Compiles all shaders of a program, each as a unit, with a share of their defines set. The validator cannot link
+/// The stages that copy triangles hand on what the fixed functions' stand-in has for its fragments.
+bool needsFixedFunctions(const osg::Shader& shader)
+{
+    return shader.getShaderSource().find("gl_FrontColor") != std::string::npos;
+}
+
+/// As OSG gives it to the compiler of a core profile.
+std::string coreText(const osg::Shader& shader)
+{
+    std::string text = ProfileProgram::coreText(shader.getShaderSource(), shader.getType());
+    const osg::ref_ptr<osg::State> state = new osg::State;
+    state->setUseModelViewAndProjectionUniforms(true);
+    state->setUseVertexAttributeAliasing(true);
+    if (shader.getType() == osg::Shader::VERTEX) state->convertVertexShaderSourceToOsgBuiltIns(text);
+    return text;
+}
+
+/// Compiles all shaders of a program in both profiles, each as a unit, with a share of their defines set. The validator cannot link
 /// several units that use the compatibility profile's own variables; drivers do that in the tests with OpenGL.
 void expectProgramAccepted(const osg::Program* program, Random& random, double share)
 {
@@ -129,6 +148,10 @@ void expectProgramAccepted(const osg::Program* program, Random& random, double s
         const std::string name = "unit" + std::to_string(i) + endingOf(shader.getType());
         folder.write(name, withDefines(validatorsText(shader), defines));
         arguments.push_back((std::filesystem::path(folder.path()) / name).string());
+        // In a core profile, without what needs the fixed functions.
+        if (shader.getName().rfind("stages/fixed.", 0) == 0 || needsFixedFunctions(shader)) continue;
+        folder.write("core" + name, withDefines(coreText(shader), defines));
+        arguments.push_back((std::filesystem::path(folder.path()) / ("core" + name)).string());
     }
     std::string set;
     for (const auto& [name, value] : defines)
@@ -353,6 +376,10 @@ TEST(ShaderLibrary, ThePutTogetherStagesAreAcceptedByGlslangValidator)
             lists.push_back({other});
         }
     }
+    // Pairs, in both orders.
+    for (const auto& first : all)
+        for (const auto& second : all)
+            if (first != second) lists.push_back({first, second});
     lists.push_back(all);
     all.insert(all.end(), all.rbegin(), all.rend()); // each twice
     lists.push_back(all);
@@ -362,7 +389,7 @@ TEST(ShaderLibrary, ThePutTogetherStagesAreAcceptedByGlslangValidator)
         // Every define on; off and on by chance, for the shortest and the longest.
         Random random(effects.size());
         expectProgramAccepted(effects, random, 1.0);
-        if (effects.empty() || effects.size() > 1)
+        if (effects.empty() || effects.size() > 2)
         {
             expectProgramAccepted(effects, random, 0.0);
             expectProgramAccepted(effects, random, 0.5);

@@ -3,6 +3,7 @@
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 
 #include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/effect/detail/ProfileProgram.h>
 #include <osgGeoFX/scene/detail/EffectProgram.h>
 #include <osgGeoFX/scene/detail/OwnPrograms.h>
 #include <osgGeoFX/scene/detail/ShaderText.h>
@@ -148,9 +149,7 @@ void ProgramAdaptation::apply(osg::Program& copy) const
         }
     }
     if (_main.empty()) return;
-    osg::ref_ptr<osg::Shader> main = new osg::Shader(_lastStage, _main);
-    main->setName(_fixedVertices ? fixedFile : file);
-    copy.addShader(main);
+    copy.addShader(ProfileProgram::createShader(_lastStage, _main, _fixedVertices ? fixedFile : file));
 }
 
 void ProgramAdaptation::adapt(const osg::Program& program)
@@ -264,8 +263,10 @@ void ProgramAdaptation::addMain(const Stage& last, const std::string& main, Frag
         if (on) defines += std::string("#define ") + name + '\n';
     };
     define(!vertices, "GEOFX_LATER_STAGE");
-    define(vertices && (last.names("gl_Vertex") || last.names("ftransform")), "GEOFX_HOST_VERTEX");
-    define(vertices && last.names("gl_Normal"), "GEOFX_HOST_NORMAL");
+    // The names behind OSG's vertex attribute aliasing, which programs for a core profile may write themselves.
+    define(vertices && (last.names("gl_Vertex") || last.names("ftransform") || last.names("osg_Vertex")),
+           "GEOFX_HOST_VERTEX");
+    define(vertices && (last.names("gl_Normal") || last.names("osg_Normal")), "GEOFX_HOST_NORMAL");
     define(!vertices && last.names("gl_TexCoord"), "GEOFX_HOST_TEXTURE");
     define(last.names("gl_ClipVertex") || last.names("gl_ClipDistance"), "GEOFX_HOST_CLIPS");
     define(last.names("log2") || last.names("log"), "GEOFX_HOST_LOG");

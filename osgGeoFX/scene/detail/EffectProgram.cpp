@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/NormalTurner.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/SurfaceEffect.h>
+#include <osgGeoFX/effect/detail/ProfileProgram.h>
 
 #include <osg/Notify>
 
@@ -312,9 +313,7 @@ std::string withoutVersion(std::string text)
 
 osg::ref_ptr<osg::Shader> functionShader(osg::Shader::Type stage, const std::string& text)
 {
-    osg::ref_ptr<osg::Shader> shader = new osg::Shader(stage, text);
-    shader->setName(fileOf(stage));
-    return shader;
+    return ProfileProgram::createShader(stage, text, fileOf(stage));
 }
 
 } // namespace
@@ -396,6 +395,12 @@ void EffectProgram::addFunctions(osg::Program& program, const Effects& effects)
         program.addShader(functionShader(stage, functions(effects, stage)));
 }
 
+void EffectProgram::addIdleFunctions(osg::Program& program)
+{
+    for (const osg::Shader::Type stage : missingStages(program))
+        program.addShader(functionShader(stage, ProfileProgram::coreText(functions({}, stage), stage)));
+}
+
 void EffectProgram::addFunctionsOf(const osg::Program& like, osg::Program& program)
 {
     for (const osg::Shader::Type stage : missingStages(program))
@@ -465,14 +470,12 @@ osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects, const P
     const auto add =
         [](osg::Program& program, osg::Shader::Type stage, const std::string& text, const std::string& name)
     {
-        osg::ref_ptr<osg::Shader> shader = new osg::Shader(stage, text);
-        shader->setName(name);
-        program.addShader(shader);
+        program.addShader(ProfileProgram::createShader(stage, text, name));
     };
     try
     {
         const ShaderLibrary library;
-        osg::ref_ptr<osg::Program> program = new osg::Program;
+        osg::ref_ptr<osg::Program> program = new ProfileProgram;
         program->setName(passName);
         for (const osg::Shader::Type stage :
              {osg::Shader::VERTEX, osg::Shader::TESSCONTROL, osg::Shader::TESSEVALUATION,
@@ -505,7 +508,7 @@ osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects)
     try
     {
         const ShaderLibrary library;
-        osg::ref_ptr<osg::Program> program = new osg::Program;
+        osg::ref_ptr<osg::Program> program = new ProfileProgram;
         program->setName("osgGeoFX");
         program->addShader(library.createShader(osg::Shader::VERTEX, "stages/fixed.vert"));
         program->addShader(library.createShader(osg::Shader::FRAGMENT, "stages/fixed.frag"));

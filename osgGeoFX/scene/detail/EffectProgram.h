@@ -38,6 +38,9 @@ public:
                                 osg::Shader::Type stage);
     /// Adds the functions of effects to the stages of a program that have none yet; ShaderError.
     static void addFunctions(osg::Program& program, const Effects& effects);
+    /// Adds functions that do nothing, as a program of the application has them where no scene draws it. They name nothing of a
+    /// profile, so any context compiles them; ShaderError.
+    static void addIdleFunctions(osg::Program& program);
     /// Those that another program has.
     static void addFunctionsOf(const osg::Program& like, osg::Program& program);
     /// Whether a shader is one of those that addFunctions() adds; create() has such, too.

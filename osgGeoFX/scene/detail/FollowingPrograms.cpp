@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/FollowingPrograms.h>
 
+#include <osgGeoFX/effect/detail/ProfileProgram.h>
 #include <osgGeoFX/scene/detail/EffectProgram.h>
 #include <osgGeoFX/scene/detail/OwnPrograms.h>
 
@@ -66,7 +67,7 @@ bool isCopyOf(const osg::Program& copy, const osg::Program& program, const osg::
 osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Program& functions,
                                   const ProgramAdaptation* adaptation)
 {
-    osg::ref_ptr<osg::Program> copy = osg::clone(&program, osg::CopyOp::SHALLOW_COPY);
+    osg::ref_ptr<osg::Program> copy = new ProfileProgram(program);
     for (unsigned int i = copy->getNumShaders(); i-- > 0;)
     {
         if (EffectProgram::isFunctions(*copy->getShader(i))) copy->removeShader(copy->getShader(i));
@@ -74,14 +75,8 @@ osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Progra
     if (adaptation) adaptation->apply(*copy);
     // They are the same for all, and compiled once.
     EffectProgram::addFunctionsOf(functions, *copy);
-    // What OSG's own copy leaves out.
-    for (const osg::Program* each : {&functions, &program})
-    {
-        for (const auto& [name, binding] : each->getUniformBlockBindingList())
-            copy->addBindUniformBlock(name, binding);
-    }
-    const osg::ShaderDefines& defines = program.getShaderDefines();
-    copy->getShaderDefines().insert(defines.begin(), defines.end());
+    for (const auto& [name, binding] : functions.getUniformBlockBindingList())
+        copy->addBindUniformBlock(name, binding);
     return copy;
 }
 
@@ -115,9 +110,8 @@ osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& pro
     copy.functions = &functions;
     copy.adaptation = adaptation;
     {
-        // OSG's shaders know their programs, without a lock, and scenes share shaders.
-        static std::mutex shaders;
-        const std::lock_guard<std::mutex> sharing(shaders);
+        // Scenes share shaders.
+        const std::lock_guard<std::mutex> sharing(ProfileProgram::sharing());
         copy.program = copyOf(*original, functions, adaptation.get());
     }
     if (adaptation && !adaptation->colorRefusal().empty())

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/effect/detail/ProfileProgram.h>
+
+#include <osg/Notify>
+#include <osg/State>
+
+#include <atomic>
+#include <cctype>
+#include <utility>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Marks a shader as one of the kit's, and keeps its translation, which all programs share.
+class Translation : public osg::Referenced
+{
+public:
+    osg::ref_ptr<osg::Shader> of(const osg::Shader& shader)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        if (!_core)
+        {
+            _core = new osg::Shader(shader.getType(),
+                                    ProfileProgram::coreText(shader.getShaderSource(), shader.getType()));
+            _core->setName(shader.getName());
+        }
+        return _core;
+    }
+
+protected:
+    ~Translation() override = default;
+
+private:
+    std::mutex _mutex;
+    osg::ref_ptr<osg::Shader> _core;
+};
+
+bool isPartOfWord(char c)
+{
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+
+/// Replaces a word; whether it was there.
+bool replaceWord(std::string& text, const std::string& word, const std::string& by)
+{
+    bool found = false;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at))
+    {
+        const std::size_t end = at + word.size();
+        const bool whole =
+            (at == 0 || !isPartOfWord(text[at - 1])) && (end == text.size() || !isPartOfWord(text[end]));
+        if (whole) text.replace(at, word.size(), by);
+        at += whole ? by.size() : word.size();
+        found = found || whole;
+    }
+    return found;
+}
+
+// What a program without shaders does: no program is in force.
+const osg::Program& nothing()
+{
+    static const osg::ref_ptr<osg::Program> none = new osg::Program;
+    return *none;
+}
+
+void copyRest(const osg::Program& from, osg::Program& to)
+{
+    // What OSG's own copy leaves out.
+    for (const auto& [name, binding] : from.getUniformBlockBindingList())
+        to.addBindUniformBlock(name, binding);
+    const osg::ShaderDefines& defines = from.getShaderDefines();
+    to.getShaderDefines().insert(defines.begin(), defines.end());
+}
+
+} // namespace
+
+ProfileProgram::ProfileProgram() = default;
+
+ProfileProgram::ProfileProgram(const osg::Program& other) : osg::Program(other)
+{
+    copyRest(other, *this);
+}
+
+ProfileProgram::~ProfileProgram() = default;
+
+bool ProfileProgram::isCore(const osg::State& state)
+{
+    return state.getUseModelViewAndProjectionUniforms() && state.getUseVertexAttributeAliasing();
+}
+
+osg::ref_ptr<osg::Shader> ProfileProgram::createShader(osg::Shader::Type stage, const std::string& text,
+                                                       const std::string& name)
+{
+    osg::ref_ptr<osg::Shader> shader = new osg::Shader(stage, text);
+    shader->setName(name);
+    shader->setUserData(new Translation);
+    return shader;
+}
+
+std::string ProfileProgram::coreText(const std::string& text, osg::Shader::Type stage)
+{
+    const std::size_t end = text.find('\n');
+    std::string version = text.substr(0, end), rest = end == std::string::npos ? "" : text.substr(end + 1);
+    replaceWord(version, "compatibility", "core");
+    std::string declarations;
+    if (stage != osg::Shader::VERTEX)
+    {
+        for (const auto& [type, name] :
+             {std::pair{"mat4", "ModelViewMatrix"}, std::pair{"mat4", "ProjectionMatrix"},
+              std::pair{"mat4", "ModelViewProjectionMatrix"}, std::pair{"mat3", "NormalMatrix"}})
+        {
+            const std::string ours = std::string("osg_") + name;
+            if (replaceWord(rest, std::string("gl_") + name, ours))
+                declarations += std::string("uniform ") + type + " " + ours + "; ";
+        }
+    }
+    // Textures of normals have texture matrices, so normals are those of the vertices.
+    replaceWord(rest, "GEOFX_NORMAL_MAP", "GEOFX_NO_NORMAL_MAP");
+    if (replaceWord(rest, "gl_ClipVertex", "geofx_clipVertex")) declarations += "vec4 geofx_clipVertex; ";
+    if (stage == osg::Shader::FRAGMENT && replaceWord(rest, "gl_FragColor", "geofx_fragColor"))
+        declarations += "out vec4 geofx_fragColor; ";
+    if (!declarations.empty()) declarations += '\n';
+    return version + "\n#define GEOFX_CORE\n" + declarations + "#line 2\n" + rest;
+}
+
+std::mutex& ProfileProgram::sharing()
+{
+    static std::mutex mutex;
+    return mutex;
+}
+
+bool ProfileProgram::standsInForFixedFunctions() const
+{
+    for (const auto& shader : _shaderList)
+        if (shader->getName().rfind("stages/fixed.", 0) == 0) return true;
+    return false;
+}
+
+osg::ref_ptr<osg::Program> ProfileProgram::core() const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    if (_core || standsInForFixedFunctions()) return _core;
+    const std::lock_guard<std::mutex> other(sharing());
+    _core = new osg::Program(*this, osg::CopyOp::SHALLOW_COPY);
+    for (const auto& shader : _shaderList)
+        _core->removeShader(shader);
+    for (const auto& shader : _shaderList)
+    {
+        auto* translation = dynamic_cast<Translation*>(shader->getUserData());
+        _core->addShader(translation ? translation->of(*shader) : shader);
+    }
+    copyRest(*this, *_core);
+    return _core;
+}
+
+osg::ref_ptr<osg::Program> ProfileProgram::coreIfMade() const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return _core;
+}
+
+void ProfileProgram::apply(osg::State& state) const
+{
+    if (!isCore(state)) return osg::Program::apply(state);
+    if (const osg::ref_ptr<osg::Program> program = core()) return program->apply(state);
+    static std::atomic<bool> said{false};
+    if (!said.exchange(true))
+        OSG_WARN
+            << "osgGeoFX: geometry below effects has no program, and the kit's stand-in for OpenGL's fixed "
+               "functions needs a context with the compatibility profile; it is not drawn with effects. Give "
+               "it "
+               "a program (EffectScene::addFunctions() or adapt()), or ask for such a context."
+            << std::endl;
+    nothing().apply(state);
+}
+
+void ProfileProgram::compileGLObjects(osg::State& state) const
+{
+    if (!isCore(state)) return osg::Program::compileGLObjects(state);
+    if (const osg::ref_ptr<osg::Program> program = core()) program->compileGLObjects(state);
+}
+
+void ProfileProgram::setThreadSafeRefUnref(bool threadSafe)
+{
+    osg::Program::setThreadSafeRefUnref(threadSafe);
+    if (const osg::ref_ptr<osg::Program> program = coreIfMade()) program->setThreadSafeRefUnref(threadSafe);
+}
+
+void ProfileProgram::resizeGLObjectBuffers(unsigned int maxSize)
+{
+    osg::Program::resizeGLObjectBuffers(maxSize);
+    if (const osg::ref_ptr<osg::Program> program = coreIfMade()) program->resizeGLObjectBuffers(maxSize);
+}
+
+void ProfileProgram::releaseGLObjects(osg::State* state) const
+{
+    osg::Program::releaseGLObjects(state);
+    if (const osg::ref_ptr<osg::Program> program = coreIfMade()) program->releaseGLObjects(state);
+}
+
+} // namespace osgGeoFX
