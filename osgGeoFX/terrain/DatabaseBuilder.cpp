@@ -114,7 +114,7 @@ double openShare(const BuildPlan& plan)
 {
     if (!plan.voids) return 0.0;
     return static_cast<double>(plan.voids->openPosts()) /
-           ((plan.scheme.lastColumn + 1.0) * (plan.scheme.lastRow + 1.0));
+           (static_cast<double>(plan.voids->columns()) * static_cast<double>(plan.voids->rows()));
 }
 
 /// For a build that is resumed when all is done; and programs may want to know.
@@ -169,8 +169,8 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
     root->setUserValue("geofx.south", plan.scheme.south * unit);
     root->setUserValue("geofx.east", plan.scheme.east * unit);
     root->setUserValue("geofx.north", plan.scheme.north * unit);
-    root->setUserValue("geofx.minHeight", static_cast<double>(plan.facts[0][0].minHeight));
-    root->setUserValue("geofx.maxHeight", static_cast<double>(plan.facts[0][0].maxHeight));
+    root->setUserValue("geofx.minHeight", static_cast<double>(plan.whole().minHeight));
+    root->setUserValue("geofx.maxHeight", static_cast<double>(plan.whole().maxHeight));
     root->setUserValue("geofx.pixelsPerRadian", plan.options.pixelsPerRadian);
     root->setUserValue("geofx.pixelError", plan.options.pixelError);
     root->setUserValue("geofx.levels", plan.scheme.finestLevel + 1);
@@ -215,8 +215,7 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
     BuildSummary summary;
     summary.file = options.output + "/terrain.osgb";
     summary.levels = plan.scheme.finestLevel + 1;
-    summary.samples = (static_cast<std::uint64_t>(plan.scheme.lastColumn) + 1) *
-                      (static_cast<std::uint64_t>(plan.scheme.lastRow) + 1);
+    summary.samples = plan.estimate.samples;
     if (prepareFolder(plan))
     {
         const osg::ref_ptr<osg::Node> root = osgDB::readRefNodeFile(summary.file);

@@ -39,7 +39,12 @@ enum class Voids
     @ingroup terrain */
 struct BuildOptions
 {
-    std::vector<std::string> dems;    ///< elevation rasters, metres; in overlaps the later one wins
+    /// Elevation rasters, metres. In overlaps the later one wins, so coarse ones come first: a globe, then a region.
+    /// Where a later one has no data, those before it show. If its density differs from that of the one before by
+    /// half or more, its heights blend into those below over three cells of the coarser one, or a fifth of its own
+    /// extent. The quadtree is as deep as the densest source that touches a tile asks for, in blocks of up to 8 × 8
+    /// tiles.
+    std::vector<std::string> dems;
     std::vector<std::string> imagery; ///< color rasters (RGB, RGBA, grey or palette); the later one wins
     std::string landCover;            ///< class raster, one byte band; empty for none
     std::string landCoverTable;       ///< the meaning of its values, for readLandCoverTable()

@@ -100,10 +100,21 @@ TEST_F(BuilderEstimate, IsPrintedFirst)
 
 TEST_F(BuilderEstimate, WhatTheDiskCannotHoldIsRefused)
 {
-    const std::string fine = writeRelief(_folder / "fine.tif", 40, 40, 10.0, 47.0, 1e-5);
-    expectRefusal({"--dem", coarseWorld(), fine}, {"samples", "tiles", "on the disk", "are free",
+    // The whole Earth with a pixel every 10 m. A small patch so fine costs little.
+    coarseWorld();
+    const std::string fine = _folder / "fine.vrt";
+    std::ofstream(fine) << R"(<VRTDataset rasterXSize="4000000" rasterYSize="2000000"><SRS>EPSG:4326</SRS>)"
+                           R"(<GeoTransform>-180, 9e-5, 0, 90, 0, -9e-5</GeoTransform>)"
+                           R"(<VRTRasterBand dataType="Float32" band="1"><SimpleSource>)"
+                           R"(<SourceFilename relativeToVRT="1">world.tif</SourceFilename>)"
+                           R"(<SrcRect xOff="0" yOff="0" xSize="36" ySize="18"/>)"
+                           R"(<DstRect xOff="0" yOff="0" xSize="4000000" ySize="2000000"/>)"
+                           R"(</SimpleSource></VRTRasterBand></VRTDataset>)";
+    expectRefusal({"--dem", fine}, {"samples", "tiles", "on the disk", "are free",
                                                    "another folder with -o", "coarser rasters"});
-    EXPECT_THROW(estimateBuild(options({coarseWorld(), fine})), BuildError);
+    EXPECT_THROW(estimateBuild(options({fine})), BuildError);
+    const std::string patch = writeRelief(_folder / "patch.tif", 40, 40, 10.0, 47.0, 1e-5);
+    EXPECT_LT(estimateBuild(options({coarseWorld(), patch})).samples, 100000000u);
 }
 
 TEST_F(BuilderEstimate, PixelsOfNothing)

@@ -51,11 +51,20 @@ double bytesBelow(const fs::path& folder)
 
 void BuildPlan::chooseEstimate()
 {
-    const double posts = (scheme.lastColumn + 1.0) * (scheme.lastRow + 1.0);
+    double posts = (scheme.lastColumn + 1.0) * (scheme.lastRow + 1.0);
+    if (!uniform())
+    {
+        posts = 0.0;
+        for (const auto& units : tiers)
+            for (const Unit& unit : units)
+                if (unit.sampled) posts += static_cast<double>(validColumns(unit)) * validRows(unit);
+    }
     const double perPost = static_cast<double>(scheme.texels) / scheme.intervals;
     // Levels that keep the finest texels have all of them again. Each level above has a quarter of the one before.
     const double texels = posts * perPost * perPost * (scheme.textureDepth + 4.0 / 3.0);
-    const GroundRaster::Size cells = GroundRaster::sizeFor(*this);
+    double groundCells = 0.0;
+    for (const GroundPatch& patch : groundPatches)
+        groundCells += static_cast<double>(patch.columns) * patch.rows;
     double tiles = 0.0, squares = 0.0;
     for (int level = 0; level <= scheme.finestLevel; ++level)
     {
@@ -63,7 +72,8 @@ void BuildPlan::chooseEstimate()
         tiles += std::ceil(scheme.lastColumn / width) * std::ceil(scheme.lastRow / width);
         squares += std::pow(4.0, level);
     }
-    const double workBytes = posts * WORK_PER_POST + WORK_PER_GROUND_CELL * cells.columns * cells.rows;
+    if (!uniform()) tiles = squares = static_cast<double>(_tiles);
+    const double workBytes = posts * WORK_PER_POST + WORK_PER_GROUND_CELL * groundCells;
     const double normals = posts * (std::min(scheme.finestLevel, TilingScheme::normalDepth) + 4.0 / 3.0);
     const double bytes = posts * BYTES_PER_POST + texels * BYTES_PER_TEXEL + normals * BYTES_PER_NORMAL;
     estimate.samples = static_cast<std::uint64_t>(posts);

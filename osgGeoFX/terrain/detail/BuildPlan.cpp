@@ -22,6 +22,12 @@ namespace
 {
 
 constexpr int MAX_LEVEL = 20;
+// Elevation files whose spacings differ by less than this factor count as equally dense.
+constexpr double SAME_DENSITY = 1.5;
+// Heights of a denser layer blend into those below over so many cells of the coarser one.
+constexpr double BLEND_CELLS = 3.0;
+// What the account of a tile takes, with its place in a table.
+constexpr double BYTES_PER_TILE = sizeof(TileFacts) + 40.0;
 // How far a CRS may be used beyond its area of use, degrees: a neighbouring zone and some more.
 constexpr double CRS_MARGIN = 10.0;
 
@@ -152,8 +158,11 @@ BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
         }
     }
     chooseGrid();
-    chooseEstimate();
+    chooseDemands();
+    chooseGround();
+    if (uniform()) chooseEstimate(); // before the account of the tiles is made, which may be too large
     chooseUnits();
+    if (!uniform()) chooseEstimate();
     chooseFingerprint();
 }
 
@@ -184,14 +193,184 @@ BuildPlan::Spacing BuildPlan::chooseExtent()
         finest = {std::min(finest.x, print.stepX), std::min(finest.y, print.stepY)};
         wholeCircle = wholeCircle || print.wholeCircle;
     }
-    groundStepX = finest.x;
-    groundStepY = finest.y;
     if (scheme.crs.geographic && (wholeCircle || scheme.east - scheme.west > 360.0))
         scheme.east = scheme.west + 360.0;
     require(scheme.east > scheme.west && scheme.north > scheme.south,
             options.dems.front() +
                 ": the elevation is a single row, column or pixel; a terrain needs at least 2 × 2.");
+    chooseLayers(dems);
+    _dems = std::move(dems);
     return finest;
+}
+
+void BuildPlan::chooseLayers(const std::vector<Footprint>& dems)
+{
+    for (std::size_t i = 0; i < dems.size(); ++i)
+    {
+        const Footprint& print = dems[i];
+        const auto alike = [](double a, double b)
+        {
+            return std::max(a, b) < SAME_DENSITY * std::min(a, b);
+        };
+        if (layers.empty() || !alike(layers.back().stepX, print.stepX) ||
+            !alike(layers.back().stepY, print.stepY))
+        {
+            layers.push_back(
+                {i, i, print.west, print.south, print.east, print.north, print.stepX, print.stepY});
+        }
+        Layer& layer = layers.back();
+        layer.last = i + 1;
+        layer.west = std::min(layer.west, print.west);
+        layer.south = std::min(layer.south, print.south);
+        layer.east = std::max(layer.east, print.east);
+        layer.north = std::max(layer.north, print.north);
+        layer.stepX = std::min(layer.stepX, print.stepX);
+        layer.stepY = std::min(layer.stepY, print.stepY);
+    }
+    for (std::size_t i = 1; i < layers.size(); ++i)
+    {
+        Layer& layer = layers[i];
+        const Layer& below = layers[i - 1];
+        layer.blendX =
+            std::min(BLEND_CELLS * std::max(layer.stepX, below.stepX), 0.2 * (layer.east - layer.west));
+        layer.blendY =
+            std::min(BLEND_CELLS * std::max(layer.stepY, below.stepY), 0.2 * (layer.north - layer.south));
+    }
+}
+
+int BuildPlan::levelFor(double stepX, double stepY) const
+{
+    const double ratio = std::min(stepX / ((scheme.east - scheme.west) / scheme.lastColumn),
+                                  stepY / ((scheme.north - scheme.south) / scheme.lastRow));
+    return std::clamp(scheme.finestLevel - static_cast<int>(std::floor(std::log2(ratio) + 1e-3)), 0,
+                      scheme.finestLevel);
+}
+
+void BuildPlan::chooseDemands()
+{
+    voidLevel = scheme.finestLevel;
+    const auto demandOf = [&](const Footprint& print, int level)
+    {
+        for (const double turn : {-360.0, 0.0, 360.0})
+            if (turn == 0.0 || scheme.crs.geographic)
+                _demands.push_back({print.west + turn, print.south, print.east + turn, print.north, level});
+    };
+    // Files whose densities differ little share their level: that of the densest.
+    int deepest = 0;
+    for (const Layer& layer : layers)
+    {
+        const int level = levelFor(layer.stepX, layer.stepY);
+        deepest = std::max(deepest, level);
+        voidLevel = std::min(voidLevel, level);
+        for (std::size_t i = layer.first; i < layer.last; ++i)
+            demandOf(_dems[i], level);
+    }
+    // If colors are denser than the texels of any post, they ask for levels below those of the elevation.
+    const std::vector<std::string> files = colorFiles();
+    for (const auto& file : files)
+    {
+        const bool imagery = &file != &files.back() || options.landCover.empty();
+        if (imagery == options.imagery.empty()) continue;
+        const Footprint print =
+            RasterSource(file, imagery ? RasterKind::Imagery : RasterKind::LandCover).footprint(scheme.crs);
+        int level = 0;
+        for (; level < scheme.finestLevel; ++level)
+        {
+            const double posts =
+                static_cast<double>(scheme.intervals) * scheme.step(level) / scheme.textureIntervals(level);
+            const Lattice texels = scheme.lattice(0.0, 0.0, posts, 1, 1);
+            if (texels.dx <= print.stepX * 1.001 && texels.dy <= print.stepY * 1.001) break;
+        }
+        demandOf(print, level);
+        deepest = std::max(deepest, level);
+    }
+    // The densest source of all has the finest level, however its density was rounded.
+    if (deepest < scheme.finestLevel)
+        for (Demand& each : _demands)
+            if (each.level == deepest) each.level = scheme.finestLevel;
+    if (uniform()) voidLevel = scheme.finestLevel;
+    // Whole cells on the lattice of voids.
+    const int step = scheme.step(voidLevel);
+    scheme.lastColumn = (scheme.lastColumn + step - 1) / step * step;
+    scheme.lastRow = (scheme.lastRow + step - 1) / step * step;
+}
+
+bool BuildPlan::uniform() const
+{
+    return std::all_of(_demands.begin(), _demands.end(),
+                       [&](const Demand& each) { return each.level == scheme.finestLevel; });
+}
+
+int BuildPlan::demand(const TileKey& key) const
+{
+    if (uniform()) return scheme.finestLevel;
+    const int width = scheme.intervals * scheme.step(key.level);
+    const double west = scheme.gridX(scheme.firstColumn(key)), south = scheme.gridY(scheme.firstRow(key));
+    const double east = scheme.gridX(scheme.firstColumn(key) + width),
+                 north = scheme.gridY(scheme.firstRow(key) + width);
+    int level = 0;
+    for (const Demand& each : _demands)
+        if (each.west <= east && each.east >= west && each.south <= north && each.north >= south)
+            level = std::max(level, each.level);
+    return level;
+}
+
+void BuildPlan::chooseGround()
+{
+    const auto points = [](double extent, double step)
+    {
+        return static_cast<int>(
+                   std::clamp(std::ceil(extent / step - 1e-4), 1.0, GroundRaster::LARGEST_SIDE - 1.0)) +
+               1;
+    };
+    // A raster over a rectangle of finest posts, wide enough for the ends of the shores in it.
+    const auto add = [&](double west, double south, double east, double north, double stepX, double stepY)
+    {
+        const double postsX = scheme.lastColumn / (scheme.east - scheme.west),
+                     postsY = scheme.lastRow / (scheme.north - scheme.south);
+        GroundPatch patch;
+        patch.firstColumn = static_cast<int>(
+            std::clamp(std::floor((west - scheme.west) * postsX), 0.0, scheme.lastColumn - 1.0));
+        patch.firstRow = static_cast<int>(
+            std::clamp(std::floor((south - scheme.south) * postsY), 0.0, scheme.lastRow - 1.0));
+        patch.lastColumn = static_cast<int>(std::clamp(std::ceil((east - scheme.west) * postsX),
+                                                       patch.firstColumn + 1.0, scheme.lastColumn * 1.0));
+        patch.lastRow = static_cast<int>(std::clamp(std::ceil((north - scheme.south) * postsY),
+                                                    patch.firstRow + 1.0, scheme.lastRow * 1.0));
+        patch.columns = points((patch.lastColumn - patch.firstColumn) / postsX, stepX);
+        patch.rows = points((patch.lastRow - patch.firstRow) / postsY, stepY);
+        groundPatches.push_back(patch);
+    };
+    const bool classed = !options.landCover.empty();
+    const Layer* coarsest = &layers.front();
+    for (const Layer& layer : layers)
+        if (layer.stepX > coarsest->stepX) coarsest = &layer;
+    if (layers.size() == 1)
+    {
+        add(scheme.west, scheme.south, scheme.east, scheme.north,
+            classed ? _landCover.stepX : coarsest->stepX, classed ? _landCover.stepY : coarsest->stepY);
+        return;
+    }
+    // The coarsest over the whole, then one for each denser source: its rectangle and an eighth around it.
+    struct Part
+    {
+        double west, south, east, north, stepX, stepY;
+    };
+    std::vector<Part> parts;
+    for (const Layer& layer : layers)
+        parts.push_back({layer.west, layer.south, layer.east, layer.north, layer.stepX, layer.stepY});
+    if (classed)
+        parts.push_back({_landCover.west, _landCover.south, _landCover.east, _landCover.north,
+                         _landCover.stepX, _landCover.stepY});
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const Part& a, const Part& b) { return a.stepX > b.stepX; });
+    add(scheme.west, scheme.south, scheme.east, scheme.north, coarsest->stepX, coarsest->stepY);
+    for (const Part& part : parts)
+    {
+        if (part.stepX * SAME_DENSITY > coarsest->stepX) continue;
+        const double x = 0.125 * (part.east - part.west), y = 0.125 * (part.north - part.south);
+        add(part.west - x, part.south - y, part.east + x, part.north + y, part.stepX, part.stepY);
+    }
 }
 
 std::vector<std::string> BuildPlan::colorFiles() const
@@ -212,11 +391,7 @@ BuildPlan::Spacing BuildPlan::checkColors()
         const Footprint print =
             RasterSource(file, imagery ? RasterKind::Imagery : RasterKind::LandCover).footprint(scheme.crs);
         require(overlaps(print, scheme), outside(file));
-        if (!imagery)
-        {
-            groundStepX = print.stepX;
-            groundStepY = print.stepY;
-        }
+        if (!imagery) _landCover = print;
         if (imagery == fromImagery)
             finest = {std::min(finest.x, print.stepX), std::min(finest.y, print.stepY)};
     }
@@ -281,33 +456,79 @@ void BuildPlan::chooseUnits()
     while (depthLimit > 1 && (scheme.texels << depthLimit) > 2048)
         --depthLimit;
     int latticeLevel = scheme.finestLevel;
-    for (int tier = 0;; ++tier)
+    std::vector<int> roots, lattices;
+    for (;;)
     {
         const int depth = std::min(depthLimit, latticeLevel);
         const int rootLevel = latticeLevel - depth;
-        const int across = scheme.tilesAcross(rootLevel);
-        auto& units = tiers.emplace_back();
-        for (int y = 0; y < across; ++y)
-            for (int x = 0; x < across; ++x)
-                units.push_back({{rootLevel, x, y}, depth, tier});
-        unitsTotal += 2 * units.size();
+        roots.push_back(rootLevel);
+        lattices.push_back(rootLevel + depth);
         if (rootLevel == 0) break;
         latticeLevel = rootLevel;
     }
+    tiers.resize(roots.size());
+    _facts.resize(static_cast<std::size_t>(scheme.finestLevel) + 1);
+    addUnits({0, 0, 0}, roots.size() - 1, lattices);
+    for (const auto& units : tiers)
+        unitsTotal += 2 * units.size();
+    if (uniform())
+        voidUnits = tiers.front();
+    else
+    {
+        const int depth = std::min(depthLimit, voidLevel), across = scheme.tilesAcross(voidLevel - depth);
+        for (int y = 0; y < across; ++y)
+            for (int x = 0; x < across; ++x)
+                if (scheme.exists({voidLevel - depth, x, y}))
+                    voidUnits.push_back({{voidLevel - depth, x, y}, depth, true});
+    }
     unitsTotal += static_cast<std::uint64_t>(GroundRaster::steps(*this));
 
-    for (int level = 0; level <= scheme.finestLevel; ++level)
-    {
-        const auto across = static_cast<std::size_t>(scheme.tilesAcross(level));
-        facts.emplace_back(across * across);
-    }
-
-    const double texels = std::pow(static_cast<double>(scheme.texels << tiers[0][0].depth), 2.0);
-    const double posts = std::pow(static_cast<double>(options.tileSize << tiers[0][0].depth) + 3.0, 2.0);
+    double texels = 0.0, posts = 0.0;
+    for (const auto& units : tiers)
+        for (const Unit& unit : units)
+        {
+            const int across = scheme.textureIntervals(unit.latticeLevel()) << unit.depth;
+            texels = std::max(texels, std::pow(static_cast<double>(across), 2.0));
+            posts = std::max(posts, std::pow(static_cast<double>(options.tileSize << unit.depth) + 3.0, 2.0));
+        }
     const double unitMiB = (texels * 32.0 + posts * 36.0) / (1024.0 * 1024.0) + 64.0;
     const int wanted = options.threads > 0 ? options.threads : coreCount();
     const int affordable = static_cast<int>(0.75 * options.memoryMiB / unitMiB);
     threads = std::clamp(wanted, 1, std::max(1, affordable));
+}
+
+/// Adds a unit and all below it. `ladder` counts the tiers from the deepest one.
+void BuildPlan::addUnits(const TileKey& root, std::size_t ladder, const std::vector<int>& lattices)
+{
+    if (!scheme.exists(root)) return;
+    const int wanted = demand(root), lattice = lattices[ladder];
+    const bool sampled = wanted <= lattice;
+    const int depth = std::clamp(wanted, root.level, lattice) - root.level;
+    tiers[ladder].push_back({root, depth, sampled});
+    addTiles(root, root.level + depth);
+    if (sampled) return;
+    const int span = 1 << depth;
+    for (int y = 0; y < span; ++y)
+        for (int x = 0; x < span; ++x)
+            addUnits({lattice, root.x * span + x, root.y * span + y}, ladder - 1, lattices);
+}
+
+void BuildPlan::addTiles(const TileKey& key, int toLevel)
+{
+    if (!scheme.exists(key)) return;
+    auto& level = _facts[static_cast<std::size_t>(key.level)];
+    const std::uint64_t place = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.y)) << 32) |
+                                static_cast<std::uint32_t>(key.x);
+    if (level.try_emplace(place).second &&
+        static_cast<double>(++_tiles) * BYTES_PER_TILE > options.memoryMiB * 1024.0 * 1024.0)
+        throw BuildError(options.dems.front() + ": the terrain would have more than " +
+                         std::to_string(_tiles) + " tiles, of which the builder cannot keep account in " +
+                         std::to_string(options.memoryMiB) +
+                         " MiB of memory; give it more with --memory, or give a smaller region or coarser "
+                         "rasters (gdal_translate -projwin, gdalwarp -tr).");
+    if (key.level < toLevel)
+        for (int c = 0; c < 4; ++c)
+            addTiles(key.child(c & 1, c >> 1), toLevel);
 }
 
 void BuildPlan::chooseFingerprint()
@@ -369,9 +590,25 @@ TileFacts& BuildPlan::fact(const TileKey& key)
 
 const TileFacts& BuildPlan::fact(const TileKey& key) const
 {
-    return facts[static_cast<std::size_t>(key.level)]
-                [static_cast<std::size_t>(key.y) * static_cast<std::size_t>(scheme.tilesAcross(key.level)) +
-                 static_cast<std::size_t>(key.x)];
+    static const TileFacts none;
+    if (key.level > scheme.finestLevel || key.x < 0 || key.y < 0) return none;
+    const auto& level = _facts[static_cast<std::size_t>(key.level)];
+    const auto found = level.find((static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.y)) << 32) |
+                                  static_cast<std::uint32_t>(key.x));
+    return found == level.end() ? none : found->second;
+}
+
+bool BuildPlan::has(const TileKey& key) const
+{
+    if (key.level > scheme.finestLevel) return false;
+    return _facts[static_cast<std::size_t>(key.level)].count(
+               (static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.y)) << 32) |
+               static_cast<std::uint32_t>(key.x)) > 0;
+}
+
+bool BuildPlan::isLeaf(const TileKey& key) const
+{
+    return !has(key.child(0, 0)); // the child that lies on the extent if any does
 }
 
 double BuildPlan::tolerance(int level) const
@@ -418,6 +655,8 @@ double BuildPlan::skirt(const TileKey& key, int side) const
         const bool towardsEnd = dx + dy > 0;
         if (self.level == 0 || (!seam && (place % 2 == 1) != towardsEnd)) break;
     }
+    // Posts of a coarse leaf may be joined beside what a denser neighbour has between them.
+    if (isLeaf(key)) other += static_cast<double>(fact(key).error);
     return other + leastSkirt(key.level);
 }
 
@@ -445,7 +684,8 @@ int BuildPlan::validRows(const Unit& unit) const
 
 Lattice BuildPlan::postsWithApron(const Unit& unit) const
 {
-    return scheme.lattice(scheme.firstColumn(unit.root) - 1, scheme.firstRow(unit.root) - 1, 1.0,
+    const int step = scheme.step(unit.latticeLevel());
+    return scheme.lattice(scheme.firstColumn(unit.root) - step, scheme.firstRow(unit.root) - step, step,
                           validColumns(unit) + 2, validRows(unit) + 2);
 }
 

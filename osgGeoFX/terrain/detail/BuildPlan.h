@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <osgGeoFX/terrain/detail/BlendMask.h>
 #include <osgGeoFX/terrain/detail/GroundRaster.h>
 #include <osgGeoFX/terrain/detail/HeightGrid.h>
 #include <osgGeoFX/terrain/detail/TilingScheme.h>
@@ -13,6 +14,7 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <unordered_map>
 #include <vector>
 
 namespace osgGeoFX
@@ -48,7 +50,7 @@ struct Unit
 {
     TileKey root;
     int depth = 0;
-    int tier = 0; ///< 0 samples rasters; tier n uses the roots of tier n−1
+    bool sampled = true; ///< it samples rasters; else it uses the roots of the units below it
 
     int latticeLevel() const { return root.level + depth; }
     int span() const { return 1 << depth; }
@@ -65,23 +67,49 @@ public:
 
     BuildOptions options;
     TilingScheme scheme;
+    /// The units of the deepest root level first. Those of a tier may use the roots of the tier before.
     std::vector<std::vector<Unit>> tiers;
+    /// Units that cover the lattice of voids. If all data have the same density, these are the units that sample.
+    std::vector<Unit> voidUnits;
+    int voidLevel = 0; ///< the level whose posts voids are filled on: that of the coarsest elevation
     std::vector<LandCoverClass> classes;
     std::array<std::array<unsigned char, 4>, 256> classColors{};
     /// The land cover's class of a value; null if the table has none.
     const LandCoverClass* classOf(unsigned char value) const { return _classByValue[value]; }
-    /// The widest spacing of the raster of shores that loses nothing of its sources, in the grid's CRS.
-    double groundStepX = 0.0, groundStepY = 0.0;
+    /// Elevation files of about the same density that follow each other in the list. Their heights cover those of
+    /// the layers before; at the end of their data they blend into them.
+    struct Layer
+    {
+        std::size_t first = 0, last = 0; ///< files: `first` up to the one before `last`
+        double west = 0.0, south = 0.0, east = 0.0, north = 0.0; ///< in the grid's CRS
+        double stepX = 0.0, stepY = 0.0;                         ///< of its densest file
+        /// Across this width heights blend into those below, in the grid's CRS. 0 in the first layer.
+        double blendX = 0.0, blendY = 0.0;
+    };
+    std::vector<Layer> layers;
+    /// The rasters of shores. The first covers the extent, and denser ones follow.
+    std::vector<GroundPatch> groundPatches;
     std::shared_ptr<const GroundRaster> ground; ///< from the ground pass on
     std::shared_ptr<const VoidRaster> voids;    ///< null until the voids are filled, and if there are none
     std::string fingerprint;                    ///< what the database's bytes depend on, in words
     int threads = 1;
     BuildEstimate estimate;
 
-    /// By level, row by row from the south.
-    std::vector<std::vector<TileFacts>> facts;
+    /// The facts of a tile. Those of a tile that the quadtree lacks are empty, and must not be changed.
     TileFacts& fact(const TileKey& key);
     const TileFacts& fact(const TileKey& key) const;
+    bool has(const TileKey& key) const;
+    /// Whether a tile has no finer ones below it. The sources that touch it have no more to show.
+    bool isLeaf(const TileKey& key) const;
+    const TileFacts& whole() const { return fact({0, 0, 0}); }
+    /// Calls for all tiles of a level, in an order of its own.
+    template<typename Visit>
+    void forLevel(int level, Visit visit) const
+    {
+        for (const auto& entry : _facts[static_cast<std::size_t>(level)])
+            visit(TileKey{level, static_cast<int>(entry.first & 0xffffffffu),
+                          static_cast<int>(entry.first >> 32)});
+    }
     /// How far the walls on a tile's side (0 south, 1 east, 2 north, 3 west) reach at least below a mesh's own error,
     /// metres. They reach the finest meshes of all tiles that can stand there while finer ones are loaded. 0 if no
     /// tile can.
@@ -99,7 +127,7 @@ public:
     /// The points of a unit's lattice on the extent. Points beyond repeat the last of them.
     int validColumns(const Unit& unit) const;
     int validRows(const Unit& unit) const;
-    /// The posts of a unit of tier 0 on the extent, with one more on each side.
+    /// The posts of a unit's lattice on the extent, with one more on each side.
     Lattice postsWithApron(const Unit& unit) const;
 
     std::string tileFile(const TileKey& parent) const; ///< the file with the children of `parent`
@@ -117,8 +145,22 @@ private:
     {
         double x, y;
     };
+    /// What asks for levels: a source's rectangle, and the level that shows all of it.
+    struct Demand
+    {
+        double west, south, east, north;
+        int level;
+    };
     void chooseGrid();
     Spacing chooseExtent();                      ///< sets the extent; the elevation's finest spacing
+    void chooseLayers(const std::vector<Footprint>& dems);
+    void chooseDemands();
+    void chooseGround();
+    int levelFor(double stepX, double stepY) const; ///< the coarsest whose posts are at least as dense
+    int demand(const TileKey& key) const;           ///< the deepest level that any source asks for there
+    bool uniform() const;                           ///< whether all tiles reach the finest level
+    void addUnits(const TileKey& root, std::size_t ladder, const std::vector<int>& lattices);
+    void addTiles(const TileKey& key, int toLevel);
     std::vector<std::string> colorFiles() const; ///< the files that the texels' spacing follows from
     Spacing checkColors();                       ///< sets the ground's spacing; the colors' finest spacing
     void chooseLevels(const Spacing& posts);
@@ -127,6 +169,11 @@ private:
     void chooseUnits();
     void chooseFingerprint();
     std::array<const LandCoverClass*, 256> _classByValue{};
+    std::vector<std::unordered_map<std::uint64_t, TileFacts>> _facts; ///< by level
+    std::vector<Footprint> _dems;
+    std::vector<Demand> _demands;
+    Footprint _landCover;
+    std::uint64_t _tiles = 0;
     std::mutex _progressMutex;
 };
 
@@ -168,9 +215,11 @@ public:
 
 private:
     void moveToEllipsoid(const Lattice& lattice, std::vector<float>& heights);
+    std::vector<float> layerHeights(const BuildPlan::Layer& layer, const Lattice& lattice);
 
     const BuildPlan& _plan;
     std::vector<RasterSource> _dems, _imagery, _landCover, _landCoverColors, _landCoverShares, _treeCover;
+    std::vector<std::unique_ptr<BlendMask>> _blends; ///< by layer; null until it is needed, and for the first
     TransformationPtr _geoid;
 };
 

@@ -39,7 +39,7 @@ std::uint16_t shoreCode(double distance)
 class GroundPass
 {
 public:
-    explicit GroundPass(BuildPlan& plan);
+    GroundPass(BuildPlan& plan, std::size_t patch);
     void run();
 
 private:
@@ -47,9 +47,16 @@ private:
     void findWater();
     void writeShores();
     double treeLine(int row) const;
+    /// Finest posts from point to point.
+    double perColumn() const
+    {
+        return static_cast<double>(_size.lastColumn - _size.firstColumn) / (_size.columns - 1);
+    }
+    double perRow() const { return static_cast<double>(_size.lastRow - _size.firstRow) / (_size.rows - 1); }
 
     BuildPlan& _plan;
-    const GroundRaster::Size _size;
+    const std::size_t _patch;
+    const GroundPatch _size;
     const std::size_t _columns;
     CellMetres _metres;
     std::vector<double> _latitudes; ///< by row, degrees
@@ -65,32 +72,34 @@ std::string workFile(const BuildPlan& plan, const char* name)
     return plan.workFolder() + "/ground/" + name;
 }
 
-GroundPass::GroundPass(BuildPlan& plan)
-    : _plan(plan), _size(GroundRaster::sizeFor(plan)), _columns(static_cast<std::size_t>(_size.columns)),
-      _water(_size.columns, _size.rows), _classed(_size.columns, _size.rows),
-      _lakes(_size.columns, _size.rows), _filled(_size.columns, _size.rows),
+GroundPass::GroundPass(BuildPlan& plan, std::size_t patch)
+    : _plan(plan), _patch(patch), _size(plan.groundPatches[patch]),
+      _columns(static_cast<std::size_t>(_size.columns)), _water(_size.columns, _size.rows),
+      _classed(_size.columns, _size.rows), _lakes(_size.columns, _size.rows),
+      _filled(_size.columns, _size.rows),
       _heights(workFile(plan, "heights"), _columns * sizeof(float), RowFile::Mode::CREATE),
       _cells(workFile(plan, "cells"), _columns * sizeof(GroundCell), RowFile::Mode::CREATE)
 {
     const TilingScheme& scheme = plan.scheme;
-    const double perColumn = static_cast<double>(scheme.lastColumn) / (_size.columns - 1);
-    const double perRow = static_cast<double>(scheme.lastRow) / (_size.rows - 1);
+    const double perColumn = this->perColumn(), perRow = this->perRow();
     const TransformationPtr toGeographic =
         scheme.crs.geographic
             ? nullptr
             : createTransformation(scheme.crs.srs, GridCrs::geocentric().srs, plan.options.dems.front());
     for (int row = 0; row < _size.rows; ++row)
     {
-        const double y = scheme.gridY(row * perRow);
+        const double y = scheme.gridY(_size.firstRow + row * perRow);
         _metres.x.push_back(scheme.metresX(y) * perColumn);
-        const double before = row > 0 ? scheme.metresY(scheme.gridY((row - 0.5) * perRow)) * perRow : 0.0;
+        const double before =
+            row > 0 ? scheme.metresY(scheme.gridY(_size.firstRow + (row - 0.5) * perRow)) * perRow : 0.0;
         _metres.y.push_back(row > 0 ? _metres.y.back() + before : 0.0);
         double x = 0.5 * (scheme.west + scheme.east), latitude = y;
         int success = 0;
         if (toGeographic && !toGeographic->Transform(1, &x, &latitude, nullptr, &success)) latitude = 0.0;
         _latitudes.push_back(latitude);
     }
-    _metres.wholeCircle = scheme.wholeCircle();
+    _metres.wholeCircle =
+        scheme.wholeCircle() && _size.firstColumn == 0 && _size.lastColumn == scheme.lastColumn;
 }
 
 double GroundPass::treeLine(int row) const
@@ -103,12 +112,12 @@ double GroundPass::treeLine(int row) const
 void GroundPass::sampleStrip(RasterStack& rasters, int firstRow, int rowCount)
 {
     const TilingScheme& scheme = _plan.scheme;
-    const double perColumn = static_cast<double>(scheme.lastColumn) / (_size.columns - 1);
-    const double perRow = static_cast<double>(scheme.lastRow) / (_size.rows - 1);
+    const double perColumn = this->perColumn(), perRow = this->perRow();
     const auto lattice = [&](int apron)
     {
-        Lattice result = scheme.lattice(0.0, 0.0, perColumn, _size.columns + 2 * apron, rowCount + 2 * apron);
-        result.dy = (scheme.north - scheme.south) / (_size.rows - 1);
+        Lattice result = scheme.lattice(_size.firstColumn, _size.firstRow, perColumn,
+                                        _size.columns + 2 * apron, rowCount + 2 * apron);
+        result.dy = (scheme.north - scheme.south) * (perRow / scheme.lastRow);
         result.x0 -= apron * result.dx;
         result.y0 += (firstRow - apron) * result.dy;
         return result;
@@ -126,7 +135,7 @@ void GroundPass::sampleStrip(RasterStack& rasters, int firstRow, int rowCount)
     {
         const int row = firstRow + j;
         const double forest = treeLine(row), stepX = _metres.x[static_cast<std::size_t>(row)],
-                     stepY = perRow * scheme.metresY(scheme.gridY(row * perRow));
+                     stepY = perRow * scheme.metresY(scheme.gridY(_size.firstRow + row * perRow));
         for (int i = 0; i < _size.columns; ++i)
         {
             const float here = heights.at(i + 1, j + 1);
@@ -246,7 +255,7 @@ void GroundPass::run()
             _allClassed = _allClassed && _classed.at(i, row);
     if (!_allClassed || _depths) findWater();
     writeShores();
-    _cells.finish(workFile(_plan, "raster"));
+    _cells.finish(GroundRaster::file(_plan, _patch));
     _plan.advance("ground");
 }
 
@@ -259,16 +268,20 @@ double likelyTreeLine(double latitude)
 
 int GroundRaster::steps(const BuildPlan& plan)
 {
-    return (sizeFor(plan).rows + STRIP - 1) / STRIP + 1;
+    int count = 0;
+    for (const GroundPatch& patch : plan.groundPatches)
+        count += (patch.rows + STRIP - 1) / STRIP + 1;
+    return count;
 }
 
 void runGroundPass(BuildPlan& plan)
 {
-    if (plan.options.resume && std::filesystem::exists(workFile(plan, "raster")))
-        for (int step = GroundRaster::steps(plan); step > 0; --step)
-            plan.advance("ground");
-    else
-        GroundPass(plan).run();
+    for (std::size_t patch = 0; patch < plan.groundPatches.size(); ++patch)
+        if (plan.options.resume && std::filesystem::exists(GroundRaster::file(plan, patch)))
+            for (int step = (plan.groundPatches[patch].rows + STRIP - 1) / STRIP + 1; step > 0; --step)
+                plan.advance("ground");
+        else
+            GroundPass(plan, patch).run();
     plan.ground = std::make_shared<GroundRaster>(plan);
 }
 

@@ -13,90 +13,112 @@ namespace osgGeoFX
 namespace
 {
 
-// The most points along a side. It limits the time to some minutes and the work files to two gigabytes.
-constexpr int LARGEST_SIDE = 16385;
-
-std::string finishedFile(const BuildPlan& plan)
+/// A place between points of a raster. It is computed in whole numbers, so that all tiles get the same place.
+struct Place
 {
-    return plan.workFolder() + "/ground/raster";
-}
+    int index = -1; ///< −1 outside
+    double fraction = 0.0;
+    double inside = 1.0; ///< how much the raster counts here, 0…1
+};
+
+/// The share of a patch's width over which it fades into the one before. Around its elevation it has an eighth of
+/// that one's width on each side, which is a tenth of its own.
+constexpr double FADE = 0.08;
 
 } // namespace
 
-GroundRaster::Size GroundRaster::sizeFor(const BuildPlan& plan)
+std::string GroundRaster::file(const BuildPlan& plan, std::size_t patch)
 {
-    const TilingScheme& scheme = plan.scheme;
-    const auto points = [](double extent, double step)
-    {
-        return static_cast<int>(std::clamp(std::ceil(extent / step - 1e-4), 1.0, LARGEST_SIDE - 1.0)) + 1;
-    };
-    return {points(scheme.east - scheme.west, plan.groundStepX),
-            points(scheme.north - scheme.south, plan.groundStepY)};
+    return plan.workFolder() + "/ground/raster" + std::to_string(patch);
 }
 
-GroundRaster::GroundRaster(const BuildPlan& plan)
-    : _plan(plan), _size(sizeFor(plan)),
-      _file(finishedFile(plan), static_cast<std::size_t>(_size.columns) * sizeof(GroundCell),
-            RowFile::Mode::READ)
+GroundRaster::GroundRaster(const BuildPlan& plan) : _plan(plan)
 {
+    for (std::size_t i = 0; i < plan.groundPatches.size(); ++i)
+        _files.push_back(std::make_unique<RowFile>(
+            file(plan, i), static_cast<std::size_t>(plan.groundPatches[i].columns) * sizeof(GroundCell),
+            RowFile::Mode::READ));
 }
 
-std::vector<GroundCell> GroundRaster::sample(std::int64_t firstColumn, std::int64_t firstRow, int columns,
-                                             int rows) const
+std::vector<GroundCell> GroundRaster::sample(const Texels& texels, int columns, int rows) const
 {
-    // A place between points. It is computed from texels in whole numbers, so that all tiles get the same place.
-    struct Place
-    {
-        int index;
-        double fraction;
-    };
     const TilingScheme& scheme = _plan.scheme;
-    const auto placesOf = [&](std::int64_t first, int count, int points, int lastPost)
+    const auto placesOf = [&](int first, int count, int points, int start, int end, int last)
     {
         std::vector<Place> places;
-        const std::int64_t divisor = static_cast<std::int64_t>(lastPost) * scheme.texels;
-        for (std::int64_t texel = first; texel < first + count; ++texel)
+        const std::int64_t divisor = static_cast<std::int64_t>(end - start) * texels.texels;
+        const double fade = FADE * static_cast<double>(divisor);
+        for (int i = 0; i < count; ++i)
         {
-            const std::int64_t product = texel * scheme.intervals * (points - 1);
-            const auto index = std::min<std::int64_t>(product / divisor, points - 2);
-            const std::int64_t rest = product - index * divisor;
-            places.push_back({static_cast<int>(index),
-                              std::min(1.0, static_cast<double>(rest) / static_cast<double>(divisor))});
+            // In parts of a finest post, of which each has `texels`.
+            const std::int64_t from = static_cast<std::int64_t>(first - start) * texels.texels +
+                                      static_cast<std::int64_t>(i) * texels.posts;
+            Place place;
+            if (from >= 0 && from <= divisor)
+            {
+                const std::int64_t product = from * (points - 1);
+                place.index = static_cast<int>(std::min<std::int64_t>(product / divisor, points - 2));
+                place.fraction = std::min(1.0, static_cast<double>(product - place.index * divisor) /
+                                                   static_cast<double>(divisor));
+                // The extent's own border is no border of the patch.
+                const double before = start > 0 ? static_cast<double>(from) / fade : 1.0;
+                const double after = end < last ? static_cast<double>(divisor - from) / fade : 1.0;
+                place.inside = std::min({1.0, before, after});
+            }
+            places.push_back(place);
         }
         return places;
     };
-    const std::vector<Place> across = placesOf(firstColumn, columns, _size.columns, scheme.lastColumn);
-    const std::vector<Place> along = placesOf(firstRow, rows, _size.rows, scheme.lastRow);
-
-    std::vector<GroundCell> result;
-    result.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    std::vector<GroundCell> south(static_cast<std::size_t>(_size.columns)), north(south);
-    int atSouth = -1, atNorth = -1;
-    for (const Place& row : along)
+    std::vector<GroundCell> result(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    for (std::size_t number = 0; number < _files.size(); ++number)
     {
-        if (atNorth == row.index)
+        const GroundPatch& patch = _plan.groundPatches[number];
+        const std::vector<Place> across = placesOf(texels.firstColumn, columns, patch.columns,
+                                                   patch.firstColumn, patch.lastColumn, scheme.lastColumn);
+        const std::vector<Place> along =
+            placesOf(texels.firstRow, rows, patch.rows, patch.firstRow, patch.lastRow, scheme.lastRow);
+        const auto isInside = [](const Place& place)
         {
-            south.swap(north);
-            std::swap(atSouth, atNorth);
-        }
-        if (atSouth != row.index) _file.read(atSouth = row.index, south.data());
-        if (atNorth != row.index + 1) _file.read(atNorth = row.index + 1, north.data());
-        for (const Place& column : across)
+            return place.index >= 0;
+        };
+        if (std::none_of(across.begin(), across.end(), isInside)) continue;
+        std::vector<GroundCell> south(static_cast<std::size_t>(patch.columns)), north(south);
+        int atSouth = -1, atNorth = -1;
+        for (std::size_t j = 0; j < along.size(); ++j)
         {
-            const GroundCell* cells[] = {&south[static_cast<std::size_t>(column.index)],
-                                         &north[static_cast<std::size_t>(column.index)]};
-            const auto mixed = [&](auto member)
+            const Place& row = along[j];
+            if (row.index < 0) continue;
+            if (atNorth == row.index)
             {
-                const auto along1 = [&](const GroundCell* cell)
+                south.swap(north);
+                std::swap(atSouth, atNorth);
+            }
+            if (atSouth != row.index) _files[number]->read(atSouth = row.index, south.data());
+            if (atNorth != row.index + 1) _files[number]->read(atNorth = row.index + 1, north.data());
+            for (std::size_t i = 0; i < across.size(); ++i)
+            {
+                const Place& column = across[i];
+                if (column.index < 0) continue;
+                const GroundCell* cells[] = {&south[static_cast<std::size_t>(column.index)],
+                                             &north[static_cast<std::size_t>(column.index)]};
+                GroundCell& cell = result[j * static_cast<std::size_t>(columns) + i];
+                const double share = number == 0 ? 1.0 : std::min(row.inside, column.inside);
+                const auto mixed = [&](auto member)
                 {
-                    return (1.0 - column.fraction) * static_cast<double>(cell[0].*member) +
-                           column.fraction * static_cast<double>(cell[1].*member);
+                    const auto along1 = [&](const GroundCell* each)
+                    {
+                        return (1.0 - column.fraction) * static_cast<double>(each[0].*member) +
+                               column.fraction * static_cast<double>(each[1].*member);
+                    };
+                    const double own =
+                        (1.0 - row.fraction) * along1(cells[0]) + row.fraction * along1(cells[1]);
+                    return std::lround(
+                        share >= 1.0 ? own : share * own + (1.0 - share) * static_cast<double>(cell.*member));
                 };
-                return std::lround((1.0 - row.fraction) * along1(cells[0]) + row.fraction * along1(cells[1]));
-            };
-            result.push_back({static_cast<std::uint16_t>(mixed(&GroundCell::shore)),
-                              static_cast<std::uint8_t>(mixed(&GroundCell::trees)),
-                              static_cast<std::uint8_t>(mixed(&GroundCell::bare))});
+                cell = {static_cast<std::uint16_t>(mixed(&GroundCell::shore)),
+                        static_cast<std::uint8_t>(mixed(&GroundCell::trees)),
+                        static_cast<std::uint8_t>(mixed(&GroundCell::bare))};
+            }
         }
     }
     return result;

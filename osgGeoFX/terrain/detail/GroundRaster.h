@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace osgGeoFX
@@ -23,32 +24,41 @@ struct GroundCell
     std::uint8_t trees = 0, bare = 0;
 };
 
+/// A raster of shores over a rectangle of the grid.
+struct GroundPatch
+{
+    int firstColumn = 0, firstRow = 0, lastColumn = 1, lastRow = 1; ///< finest posts on its corners
+    int columns = 2, rows = 2; ///< points; the outermost lie on the border
+};
+
 /** Shores and likely trees of the whole terrain. Distances go on across tiles, and a place has one value on whichever
     tile it lies. It is a raster in a work file, as dense as the land cover, or else as the elevation, but with at
-    most 16,385 points a side. Sampling is thread-safe. */
+    most 16,385 points a side. If elevation files differ in density, it is as dense as the coarsest, and each denser
+    layer has a raster of its own around it, which fades into those before it towards its border. Sampling is
+    thread-safe. */
 class GroundRaster
 {
 public:
-    /// The size of the raster for a plan.
-    struct Size
-    {
-        int columns = 2, rows = 2; ///< points; the outermost lie on the extent's corners
-    };
-    static Size sizeFor(const BuildPlan& plan);
+    /// The most points along a side. It limits the time to some minutes and the work files to two gigabytes.
+    static constexpr int LARGEST_SIDE = 16385;
     /// The steps of progress of making it.
     static int steps(const BuildPlan& plan);
+    static std::string file(const BuildPlan& plan, std::size_t patch);
 
     /// Reads the raster that runGroundPass() has written. Throws BuildError.
     explicit GroundRaster(const BuildPlan& plan);
 
-    /// Bilinear samples at texels of the finest level, counted from the extent's south-western corner.
-    std::vector<GroundCell> sample(std::int64_t firstColumn, std::int64_t firstRow, int columns,
-                                   int rows) const;
+    /// Texels from a finest post on. `texels` of them go to `posts` finest posts.
+    struct Texels
+    {
+        int firstColumn = 0, firstRow = 0, posts = 1, texels = 1;
+    };
+    /// Bilinear samples at texels.
+    std::vector<GroundCell> sample(const Texels& first, int columns, int rows) const;
 
 private:
     const BuildPlan& _plan;
-    const Size _size;
-    RowFile _file;
+    std::vector<std::unique_ptr<RowFile>> _files; ///< by patch
 };
 
 /// The height up to which trees grow at a latitude in degrees, metres above the sea: 3,800 up to 25°, then evenly

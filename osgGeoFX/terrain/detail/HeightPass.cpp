@@ -58,13 +58,37 @@ HeightGrid decimated(const HeightGrid& grid, int step)
 template<typename Visit>
 void forTiles(const Unit& unit, Visit visit)
 {
-    for (int level = unit.latticeLevel() - (unit.tier == 0 ? 0 : 1); level >= unit.root.level; --level)
+    for (int level = unit.latticeLevel() - (unit.sampled ? 0 : 1); level >= unit.root.level; --level)
     {
         const int span = 1 << (level - unit.root.level);
         for (int y = 0; y < span; ++y)
             for (int x = 0; x < span; ++x)
                 visit(TileKey{level, unit.root.x * span + x, unit.root.y * span + y});
     }
+}
+
+/// How far a leaf's posts, joined by straight lines, may be from what a denser neighbour samples between them, metres.
+/// The elevation there is no denser than the posts. So the straight lines of its samples have one bend in a cell at
+/// most, which shows in the second differences beside it.
+float leafError(const BuildPlan& plan, const TileKey& key, const HeightGrid& grid, int column, int row)
+{
+    const int n = plan.scheme.intervals;
+    float bend = 0.0f;
+    const auto include = [&](float before, float here, float after)
+    {
+        const float each = std::abs(before - 2.0f * here + after);
+        if (each > bend) bend = each; // false for a hole
+    };
+    for (int j = row; j <= row + n; ++j)
+        for (int i = column + 1; i < column + n; ++i)
+            include(grid.at(i - 1, j), grid.at(i, j), grid.at(i + 1, j));
+    for (int j = row + 1; j < row + n; ++j)
+        for (int i = column; i <= column + n; ++i)
+            include(grid.at(i, j - 1), grid.at(i, j), grid.at(i, j + 1));
+    const double cell = plan.scheme.tileMetres(key.level) / n;
+    // The Earth is round: it rises by this much above a chord across a cell.
+    const double sag = plan.scheme.crs.geographic ? 0.125 * cell * cell / 6378137.0 : 0.0;
+    return 0.5f * bend + static_cast<float>(sag);
 }
 
 TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& key, const HeightGrid& grid)
@@ -81,6 +105,7 @@ TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& ke
             facts.maxHeight = facts.any ? std::max(facts.maxHeight, height) : height;
             facts.any = 1;
         }
+    if (key.level < plan.scheme.finestLevel) facts.error = leafError(plan, key, grid, column, row);
     return facts;
 }
 
@@ -95,7 +120,7 @@ TileFacts gatheredFacts(const BuildPlan& plan, const Unit& unit, const TileKey& 
         facts.maxHeight = facts.any ? std::max(facts.maxHeight, child.maxHeight) : child.maxHeight;
         facts.any = 1;
         // The lattice of an upper tier consists of the roots below it. The levels above use the same lattice.
-        const bool root = unit.tier > 0 && key.level == unit.latticeLevel() - 1;
+        const bool root = !unit.sampled && key.level == unit.latticeLevel() - 1;
         facts.latticeError = std::max(facts.latticeError, root ? child.rootError : child.latticeError);
     }
     facts.error = facts.latticeError + static_cast<float>(plan.finestError(key.level));
@@ -107,12 +132,12 @@ void settleFacts(BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
     forTiles(unit,
              [&](const TileKey& key)
              {
-                 TileFacts facts;
-                 if (plan.scheme.exists(key))
-                     facts = key.level == plan.scheme.finestLevel ? finestFacts(plan, unit, key, grid)
-                                                                  : gatheredFacts(plan, unit, key);
-                 plan.fact(key) = facts;
+                 if (!plan.has(key)) return;
+                 plan.fact(key) = unit.sampled && key.level == unit.latticeLevel()
+                                      ? finestFacts(plan, unit, key, grid)
+                                      : gatheredFacts(plan, unit, key);
              });
+    if (!plan.has(unit.root)) return;
     // The error that the next tier starts with. The border of the data may be off by a cell.
     TileFacts& root = plan.fact(unit.root);
     const double cell = plan.scheme.tileMetres(unit.root.level) / plan.scheme.intervals;
@@ -133,7 +158,7 @@ bool loadFacts(BuildPlan& plan, const Unit& unit)
     forTiles(unit,
              [&](const TileKey& key)
              {
-                 if (next < facts.size()) plan.fact(key) = facts[next];
+                 if (next < facts.size() && plan.has(key)) plan.fact(key) = facts[next];
                  ++next;
              });
     return next == facts.size();
@@ -174,7 +199,7 @@ void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
     const TilingScheme& scheme = plan.scheme;
     HeightGrid grid(unit.span() * scheme.intervals + 1, unit.span() * scheme.intervals + 1);
     TileFacts::VoidState voids = TileFacts::NO_VOIDS;
-    if (scheme.exists(unit.root))
+    if (plan.has(unit.root))
     {
         const int validColumns = plan.validColumns(unit), validRows = plan.validRows(unit);
         HeightGrid withApron(validColumns + 2, validRows + 2);
@@ -191,13 +216,14 @@ void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
         extendBeyond(grid.values, grid.columns, grid.rows, 1, validColumns, validRows);
     }
     settleFacts(plan, unit, grid);
+    if (!plan.has(unit.root)) return;
     plan.fact(unit.root).voids = voids;
     if (plan.fact(unit.root).any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
 }
 
 void gatherUnit(BuildPlan& plan, const Unit& unit)
 {
-    if (plan.scheme.exists(unit.root))
+    if (plan.has(unit.root))
     {
         const HeightGrid grid = gatherRoots(plan, unit);
         settleFacts(plan, unit, grid);
@@ -244,15 +270,15 @@ void runHeightPass(BuildPlan& plan)
         if (!stack) stack = std::make_unique<RasterStack>(plan);
         sampleUnit(plan, unit, *stack);
     };
-    for (const auto& units : plan.tiers)
+    const auto settle = [&](const std::vector<const Unit*>& units)
     {
         runOnWorkers(plan.threads, units.size(),
                      [&](int worker, std::size_t index)
                      {
-                         const Unit& unit = units[index];
+                         const Unit& unit = *units[index];
                          if (!plan.options.resume || !loadFacts(plan, unit))
                          {
-                             if (unit.tier == 0)
+                             if (unit.sampled)
                                  sample(worker, unit);
                              else
                                  gatherUnit(plan, unit);
@@ -261,21 +287,27 @@ void runHeightPass(BuildPlan& plan)
                          }
                          plan.advance("heights");
                      });
-        if (&units != &plan.tiers.front()) continue;
-
-        const auto lacks = [&](const Unit& unit)
-        {
-            return plan.fact(unit.root).voids != TileFacts::NO_VOIDS;
-        };
-        const auto lacking = static_cast<std::uint64_t>(std::count_if(units.begin(), units.end(), lacks));
-        if (lacking == 0) continue;
+    };
+    // All units that sample go first, since voids are filled from all of them.
+    std::vector<const Unit*> sampled;
+    for (const auto& units : plan.tiers)
+        for (const Unit& unit : units)
+            if (unit.sampled) sampled.push_back(&unit);
+    settle(sampled);
+    const auto lacks = [&](const Unit* unit)
+    {
+        return plan.fact(unit->root).voids != TileFacts::NO_VOIDS;
+    };
+    const auto lacking = static_cast<std::uint64_t>(std::count_if(sampled.begin(), sampled.end(), lacks));
+    if (lacking > 0)
+    {
         plan.unitsTotal += voidSteps(plan) + lacking;
         fillVoids(plan);
-        runOnWorkers(plan.threads, units.size(),
+        runOnWorkers(plan.threads, sampled.size(),
                      [&](int worker, std::size_t index)
                      {
-                         const Unit& unit = units[index];
-                         if (!lacks(unit)) return;
+                         const Unit& unit = *sampled[index];
+                         if (!lacks(&unit)) return;
                          if (plan.fact(unit.root).voids == TileFacts::HAS_VOIDS)
                          {
                              sample(worker, unit);
@@ -284,30 +316,35 @@ void runHeightPass(BuildPlan& plan)
                          plan.advance("voids");
                      });
     }
-    if (!plan.facts[0][0].any)
+    for (const auto& units : plan.tiers)
+    {
+        std::vector<const Unit*> gathered;
+        for (const Unit& unit : units)
+            if (!unit.sampled) gathered.push_back(&unit);
+        settle(gathered);
+    }
+    if (!plan.whole().any)
         throw BuildError(plan.options.dems.front() +
                          ": the elevation has no data at all; check its no-data value with gdalinfo -stats.");
 
     for (int level = plan.scheme.finestLevel; level >= 0; --level)
-        for (int y = 0; y < plan.scheme.tilesAcross(level); ++y)
-            for (int x = 0; x < plan.scheme.tilesAcross(level); ++x)
-            {
-                const TileKey key{level, x, y};
-                TileFacts& facts = plan.fact(key);
-                if (!facts.any) continue;
-                // The depth that the walls of its coarsest meshes reach.
-                facts.skirtBelow =
-                    static_cast<float>(2.0 * plan.largestError(level) + plan.leastSkirt(level)) +
-                    facts.latticeError;
-                for (int side = 0; side < 4; ++side)
-                    facts.skirtBelow =
-                        std::max(facts.skirtBelow,
-                                 static_cast<float>(plan.largestError(level) + plan.skirt(key, side)));
-                if (level < plan.scheme.finestLevel)
-                    for (int c = 0; c < 4; ++c)
-                        facts.skirtBelow =
-                            std::max(facts.skirtBelow, plan.fact(key.child(c & 1, c >> 1)).skirtBelow);
-            }
+        plan.forLevel(level,
+                      [&](const TileKey& key)
+                      {
+                          TileFacts& facts = plan.fact(key);
+                          if (!facts.any) return;
+                          // The depth that the walls of its coarsest meshes reach.
+                          facts.skirtBelow =
+                              static_cast<float>(2.0 * plan.largestError(level) + plan.leastSkirt(level)) +
+                              facts.latticeError;
+                          for (int side = 0; side < 4; ++side)
+                              facts.skirtBelow =
+                                  std::max(facts.skirtBelow, static_cast<float>(plan.largestError(level) +
+                                                                                plan.skirt(key, side)));
+                          for (int c = 0; c < 4; ++c)
+                              facts.skirtBelow =
+                                  std::max(facts.skirtBelow, plan.fact(key.child(c & 1, c >> 1)).skirtBelow);
+                      });
 }
 
 } // namespace osgGeoFX

@@ -87,7 +87,7 @@ private:
 osg::ref_ptr<osg::Image> normalImage(const TilingScheme& scheme, const TileKey& key,
                                      const LevelArrays& arrays, int x, int y)
 {
-    const int n = scheme.normalIntervals(key.level), size = n + 1;
+    const int n = arrays.normals, size = n + 1;
     const double spacing = static_cast<double>(scheme.intervals) * scheme.step(key.level) / n;
     const LatticeAxes axes(scheme, key, spacing, size);
     const auto stride = static_cast<std::size_t>(arrays.span * n + 1);
@@ -134,7 +134,7 @@ void addNormalMap(osg::StateSet& state, TileTextures& textures, const TilingSche
 
     // Texture coordinates place the centers of the first and the last texel on the borders. So they depend on the
     // number of texels.
-    const int colors = scheme.textureIntervals(key.level), n = scheme.normalIntervals(key.level);
+    const int colors = scheme.textureIntervals(key.level), n = arrays.normals;
     if (colors == n) return;
     const double each = static_cast<double>(n) / colors, size = scheme.textureSize(n);
     const double scale = each * scheme.textureSize(colors) / size;

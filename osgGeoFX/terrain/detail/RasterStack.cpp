@@ -46,6 +46,26 @@ void rampColor(const RampStop (&ramp)[N], float fraction, unsigned char* rgb)
     rgb[2] = static_cast<unsigned char>(std::lround(a.blue + t * (b.blue - a.blue)));
 }
 
+/// A place turned by full circles, so that it lies on a layer if any of its turns does.
+double turnedInto(const BuildPlan::Layer& layer, const TilingScheme& scheme, double x)
+{
+    if (!scheme.crs.geographic) return x;
+    return x - 360.0 * std::floor((x - layer.west) / 360.0 + 1e-12);
+}
+
+/// Whether a lattice may have points of a layer.
+bool meets(const BuildPlan::Layer& layer, const TilingScheme& scheme, const Lattice& lattice)
+{
+    const double south = lattice.y0, north = lattice.y0 + (lattice.rows - 1) * lattice.dy;
+    if (north < layer.south - layer.stepY || south > layer.north + layer.stepY) return false;
+    const double west = lattice.x0, east = lattice.x0 + (lattice.columns - 1) * lattice.dx;
+    for (const double turn : {-720.0, -360.0, 0.0, 360.0, 720.0})
+        if ((turn == 0.0 || scheme.crs.geographic) && east + turn >= layer.west - layer.stepX &&
+            west + turn <= layer.east + layer.stepX)
+            return true;
+    return false;
+}
+
 unsigned char byteOf(double share)
 {
     return static_cast<unsigned char>(std::lround(share * 255.0));
@@ -59,6 +79,7 @@ RasterStack::RasterStack(const BuildPlan& plan) : _plan(plan)
         _dems.emplace_back(file, RasterKind::Elevation);
     for (const auto& file : plan.options.imagery)
         _imagery.emplace_back(file, RasterKind::Imagery);
+    _blends.resize(plan.layers.size());
     if (!plan.options.landCover.empty())
     {
         _landCover.emplace_back(plan.options.landCover, RasterKind::LandCover);
@@ -110,11 +131,47 @@ std::vector<unsigned char> RasterStack::covered(const Lattice& lattice, const st
 
 std::vector<float> RasterStack::measuredHeights(const Lattice& lattice)
 {
+    std::vector<float> result = layerHeights(_plan.layers.front(), lattice);
+    for (std::size_t i = 1; i < _plan.layers.size(); ++i)
+    {
+        const BuildPlan::Layer& layer = _plan.layers[i];
+        if (!meets(layer, _plan.scheme, lattice)) continue;
+        auto& blend = _blends[i];
+        if (!blend)
+            blend = std::make_unique<BlendMask>(
+                BlendMask::Area{layer.west, layer.south, layer.east, layer.north},
+                osg::Vec2d(layer.blendX, layer.blendY),
+                [&](const Lattice& points) { return layerHeights(layer, points); });
+        const std::vector<float> own = layerHeights(layer, lattice);
+        for (int row = 0; row < lattice.rows; ++row)
+            for (int column = 0; column < lattice.columns; ++column)
+            {
+                const std::size_t at =
+                    static_cast<std::size_t>(row) * static_cast<std::size_t>(lattice.columns) +
+                    static_cast<std::size_t>(column);
+                if (std::isnan(own[at])) continue;
+                const double share =
+                    std::isnan(result[at])
+                        ? 1.0
+                        : blend->share(turnedInto(layer, _plan.scheme, lattice.x0 + column * lattice.dx),
+                                       lattice.y0 + row * lattice.dy);
+                result[at] = share >= 1.0 ? own[at]
+                             : share <= 0.0
+                                 ? result[at]
+                                 : static_cast<float>(share * static_cast<double>(own[at]) +
+                                                      (1.0 - share) * static_cast<double>(result[at]));
+            }
+    }
+    return result;
+}
+
+std::vector<float> RasterStack::layerHeights(const BuildPlan::Layer& layer, const Lattice& lattice)
+{
     std::vector<float> result(static_cast<std::size_t>(lattice.columns) *
                                   static_cast<std::size_t>(lattice.rows),
                               std::numeric_limits<float>::quiet_NaN());
-    for (auto& dem : _dems)
-        dem.sampleHeights(_plan.scheme.crs, lattice, result.data());
+    for (std::size_t i = layer.first; i < layer.last; ++i)
+        _dems[i].sampleHeights(_plan.scheme.crs, lattice, result.data());
     for (float& height : result)
         if (!(height >= LOWEST && height <= HIGHEST)) height = std::numeric_limits<float>::quiet_NaN();
     return result;
@@ -174,7 +231,7 @@ std::vector<unsigned char> RasterStack::colors(const Lattice& lattice)
     // imagery.
     if (_landCover.empty())
     {
-        const TileFacts& whole = _plan.facts[0][0];
+        const TileFacts& whole = _plan.whole();
         const float top = std::max(whole.maxHeight, 1.0f), bottom = std::max(whole.minHeight, 0.0f);
         const std::vector<float> ground = heights(lattice);
         for (std::size_t i = 0; i < count; ++i)

@@ -38,9 +38,9 @@ constexpr int PLAIN_CELLS = 2;
 /// A wall leans outwards a little. So it also closes hair lines seen from straight above.
 constexpr double LEAN = 0.1;
 
-int smallestBlock(const TilingScheme& scheme, int level, int intervals)
+int smallestBlock(const TilingScheme& scheme, bool finest, int intervals)
 {
-    if (level == scheme.finestLevel) return std::min(intervals, FINEST_CELLS);
+    if (finest) return std::min(intervals, FINEST_CELLS);
     return intervals / std::clamp(scheme.intervals / FINEST_CELLS, 1, COARSE_SHARE);
 }
 
@@ -98,8 +98,8 @@ TileBlocks::TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetw
         _skirts[static_cast<std::size_t>(side)] = plan.skirt(key, side);
     // Only tiles of the coarsest level are far enough away to be one block. A finest tile is hardly ever far enough
     // away for halves.
-    const int intervals = _lattice.intervals, smallest = smallestBlock(plan.scheme, key.level, intervals);
-    const int parts = key.level == 0 ? 1 : key.level == plan.scheme.finestLevel ? 4 : 2;
+    const int intervals = _lattice.intervals, smallest = smallestBlock(plan.scheme, isFinest(), intervals);
+    const int parts = key.level == 0 ? 1 : isFinest() ? 4 : 2;
     const int size = std::max(smallest, intervals / parts);
     std::vector<Block> roots;
     for (int row = 0; row < intervals; row += size)
@@ -188,7 +188,7 @@ TileBlocks::Block TileBlocks::make(const TileBlock& block)
 
 bool TileBlocks::isSmallest(const TileBlock& block) const
 {
-    return block.size == smallestBlock(_plan.scheme, _key.level, _lattice.intervals);
+    return block.size == smallestBlock(_plan.scheme, isFinest(), _lattice.intervals);
 }
 
 void TileBlocks::makeMeshes(const TileBlock& block, Block& result)

@@ -68,7 +68,7 @@ private:
     Block make(const TileBlock& block);
     void makeMeshes(const TileBlock& block, Block& result);
     bool isSmallest(const TileBlock& block) const;
-    bool isFinest() const { return _key.level == _plan.scheme.finestLevel; }
+    bool isFinest() const { return _plan.isLeaf(_key); }
     /// The distance from which an error of a metre is as small as the pixel error, metres.
     double perMetre() const { return _plan.options.pixelsPerRadian / _plan.options.pixelError; }
     double rounding() const { return 2.0 * _vertices.front()->rounding(); }

@@ -277,7 +277,7 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     transform->setUserValue("geofx.cells", lattice.intervals);
     const int texels = scheme.textureIntervals(key.level);
     if (scheme.textureSize(texels) != texels + 1) transform->setUserValue("geofx.texels", texels);
-    if (key.level == scheme.finestLevel) return transform;
+    if (_plan.isLeaf(key)) return transform;
 
     // At a distance of d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R
     // away, so the finer tiles are drawn within R + e·k/limit.

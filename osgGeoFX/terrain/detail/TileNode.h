@@ -23,8 +23,8 @@ struct LevelArrays
     HeightGrid heights{0, 0}; ///< as dense as the unit has them, whatever the level
     std::vector<float> slopeX,
         slopeY; ///< smoothed rise to the east and to the north at the level's posts, metres in a metre
-    std::vector<float> texelSlopeX,
-        texelSlopeY; ///< the same at the texels of normals, TilingScheme::normalIntervals
+    std::vector<float> texelSlopeX, texelSlopeY; ///< the same at the texels of normals
+    int normals = 0;                             ///< intervals of these along a tile's edge
     int texelColumns = 0;
     std::vector<unsigned char> colors;  ///< red, green, blue
     std::vector<unsigned char> classes; ///< empty without land cover

@@ -82,6 +82,32 @@ void paste(const std::vector<T>& part, int partColumns, int channels, std::vecto
                     whole.begin() + (static_cast<std::ptrdiff_t>(y0 + row) * wholeColumns + x0) * channels);
 }
 
+/// A tile's slopes with so many intervals along its edge. A tile without finer ones may have fewer, between which the
+/// ground is straight.
+std::vector<float> denser(const std::vector<float>& slopes, int intervals)
+{
+    const auto columns = static_cast<int>(std::lround(std::sqrt(static_cast<double>(slopes.size()))));
+    if (columns == intervals + 1) return slopes;
+    const auto at = [&](int column, int row)
+    {
+        return static_cast<double>(slopes[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                                          static_cast<std::size_t>(column)]);
+    };
+    const double scale = (columns - 1.0) / intervals;
+    std::vector<float> result;
+    for (int row = 0; row <= intervals; ++row)
+        for (int column = 0; column <= intervals; ++column)
+        {
+            const double x = column * scale, y = row * scale;
+            const int i = std::min(static_cast<int>(x), columns - 2),
+                      j = std::min(static_cast<int>(y), columns - 2);
+            const double u = x - i, v = y - j;
+            result.push_back(static_cast<float>((at(i, j) * (1.0 - u) + at(i + 1, j) * u) * (1.0 - v) +
+                                                (at(i, j + 1) * (1.0 - u) + at(i + 1, j + 1) * u) * v));
+        }
+    return result;
+}
+
 std::string rootTileFile(const BuildPlan& plan, const TileKey& key)
 {
     return plan.workFolder() + "/nodes/" + key.path() + ".osgb";
@@ -168,10 +194,11 @@ void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArr
                                   (distance * (hasBefore && hasAfter ? 2.0 : 1.0)));
     };
     const int validColumns = withApron.columns - 2, validRows = withApron.rows - 2;
+    const int step = scheme.step(unit.latticeLevel());
     for (int j = 0; j < validRows; ++j)
     {
-        const double y = scheme.gridY(scheme.firstRow(unit.root) + j);
-        const double metresX = scheme.metresX(y), metresY = scheme.metresY(y);
+        const double y = scheme.gridY(scheme.firstRow(unit.root) + j * step);
+        const double metresX = step * scheme.metresX(y), metresY = step * scheme.metresY(y);
         for (int i = 0; i < validColumns; ++i)
         {
             const std::size_t index =
@@ -186,15 +213,17 @@ void UnitBuilder::slopes(const Unit& unit, const HeightGrid& withApron, LevelArr
     extendBeyond(arrays.slopeY, arrays.heights.columns, arrays.heights.rows, 1, validColumns, validRows);
     arrays.texelSlopeX = arrays.slopeX;
     arrays.texelSlopeY = arrays.slopeY;
+    arrays.normals = scheme.intervals;
 }
 
 LevelArrays UnitBuilder::sampled(const Unit& unit)
 {
     const TilingScheme& scheme = _plan.scheme;
-    const int span = unit.span(), posts = span * scheme.intervals + 1, texels = span * scheme.texels + 1;
+    const int level = unit.latticeLevel(), m = scheme.textureIntervals(level);
+    const int span = unit.span(), posts = span * scheme.intervals + 1, texels = span * m + 1;
     const int column = scheme.firstColumn(unit.root), row = scheme.firstRow(unit.root);
     LevelArrays arrays;
-    arrays.level = unit.latticeLevel();
+    arrays.level = level;
     arrays.span = span;
 
     HeightGrid withApron(_plan.validColumns(unit) + 2, _plan.validRows(unit) + 2);
@@ -211,7 +240,8 @@ LevelArrays UnitBuilder::sampled(const Unit& unit)
     extendBeyond(arrays.heights.values, posts, posts, 1, withApron.columns - 2, withApron.rows - 2);
     slopes(unit, withApron, arrays);
 
-    const double spacing = static_cast<double>(scheme.intervals) / scheme.texels;
+    const int tilePosts = scheme.intervals * scheme.step(level);
+    const double spacing = static_cast<double>(tilePosts) / m;
     const auto valid = [&](int last)
     {
         return std::min(texels, static_cast<int>(std::floor(last / spacing)) + 1);
@@ -230,13 +260,9 @@ LevelArrays UnitBuilder::sampled(const Unit& unit)
     arrays.texelColumns = texels;
     arrays.colors = widened(_rasters->colors(lattice), 3);
     if (!_plan.options.landCover.empty()) arrays.classes = widened(_rasters->classes(lattice), 1);
-    const auto firstTexel = [&](int post)
-    {
-        return static_cast<std::int64_t>(post / scheme.intervals) * scheme.texels;
-    };
-    arrays.cover = widened(_rasters->cover(lattice, _plan.ground->sample(firstTexel(column), firstTexel(row),
-                                                                         validColumns, validRows)),
-                           4);
+    arrays.cover = widened(
+        _rasters->cover(lattice, _plan.ground->sample({column, row, tilePosts, m}, validColumns, validRows)),
+        4);
     arrays.textureError.assign(static_cast<std::size_t>(span) * static_cast<std::size_t>(span), 0.0f);
     return arrays;
 }
@@ -253,6 +279,7 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
     arrays.slopeX.resize(arrays.heights.values.size());
     arrays.slopeY.resize(arrays.heights.values.size());
     const int normals = scheme.normalIntervals(unit.latticeLevel()), normalColumns = span * normals + 1;
+    arrays.normals = normals;
     arrays.texelSlopeX.resize(static_cast<std::size_t>(normalColumns) *
                               static_cast<std::size_t>(normalColumns));
     arrays.texelSlopeY.resize(arrays.texelSlopeX.size());
@@ -283,8 +310,10 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
                                  ": this work file is damaged; build again without --resume.");
             paste(slopeX, n + 1, 1, arrays.slopeX, posts, x * n, y * n);
             paste(slopeY, n + 1, 1, arrays.slopeY, posts, x * n, y * n);
-            paste(texelSlopeX, normals + 1, 1, arrays.texelSlopeX, normalColumns, x * normals, y * normals);
-            paste(texelSlopeY, normals + 1, 1, arrays.texelSlopeY, normalColumns, x * normals, y * normals);
+            paste(denser(texelSlopeX, normals), normals + 1, 1, arrays.texelSlopeX, normalColumns,
+                  x * normals, y * normals);
+            paste(denser(texelSlopeY, normals), normals + 1, 1, arrays.texelSlopeY, normalColumns,
+                  x * normals, y * normals);
             paste(colors, m + 1, 3, arrays.colors, texels, x * m, y * m);
             paste(classes, m + 1, 1, arrays.classes, texels, x * m, y * m);
             paste(cover, m + 1, 4, arrays.cover, texels, x * m, y * m);
@@ -301,14 +330,16 @@ LevelArrays UnitBuilder::coarser(LevelArrays& fine) const
     coarse.heights = std::move(fine.heights);
     coarse.slopeX = halved<float, float, 1>(fine.slopeX, posts, posts);
     coarse.slopeY = halved<float, float, 1>(fine.slopeY, posts, posts);
-    if (_plan.scheme.keepsNormals(coarse.level))
+    if (2 * fine.normals <= _plan.scheme.intervals << TilingScheme::normalDepth)
     {
+        coarse.normals = 2 * fine.normals;
         coarse.texelSlopeX = std::move(fine.texelSlopeX);
         coarse.texelSlopeY = std::move(fine.texelSlopeY);
     }
     else
     {
-        const int columns = fine.span * _plan.scheme.normalIntervals(fine.level) + 1;
+        coarse.normals = fine.normals;
+        const int columns = fine.span * fine.normals + 1;
         coarse.texelSlopeX = halved<float, float, 1>(fine.texelSlopeX, columns, columns);
         coarse.texelSlopeY = halved<float, float, 1>(fine.texelSlopeY, columns, columns);
     }
@@ -364,7 +395,7 @@ std::uint64_t UnitBuilder::writeGroups(const Unit& unit, const LevelArrays& arra
                 if (!_plan.fact(key).any) continue;
                 // The finest tiles of an upper tier are the roots of the units below. These units made them, from
                 // denser heights.
-                const bool made = unit.tier > 0 && key.level == unit.latticeLevel();
+                const bool made = !unit.sampled && key.level == unit.latticeLevel();
                 group->addChild(made ? readRootTile(_plan, key)
                                      : _factory.create(key, arrays, 2 * x + (c & 1), 2 * y + (c >> 1)));
                 tiles += made ? 0 : 1;
@@ -377,7 +408,7 @@ std::uint64_t UnitBuilder::writeGroups(const Unit& unit, const LevelArrays& arra
 UnitFigures UnitBuilder::build(const Unit& unit)
 {
     _factory.textures().forget();
-    LevelArrays arrays = unit.tier == 0 ? sampled(unit) : gathered(unit);
+    LevelArrays arrays = unit.sampled ? sampled(unit) : gathered(unit);
     std::uint64_t tiles = 0;
     for (int level = unit.latticeLevel(); level > unit.root.level; --level)
     {

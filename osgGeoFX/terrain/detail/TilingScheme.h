@@ -55,8 +55,7 @@ struct TilingScheme
         return (textureIntervals + texelBlock) / texelBlock * texelBlock;
     }
 
-    /// Whether the normals of a level are as dense as the posts of finest tiles: up to four for each cell.
-    bool keepsNormals(int level) const { return level >= finestLevel - normalDepth; }
+    /// The intervals of normals along an edge: as dense as the posts of finest tiles, up to four for each cell.
     int normalIntervals(int level) const { return intervals << std::min(finestLevel - level, normalDepth); }
     static constexpr int normalDepth = 2; ///< levels above the finest that keep the finest normals
 

@@ -50,8 +50,9 @@ private:
     void interpolate(Window& window) const;
     void fill(const Unit& unit);
     void finish();
-    int firstColumn(const Unit& unit) const { return _plan.scheme.firstColumn(unit.root); }
-    int firstRow(const Unit& unit) const { return _plan.scheme.firstRow(unit.root); }
+    /// In posts of the lattice of voids.
+    int firstColumn(const Unit& unit) const { return _scheme.firstColumn(unit.root) / _step; }
+    int firstRow(const Unit& unit) const { return _scheme.firstRow(unit.root) / _step; }
     /// The posts of a unit that no other unit has. Those on its northern and eastern border belong to the next unit,
     /// if there is one.
     int ownColumns(const Unit& unit) const;
@@ -60,6 +61,7 @@ private:
 
     BuildPlan& _plan;
     const TilingScheme& _scheme;
+    const int _step; ///< finest posts from post to post
     const int _columns, _rows;
     /// How far GDAL looks for data: across the largest void, and to the middle of a void that the data's edge cuts.
     const int _search;
@@ -80,7 +82,8 @@ DatasetPtr wrap(void* values, int columns, int rows, GDALDataType type)
 }
 
 VoidPass::VoidPass(BuildPlan& plan)
-    : _plan(plan), _scheme(plan.scheme), _columns(plan.scheme.lastColumn + 1), _rows(plan.scheme.lastRow + 1),
+    : _plan(plan), _scheme(plan.scheme), _step(_scheme.step(plan.voidLevel)),
+      _columns(_scheme.lastColumn / _step + 1), _rows(_scheme.lastRow / _step + 1),
       _search(plan.options.voidReach * 9 / 4 + 2), _margin(_search + plan.options.voidSmoothing),
       _heights(VoidRaster::file(plan, "heights"), static_cast<std::size_t>(_columns) * sizeof(float),
                RowFile::Mode::CREATE),
@@ -95,13 +98,13 @@ VoidPass::VoidPass(BuildPlan& plan)
 
 int VoidPass::ownColumns(const Unit& unit) const
 {
-    const int side = unit.span() * _scheme.intervals, left = _scheme.lastColumn - firstColumn(unit);
+    const int side = unit.span() * _scheme.intervals, left = _columns - 1 - firstColumn(unit);
     return left <= side ? left + 1 : side;
 }
 
 int VoidPass::ownRows(const Unit& unit) const
 {
-    const int side = unit.span() * _scheme.intervals, left = _scheme.lastRow - firstRow(unit);
+    const int side = unit.span() * _scheme.intervals, left = _rows - 1 - firstRow(unit);
     return left <= side ? left + 1 : side;
 }
 
@@ -296,7 +299,7 @@ void VoidPass::finish()
 
 void VoidPass::run()
 {
-    const auto& units = _plan.tiers.front();
+    const auto& units = _plan.voidUnits;
     std::vector<std::unique_ptr<RasterStack>> rasters(static_cast<std::size_t>(_plan.threads));
     runOnWorkers(_plan.threads, units.size(),
                  [&](int worker, std::size_t index)
@@ -325,7 +328,7 @@ void VoidPass::run()
 
 std::uint64_t voidSteps(const BuildPlan& plan)
 {
-    return 2 * plan.tiers.front().size() + 1;
+    return 2 * plan.voidUnits.size() + 1;
 }
 
 void fillVoids(BuildPlan& plan)

@@ -59,7 +59,7 @@ public:
             heights[side].resize(count);
             filled[side].resize(count);
             posts[side].resize(count);
-            const int from = std::min(row + static_cast<int>(side), _raster._plan.scheme.lastRow);
+            const int from = std::min(row + static_cast<int>(side), _raster._rows - 1);
             const auto first = static_cast<std::size_t>(_first);
             _raster._posts.read(from, first, count, posts[side].data());
             _raster._heights.read(from, first * sizeof(float), count * sizeof(float), heights[side].data());
@@ -90,12 +90,12 @@ std::string VoidRaster::file(const BuildPlan& plan, const char* name)
 }
 
 VoidRaster::VoidRaster(const BuildPlan& plan)
-    : _plan(plan),
-      _heights(file(plan, "heights"), (static_cast<std::size_t>(plan.scheme.lastColumn) + 1) * sizeof(float),
+    : _plan(plan), _columns(plan.scheme.lastColumn / plan.scheme.step(plan.voidLevel) + 1),
+      _rows(plan.scheme.lastRow / plan.scheme.step(plan.voidLevel) + 1),
+      _heights(file(plan, "heights"), static_cast<std::size_t>(_columns) * sizeof(float),
                RowFile::Mode::READ),
-      _posts(file(plan, "posts"), static_cast<std::size_t>(plan.scheme.lastColumn) + 1, RowFile::Mode::READ),
-      _filled(file(plan, "filled"), (static_cast<std::size_t>(plan.scheme.lastColumn) + 1) * sizeof(float),
-              RowFile::Mode::READ)
+      _posts(file(plan, "posts"), static_cast<std::size_t>(_columns), RowFile::Mode::READ),
+      _filled(file(plan, "filled"), static_cast<std::size_t>(_columns) * sizeof(float), RowFile::Mode::READ)
 {
     ByteReader reader(file(plan, "done"));
     _filledPosts = reader.get<std::uint64_t>();
@@ -120,18 +120,18 @@ void VoidRaster::fill(const Lattice& lattice, std::vector<float>& heights,
         float* line = heights.data() + static_cast<std::size_t>(row) * columns;
         if (std::none_of(line, line + columns, [](float height) { return std::isnan(height); })) continue;
         const Place south = placeOf(lattice.y0 + row * lattice.dy, scheme.south, scheme.north - scheme.south,
-                                    scheme.lastRow, false);
+                                    _rows - 1, false);
         if (south.post < 0) continue;
         if (across.empty())
             for (int column = 0; column < lattice.columns; ++column)
                 across.push_back(placeOf(lattice.x0 + column * lattice.dx, scheme.west,
-                                         scheme.east - scheme.west, scheme.lastColumn, wholeCircle));
-        int first = scheme.lastColumn, last = -1;
+                                         scheme.east - scheme.west, _columns - 1, wholeCircle));
+        int first = _columns - 1, last = -1;
         for (std::size_t c = 0; c < columns; ++c)
             if (std::isnan(line[c]) && across[c].post >= 0)
             {
                 first = std::min(first, across[c].post);
-                last = std::max(last, std::min(across[c].post + 1, scheme.lastColumn));
+                last = std::max(last, std::min(across[c].post + 1, _columns - 1));
             }
         if (last < 0) continue;
         rows.load(south.post, first, last);

@@ -17,7 +17,7 @@ namespace osgGeoFX
 
 class BuildPlan;
 
-/** The finest level's posts of an elevation with voids: heights above the sea, the kind of each post, and the heights
+/** The posts of an elevation with voids, on the level of its coarsest files: heights above the sea, the kind of each post, and the heights
     of filled voids. They are three work files, which fillVoids() writes. Sampling is thread-safe. */
 class VoidRaster
 {
@@ -28,6 +28,10 @@ public:
     /// Gives heights to points without one (NaN) that lie in filled voids, metres above the sea, bilinear between
     /// posts. `filled` is null, or has a byte for each point, which becomes 1 there.
     void fill(const Lattice& lattice, std::vector<float>& heights, std::vector<unsigned char>* filled) const;
+
+    /// The posts of the lattice of voids.
+    int columns() const { return _columns; }
+    int rows() const { return _rows; }
 
     std::uint64_t filledPosts() const { return _filledPosts; }
     std::uint64_t openPosts() const
@@ -47,6 +51,7 @@ private:
     class Rows;
 
     const BuildPlan& _plan;
+    const int _columns, _rows;
     RowFile _heights, _posts, _filled;
     std::uint64_t _filledPosts = 0, _openPosts = 0, _dataPosts = 0;
     int _maskColumns = 0;
