@@ -21,7 +21,9 @@ int main(int argc, char** argv)
     CLI::App app{"Builds a paged terrain database from rasters. Plain osgviewer reads the result: osgviewer "
                  "DIR/terrain.osgb",
                  "osggeofx_build"};
-    app.add_option("--dem", options.dems, "Elevation rasters; where several overlap, the later one wins, so name coarse ones first. Tiles are as "
+    app.add_option("--dem", options.dems,
+                   "Elevation rasters; where several overlap, the later one wins, so name coarse ones first. "
+                   "Tiles are as "
                    "deep as the densest raster that touches them. Voids of a later one show those before it")
         ->required()
         ->type_name("FILE…");

@@ -110,8 +110,8 @@ TEST_F(BuilderEstimate, WhatTheDiskCannotHoldIsRefused)
                            R"(<SrcRect xOff="0" yOff="0" xSize="36" ySize="18"/>)"
                            R"(<DstRect xOff="0" yOff="0" xSize="4000000" ySize="2000000"/>)"
                            R"(</SimpleSource></VRTRasterBand></VRTDataset>)";
-    expectRefusal({"--dem", fine}, {"samples", "tiles", "on the disk", "are free",
-                                                   "another folder with -o", "coarser rasters"});
+    expectRefusal({"--dem", fine}, {"samples", "tiles", "on the disk", "are free", "another folder with -o",
+                                    "coarser rasters"});
     EXPECT_THROW(estimateBuild(options({fine})), BuildError);
     const std::string patch = writeRelief(_folder / "patch.tif", 40, 40, 10.0, 47.0, 1e-5);
     EXPECT_LT(estimateBuild(options({coarseWorld(), patch})).samples, 100000000u);

@@ -36,7 +36,8 @@ double coarse(double longitude, double latitude)
 
 double fine(double longitude, double latitude)
 {
-    return coarse(longitude, latitude) + 300.0 + 50.0 * std::sin(20.0 * longitude) * std::cos(20.0 * latitude);
+    return coarse(longitude, latitude) + 300.0 +
+           50.0 * std::sin(20.0 * longitude) * std::cos(20.0 * latitude);
 }
 
 std::string world(const std::filesystem::path& file)
@@ -196,7 +197,8 @@ TEST(DatabaseGlobe, BlendsAtTheBorderOfDenserData)
     const std::pair<const std::pair<long, long>, double>* before = nullptr;
     for (const auto& post : heights)
     {
-        if (before && before->first.first == post.first.first && post.first.second - before->first.second < 250)
+        if (before && before->first.first == post.first.first &&
+            post.first.second - before->first.second < 250)
             steepest = std::max(steepest, std::abs(post.second - before->second));
         before = &post;
     }
@@ -207,8 +209,8 @@ TEST(DatabaseGlobe, BlendsAtTheBorderOfDenserData)
 TEST(DatabaseGlobe, FillsVoidsFromCoarserData)
 {
     const TempDir folder;
-    const auto summary =
-        buildDatabase(options({world(folder / "world.tif"), patch(folder / "patch.tif", true)}, folder / "db"));
+    const auto summary = buildDatabase(
+        options({world(folder / "world.tif"), patch(folder / "patch.tif", true)}, folder / "db"));
     EXPECT_EQ(summary.filledShare, 0.0) << "nothing is left to be made up";
     int inside = 0;
     for (const osg::Vec3d& post : leafPosts(folder / "db"))

@@ -73,9 +73,9 @@ double BlendMask::share(double x, double y) const
     const double u = c - column, v = r - row;
     const auto at = [&](int i, int j)
     {
-        return static_cast<double>(_shares[static_cast<std::size_t>(row + j) *
-                                               static_cast<std::size_t>(_lattice.columns) +
-                                           static_cast<std::size_t>(column + i)]);
+        return static_cast<double>(
+            _shares[static_cast<std::size_t>(row + j) * static_cast<std::size_t>(_lattice.columns) +
+                    static_cast<std::size_t>(column + i)]);
     };
     return (at(0, 0) * (1.0 - u) + at(1, 0) * u) * (1.0 - v) + (at(0, 1) * (1.0 - u) + at(1, 1) * u) * v;
 }

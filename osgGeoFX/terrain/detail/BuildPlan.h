@@ -152,7 +152,7 @@ private:
         int level;
     };
     void chooseGrid();
-    Spacing chooseExtent();                      ///< sets the extent; the elevation's finest spacing
+    Spacing chooseExtent(); ///< sets the extent; the elevation's finest spacing
     void chooseLayers(const std::vector<Footprint>& dems);
     void chooseDemands();
     void chooseGround();
