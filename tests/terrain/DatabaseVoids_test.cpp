@@ -521,7 +521,7 @@ TEST_F(DatabaseVoids, TheSameBytesForAnyThreadsAndInterruptions)
     options.output = path("resumed");
     options.resume = true;
     int stops = 0;
-    for (std::uint64_t limit = 1; limit < 10000; limit += 7)
+    for (std::uint64_t limit = 1; limit < 10000; limit += 5)
     {
         try
         {
