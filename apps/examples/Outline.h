@@ -19,7 +19,8 @@ public:
     {
         osgGeoFX::ShaderLibrary::add("example/outline.glsl",
                                      "vec4 SLOT_finish(vec4 color) { return vec4(1.0, 0.55, 0.0, 1.0); }\n"
-                                     "int SLOT_channels() { return 0; }\n");
+                                     "int SLOT_channels() { return 0; }\n"
+                                     "vec2 SLOT_pixel(vec2 pixel) { return pixel; }\n");
         // The faces that look away, as thick lines: what stands out from behind the object is its outline.
         const auto on =
             osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;

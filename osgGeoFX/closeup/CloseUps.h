@@ -31,14 +31,16 @@ namespace osgGeoFX
     texture array, from the parts of the scene that its region touches. The layers are then drawn over the overview.
     Nearer layers cover farther ones, and objects in front of a layer hide it. If depthTest is off, the close-ups'
     order counts instead. Other effects of the scene, before or after this one, also appear in the close-ups: mappings
-    show in them, and bends move them as rigid pieces.
+    and the painting of a panorama map show in them, its strokes too. Bends and panorama maps move them as rigid pieces. An
+    exaggeration does not change their heights, which have a scale of their own (CloseUp::setScale()).
 
     **Pipelines.** SINGLE_PASS draws the objects in a region once, at the overview's level of detail. A geometry shader
     copies each triangle into the layers of the regions that it touches (paper: Section IV.A, SPFR). MULTI_PASS draws
     each close-up separately, at the level of detail that its size in the image needs (MPFR). Both draw the same image
     of the same geometry. AUTOMATIC uses SINGLE_PASS if the regions share most of the objects over them and no close-up
     could be more detailed than the overview, and MULTI_PASS otherwise. It decides by the camera's last frame. Objects
-    that are not made of triangles, or that have their own shaders, need MULTI_PASS, which then draws everything.
+    that are not made of triangles, or that have their own shaders, and the strokes of a panorama map need MULTI_PASS, which
+    then draws everything.
 
     **Frames.** World coordinates are those of EffectScene. Near and far planes are extended to contain the close-ups.
 

@@ -101,6 +101,7 @@ public:
     osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
     double longestEdge(const CameraRange& cameras, double tolerance) const override;
     double mostGrowth(const Ground& ground) const override;
+    bool isProjection() const override { return true; }
     std::string vertexFile() const override { return "stages/bendview.glsl"; }
     /// Empty if the context has the same style as the focus.
     std::string fragmentFile() const override;

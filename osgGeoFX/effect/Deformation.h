@@ -187,6 +187,10 @@ public:
     virtual std::vector<Varying> varyings() const { return {}; }
     /// Text that is put before the files, such as constants that are worth compiling in.
     virtual std::string constants() const { return {}; }
+    /// Whether it makes a picture of its own of the whole view, from where the camera stands, as bends and panorama maps
+    /// do. Two of them do not compose: a camera shows the first one of the scene's list that is switched on. The others are
+    /// left out with all that they draw, and a warning says so once.
+    virtual bool isProjection() const { return false; }
     /// The texture unit of a map that the context shows instead of its colors; −1, the default, for none.
     virtual int mapUnit() const { return -1; }
 

@@ -26,7 +26,8 @@ public:
         threads may call it at once. An effect best keeps data of a camera in a PerCamera. */
     virtual void cull(const ScenePass& pass) = 0;
     /// What to draw with the scene's drawables while they are culled; null, the default, for nothing. The camera's
-    /// thread calls this before the scene is culled. The object must stay valid until the same cull visitor asks again.
+    /// thread calls this before the scene is culled, and for passes of other effects that draw companions, too
+    /// (ScenePass::within()). Each needs an object of its own, which must stay valid until the same cull visitor asks again.
     virtual DrawableCompanion* companion(const ScenePass&) { return nullptr; }
     /// The listener for tiles that a pager reads; null, the default, for none. EffectScene::listenTo() asks for it.
     virtual osg::ref_ptr<TileListener> tileListener(const Ground&);

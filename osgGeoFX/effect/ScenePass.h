@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/DeformationChain.h>
 #include <osgGeoFX/effect/DepthConvention.h>
+#include <osgGeoFX/effect/Effect.h>
 #include <osgGeoFX/effect/ViewGeometry.h>
 
 #include <osg/Drawable>
@@ -13,6 +14,7 @@
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderStage>
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +22,7 @@
 namespace osgGeoFX
 {
 
+class DrawableCompanion;
 class PassFilter;
 
 /** The shader files of an effect that draws the scene again. `SLOT_` in them stands for the effect's prefix.
@@ -27,8 +30,9 @@ class PassFilter;
     - Vertex files have `vec3 SLOT_move(vec3 located, vec3 bent)`, which returns where a point goes, in eye space.
       `located` is its undeformed place; `bent` is the place that the scene's deformations give it. Without vertex
       files all points go to `bent`.
-    - Fragment files have `vec4 SLOT_finish(vec4 color)`, which returns the final color, and `int SLOT_channels()`,
-      which returns the channels of the mappings to show, as bits. Without fragment files the colors stay.
+    - Fragment files have `vec4 SLOT_finish(vec4 color)`, which returns the final color, `int SLOT_channels()`,
+      which returns the channels of the mappings to show, as bits, and `vec2 SLOT_pixel(vec2 pixel)`, which returns
+      where a pixel of the pass' target is in the camera's window. Without fragment files the colors stay.
     - Geometry files have main(). The vertex and the fragment files then see the define GEOFX_AMPLIFY. In geometry
       files, GEOFX_VARYINGS stands for the declarations of all variables that the other effects hand to the fragment
       stage. GEOFX_COPY(i) hands on the values of vertex i.
@@ -45,6 +49,13 @@ struct PassShaders
     std::string vertexMain, fragmentMain;
     std::vector<std::pair<std::string, unsigned int>>
         blocks; ///< uniform blocks: names without the prefix, and binding points (ScenePass::blocks)
+    /// What the vertex files hand to the fragment files where there are no stages between them. Other effects need it to draw
+    /// their companions in this pass.
+    std::vector<Varying> varyings;
+    /// The pass of another effect in which this one is drawn (ScenePass::companions()), with that effect's prefix. This
+    /// one has the mains and the geometry stage; the other one moves the points and finishes the colors.
+    std::shared_ptr<const PassShaders> within;
+    std::string withinPrefix;
 };
 
 /** The interface through which an effect draws the scene again. It tells what one culling camera knows, and it
@@ -84,6 +95,11 @@ public:
     virtual osg::ref_ptr<osg::Program> program(const PassShaders& shaders) const = 0;
     /// The program that the scene itself is drawn with.
     virtual osg::ref_ptr<osg::Program> sceneProgram() const = 0;
+    /// What the other effects draw together with the scene's drawables, drawn as a pass of this effect with these shaders,
+    /// which must have vertex and fragment files alone. For Drawing::companions.
+    virtual std::vector<DrawableCompanion*> companions(const PassShaders& shaders) const = 0;
+    /// Of a companion in the pass of another effect: that effect's prefix. Null in the scene's own image.
+    virtual const std::string* within() const { return nullptr; }
 
     /// What part of the scene to draw again, how, and where to.
     struct Drawing
@@ -100,6 +116,8 @@ public:
         /// Whether the pass has the image of the view's own camera, although another one may draw a part of it, or see it
         /// from elsewhere (ViewGeometry::image). Its state needs the define GEOFX_IMAGE, OFF with OVERRIDE.
         bool ofView = false;
+        /// Companions of the drawables that a filter chooses, drawn with their states; null for none.
+        const std::vector<DrawableCompanion*>* companions = nullptr;
     };
     /** Culls the scene again and draws what it finds. Compensation, paging and levels of detail are as for the scene
         itself. Near and far planes stay as they are. Everything that is passed must live until the frame has been

@@ -39,7 +39,7 @@ class StrokeLines;
     **Water** (Section 3.4): colored by the distance from the shore, with reflections of terrain and sky.
     **Atmosphere** (Section 3.5) and a painted **sky**.
 
-    In a scene the map comes after an exaggeration or a mapping, and replaces a bend. Positions are exact within 1e-5
+    In a scene the map comes after an exaggeration. Of a map and a bend the first is drawn. Positions are exact within 1e-5
     of the viewing distance, up to 60 degrees of arc from the eye. Every threading model may draw the scene. As with
     all effects, parameters are changed between frames.
     @ingroup panorama */
@@ -237,6 +237,7 @@ public:
     const Properties& properties() const override;
     osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
     double longestEdge(const CameraRange& cameras, double tolerance) const override;
+    bool isProjection() const override { return getProjection(); }
     std::string vertexFile() const override { return "stages/panorama.glsl"; }
 
     using Deformation::asPassEffect;

@@ -162,7 +162,8 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformation(const osg::Matrixd
                                                               const osg::NodePath& above) const
 {
     const Ground known = ground(above);
-    return CameraSnapshots(_effects, ViewGeometry(modelView, projection, known)).chain(known);
+    return CameraSnapshots(_effects, EffectsAtWork(_effects), ViewGeometry(modelView, projection, known))
+        .chain(known);
 }
 
 osg::ref_ptr<osg::Group> EffectScene::getTerrain()

@@ -7,6 +7,7 @@
 
 uniform sampler2D SLOT_tables;       // a row for each color table and each anchor
 uniform sampler2DArray SLOT_surfaces; // values times their weight, which is the alpha
+uniform vec4 SLOT_window;             // the first pixel of the camera's viewport, and half its size
 uniform vec4 SLOT_quality;           // samples along a pixel's side; the layer of normals or -1; tables' width and one over it
 
 in vec2 SLOT_surface;
@@ -56,6 +57,13 @@ float SLOT_pixelAt(int item, float distance, vec2 right, vec2 up, float line)
     float across = max(length(alongX * one.x + alongY * one.y) / max(length(one), 1e-9),
                        length(alongX * other.x + alongY * other.y) / max(length(other), 1e-9));
     return across > 0.0 ? min(across, SLOT_widest) : most;
+}
+
+// A layer begins where its close-up does, and has several samples for each pixel.
+vec2 SLOT_pixel(vec2 pixel)
+{
+    vec2 corner = round(-SLOT_item(SLOT_target / 2, 14).xy * SLOT_window.zw);
+    return SLOT_window.xy + corner + pixel / SLOT_quality.x;
 }
 
 int SLOT_channels()

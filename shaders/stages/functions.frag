@@ -12,6 +12,8 @@
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
 in float geofx_styleBlend;
+// Where the fragment is in the camera's window, pixels. A pass may draw into a texture that begins elsewhere.
+vec2 geofx_pixel();
 #if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_NORMAL_MAP)
 // What lies on the ground is lit by normals of fragments: an engine's own (osgGeoFX/scene/ShaderHost.h), or those of a
 // texture in the frame of the geometry (effect/detail/TileNormals.h).
@@ -57,10 +59,24 @@ GEOFX_NORMAL_CALLS
     return geofx_directionInEye(normal);
 }
 #endif
+vec2 geofx_pixel()
+{
+    vec2 pixel = gl_FragCoord.xy;
+GEOFX_PIXEL_CALLS
+    return pixel;
+}
+
+// What a pass makes of a color at last: for what has its color from elsewhere.
+vec4 geofx_finish(vec4 color)
+{
+    vec4 result = color;
+GEOFX_FINISH_CALLS
+    return result;
+}
+
 vec4 geofx_fragment(vec4 color, vec4 map)
 {
     vec4 result = color;
 GEOFX_COLOR_CALLS
-GEOFX_FINISH_CALLS
-    return result;
+    return geofx_finish(result);
 }

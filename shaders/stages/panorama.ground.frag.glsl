@@ -117,7 +117,7 @@ vec4 SLOT_color(vec4 color)
 #endif
     vec3 turned = normalize(facing.xyz + SLOT_hand.x * (brush.x * normalize(SLOT_brushX.xyz) +
                                                     brush.y * normalize(SLOT_brushY.xyz)));
-    vec2 picture = (gl_FragCoord.xy - SLOT_window.xy) * SLOT_window.zw;
+    vec2 picture = (geofx_pixel() - SLOT_window.xy) * SLOT_window.zw;
     float light = geofx_paintLight(dot(turned, towards), picture.y, SLOT_slopes.w);
 
     geofx_PaintStyle style = geofx_PaintStyle(SLOT_snow.x, SLOT_snow.y, SLOT_snow.z, SLOT_slopes.x, SLOT_slopes.y,

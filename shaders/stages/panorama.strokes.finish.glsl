@@ -7,6 +7,11 @@ vec4 SLOT_finish(vec4 color)
     return color;
 }
 
+vec2 SLOT_pixel(vec2 pixel)
+{
+    return pixel;
+}
+
 int SLOT_channels()
 {
     return 0;

@@ -5,7 +5,10 @@
 // Brush strokes of PanoramaMap: the mask of the brush and its two tones. Colors are premultiplied. Depth is written,
 // so strokes need no order. Fragments that are less than half covered are left out: the soft edge of a near stroke
 // would hide a far one behind it. With multisampling, GL_SAMPLE_ALPHA_TO_COVERAGE may take the place of blending.
+#pragma import_defines(GEOFX_LAYER)
 #include "lib/strokes.glsl"
+
+vec4 geofx_finish(vec4 color);
 
 uniform vec4 SLOT_light; // xyz: unit vector to the light in eye space
 
@@ -40,5 +43,12 @@ void main()
         light = vec2(dot(light, vec2(SLOT_stamp.w, -SLOT_stamp.z)), dot(light, SLOT_stamp.zw));
         color = mix(SLOT_darkTone, SLOT_lightTone, geofx_strokeLit(SLOT_point, light, seed));
     }
-    gl_FragColor = vec4(color * cover, cover);
+    vec4 finished = geofx_finish(vec4(color, 1.0));
+#ifdef GEOFX_LAYER
+    // A layer has the color of what is nearest, with straight alpha. It is not blended.
+    if (cover < 0.5) discard;
+    gl_FragColor = finished;
+#else
+    gl_FragColor = vec4(finished.rgb, 1.0) * (finished.a * cover);
+#endif
 }

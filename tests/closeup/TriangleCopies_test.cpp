@@ -123,6 +123,35 @@ TEST(TriangleCopies, HaveWhatLiesOverARegion)
     EXPECT_DOUBLE_EQ(copies.longestEdge(*row), std::sqrt(2.0));
 }
 
+// Houses are often one geometry at many places.
+TEST(TriangleCopies, OfOneGeometryAtSeveralPlacesDoNotChangeEachOther)
+{
+    TriangleCopies copies;
+    const osg::ref_ptr<osg::Geometry> row = makeRow();
+    const auto at = [](double x)
+    {
+        return std::vector<TriangleCopies::Region>{{0, osg::Matrixd::translate(-x, -0.5, 0.0)}};
+    };
+    const auto first = [](const osg::Geometry& copy)
+    {
+        return copy.getPrimitiveSet(0)->index(0);
+    };
+    osg::Geometry* const west = copies.of(*row, at(0.5), false);
+    osg::Geometry* const east = copies.of(*row, at(9.5), false);
+    ASSERT_TRUE(west && east);
+    EXPECT_NE(west, east);
+    EXPECT_EQ(first(*west), 0u);
+    EXPECT_GT(first(*east), 12u);
+    copies.startFrame();
+    EXPECT_EQ(copies.of(*row, at(9.5), false), east);
+    EXPECT_EQ(copies.of(*row, at(0.5), false), west);
+    // A place that is no longer there gives its copy to a new one.
+    copies.startFrame();
+    EXPECT_EQ(copies.of(*row, at(9.5), false), east);
+    EXPECT_GT(first(*copies.of(*row, at(5.5), false)), 4u);
+    EXPECT_EQ(first(*east), first(*copies.of(*row, at(9.5), false)));
+}
+
 TEST(TriangleCopies, FollowNewArrays)
 {
     TriangleCopies copies;

@@ -144,6 +144,7 @@ float SLOT_strokeShown(vec3 eye) { return 1.0; }
 const char* const fragmentStandIns = R"(
 vec4 SLOT_finish(vec4 color) { return color; }
 int SLOT_channels() { return 0; }
+vec2 SLOT_pixel(vec2 pixel) { return pixel; }
 )";
 
 osg::ref_ptr<osg::Program> strokesProgram()

@@ -230,8 +230,11 @@ int CullHarness::load(const std::vector<RequestRecorder::Request>& requests, Ran
                       double probability)
 {
     int loaded = 0;
+    // Several passes may ask for the same.
+    std::set<std::pair<const osg::PagedLOD*, std::string>> known;
     for (const auto& request : requests)
     {
+        if (!known.emplace(request.group, request.file).second) continue;
         if (random.uniform(0.0, 1.0) > probability) continue;
         const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(request.file);
         if (!node) continue;

@@ -17,7 +17,7 @@ CloseUpTraversal& CloseUpCamera::freeTraversal(const ScenePass& pass, const Clos
     // The last frame has been drawn, so deleted drawables need their copies no longer. Copies hold the arrays of
     // these drawables.
     for (std::size_t i = 0; starts && i < _traversals.size(); ++i)
-        _traversals[i]->copies.purge();
+        _traversals[i]->copies.startFrame();
     return traversal;
 }
 

@@ -11,7 +11,7 @@ namespace osgGeoFX
 {
 
 std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& item, double lowest,
-                                     double highest, double beyond, bool withAnchor)
+                                     double highest, double beyond, double margin, bool withAnchor)
 {
     const osg::Viewport& viewport = *pass.outer.getViewport();
     const auto width = static_cast<int>(viewport.width());
@@ -54,7 +54,7 @@ std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& i
         }
     }
     if (behind) return whole;
-    const double border = 2.0 + line;
+    const double border = 2.0 + std::max(line, margin);
     const double size[2] = {viewport.width(), viewport.height()};
     int first[2], last[2];
     for (int axis = 0; axis < 2; ++axis)

@@ -13,9 +13,9 @@ namespace osgGeoFX
 
 /// The part of a camera's picture in which a close-up may show, with its anchor and line or without. Its ground lies
 /// between two heights, metres above the region's base. Stretched triangles reach up to `beyond` metres out of the
-/// region on the ground. Nothing if it is out of sight.
+/// region on the ground. Companions reach up to `margin` pixels out of what they belong to. Nothing if it is out of sight.
 std::optional<PixelRectangle> partOf(const ScenePass& pass, const CloseUpItem& item, double lowest,
-                                     double highest, double beyond, bool withAnchor);
+                                     double highest, double beyond, double margin, bool withAnchor);
 
 /// Moves the camera's near and far planes apart, so that the close-up lies between them.
 void widenDepths(const ScenePass& pass, const CloseUpItem& item, double lowest, double highest,

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/detail/CloseUpFrame.h>
 
+#include <osgGeoFX/effect/DrawableCompanion.h>
+
 #include <osgGeoFX/closeup/detail/CloseUpExtent.h>
 #include <osgGeoFX/closeup/detail/MultiPass.h>
 #include <osgGeoFX/closeup/detail/SinglePass.h>
@@ -112,13 +114,17 @@ void CloseUpFrame::choosePipeline(const Outlook& outlook)
     const bool wanted = _task.pipeline == CloseUps::SINGLE_PASS ||
                         (_task.pipeline == CloseUps::AUTOMATIC && singleIsCheaper(outlook));
     const bool fits = 2 * _items.size() <= static_cast<std::size_t>(_perArray);
-    if (wanted && fits)
+    if (wanted && fits && _regions.companions.empty())
         _pipeline = std::make_unique<SinglePass>(_regions);
     else
         _pipeline = std::make_unique<MultiPass>(_regions);
     if (wanted && !fits)
         _sentence = "CloseUps has more layers than a texture array of this GPU (" +
                     std::to_string(_perArray) + "), so the multi-pass pipeline draws.";
+    else if (_task.pipeline == CloseUps::SINGLE_PASS && !_regions.companions.empty())
+        _sentence = "CloseUps shows the strokes of another effect, which are not made of triangles, so the "
+                    "multi-pass "
+                    "pipeline draws.";
 }
 
 void CloseUpFrame::survey(Outlook& outlook)
@@ -135,6 +141,9 @@ void CloseUpFrame::survey(Outlook& outlook)
 
 void CloseUpFrame::place()
 {
+    double margin = 0.0;
+    for (const DrawableCompanion* companion : _regions.companions)
+        margin = std::max(margin, companion->reach());
     for (std::size_t i = 0; i < _items.size(); ++i)
     {
         const CloseUpItem& item = _items[i];
@@ -142,16 +151,17 @@ void CloseUpFrame::place()
         if (found.empty()) continue;
         // Finer tiles may be a little higher or lower.
         const double slack = 20.0 + 0.1 * (found.highest - found.lowest);
-        if (!partOf(_pass, item, found.lowest - slack, found.highest + slack, found.longestEdge, true))
+        if (!partOf(_pass, item, found.lowest - slack, found.highest + slack, found.longestEdge, margin,
+                    true))
             continue;
         VisibleCloseUp visible;
         visible.item = i;
         _pipeline->draw(visible, found);
         const std::optional<PixelRectangle> part =
-            partOf(_pass, item, found.lowest, found.highest, found.longestEdge, true);
+            partOf(_pass, item, found.lowest, found.highest, found.longestEdge, margin, true);
         if (!part) continue;
         visible.part = *part;
-        visible.lifted = partOf(_pass, item, found.lowest, found.highest, found.longestEdge, false);
+        visible.lifted = partOf(_pass, item, found.lowest, found.highest, found.longestEdge, margin, false);
         visible.layer = static_cast<int>(2 * _visible.size());
         _visible.push_back(visible);
         widenDepths(_pass, item, found.lowest, found.highest, found.longestEdge);

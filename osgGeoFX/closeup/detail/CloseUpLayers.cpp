@@ -18,8 +18,6 @@ namespace
 
 /// The render bin of the layers in the camera's picture: after opaque geometry, before transparent geometry.
 constexpr int layerBin = 9;
-/// The layers are drawn before the application's own pre-render cameras, as a rule.
-constexpr int stageOrder = -10;
 constexpr unsigned int colorUnit = 0, depthUnit = 1;
 
 osg::ref_ptr<osg::Texture2DArray> createTexture(GLint internalFormat, GLenum format, GLenum type, int width,
@@ -133,7 +131,7 @@ void CloseUpLayers::draw(osgUtil::CullVisitor& outer, osgUtil::RenderStage& stag
     const Array& array = _arrays[layer < 0 ? 0 : static_cast<std::size_t>(layer / _perArray)];
     stage.setFrameBufferObject(layer < 0 ? array.all
                                          : array.single[static_cast<std::size_t>(layer % _perArray)]);
-    outer.getCurrentRenderBin()->getStage()->addPreRenderStage(&stage, stageOrder);
+    outer.getCurrentRenderBin()->getStage()->addPreRenderStage(&stage, layerOrder);
 }
 
 void CloseUpLayers::show(osgUtil::CullVisitor& outer, osg::Program* program, const CameraDepth& depth,

@@ -46,6 +46,10 @@ void CloseUpStates::setUp(const ScenePass& pass, const CloseUpTask& task,
     _base->getOrCreateUniform(_prefix + "quality", osg::Uniform::FLOAT_VEC4)
         ->set(osg::Vec4(static_cast<float>(task.samples), static_cast<float>(task.textures.normalLayer),
                         static_cast<float>(CloseUpTextures::tableWidth), 0.0f));
+    const osg::Viewport& viewport = *pass.outer.getViewport();
+    _base->getOrCreateUniform(_prefix + "window", osg::Uniform::FLOAT_VEC4)
+        ->set(osg::Vec4(
+            osg::Vec4d(viewport.x(), viewport.y(), 0.5 * viewport.width(), 0.5 * viewport.height())));
     _base->getOrCreateUniform(_prefix + "only", osg::Uniform::INT)->set(-1);
     if (tessellated) setTessellation(pass, task, items);
     setDefines(pass, task, items);
@@ -94,6 +98,7 @@ void CloseUpStates::setDefines(const ScenePass& pass, const CloseUpTask& task,
            std::any_of(items.begin(), items.end(),
                        [](const CloseUpItem& item) { return item.cutByVertices() || item.stretched(); }));
     define(*_base, "DATA", task.data != nullptr);
+    _base->setDefine("GEOFX_LAYER", osg::StateAttribute::ON);
     define(*_base, "ROUND", task.data && pass.view.ground.ellipsoid);
 }
 

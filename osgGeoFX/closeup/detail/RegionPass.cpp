@@ -20,6 +20,7 @@ PassShaders plainShaders(unsigned int binding)
     shaders.vertex = {"stages/closeup.items.glsl", "stages/closeup.vert.glsl"};
     shaders.fragment = {"stages/closeup.items.glsl", "stages/closeup.frag.glsl"};
     shaders.blocks = {{"Items", binding}};
+    shaders.varyings = {{"vec2", "surface"}, {"vec3", "place"}};
     return shaders;
 }
 
@@ -67,7 +68,8 @@ void limitHeights(const Ground& ground, const RegionOfInterest& region, RegionCo
 
 RegionPass::RegionPass(const ScenePass& scenePass, const CloseUpTask& task, CloseUpTraversal& needed,
                        const std::vector<CloseUpItem>& closeUps, bool tessellates)
-    : pass(scenePass), traversal(needed), items(closeUps), _task(task), _tessellated(tessellates)
+    : pass(scenePass), traversal(needed), items(closeUps),
+      companions(pass.companions(plainShaders(task.binding))), _task(task), _tessellated(tessellates)
 {
 }
 
@@ -88,10 +90,13 @@ void RegionPass::simplify()
 }
 
 RegionSurvey RegionPass::run(std::vector<std::size_t> wanted, const RegionFilter::StatesOf& statesOf,
-                             osgUtil::RenderStage* stage, const DeformationChain* chain) const
+                             osgUtil::RenderStage* stage, const DeformationChain* chain,
+                             bool accompanied) const
 {
     RegionFilter filter(items, std::move(wanted), culls(pass), traversal.copies, _tessellated, statesOf);
-    pass.draw({traversal.program, &traversal.states.base(), stage, chain, &filter});
+    ScenePass::Drawing drawing{traversal.program, &traversal.states.base(), stage, chain, &filter};
+    if (accompanied) drawing.companions = &companions;
+    pass.draw(drawing);
     for (std::size_t i = 0; i < items.size(); ++i)
         limitHeights(pass.view.ground, *items[i].closeUp().getRegion(), filter.found.contents[i]);
     return std::move(filter.found);
@@ -101,7 +106,7 @@ RegionSurvey RegionPass::survey(const RegionFilter::StatesOf& statesOf, osgUtil:
 {
     std::vector<std::size_t> all(items.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    return run(std::move(all), statesOf, stage, nullptr);
+    return run(std::move(all), statesOf, stage, nullptr, false);
 }
 
 void RegionPass::draw(const VisibleCloseUp& visible, std::size_t which, const DeformationChain& chain,
@@ -112,7 +117,7 @@ void RegionPass::draw(const VisibleCloseUp& visible, std::size_t which, const De
         {visible.item},
         [&](const std::vector<std::size_t>&, std::vector<osg::StateSet*>& states)
         { states.push_back(state); },
-        visible.stages[which], &chain);
+        visible.stages[which], &chain, which == 0);
     found.lowest = std::min(found.lowest, drawn.contents[visible.item].lowest);
     found.highest = std::max(found.highest, drawn.contents[visible.item].highest);
     drawables += static_cast<int>(drawn.count);

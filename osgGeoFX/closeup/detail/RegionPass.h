@@ -17,6 +17,8 @@ public:
     const ScenePass& pass;
     CloseUpTraversal& traversal;
     const std::vector<CloseUpItem>& items;
+    const std::vector<DrawableCompanion*>
+        companions; ///< of other effects; they are drawn in the layers of close-ups
 
     RegionPass(const ScenePass& scenePass, const CloseUpTask& task, CloseUpTraversal& needed,
                const std::vector<CloseUpItem>& closeUps, bool tessellates);
@@ -43,7 +45,7 @@ public:
 
 private:
     RegionSurvey run(std::vector<std::size_t> wanted, const RegionFilter::StatesOf& statesOf,
-                     osgUtil::RenderStage* stage, const DeformationChain* chain) const;
+                     osgUtil::RenderStage* stage, const DeformationChain* chain, bool accompanied) const;
 
     const CloseUpTask& _task;
     bool _tessellated;

@@ -146,16 +146,32 @@ void TriangleCopies::build(Entry& entry, bool patches)
     }
 }
 
+/// The one that was made for these regions, else one that nothing needs any more, else a new one.
+TriangleCopies::Entry& TriangleCopies::entryOf(std::deque<Entry>& places, const osg::Geometry& geometry,
+                                               const std::vector<Region>& regions, Extent extent)
+{
+    Entry* unused = nullptr;
+    for (Entry& entry : places)
+    {
+        if (entry.geometry.valid() && entry.stamp.matches(geometry) && entry.extent == extent &&
+            same(entry.regions, regions, geometry.getBoundingBox()))
+            return entry;
+        if (!entry.used) unused = &entry;
+    }
+    if (!unused) unused = &places.emplace_back();
+    unused->geometry = nullptr;
+    return *unused;
+}
+
 osg::Geometry* TriangleCopies::of(osg::Geometry& geometry, const std::vector<Region>& regions, bool patches,
                                   Extent extent)
 {
     Key key = {&geometry, {}};
     for (const Region& region : regions)
         key.second.push_back(region.item);
-    Entry& entry = (patches ? _patches : _triangles)[key];
-    const bool known = entry.geometry.valid() && entry.stamp.matches(geometry) && entry.extent == extent &&
-                       same(entry.regions, regions, geometry.getBoundingBox());
-    if (!known)
+    Entry& entry = entryOf((patches ? _patches : _triangles)[key], geometry, regions, extent);
+    entry.used = true;
+    if (!entry.geometry.valid())
     {
         entry.geometry = &geometry;
         entry.stamp = GeometryStamp(geometry, GeometryStamp::ALL_ARRAYS);
@@ -188,14 +204,21 @@ double TriangleCopies::longestEdge(const osg::Geometry& geometry)
     return measured.longestEdge;
 }
 
-void TriangleCopies::purge()
+void TriangleCopies::startFrame()
 {
     for (auto measured = _measured.begin(); measured != _measured.end();)
         measured = measured->second.geometry.valid() ? std::next(measured) : _measured.erase(measured);
-    for (auto* entries : {&_triangles, &_patches})
+    for (Entries* entries : {&_triangles, &_patches})
     {
-        for (auto entry = entries->begin(); entry != entries->end();)
-            entry = entry->second.geometry.valid() ? std::next(entry) : entries->erase(entry);
+        for (auto known = entries->begin(); known != entries->end();)
+        {
+            std::deque<Entry>& places = known->second;
+            const bool gone = std::none_of(places.begin(), places.end(),
+                                           [](const Entry& entry) { return entry.geometry.valid(); });
+            for (Entry& entry : places)
+                entry.used = false;
+            known = gone ? entries->erase(known) : std::next(known);
+        }
     }
 }
 
@@ -203,8 +226,11 @@ void TriangleCopies::resizeGLObjectBuffers(unsigned int size)
 {
     for (auto* entries : {&_triangles, &_patches})
     {
-        for (auto& [key, entry] : *entries)
-            osg::resizeGLObjectBuffers(entry.copy, size);
+        for (auto& [key, places] : *entries)
+        {
+            for (Entry& entry : places)
+                osg::resizeGLObjectBuffers(entry.copy, size);
+        }
     }
 }
 
@@ -212,13 +238,16 @@ void TriangleCopies::releaseGLObjects(osg::State* state) const
 {
     for (const auto* entries : {&_triangles, &_patches})
     {
-        for (const auto& [key, entry] : *entries)
+        for (const auto& [key, places] : *entries)
         {
-            if (!entry.copy) continue;
-            // osg::Geometry's own method would release the arrays' buffers, too. Another geometry draws from these.
-            entry.copy->Drawable::releaseGLObjects(state);
-            for (const osg::ref_ptr<osg::PrimitiveSet>& indices : entry.copy->getPrimitiveSetList())
-                indices->releaseGLObjects(state);
+            for (const Entry& entry : places)
+            {
+                if (!entry.copy) continue;
+                // osg::Geometry's own method would release the arrays' buffers, too. Another geometry draws from these.
+                entry.copy->Drawable::releaseGLObjects(state);
+                for (const osg::ref_ptr<osg::PrimitiveSet>& indices : entry.copy->getPrimitiveSetList())
+                    indices->releaseGLObjects(state);
+            }
         }
     }
 }

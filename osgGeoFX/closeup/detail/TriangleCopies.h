@@ -9,6 +9,7 @@
 #include <osg/Matrixd>
 #include <osg/observer_ptr>
 
+#include <deque>
 #include <limits>
 #include <map>
 #include <utility>
@@ -19,7 +20,7 @@ namespace osgGeoFX
 
 /** Copies of geometries with only those triangles that lie over some regions, or with the same as patches for
     tessellation. A copy shares the arrays of its geometry. It is made on demand, and kept while the drawable lives
-    and stays in its place. For one thread at a time.
+    and stays in its place. A geometry that a scene has at several places has a copy for each. For one thread at a time.
 
     The walls of a tile close the cracks to other meshes. A copy has no walls near a region's border: the ground ends
     there, and a wall would hang out below it. */
@@ -49,8 +50,8 @@ public:
                       Extent extent = OVER_REGIONS);
     /// The longest edge of a geometry's triangles, in its own frame; 0 without triangles.
     double longestEdge(const osg::Geometry& geometry);
-    /// Forgets deleted drawables. Call it now and then, when none of their copies is on its way to the screen.
-    void purge();
+    /// Forgets deleted drawables. Call it when none of the copies is on its way to the screen: they may change from here on.
+    void startFrame();
     void resizeGLObjectBuffers(unsigned int size);
     /// Releases the objects of the copies alone. The geometries release what they share.
     void releaseGLObjects(osg::State* state) const;
@@ -64,6 +65,7 @@ private:
         Extent extent = OVER_REGIONS;
         osg::ref_ptr<osg::Geometry> copy; ///< null if the geometry itself is drawn
         bool empty = false;
+        bool used = false; ///< since startFrame()
     };
     static void build(Entry& entry, bool patches);
     struct Measured
@@ -74,7 +76,11 @@ private:
     };
 
     using Key = std::pair<osg::Geometry*, std::vector<std::size_t>>;
-    std::map<Key, Entry> _triangles, _patches;
+    using Entries = std::map<Key, std::deque<Entry>>; ///< one for each place of a geometry
+    static Entry& entryOf(std::deque<Entry>& places, const osg::Geometry& geometry,
+                          const std::vector<Region>& regions, Extent extent);
+
+    Entries _triangles, _patches;
     std::map<const osg::Geometry*, Measured> _measured;
 };
 

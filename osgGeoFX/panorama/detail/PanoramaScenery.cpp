@@ -20,8 +20,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 namespace osgGeoFX
@@ -37,8 +39,6 @@ constexpr int mostMirrorPixels = 4096;
 constexpr std::size_t mostGrounds = 8;
 /// The detail of the picture in the water.
 constexpr double mirrorDetail = 0.3;
-/// The picture in the water is drawn before the camera's, after the application's own textures.
-constexpr int mirrorOrder = -5;
 /// The sky is drawn after opaque geometry, and so only where nothing else is.
 constexpr int skyBin = 8;
 
@@ -278,6 +278,7 @@ public:
     {
         Mirror mirror;
         StrokeCompanion strokes;
+        std::map<std::string, StrokeCompanion> within; ///< in the passes of other effects, by their prefixes
     };
 
     /// The looks of one camera. Its cull visitor may come several times before anything is drawn: for a camera that
@@ -302,6 +303,8 @@ public:
             {
                 each->mirror.resizeGLObjectBuffers(size);
                 each->strokes.resizeGLObjectBuffers(size);
+                for (auto& [prefix, strokes] : each->within)
+                    strokes.resizeGLObjectBuffers(size);
             }
         }
         void releaseGLObjects(osg::State* state) const
@@ -310,6 +313,8 @@ public:
             {
                 each->mirror.releaseGLObjects(state);
                 each->strokes.releaseGLObjects(state);
+                for (const auto& [prefix, strokes] : each->within)
+                    strokes.releaseGLObjects(state);
             }
         }
 
@@ -440,7 +445,8 @@ void PanoramaMap::Scenery::cull(const ScenePass& pass)
 DrawableCompanion* PanoramaMap::Scenery::companion(const ScenePass& pass)
 {
     if (!_map.getStrokes() || !_map.getPaint()) return nullptr;
-    StrokeCompanion& strokes = _cameras->looks.of(pass.outer, pass.scene).now(pass).strokes;
+    Cameras::Look& look = _cameras->looks.of(pass.outer, pass.scene).now(pass);
+    StrokeCompanion& strokes = pass.within() ? look.within[*pass.within()] : look.strokes;
     return strokes.begin(pass, _map, *_cameras->maker(_map, pass.view.ground)) ? &strokes : nullptr;
 }
 

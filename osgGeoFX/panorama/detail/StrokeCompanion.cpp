@@ -78,9 +78,10 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
     if (_state->getAttribute(osg::StateAttribute::PROGRAM) != program)
     {
         _state->setAttributeAndModes(program, osg::StateAttribute::ON | forced);
-        // Colors are premultiplied, and depth is written.
-        _state->setAttributeAndModes(new osg::BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA),
-                                     osg::StateAttribute::ON | forced);
+        // Colors are premultiplied, and depth is written. The pass of another effect blends as it will.
+        if (!pass.within())
+            _state->setAttributeAndModes(new osg::BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA),
+                                         osg::StateAttribute::ON | forced);
         _state->setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
         // Strokes are drawn over all ground, since soft edges mix with it. They are drawn in the order of traversal,
         // so that pictures do not depend on addresses.

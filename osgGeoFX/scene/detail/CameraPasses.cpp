@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/CameraPasses.h>
 
+#include <osgGeoFX/effect/PassEffect.h>
+
 namespace osgGeoFX
 {
 
@@ -13,11 +15,14 @@ CompensatingCullVisitor::Task taskOf(const CompensatingCullVisitor::Task& scene,
 {
     CompensatingCullVisitor::Task task = scene;
     task.companions.clear();
+    if (drawing.companions) task.companions = *drawing.companions;
     task.debugBounds = false;
     task.findsNearAndFar = false;
     task.program = drawing.program;
     task.stage = drawing.stage;
     task.passState = drawing.state;
+    // What a filter looks at is drawn by the camera's chain. The pass' own tells its detail.
+    if (drawing.chain && drawing.filter) task.placing = task.chain;
     if (drawing.chain) task.chain = drawing.chain;
     if (drawing.filter) task.compensate = true;
     if (drawing.ofView && task.image)
@@ -87,18 +92,34 @@ void CameraPasses::draw(osgUtil::CullVisitor& outer, const std::vector<ScenePass
     of(_wholes, drawing.program, outer).run(outer, pieces, pass);
 }
 
-CameraPass::CameraPass(const Traversal& traversal, const std::string& names,
-                       const std::vector<int>& textureUnits, const std::vector<int>& blockBindings)
+CameraPass::CameraPass(const Traversal& traversal, const Drawer& drawer, const Within* within)
     : ScenePass(traversal.outer, traversal.scene, traversal.view, *traversal.task.chain,
-                *traversal.task.state, names, textureUnits, blockBindings, traversal.task.depth,
+                *traversal.task.state, drawer.prefix, drawer.units, drawer.blocks, traversal.task.depth,
                 traversal.task.colorFormat, traversal.task.compensate, traversal.passes.frame()),
-      _traversal(traversal)
+      _traversal(traversal), _within(within)
 {
 }
 
 osg::ref_ptr<osg::Program> CameraPass::program(const PassShaders& shaders) const
 {
-    return _traversal.programs.passProgramOf(_traversal.effects, shaders, prefix);
+    if (!_within) return _traversal.programs.passProgramOf(_traversal.effects, shaders, prefix);
+    PassShaders inner = shaders;
+    inner.within = _within->shaders;
+    inner.withinPrefix = _within->prefix;
+    return _traversal.programs.passProgramOf(_traversal.effects, inner, prefix);
+}
+
+std::vector<DrawableCompanion*> CameraPass::companions(const PassShaders& shaders) const
+{
+    const Within within{std::make_shared<const PassShaders>(shaders), prefix};
+    std::vector<DrawableCompanion*> result;
+    for (const Drawer& drawer : _traversal.drawers)
+    {
+        if (drawer.prefix == prefix) continue;
+        if (DrawableCompanion* companion = drawer.effect->companion(CameraPass(_traversal, drawer, &within)))
+            result.push_back(companion);
+    }
+    return result;
 }
 
 osg::ref_ptr<osg::Program> CameraPass::sceneProgram() const

@@ -7,10 +7,14 @@
 #include <osgGeoFX/scene/detail/ProgramCache.h>
 
 #include <map>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
+
+class PassEffect;
 
 /** The visitors that cull the passes of one camera. Each program has a visitor of its own, because a visitor keeps
     the looks of its program until the frame has been drawn. Passes with a PassFilter have visitors of another class.
@@ -54,6 +58,14 @@ private:
 class CameraPass final : public ScenePass
 {
 public:
+    /// An effect that draws passes for this camera, and what it has of the scene's.
+    struct Drawer
+    {
+        PassEffect* effect;
+        std::string prefix;
+        const std::vector<int>& units;
+        const std::vector<int>& blocks;
+    };
     struct Traversal
     {
         osgUtil::CullVisitor& outer;
@@ -65,17 +77,26 @@ public:
         ProgramCache& programs;
         const ProgramCache::Effects& effects;
         ShaderHost* shaderHost; ///< EffectScene::getShaderHost()
+        std::vector<Drawer> drawers;
     };
-    CameraPass(const Traversal& traversal, const std::string& names, const std::vector<int>& textureUnits,
-               const std::vector<int>& blockBindings);
+    /// `within`: the pass of another effect in which a companion is drawn; it must live as long. Null for none.
+    struct Within
+    {
+        std::shared_ptr<const PassShaders> shaders;
+        const std::string& prefix;
+    };
+    CameraPass(const Traversal& traversal, const Drawer& drawer, const Within* within = nullptr);
 
     osg::ref_ptr<osg::Program> program(const PassShaders& shaders) const override;
     osg::ref_ptr<osg::Program> sceneProgram() const override;
+    std::vector<DrawableCompanion*> companions(const PassShaders& shaders) const override;
+    const std::string* within() const override { return _within ? &_within->prefix : nullptr; }
     void draw(const Drawing& drawing) const override;
     void draw(const std::vector<Piece>& pieces, const Drawing& drawing) const override;
 
 private:
     const Traversal& _traversal;
+    const Within* const _within;
 };
 
 } // namespace osgGeoFX

@@ -36,14 +36,37 @@ bool finite(const DeformationSnapshot::Uniforms& uniforms)
 
 } // namespace
 
-CameraSnapshots::CameraSnapshots(const EffectProgram::Effects& effects, const ViewGeometry& first)
+EffectsAtWork::EffectsAtWork(const EffectProgram::Effects& effects) : _work(effects.size())
+{
+    const Effect* projection = nullptr;
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        _work[i] = effects[i]->getEnabled();
+        const Deformation* deformation = effects[i]->asDeformation();
+        if (!_work[i] || !deformation || !deformation->isProjection()) continue;
+        if (projection)
+        {
+            _work[i] = false;
+            _sentence =
+                std::string(projection->className()) + " and " + effects[i]->className() +
+                " both make a picture of their own of the whole view, so a camera shows one of them "
+                "at a time: the first one in the scene's list. Switch the other one off, for one camera with "
+                "CameraEffects; a BlendedView goes from one bend to the other.";
+        }
+        else
+            projection = effects[i];
+    }
+}
+
+CameraSnapshots::CameraSnapshots(const EffectProgram::Effects& effects, const EffectsAtWork& work,
+                                 const ViewGeometry& first)
     : _all(effects.size())
 {
     ViewGeometry view = first;
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
         const Deformation* deformation = effects[i]->asDeformation();
-        if (!deformation || !effects[i]->getEnabled()) continue;
+        if (!deformation || !work[i]) continue;
         const osg::ref_ptr<const DeformationSnapshot> snapshot = deformation->snapshot(view);
         if (!snapshot) continue;
         DeformationSnapshot::Uniforms uniforms = snapshot->uniforms();
@@ -140,8 +163,8 @@ void CameraState::fill(const CameraSnapshots& snapshots, const ViewGeometry& vie
     }
 }
 
-bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const ViewGeometry& geometry,
-                               osgUtil::CullVisitor& outer)
+bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const EffectsAtWork& work,
+                               const ViewGeometry& geometry, osgUtil::CullVisitor& outer)
 {
     bool any = false;
     bool repainted = false;
@@ -159,8 +182,8 @@ bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const View
                                   viewport ? viewport->height() : 0.0,
                                   stamp ? stamp->getSimulationTime() : 0.0,
                                   _units->ofEffects[i]};
-        const bool draws = effects[i]->getEnabled() && _units->complete[i] &&
-                           surface->fill(*_set, EffectProgram::prefix(i), view);
+        const bool draws =
+            work[i] && _units->complete[i] && surface->fill(*_set, EffectProgram::prefix(i), view);
         setDefine(*_set, EffectProgram::surfaceDefine(i), draws);
         any = any || draws;
         repainted = repainted || (draws && surface->repaints());

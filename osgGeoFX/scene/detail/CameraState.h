@@ -18,11 +18,27 @@
 namespace osgGeoFX
 {
 
+/// Which effects of a scene a camera draws: those that are switched on, but of several projections
+/// (Deformation::isProjection) the first alone.
+class EffectsAtWork
+{
+public:
+    explicit EffectsAtWork(const EffectProgram::Effects& effects);
+    bool operator[](std::size_t effect) const { return _work[effect]; }
+    /// What to tell the user; empty if nothing is left out.
+    const std::string& sentence() const { return _sentence; }
+
+private:
+    std::vector<bool> _work;
+    std::string _sentence;
+};
+
 /// The deformations of one camera, one entry for each effect of its scene.
 class CameraSnapshots
 {
 public:
-    CameraSnapshots(const EffectProgram::Effects& effects, const ViewGeometry& view);
+    CameraSnapshots(const EffectProgram::Effects& effects, const EffectsAtWork& work,
+                    const ViewGeometry& view);
 
     /// The chain of all deformations, in their order.
     osg::ref_ptr<DeformationChain> chain(const Ground& ground) const;
@@ -56,8 +72,8 @@ public:
     /// Whether osgEarth may clip at its horizon.
     void setHorizonClipping(bool on);
     /// Of the effects that color surfaces; whether there are any at work.
-    bool fillSurfaces(const EffectProgram::Effects& effects, const ViewGeometry& geometry,
-                      osgUtil::CullVisitor& outer);
+    bool fillSurfaces(const EffectProgram::Effects& effects, const EffectsAtWork& work,
+                      const ViewGeometry& geometry, osgUtil::CullVisitor& outer);
 
 private:
     void fillImage(const ViewGeometry& view);

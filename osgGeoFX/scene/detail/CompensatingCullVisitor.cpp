@@ -417,8 +417,10 @@ void CompensatingCullVisitor::apply(RigidReference& node)
     const Mode former = _mode;
     meet(node.getStateSet());
     const osg::Matrixd& modelView = *getModelViewMatrix();
+    const DeformationChain& placing = _task.placing && _mode.deformation.on ? *_task.placing : definedChain();
     osg::Matrixd placement =
-        rigidPlacement(definedChain(), inView(osg::Vec3d(node.referencePoint())), node.getTurn());
+        rigidPlacement(placing, inView(osg::Vec3d(node.referencePoint())), node.getTurn());
+    _mode.unplaced = osg::Matrixd::inverse(placement);
     if (_task.image) placement = _task.image->toView * placement * _task.image->toEye;
     pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
     meet(_task.untouched);

@@ -57,6 +57,8 @@ public:
     {
         Traverse traverse;
         osg::ref_ptr<const DeformationChain> chain;
+        /// Where it is another one, that which has placed the things that keep their shape.
+        osg::ref_ptr<const DeformationChain> placing;
         osg::StateSet* state = nullptr; ///< uniforms and defines of the effects; null where they draw nothing
         osg::Program* program = nullptr; ///< for what has none
         FollowingPrograms* following =
@@ -149,6 +151,8 @@ protected:
         Visibility::Mask planes = 0; ///< frustum planes that bounds may still cross
         double nearer =
             1.0; ///< the share of its distance at which a thing is drawn, so that nothing at its place hides it
+        /// Of what was placed as a whole: from the view's eye space back to where it stands.
+        std::optional<osg::Matrixd> unplaced;
         bool ours = true;           ///< false below cameras: OSG's culling, no state of ours
         double lodRadius = 0.0;     ///< of the LOD that is asking for distances
         double lodLimit = HUGE_VAL; ///< what it hears at most
@@ -189,6 +193,8 @@ protected:
     void addLeaf(osg::Drawable& drawable, osg::StateSet* own, osg::StateSet* look, double depth);
     /// As the base class does it, and remembers that it was done here.
     void addLeaf(osg::Drawable& drawable, osg::RefMatrix* matrix, double depth);
+    /// Draws what effects draw together with a drawable. `modelView`: to the camera's eye space.
+    void drawCompanions(osg::Drawable& drawable, osg::RefMatrix* modelView, double depth);
     static void put(osgUtil::RenderBin& bin, osgUtil::StateGraph& from, osgUtil::StateGraph& to,
                     osgUtil::RenderLeaf* leaf);
 
@@ -276,8 +282,6 @@ private:
     void applyPart(osg::Node& part);
     template<typename NodeType>
     void passUntouched(NodeType& node);
-    /// Draws what effects draw together with a drawable. `modelView`: to the camera's eye space.
-    void drawCompanions(osg::Drawable& drawable, osg::RefMatrix* modelView, double depth);
     /// Remembers a leaf for what effects draw together with it.
     void noteAdopted(osgUtil::StateGraph& graph, const osgUtil::RenderLeaf& leaf);
     /// The state above what a node has put into the render graph by itself, without that of a host.

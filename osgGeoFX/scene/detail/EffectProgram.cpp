@@ -38,7 +38,7 @@ std::string normalFile(const Deformation& deformation)
 /// What stands in the place of the words in capitals in stages/functions.*.
 struct Parts
 {
-    std::string imports, functions, locate, face, deform, normal, turn, color, move, finish;
+    std::string imports, functions, locate, face, deform, normal, turn, color, move, finish, pixel;
 
     std::string fill(std::string text) const
     {
@@ -50,6 +50,7 @@ struct Parts
         text = replaced(std::move(text), "GEOFX_NORMAL_CALLS", normal);
         text = replaced(std::move(text), "GEOFX_COLOR_CALLS", color);
         text = replaced(std::move(text), "GEOFX_MOVE_CALLS", move);
+        text = replaced(std::move(text), "GEOFX_PIXEL_CALLS", pixel);
         return replaced(std::move(text), "GEOFX_FINISH_CALLS", finish);
     }
 };
@@ -192,6 +193,16 @@ std::vector<Handed> allVaryings(const EffectProgram::Effects& effects)
     return all;
 }
 
+/// What a pass within another one has to hand on for that one.
+std::vector<Handed> varyingsFor(const EffectProgram::Effects& effects, const PassShaders& pass)
+{
+    std::vector<Handed> all = allVaryings(effects);
+    if (!pass.within) return all;
+    for (const Varying& each : pass.within->varyings)
+        all.push_back({{each.type, pass.withinPrefix + each.name, each.flat}});
+    return all;
+}
+
 /// Adds what a pass has in the vertex stage.
 void addMove(Parts& parts, const EffectProgram::Effects& effects, const ShaderLibrary& library,
              const PassShaders& pass, const std::string& prefix)
@@ -203,12 +214,19 @@ void addMove(Parts& parts, const EffectProgram::Effects& effects, const ShaderLi
         // Later stages hand the values on under the names that the fragment stage knows.
         parts.imports += "#define GEOFX_AMPLIFY\n";
         if (tessellated) parts.imports += "#define GEOFX_TESSELLATE\n";
-        for (const Handed& each : allVaryings(effects))
+        for (const Handed& each : varyingsFor(effects, pass))
             parts.imports += "#define " + each.varying.name + " " + each.varying.name +
                              (tessellated ? "_vertex\n" : "_in\n");
     }
     parts.functions += joined(library, pass.vertex, prefix);
-    parts.move = "    return geofx_drawnAt(" + prefix + "move(located, position));\n";
+    std::string mover = prefix;
+    if (pass.within)
+    {
+        // The other pass has no geometry stage.
+        parts.functions += "#undef GEOFX_AMPLIFY\n" + joined(library, pass.within->vertex, pass.withinPrefix);
+        mover = pass.withinPrefix;
+    }
+    parts.move = "    return geofx_drawnAt(" + mover + "move(located, position));\n";
 }
 
 /// Adds what a pass has in the fragment stage.
@@ -227,6 +245,7 @@ void addFinish(Parts& parts, const ShaderLibrary& library, const PassShaders& pa
     if (!pass.geometry.empty()) parts.imports += "#define GEOFX_AMPLIFY\n";
     parts.functions = joined(library, pass.fragment, prefix) + channels + parts.functions;
     parts.finish = "    result = " + prefix + "finish(result);\n";
+    parts.pixel = "    pixel = " + prefix + "pixel(pixel);\n";
 }
 
 /// How a stage between the vertices and the fragments hands the other effects' variables on.
@@ -251,12 +270,12 @@ std::string copyOf(const Varying& varying, const Relay& relay)
 
 /// The main function of a stage between vertices and fragments.
 std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary& library,
-                      const std::vector<std::string>& files, const std::string& prefix, const Relay& relay,
-                      const char* version)
+                      const PassShaders& pass, const std::vector<std::string>& files,
+                      const std::string& prefix, const Relay& relay, const char* version)
 {
     const Parts parts = partsOf(effects, library, true);
     std::string declarations, copies;
-    for (const Handed& each : allVaryings(effects))
+    for (const Handed& each : varyingsFor(effects, pass))
     {
         const Varying& varying = each.varying;
         const std::string qualifier = varying.flat ? "flat " : "";
@@ -286,15 +305,15 @@ std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary
     constexpr const char* later = "#version 400 compatibility\n";
     if (stage == osg::Shader::GEOMETRY)
     {
-        return relayText(effects, library, pass.geometry, prefix, {"_in", "", "[]", "", "GEOFX_COPY(i)"},
-                         version);
+        return relayText(effects, library, pass, pass.geometry, prefix,
+                         {"_in", "", "[]", "", "GEOFX_COPY(i)"}, version);
     }
     if (stage == osg::Shader::TESSCONTROL)
     {
-        return relayText(effects, library, pass.tessellationControl, prefix,
+        return relayText(effects, library, pass, pass.tessellationControl, prefix,
                          {"_vertex", "_control", "[]", "[]", "GEOFX_COPY(gl_InvocationID)"}, later);
     }
-    return relayText(effects, library, pass.tessellationEvaluation, prefix,
+    return relayText(effects, library, pass, pass.tessellationEvaluation, prefix,
                      {"_control", "_in", "[]", "", "GEOFX_COPY(w)"}, later);
 }
 
@@ -385,7 +404,10 @@ std::string EffectProgram::passFunctions(const Effects& effects, const PassShade
     const std::string file = fileOf(stage);
     Parts parts = partsOf(effects, library, stage == osg::Shader::VERTEX);
     if (stage == osg::Shader::VERTEX && !pass.vertex.empty()) addMove(parts, effects, library, pass, prefix);
-    if (stage == osg::Shader::FRAGMENT && !pass.fragment.empty()) addFinish(parts, library, pass, prefix);
+    if (stage == osg::Shader::FRAGMENT && pass.within)
+        addFinish(parts, library, *pass.within, pass.withinPrefix);
+    else if (stage == osg::Shader::FRAGMENT && !pass.fragment.empty())
+        addFinish(parts, library, pass, prefix);
     return library.assemble(parts.fill(library.read(file)), file);
 }
 
@@ -494,6 +516,8 @@ osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects, const P
         addMain(osg::Shader::FRAGMENT, pass.fragmentMain, "stages/fixed.frag");
         for (const auto& [name, binding] : pass.blocks)
             program->addBindUniformBlock(prefix + name, binding);
+        for (const auto& [name, binding] : pass.within ? pass.within->blocks : PassShaders().blocks)
+            program->addBindUniformBlock(pass.withinPrefix + name, binding);
         return program;
     }
     catch (const ShaderError& error)

@@ -18,7 +18,15 @@ void PassCullVisitor::run(osgUtil::CullVisitor& outer, const Task& task, PassFil
 bool PassCullVisitor::outOfSight(const osg::Node& node)
 {
     const osg::BoundingSphere& all = node.getBound();
-    return node.isCullingActive() && all.valid() && _filter->outside(eyeBall(all));
+    if (!node.isCullingActive() || !all.valid()) return false;
+    Ball ball = eyeBall(all);
+    if (_mode.unplaced) ball.center = ball.center * *_mode.unplaced;
+    return _filter->outside(ball);
+}
+
+osg::Matrixd PassCullVisitor::standing(const osg::Matrixd& modelView) const
+{
+    return _mode.unplaced ? modelView * *_mode.unplaced : modelView;
 }
 
 void PassCullVisitor::meetLevels(const osg::LOD& node)
@@ -41,7 +49,7 @@ void PassCullVisitor::place(osg::Drawable& drawable)
 {
     const osg::BoundingBox& bounds = drawable.getBoundingBox();
     if (!bounds.valid()) return;
-    const osg::Matrixd modelView = viewMatrix();
+    const osg::Matrixd modelView = standing(viewMatrix());
     const EyeBox box = EyeBox::of(bounds, modelView);
     if (_filter->outside(box.ball())) return;
     osg::StateSet* look = _looks.lookFor(drawable, *_currentStateGraph);
@@ -52,6 +60,7 @@ void PassCullVisitor::place(osg::Drawable& drawable)
     {
         pushStateSet(state);
         addLeaf(*copy, drawable.getStateSet(), look, -box.center.z());
+        drawCompanions(drawable, getModelViewMatrix(), -box.center.z());
         popStateSet();
     }
 }
@@ -61,7 +70,8 @@ void PassCullVisitor::adopt(osgUtil::RenderBin& bin, osgUtil::StateGraph& graph,
 {
     if (!bounds.valid()) return;
     osg::Drawable& drawable = *leaf._drawable;
-    const osg::Matrixd modelView = inView(leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd());
+    const osg::Matrixd modelView =
+        standing(inView(leaf._modelview ? osg::Matrixd(*leaf._modelview) : osg::Matrixd()));
     const EyeBox box = EyeBox::of(bounds, modelView);
     if (_filter->outside(box.ball())) return;
     const std::vector<osg::StateSet*>& states = _filter->states(drawable, box, modelView, drawsItself());

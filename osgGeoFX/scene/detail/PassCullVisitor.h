@@ -35,6 +35,8 @@ protected:
 private:
     using CompensatingCullVisitor::run;
 
+    /// From a drawable's frame to where it stands on the undeformed ground, in eye space.
+    osg::Matrixd standing(const osg::Matrixd& modelView) const;
     /// Whether a program of the application is in force.
     bool drawsItself() const;
     /// The drawable that is drawn in place of another one; null for none.

@@ -11,6 +11,10 @@
 namespace osgGeoFX
 {
 
+/// When the effects' own images are drawn, among OSG's stages before the camera's: before the application's as a rule. What
+/// stands in the water comes first, since the ground in a close-up shows it, too.
+constexpr int mirrorOrder = -12, layerOrder = -10;
+
 /// A square in the plane z = 0 from (low, low) to (1, 1). A program can fill the viewport, or a part of it, with it.
 osg::ref_ptr<osg::Geometry> createSquare(float low);
 

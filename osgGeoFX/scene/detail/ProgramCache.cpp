@@ -22,6 +22,7 @@ std::string keyOf(const PassShaders& shaders, const std::string& prefix)
     }
     for (const auto& [name, binding] : shaders.blocks)
         key += name + std::to_string(binding) + ';';
+    if (shaders.within) key += " in " + keyOf(*shaders.within, shaders.withinPrefix);
     return key;
 }
 
@@ -75,7 +76,7 @@ osg::ref_ptr<osg::StateSet> ProgramCache::additionOf(ShaderHost& host, const Eff
     pass.host = &host;
     pass.addition = nullptr;
     if (EffectProgram::isPassOfTwoStages(*program) && pass.shaders.vertexMain.empty() &&
-        pass.shaders.fragmentMain.empty())
+        pass.shaders.fragmentMain.empty() && !pass.shaders.within)
     {
         ShaderTexts texts = {
             EffectProgram::hostText(effects, pass.shaders, pass.prefix, osg::Shader::VERTEX),

@@ -96,8 +96,9 @@ public:
     Traversal(SceneDrawing& drawing, EffectScene& scene, const Effects& listed, const Effects& effects,
               osgUtil::CullVisitor& outer, const ViewGeometry& view, const CameraDepth& depth,
               const osg::BoundingSphere& bound, const Traverse& traverse)
-        : _drawing(drawing), _scene(scene), _listed(listed), _effects(effects), _outer(outer), _view(view),
-          _depth(depth), _bound(bound), _traverse(traverse), _units(drawing.unitsOf(listed, scene))
+        : _drawing(drawing), _scene(scene), _listed(listed), _effects(effects), _work(effects), _outer(outer),
+          _view(view), _depth(depth), _bound(bound), _traverse(traverse),
+          _units(drawing.unitsOf(listed, scene))
     {
     }
 
@@ -107,8 +108,7 @@ private:
     using Task = CompensatingCullVisitor::Task;
 
     Task taskOf(const osg::ref_ptr<const DeformationChain>& chain, int mapUnit) const;
-    template<typename Action>
-    void forPasses(const CameraPass::Traversal& traversal, const Action& action) const;
+    std::vector<CameraPass::Drawer> drawers() const;
     /// Culls with the visitor of the kit.
     void drawScene(Camera& own, Task task, const CameraPass::Traversal& passes, bool draws,
                    bool surfaces) const;
@@ -117,6 +117,7 @@ private:
     EffectScene& _scene;
     const Effects& _listed;
     const Effects& _effects;
+    const EffectsAtWork _work;
     osgUtil::CullVisitor& _outer;
     const ViewGeometry& _view;
     const CameraDepth& _depth;
@@ -238,16 +239,17 @@ SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chai
     return task;
 }
 
-template<typename Action>
-void SceneDrawing::Traversal::forPasses(const CameraPass::Traversal& traversal, const Action& action) const
+/// Those that draw passes for this camera, in the scene's order.
+std::vector<CameraPass::Drawer> SceneDrawing::Traversal::drawers() const
 {
+    std::vector<CameraPass::Drawer> result;
     for (std::size_t i = 0; i < _effects.size(); ++i)
     {
         PassEffect* effect = _effects[i]->asPassEffect();
-        if (!effect || !_effects[i]->getEnabled() || !_units->complete[i]) continue;
-        const std::string prefix = EffectProgram::prefix(i);
-        action(*effect, CameraPass(traversal, prefix, _units->ofEffects[i], _units->ofBlocks[i]));
+        if (!effect || !_work[i] || !_units->complete[i]) continue;
+        result.push_back({effect, EffectProgram::prefix(i), _units->ofEffects[i], _units->ofBlocks[i]});
     }
+    return result;
 }
 
 void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass::Traversal& passes,
@@ -266,12 +268,11 @@ void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass
             task.hostAddition = hostAddition;
         }
         task.state = passes.task.state;
-        forPasses(passes,
-                  [&](PassEffect& effect, const ScenePass& pass)
-                  {
-                      DrawableCompanion* companion = effect.companion(pass);
-                      if (companion) task.companions.push_back(companion);
-                  });
+        for (const CameraPass::Drawer& drawer : passes.drawers)
+        {
+            DrawableCompanion* companion = drawer.effect->companion(CameraPass(passes, drawer));
+            if (companion) task.companions.push_back(companion);
+        }
     }
     task.debugBounds = _scene.getDebugBounds();
     own.visitor->run(_outer, task);
@@ -284,7 +285,8 @@ void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass
 
 bool SceneDrawing::Traversal::run()
 {
-    const CameraSnapshots snapshots(_effects, _view);
+    _drawing.sayOnce(_work.sentence());
+    const CameraSnapshots snapshots(_effects, _work, _view);
     const int mapUnit = mapUnitOf(_effects);
     Camera& own = _drawing._cameras.of(_outer);
     if (own.visitor->startsFrame(_outer)) own.startFrame(_outer);
@@ -292,7 +294,7 @@ bool SceneDrawing::Traversal::run()
     state.fill(snapshots, _view, _depth, mapUnit);
     state.setBright(holdsBrightColors(targetFormat(_outer)));
     state.setHorizonClipping(_scene.getEngineCulling() == EffectScene::AS_IT_IS);
-    const bool surfaces = state.fillSurfaces(_effects, _view, _outer);
+    const bool surfaces = state.fillSurfaces(_effects, _work, _view, _outer);
 
     const Task task = taskOf(snapshots.chain(_view.ground), mapUnit);
     // What has no shader writes no logarithmic depth by itself.
@@ -306,12 +308,14 @@ bool SceneDrawing::Traversal::run()
     passTask.following = &_drawing.programs.following();
     passTask.compensate = _scene.getCompensation();
     const CameraPass::Traversal passes = {
-        _outer, _scene, _view, passTask, own.passes, _drawing.programs, _listed, _scene.getShaderHost()};
+        _outer,   _scene, _view, passTask, own.passes, _drawing.programs, _listed, _scene.getShaderHost(),
+        drawers()};
     if (culls)
         drawScene(own, task, passes, draws, surfaces);
     else
         _traverse(_outer);
-    forPasses(passes, [](PassEffect& effect, const ScenePass& pass) { effect.cull(pass); });
+    for (const CameraPass::Drawer& drawer : passes.drawers)
+        drawer.effect->cull(CameraPass(passes, drawer));
     return true;
 }
 
