@@ -80,8 +80,8 @@ int run(const std::vector<std::string>& names, const std::string& jsonFile, bool
             throw BenchError("--suite " + name + ": there is none; --list shows them.");
     }
     checkGroups(settings.only, names);
-    for (fs::path* path :
-         {&settings.builder, &settings.data, &settings.work, &settings.terrain, &settings.pictures})
+    for (fs::path* path : {&settings.builder, &settings.data, &settings.work, &settings.terrain,
+                           &settings.pictures, &settings.osgEarth, &settings.fuji})
         complete(*path);
     if (!settings.pictures.empty()) fs::create_directories(settings.pictures);
 
@@ -131,6 +131,10 @@ int main(int argc, char** argv)
     app.add_option("--terrain", settings.terrain,
                    "Draw this database instead of building one; it must cover Oahu")
         ->type_name("DIR/terrain.osgb");
+    app.add_option("--osgearth", settings.osgEarth, "Where osgEarth is installed, for the suite osgearth")
+        ->type_name("DIR");
+    app.add_option("--fuji", settings.fuji, "An elevation raster of Mount Fuji, for the suite osgearth")
+        ->type_name("FILE");
     app.add_option("--builder", settings.builder, "osggeofx_build; the default lies beside this program")
         ->type_name("FILE");
     app.add_option("--data", settings.data, "The data folder, which has the folder oahu")->type_name("DIR");

@@ -10,10 +10,11 @@
 namespace geofx::bench
 {
 
-ProgramResult runChild(const std::vector<std::string>& arguments)
+ProgramResult runChild(const std::vector<std::string>& arguments, const std::vector<std::string>& environment)
 {
     ProgramOptions options;
     options.seconds = 0.0;
+    options.environment = environment;
     options.runs = Interruption::passOnTo;
     ProgramResult result;
     try

@@ -14,7 +14,8 @@ namespace geofx::bench
 
     Throws BenchError where it cannot be started, fails, or we are interrupted. The kernel counts our own size
    at the start into the child's peak, so what a child's memory is must be measured before we grow large
-   ourselves. */
-ProgramResult runChild(const std::vector<std::string>& arguments);
+   ourselves. `environment`: "NAME=VALUE", added to our own. */
+ProgramResult runChild(const std::vector<std::string>& arguments,
+                       const std::vector<std::string>& environment = {});
 
 } // namespace geofx::bench

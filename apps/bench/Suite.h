@@ -19,6 +19,8 @@ struct Settings
     std::filesystem::path work;     ///< where temporary folders are made
     std::filesystem::path terrain;  ///< a database to draw instead of one built for it; may be empty
     std::filesystem::path pictures; ///< where pictures of what was measured are written; empty for none
+    std::filesystem::path osgEarth; ///< where osgEarth is installed; empty where it is not measured
+    std::filesystem::path fuji;     ///< an elevation raster of Mount Fuji; may be empty
     std::vector<std::string> only;  ///< the groups of figures to measure; empty for all
     bool quick = false;             ///< smaller cases, for figures whose full case takes minutes
     bool smoke = false; ///< cases so small that the figures mean nothing; shows that the program works

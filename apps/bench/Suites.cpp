@@ -3,6 +3,7 @@
 #include "CloseUpSuite.h"
 #include "DeformationSuite.h"
 #include "MappingSuite.h"
+#include "OsgEarthSuite.h"
 #include "PanoramaSuite.h"
 #include "Suite.h"
 #include "TerrainSuite.h"
@@ -15,8 +16,8 @@ namespace geofx::bench
 
 const std::vector<Suite>& suites()
 {
-    static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite(), closeUpSuite(),
-                                           panoramaSuite()};
+    static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite(),
+                                           closeUpSuite(), panoramaSuite(),    osgEarthSuite()};
     return all;
 }
 

@@ -3,6 +3,7 @@
 #include <osgGeoFX/viewer/Scene.h>
 
 #include <osgGeoFX/viewer/EarthSky.h>
+#include <osgGeoFX/viewer/detail/HorizonClamp.h>
 
 #include <osg/BoundingBox>
 #include <osg/LOD>
@@ -193,6 +194,13 @@ void Scene::setUpView(osg::View& view) const
     view.getCamera()->setClearColor(settings.background);
     // OSG's default keeps near and far within 1 : 2000, which cuts off the foreground of a wide landscape.
     view.getCamera()->setNearFarRatio(0.0002);
+    if (terrain && reference && reference->isGeocentric())
+    {
+        // A walker sees the ground before the feet, and mountains that stand above the horizon.
+        view.getCamera()->setNearFarRatio(0.00002);
+        view.getCamera()->setClampProjectionMatrixCallback(
+            new HorizonClamp(*view.getCamera(), *effects, terrain->maxHeight));
+    }
     view.setLightingMode(settings.hasLight ? osg::View::NO_LIGHT : osg::View::HEADLIGHT);
 }
 

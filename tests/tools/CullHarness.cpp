@@ -234,8 +234,8 @@ int CullHarness::load(const std::vector<RequestRecorder::Request>& requests, Ran
     std::set<std::pair<const osg::PagedLOD*, std::string>> known;
     for (const auto& request : requests)
     {
-        if (!known.emplace(request.group, request.file).second) continue;
         if (random.uniform(0.0, 1.0) > probability) continue;
+        if (!known.emplace(request.group, request.file).second) continue;
         const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(request.file);
         if (!node) continue;
         request.group->addChild(node);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <typeinfo>
 #include <utility>
 
 namespace osgGeoFX
@@ -67,7 +68,11 @@ bool isCopyOf(const osg::Program& copy, const osg::Program& program, const osg::
 osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Program& functions,
                                   const ProgramAdaptation* adaptation)
 {
-    osg::ref_ptr<osg::Program> copy = new ProfileProgram(program);
+    // A class of the application's may hold more. Its copies draw in the compatibility profile alone.
+    const bool ordinary =
+        typeid(program) == typeid(osg::Program) || dynamic_cast<const ProfileProgram*>(&program);
+    osg::ref_ptr<osg::Program> copy =
+        ordinary ? new ProfileProgram(program) : osg::clone(&program, osg::CopyOp::SHALLOW_COPY);
     for (unsigned int i = copy->getNumShaders(); i-- > 0;)
     {
         if (EffectProgram::isFunctions(*copy->getShader(i))) copy->removeShader(copy->getShader(i));
@@ -75,8 +80,14 @@ osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Progra
     if (adaptation) adaptation->apply(*copy);
     // They are the same for all, and compiled once.
     EffectProgram::addFunctionsOf(functions, *copy);
-    for (const auto& [name, binding] : functions.getUniformBlockBindingList())
-        copy->addBindUniformBlock(name, binding);
+    // What OSG's own copy leaves out.
+    for (const osg::Program* each : {&functions, &program})
+    {
+        for (const auto& [name, binding] : each->getUniformBlockBindingList())
+            copy->addBindUniformBlock(name, binding);
+    }
+    const osg::ShaderDefines& defines = program.getShaderDefines();
+    copy->getShaderDefines().insert(defines.begin(), defines.end());
     return copy;
 }
 
