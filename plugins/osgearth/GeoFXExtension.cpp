@@ -9,6 +9,7 @@
 #include "../geofx/SceneNode.h"
 #include "../geofx/SceneReach.h"
 
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/EngineTiles.h>
 
@@ -19,7 +20,10 @@
 #include <osgEarth/NodeUtils>
 #include <osgEarth/TerrainEngineNode>
 
+#include <osgUtil/CullVisitor>
+
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -63,7 +67,7 @@ public:
             return false;
         }
         if (!takeUnits(*map, error)) OSG_WARN << "osgGeoFX: " << error << std::endl;
-        refineWhatIsSeen(*map);
+        refineWhatIsSeen(*map, *_scene);
         _scene->setShaderHost(new VirtualProgramHost);
         _scene->setEngineCulling(read.scene->engine->culling);
         return true;
@@ -102,13 +106,47 @@ private:
         return result;
     }
 
+    /// Whether a tile is so far beyond the horizon of a panorama map that all of it is one point there. It has no end of detail
+    /// otherwise: behind and beside the picture at once, where the map tells least, tile after tile would come.
+    static bool isBeyondPanoramas(const EffectScene& scene, const osg::Node& tile, osg::NodeVisitor& visitor)
+    {
+        osgUtil::CullVisitor* cull = visitor.asCullVisitor();
+        const osg::Camera* camera = cull ? cull->getCurrentCamera() : nullptr;
+        const PanoramaMap* map = nullptr;
+        for (unsigned int i = 0; i < scene.getNumEffects() && !map; ++i)
+        {
+            const auto* each = dynamic_cast<const PanoramaMap*>(scene.getEffect(i));
+            if (each && each->getEnabled() && each->getProjection()) map = each;
+        }
+        if (!camera || !map) return false;
+        const osg::Vec3d eye = camera->getInverseViewMatrix().getTrans();
+        const osg::Matrixd& projection = camera->getProjectionMatrix();
+        const double height = eye.length() - osg::WGS_84_RADIUS_POLAR;
+        const double shown = (projection(3, 3) == 0.0 ? height : 1.0) / std::abs(projection(0, 0));
+        const double radius = map->getViewRadius() > 0.0 ? map->getViewRadius() : shown;
+        // Heights and widths fade within half of the distance to the horizon. High mountains before the base may rise into sight.
+        constexpr double generous = 2.0, mountains = 2e5;
+        const double reach = generous * (1.5 * map->getHorizonDistance() + 1.0) * radius + mountains;
+        const osg::BoundingSphere& bound = tile.getBound();
+        const osg::Vec3d center(bound.center());
+        const double turn = std::acos(std::clamp(eye * center / (eye.length() * center.length()), -1.0, 1.0));
+        return turn * osg::WGS_84_RADIUS_EQUATOR - 1.6 * static_cast<double>(bound.radius()) > reach;
+    }
+
     /// The engine's own levels go by distances and by a frustum that contains all that is shown.
-    static void refineWhatIsSeen(osgEarth::MapNode& map)
+    static void refineWhatIsSeen(osgEarth::MapNode& map, const EffectScene& scene)
     {
         osgEarth::TerrainEngine* engine = map.getTerrainEngine();
         if (!engine) return;
-        engine->setComputeTileRangeCallback([](osg::Node* tile, osg::NodeVisitor& visitor)
-                                            { return isTileOutOfSight(*tile, visitor) ? 0.0f : -1.0f; });
+        const osg::observer_ptr<const EffectScene> effects = &scene;
+        const auto isNeeded = [effects](const osg::Node& tile, osg::NodeVisitor& visitor)
+        {
+            osg::ref_ptr<const EffectScene> known;
+            if (effects.lock(known) && isBeyondPanoramas(*known, tile, visitor)) return false;
+            return !isTileOutOfSight(tile, visitor);
+        };
+        engine->setComputeTileRangeCallback([isNeeded](osg::Node* tile, osg::NodeVisitor& visitor)
+                                            { return isNeeded(*tile, visitor) ? -1.0f : 0.0f; });
         engine->setComputeTilePixelSizeCallback(
             [](osg::Node* tile, osg::NodeVisitor& visitor)
             {
