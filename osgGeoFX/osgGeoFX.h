@@ -80,12 +80,14 @@
 
 #include <osgGeoFX/panorama/MaterialCover.h>
 #include <osgGeoFX/panorama/PanoramaBrush.h>
+#include <osgGeoFX/panorama/PanoramaComposer.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/PanoramaPalette.h>
 #include <osgGeoFX/panorama/PanoramaPose.h>
 #include <osgGeoFX/panorama/PanoramaSky.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
+#include <osgGeoFX/panorama/TerrainRelief.h>
 
 #include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>

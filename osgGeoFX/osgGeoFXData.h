@@ -16,3 +16,4 @@
 #include <osgGeoFX/terrain/BuilderCode.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <osgGeoFX/terrain/ProgressLine.h>
+#include <osgGeoFX/terrain/ThinnedRaster.h>

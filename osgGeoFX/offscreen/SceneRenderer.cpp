@@ -276,6 +276,11 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
     return image;
 }
 
+const osg::Camera& SceneRenderer::camera() const
+{
+    return *_parts->viewer->getCamera();
+}
+
 const std::string& SceneRenderer::rendererName() const
 {
     return _parts->rendererName;

@@ -6,6 +6,7 @@
 #include <osgGeoFX/offscreen/ImageCapture.h>
 #include <osgGeoFX/viewer/Scene.h>
 
+#include <osg/Camera>
 #include <osg/GraphicsContext>
 #include <osg/Image>
 #include <osg/Matrixd>
@@ -76,6 +77,8 @@ public:
     osg::ref_ptr<osg::Image> render(const osg::Matrixd& view, double time, FrameStatistics& statistics,
                                     std::string& error);
 
+    /// The camera as the last image had it, for a DeformedView that tells what pixels show.
+    const osg::Camera& camera() const;
     const std::string& rendererName() const;
     const std::string& glVersion() const;
     unsigned int samples() const; ///< in use

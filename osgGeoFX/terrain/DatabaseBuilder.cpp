@@ -33,19 +33,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* ORIGIN_FILE = "built-from.txt";
 
-/// GDAL's cache is one for the whole process; the application gets its own limit back.
-class GdalCacheLimit
-{
-public:
-    explicit GdalCacheLimit(GIntBig bytes) : _before(GDALGetCacheMax64()) { GDALSetCacheMax64(bytes); }
-    ~GdalCacheLimit() { GDALSetCacheMax64(_before); }
-    GdalCacheLimit(const GdalCacheLimit&) = delete;
-    GdalCacheLimit& operator=(const GdalCacheLimit&) = delete;
-
-private:
-    const GIntBig _before;
-};
-
 std::string readText(const fs::path& path)
 {
     std::ifstream stream(path, std::ios::binary);

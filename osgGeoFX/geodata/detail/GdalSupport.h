@@ -48,6 +48,19 @@ private:
     std::string _message;
 };
 
+/// Sets the size of GDAL's cache of blocks, bytes, while it lives. It is the process's.
+class GdalCacheLimit
+{
+public:
+    explicit GdalCacheLimit(GIntBig bytes) : _before(GDALGetCacheMax64()) { GDALSetCacheMax64(bytes); }
+    ~GdalCacheLimit() { GDALSetCacheMax64(_before); }
+    GdalCacheLimit(const GdalCacheLimit&) = delete;
+    GdalCacheLimit& operator=(const GdalCacheLimit&) = delete;
+
+private:
+    GIntBig _before;
+};
+
 /// A CRS that takes longitude before latitude and easting before northing, whatever its authority says.
 OGRSpatialReference gisOrder(OGRSpatialReference srs);
 

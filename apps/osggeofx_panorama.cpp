@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// osggeofx_panorama: any DEM to a panorama map.
+#include "osggeofx_render_output.h"
+#include "panorama/GroundBuilder.h"
+#include "panorama/Recipe.h"
+
+#include <osgGeoFX/effect/GlslFunctions.h>
+#include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/offscreen/SceneRenderer.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/PanoramaPalette.h>
+#include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/viewer/Scene.h>
+
+#include <CLI/CLI.hpp>
+#include <osg/Math>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <optional>
+
+namespace fs = std::filesystem;
+using geofx::panorama::Failure;
+using geofx::panorama::GroundBuilder;
+using geofx::panorama::Recipe;
+using osgGeoFX::PanoramaComposer;
+using osgGeoFX::PanoramaMap;
+using osgGeoFX::PanoramaWishes;
+using osgGeoFX::TerrainRelief;
+
+namespace
+{
+
+constexpr int badInput = 2;
+/// Cells of the relief from which the view is chosen, along the longer side.
+constexpr int reliefCells = 512;
+/// The height of pictures for which strokes have their own size.
+constexpr double usualHeight = 900.0;
+
+struct Arguments
+{
+    std::vector<std::string> sources;
+    std::string output, size, viewFrom, focus, place, palette, recipe, work, vertical, pick;
+    std::string landCover, landCoverTable, treeCover;
+    std::optional<double> width, exaggeration, horizonLine, horizonDistance;
+    std::optional<unsigned int> samples;
+    std::vector<std::string> settings;
+    bool explain = false, quiet = false;
+};
+
+void addOptions(CLI::App& app, Arguments& arguments)
+{
+    app.add_option(
+           "sources", arguments.sources,
+           "Elevation rasters, of any kind that GDAL reads; coarse ones first. Or one recipe, the JSON file "
+           "beside a map, which makes the same map again")
+        ->required()
+        ->type_name("DEM…|RECIPE.json");
+    app.add_option("-o,--output", arguments.output,
+                   "The picture; its extension names the format (png, jpg, tiff)")
+        ->required()
+        ->type_name("FILE");
+    app.add_option("--size", arguments.size, "Its size in pixels (1600x900)")->type_name("WxH");
+    app.add_option(
+           "--view-from", arguments.viewFrom,
+           "Where the viewer stands: south, north-east, …; or the place at the middle of the picture's base")
+        ->type_name("SIDE|LON,LAT");
+    app.add_option("--focus", arguments.focus, "A place to be seen in the middle of the picture")
+        ->type_name("LON,LAT");
+    app.add_option("--width", arguments.width, "Width of the ground at the picture's base, metres")
+        ->check(CLI::PositiveNumber)
+        ->type_name("METRES");
+    app.add_option("--exaggeration", arguments.exaggeration, "Scale of heights over that of widths")
+        ->check(CLI::Range(0.0, 20.0))
+        ->type_name("FACTOR");
+    app.add_option("--horizon-line", arguments.horizonLine, "Where a flat sea ends, of the picture's height")
+        ->check(CLI::Range(0.1, 1.0))
+        ->type_name("SHARE");
+    app.add_option("--horizon-distance", arguments.horizonDistance,
+                   "How far the horizon is (D2), in halves of the width at the base")
+        ->check(CLI::Range(0.5, 50.0))
+        ->type_name("HALVES");
+    app.add_option("--palette", arguments.palette,
+                   "The colors: summer (the default), autumn, winter or spring; or an image as "
+                   "data/panorama/palette.png")
+        ->type_name("NAME|FILE");
+    app.add_option("--landcover,--land-cover", arguments.landCover, "Raster of land-cover classes")
+        ->type_name("FILE");
+    app.add_option("--landcover-table,--land-cover-table", arguments.landCoverTable,
+                   "What its classes mean; as osggeofx_build's")
+        ->type_name("CSV|NAME");
+    app.add_option("--trees,--tree-cover", arguments.treeCover,
+                   "Raster of the ground's share under trees, percent")
+        ->type_name("FILE");
+    app.add_option("--vertical", arguments.vertical,
+                   "What the heights are measured from: none, ellipsoid, egm96")
+        ->check(CLI::IsMember({"none", "ellipsoid", "egm96"}));
+    app.add_option("--set", arguments.settings,
+                   "Any property of the map, such as snowLine=2500 or strokes=false; osggeofx_render "
+                   "--help-effects lists "
+                   "those of panoramaMap. As often as wanted")
+        ->expected(1)
+        ->type_name("NAME=VALUE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--samples", arguments.samples, "Samples per pixel (4)")->check(CLI::Range(0u, 64u));
+    app.add_option("--recipe", arguments.recipe,
+                   "Where to write all choices (beside the picture: its name with .json); none for nowhere")
+        ->type_name("FILE.json|none");
+    app.add_option("--work", arguments.work,
+                   "Keep the terrain that is built here, for the next map of it; otherwise it is removed "
+                   "when the picture "
+                   "is there, and an interrupted run goes on with it")
+        ->type_name("DIR");
+    app.add_option("--pick", arguments.pick,
+                   "Print the place that a pixel shows: longitude, latitude and height; pixels count from "
+                   "the upper left")
+        ->type_name("X,Y");
+    app.add_flag("--explain", arguments.explain, "Say what was chosen, and why");
+    app.add_flag("--quiet", arguments.quiet, "No progress");
+    app.footer(
+        "Whatever is not given is chosen from the terrain. Exit code: 0; 2 if something is at fault, with a "
+        "sentence.\n\n"
+        "Examples:\n"
+        "  osggeofx_panorama alps.tif -o alps.png\n"
+        "  osggeofx_panorama n46.tif n47.tif --view-from north --palette winter --size 3200x1800 -o ski.png\n"
+        "  osggeofx_panorama alps.json -o again.png");
+}
+
+osg::Vec2d pairOf(const std::string& option, const std::string& text)
+{
+    const auto numbers = osgGeoFX::parseNumbers(text);
+    if (!numbers || numbers->size() != 2)
+        throw Failure(option + " " + text + ": write two numbers, such as 7.66,45.98.");
+    return {(*numbers)[0], (*numbers)[1]};
+}
+
+/// The heading of a view from a side of the sky; nothing if the text names none.
+std::optional<double> headingFrom(std::string side)
+{
+    std::transform(side.begin(), side.end(), side.begin(), [](unsigned char c) { return std::tolower(c); });
+    side.erase(
+        std::remove_if(side.begin(), side.end(), [](char c) { return c == '-' || c == '_' || c == ' '; }),
+        side.end());
+    static const std::map<std::string, double> sides = {
+        {"n", 0.0},       {"ne", 45.0},         {"e", 90.0},     {"se", 135.0},
+        {"s", 180.0},     {"sw", 225.0},        {"w", 270.0},    {"nw", 315.0},
+        {"north", 0.0},   {"northeast", 45.0},  {"east", 90.0},  {"southeast", 135.0},
+        {"south", 180.0}, {"southwest", 225.0}, {"west", 270.0}, {"northwest", 315.0}};
+    const auto found = sides.find(side);
+    if (found == sides.end()) return std::nullopt;
+    return std::remainder(osg::DegreesToRadians(found->second) + osg::PI, 2.0 * osg::PI);
+}
+
+PanoramaWishes wishesOf(const Arguments& arguments, const Recipe& recipe)
+{
+    PanoramaWishes wishes;
+    wishes.aspect = static_cast<double>(recipe.width) / recipe.height;
+    if (!arguments.viewFrom.empty())
+    {
+        wishes.heading = headingFrom(arguments.viewFrom);
+        if (!wishes.heading)
+        {
+            if (!osgGeoFX::parseNumbers(arguments.viewFrom))
+                throw Failure("--view-from " + arguments.viewFrom +
+                              ": write a side such as south or north-east, or a place such as 7.66,45.98.");
+            wishes.place = pairOf("--view-from", arguments.viewFrom);
+        }
+    }
+    if (!arguments.focus.empty()) wishes.focus = pairOf("--focus", arguments.focus);
+    if (arguments.width) wishes.viewRadius = 0.5 * *arguments.width;
+    wishes.exaggeration = arguments.exaggeration;
+    wishes.horizonLine = arguments.horizonLine;
+    wishes.horizonDistance = arguments.horizonDistance;
+    return wishes;
+}
+
+osgGeoFX::Scene load(const std::string& file)
+{
+    std::string error;
+    std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(file, error);
+    if (!scene) throw Failure(error);
+    return *scene;
+}
+
+/// Seasons and palettes by name.
+void takePalette(const std::string& name, Recipe& recipe)
+{
+    static const std::map<std::string, std::string> seasons = {
+        {"winter", "0"}, {"spring", "0.25"}, {"summer", "0.5"}, {"autumn", "0.75"}};
+    const auto season = seasons.find(name);
+    if (season != seasons.end())
+    {
+        recipe.map["season"] = season->second;
+        return;
+    }
+    std::string error;
+    if (!osgGeoFX::readPalette(name, error)) throw Failure("--palette: " + error);
+    recipe.palette = name;
+}
+
+void takeOptions(const Arguments& arguments, Recipe& recipe)
+{
+    if (!arguments.size.empty())
+    {
+        int used = 0;
+        if (std::sscanf(arguments.size.c_str(), "%5dx%5d%n", &recipe.width, &recipe.height, &used) != 2 ||
+            static_cast<std::size_t>(used) != arguments.size.size() || recipe.width < 16 ||
+            recipe.height < 16)
+            throw Failure("--size " + arguments.size +
+                          ": write width and height in pixels, at least 16 each, such as 1600x900.");
+    }
+    const auto take = [](const std::string& given, std::string& value)
+    {
+        if (!given.empty()) value = given;
+    };
+    take(arguments.landCover, recipe.landCover);
+    take(arguments.landCoverTable, recipe.landCoverTable);
+    take(arguments.treeCover, recipe.treeCover);
+    take(arguments.vertical, recipe.vertical);
+    if (arguments.samples) recipe.samples = *arguments.samples;
+    if (!arguments.palette.empty()) takePalette(arguments.palette, recipe);
+    const osg::ref_ptr<PanoramaMap> check = new PanoramaMap;
+    for (const std::string& setting : arguments.settings)
+    {
+        const std::size_t equals = setting.find('=');
+        if (equals == std::string::npos)
+            throw Failure("--set " + setting + ": write NAME=VALUE, such as snowLine=2500.");
+        const std::string name = setting.substr(0, equals), value = setting.substr(equals + 1);
+        std::string error;
+        if (!check->setPropertyText(name, value, error)) throw Failure("--set " + setting + ": " + error);
+        recipe.map[name] = value;
+    }
+}
+
+/// What follows from the picture's size and the terrain's latitude, and was not asked for.
+void chooseTheRest(Recipe& recipe)
+{
+    const double scale = recipe.height / usualHeight;
+    const auto choose = [&](const std::string& name, double value, const std::string& why)
+    {
+        if (recipe.map.count(name)) return;
+        char text[64];
+        std::snprintf(text, sizeof(text), "%.4g", value);
+        recipe.map[name] = text;
+        recipe.reasons.push_back(why);
+    };
+    const double latitude = osg::DegreesToRadians(recipe.view.place.y());
+    const double snow = osgGeoFX::glsl::geofx_snowLine(latitude);
+    char text[300];
+    std::snprintf(
+        text, sizeof(text),
+        "Snow lies above about %.0f m in midsummer and woods end at about %.0f m, by the latitude of %.1f "
+        "degrees, where no raster says otherwise.",
+        snow, 0.8 * snow, recipe.view.place.y());
+    recipe.reasons.emplace_back(text);
+    if (std::abs(scale - 1.0) > 0.01)
+    {
+        const osg::ref_ptr<const PanoramaMap> usual = new PanoramaMap;
+        choose("strokeSize", std::clamp(usual->getStrokeSize() * scale, 1.0, 200.0),
+               "Strokes grow with the picture's height.");
+        choose("strokeSpacing", std::clamp(usual->getStrokeSpacing() * scale, 1.0, 200.0),
+               "So does the distance between them.");
+    }
+    recipe.reasons.emplace_back("Light: from the upper left, 32 degrees high, as in most painted maps.");
+    if (!recipe.map.count("season") && recipe.palette.empty())
+        recipe.reasons.emplace_back("Season: midsummer, which shows most of the ground's colors.");
+}
+
+bool isIsland(const TerrainRelief& relief)
+{
+    int sea = 0, all = 0;
+    for (int row = 0; row < relief.rows; ++row)
+    {
+        for (int column = 0; column < relief.columns; ++column)
+        {
+            if (row > 0 && column > 0 && row + 1 < relief.rows && column + 1 < relief.columns) continue;
+            ++all;
+            const std::size_t cell = relief.index(column, row);
+            sea += relief.water[cell] && relief.heights[cell] < 10.0f ? 1 : 0;
+        }
+    }
+    return 2 * sea > all;
+}
+
+void chooseView(const PanoramaWishes& wishes, GroundBuilder& builder, Recipe& recipe)
+{
+    const osgGeoFX::Scene scene = load(builder.overview());
+    std::string error;
+    const std::optional<TerrainRelief> relief = TerrainRelief::read(*scene.node, nullptr, reliefCells, error);
+    if (!relief) throw Failure(error);
+    const PanoramaComposer composer(*relief, wishes);
+    recipe.view = composer.compose();
+    recipe.island = isIsland(*relief);
+    recipe.reasons = composer.explain(recipe.view);
+    recipe.reasons.emplace_back(recipe.island ? "Beyond the data: sea, since most of its border is sea."
+                                              : "Beyond the data: haze, since its border is land.");
+    chooseTheRest(recipe);
+}
+
+osg::ref_ptr<PanoramaMap> mapOf(const Recipe& recipe)
+{
+    osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
+    recipe.view.applyTo(*map);
+    map->setEdge(recipe.island ? PanoramaMap::SEA : PanoramaMap::HAZE);
+    std::string error;
+    for (const auto& [name, value] : recipe.map)
+        if (!map->setPropertyText(name, value, error)) throw Failure("The recipe's " + name + ": " + error);
+    if (!recipe.palette.empty())
+    {
+        const osg::ref_ptr<osg::Image> palette = osgGeoFX::readPalette(recipe.palette, error);
+        if (!palette) throw Failure(error);
+        map->setPalette(palette);
+    }
+    return map;
+}
+
+void printPick(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Scene& scene,
+               const osgGeoFX::SceneRenderer& renderer)
+{
+    const osg::Vec2d pixel = pairOf("--pick", arguments.pick);
+    const osgGeoFX::DeformedView view(*scene.effects, renderer.camera());
+    double longitude = 0.0, latitude = 0.0, height = 0.0;
+    if (scene.reference && view.unproject(pixel.x() + 0.5, recipe.height - pixel.y() - 0.5, *scene.reference,
+                                          longitude, latitude, height))
+        std::printf("%s: longitude %.6f, latitude %.6f, height %.1f m\n", arguments.pick.c_str(),
+                    osg::RadiansToDegrees(longitude), osg::RadiansToDegrees(latitude), height);
+    else
+        std::printf("%s: no ground\n", arguments.pick.c_str());
+}
+
+void paint(const Arguments& arguments, const std::string& ground, const Recipe& recipe,
+           PictureFiles& pictures)
+{
+    const osgGeoFX::Scene scene = load(ground);
+    scene.effects->addEffect(mapOf(recipe));
+    scene.effects->listenTo(*scene.guard);
+    osgGeoFX::SceneRenderer::Options options;
+    options.width = recipe.width;
+    options.height = recipe.height;
+    options.samples = recipe.samples;
+    std::string error;
+    const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
+    if (!renderer) throw Failure(error);
+    TerrainRelief frame;
+    frame.geocentric = true;
+    osgGeoFX::FrameStatistics unused;
+    const auto image = renderer->render(recipe.view.viewMatrix(frame), 0.0, unused, error);
+    if (!image) throw Failure(error);
+    if (!pictures.write(*image, 0)) throw Failure(pictures.error());
+    if (!arguments.pick.empty()) printPick(arguments, recipe, scene, *renderer);
+}
+
+void run(const Arguments& arguments)
+{
+    PictureFiles pictures(arguments.output, false);
+    if (!pictures.error().empty()) throw Failure(pictures.error());
+    Recipe recipe;
+    const bool again = arguments.sources.size() == 1 && Recipe::isRecipe(arguments.sources.front());
+    if (again)
+    {
+        recipe = Recipe::read(arguments.sources.front());
+        if (!arguments.viewFrom.empty() || !arguments.focus.empty() || arguments.width ||
+            arguments.exaggeration || arguments.horizonLine || arguments.horizonDistance)
+            throw Failure(
+                "A recipe has its view already; leave --view-from, --focus, --width, --exaggeration, "
+                "--horizon-line and --horizon-distance out, or change the recipe.");
+    }
+    else
+        recipe.dems = arguments.sources;
+    takeOptions(arguments, recipe);
+    const PanoramaWishes wishes = wishesOf(arguments, recipe);
+    if (!arguments.pick.empty()) pairOf("--pick", arguments.pick);
+
+    const fs::path beside = fs::path(arguments.output).replace_extension();
+    const std::string work = arguments.work.empty() ? beside.string() + ".work" : arguments.work;
+    GroundBuilder builder(recipe, work, arguments.quiet);
+    if (!again) chooseView(wishes, builder, recipe);
+    const std::string ground = builder.ground(recipe.view);
+    if (!again) recipe.reasons.insert(recipe.reasons.end(), builder.notes().begin(), builder.notes().end());
+    if (arguments.explain)
+    {
+        for (const std::string& reason : recipe.reasons)
+            std::printf("%s\n", reason.c_str());
+        std::fflush(stdout);
+    }
+    paint(arguments, ground, recipe, pictures);
+    if (arguments.recipe != "none")
+        recipe.write(arguments.recipe.empty() ? beside.string() + ".json" : arguments.recipe);
+    std::error_code ignored;
+    if (arguments.work.empty()) fs::remove_all(work, ignored);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    Arguments arguments;
+    CLI::App app("Makes a panorama map in the manner of Heinrich Berann from elevation data, in one command.",
+                 "osggeofx_panorama");
+    addOptions(app, arguments);
+    try
+    {
+        app.parse(argc, argv);
+    }
+    catch (const CLI::ParseError& error)
+    {
+        return app.exit(error) == 0 ? 0 : badInput;
+    }
+    try
+    {
+        run(arguments);
+    }
+    catch (const std::exception& error)
+    {
+        std::cerr << "osggeofx_panorama: " << error.what() << std::endl;
+        return badInput;
+    }
+    return 0;
+}

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "panorama/Recipe.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace geofx::panorama
+{
+
+namespace
+{
+
+constexpr int newestFormat = 1;
+
+/// A path as a file in `folder` names it, and back. Addresses and GDAL's own file systems stay as they are.
+std::string relativePath(const std::string& path, const fs::path& folder)
+{
+    std::error_code fault;
+    if (path.empty() || !fs::exists(path, fault)) return path;
+    const fs::path result = fs::relative(path, folder, fault);
+    return fault || result.empty() ? fs::absolute(path).string() : result.string();
+}
+
+std::string pathFrom(const std::string& path, const fs::path& folder)
+{
+    if (path.empty() || fs::path(path).is_absolute()) return path;
+    std::error_code fault;
+    const fs::path beside = folder / path;
+    return fs::exists(beside, fault) ? beside.string() : path;
+}
+
+fs::path folderOf(const std::string& file)
+{
+    const fs::path folder = fs::path(file).parent_path();
+    return folder.empty() ? fs::path(".") : folder;
+}
+
+/// The composition's values by name, in the order of the file.
+template<class View, class Action>
+void forValues(View& view, const Action& action)
+{
+    action("viewRadius", view.viewRadius);
+    action("horizonLine", view.horizonLine);
+    action("curveDistance", view.curveDistance);
+    action("horizonDistance", view.horizonDistance);
+    action("horizonBend", view.horizonBend);
+    action("exaggeration", view.exaggeration);
+    action("baseHeight", view.baseHeight);
+    action("edgeWidth", view.edgeWidth);
+}
+
+} // namespace
+
+bool Recipe::isRecipe(const std::string& file)
+{
+    return fs::path(file).extension() == ".json";
+}
+
+Recipe Recipe::read(const std::string& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Failure(file + ": cannot be opened; check the path.");
+    Recipe recipe;
+    const fs::path folder = folderOf(file);
+    try
+    {
+        Json json;
+        stream >> json;
+        if (json.at("osggeofx_panorama").get<int>() != newestFormat)
+            throw Failure(
+                file + ": is a recipe of another version of osggeofx_panorama; make it again with this one.");
+        for (const auto& dem : json.at("dems"))
+            recipe.dems.push_back(pathFrom(dem.get<std::string>(), folder));
+        recipe.landCover = pathFrom(json.value("landCover", ""), folder);
+        recipe.landCoverTable = pathFrom(json.value("landCoverTable", ""), folder);
+        recipe.treeCover = pathFrom(json.value("treeCover", ""), folder);
+        recipe.vertical = json.value("vertical", "none");
+        recipe.palette = pathFrom(json.value("palette", ""), folder);
+        recipe.width = json.at("size").at(0).get<int>();
+        recipe.height = json.at("size").at(1).get<int>();
+        recipe.samples = json.value("samples", recipe.samples);
+        recipe.island = json.value("island", false);
+        const Json& view = json.at("view");
+        recipe.view.place.set(view.at("place").at(0).get<double>(), view.at("place").at(1).get<double>());
+        recipe.view.heading = view.at("heading").get<double>();
+        forValues(recipe.view, [&](const char* name, double& value) { value = view.at(name).get<double>(); });
+        recipe.map = json.at("map").get<std::map<std::string, std::string>>();
+    }
+    catch (const nlohmann::json::exception& error)
+    {
+        throw Failure(file + ": is not a recipe of osggeofx_panorama (" + error.what() +
+                      "); give a DEM, or a recipe that lies beside a map.");
+    }
+    if (recipe.dems.empty() || recipe.width < 1 || recipe.height < 1)
+        throw Failure(file + ": names no DEM or no size; make the recipe again.");
+    return recipe;
+}
+
+void Recipe::write(const std::string& file) const
+{
+    const fs::path folder = folderOf(file);
+    Json json;
+    json["osggeofx_panorama"] = newestFormat;
+    json["dems"] = Json::array();
+    for (const std::string& dem : dems)
+        json["dems"].push_back(relativePath(dem, folder));
+    const auto put = [&](const char* name, const std::string& path)
+    {
+        if (!path.empty()) json[name] = relativePath(path, folder);
+    };
+    put("landCover", landCover);
+    put("landCoverTable", landCoverTable);
+    put("treeCover", treeCover);
+    json["vertical"] = vertical;
+    put("palette", palette);
+    json["size"] = {width, height};
+    json["samples"] = samples;
+    json["island"] = island;
+    Json& inView = json["view"];
+    inView["place"] = {view.place.x(), view.place.y()};
+    inView["heading"] = view.heading;
+    forValues(view, [&](const char* name, double value) { inView[name] = value; });
+    json["map"] = map;
+    json["reasons"] = reasons;
+
+    const std::string unfinished = file + ".part";
+    std::ofstream stream(unfinished, std::ios::binary);
+    stream << json.dump(2) << '\n';
+    stream.close();
+    std::error_code fault;
+    if (stream) fs::rename(unfinished, file, fault);
+    if (!stream || fault)
+        throw Failure(file + ": cannot be written; check the folder, its permissions and the disk's space.");
+}
+
+} // namespace geofx::panorama

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/panorama/PanoramaComposer.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace geofx::panorama
+{
+
+/// One sentence for the person at the keyboard.
+struct Failure : public std::runtime_error
+{
+    using std::runtime_error::runtime_error;
+};
+
+/** All that a panorama map is made of: the sources, and each choice. The same recipe makes the same picture, to the
+    byte, on the same machine. As a file it is JSON; its paths are relative to the file's folder where they can be. */
+struct Recipe
+{
+    std::vector<std::string> dems;
+    std::string landCover, landCoverTable, treeCover;
+    std::string vertical = "none"; ///< as osggeofx_build's --vertical
+    std::string palette;           ///< an image; empty for the season's own
+    int width = 1600, height = 900;
+    unsigned int samples = 4; ///< for each pixel
+    osgGeoFX::PanoramaComposition view;
+    bool island = false; ///< whether the sea goes on beyond the data
+    /// The map's properties that are not their defaults, by name, in text form.
+    std::map<std::string, std::string> map;
+    std::vector<std::string> reasons; ///< for people; not read
+
+    /// Whether a file is a recipe, by its name.
+    static bool isRecipe(const std::string& file);
+    static Recipe read(const std::string& file); ///< throws Failure
+    void write(const std::string& file) const;   ///< a whole file or none; throws Failure
+};
+
+} // namespace geofx::panorama

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The program osggeofx_panorama, as a person calls it, on terrains that it has never seen.
+#include <tools/GlFixture.h>
+#include <tools/InventedTerrain.h>
+#include <tools/RunProgram.h>
+#include <tools/TempDir.h>
+
+#include <nlohmann/json.hpp>
+#include <osg/Image>
+#include <osgDB/ReadFile>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+using geofx::test::ProgramResult;
+using geofx::test::TempDir;
+
+namespace fs = std::filesystem;
+
+namespace
+{
+
+class PanoramaProgram : public geofx::test::GlFixture
+{
+protected:
+    ProgramResult run(std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.begin(), geofx::test::builtProgram("osggeofx_panorama"));
+        geofx::test::ProgramOptions options;
+        options.folder = fs::path(_folder.path()).string();
+        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
+        return geofx::test::runProgram(arguments, options);
+    }
+
+    std::string file(const std::string& name) const { return (fs::path(_folder.path()) / name).string(); }
+
+    void invent(const std::string& name, int samples = 301)
+    {
+        geofx::test::inventTerrain(name, file(name + ".tif"), samples);
+    }
+
+    std::string bytes(const std::string& name) const
+    {
+        std::ifstream stream(file(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    }
+
+    TempDir _folder;
+};
+
+/// The blank paper beyond the data.
+bool isPaper(const osg::Vec4& color)
+{
+    return color.r() > 0.93f && color.g() > 0.90f && color.b() > 0.82f && color.r() > color.b();
+}
+
+} // namespace
+
+TEST_F(PanoramaProgram, MakesAMapOfADemAndTheSameAgain)
+{
+    invent("volcano");
+    const ProgramResult first =
+        run({"volcano.tif", "-o", "map.png", "--size", "320x180", "--explain", "--quiet"});
+    ASSERT_EQ(first.exitCode, 0) << first.standardError;
+    EXPECT_EQ(first.standardError, "");
+    for (const char* word : {"View: ", "Place: ", "Width: ", "Depth: ", "Horizon: ", "Exaggeration: ",
+                             "Snow ", "Light: ", "Edges: none of the data's edges is in the picture."})
+        EXPECT_NE(first.standardOutput.find(word), std::string::npos) << word;
+    const osg::ref_ptr<osg::Image> picture = osgDB::readRefImageFile(file("map.png"));
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->s(), 320);
+    EXPECT_EQ(picture->t(), 180);
+    int paper = 0;
+    for (unsigned int x = 0; x < 320; ++x)
+        for (unsigned int y = 0; y < 100; ++y)
+            paper += isPaper(picture->getColor(x, y)) ? 1 : 0;
+    EXPECT_LT(paper, 30) << "no blank paper where the ground should be";
+    EXPECT_FALSE(fs::exists(file("map.work"))) << "nothing is left behind";
+
+    const nlohmann::json recipe = nlohmann::json::parse(bytes("map.json"));
+    EXPECT_EQ(recipe.at("dems").at(0), "volcano.tif");
+    EXPECT_GT(recipe.at("view").at("exaggeration").get<double>(), 0.3);
+    const ProgramResult again = run({"map.json", "-o", "again.png", "--quiet"});
+    ASSERT_EQ(again.exitCode, 0) << again.standardError;
+    EXPECT_TRUE(bytes("map.png") == bytes("again.png")) << "the same to the byte";
+}
+
+TEST_F(PanoramaProgram, TakesWishes)
+{
+    invent("feet");
+    const ProgramResult result =
+        run({"feet.tif",   "-o",       "map.png",       "--size",         "160x120",       "--view-from",
+             "north-east", "--width",  "20000",         "--exaggeration", "1.5",           "--palette",
+             "autumn",     "--set",    "strokes=false", "--set",          "snowLine=1500", "--pick",
+             "80,100",     "--recipe", "own.json",      "--work",         "kept",          "--quiet"});
+    ASSERT_EQ(result.exitCode, 0) << result.standardError;
+    const nlohmann::json recipe = nlohmann::json::parse(bytes("own.json"));
+    EXPECT_NEAR(
+        std::remainder(recipe.at("view").at("heading").get<double>() - 225.0 * M_PI / 180.0, 2.0 * M_PI), 0.0,
+        1e-9);
+    EXPECT_EQ(recipe.at("view").at("viewRadius"), 10000.0);
+    EXPECT_EQ(recipe.at("view").at("exaggeration"), 1.5);
+    EXPECT_EQ(recipe.at("map").at("season"), "0.75");
+    EXPECT_EQ(recipe.at("map").at("strokes"), "false");
+    EXPECT_EQ(recipe.at("map").at("snowLine"), "1500");
+    double longitude = 0.0, latitude = 0.0, height = 0.0;
+    ASSERT_EQ(std::sscanf(result.standardOutput.c_str(), "80,100: longitude %lf, latitude %lf, height %lf",
+                          &longitude, &latitude, &height),
+              3)
+        << result.standardOutput;
+    EXPECT_GT(height, 100.0);
+    EXPECT_LT(height, 4000.0) << "metres, though the file has feet";
+    EXPECT_TRUE(fs::exists(file("kept/ground/terrain.osgb")));
+}
+
+TEST_F(PanoramaProgram, RefusesInASentence)
+{
+    invent("nowhere", 50);
+    invent("hills", 60);
+    const auto expectRefusal = [&](const std::vector<std::string>& arguments, const std::string& word)
+    {
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 2);
+        EXPECT_NE(result.standardError.find(word), std::string::npos) << result.standardError;
+        EXPECT_EQ(std::count(result.standardError.begin(), result.standardError.end(), '\n'), 1)
+            << result.standardError;
+        EXPECT_FALSE(fs::exists(file("map.png")));
+    };
+    expectRefusal({"nowhere.tif", "-o", "map.png", "--quiet"}, "georeference");
+    expectRefusal({"none.tif", "-o", "map.png", "--quiet"}, "none.tif");
+    expectRefusal({"hills.tif", "-o", "no/map.png", "--quiet"}, "no/map.png");
+    expectRefusal({"hills.tif", "-o", "map.png", "--view-from", "up"}, "--view-from up");
+    expectRefusal({"hills.tif", "-o", "map.png", "--size", "huge"}, "--size huge");
+    expectRefusal({"hills.tif", "-o", "map.png", "--set", "snowline=1"}, "snowline");
+    expectRefusal({"hills.tif", "-o", "map.png", "--palette", "none.png"}, "none.png");
+    std::ofstream(file("wrong.json")) << "{}";
+    expectRefusal({"wrong.json", "-o", "map.png"}, "wrong.json");
+}
+
+class HardlyTerrain : public PanoramaProgram, public testing::WithParamInterface<const char*>
+{
+};
+
+TEST_P(HardlyTerrain, HasASensibleMap)
+{
+    const std::string name = GetParam();
+    invent(name, name == "tiny" ? 10 : 120);
+    const ProgramResult result = run({name + ".tif", "-o", "map.png", "--size", "160x90", "--quiet"});
+    ASSERT_EQ(result.exitCode, 0) << result.standardError;
+    const osg::ref_ptr<osg::Image> picture = osgDB::readRefImageFile(file("map.png"));
+    ASSERT_TRUE(picture);
+    // Ground below, sky above.
+    const osg::Vec4 ground = picture->getColor(80u, 30u), sky = picture->getColor(80u, 87u);
+    EXPECT_FALSE(isPaper(ground));
+    EXPECT_GT(sky.b(), sky.r());
+}
+
+INSTANTIATE_TEST_SUITE_P(Terrains, HardlyTerrain, testing::Values("flat", "cliff", "sea", "tiny", "atoll"),
+                         [](const auto& each) { return std::string(each.param); });
