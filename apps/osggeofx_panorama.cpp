@@ -43,6 +43,7 @@ constexpr int badInput = 2;
 constexpr int reliefCells = 512;
 /// The height of pictures for which strokes have their own size.
 constexpr double usualHeight = 900.0;
+using geofx::panorama::colorBlind;
 
 struct Arguments
 {
@@ -88,7 +89,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->check(CLI::Range(0.5, 50.0))
         ->type_name("HALVES");
     app.add_option("--palette", arguments.palette,
-                   "The colors: summer (the default), autumn, winter or spring; or an image as "
+                   "The colors: summer (the default), autumn, winter, spring or colorblind; or an image as "
                    "data/panorama/palette.png")
         ->type_name("NAME|FILE");
     app.add_option("--landcover,--land-cover", arguments.landCover, "Raster of land-cover classes")
@@ -189,6 +190,14 @@ osgGeoFX::Scene load(const std::string& file)
     return *scene;
 }
 
+osg::ref_ptr<osg::Image> readPalette(const std::string& file)
+{
+    std::string error;
+    osg::ref_ptr<osg::Image> palette = osgGeoFX::readPalette(file, error);
+    if (!palette) throw Failure("--palette: " + error);
+    return palette;
+}
+
 /// Seasons and palettes by name.
 void takePalette(const std::string& name, Recipe& recipe)
 {
@@ -200,8 +209,7 @@ void takePalette(const std::string& name, Recipe& recipe)
         recipe.map["season"] = season->second;
         return;
     }
-    std::string error;
-    if (!osgGeoFX::readPalette(name, error)) throw Failure("--palette: " + error);
+    if (name != colorBlind) readPalette(name);
     recipe.palette = name;
 }
 
@@ -313,11 +321,8 @@ osg::ref_ptr<PanoramaMap> mapOf(const Recipe& recipe)
     for (const auto& [name, value] : recipe.map)
         if (!map->setPropertyText(name, value, error)) throw Failure("The recipe's " + name + ": " + error);
     if (!recipe.palette.empty())
-    {
-        const osg::ref_ptr<osg::Image> palette = osgGeoFX::readPalette(recipe.palette, error);
-        if (!palette) throw Failure(error);
-        map->setPalette(palette);
-    }
+        map->setPalette(recipe.palette == colorBlind ? osgGeoFX::makeColorBlindPalette()
+                                                     : readPalette(recipe.palette));
     return map;
 }
 

@@ -81,7 +81,8 @@ Recipe Recipe::read(const std::string& file)
         recipe.landCoverTable = pathFrom(json.value("landCoverTable", ""), folder);
         recipe.treeCover = pathFrom(json.value("treeCover", ""), folder);
         recipe.vertical = json.value("vertical", "none");
-        recipe.palette = pathFrom(json.value("palette", ""), folder);
+        recipe.palette = json.value("palette", "");
+        if (recipe.palette != colorBlind) recipe.palette = pathFrom(recipe.palette, folder);
         recipe.width = json.at("size").at(0).get<int>();
         recipe.height = json.at("size").at(1).get<int>();
         recipe.samples = json.value("samples", recipe.samples);
@@ -118,7 +119,10 @@ void Recipe::write(const std::string& file) const
     put("landCoverTable", landCoverTable);
     put("treeCover", treeCover);
     json["vertical"] = vertical;
-    put("palette", palette);
+    if (palette == colorBlind)
+        json["palette"] = palette;
+    else
+        put("palette", palette);
     json["size"] = {width, height};
     json["samples"] = samples;
     json["island"] = island;

@@ -18,6 +18,9 @@ struct Failure : public std::runtime_error
     using std::runtime_error::runtime_error;
 };
 
+/// The ready palette that is no season's.
+constexpr const char* colorBlind = "colorblind";
+
 /** All that a panorama map is made of: the sources, and each choice. The same recipe makes the same picture, to the
     byte, on the same machine. As a file it is JSON; its paths are relative to the file's folder where they can be. */
 struct Recipe
@@ -25,7 +28,7 @@ struct Recipe
     std::vector<std::string> dems;
     std::string landCover, landCoverTable, treeCover;
     std::string vertical = "none"; ///< as osggeofx_build's --vertical
-    std::string palette;           ///< an image; empty for the season's own
+    std::string palette;           ///< an image, or `colorBlind`; empty for the season's own
     int width = 1600, height = 900;
     unsigned int samples = 4; ///< for each pixel
     osgGeoFX::PanoramaComposition view;

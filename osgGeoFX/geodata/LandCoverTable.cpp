@@ -3,6 +3,7 @@
 #include <osgGeoFX/geodata/LandCoverTable.h>
 
 #include <osgGeoFX/geodata/detail/BakedLegends.h>
+#include <osgGeoFX/geodata/detail/CsvLines.h>
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
@@ -67,31 +68,6 @@ int byteField(const OGRFeature& feature, int field, const std::string& where, co
     return value;
 }
 
-/// Where the table's records begin, lines counted from 1: GDAL passes over blank lines, and quoted text may have
-/// line breaks.
-std::vector<int> recordLines(const std::string& file)
-{
-    std::vector<int> lines;
-    std::istringstream stream(landCoverTableText(file));
-    bool quoted = false, blank = true;
-    int line = 1, start = 1;
-    for (char c = '\n'; stream.get(c);)
-    {
-        if (c == '"') quoted = !quoted;
-        if (c != '\n' && c != '\r')
-        {
-            if (blank) start = line;
-            blank = false;
-        }
-        if (c != '\n') continue;
-        ++line;
-        if (!quoted && !blank) lines.push_back(start);
-        blank = blank || !quoted;
-    }
-    lines.push_back(blank ? line : start);
-    return lines;
-}
-
 } // namespace
 
 std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
@@ -130,7 +106,8 @@ std::vector<LandCoverClass> readLandCoverTable(const std::string& file)
         optionalIndex[i] = layer->GetLayerDefn()->GetFieldIndex(optionalColumns[i]);
 
     std::vector<LandCoverClass> classes;
-    const std::vector<int> lines = recordLines(file);
+    std::istringstream stream(landCoverTableText(file));
+    const std::vector<int> lines = recordLines(stream);
     std::size_t record = 0;
     for (const auto& feature : layer)
     {

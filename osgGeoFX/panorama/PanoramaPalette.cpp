@@ -3,6 +3,7 @@
 #include <osgGeoFX/panorama/PanoramaPalette.h>
 
 #include <osgGeoFX/effect/GlslFunctions.h>
+#include <osgGeoFX/panorama/detail/ColorDifference.h>
 
 #include <osgDB/FileUtils>
 #include <osgDB/ReadFile>
@@ -35,6 +36,19 @@ constexpr unsigned stopColors[rows][stopLights.size()] = {
     {0x393c88, 0x41559c, 0x3f7290, 0x47895f, 0x6ea348, 0xa3bd4b, 0xdcd968}, // trees
     {0x4c477f, 0x6b639a, 0x9183a2, 0xb6959a, 0xd6b199, 0xedcdae, 0xfceccf}, // town
     {0x3e4d80, 0x5f73a4, 0x8791ac, 0xa8a394, 0xc2b586, 0xdbcb98, 0xf4e9c2}, // bare
+};
+
+/// The same for color-blind readers. They come from a search for the colors nearest to those above in L*a*b* of which
+/// any two rows differ by 11 in CIEDE2000 at every light, and which grow lighter with the light.
+constexpr unsigned colorBlindColors[rows][stopLights.size()] = {
+    {0x3b3c56, 0x4a5166, 0x53756f, 0x85a971, 0xb9c65e, 0xeee46f, 0xffff9a}, // field
+    {0x5458ae, 0x6f6dc8, 0x8674b2, 0xa57a7b, 0xc28c63, 0xdbad6f, 0xe3cb97}, // hill
+    {0x141950, 0x143278, 0x474684, 0x8b6075, 0xaa6d65, 0xbf876d, 0xc0a288}, // cliff
+    {0x7d94dd, 0x9fb2ee, 0xbec9f4, 0xd0d2ee, 0xe8e2ee, 0xf7f0e8, 0xfffffc}, // snow
+    {0x261628, 0x312842, 0x374354, 0x335d4e, 0x426c3a, 0x608339, 0x859a47}, // forest floor
+    {0x293987, 0x4b5499, 0x476a7f, 0x3c7d52, 0x5b8d25, 0x87a01a, 0xbcba40}, // trees
+    {0x7c74a5, 0x9189b8, 0xa09bc8, 0xbaa0b1, 0xc6a99c, 0xd1b7a3, 0xd7d0c1}, // town
+    {0x5c5c7b, 0x6a6e8f, 0x878694, 0xbeb8a7, 0xe2d6ab, 0xf5e6b9, 0xffffd7}, // bare
 };
 
 /// What another season than summer puts in the place of the last four stops, of rows that grow.
@@ -93,7 +107,9 @@ Rgb stopColor(double time, int row, std::size_t stop)
                     glsl::geofx_ease(quarters - std::floor(quarters), 0.0, 1.0));
 }
 
-Palette palette(double time)
+/// `stop`: the color of a row at one of the stops.
+template<class StopColor>
+Palette interpolated(const StopColor& stop)
 {
     Palette colors;
     for (int row = 0; row < rows; ++row)
@@ -105,11 +121,16 @@ Palette palette(double time)
             while (next + 1 < stopLights.size() && light > stopLights[next])
                 ++next;
             const double before = stopLights[next - 1];
-            colors[row][column] = glm::mix(stopColor(time, row, next - 1), stopColor(time, row, next),
+            colors[row][column] = glm::mix(stop(row, next - 1), stop(row, next),
                                            (light - before) / (stopLights[next] - before));
         }
     }
     return colors;
+}
+
+Palette palette(double time)
+{
+    return interpolated([&](int row, std::size_t stop) { return stopColor(time, row, stop); });
 }
 
 osg::ref_ptr<osg::Image> toImage(const Palette& colors)
@@ -183,13 +204,14 @@ public:
         ++_count;
     }
 
-    bool enough() const { return _count >= 16; }
+    std::size_t count() const { return _count; }
 
-    Row row() const
+    /// `own`: the row of the kit's own palette.
+    Row row(const Row& own) const
     {
         Row row;
         for (int column = 0; column < columns; ++column)
-            row[column] = at(static_cast<double>(column) / (columns - 1));
+            row[column] = at(own, static_cast<double>(column) / (columns - 1));
         return row;
     }
 
@@ -204,7 +226,12 @@ private:
         Rgb meanColor() const { return color / static_cast<double>(count); }
     };
 
-    Rgb at(double light) const
+    static Rgb colorAt(const Row& row, double light)
+    {
+        return row[static_cast<std::size_t>(std::lround(std::clamp(light, 0.0, 1.0) * (columns - 1)))];
+    }
+
+    Rgb at(const Row& own, double light) const
     {
         const Bin* below = nullptr;
         const Bin* above = nullptr;
@@ -216,21 +243,65 @@ private:
             else if (!above)
                 above = &bin;
         }
-        if (!below) return above->meanColor();
-        if (!above) return below->meanColor();
+        if (!below || !above)
+        {
+            const Bin& end = below ? *below : *above;
+            return end.meanColor() + colorAt(own, light) - colorAt(own, end.meanLight());
+        }
         return glm::mix(below->meanColor(), above->meanColor(),
                         (light - below->meanLight()) / (above->meanLight() - below->meanLight()));
     }
 
     std::array<Bin, binCount> _bins;
-    int _count = 0;
+    std::size_t _count = 0;
 };
+
+/// The kit's own palette with the rows of which there are enough samples; null if there is none.
+osg::ref_ptr<osg::Image> fromSamples(const std::array<Samples, rows>& samples, std::size_t least)
+{
+    Palette colors = palette(0.5);
+    bool any = false;
+    for (int row = 0; row < rows; ++row)
+    {
+        if (samples[row].count() < std::max(least, std::size_t{1})) continue;
+        colors[row] = samples[row].row(colors[row]);
+        any = true;
+    }
+    return any ? toImage(colors) : nullptr;
+}
 
 } // namespace
 
 osg::ref_ptr<osg::Image> makePalette(double season)
 {
     return toImage(palette(std::isfinite(season) ? season : 0.5));
+}
+
+osg::ref_ptr<osg::Image> makeColorBlindPalette()
+{
+    return toImage(interpolated([](int row, std::size_t stop) { return rgb(colorBlindColors[row][stop]); }));
+}
+
+PaletteContrast leastContrast(const osg::Image& palette, ColorVision vision)
+{
+    PaletteContrast least;
+    least.difference = HUGE_VAL;
+    if (!hasPixels(palette) || palette.s() != columns || palette.t() != rows) return least;
+    for (int column = 0; column < columns; ++column)
+    {
+        std::array<glm::dvec3, rows> seen;
+        for (int row = 0; row < rows; ++row)
+            seen[row] = labOf(seenWith(vision, pixel(palette, column, row)));
+        for (int row = 0; row < rows; ++row)
+        {
+            for (int other = 0; other < row; ++other)
+            {
+                const double difference = colorDifference(seen[row], seen[other]);
+                if (difference < least.difference) least = {other, row, lightOf(column), difference};
+            }
+        }
+    }
+    return least;
 }
 
 osg::ref_ptr<osg::Image> paletteFromImage(const osg::Image& image, std::string& error)
@@ -289,6 +360,21 @@ osg::ref_ptr<osg::Image> readPalette(const std::string& path, std::string& error
     return result;
 }
 
+osg::ref_ptr<osg::Image> paletteFromSamples(const std::vector<PaletteSample>& samples, std::size_t least,
+                                            std::string& error)
+{
+    std::array<Samples, rows> sorted;
+    for (const PaletteSample& sample : samples)
+        if (sample.row >= 0 && sample.row < rows)
+            sorted[static_cast<std::size_t>(sample.row)].add(
+                (sample.light + 1.0) / 2.0, {sample.color.x(), sample.color.y(), sample.color.z()});
+    osg::ref_ptr<osg::Image> result = fromSamples(sorted, least);
+    if (!result)
+        error = "No class has as many as " + std::to_string(least) +
+                " samples; give more, of the rows 0 to 7 of a palette.";
+    return result;
+}
+
 osg::ref_ptr<osg::Image> paletteFromPainting(const osg::Image& painting, const osg::Image& lightMap,
                                              const osg::Image& classMap, std::string& error)
 {
@@ -315,22 +401,11 @@ osg::ref_ptr<osg::Image> paletteFromPainting(const osg::Image& painting, const o
                                                         pixel(painting, column, row));
         }
     }
-    Palette colors = palette(0.5);
-    bool any = false;
-    for (int row = 0; row < rows; ++row)
-    {
-        if (!samples[row].enough()) continue;
-        colors[row] = samples[row].row();
-        any = true;
-    }
-    if (!any)
-    {
+    osg::ref_ptr<osg::Image> result = fromSamples(samples, 16);
+    if (!result)
         error = "The map of classes has fewer than 16 pixels of each class; its red must be 0 to 7 of 255, "
-                "the rows "
-                "of a palette.";
-        return nullptr;
-    }
-    return toImage(colors);
+                "the rows of a palette.";
+    return result;
 }
 
 } // namespace osgGeoFX

@@ -90,6 +90,24 @@ TEST_F(PanoramaProgram, MakesAMapOfADemAndTheSameAgain)
     EXPECT_TRUE(bytes("map.png") == bytes("again.png")) << "the same to the byte";
 }
 
+TEST_F(PanoramaProgram, KeepsTheNameOfAReadyPalette)
+{
+    invent("hills", 101);
+    const std::vector<std::string> size = {"--size", "64x48", "--quiet"};
+    const auto map = [&](std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.end(), size.begin(), size.end());
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+    };
+    map({"hills.tif", "-o", "map.png", "--palette", "colorblind"});
+    EXPECT_EQ(nlohmann::json::parse(bytes("map.json")).at("palette"), "colorblind");
+    map({"map.json", "-o", "again.png"});
+    EXPECT_TRUE(bytes("map.png") == bytes("again.png"));
+    map({"hills.tif", "-o", "summer.png"});
+    EXPECT_FALSE(bytes("map.png") == bytes("summer.png"));
+}
+
 TEST_F(PanoramaProgram, TakesWishes)
 {
     invent("feet");

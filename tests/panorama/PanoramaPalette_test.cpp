@@ -4,6 +4,7 @@
 // Palettes of panorama maps: the kit's own, those that users draw, and those taken from paintings.
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/panorama/PanoramaPalette.h>
+#include <osgGeoFX/panorama/detail/ColorDifference.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 
@@ -138,6 +139,112 @@ TEST(PanoramaPalette, SeasonsChangeWhatGrowsInTheLight)
     EXPECT_LT(glsl::geofx_toHsv(at(*makePalette(0.0), 0.7, trees)).y, glsl::geofx_toHsv(green).y) << "paler";
 }
 
+TEST(PanoramaPalette, ColorDifferencesAreThoseOfTheStandard)
+{
+    // Of the pairs in Table 1 of Sharma, Wu and Dalal (2005).
+    const struct
+    {
+        glm::dvec3 first, second;
+        double difference;
+    } pairs[] = {
+        {{50.0, 2.6772, -79.7751}, {50.0, 0.0, -82.7485}, 2.0425},
+        {{50.0, -1.3802, -84.2814}, {50.0, 0.0, -82.7485}, 1.0000},
+        {{50.0, 0.0, 0.0}, {50.0, -1.0, 2.0}, 2.3669},
+        {{50.0, 2.4900, -0.0010}, {50.0, -2.4900, 0.0009}, 7.1792},
+        {{50.0, 2.4900, -0.0010}, {50.0, -2.4900, 0.0011}, 7.2195},
+        {{50.0, -0.0010, 2.4900}, {50.0, 0.0011, -2.4900}, 4.7461},
+        {{50.0, 2.5, 0.0}, {73.0, 25.0, -18.0}, 27.1492},
+        {{50.0, 2.5, 0.0}, {58.0, 24.0, 15.0}, 19.4535},
+        {{60.2574, -34.0099, 36.2677}, {60.4626, -34.1751, 39.4387}, 1.2644},
+        {{22.7233, 20.0904, -46.6940}, {23.0331, 14.9730, -42.5619}, 2.0373},
+        {{2.0776, 0.0795, -1.1350}, {0.9033, -0.0636, -0.5514}, 0.9082},
+    };
+    for (const auto& pair : pairs)
+    {
+        EXPECT_NEAR(colorDifference(pair.first, pair.second), pair.difference, 1e-4);
+        EXPECT_NEAR(colorDifference(pair.second, pair.first), pair.difference, 1e-4);
+    }
+    const glm::dvec3 white = labOf(Rgb(1.0)), red = labOf(Rgb(1.0, 0.0, 0.0));
+    EXPECT_LT(glm::distance(white, glm::dvec3(100.0, 0.0, 0.0)), 0.02);
+    EXPECT_LT(glm::distance(red, glm::dvec3(53.24, 80.09, 67.20)), 0.02);
+}
+
+TEST(PanoramaPalette, DichromatsConfuseRedAndGreen)
+{
+    for (const ColorVision vision : {ColorVision::PROTANOPIA, ColorVision::DEUTERANOPIA})
+    {
+        for (int i = 0; i <= 10; ++i)
+            EXPECT_LT(glm::distance(seenWith(vision, Rgb(i / 10.0)), Rgb(i / 10.0)), 0.001) << "grey stays";
+        // A red and a green that differ only in what the missing cones see, and a blue and a yellow that do not.
+        const auto apart = [&](const Rgb& a, const Rgb& b)
+        {
+            return colorDifference(labOf(seenWith(vision, a)), labOf(seenWith(vision, b)));
+        };
+        const Rgb red = vision == ColorVision::PROTANOPIA ? Rgb(0.85, 0.35, 0.2) : Rgb(0.8, 0.4, 0.2);
+        const Rgb green = vision == ColorVision::PROTANOPIA ? Rgb(0.45, 0.45, 0.2) : Rgb(0.52, 0.55, 0.2);
+        EXPECT_GT(colorDifference(labOf(red), labOf(green)), 2.0 * apart(red, green));
+        EXPECT_GT(apart(Rgb(0.3, 0.4, 0.9), Rgb(0.9, 0.8, 0.3)), 40.0);
+    }
+    EXPECT_EQ(seenWith(ColorVision::USUAL, Rgb(0.1, 0.5, 0.9)), Rgb(0.1, 0.5, 0.9));
+}
+
+TEST(PanoramaPalette, ColorBlindReadersTellClassesApart)
+{
+    const osg::ref_ptr<osg::Image> palette = makeColorBlindPalette();
+    expectPalette(*palette);
+    for (const ColorVision vision : {ColorVision::USUAL, ColorVision::PROTANOPIA, ColorVision::DEUTERANOPIA})
+    {
+        // Each pair at each light once more, by itself.
+        double least = HUGE_VAL;
+        for (int column = 0; column < columns; ++column)
+            for (int row = 0; row < rows; ++row)
+                for (int other = 0; other < row; ++other)
+                    least = std::min(
+                        least, colorDifference(labOf(seenWith(vision, texel(*palette, column, row))),
+                                               labOf(seenWith(vision, texel(*palette, column, other)))));
+        EXPECT_GE(least, 10.0);
+        const PaletteContrast found = leastContrast(*palette, vision);
+        // Its colors are floats.
+        EXPECT_NEAR(found.difference, least, 1e-3);
+        EXPECT_NEAR(colorDifference(labOf(seenWith(vision, at(*palette, found.light, found.row))),
+                                    labOf(seenWith(vision, at(*palette, found.light, found.otherRow)))),
+                    least, 1e-3);
+    }
+    for (int row = 0; row < rows; ++row)
+        for (int column = 1; column < columns; ++column)
+            ASSERT_GE(luminance(texel(*palette, column, row)),
+                      luminance(texel(*palette, column - 1, row)) - 0.008)
+                << "row " << row << " column " << column;
+    EXPECT_LT(leastContrast(*makePalette(), ColorVision::DEUTERANOPIA).difference, 10.0)
+        << "the kit's own is not such a palette, so the measure tells";
+    EXPECT_EQ(leastContrast(*grey(256, 8, 90), ColorVision::USUAL).difference, 0.0);
+}
+
+TEST(PanoramaPalette, FewSamplesGoOnAsTheKitsOwn)
+{
+    const osg::ref_ptr<osg::Image> own = makePalette();
+    std::string error;
+    const std::vector<PaletteSample> samples = {{glsl::GEOFX_PALETTE_HILL, 0.2, osg::Vec3d(0.5, 0.3, 0.3)},
+                                                {glsl::GEOFX_PALETTE_HILL, 0.6, osg::Vec3d(0.7, 0.5, 0.4)},
+                                                {glsl::GEOFX_PALETTE_TOWN, 0.0, osg::Vec3d(0.1, 0.1, 0.1)},
+                                                {99, 0.0, osg::Vec3d(1.0, 0.0, 1.0)}};
+    const osg::ref_ptr<osg::Image> palette = paletteFromSamples(samples, 2, error);
+    ASSERT_TRUE(palette) << error;
+    expectPalette(*palette);
+    const int hill = glsl::GEOFX_PALETTE_HILL;
+    EXPECT_LT(glm::distance(at(*palette, 0.2, hill), Rgb(0.5, 0.3, 0.3)), 0.02);
+    EXPECT_LT(glm::distance(at(*palette, 0.4, hill), Rgb(0.6, 0.4, 0.35)), 0.02);
+    const Rgb change = at(*own, -0.8, hill) - at(*own, 0.2, hill);
+    EXPECT_LT(
+        glm::distance(at(*palette, -0.8, hill), glm::clamp(Rgb(0.5, 0.3, 0.3) + change, Rgb(0.0), Rgb(1.0))),
+        0.02);
+    for (const int row : {glsl::GEOFX_PALETTE_TOWN, glsl::GEOFX_PALETTE_FIELD})
+        EXPECT_EQ(std::memcmp(palette->data(0, row), own->data(0, row), 4 * columns), 0)
+            << "one sample is too few";
+    EXPECT_FALSE(paletteFromSamples(samples, 3, error));
+    EXPECT_NE(error.find("as many as 3 samples"), std::string::npos) << error;
+}
+
 TEST(PanoramaPalette, ImagesOfOtherSizesAreResampled)
 {
     const osg::ref_ptr<osg::Image> own = makePalette();
@@ -186,13 +293,17 @@ TEST(PanoramaPalette, ColumnsOfWideImagesAreAveraged)
         ASSERT_EQ(palette->data(column, 3)[0], 50) << column;
 }
 
-TEST(PanoramaPalette, TheTemplateIsTheKitsOwn)
+TEST(PanoramaPalette, TheFilesAreTheKitsOwn)
 {
     std::string error;
     const osg::ref_ptr<osg::Image> palette =
         readPalette(GEOFX_SOURCE_DIR "/data/panorama/palette.png", error);
     ASSERT_TRUE(palette) << error;
     EXPECT_EQ(difference(*makePalette(), *palette), 0);
+    const osg::ref_ptr<osg::Image> readable =
+        readPalette(GEOFX_SOURCE_DIR "/data/panorama/colorblind.png", error);
+    ASSERT_TRUE(readable) << error;
+    EXPECT_EQ(difference(*makeColorBlindPalette(), *readable), 0);
 }
 
 TEST(PanoramaPalette, WhatCannotBeUsedIsToldInASentence)
