@@ -89,6 +89,7 @@
 #include <osgGeoFX/panorama/StrokeLines.h>
 #include <osgGeoFX/panorama/TerrainRelief.h>
 
+#include <osgGeoFX/viewer/AutomaticPanorama.h>
 #include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
 #include <osgGeoFX/viewer/EarthSky.h>

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
+#include <osgGeoFX/viewer/AutomaticPanorama.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
@@ -78,6 +79,26 @@ void addPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::Effe
     }
 }
 
+namespace
+{
+
+/// The manipulator of a map, made where there is none yet.
+void selectPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::EffectScene& scene,
+                    osgGeoFX::PanoramaMap& map)
+{
+    constexpr int key = '0';
+    if (!dynamic_cast<osgGeoFX::PanoramaManipulator*>(manipulators.getMatrixManipulatorWithKey(key)))
+        manipulators.addMatrixManipulator(key, "Panorama", new osgGeoFX::PanoramaManipulator(scene, map));
+    unsigned int index = 0;
+    for (const auto& [each, manipulator] : manipulators.getKeyManipMap())
+    {
+        if (each == key) manipulators.selectMatrixManipulator(index);
+        ++index;
+    }
+}
+
+} // namespace
+
 void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Scene& scene,
              double fieldOfView, double aspect)
 {
@@ -98,7 +119,7 @@ void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Sc
 }
 
 void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
-                 const osgGA::KeySwitchMatrixManipulator& manipulators)
+                 osgGA::KeySwitchMatrixManipulator& manipulators)
 {
     viewer.addEventHandler(new osgGA::StateSetManipulator(viewer.getCamera()->getOrCreateStateSet()));
     viewer.addEventHandler(new osgViewer::ThreadingHandler);
@@ -126,7 +147,13 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     add("Ground", readout);
     add("Ground", new osgGeoFX::ClickAndFly(*scene.effects));
     add("Effects", new osgGeoFX::EffectKeys(*scene.effects));
-    add("List of effects", new osgGeoFX::EffectPanel(*scene.effects));
+    const osg::ref_ptr<osgGeoFX::EffectPanel> effects = new osgGeoFX::EffectPanel(*scene.effects);
+    add("List of effects", effects);
+    const osg::ref_ptr<osgGeoFX::AutomaticPanorama> automatic =
+        new osgGeoFX::AutomaticPanorama(*scene.effects, *scene.node);
+    automatic->setPrepared([manipulators = osg::ref_ptr(&manipulators), scene = scene.effects](
+                               osgGeoFX::PanoramaMap& map) { selectPanorama(*manipulators, *scene, map); });
+    effects->addButton("Make a panorama map", [automatic] { automatic->request(); });
     const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
     if (panel->hasEffect()) add("List of mappings", panel);
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
@@ -134,10 +161,11 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
         auto* closeUps = dynamic_cast<osgGeoFX::CloseUps*>(scene.effects->getEffect(i));
         if (closeUps) add("Close-ups", new osgGeoFX::CloseUpHandler(*scene.effects, *closeUps));
     }
+    add("Panorama map", automatic);
     for (const auto& [key, manipulator] : manipulators.getKeyManipMap())
     {
         const auto* panorama = dynamic_cast<const osgGeoFX::PanoramaManipulator*>(manipulator.second.get());
-        if (panorama) groups.push_back({"Panorama map", {panorama}});
+        if (panorama) groups.back().handlers.emplace_back(panorama);
     }
     // The last, which looks at all others.
     viewer.addEventHandler(new osgGeoFX::HelpPage(groups));

@@ -25,6 +25,6 @@ void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Sc
 
 /// The event handlers: OSG's, ours, and the help page with the keys of both. The manipulators' own keys stand there, too.
 void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
-                 const osgGA::KeySwitchMatrixManipulator& manipulators);
+                 osgGA::KeySwitchMatrixManipulator& manipulators);
 
 } // namespace geofx::viewer

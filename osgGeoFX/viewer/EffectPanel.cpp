@@ -97,6 +97,11 @@ void EffectPanel::getUsage(osg::ApplicationUsage& usage) const
     usage.addKeyboardMouseBinding("Return", "Switch it, take the next choice, or its default");
 }
 
+void EffectPanel::addButton(const std::string& text, std::function<void()> press)
+{
+    _buttons.push_back({text, std::move(press)});
+}
+
 std::vector<std::string> EffectPanel::lines() const
 {
     if (!shown()) return {};
@@ -109,7 +114,7 @@ std::vector<std::string> EffectPanel::lines() const
 
 bool EffectPanel::changed()
 {
-    if (_listed.size() != _scene->getNumEffects()) return true;
+    if (!_rowsAbove || _listed.size() != _scene->getNumEffects()) return true;
     for (unsigned int i = 0; i < _scene->getNumEffects(); ++i)
     {
         if (_listed[i] != _scene->getEffect(i)) return true;
@@ -146,11 +151,23 @@ void EffectPanel::list()
                                     [&](const Entry& entry)
                                     { return entry.holder == holder && entry.property == selected; });
     const auto row = static_cast<std::size_t>(found - _entries.begin());
-    _cursor.choose(found == _entries.end() ? _cursor.row : row, _entries.size());
+    // A button's row moves with the number of entries before it.
+    const bool onButton = _rowsAbove && _cursor.row >= *_rowsAbove;
+    const std::size_t moved = onButton ? _cursor.row - *_rowsAbove + _entries.size() : _cursor.row;
+    _rowsAbove = _entries.size();
+    _cursor.choose(found == _entries.end() ? moved : row, size());
 }
 
 PanelPage::Row EffectPanel::row(std::size_t number) const
 {
+    if (number >= _entries.size())
+    {
+        PanelPage::Row button{};
+        button.box = true;
+        button.inForce = true;
+        button.name = _buttons[number - _entries.size()].text;
+        return button;
+    }
     const Entry& entry = _entries[number];
     const double value = entry.property->get(*entry.holder);
     PanelPage::Row row{};
@@ -167,6 +184,7 @@ void EffectPanel::forget()
 {
     _entries.clear();
     _listed.clear();
+    _rowsAbove.reset();
 }
 
 void EffectPanel::step(const Entry& entry, double steps)
@@ -184,6 +202,12 @@ void EffectPanel::press(const Entry& entry)
 
 bool EffectPanel::change(int code, int modifiers)
 {
+    if (_cursor.row >= _entries.size())
+    {
+        if (code != Event::KEY_Return && code != Event::KEY_KP_Enter) return false;
+        _buttons[_cursor.row - _entries.size()].press();
+        return true;
+    }
     const Entry& entry = _entries[_cursor.row];
     const double steps = modifiers & Event::MODKEY_SHIFT ? 10.0 : 1.0;
     switch (code)
@@ -211,7 +235,10 @@ bool EffectPanel::change(int code, int modifiers)
 
 void EffectPanel::pressBox(std::size_t number)
 {
-    if (isSwitch(*_entries[number].property)) press(_entries[number]);
+    if (number >= _entries.size())
+        _buttons[number - _entries.size()].press();
+    else if (isSwitch(*_entries[number].property))
+        press(_entries[number]);
 }
 
 } // namespace osgGeoFX

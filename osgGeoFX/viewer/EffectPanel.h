@@ -5,6 +5,8 @@
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/viewer/ListPanel.h>
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,10 @@ public:
     explicit EffectPanel(EffectScene& scene, osgText::Font* font = nullptr);
 
     void getUsage(osg::ApplicationUsage& usage) const override;
+
+    /// Adds a button at the end of the list: a row with a text, UTF-8, that a click on its box or Return presses.
+    /// `press` runs in the event traversal. With a button the list is shown even where the scene has no effects.
+    void addButton(const std::string& text, std::function<void()> press);
 
     /// A property's value after some steps. The step is 1, 2 or 5 times a power of ten in the unit that people type
     /// (angles: degrees): about a tenth of the default value or, if that is near 0, of the range. A fraction of a step
@@ -49,11 +55,17 @@ private:
         const Effect* effect;
     };
 
-    bool hasRows() const override { return _scene->getNumEffects() > 0; }
+    struct Button
+    {
+        std::string text;
+        std::function<void()> press;
+    };
+
+    bool hasRows() const override { return _scene->getNumEffects() > 0 || !_buttons.empty(); }
     bool changed() override;
     void list() override;
     void forget() override;
-    std::size_t size() const override { return _entries.size(); }
+    std::size_t size() const override { return _entries.size() + _buttons.size(); }
     PanelPage::Row row(std::size_t number) const override;
     bool change(int code, int modifiers) override;
     void pressBox(std::size_t number) override;
@@ -63,6 +75,8 @@ private:
 
     osg::ref_ptr<EffectScene> _scene;
     std::vector<Entry> _entries;
+    std::vector<Button> _buttons;          ///< their rows follow those of the entries
+    std::optional<std::size_t> _rowsAbove; ///< of the buttons, while the list is shown
     std::vector<osg::ref_ptr<const Effect>> _listed;
 };
 

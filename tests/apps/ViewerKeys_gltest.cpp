@@ -3,6 +3,7 @@
 // What osggeofx_viewer puts into its viewer: the keys, the page that tells them, the manipulators and their home.
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/panorama/PanoramaComposer.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
 #include <osgGeoFX/viewer/HelpPage.h>
@@ -14,6 +15,7 @@
 
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/LocalCartesian.hpp>
+#include <OpenThreads/Thread>
 #include <osg/Math>
 #include <osg/ValueObject>
 #include <osgDB/ReadFile>
@@ -320,6 +322,59 @@ TEST_F(ViewerKeys, HelpPagesCanBeRead)
     press('h');
     EXPECT_FALSE(_page->shown());
     EXPECT_TRUE(shownTexts().empty());
+}
+
+TEST_F(ViewerKeys, AnyTerrainBecomesAMapByAKey)
+{
+    auto* const bend = dynamic_cast<BirdsEyeView*>(_scene->effects->getEffect(0));
+    bend->setEnabled(true);
+    // Once with a map that the scene has, and once without one.
+    for (const bool known : {true, false})
+    {
+        if (!known) _scene->effects->removeEffect(_map);
+        ASSERT_NO_FATAL_FAILURE(setUpViewer());
+        const auto find = [&]
+        {
+            PanoramaMap* found = nullptr;
+            for (unsigned int i = 0; i < _scene->effects->getNumEffects(); ++i)
+                if (auto* map = dynamic_cast<PanoramaMap*>(_scene->effects->getEffect(i))) found = map;
+            return found;
+        };
+        ASSERT_EQ(find() != nullptr, known);
+        press(Event::KEY_F11);
+        PanoramaMap* map = nullptr;
+        for (int i = 0; i < 600 && !(map && map->getEnabled()); ++i)
+        {
+            frame();
+            OpenThreads::Thread::microSleep(100000);
+            map = find();
+        }
+        ASSERT_TRUE(map && map->getEnabled());
+        EXPECT_FALSE(bend->getEnabled()) << "a scene has one projection";
+        frame();
+        const auto* const manipulator =
+            dynamic_cast<PanoramaManipulator*>(_manipulators->getCurrentMatrixManipulator());
+        ASSERT_TRUE(manipulator);
+
+        std::string error;
+        const auto relief = TerrainRelief::read(*_scene->node, nullptr, 512, error);
+        ASSERT_TRUE(relief) << error;
+        PanoramaWishes wishes;
+        wishes.aspect = 1280.0 / 720.0;
+        const PanoramaComposition expected = PanoramaComposer(*relief, wishes).compose();
+        EXPECT_EQ(map->getViewRadius(), expected.viewRadius);
+        EXPECT_EQ(map->getExaggeration(), expected.exaggeration);
+        EXPECT_NEAR(std::remainder(manipulator->getHeading() - expected.heading, 2.0 * osg::PI), 0.0, 1e-6);
+        // The camera stands above the place.
+        double eyeLongitude = 0.0, eyeLatitude = 0.0, height = 0.0;
+        const osg::Vec3d eye = osg::Vec3d() * viewer().getCamera()->getInverseViewMatrix();
+        ASSERT_TRUE(_scene->reference &&
+                    _scene->reference->toGeodetic(eye, eyeLongitude, eyeLatitude, height));
+        EXPECT_NEAR(osg::RadiansToDegrees(eyeLongitude), expected.place.x(), 1e-5);
+        EXPECT_NEAR(osg::RadiansToDegrees(eyeLatitude), expected.place.y(), 1e-5);
+        keep(known ? "automatic-known" : "automatic-new");
+        bend->setEnabled(true);
+    }
 }
 
 TEST_F(ViewerKeys, HelpPagesFollowTheWindow)

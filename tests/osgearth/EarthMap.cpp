@@ -6,6 +6,7 @@
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
 
+#include <gtest/gtest.h>
 #include <osg/CoordinateSystemNode>
 #include <osg/Math>
 #include <osgDB/ReadFile>
@@ -15,6 +16,8 @@
 #include <osgEarth/weejobs.h>
 
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
@@ -23,6 +26,24 @@ namespace geofx::test
 
 namespace
 {
+
+/** Ends the program before its static objects are destroyed. osgEarth's plugins are unloaded while OSG's registry still
+    holds objects of theirs, and any program that has shown an osgEarth map crashes then, with and without the kit. */
+class EndBeforeStaticObjects : public ::testing::EmptyTestEventListener
+{
+    void OnTestProgramEnd(const ::testing::UnitTest& tests) override
+    {
+        std::printf("%d of %d tests passed.\n", tests.successful_test_count(), tests.test_to_run_count());
+        std::fflush(nullptr);
+        std::_Exit(tests.Passed() ? 0 : 1);
+    }
+};
+
+[[maybe_unused]] const bool endsEarly = []
+{
+    ::testing::UnitTest::GetInstance()->listeners().Append(new EndBeforeStaticObjects);
+    return true;
+}();
 
 /// osgEarth makes a context of its own to see what the driver can do.
 class EglContexts : public osg::GraphicsContext::WindowingSystemInterface

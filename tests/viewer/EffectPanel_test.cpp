@@ -146,6 +146,42 @@ TEST_F(EffectPanelTest, KeysTurnTheSelectedPropertyAlone)
     EXPECT_EQ(map->getCoverUnit(), 7) << "6 belongs to the three from firstUnit on";
 }
 
+TEST_F(EffectPanelTest, ButtonsStandBelowTheEffects)
+{
+    int pressed = 0;
+    _panel->addButton("Make a map", [&] { ++pressed; });
+    EXPECT_TRUE(press(Event::KEY_F10)) << "even without effects";
+    EXPECT_EQ(_panel->lines().at(0), "1 of 1");
+    EXPECT_EQ(_panel->lines().at(1), "Make a map\t\t");
+    for (const int key : {int(Event::KEY_Left), int(Event::KEY_Right), int('.'), int(',')})
+        press(key);
+    EXPECT_EQ(pressed, 0);
+    EXPECT_TRUE(press(Event::KEY_Return));
+    EXPECT_EQ(pressed, 1);
+    // The selection stays with the button when effects come and go before it.
+    const osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
+    _scene->addEffect(map);
+    send(Event::FRAME);
+    press(Event::KEY_Return);
+    EXPECT_EQ(pressed, 2);
+    _scene->removeEffect(map);
+    send(Event::FRAME);
+    press(Event::KEY_Return);
+    EXPECT_EQ(pressed, 3);
+    // A click on its box presses it, one on its text does not.
+    int clicked = 0;
+    for (double x = 10.0; x < 300.0; x += 4.0)
+        for (double y = 690.0; y > 500.0; y -= 4.0)
+        {
+            send(Event::PUSH, 0, 0, x, y);
+            send(Event::RELEASE, 0, 0, x, y);
+            clicked += pressed > 3 && x > 150.0 ? 1 : 0;
+            if (x < 150.0) continue;
+            pressed = 3;
+        }
+    EXPECT_EQ(clicked, 0);
+}
+
 TEST_F(EffectPanelTest, StepsSuitAllProperties)
 {
     for (const std::string& kind : effectKinds())
