@@ -60,10 +60,11 @@ void addOptions(CLI::App& app, Arguments& arguments)
 {
     app.add_option(
            "sources", arguments.sources,
-           "Elevation rasters, of any kind that GDAL reads; coarse ones first. Or one recipe, the JSON file "
-           "beside a map, which makes the same map again")
+           "Elevation rasters, of any kind that GDAL reads; coarse ones first. Or one terrain or scene of "
+           "OpenSceneGraph's, such as a database of osggeofx_build. Or one recipe, the JSON file beside a "
+           "map, which makes the same map again")
         ->required()
-        ->type_name("DEM…|RECIPE.json");
+        ->type_name("DEM…|TERRAIN.osgb|RECIPE.json");
     app.add_option("-o,--output", arguments.output,
                    "The picture; its extension names the format (png, jpg, tiff)")
         ->required()
@@ -259,15 +260,17 @@ void chooseTheRest(Recipe& recipe)
         recipe.map[name] = text;
         recipe.reasons.push_back(why);
     };
-    const double latitude = osg::DegreesToRadians(recipe.view.place.y());
-    const double snow = osgGeoFX::glsl::geofx_snowLine(latitude);
-    char text[300];
-    std::snprintf(
-        text, sizeof(text),
-        "Snow lies above about %.0f m in midsummer and woods end at about %.0f m, by the latitude of %.1f "
-        "degrees, where no raster says otherwise.",
-        snow, 0.8 * snow, recipe.view.place.y());
-    recipe.reasons.emplace_back(text);
+    if (recipe.geocentric)
+    {
+        const double snow = osgGeoFX::glsl::geofx_snowLine(osg::DegreesToRadians(recipe.view.place.y()));
+        char text[300];
+        std::snprintf(
+            text, sizeof(text),
+            "Snow lies above about %.0f m in midsummer and woods end at about %.0f m, by the latitude of "
+            "%.1f degrees, where no raster says otherwise.",
+            snow, 0.8 * snow, recipe.view.place.y());
+        recipe.reasons.emplace_back(text);
+    }
     if (std::abs(scale - 1.0) > 0.01)
     {
         const osg::ref_ptr<const PanoramaMap> usual = new PanoramaMap;
@@ -297,12 +300,14 @@ bool isIsland(const TerrainRelief& relief)
     return 2 * sea > all;
 }
 
-void chooseView(const PanoramaWishes& wishes, GroundBuilder& builder, Recipe& recipe)
+void chooseView(const PanoramaWishes& wishes, const std::string& terrain, Recipe& recipe)
 {
-    const osgGeoFX::Scene scene = load(builder.overview());
+    const osgGeoFX::Scene scene = load(terrain);
     std::string error;
-    const std::optional<TerrainRelief> relief = TerrainRelief::read(*scene.node, nullptr, reliefCells, error);
-    if (!relief) throw Failure(error);
+    const std::optional<TerrainRelief> relief =
+        TerrainRelief::read(*scene.node, scene.effects->ground().ellipsoid.get(), reliefCells, error);
+    if (!relief) throw Failure(terrain + ": " + error);
+    recipe.geocentric = relief->geocentric;
     const PanoramaComposer composer(*relief, wishes);
     recipe.view = composer.compose();
     recipe.island = isIsland(*relief);
@@ -344,6 +349,10 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
            PictureFiles& pictures)
 {
     const osgGeoFX::Scene scene = load(ground);
+    // A scene of one's own may have a projection already.
+    for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
+        if (dynamic_cast<osgGeoFX::Deformation*>(scene.effects->getEffect(i)))
+            scene.effects->getEffect(i)->setEnabled(false);
     scene.effects->addEffect(mapOf(recipe));
     scene.effects->listenTo(*scene.guard);
     osgGeoFX::SceneRenderer::Options options;
@@ -354,7 +363,7 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
     if (!renderer) throw Failure(error);
     TerrainRelief frame;
-    frame.geocentric = true;
+    frame.geocentric = recipe.geocentric;
     osgGeoFX::FrameStatistics unused;
     const auto image = renderer->render(recipe.view.viewMatrix(frame), 0.0, unused, error);
     if (!image) throw Failure(error);
@@ -377,6 +386,8 @@ void run(const Arguments& arguments)
                 "A recipe has its view already; leave --view-from, --focus, --width, --exaggeration, "
                 "--horizon-line and --horizon-distance out, or change the recipe.");
     }
+    else if (arguments.sources.size() == 1 && Recipe::isTerrain(arguments.sources.front()))
+        recipe.terrain = arguments.sources.front();
     else
         recipe.dems = arguments.sources;
     takeOptions(arguments, recipe);
@@ -385,10 +396,12 @@ void run(const Arguments& arguments)
 
     const fs::path beside = fs::path(arguments.output).replace_extension();
     const std::string work = arguments.work.empty() ? beside.string() + ".work" : arguments.work;
-    GroundBuilder builder(recipe, work, arguments.quiet);
-    if (!again) chooseView(wishes, builder, recipe);
-    const std::string ground = builder.ground(recipe.view);
-    if (!again) recipe.reasons.insert(recipe.reasons.end(), builder.notes().begin(), builder.notes().end());
+    std::optional<GroundBuilder> builder;
+    if (recipe.terrain.empty()) builder.emplace(recipe, work, arguments.quiet);
+    if (!again) chooseView(wishes, builder ? builder->overview() : recipe.terrain, recipe);
+    const std::string ground = builder ? builder->ground(recipe.view) : recipe.terrain;
+    if (!again && builder)
+        recipe.reasons.insert(recipe.reasons.end(), builder->notes().begin(), builder->notes().end());
     if (arguments.explain)
     {
         for (const std::string& reason : recipe.reasons)
@@ -399,7 +412,7 @@ void run(const Arguments& arguments)
     if (arguments.recipe != "none")
         recipe.write(arguments.recipe.empty() ? beside.string() + ".json" : arguments.recipe);
     std::error_code ignored;
-    if (arguments.work.empty()) fs::remove_all(work, ignored);
+    if (arguments.work.empty() && builder) fs::remove_all(work, ignored);
 }
 
 } // namespace

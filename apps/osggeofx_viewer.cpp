@@ -36,7 +36,8 @@ void describe(osg::ApplicationUsage& usage)
         "the coordinates of the ground below the pointer. F9 lists the scene's "
         "mappings, F10 its effects with all their properties. A click makes a close-up active (the key u "
         "says when), Shift and the left button drag "
-        "it. A panorama map has a manipulator of its own, key 0.");
+        "it. F11 makes a panorama map of any terrain, F12 saves it as a scene file and as a recipe of "
+        "osggeofx_panorama. A panorama map has a manipulator of its own, key 0.");
     usage.setCommandLineUsage("osggeofx_viewer [options] FILE ...");
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
@@ -155,7 +156,7 @@ int main(int argc, char** argv)
     if (colorGiven) viewer.getCamera()->setClearColor(color);
     if (nearFarGiven) viewer.getCamera()->setNearFarRatio(nearFarRatio);
     geofx::viewer::addPanorama(*manipulators, *scene->effects);
-    geofx::viewer::addHandlers(viewer, *scene, *manipulators);
+    geofx::viewer::addHandlers(viewer, *scene, *manipulators, arguments.argc() == 2 ? arguments[1] : "");
     viewer.realize();
     if (!viewer.isRealized())
     {

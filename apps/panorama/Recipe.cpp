@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -62,6 +63,13 @@ bool Recipe::isRecipe(const std::string& file)
     return fs::path(file).extension() == ".json";
 }
 
+bool Recipe::isTerrain(const std::string& file)
+{
+    static const std::set<std::string> extensions = {".osgb", ".osgt",  ".osgx", ".osg",
+                                                     ".ive",  ".geofx", ".earth"};
+    return extensions.count(fs::path(file).extension().string()) > 0;
+}
+
 Recipe Recipe::read(const std::string& file)
 {
     std::ifstream stream(file, std::ios::binary);
@@ -75,7 +83,9 @@ Recipe Recipe::read(const std::string& file)
         if (json.at("osggeofx_panorama").get<int>() != newestFormat)
             throw Failure(
                 file + ": is a recipe of another version of osggeofx_panorama; make it again with this one.");
-        for (const auto& dem : json.at("dems"))
+        recipe.terrain = pathFrom(json.value("terrain", ""), folder);
+        recipe.geocentric = json.value("geocentric", true);
+        for (const auto& dem : recipe.terrain.empty() ? json.at("dems") : Json::array())
             recipe.dems.push_back(pathFrom(dem.get<std::string>(), folder));
         recipe.landCover = pathFrom(json.value("landCover", ""), folder);
         recipe.landCoverTable = pathFrom(json.value("landCoverTable", ""), folder);
@@ -98,7 +108,7 @@ Recipe Recipe::read(const std::string& file)
         throw Failure(file + ": is not a recipe of osggeofx_panorama (" + error.what() +
                       "); give a DEM, or a recipe that lies beside a map.");
     }
-    if (recipe.dems.empty() || recipe.width < 1 || recipe.height < 1)
+    if ((recipe.dems.empty() && recipe.terrain.empty()) || recipe.width < 1 || recipe.height < 1)
         throw Failure(file + ": names no DEM or no size; make the recipe again.");
     return recipe;
 }
@@ -108,9 +118,17 @@ void Recipe::write(const std::string& file) const
     const fs::path folder = folderOf(file);
     Json json;
     json["osggeofx_panorama"] = newestFormat;
-    json["dems"] = Json::array();
-    for (const std::string& dem : dems)
-        json["dems"].push_back(relativePath(dem, folder));
+    if (terrain.empty())
+    {
+        json["dems"] = Json::array();
+        for (const std::string& dem : dems)
+            json["dems"].push_back(relativePath(dem, folder));
+    }
+    else
+    {
+        json["terrain"] = relativePath(terrain, folder);
+        json["geocentric"] = geocentric;
+    }
     const auto put = [&](const char* name, const std::string& path)
     {
         if (!path.empty()) json[name] = relativePath(path, folder);

@@ -25,7 +25,9 @@ constexpr const char* colorBlind = "colorblind";
     byte, on the same machine. As a file it is JSON; its paths are relative to the file's folder where they can be. */
 struct Recipe
 {
-    std::vector<std::string> dems;
+    std::vector<std::string> dems; ///< or
+    std::string terrain;           ///< a file that OpenSceneGraph reads, in their place
+    bool geocentric = true; ///< whether places are longitude and latitude, or the terrain's own x and y
     std::string landCover, landCoverTable, treeCover;
     std::string vertical = "none"; ///< as osggeofx_build's --vertical
     std::string palette;           ///< an image, or `colorBlind`; empty for the season's own
@@ -39,6 +41,8 @@ struct Recipe
 
     /// Whether a file is a recipe, by its name.
     static bool isRecipe(const std::string& file);
+    /// Whether it is a terrain or a scene of OpenSceneGraph's, by its name.
+    static bool isTerrain(const std::string& file);
     static Recipe read(const std::string& file); ///< throws Failure
     void write(const std::string& file) const;   ///< a whole file or none; throws Failure
 };

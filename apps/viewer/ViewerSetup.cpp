@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "ViewerSetup.h"
 
+#include "MapSaver.h"
+
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
@@ -119,7 +121,7 @@ void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Sc
 }
 
 void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
-                 osgGA::KeySwitchMatrixManipulator& manipulators)
+                 osgGA::KeySwitchMatrixManipulator& manipulators, const std::string& file)
 {
     viewer.addEventHandler(new osgGA::StateSetManipulator(viewer.getCamera()->getOrCreateStateSet()));
     viewer.addEventHandler(new osgViewer::ThreadingHandler);
@@ -162,6 +164,7 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
         if (closeUps) add("Close-ups", new osgGeoFX::CloseUpHandler(*scene.effects, *closeUps));
     }
     add("Panorama map", automatic);
+    if (!file.empty()) add("Panorama map", new MapSaver(scene, file));
     for (const auto& [key, manipulator] : manipulators.getKeyManipMap())
     {
         const auto* panorama = dynamic_cast<const osgGeoFX::PanoramaManipulator*>(manipulator.second.get());

@@ -8,6 +8,8 @@
 #include <osgGA/KeySwitchMatrixManipulator>
 #include <osgViewer/Viewer>
 
+#include <string>
+
 /// What osggeofx_viewer puts into its viewer; apart from main(), so that tests press its keys.
 namespace geofx::viewer
 {
@@ -24,7 +26,8 @@ void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Sc
              double fieldOfView, double aspect);
 
 /// The event handlers: OSG's, ours, and the help page with the keys of both. The manipulators' own keys stand there, too.
+/// `file`: what is shown, beside which maps are saved; empty for nowhere.
 void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
-                 osgGA::KeySwitchMatrixManipulator& manipulators);
+                 osgGA::KeySwitchMatrixManipulator& manipulators, const std::string& file = {});
 
 } // namespace geofx::viewer

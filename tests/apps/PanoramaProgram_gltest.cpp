@@ -108,6 +108,28 @@ TEST_F(PanoramaProgram, KeepsTheNameOfAReadyPalette)
     EXPECT_FALSE(bytes("map.png") == bytes("summer.png"));
 }
 
+TEST_F(PanoramaProgram, TakesATerrainThatIsThere)
+{
+    invent("volcano");
+    const ProgramResult first =
+        run({"volcano.tif", "-o", "map.png", "--size", "96x54", "--work", "kept", "--quiet"});
+    ASSERT_EQ(first.exitCode, 0) << first.standardError;
+    const ProgramResult second =
+        run({"kept/ground/terrain.osgb", "-o", "own.png", "--size", "96x54", "--quiet"});
+    ASSERT_EQ(second.exitCode, 0) << second.standardError;
+    EXPECT_FALSE(fs::exists(file("own.work")));
+    const nlohmann::json recipe = nlohmann::json::parse(bytes("own.json"));
+    EXPECT_EQ(recipe.at("terrain"), "kept/ground/terrain.osgb");
+    EXPECT_EQ(recipe.at("geocentric"), true);
+    EXPECT_FALSE(recipe.contains("dems"));
+    const ProgramResult again = run({"own.json", "-o", "again.png", "--quiet"});
+    ASSERT_EQ(again.exitCode, 0) << again.standardError;
+    EXPECT_TRUE(bytes("own.png") == bytes("again.png"));
+    const ProgramResult none = run({"none.osgb", "-o", "none.png"});
+    EXPECT_EQ(none.exitCode, 2);
+    EXPECT_NE(none.standardError.find("none.osgb"), std::string::npos) << none.standardError;
+}
+
 TEST_F(PanoramaProgram, TakesWishes)
 {
     invent("feet");

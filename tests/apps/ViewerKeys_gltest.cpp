@@ -8,9 +8,11 @@
 #include <osgGeoFX/viewer/EffectPanel.h>
 #include <osgGeoFX/viewer/HelpPage.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
+#include <panorama/Recipe.h>
 #include <tools/GlFixture.h>
 #include <tools/PagedScene.h>
 #include <tools/TempDir.h>
+#include <viewer/MapSaver.h>
 #include <viewer/ViewerSetup.h>
 
 #include <GeographicLib/Geocentric.hpp>
@@ -26,6 +28,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <sstream>
@@ -136,9 +139,9 @@ protected:
     {
         GlFixture::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(
-            geofx::test::PagedScene::write(_folder.path(), geofx::test::PagedScene::Kind::Geocentric)
-                .string());
+        _file = geofx::test::PagedScene::write(_folder.path(), geofx::test::PagedScene::Kind::Geocentric)
+                    .string();
+        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(_file);
         ASSERT_TRUE(node);
         node->setUserValue("geofx.homeView", std::string("-157.81,21.395,2500,40,-30"));
         std::string error;
@@ -169,7 +172,7 @@ protected:
         osg::ArgumentParser arguments(&argc, argv);
         _manipulators = geofx::viewer::makeManipulators(arguments);
         geofx::viewer::addPanorama(*_manipulators, *_scene->effects);
-        geofx::viewer::addHandlers(viewer(), *_scene, *_manipulators);
+        geofx::viewer::addHandlers(viewer(), *_scene, *_manipulators, _file);
         viewer().getCamera()->setProjectionMatrixAsPerspective(30.0, 1280.0 / 720.0, 1.0, 1e6);
         geofx::viewer::setHome(*_manipulators, *_scene, 30.0, 1280.0 / 720.0);
         viewer().setCameraManipulator(_manipulators);
@@ -210,7 +213,8 @@ protected:
 
     static bool isOurs(const osgGA::EventHandler& handler)
     {
-        return std::string(typeid(handler).name()).find("osgGeoFX") != std::string::npos;
+        const std::string name = typeid(handler).name();
+        return name.find("osgGeoFX") != std::string::npos || name.find("geofx") != std::string::npos;
     }
 
     /// The keys on all pages behind a key, as they are written there.
@@ -294,6 +298,7 @@ protected:
         osgDB::writeImageFile(*picture, std::string(folder) + "/" + name + ".png");
     }
 
+    std::string _file; ///< what is shown
     geofx::test::TempDir _folder;
     std::optional<Scene> _scene;
     osg::ref_ptr<PanoramaMap> _map = new PanoramaMap;
@@ -375,6 +380,72 @@ TEST_F(ViewerKeys, AnyTerrainBecomesAMapByAKey)
         keep(known ? "automatic-known" : "automatic-new");
         bend->setEnabled(true);
     }
+}
+
+TEST_F(ViewerKeys, ATunedMapIsSavedAsASceneAndAsARecipe)
+{
+    ASSERT_NO_FATAL_FAILURE(setUpViewer());
+    const osg::ref_ptr<geofx::viewer::MapSaver> saver = new geofx::viewer::MapSaver(*_scene, _file);
+    EXPECT_NE(saver->save(viewer()).find("No panorama map is shown"), std::string::npos);
+    _map->setEnabled(true);
+    _map->setSeason(0.75);
+    _map->setHorizonLine(0.7);
+    _map->setLightAzimuth(0.5);
+    _map->setEdge(PanoramaMap::HAZE);
+    _map->setViewRadius(9000.0);
+    _manipulators->selectMatrixManipulator(0); // key 0, the map's
+    frame();
+    const auto folder = std::filesystem::path(_file).parent_path();
+    const std::string stem = std::filesystem::path(_file).stem().string();
+    press(Event::KEY_F12);
+    std::string saved = (folder / (stem + "-map.geofx")).string();
+    // The scene that was saved, and one that was saved of it, are the same as what was shown.
+    for (int turn = 0; turn < 2; ++turn)
+    {
+        std::string error;
+        const std::optional<Scene> again = Scene::load(saved, error);
+        ASSERT_TRUE(again) << error;
+        const PanoramaMap* map = nullptr;
+        for (unsigned int i = 0; i < again->effects->getNumEffects(); ++i)
+            if (auto* each = dynamic_cast<PanoramaMap*>(again->effects->getEffect(i))) map = each;
+        ASSERT_TRUE(map);
+        for (const Property& property : map->properties())
+            EXPECT_NEAR(property.get(*map), property.get(*_map), 1e-9) << property.name;
+        const osg::Matrixd shown = viewer().getCamera()->getViewMatrix();
+        const osg::Matrixd home = again->homeViewMatrix(osg::DegreesToRadians(30.0), 1280.0 / 720.0);
+        const osg::Vec3d shownEye = osg::Vec3d() * osg::Matrixd::inverse(shown);
+        EXPECT_LT((osg::Vec3d() * osg::Matrixd::inverse(home) - shownEye).length(), 0.1);
+        const osg::Vec3d right = osg::Matrixd::transform3x3(osg::X_AXIS, osg::Matrixd::inverse(shown));
+        EXPECT_NEAR(osg::Matrixd::transform3x3(osg::X_AXIS, osg::Matrixd::inverse(home)) * right, 1.0, 1e-9)
+            << "the heading";
+        const osg::ref_ptr<geofx::viewer::MapSaver> second = new geofx::viewer::MapSaver(*_scene, saved);
+        const std::string said = second->save(viewer());
+        saved = (folder / (std::filesystem::path(saved).stem().string() + "-map.geofx")).string();
+        EXPECT_NE(said.find("Saved " + saved), std::string::npos) << said;
+    }
+    // Nothing is written over.
+    press(Event::KEY_F12);
+    EXPECT_TRUE(std::filesystem::exists(folder / (stem + "-map-2.geofx")));
+
+    const geofx::panorama::Recipe recipe =
+        geofx::panorama::Recipe::read((folder / (stem + "-map.json")).string());
+    EXPECT_TRUE(std::filesystem::equivalent(recipe.terrain, _file));
+    EXPECT_EQ(recipe.width, 1280);
+    EXPECT_EQ(recipe.view.viewRadius, 9000.0);
+    EXPECT_EQ(recipe.view.horizonLine, 0.7);
+    EXPECT_EQ(recipe.map.at("season"), "0.75");
+    EXPECT_EQ(recipe.map.at("edge"), "haze");
+    EXPECT_EQ(recipe.map.count("horizonLine"), 0u);
+    TerrainRelief frame;
+    frame.geocentric = true;
+    const osg::Matrixd ofRecipe = recipe.view.viewMatrix(frame);
+    const osg::Vec3d right =
+        osg::Matrixd::transform3x3(osg::X_AXIS, viewer().getCamera()->getInverseViewMatrix());
+    EXPECT_NEAR(osg::Matrixd::transform3x3(osg::X_AXIS, osg::Matrixd::inverse(ofRecipe)) * right, 1.0, 1e-9);
+
+    const osg::ref_ptr<geofx::viewer::MapSaver> nowhere =
+        new geofx::viewer::MapSaver(*_scene, "/nowhere/at/all.osgb");
+    EXPECT_NE(nowhere->save(viewer()).find("cannot be written"), std::string::npos);
 }
 
 TEST_F(ViewerKeys, HelpPagesFollowTheWindow)
