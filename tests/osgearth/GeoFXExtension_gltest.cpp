@@ -26,7 +26,7 @@ const char* const effects[] = {
     "transfer=\"red\" west=\"10.4\" south=\"0.4\" east=\"10.6\" north=\"0.6\"/></projectiveMappings>",
     "<closeUps pipeline=\"multiPass\"><closeUp offsetHeight=\"4000\" scaleX=\"2\" scaleY=\"2\"><region "
     "longitude=\"10.5\" "
-    "latitude=\"0.5\" width=\"9000\" depth=\"9000\"/></closeUp></closeUps>",
+    "latitude=\"0.33\" width=\"9000\" depth=\"9000\"/></closeUp></closeUps>",
 };
 
 class GeoFXExtension : public EarthMaps, public testing::WithParamInterface<const char*>
