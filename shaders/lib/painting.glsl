@@ -23,6 +23,9 @@ const int GEOFX_PALETTE_BARE = 7;
 
 // Below this share of the picture's height, the painting darkens towards its lower edge (paper: 20 to 25 %).
 const Number GEOFX_BOTTOM_SHARE = Number(0.24);
+// How bright the air makes what is darker, of its own value; and how much of the way there it goes at the most.
+const Number GEOFX_AIR_LIGHT = Number(0.85);
+const Number GEOFX_AIR_LIFT = Number(0.6);
 
 // Clamped to 0 and 1; 0 for NaN.
 GEOFX_INLINE Number geofx_share(Number value)
@@ -214,11 +217,13 @@ GEOFX_INLINE Number geofx_airAmount(Number s, Number strength)
 }
 
 // Far ground takes the air's hue. It keeps its own value (V of HSV), and with it everything that light and shade
-// draw.
+// draw, but for the dark: air before a shade is brighter than the shade, so far ridges turn blue and not black.
 GEOFX_INLINE Rgb geofx_atmosphere(Rgb color, Rgb air, Number amount)
 {
     Rgb mixed = mix(color, air, amount);
     Number value = max(color.x, max(color.y, color.z));
+    Number brightest = GEOFX_AIR_LIGHT * max(air.x, max(air.y, air.z));
+    value += GEOFX_AIR_LIFT * amount * max(brightest - value, Number(0));
     Number now = max(mixed.x, max(mixed.y, mixed.z));
     return now > Number(1e-6) ? mixed * (value / now) : color;
 }

@@ -360,7 +360,7 @@ TEST(Painting, ReflectionsLendTheirHue)
     }
 }
 
-TEST(Painting, AirKeepsTheValue)
+TEST(Painting, AirKeepsTheValueOfWhatIsLightAndLiftsTheDark)
 {
     double most = 0.0;
     for (int sample = 0; sample < sampleCount(); ++sample)
@@ -370,7 +370,13 @@ TEST(Painting, AirKeepsTheValue)
         const Rgb air = rounded(randomColor(random));
         const double amount = random.uniform(0.0, 1.0);
         const Rgb far = glsl::geofx_atmosphere(color, air, amount);
-        most = std::max(most, std::abs(valueOf(rounded(far)) - valueOf(color)));
+        // Up to 60 % of the way to 85 % of the air's value, and never down.
+        const double lifted =
+            valueOf(color) + 0.6 * amount * std::max(0.85 * valueOf(air) - valueOf(color), 0.0);
+        most = std::max(most, std::abs(valueOf(rounded(far)) - lifted));
+        // Light and shade stay in their order.
+        const Rgb darker = color * random.uniform(0.0, 1.0);
+        ASSERT_LE(valueOf(glsl::geofx_atmosphere(darker, air, amount)), valueOf(far) + 1e-12);
         for (int i = 0; i < 3; ++i)
         {
             ASSERT_GE(far[i], 0.0);
@@ -389,7 +395,10 @@ TEST(Painting, AirKeepsTheValue)
     }
     EXPECT_LT(most, 1.0 / 255) << "not a level, also in an image";
     EXPECT_EQ(glsl::geofx_atmosphere(Rgb(0, 0, 0), Rgb(0, 0, 0), 0.5), Rgb(0, 0, 0));
-    EXPECT_EQ(glsl::geofx_atmosphere(Rgb(0, 0, 0), Rgb(0.5, 0.6, 0.9), 0.5), Rgb(0, 0, 0));
+    EXPECT_EQ(glsl::geofx_atmosphere(Rgb(0, 0, 0), Rgb(0.5, 0.6, 0.9), 0.0), Rgb(0, 0, 0));
+    const Rgb shade = glsl::geofx_atmosphere(Rgb(0.15, 0.12, 0.3), glsl::geofx_airColor(), 0.8);
+    EXPECT_GT(valueOf(shade), 0.45) << "a far shade is blue, not black";
+    EXPECT_GT(shade.z, shade.x);
 
     EXPECT_EQ(glsl::geofx_airAmount(-1.0, 0.7), 0.0);
     EXPECT_EQ(glsl::geofx_airAmount(0.0, 0.7), 0.0);

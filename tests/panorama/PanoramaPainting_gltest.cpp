@@ -197,11 +197,11 @@ Land mixedLand()
 
 } // namespace
 
-TEST_F(PanoramaPainting, AirKeepsTheValue)
+TEST_F(PanoramaPainting, AirKeepsTheValueAndLiftsTheDark)
 {
     const osg::ref_ptr<PanoramaMap> map = makeMap();
     show(mixedLand(), map);
-    // Each color keeps its value; a mixture of two of them, at a stroke's edge or in what water shows of the land, need not. And ripples
+    // Each color keeps its value, or is lifted to it from the dark; a mixture of two of them, at a stroke's edge or in what water shows of the land, need not. And ripples
     // move with the clock.
     map->setStrokes(false);
     map->setReflection(0.0);
@@ -212,6 +212,8 @@ TEST_F(PanoramaPainting, AirKeepsTheValue)
     const osg::ref_ptr<osg::Image> hazy = draw();
     double worst = 0.0;
     int changed = 0;
+    const glsl::Rgb air = glsl::geofx_airColor();
+    const double brightest = glsl::GEOFX_AIR_LIGHT * std::max({air.x, air.y, air.z});
     // The sky has air of its own; what stands above the horizon does not count here.
     const int rows = static_cast<int>(HEIGHT * (map->getHorizonLine() - map->getHorizonBend())) - 2;
     for (int row = 0; row < rows; ++row)
@@ -220,7 +222,9 @@ TEST_F(PanoramaPainting, AirKeepsTheValue)
         {
             const Pixel a = pixelOf(*clear, column, row);
             const Pixel b = pixelOf(*hazy, column, row);
-            worst = std::max(worst, std::abs(a.value() - b.value()));
+            // How much of the air there is depends on the place.
+            const double lifted = a.value() + glsl::GEOFX_AIR_LIFT * std::max(brightest - a.value(), 0.0);
+            worst = std::max({worst, a.value() - b.value(), b.value() - lifted});
             changed += a.off(b) > 0.04 ? 1 : 0;
         }
     }

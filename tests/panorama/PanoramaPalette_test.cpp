@@ -185,6 +185,14 @@ TEST(PanoramaPalette, DichromatsConfuseRedAndGreen)
         EXPECT_GT(colorDifference(labOf(red), labOf(green)), 2.0 * apart(red, green));
         EXPECT_GT(apart(Rgb(0.3, 0.4, 0.9), Rgb(0.9, 0.8, 0.3)), 40.0);
     }
+    // Parts of the matrices, coded: linear light counts.
+    const auto expectSeen = [](ColorVision vision, const Rgb& color, const Rgb& seen)
+    {
+        EXPECT_LT(glm::distance(seenWith(vision, color), seen), 1e-3);
+    };
+    expectSeen(ColorVision::DEUTERANOPIA, Rgb(1.0, 0.0, 0.0), Rgb(0.6401, 0.5658, 0.0));
+    expectSeen(ColorVision::PROTANOPIA, Rgb(1.0, 0.0, 0.0), Rgb(0.4266, 0.3727, 0.0));
+    expectSeen(ColorVision::DEUTERANOPIA, Rgb(0.0, 0.0, 0.5), Rgb(0.0, 0.1008, 0.4927));
     EXPECT_EQ(seenWith(ColorVision::USUAL, Rgb(0.1, 0.5, 0.9)), Rgb(0.1, 0.5, 0.9));
 }
 
