@@ -24,8 +24,9 @@ namespace osgGeoFX
     deformations are disabled, since the projection of a scene is one. Then the view's manipulator, or its camera, moves
     to the map's place. The view stays as it is where there is no terrain, with a warning that says why.
 
-    The terrain is read in the event traversal, which takes up to a second or two. The choice takes some seconds in a thread of its own, while the viewer
-    goes on. One handler serves one view, in its event traversal.
+    The terrain is read in the event traversal, which takes up to a second or two. The choice takes some seconds in a
+    thread of its own, while the viewer goes on; the destructor waits for it. One handler serves one view, in its event
+    traversal.
     @ingroup viewer */
 class OSGGEOFX_EXPORT AutomaticPanorama : public osgGA::GUIEventHandler
 {
