@@ -40,6 +40,10 @@ public:
     bool setEnabled(bool enabled) { return assign("enabled", enabled ? 1.0 : 0.0); }
     bool getEnabled() const { return _enabled; }
 
+    /// Whether the effect changes anything that is drawn: it is switched on, and no strength of it is 0. A scene leaves
+    /// out the others.
+    virtual bool isActive() const { return _enabled; }
+
     /// The effect as a deformation; null if it is none.
     virtual const Deformation* asDeformation() const { return nullptr; }
     /// The effect as one that colors surfaces; null if it is none.

@@ -64,6 +64,7 @@ using Rgba = glm::dvec4;
 #include <shaders/lib/bendview.glsl>
 #include <shaders/lib/closeup.glsl>
 #include <shaders/lib/exaggeration.glsl>
+#include <shaders/lib/liberty.glsl>
 #include <shaders/lib/mapping.glsl>
 
 #include <shaders/lib/cover.glsl>
@@ -98,6 +99,7 @@ using Rgba = glm::vec4;
 #include <shaders/lib/bendview.glsl>
 #include <shaders/lib/closeup.glsl>
 #include <shaders/lib/exaggeration.glsl>
+#include <shaders/lib/liberty.glsl>
 #include <shaders/lib/mapping.glsl>
 
 #include <shaders/lib/cover.glsl>

@@ -59,6 +59,9 @@ public:
     /// Below a state set with `setDefine("GEOFX_PAINTED", OFF)` they are computed, and SLOT_color() should return the
     /// color that comes in. False by default.
     virtual bool repaints() const { return false; }
+    /// Whether an effect that repaints mixes its color with the one that comes in for now, so that lights, textures and fog
+    /// are computed all the same. False by default.
+    virtual bool fades() const { return false; }
 
     /** Puts everything that the shaders need into a camera's state: uniforms with the prefix, and textures on the
         view's units. False if there is nothing to draw. Several cameras' threads may call it at once. Each call gets

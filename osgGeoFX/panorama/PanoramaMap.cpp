@@ -46,6 +46,12 @@ const Properties& PanoramaMap::properties() const
         new Self,
         {
             enabledProperty(),
+            Property::number(
+                "strength",
+                "how far the camera's own picture has become the map: 0 is the camera's picture, 1 "
+                "the map",
+                0.0, 1.0)
+                .of<&Self::_strength>(),
             Property::flag("projection", "whether the terrain is drawn as a painted panorama is, and not "
                                          "only painted in the camera's own view")
                 .of<&Self::_projection>(),

@@ -50,6 +50,15 @@ public:
     PanoramaMap(const PanoramaMap& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGeoFX, PanoramaMap);
 
+    /// How far the camera's own picture has become the panorama map: 0 is the camera's picture, 1, the default, the map.
+    /// Between them each place lies on the straight line in eye space from where the camera sees it to where the map
+    /// draws it, a little beyond the strength's share of the way, and the paint, the strokes, the water and the sky fade in. Every strength is a deformation with the bounds,
+    /// the picking and the levels of detail of one. Ground that both show stays one to one for cameras that look from
+    /// straight down to level, without a roll. PanoramaManipulator holds places exactly at strength 1 only.
+    bool setStrength(double strength) { return assign("strength", strength); }
+    double getStrength() const { return _strength; }
+    bool isActive() const override { return getEnabled() && _strength > 0.0; }
+
     /// @name The projection
     /// @{
 
@@ -267,6 +276,7 @@ private:
         CoverUnit
     };
 
+    double _strength = 1.0;
     bool _projection = true;
     double _viewRadius = 0.0;
     double _horizonLine = 0.8;

@@ -171,12 +171,12 @@ std::optional<osg::Vec3d> PanoramaPose::pick(const osg::Vec2d& picture, const os
     const auto hit =
         shown.pick((picture.x() + 1.0) / 2.0 * port->width(), (picture.y() + 1.0) / 2.0 * port->height());
     if (!hit) return std::nullopt;
-    if (!_map->getEnabled() || !_map->getProjection()) return hit->world;
+    if (!_map->isActive() || !_map->getProjection()) return hit->world;
     const osg::Matrixd& view = camera.getViewMatrix();
     const auto panorama = panoramaOf(*_map, ViewGeometry(view, camera.getProjectionMatrix(), _ground));
     if (!panorama) return std::nullopt;
-    const glm::dvec3 drawn = toGlm(shown.deform(hit->world) * view);
-    return toOsg(glsl::geofx_panoramaUndeform(*panorama, drawn)) * osg::Matrixd::inverse(view);
+    const osg::ref_ptr<const PanoramaSnapshot> map = new PanoramaSnapshot(*panorama, 1.0);
+    return map->undeform(shown.deform(hit->world) * view) * osg::Matrixd::inverse(view);
 }
 
 PanoramaHold PanoramaPose::holdSeen(const osg::Vec2d& picture, const osg::Camera& camera) const

@@ -6,6 +6,7 @@
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
@@ -48,6 +49,10 @@ constexpr Kind<Effect> effects[] = {
      "tallest."},
     {"verticalExaggeration", make<Effect, VerticalExaggeration>,
      "Heights drawn larger or smaller than they are."},
+    {"regionalLiberty", make<Effect, RegionalLiberty>,
+     "A liberty that painters of maps take with a region: a summit enlarged, a valley widened, a mountain "
+     "turned; the "
+     "ground around it stays as it is."},
     {"projectiveMappings", make<Effect, ProjectiveMappings>,
      "Rasters thrown onto the terrain and what stands on it, thousands at once. They lie in a frame whose "
      "origin is "

@@ -5,6 +5,7 @@
 #include "Wrappers.h"
 
 #include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
@@ -54,6 +55,8 @@ const Wrapper<PedestrianView> pedestrianView("osgGeoFX::PedestrianView", bend + 
 const Wrapper<BlendedView, addViews> blendedView("osgGeoFX::BlendedView", bend + " osgGeoFX::BlendedView");
 const Wrapper<VerticalExaggeration> verticalExaggeration("osgGeoFX::VerticalExaggeration",
                                                          deformation + " osgGeoFX::VerticalExaggeration");
+const Wrapper<RegionalLiberty> regionalLiberty("osgGeoFX::RegionalLiberty",
+                                               deformation + " osgGeoFX::RegionalLiberty");
 const Wrapper<PanoramaMap, addImagesAndLines> panoramaMap("osgGeoFX::PanoramaMap",
                                                           deformation + " osgGeoFX::PanoramaMap");
 

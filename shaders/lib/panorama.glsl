@@ -33,6 +33,9 @@ struct geofx_Panorama
     Vector3 direction; // + n (direction + x directionX + y directionY); the direction's z is -1
     Vector3 directionX;
     Vector3 directionY;
+    Number plain;     // the share of the camera's own perspective, 0 to 1
+    Number mirrored;  // 1: that perspective shows what is turned over at the height `water`, as still water does; else 0
+    Length water;
 };
 
 // The angle over its sine, from its cosine. It stretches the orthographic projection to the equidistant one. The
@@ -143,11 +146,26 @@ GEOFX_INLINE Position geofx_panoramaPictureAt(geofx_Panorama view, Position eye)
     return Position((eye.x - middle.x) / right.x, (eye.y - middle.y) / up.y, n);
 }
 
-GEOFX_INLINE Position geofx_panoramaDeform(geofx_Panorama view, Position position)
+// Where a position with a known place is drawn.
+GEOFX_INLINE Position geofx_panoramaDraw(geofx_Panorama view, Position position, Position place)
 {
-    return geofx_panoramaEye(view, geofx_panoramaPicture(view, geofx_panoramaPlace(view, position)));
+    Position drawn = geofx_panoramaEye(view, geofx_panoramaPicture(view, place));
+    if (view.plain > 0)
+    {
+        Position own = position;
+        if (view.mirrored > 0)
+            own += 2 * (view.water - place.z) * normalize(geofx_exaggerationGradient(view.globe, position));
+        drawn += view.plain * (own - drawn);
+    }
+    return drawn;
 }
 
+GEOFX_INLINE Position geofx_panoramaDeform(geofx_Panorama view, Position position)
+{
+    return geofx_panoramaDraw(view, position, geofx_panoramaPlace(view, position));
+}
+
+// The inverse of geofx_panoramaDeform, without a share of the camera's own perspective.
 GEOFX_INLINE Position geofx_panoramaUndeform(geofx_Panorama view, Position position)
 {
     return geofx_panoramaPosition(view, geofx_panoramaPlaceAt(view, geofx_panoramaPictureAt(view, position)));

@@ -16,6 +16,7 @@ const int GEOFX_STROKE_CLIFF = 1;
 const int GEOFX_STROKE_HOUSE = 2;
 const int GEOFX_STROKE_ROAD = 3;
 const int GEOFX_STROKE_RIVER = 4;
+const int GEOFX_STROKE_CONIFER = 5; // what a tree may be drawn as
 
 // Half of the range of levels over which a stroke disappears.
 const Number GEOFX_STROKE_WINDOW = Number(0.06);
@@ -48,6 +49,13 @@ GEOFX_INLINE Number geofx_strokeGrowth(Number wanted)
     return clamp(exp(Number(-0.6931471805599453) * wanted), Number(1), Number(3));
 }
 
+// The size of strokes, and of the distance between them, at a share of the way to the horizon. Painters set them smaller and
+// denser there, and so tell the distance.
+GEOFX_INLINE Number geofx_strokeShrink(Number far)
+{
+    return 1 - Number(0.42) * clamp(far, Number(0), Number(1));
+}
+
 // The strokes of roads and rivers disappear level by level. The remaining ones are long enough by then to cover their
 // places.
 GEOFX_INLINE bool geofx_strokeOfLine(Number level, Number wanted)
@@ -65,6 +73,14 @@ GEOFX_INLINE Length geofx_strokeReach(Length step, Number finest, Number wanted)
 GEOFX_INLINE Number geofx_strokeRandom(Number seed, Number which)
 {
     return fract(seed * (Number(61) + Number(38.6) * which) + Number(0.618034) * which);
+}
+
+// What a tree is drawn as. `share`: its height above the sea over that of the tree line. Conifers stand above broadleaves, and
+// the border between them is loose.
+GEOFX_INLINE int geofx_strokeTree(Number share, Number seed)
+{
+    return share + Number(0.4) * (geofx_strokeRandom(seed, Number(6)) - Number(0.5)) > Number(0.45) ? GEOFX_STROKE_CONIFER
+                                                                                                   : GEOFX_STROKE_TREE;
 }
 
 // The variation of one stroke.
@@ -101,6 +117,12 @@ GEOFX_INLINE geofx_StrokeShape geofx_strokeShape(int kind, Number seed)
         shape.size = Vector2(size * (Number(0.34) + Number(0.1) * slim), size * Number(0.34));
         shape.lean = Number(0.05) * turn;
     }
+    else if (kind == GEOFX_STROKE_CONIFER)
+    {
+        shape.size = Vector2(size * (Number(0.36) - Number(0.06) * slim), size * (Number(0.66) + Number(0.2) * slim));
+        shape.lean = Number(0.06) * turn;
+        shape.tone -= Number(0.12);
+    }
     else
     {
         shape.size = Vector2(size * (Number(0.46) - Number(0.08) * slim), size * (Number(0.54) + Number(0.14) * slim));
@@ -135,6 +157,14 @@ GEOFX_INLINE Number geofx_strokeInside(int kind, Vector2 point, Number seed)
         Number width = (1 - y * y) * (Number(0.75) + Number(0.25) * y);
         return width - abs(x + Number(0.2) * sin(Number(3) * y + Number(40) * seed)) -
                bristle * Number(0.5) * clamp(-y, Number(0), Number(1));
+    }
+    if (kind == GEOFX_STROKE_CONIFER)
+    {
+        // A pointed top, and branches in tiers.
+        Number down = Number(0.5) * (Number(0.95) - y);
+        Number tier = Number(0.26) * (fract(Number(3) * down + seed) - Number(0.5));
+        Number width = down * (Number(0.92) + tier + Number(0.12) * bristle);
+        return min(width - abs(x), Number(0.45) * (y + Number(0.8)));
     }
     // A drop with a ragged edge. Its foot is broader than its top.
     x = x * (Number(1.04) + Number(0.24) * y);

@@ -6,7 +6,7 @@
 // Sections 3.8 to 3.10. The effects come before the fog. If a texture has the normals, this stage computes the
 // lighting, too.
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
-#pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP, GEOFX_PAINTED)
+#pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP, GEOFX_PAINTED, GEOFX_FADING)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_NORMAL_MAP)
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE)
 #pragma import_defines(GEOFX_HDR)
@@ -18,8 +18,8 @@
 #define bounded(color) clamp(color, 0.0, 1.0)
 #endif
 
-// What is painted anew needs no light and no textures.
-#ifdef GEOFX_PAINTED
+// What is painted anew needs no light and no textures, unless the painting is only fading in.
+#if defined(GEOFX_PAINTED) && !defined(GEOFX_FADING)
 #undef GEOFX_LIGHTS
 #undef GEOFX_COLOR_SUM
 #undef GEOFX_TEXTURE_0
@@ -88,6 +88,19 @@ uniform sampler2D geofx_texture3;
 uniform sampler2D geofx_map;
 #endif
 
+#ifdef GEOFX_FOG
+vec4 fogged(vec4 color)
+{
+    // 1 linear, 2 exp, 3 exp2; 4 more if the distance comes with the vertex.
+    float distance = gl_FogFragCoord;
+    float clear = 1.0;
+    if ((GEOFX_FOG & 3) == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;
+    if ((GEOFX_FOG & 3) == 2) clear = exp(-gl_Fog.density * distance);
+    if ((GEOFX_FOG & 3) == 3) clear = exp(-gl_Fog.density * gl_Fog.density * distance * distance);
+    return vec4(mix(gl_Fog.color.rgb, bounded(color.rgb), clamp(clear, 0.0, 1.0)), color.a);
+}
+#endif
+
 void main()
 {
     vec4 primary = gl_Color;
@@ -126,19 +139,16 @@ void main()
 #ifdef GEOFX_COLOR_SUM
     color.rgb = bounded(color.rgb + secondary.rgb);
 #endif
+#if defined(GEOFX_FOG) && defined(GEOFX_PAINTED) && defined(GEOFX_FADING)
+    color = fogged(color); // a painting has no fog
+#endif
 #ifdef GEOFX_MAP
     color = geofx_fragment(color, primary * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
 #else
     color = geofx_fragment(color, vec4(0.0));
 #endif
-#ifdef GEOFX_FOG
-    // 1 linear, 2 exp, 3 exp2; 4 more if the distance comes with the vertex.
-    float distance = gl_FogFragCoord;
-    float clear = 1.0;
-    if ((GEOFX_FOG & 3) == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;
-    if ((GEOFX_FOG & 3) == 2) clear = exp(-gl_Fog.density * distance);
-    if ((GEOFX_FOG & 3) == 3) clear = exp(-gl_Fog.density * gl_Fog.density * distance * distance);
-    color.rgb = mix(gl_Fog.color.rgb, bounded(color.rgb), clamp(clear, 0.0, 1.0));
+#if defined(GEOFX_FOG) && !(defined(GEOFX_PAINTED) && defined(GEOFX_FADING))
+    color = fogged(color);
 #endif
     gl_FragColor = color;
     GEOFX_PUT_FRAGMENT_DEPTH;

@@ -10,11 +10,11 @@
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE, GEOFX_FOG, GEOFX_POINT_SIZE)
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_TEXGEN_0, GEOFX_TEXGEN_1, GEOFX_TEXGEN_2, GEOFX_TEXGEN_3)
-#pragma import_defines(GEOFX_MAP, GEOFX_PAINTED, GEOFX_NORMAL_MAP)
+#pragma import_defines(GEOFX_MAP, GEOFX_PAINTED, GEOFX_FADING, GEOFX_NORMAL_MAP)
 #pragma import_defines(GEOFX_NO_NORMAL)
 
-// What is painted anew needs no light and no textures.
-#ifdef GEOFX_PAINTED
+// What is painted anew needs no light and no textures, unless the painting is only fading in.
+#if defined(GEOFX_PAINTED) && !defined(GEOFX_FADING)
 #undef GEOFX_LIGHTS
 #undef GEOFX_COLOR_SUM
 #undef GEOFX_TEXTURE_0

@@ -24,7 +24,7 @@ geofx_Panorama SLOT_view()
     return geofx_Panorama(globe, SLOT_right.xyz, SLOT_forward.xyz, SLOT_scale.x, SLOT_scale.y, SLOT_scale.z,
                           SLOT_scale.w, SLOT_curve.x, SLOT_curve.y, SLOT_curve.z, SLOT_curve.w, SLOT_origin.w,
                           SLOT_origin.xyz, SLOT_originX.xyz, SLOT_originY.xyz, SLOT_direction.xyz,
-                          SLOT_directionX.xyz, SLOT_directionY.xyz);
+                          SLOT_directionX.xyz, SLOT_directionY.xyz, SLOT_originX.w, SLOT_originY.w, SLOT_direction.w);
 }
 
 // The place of the last position. The painting and the projection mostly ask for the same one.
@@ -43,8 +43,7 @@ vec3 SLOT_placeOf(vec3 position)
 
 vec3 SLOT_deform(vec3 position)
 {
-    geofx_Panorama view = SLOT_view();
-    return geofx_panoramaEye(view, geofx_panoramaPicture(view, SLOT_placeOf(position)));
+    return geofx_panoramaDraw(SLOT_view(), position, SLOT_placeOf(position));
 }
 
 // The ground is lit as it lies.

@@ -19,7 +19,7 @@ uniform vec4 SLOT_brushY;
 uniform vec4 SLOT_hand;   // the brush's strength, the share of its larger size, the air's strength, the scene's light
 uniform vec4 SLOT_water;  // where it is deep, the reflection's strength, the ripples', whether there is water
 uniform vec4 SLOT_window; // the viewport's corner, one over its size
-uniform vec4 SLOT_clock;  // seconds
+uniform vec4 SLOT_clock;  // seconds, the strength
 uniform vec4 SLOT_scale;
 uniform vec4 SLOT_curve;
 uniform sampler2D SLOT_edgeMap; // the distance to the end of what is known, metres
@@ -135,13 +135,13 @@ vec4 SLOT_color(vec4 color)
     return vec4(painted, clamp(SLOT_place.y / SLOT_curve.z, 0.0, 0.98));
 #else
     // What lies behind the ground shows, and the border leaves no trace.
-    if (gone.y >= 1.0) discard;
+    if (gone.y >= 1.0 && SLOT_clock.y >= 1.0) discard;
     if (gone.x > 0.0)
     {
         float paper = SLOT_edgeKind.w < GEOFX_EDGE_LAND ? 1.0 : 0.0;
         painted = mix(painted, geofx_edgeColor(SLOT_edgeSky, SLOT_edgePlace, 2.0 * picture.x - 1.0, picture.y, paper), gone.x);
     }
-    return vec4(painted, 1.0);
+    return mix(color, vec4(painted, 1.0), SLOT_clock.y);
 #endif
 #endif
 }

@@ -16,7 +16,7 @@ uniform vec4 geofx_skyCurve; // the picture's y for a metre at the base, D1, D2,
 uniform vec4 geofx_skyAxisX; // from x and s to the brush's picture: of a picture's x, of a metre, the base's
 uniform vec4 geofx_skyAxisY;
 uniform vec4 geofx_skyWater; // as in panorama.ground.frag.glsl
-uniform vec4 geofx_skyClock; // seconds, the air's strength, whether there is a reflection
+uniform vec4 geofx_skyClock; // seconds, the air's strength, whether there is a reflection, the map's strength
 uniform sampler2D geofx_skyEdge; // the distances to the end of what is known: on the ground, and where there is none
 uniform vec4 geofx_skyEdgeEye;   // as in lib/edge.glsl
 uniform vec4 geofx_skyEdgeWays;
@@ -89,6 +89,6 @@ void main()
         }
         color = mix(below, color, clamp(0.5 + 0.5 * above / edge, 0.0, 1.0));
     }
-    gl_FragColor = vec4(color, 1.0);
+    gl_FragColor = vec4(color, geofx_skyClock.w);
 #endif
 }

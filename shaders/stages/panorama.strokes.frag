@@ -10,6 +10,7 @@
 
 vec4 geofx_finish(vec4 color);
 
+uniform vec4 SLOT_stroke; // w: the share that is seen
 uniform vec4 SLOT_light; // xyz: unit vector to the light in eye space
 
 flat in vec3 SLOT_lightTone;
@@ -49,6 +50,6 @@ void main()
     if (cover < 0.5) discard;
     gl_FragColor = finished;
 #else
-    gl_FragColor = vec4(finished.rgb, 1.0) * (finished.a * cover);
+    gl_FragColor = vec4(finished.rgb, 1.0) * (finished.a * cover * SLOT_stroke.w);
 #endif
 }

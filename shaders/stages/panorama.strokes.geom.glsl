@@ -32,7 +32,7 @@ void main()
     vec2 room = vec2(1.0) + 1.0 / max(brush.xy, vec2(0.5));
     vec2 up = brush.zw * brush.y;
     vec2 across = vec2(brush.w, -brush.z) * brush.x;
-    vec2 middle = SLOT_traits_in[i].x == 1.0 || SLOT_traits_in[i].x > 2.5 ? vec2(0.0) : 0.85 * up;
+    vec2 middle = SLOT_traits_in[i].x == 1.0 || (SLOT_traits_in[i].x > 2.5 && SLOT_traits_in[i].x < 4.5) ? vec2(0.0) : 0.85 * up;
     for (int corner = 0; corner < 4; ++corner)
     {
         vec2 point = room * vec2((corner & 1) == 0 ? -1.0 : 1.0, (corner & 2) == 0 ? -1.0 : 1.0);

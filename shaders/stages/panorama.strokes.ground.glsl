@@ -48,6 +48,16 @@ float SLOT_strokeFar(vec3 position)
     return clamp(SLOT_placeOf(position).y / view.horizon, 0.0, 1.0);
 }
 
+float SLOT_strokeDepth(vec3 position)
+{
+    return SLOT_strokeView.x > 0.0 ? 0.0 : SLOT_strokeFar(position);
+}
+
+float SLOT_strokeTreeShare(vec3 position)
+{
+    return SLOT_placeOf(position).z / max(SLOT_slopes.z, 1.0);
+}
+
 // How far the ground below is gone at the end of the terrain.
 float SLOT_strokeGone(vec3 position)
 {

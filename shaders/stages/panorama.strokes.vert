@@ -16,11 +16,15 @@ float SLOT_strokeLight(vec3 eyePosition, vec3 eyeNormal, float y);
 vec3 SLOT_strokeAir(vec3 color, vec3 eyePosition);
 // 0 at the picture's base, 1 at the horizon.
 float SLOT_strokeFar(vec3 eyePosition);
+// The same in a map. Without its projection the camera's perspective makes strokes sparse: 0.
+float SLOT_strokeDepth(vec3 eyePosition);
+// The height above the sea over that of the tree line.
+float SLOT_strokeTreeShare(vec3 eyePosition);
 // The share of a stroke that is left behind the horizon.
 float SLOT_strokeShown(vec3 eyePosition);
 
 uniform vec4 SLOT_viewport;    // width and height in pixels, and one over each
-uniform vec4 SLOT_stroke;      // size and wanted spacing in pixels, step of the lattice in metres
+uniform vec4 SLOT_stroke;      // size and wanted spacing in pixels, step of the lattice in metres, the share that is seen
 uniform sampler2D SLOT_palette; // 8 rows, columns from light -1 to light 1
 
 out vec3 SLOT_lightTone_in;
@@ -54,8 +58,10 @@ void main()
     bool isLine = kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER;
 
     float groundScale = SLOT_groundScale(ground);
-    float wanted = geofx_strokeWanted(SLOT_stroke.y, SLOT_stroke.z, groundScale);
-    float size = SLOT_stroke.x * geofx_strokeGrowth(wanted);
+    float shrink = isLine ? 1.0 : geofx_strokeShrink(SLOT_strokeDepth(ground));
+    float wanted = geofx_strokeWanted(SLOT_stroke.y * shrink, SLOT_stroke.z, groundScale);
+    float size = SLOT_stroke.x * shrink * geofx_strokeGrowth(wanted);
+    if (kind == GEOFX_STROKE_TREE) kind = geofx_strokeTree(SLOT_strokeTreeShare(ground), seed);
     if (isLine)
         size *= geofx_strokeOfLine(level, wanted) ? 1.0 - 0.4 * SLOT_strokeFar(ground) : 0.0;
     else
@@ -128,6 +134,12 @@ void main()
         float contrast = (kind == GEOFX_STROKE_CLIFF ? 0.35 : 0.24) * (1.0 - 0.6 * SLOT_strokeFar(ground));
         SLOT_lightTone_in = SLOT_tone(row, light + contrast);
         SLOT_darkTone_in = SLOT_tone(row, light - contrast);
+        if (kind == GEOFX_STROKE_CONIFER)
+        {
+            // Needles are darker than leaves, and bluer.
+            SLOT_lightTone_in *= vec3(0.84, 0.90, 0.96);
+            SLOT_darkTone_in *= vec3(0.74, 0.84, 0.94);
+        }
     }
     SLOT_lightTone_in = SLOT_strokeAir(SLOT_lightTone_in, ground);
     SLOT_darkTone_in = SLOT_strokeAir(SLOT_darkTone_in, ground);

@@ -156,7 +156,8 @@ TEST(TextureUnits, AnEngineGivesThemOneByOne)
         EXPECT_NE(messages[0].find("each named once"), std::string::npos);
     }
     EXPECT_EQ(scene->getTextureUnits(), (std::vector<int>{5, 12, 31}));
-    EXPECT_EQ((new EffectScene(*scene))->getTextureUnits(), scene->getTextureUnits());
+    const osg::ref_ptr<EffectScene> copy = new EffectScene(*scene);
+    EXPECT_EQ(copy->getTextureUnits(), scene->getTextureUnits());
 }
 
 TEST(TextureUnits, EachUniformBlockHasABindingOfItsOwn)

@@ -8,6 +8,7 @@
 #include <effect/TypedSetter.h>
 #include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
@@ -233,6 +234,23 @@ inline TypedSetters regionSetters()
     };
 }
 
+inline TypedSetters libertySetters()
+{
+    using Self = osgGeoFX::RegionalLiberty;
+    using Geodetic = Two<Self, &Self::setGeodeticCenter, &Self::getLongitude, &Self::getLatitude>;
+    using Radii = Two<Self, &Self::setRadii, &Self::getAcross, &Self::getAlong>;
+    return {
+        {"centerX", component(
+                        &Self::setCenter, &Self::getCenter, [](auto& v) -> auto& { return v.x(); })},
+        {"centerY", component(
+                        &Self::setCenter, &Self::getCenter, [](auto& v) -> auto& { return v.y(); })},
+        {"longitude", Geodetic::first()},
+        {"latitude", Geodetic::second()},
+        {"across", Radii::first()},
+        {"along", Radii::second()},
+    };
+}
+
 inline TypedSetters surfaceSetters()
 {
     using Self = osgGeoFX::SurfaceData;
@@ -282,6 +300,7 @@ inline const TypedSetters& typedSetters(const std::string& kind)
             {"projectiveMapping", mappingSetters()},
             {"dataLayer", layerSetters()},
             {"colorTransfer", transferSetters()},
+            {"regionalLiberty", libertySetters()},
             {"closeUps", closeUpsSetters()},
             {"closeUp", closeUpSetters()},
             {"regionOfInterest", regionSetters()},

@@ -139,6 +139,8 @@ float SLOT_groundScale(vec3 eye) { return SLOT_scale; }
 float SLOT_strokeLight(vec3 eye, vec3 normal, float y) { return dot(normal, SLOT_light.xyz); }
 vec3 SLOT_strokeAir(vec3 color, vec3 eye) { return color; }
 float SLOT_strokeFar(vec3 eye) { return 0.0; }
+float SLOT_strokeDepth(vec3 eye) { return 0.0; }
+float SLOT_strokeTreeShare(vec3 eye) { return 0.0; }
 float SLOT_strokeShown(vec3 eye) { return 1.0; }
 )";
 const char* const fragmentStandIns = R"(
@@ -205,7 +207,7 @@ struct Map
     osg::ref_ptr<osg::Group> root = new osg::Group;
     osg::ref_ptr<osg::Geometry> strokes;
     osg::ref_ptr<osg::Uniform> scale = new osg::Uniform("test_scale", 0.1f);
-    osg::ref_ptr<osg::Uniform> stroke = new osg::Uniform("test_stroke", osg::Vec4(8.0f, 8.0f, 25.0f, 0.0f));
+    osg::ref_ptr<osg::Uniform> stroke = new osg::Uniform("test_stroke", osg::Vec4(8.0f, 8.0f, 25.0f, 1.0f));
 };
 
 Map makeMap(bool treesOnly, bool withGround)
@@ -308,9 +310,9 @@ TEST_F(PanoramaStrokes, GoWhereTheyWouldBeTooDense)
     const double near = covered(*draw(map, 1600.0, straightDown));
     EXPECT_GT(near, 0.3);
     // What is 1000 times denser on the screen than wanted is gone but for one in as many.
-    map.stroke->set(osg::Vec4(8.0f, 8.0f * 32.0f, 25.0f, 0.0f));
+    map.stroke->set(osg::Vec4(8.0f, 8.0f * 32.0f, 25.0f, 1.0f));
     EXPECT_LT(covered(*draw(map, 1600.0, straightDown)), near / 200.0);
-    map.stroke->set(osg::Vec4(0.0f, 8.0f, 25.0f, 0.0f));
+    map.stroke->set(osg::Vec4(0.0f, 8.0f, 25.0f, 1.0f));
     EXPECT_EQ(covered(*draw(map, 1600.0, straightDown)), 0.0);
 }
 
@@ -318,9 +320,9 @@ TEST_F(PanoramaStrokes, HaveTheirSizeInPixels)
 {
     const Map map = makeMap(true, false);
     // Far apart, so that they hide nothing of each other.
-    map.stroke->set(osg::Vec4(6.0f, 40.0f, 25.0f, 0.0f));
+    map.stroke->set(osg::Vec4(6.0f, 40.0f, 25.0f, 1.0f));
     const double small = covered(*draw(map, 3200.0, straightDown));
-    map.stroke->set(osg::Vec4(12.0f, 40.0f, 25.0f, 0.0f));
+    map.stroke->set(osg::Vec4(12.0f, 40.0f, 25.0f, 1.0f));
     const double large = covered(*draw(map, 3200.0, straightDown));
     EXPECT_NEAR(large / small, 4.0, 0.4);
 }
@@ -328,7 +330,7 @@ TEST_F(PanoramaStrokes, HaveTheirSizeInPixels)
 TEST_F(PanoramaStrokes, StandOnTheirFeet)
 {
     const Map map = makeMap(true, false);
-    map.stroke->set(osg::Vec4(12.0f, 40.0f, 25.0f, 0.0f));
+    map.stroke->set(osg::Vec4(12.0f, 40.0f, 25.0f, 1.0f));
     const double metres = 3200.0;
     const osg::ref_ptr<osg::Image> image = draw(map, metres, straightDown);
     const auto& vertices = static_cast<const osg::Vec3Array&>(*map.strokes->getVertexArray());

@@ -76,6 +76,29 @@ void randomizeMap(PanoramaMap& map, Random& random)
     if (random.integer(0, 3) == 0) map.setViewRadius(random.logarithmic(100.0, 2e5));
 }
 
+/// A camera as the map's contract wants it, that looks from straight down to level without a roll, with a map that is partly
+/// there.
+Case randomMix(Random& random)
+{
+    for (;;)
+    {
+        Case found;
+        found.pose = randomPose(random);
+        found.pose.roll = 0.0;
+        found.pose.pitch = random.uniform(-1.5, 0.0);
+        found.pose.shiftX = found.pose.shiftY = 0.0;
+        randomizeMap(*found.map, random);
+        found.map->setViewRadius(0.0);
+        found.map->setBaseFromTerrain(false);
+        // A map that is flatter than what the camera shows would have to fold on its way.
+        found.map->setExaggeration(random.uniform(1.0, 5.0));
+        found.map->setStrength(random.integer(0, 9) ? random.uniform(0.0, 1.0)
+                                                    : random.logarithmic(1e-4, 1.0));
+        if (found.pose.height < found.map->getBaseHeight() + 100.0 || found.pose.fieldOfView > 1.6) continue;
+        if (found.update() && (!found.pose.globe || found.panorama().horizon < 2e6)) return found;
+    }
+}
+
 Case randomCase(Random& random)
 {
     for (;;)
@@ -149,6 +172,9 @@ glslf::geofx_Panorama inFloats(const PanoramaSnapshot& frame)
     view.arch = number("curve", 3);
     view.nearest = number("origin", 3);
     view.origin = narrowed(all["origin"]);
+    view.plain = number("originX", 3);
+    view.mirrored = number("originY", 3);
+    view.water = number("direction", 3);
     view.originX = narrowed(all["originX"]);
     view.originY = narrowed(all["originY"]);
     view.direction = narrowed(all["direction"]);
@@ -518,4 +544,71 @@ TEST(Panorama, IsFiniteAtTheEndsOfTheEarth)
         if (HasFailure()) return;
     }
     EXPECT_GT(frames, sampleCount() / 2);
+}
+
+TEST(Panorama, IsAMixOfBothPicturesAtEveryStrength)
+{
+    for (int sample = 0; sample < sampleCount(); ++sample)
+    {
+        SCOPED_TRACE(sample);
+        Random random(static_cast<std::uint64_t>(sample));
+        Case found = randomMix(random);
+        const double strength = osgGeoFX::shareOf(found.map->getStrength());
+        const Vec3d place = randomPlace(found, random);
+        const Vec3d point = found.at(place.x(), place.y(), place.z());
+        const Vec3d mixed = found.frame->deform(point);
+        const glm::vec3 narrow =
+            glslf::geofx_panoramaDeform(inFloats(*found.frame), {point.x(), point.y(), point.z()});
+        found.map->setStrength(1.0);
+        ASSERT_TRUE(found.update());
+        const Vec3d expected = point * (1.0 - strength) + found.frame->deform(point) * strength;
+        EXPECT_LT((mixed - expected).length(), 1e-9 * found.scaleOf(point));
+        const double stretch = std::max(1.0, found.frame->lipschitz({point, 0.0}) / 10.0);
+        EXPECT_LT((Vec3d(osg::Vec3f(narrow.x, narrow.y, narrow.z)) - expected).length(),
+                  1e-5 * stretch * (found.scaleOf(point)));
+        if (HasFailure()) return;
+    }
+}
+
+TEST(Panorama, StaysOneToOneAndIsUndoneAtEveryStrength)
+{
+    double worst = 0.0;
+    for (int sample = 0; sample < sampleCount(); ++sample)
+    {
+        Random random(static_cast<std::uint64_t>(sample));
+        const Case found = randomMix(random);
+        Vec3d place = randomPlace(found, random);
+        place.y() = random.uniform(0.0, 0.99) * found.panorama().horizon;
+        place.x() = random.uniform(-1.0, 1.0) * found.radius();
+        const Vec3d point = found.at(place.x(), place.y(), place.z());
+        const Vec3d drawn = found.frame->deform(point);
+        // What neither picture shows may fold.
+        const Vec3d own = point * found.pose.projection();
+        const bool before = found.pose.lens == CameraPose::ORTHOGRAPHIC || point.z() < 0.0;
+        if (!before || std::max(std::abs(own.x()), std::abs(own.y())) > 1.0) continue;
+        const glm::dvec3 onMap =
+            glsl::geofx_panoramaPicture(found.panorama(), {place.x(), place.y(), place.z()});
+        if (std::max(std::abs(onMap.x), std::abs(onMap.y)) > 1.0) continue;
+        // The same for ground so far around the Earth that the camera's axis points away from it.
+        const Vec3d above = found.at(place.x(), place.y(), place.z() + 100.0) - point;
+        if (-above.z() > 2.0) continue;
+        std::ostringstream text;
+        text << "sample " << sample << ": " << describe(*found.map) << "; " << found.pose << "; place "
+             << place.x() << " " << place.y() << " " << place.z();
+        SCOPED_TRACE(text.str());
+        const double error = (found.frame->undeform(drawn) - point).length() / found.scaleOf(point);
+        worst = std::max(worst, error);
+        EXPECT_LT(error, 1e-8);
+        const double small = 1e-5 * found.scaleOf(point);
+        Vec3d columns[3];
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            Vec3d beside = point;
+            beside[axis] += small;
+            columns[axis] = (found.frame->deform(beside) - drawn) / small;
+        }
+        EXPECT_GT(columns[0] * (columns[1] ^ columns[2]), 0.0);
+        if (HasFailure()) return;
+    }
+    RecordProperty("worst_relative_error", std::to_string(worst * 1e12) + "e-12");
 }

@@ -339,7 +339,8 @@ TEST(StrokeShape, VariesWithinBounds)
     for (int i = 0; i < 2000; ++i)
     {
         const double seed = random.integer(0, 32767) / 32767.0;
-        for (const int kind : {glsl::GEOFX_STROKE_TREE, glsl::GEOFX_STROKE_CLIFF, glsl::GEOFX_STROKE_HOUSE})
+        for (const int kind : {glsl::GEOFX_STROKE_TREE, glsl::GEOFX_STROKE_CLIFF, glsl::GEOFX_STROKE_HOUSE,
+                               glsl::GEOFX_STROKE_CONIFER})
         {
             const glsl::geofx_StrokeShape shape = glsl::geofx_strokeShape(kind, seed);
             ASSERT_GT(std::min(shape.size.x, shape.size.y), 0.1);
@@ -362,6 +363,40 @@ TEST(StrokeShape, VariesWithinBounds)
         }
     }
     EXPECT_GT(most / least, 2.0);
+}
+
+TEST(StrokeShape, ConifersStandAboveBroadleavesAndPointUp)
+{
+    Random random(8);
+    const auto conifers = [&](double share)
+    {
+        int count = 0;
+        for (int i = 0; i < 1000; ++i)
+            count += glsl::geofx_strokeTree(share, random.integer(0, 32767) / 32767.0) ==
+                     glsl::GEOFX_STROKE_CONIFER;
+        return count;
+    };
+    EXPECT_EQ(conifers(0.2), 0);
+    EXPECT_EQ(conifers(0.7), 1000);
+    EXPECT_GT(conifers(0.45), 300);
+    EXPECT_LT(conifers(0.45), 700);
+    // A broadleaf is about as wide above its middle as below; a conifer is not.
+    const auto width = [](int kind, double y)
+    {
+        double x = 0.0;
+        while (x < 2.0 && glsl::geofx_strokeInside(kind, {x, y}, 0.3) > 0.0)
+            x += 0.001;
+        return x;
+    };
+    EXPECT_GT(width(glsl::GEOFX_STROKE_CONIFER, -0.5), 2.0 * width(glsl::GEOFX_STROKE_CONIFER, 0.5));
+    EXPECT_LT(width(glsl::GEOFX_STROKE_TREE, -0.5), 2.0 * width(glsl::GEOFX_STROKE_TREE, 0.5));
+}
+
+TEST(StrokeShape, IsSmallerTowardsTheHorizon)
+{
+    EXPECT_EQ(glsl::geofx_strokeShrink(0.0), 1.0);
+    EXPECT_LT(glsl::geofx_strokeShrink(1.0), 0.7);
+    EXPECT_GT(glsl::geofx_strokeShrink(0.3), glsl::geofx_strokeShrink(0.6));
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 // A ground of about 100 triangles over 100 km, split as its deformation asks for, against one of 16 times as many triangles: where they are
 // drawn, how far away, and that nothing shows through.
 #include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -68,6 +69,16 @@ osg::ref_ptr<Effect> makeEffect(const std::string& kind, Random& random)
     {
         const osg::ref_ptr<VerticalExaggeration> effect = new VerticalExaggeration;
         effect->setFactor(random.uniform(2.0, 5.0));
+        return effect;
+    }
+    if (kind == "regionalLiberty")
+    {
+        const osg::ref_ptr<RegionalLiberty> effect = new RegionalLiberty;
+        effect->setCenter({random.uniform(-8000.0, 8000.0), random.uniform(-8000.0, 8000.0)});
+        effect->setRadii(random.uniform(15000.0, 30000.0), random.uniform(15000.0, 30000.0));
+        effect->setEnlarge(random.uniform(1.5, 3.0));
+        effect->setWiden(random.uniform(0.6, 1.5));
+        effect->setTurn(random.uniform(-0.5, 0.5));
         return effect;
     }
     if (kind == "panoramaMap")
@@ -230,8 +241,8 @@ protected:
 TEST_F(MeshRefinerPicture, IsThatOfAMeshOfSixteenTimesAsManyTriangles)
 {
     const int count = fullTest() ? 100 : 3;
-    for (const char* kind :
-         {"birdsEyeView", "pedestrianView", "blendedView", "verticalExaggeration", "panoramaMap"})
+    for (const char* kind : {"birdsEyeView", "pedestrianView", "blendedView", "verticalExaggeration",
+                             "regionalLiberty", "panoramaMap"})
     {
         for (int sample = 0; sample < count && !HasFailure(); ++sample)
             compare(kind, sample);

@@ -102,11 +102,9 @@ TEST_F(EffectKeysTest, SwitchEffectsOnAndOff)
 TEST_F(EffectKeysTest, TurnTheMainPropertyOfEachKind)
 {
     const std::map<std::string, std::pair<std::string, double>> expected = {
-        {"birdsEyeView", {"horizonLine", 0.87}},
-        {"pedestrianView", {"bendAngle", 1.0471975511965976 + 0.05}},
-        {"blendedView", {"highHeight", 1725.0}},
-        {"verticalExaggeration", {"factor", 1.15}},
-        {"panoramaMap", {"exaggeration", 2.3}}};
+        {"birdsEyeView", {"horizonLine", 0.87}}, {"pedestrianView", {"bendAngle", 1.0471975511965976 + 0.05}},
+        {"blendedView", {"highHeight", 1725.0}}, {"verticalExaggeration", {"factor", 1.15}},
+        {"regionalLiberty", {"enlarge", 1.15}},  {"panoramaMap", {"exaggeration", 2.3}}};
     for (const auto& [kind, turned] : expected)
     {
         SCOPED_TRACE(kind);

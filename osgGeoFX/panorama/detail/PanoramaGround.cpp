@@ -124,7 +124,7 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
                            share.y() / std::max(view.viewportHeight, 1.0));
     put("window", {view.viewportX - (0.5 + 0.5 * low.x()) / pixel.x(),
                    view.viewportY - (0.5 + 0.5 * low.y()) / pixel.y(), pixel.x(), pixel.y()});
-    put("clock", {std::fmod(view.time, 3600.0), 0.0, 0.0, 0.0});
+    put("clock", {std::fmod(view.time, 3600.0), shareOf(_map.getStrength()), 0.0, 0.0});
 
     setTexture(state, prefix + "palette", view.units[PaletteUnit], _textures.palette(_map));
     setTexture(state, prefix + "brush", view.units[BrushUnit], _textures.brush());

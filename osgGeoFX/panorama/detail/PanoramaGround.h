@@ -28,6 +28,7 @@ public:
     }
     bool looksAtNormals() const override { return true; }
     bool repaints() const override { return true; }
+    bool fades() const override { return _map.getStrength() < 1.0; }
     bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) override;
 
 protected:

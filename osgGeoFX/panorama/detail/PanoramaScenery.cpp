@@ -12,6 +12,7 @@
 #include <osgGeoFX/scene/detail/PassStage.h>
 #include <osgGeoFX/scene/detail/TargetFormat.h>
 
+#include <osg/BlendFunc>
 #include <osg/Depth>
 #include <osg/FrameBufferObject>
 #include <osg/Notify>
@@ -167,7 +168,12 @@ struct Sky
         state.setMode(GL_DEPTH_TEST, osg::StateAttribute::ON | forced);
         state.setDefine("GEOFX_HDR", holdsBrightColors(pass.colorFormat) ? osg::StateAttribute::ON
                                                                          : osg::StateAttribute::OFF);
-        state.setMode(GL_BLEND, osg::StateAttribute::OFF | forced);
+        const bool fades = !mirrored && map.getStrength() < 1.0;
+        if (fades)
+            state.setAttribute(
+                new osg::BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA),
+                forced);
+        state.setMode(GL_BLEND, (fades ? osg::StateAttribute::ON : osg::StateAttribute::OFF) | forced);
         state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | forced);
         const bool showsMirror = reflects(map) && !mirrored;
         setTexture(state, 0, "geofx_sky", textures.sky(map));
@@ -226,7 +232,7 @@ private:
         put(state, "geofx_skyWater", map.getDeepShore(), map.getReflection(), map.getRipples(), 0.0);
         const osg::FrameStamp* stamp = pass.outer.getFrameStamp();
         put(state, "geofx_skyClock", stamp ? std::fmod(stamp->getSimulationTime(), 3600.0) : 0.0,
-            map.getAtmosphere(), reflects(map) ? 1.0 : 0.0, 0.0);
+            map.getAtmosphere(), reflects(map) ? 1.0 : 0.0, shareOf(map.getStrength()));
     }
 };
 

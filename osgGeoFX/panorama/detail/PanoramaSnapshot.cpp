@@ -104,6 +104,7 @@ std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const Vie
     panorama.arch = 2.0 * map.getHorizonBend();
     panorama.nearest = radius * (perspective ? wide : 1.0);
     setRays(panorama, view);
+    panorama.plain = 1.0 - shareOf(map.getStrength());
     if (!finite(panorama)) return std::nullopt;
     return panorama;
 }
@@ -122,10 +123,89 @@ osg::Vec3d PanoramaSnapshot::deform(const osg::Vec3d& position) const
 
 osg::Vec3d PanoramaSnapshot::undeform(const osg::Vec3d& position) const
 {
+    if (_view.plain > 0.0) return undeformMixed(position);
     // Nothing is seen at the eye or behind it.
     osg::Vec3d before = position;
     before.z() = std::min(before.z(), _view.origin.z - leastDistance * _view.nearest);
     return toOsg(glsl::geofx_panoramaUndeform(_view, toGlm(before)));
+}
+
+/// By Newton's method. Between the map and the camera's own perspective the shares change in small steps, so that each
+/// solution is near the next. Far from what either shows, two places may be drawn at one: then the one that the map shows is
+/// meant, and else the one from the nearer end.
+osg::Vec3d PanoramaSnapshot::undeformMixed(const osg::Vec3d& position) const
+{
+    const double small = 1e-9 * std::max(position.length(), 1.0);
+    glsl::geofx_Panorama whole = _view;
+    whole.plain = 0.0;
+    const osg::ref_ptr<const PanoramaSnapshot> map = new PanoramaSnapshot(whole, _viewDistance);
+    const double nearer = _view.plain < 0.5 ? 0.0 : 1.0;
+    osg::Vec3d best;
+    double least = HUGE_VAL;
+    for (const double from : {nearer, 1.0 - nearer})
+    {
+        osg::Vec3d found = from == 1.0 ? position : map->undeform(position);
+        const double error = follow(position, from, found);
+        const glm::dvec3 place = glsl::geofx_panoramaPlace(_view, toGlm(found));
+        const glm::dvec3 picture = glsl::geofx_panoramaPicture(_view, place);
+        const bool shown = std::abs(picture.x) <= beside && std::abs(picture.y) <= beside && place.y >= 0.0 &&
+                           place.y <= _view.horizon;
+        if (error < small && shown) return found;
+        if (!(error < least) || least < small) continue;
+        best = found;
+        least = error;
+    }
+    return best;
+}
+
+/// Changes `found`, which lies at a position with the plain share `from`, to what lies there with the view's own. Returns how
+/// far it misses.
+double PanoramaSnapshot::follow(const osg::Vec3d& position, double from, osg::Vec3d& found) const
+{
+    constexpr int shares = 16;
+    constexpr int steps = 8;
+    constexpr int lastSteps = 40;
+    const double scale = std::max(position.length(), 1.0);
+    glsl::geofx_Panorama view = _view;
+    const auto missed = [&](const osg::Vec3d& at)
+    {
+        return position - toOsg(glsl::geofx_panoramaDeform(view, toGlm(at)));
+    };
+    osg::Vec3d error;
+    for (int share = 1; share <= shares; ++share)
+    {
+        view.plain = from + (_view.plain - from) * share / shares;
+        error = missed(found);
+        for (int step = 0; step < (share < shares ? steps : lastSteps); ++step)
+        {
+            if (error.length() < 1e-12 * scale) break;
+            const double small = 1e-6 * std::max(found.length(), scale);
+            osg::Vec3d columns[3];
+            for (int axis = 0; axis < 3; ++axis)
+            {
+                osg::Vec3d before = found, after = found;
+                before[axis] -= small;
+                after[axis] += small;
+                columns[axis] = (missed(before) - missed(after)) / (2.0 * small);
+            }
+            const osg::Vec3d normal = columns[1] ^ columns[2];
+            const double volume = columns[0] * normal;
+            if (!(std::abs(volume) > 0.0)) break;
+            osg::Vec3d move(error * normal / volume, error * (columns[2] ^ columns[0]) / volume,
+                            error * (columns[0] ^ columns[1]) / volume);
+            // A step too far is halved.
+            osg::Vec3d left = missed(found + move);
+            for (int half = 0; half < 20 && !(left.length2() < error.length2()); ++half)
+            {
+                move *= 0.5;
+                left = missed(found + move);
+            }
+            if (!(left.length2() < error.length2())) break;
+            found += move;
+            error = left;
+        }
+    }
+    return error.length();
 }
 
 /// What bounds need of a ball: its place, and the largest change of the place over a metre within it.
@@ -178,6 +258,13 @@ PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
     return extent;
 }
 
+/// The largest factor by which a distance grows in the camera's own perspective. Turning over at a curved surface stretches.
+double PanoramaSnapshot::ownStretch(const Extent& extent) const
+{
+    if (!(_view.mirrored > 0.0)) return 1.0;
+    return 1.0 + 2.0 * _view.globe.curvature * (extent.height + std::abs(_view.base - _view.water));
+}
+
 double PanoramaSnapshot::lipschitz(const Ball& ball) const
 {
     const Extent extent = extentOf(ball);
@@ -193,7 +280,8 @@ double PanoramaSnapshot::lipschitz(const Ball& ball) const
     const double awayEye =
         extent.stretch * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
                           reachY * glm::length(_view.directionY));
-    return std::max(1.0, std::hypot(acrossEye, upEye) + awayEye);
+    const double map = std::hypot(acrossEye, upEye) + awayEye;
+    return std::max(1.0, _view.plain * ownStretch(extent) + (1.0 - _view.plain) * map);
 }
 
 DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3d& edge) const
@@ -230,8 +318,11 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
     const double sideY = glm::length(_view.originY) + extent.n * glm::length(_view.directionY);
     const double away = glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
                         reachY * glm::length(_view.directionY);
-    const double curve = x2 * sideX + y2 * sideY + n2 * away +
-                         2.0 * n1 * (x1 * glm::length(_view.directionX) + y1 * glm::length(_view.directionY));
+    const double own = _view.plain * _view.mirrored * 2.0 * extent.curvature * length * length;
+    const double map = 1.0 - _view.plain;
+    const double curve =
+        own + map * (x2 * sideX + y2 * sideY + n2 * away +
+                     2.0 * n1 * (x1 * glm::length(_view.directionX) + y1 * glm::length(_view.directionY)));
     // Where the ground falls away behind the Earth, the projection has a kink.
     if (extent.turned > mostTurned) return {curve, lipschitz(ball) * length};
     // The error is nowhere larger than the ball's size in the picture.
@@ -246,7 +337,7 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
     const double most = apartX * sideX + apartY * sideY +
                         apartN * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
                                   mostY * glm::length(_view.directionY));
-    return {curve, 0.0, most};
+    return {curve, 0.0, own + map * most};
 }
 
 osg::ref_ptr<const PanoramaSnapshot> PanoramaSnapshot::mirrored(double level, double detail) const
@@ -254,6 +345,8 @@ osg::ref_ptr<const PanoramaSnapshot> PanoramaSnapshot::mirrored(double level, do
     glsl::geofx_Panorama view = _view;
     view.lift = -view.lift;
     view.base = 2.0 * level - view.base;
+    view.mirrored = 1.0;
+    view.water = level;
     return new PanoramaSnapshot(view, _viewDistance / detail);
 }
 
@@ -293,6 +386,8 @@ bool PanoramaSnapshot::isAroundTheEarth(const Ball& ball, const osg::Vec2d& room
 bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
 {
     if (isAroundTheEarth(ball, room)) return true;
+    // What the map's picture leaves out may be in the camera's.
+    if (_view.plain > 0.0) return false;
     const Extent extent = extentOf(ball);
     const double nearS = extent.place.y - extent.reach;
     const double farS = extent.place.y + extent.reach;
@@ -308,6 +403,7 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
 {
     const Ball ball = box.ball();
     if (hides(ball, room)) return true;
+    if (_view.plain > 0.0) return false;
     const Extent extent = extentOf(ball);
     if (extent.turned > mostTurned) return false;
     // Places within the box lie between those of its corners, except for the ground's curve.
@@ -346,9 +442,15 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     return foot > beside + room.y();
 }
 
-std::optional<double> PanoramaSnapshot::viewDistance(const Ball&) const
+std::optional<double> PanoramaSnapshot::viewDistance(const Ball& ball) const
 {
-    return _viewDistance;
+    if (!(_view.plain > 0.0)) return _viewDistance;
+    // Both pictures mix as their places in eye space do: the sizes by their shares, and so the distances.
+    const double own = std::max(ball.center.length() - ball.radius, 0.0);
+    const Extent extent = extentOf(ball);
+    const double map = 1.0 - _view.plain;
+    const double away = _view.plain * own + map * extent.n;
+    return away / (_view.plain + map * extent.n / _viewDistance);
 }
 
 DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
@@ -362,9 +464,9 @@ DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
         {"scale", {_view.across, _view.along, _view.lift, _view.base}},
         {"curve", {_view.curve, _view.horizon, _view.end, _view.arch}},
         {"origin", vec4(_view.origin, _view.nearest)},
-        {"originX", vec4(_view.originX, 0.0)},
-        {"originY", vec4(_view.originY, 0.0)},
-        {"direction", vec4(_view.direction, 0.0)},
+        {"originX", vec4(_view.originX, _view.plain)},
+        {"originY", vec4(_view.originY, _view.mirrored)},
+        {"direction", vec4(_view.direction, _view.water)},
         {"directionX", vec4(_view.directionX, 0.0)},
         {"directionY", vec4(_view.directionY, 0.0)},
     };

@@ -15,6 +15,13 @@ class PanoramaMap;
 /// The projection of a panorama map for a camera. Nothing if the camera has no heading or shows nothing.
 std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const ViewGeometry& view);
 
+/// The share of a map in the picture, from its strength: both are 0 and 1 together. The end is slower than the beginning, since
+/// the map's own heights and colors change a picture more than the camera's.
+inline double shareOf(double strength)
+{
+    return strength * (1.35 - 0.35 * strength);
+}
+
 /// The tree line of a latitude (radians), metres.
 inline double treeLineAt(double latitude)
 {
@@ -56,6 +63,9 @@ private:
     bool isAroundTheEarth(const Ball& ball, const osg::Vec2d& room) const;
     struct Extent;
     Extent extentOf(const Ball& ball) const;
+    double ownStretch(const Extent& extent) const;
+    osg::Vec3d undeformMixed(const osg::Vec3d& position) const;
+    double follow(const osg::Vec3d& position, double from, osg::Vec3d& found) const;
 
     glsl::geofx_Panorama _view;
     double _viewDistance;

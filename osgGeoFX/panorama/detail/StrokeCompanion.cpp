@@ -101,7 +101,8 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
             ->set(osg::Vec4(osg::Vec4d(x, y, z, w)));
     };
     put("viewport", viewport->width(), viewport->height(), 1.0 / viewport->width(), 1.0 / viewport->height());
-    put("stroke", map.getStrokeSize(), map.getStrokeSpacing(), map.getStrokeStep(), 0.0);
+    put("stroke", map.getStrokeSize(), map.getStrokeSpacing(), map.getStrokeStep(),
+        shareOf(map.getStrength()));
     put("strokeView",
         map.getProjection() ? 0.0 : 0.5 * viewport->height() * std::abs(pass.view.image.projection(1, 1)),
         picture.x(), picture.y(), 0.0);

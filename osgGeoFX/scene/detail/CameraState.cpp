@@ -41,7 +41,7 @@ EffectsAtWork::EffectsAtWork(const EffectProgram::Effects& effects) : _work(effe
     const Effect* projection = nullptr;
     for (std::size_t i = 0; i < effects.size(); ++i)
     {
-        _work[i] = effects[i]->getEnabled();
+        _work[i] = effects[i]->isActive();
         const Deformation* deformation = effects[i]->asDeformation();
         if (!_work[i] || !deformation || !deformation->isProjection()) continue;
         if (projection)
@@ -168,6 +168,7 @@ bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const Effe
 {
     bool any = false;
     bool repainted = false;
+    bool fading = false;
     const osg::Viewport* viewport = outer.getViewport();
     const osg::FrameStamp* stamp = outer.getFrameStamp();
     for (std::size_t i = 0; i < effects.size(); ++i)
@@ -187,8 +188,10 @@ bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const Effe
         setDefine(*_set, EffectProgram::surfaceDefine(i), draws);
         any = any || draws;
         repainted = repainted || (draws && surface->repaints());
+        fading = fading || (draws && surface->repaints() && surface->fades());
     }
     setDefine(*_set, "GEOFX_PAINTED", repainted);
+    setDefine(*_set, "GEOFX_FADING", fading);
     return any;
 }
 

@@ -24,14 +24,14 @@ namespace
 bool drawsPasses(const SceneDrawing::Effects& effects)
 {
     return std::any_of(effects.begin(), effects.end(),
-                       [](const auto& each) { return each->getEnabled() && each->asPassEffect(); });
+                       [](const auto& each) { return each->isActive() && each->asPassEffect(); });
 }
 
 /// Whether there are enabled effects that move geometry, be it for this camera or for others.
 bool deforms(const SceneDrawing::Effects& effects)
 {
     return std::any_of(effects.begin(), effects.end(),
-                       [](const auto& each) { return each->getEnabled() && each->asDeformation(); });
+                       [](const auto& each) { return each->isActive() && each->asDeformation(); });
 }
 
 int mapUnitOf(const SceneDrawing::Effects& effects)
@@ -39,7 +39,7 @@ int mapUnitOf(const SceneDrawing::Effects& effects)
     for (const auto& effect : effects)
     {
         const Deformation* deformation = effect->asDeformation();
-        if (deformation && effect->getEnabled() && deformation->mapUnit() >= 0) return deformation->mapUnit();
+        if (deformation && effect->isActive() && deformation->mapUnit() >= 0) return deformation->mapUnit();
     }
     return -1;
 }
@@ -59,7 +59,7 @@ bool lookAtNormals(const SceneDrawing::Effects& effects)
                        [](const auto& each)
                        {
                            const SurfaceEffect* surface = each->asSurfaceEffect();
-                           return each->getEnabled() && surface && surface->looksAtNormals();
+                           return each->isActive() && surface && surface->looksAtNormals();
                        });
 }
 
@@ -354,9 +354,8 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
     const CameraDepth depth(special && special->getDepthConvention() ? *special->getDepthConvention()
                                                                      : scene.getDepthConvention(),
                             *outer.getProjectionMatrix());
-    const bool wanted =
-        depth.logarithmic() ||
-        std::any_of(shown.begin(), shown.end(), [](const auto& each) { return each->getEnabled(); });
+    const bool wanted = depth.logarithmic() || std::any_of(shown.begin(), shown.end(),
+                                                           [](const auto& each) { return each->isActive(); });
     const std::optional<CameraRole> role = wanted ? roleOf(scene, outer, special) : std::nullopt;
     if (!role) return false;
     if (scene.getCompensation()) completeBounds(scene, top, outer.getFrameStamp());

@@ -24,7 +24,7 @@ bool deforms(const EffectScene& scene)
 {
     for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
     {
-        if (scene.getEffect(i)->getEnabled() && scene.getEffect(i)->asDeformation()) return true;
+        if (scene.getEffect(i)->isActive() && scene.getEffect(i)->asDeformation()) return true;
     }
     return false;
 }

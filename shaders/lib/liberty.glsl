@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The liberties that painters of maps take: a region enlarged, widened or turned, and the ground around it as it was.
+#ifndef __cplusplus
+#include "lib/types.glsl"
+#endif
+
+// Local places are (across, along, up) from the region's center at height 0, metres; the ground below a place lies on a
+// paraboloid. Each of the movements takes a plane or a line onto itself and keeps the border, so all together stay one to one.
+struct geofx_Liberty
+{
+    Position center; // at height 0
+    Vector3 across;  // unit vectors
+    Vector3 along;
+    Vector3 up;
+    Length acrossRadius; // half the region's width
+    Length alongRadius;
+    PerMetre curvature; // of the ground at height 0
+    Length base;        // the height that stays
+    Number enlarge;     // what is added to the factor of heights, 1, in the middle; > -1
+    Number widen;       // and to that of widths across, -0.9 to 1.2
+    Number lengthen;    // and along, -0.9 to 1.2
+    Angle turn;         // of the middle, clockwise from above
+};
+
+// The share of the effect at a squared distance from the middle, 1 at the border.
+GEOFX_INLINE Number geofx_libertyShare(Number squared)
+{
+    Number left = max(1 - squared, Number(0));
+    return left * left;
+}
+
+GEOFX_INLINE Vector3 geofx_libertyLocal(geofx_Liberty view, Position position)
+{
+    Vector3 away = position - view.center;
+    return Vector3(dot(away, view.across), dot(away, view.along), dot(away, view.up));
+}
+
+// How far a local place moves: not at all outside the region, and on the other side of the Earth.
+GEOFX_INLINE Vector3 geofx_libertyWay(geofx_Liberty view, Vector3 local)
+{
+    Number x = local.x / view.acrossRadius;
+    Number y = local.y / view.alongRadius;
+    Number squared = x * x + y * y;
+    if (squared >= 1 || view.curvature * local.z < Number(-0.5)) return Vector3(0, 0, 0);
+    Number share = geofx_libertyShare(squared);
+    Number c = cos(view.turn * share);
+    Number s = sin(view.turn * share);
+    Number turnedX = c * x + s * y;
+    Number turnedY = c * y - s * x;
+    Number wide = turnedX * (1 + view.widen * share);
+    Number deep = turnedY * (1 + view.lengthen * geofx_libertyShare(wide * wide + turnedY * turnedY));
+    Length acrossWay = (wide - x) * view.acrossRadius;
+    Length alongWay = (deep - y) * view.alongRadius;
+    Length height = local.z + view.curvature / 2 * (local.x * local.x + local.y * local.y);
+    Length upWay = view.enlarge * share * (height - view.base) -
+                   view.curvature / 2 * (acrossWay * (2 * local.x + acrossWay) + alongWay * (2 * local.y + alongWay));
+    return Vector3(acrossWay, alongWay, upWay);
+}
+
+GEOFX_INLINE Position geofx_liberty(geofx_Liberty view, Position position)
+{
+    Vector3 way = geofx_libertyWay(view, geofx_libertyLocal(view, position));
+    return position + way.x * view.across + way.y * view.along + way.z * view.up;
+}
+
+// The derivative of a local place's movement by one of its coordinates, from both sides.
+GEOFX_INLINE Vector3 geofx_libertySlope(geofx_Liberty view, Vector3 local, Vector3 step)
+{
+    return (geofx_libertyWay(view, local + step) - geofx_libertyWay(view, local - step)) / (2 * length(step));
+}
+
+// The deformed unit normal of a surface.
+GEOFX_INLINE Vector3 geofx_libertyNormal(geofx_Liberty view, Position position, Vector3 normal)
+{
+    Vector3 local = geofx_libertyLocal(view, position);
+    Length step = Number(0.0005) * min(view.acrossRadius, view.alongRadius);
+    Vector3 x = geofx_libertySlope(view, local, Vector3(step, 0, 0)) + Vector3(1, 0, 0);
+    Vector3 y = geofx_libertySlope(view, local, Vector3(0, step, 0)) + Vector3(0, 1, 0);
+    Vector3 z = geofx_libertySlope(view, local, Vector3(0, 0, step)) + Vector3(0, 0, 1);
+    Vector3 turned = dot(normal, view.across) * cross(y, z) + dot(normal, view.along) * cross(z, x) +
+                     dot(normal, view.up) * cross(x, y);
+    return normalize(turned.x * view.across + turned.y * view.along + turned.z * view.up);
+}
