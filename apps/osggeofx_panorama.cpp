@@ -50,7 +50,7 @@ struct Arguments
     std::vector<std::string> sources;
     std::string output, size, viewFrom, focus, place, palette, recipe, work, vertical, pick;
     std::string landCover, landCoverTable, treeCover;
-    std::optional<double> width, exaggeration, horizonLine, horizonDistance;
+    std::optional<double> around, width, exaggeration, horizonLine, horizonDistance;
     std::optional<unsigned int> samples;
     std::vector<std::string> settings;
     bool explain = false, quiet = false;
@@ -76,6 +76,12 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("SIDE|LON,LAT");
     app.add_option("--focus", arguments.focus, "A place to be seen in the middle of the picture")
         ->type_name("LON,LAT");
+    app.add_option("--around", arguments.around,
+                   "A cylindrical strip: so many degrees of the horizon around a place, such as 360. "
+                   "--view-from LON,LAT "
+                   "says where the viewer stands")
+        ->check(CLI::Range(1.0, 360.0))
+        ->type_name("DEGREES");
     app.add_option("--width", arguments.width, "Width of the ground at the picture's base, metres")
         ->check(CLI::PositiveNumber)
         ->type_name("METRES");
@@ -132,6 +138,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
         "Examples:\n"
         "  osggeofx_panorama alps.tif -o alps.png\n"
         "  osggeofx_panorama n46.tif n47.tif --view-from north --palette winter --size 3200x1800 -o ski.png\n"
+        "  osggeofx_panorama alps.tif --around 360 --view-from 7.66,45.98 -o ring.png\n"
         "  osggeofx_panorama alps.json -o again.png");
 }
 
@@ -180,6 +187,7 @@ PanoramaWishes wishesOf(const Arguments& arguments, const Recipe& recipe)
     wishes.exaggeration = arguments.exaggeration;
     wishes.horizonLine = arguments.horizonLine;
     wishes.horizonDistance = arguments.horizonDistance;
+    wishes.horizontalAngle = osg::DegreesToRadians(arguments.around.value_or(0.0));
     return wishes;
 }
 
@@ -381,15 +389,21 @@ void run(const Arguments& arguments)
     {
         recipe = Recipe::read(arguments.sources.front());
         if (!arguments.viewFrom.empty() || !arguments.focus.empty() || arguments.width ||
-            arguments.exaggeration || arguments.horizonLine || arguments.horizonDistance)
-            throw Failure(
-                "A recipe has its view already; leave --view-from, --focus, --width, --exaggeration, "
-                "--horizon-line and --horizon-distance out, or change the recipe.");
+            arguments.exaggeration || arguments.horizonLine || arguments.horizonDistance || arguments.around)
+            throw Failure("A recipe has its view already; leave --view-from, --focus, --around, --width, "
+                          "--exaggeration, "
+                          "--horizon-line and --horizon-distance out, or change the recipe.");
     }
     else if (arguments.sources.size() == 1 && Recipe::isTerrain(arguments.sources.front()))
         recipe.terrain = arguments.sources.front();
     else
         recipe.dems = arguments.sources;
+    if (arguments.around)
+    {
+        // A strip is long. 360 degrees are as wide as the screens that people join.
+        recipe.width = static_cast<int>(std::lround(std::clamp(10.0 * *arguments.around, 960.0, 3600.0)));
+        recipe.height = 720;
+    }
     takeOptions(arguments, recipe);
     const PanoramaWishes wishes = wishesOf(arguments, recipe);
     if (!arguments.pick.empty()) pairOf("--pick", arguments.pick);

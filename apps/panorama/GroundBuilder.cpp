@@ -50,9 +50,17 @@ std::vector<osg::Vec2d> placesOf(const osgGeoFX::PanoramaComposition& view)
     {
         for (int column = 0; column <= steps; ++column)
         {
-            const double x = beside * (2.0 * column / steps - 1.0) * view.viewRadius;
-            const double s = (behind * view.horizonDistance * row / steps - before * (steps - row) / steps) *
-                             view.viewRadius;
+            double x = beside * (2.0 * column / steps - 1.0) * view.viewRadius;
+            double s = (behind * view.horizonDistance * row / steps - before * (steps - row) / steps) *
+                       view.viewRadius;
+            if (view.horizontalAngle > 0.0)
+            {
+                // All around the place.
+                const double ring = 2.0 * view.viewRadius / view.horizontalAngle;
+                const double away = std::max(ring + s, 0.0), azimuth = x / ring;
+                x = away * std::sin(azimuth);
+                s = away * std::cos(azimuth);
+            }
             const double east = x * std::cos(view.heading) + s * std::sin(view.heading);
             const double north = s * std::cos(view.heading) - x * std::sin(view.heading);
             // Along a great circle.

@@ -54,6 +54,7 @@ void forValues(View& view, const Action& action)
     action("exaggeration", view.exaggeration);
     action("baseHeight", view.baseHeight);
     action("edgeWidth", view.edgeWidth);
+    action("horizontalAngle", view.horizontalAngle);
 }
 
 } // namespace
@@ -100,7 +101,16 @@ Recipe Recipe::read(const std::string& file)
         const Json& view = json.at("view");
         recipe.view.place.set(view.at("place").at(0).get<double>(), view.at("place").at(1).get<double>());
         recipe.view.heading = view.at("heading").get<double>();
-        forValues(recipe.view, [&](const char* name, double& value) { value = view.at(name).get<double>(); });
+        // Recipes of rectangles need not say that they are no part of a turn.
+        const auto mayLack = [](const std::string& name)
+        {
+            return name == "horizontalAngle";
+        };
+        forValues(recipe.view,
+                  [&](const char* name, double& value)
+                  {
+                      if (view.contains(name) || !mayLack(name)) value = view.at(name).get<double>();
+                  });
         recipe.map = json.at("map").get<std::map<std::string, std::string>>();
     }
     catch (const nlohmann::json::exception& error)

@@ -175,6 +175,7 @@ void MapSaver::writeRecipe(const PanoramaMap& map, const Pose& pose, const osg::
     recipe.view.viewRadius = pose.radius;
     recipe.view.horizonLine = map.getHorizonLine();
     recipe.view.curveDistance = map.getCurveDistance();
+    recipe.view.horizontalAngle = map.getHorizontalAngle();
     recipe.view.horizonDistance = map.getHorizonDistance();
     recipe.view.horizonBend = map.getHorizonBend();
     recipe.view.exaggeration = map.getExaggeration();
@@ -185,8 +186,8 @@ void MapSaver::writeRecipe(const PanoramaMap& map, const Pose& pose, const osg::
     if (map.getBaseFromTerrain() && ground.heightsKnown)
         recipe.view.baseHeight = std::max(recipe.view.baseHeight, ground.minHeight);
     static const std::set<std::string> ofView = {
-        "enabled",     "viewRadius",   "horizonLine", "curveDistance", "horizonDistance",
-        "horizonBend", "exaggeration", "baseHeight",  "edgeWidth",     "baseFromTerrain"};
+        "enabled",      "viewRadius", "horizonLine", "curveDistance",   "horizonDistance", "horizonBend",
+        "exaggeration", "baseHeight", "edgeWidth",   "baseFromTerrain", "horizontalAngle"};
     for (const Property& property : map.properties())
     {
         const double value = property.get(map);

@@ -12,6 +12,7 @@
 #include <osgGeoFX/viewer/EffectPanel.h>
 #include <osgGeoFX/viewer/HelpPage.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
+#include <osgGeoFX/viewer/PictureParts.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
 
 #include <osg/Math>
@@ -131,6 +132,7 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     viewer.addEventHandler(new osgViewer::LODScaleHandler);
     viewer.addEventHandler(new osgViewer::ScreenCaptureHandler);
     viewer.addEventHandler(new osgGeoFX::LodScaleFollower(scene));
+    viewer.addEventHandler(osgGeoFX::makePartsHandler(*scene.effects));
 
     std::vector<osgGeoFX::HelpPage::Group> groups;
     const auto add = [&](const std::string& title, osgGA::GUIEventHandler* handler)

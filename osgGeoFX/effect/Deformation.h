@@ -191,6 +191,9 @@ public:
     /// do. Two of them do not compose: a camera shows the first one of the scene's list that is switched on. The others are
     /// left out with all that they draw, and a warning says so once.
     virtual bool isProjection() const { return false; }
+    /// The least number of cameras, side by side, that draw a whole picture of it; 1 by default. Such cameras draw parts of one
+    /// view (ViewGeometry::image).
+    virtual unsigned int leastParts() const { return 1; }
     /// The texture unit of a map that the context shows instead of its colors; −1, the default, for none.
     virtual int mapUnit() const { return -1; }
 

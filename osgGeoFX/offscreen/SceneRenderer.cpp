@@ -6,6 +6,8 @@
 #include <osgGeoFX/offscreen/LeastTriangles.h>
 #include <osgGeoFX/offscreen/detail/DrawnLeaves.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
+#include <osgGeoFX/viewer/Overlay.h>
+#include <osgGeoFX/viewer/PictureParts.h>
 
 #include <osg/Group>
 #include <osg/Stats>
@@ -107,7 +109,8 @@ struct SceneRenderer::Parts
     Options options;
     osg::ref_ptr<StillViewer> viewer;
     osg::ref_ptr<ImageCapture> capture;
-    osg::ref_ptr<CountCallback> counter;
+    std::vector<osg::ref_ptr<osg::Camera>> cameras; ///< that draw, side by side
+    std::vector<osg::ref_ptr<CountCallback>> counters;
     std::unique_ptr<PagerMonitor> monitor;
     std::unique_ptr<LeastTriangles> least;
     osg::ref_ptr<EffectScene> effects;
@@ -136,14 +139,26 @@ void SceneRenderer::Parts::setUpCamera(const Scene& scene, osg::GraphicsContext&
     {
         camera.setCullingMode(osg::CullSettings::NO_CULLING);
     }
-    camera.setStats(new osg::Stats("Camera"));
-    camera.getStats()->collectStats("rendering", true);
-    if (options.countTriangles)
+    cameras = drawInParts(*viewer, leastPartsOf(*scene.effects));
+    osg::ref_ptr<osg::Camera> last = &camera;
+    if (cameras.empty())
+        cameras.push_back(last);
+    else
     {
-        counter = new CountCallback;
-        camera.addInitialDrawCallback(counter.get());
+        // It draws nothing, after all others, and so has all of the picture before it.
+        last = makeOverlay(options.width, options.height);
+        last->setViewport(0, 0, options.width, options.height);
+        attachOverlay(*viewer, *last);
     }
-    capture = ImageCapture::attach(&camera, options.format);
+    for (const osg::ref_ptr<osg::Camera>& each : cameras)
+    {
+        each->setStats(new osg::Stats("Camera"));
+        each->getStats()->collectStats("rendering", true);
+        if (!options.countTriangles) continue;
+        counters.push_back(new CountCallback);
+        each->addInitialDrawCallback(counters.back().get());
+    }
+    capture = ImageCapture::attach(last, options.format);
 }
 
 void SceneRenderer::Parts::setUpScene(const Scene& scene)
@@ -180,19 +195,23 @@ osg::ref_ptr<osg::Image> SceneRenderer::Parts::frame(double time, FrameStatistic
     osg::ref_ptr<osg::Image> image = capture->take();
     statistics.totalMilliseconds = 1000.0 * secondsSince(start);
 
-    osg::Stats& stats = *viewer->getCamera()->getStats();
     const unsigned int number = viewer->getFrameStamp()->getFrameNumber();
-    double cull = 0.0;
-    double draw = 0.0;
-    stats.getAttribute(number, "Cull traversal time taken", cull);
-    stats.getAttribute(number, "Draw traversal time taken", draw);
-    statistics.cullMilliseconds = 1000.0 * cull;
-    statistics.drawMilliseconds = 1000.0 * draw;
-    if (counter)
+    statistics.cullMilliseconds = statistics.drawMilliseconds = 0.0;
+    for (const osg::ref_ptr<osg::Camera>& each : cameras)
     {
-        statistics.triangles = counter->leaves.triangles;
-        statistics.drawables = counter->leaves.drawables;
-        statistics.tilesDrawn = counter->leaves.tiles;
+        double cull = 0.0;
+        double draw = 0.0;
+        each->getStats()->getAttribute(number, "Cull traversal time taken", cull);
+        each->getStats()->getAttribute(number, "Draw traversal time taken", draw);
+        statistics.cullMilliseconds += 1000.0 * cull;
+        statistics.drawMilliseconds += 1000.0 * draw;
+    }
+    statistics.triangles = statistics.drawables = statistics.tilesDrawn = 0;
+    for (const osg::ref_ptr<CountCallback>& each : counters)
+    {
+        statistics.triangles += each->leaves.triangles;
+        statistics.drawables += each->leaves.drawables;
+        statistics.tilesDrawn += each->leaves.tiles;
     }
     return image;
 }

@@ -77,7 +77,7 @@ public:
     osg::ref_ptr<osg::Image> render(const osg::Matrixd& view, double time, FrameStatistics& statistics,
                                     std::string& error);
 
-    /// The camera as the last image had it, for a DeformedView that tells what pixels show.
+    /// The camera as the last image had it, of the whole image even if several cameras draw parts of it, for a DeformedView that tells what pixels show.
     const osg::Camera& camera() const;
     const std::string& rendererName() const;
     const std::string& glVersion() const;

@@ -38,7 +38,9 @@ constexpr double littleBlank = 0.0003;
 constexpr double lowestLine = 0.64, highestLine = 0.84;
 constexpr double leastSky = 0.12, mostSky = 0.30;
 /// The ground before the picture's base that may rise into it, in view radii.
-constexpr double before = 1.0;
+constexpr double beforeBase = 1.0;
+/// The same in a cylindrical map, of the way from the base to the eye's foot.
+constexpr double leastWay = 0.7;
 /// Where a wish for a focus puts it, of the horizon's distance.
 constexpr double focusAt = 0.4;
 /// The horizon of a map lies no farther than 60 degrees of arc.
@@ -48,10 +50,12 @@ constexpr double farthest = 6e6;
 struct Curve
 {
     Curve(const PanoramaComposition& composition, double aspect)
-        : radius(composition.viewRadius), curve(composition.curveDistance * radius),
-          horizon(composition.horizonDistance * radius), end(endOfHeights * horizon),
-          along(4.0 * composition.horizonLine / (curve + horizon)), lift(aspect / radius),
-          arch(2.0 * composition.horizonBend), base(composition.baseHeight)
+        : radius(composition.viewRadius),
+          ring(composition.horizontalAngle > 0.0 ? 2.0 * radius / composition.horizontalAngle : 0.0),
+          before(ring > 0.0 ? std::min(leastWay * ring, radius) : beforeBase * radius),
+          curve(composition.curveDistance * radius), horizon(composition.horizonDistance * radius),
+          end(endOfHeights * horizon), along(4.0 * composition.horizonLine / (curve + horizon)),
+          lift(aspect / radius), arch(2.0 * composition.horizonBend), base(composition.baseHeight)
     {
     }
 
@@ -67,10 +71,13 @@ struct Curve
     double raised(double height, double s) const
     {
         const double t = std::clamp(1.0 - (s - horizon) / std::max(end - horizon, 1e-3), 0.0, 1.0);
-        return 0.5 * lift * (height - base) * t * t * (3.0 - 2.0 * t);
+        const double width = ring > 0.0 ? ring / (ring + std::max(s, 0.0)) : 1.0;
+        return 0.5 * lift * width * (height - base) * t * t * (3.0 - 2.0 * t);
     }
+    /// How much wider than at the base a column is at a distance s.
+    double widening(double s) const { return ring > 0.0 ? std::max(ring + s, 0.0) / ring : 1.0; }
 
-    double radius, curve, horizon, end, along, lift, arch, base;
+    double radius, ring, before, curve, horizon, end, along, lift, arch, base;
 };
 
 /// What lies at a place of the terrain.
@@ -162,7 +169,7 @@ public:
                cut = 0.0;
         double skylines = 0.0, squares = 0.0, covered = 0.0;
         double nearHeight = 0.0, nearCount = 0.0, farHeight = 0.0, farCount = 0.0;
-        const double stretch = curve.end + before * curve.radius;
+        const double stretch = curve.end + curve.before;
         const double stepArea = (stretch / _steps) * (2.0 * curve.radius / _columns);
         std::vector<float> tops(static_cast<std::size_t>(_columns) * static_cast<std::size_t>(_steps));
         for (int column = 0; column < _columns; ++column)
@@ -172,7 +179,7 @@ public:
             bool begun = false; // Where the ground begins above the picture's base, what lies below is blank.
             for (int step = 0; step < _steps; ++step)
             {
-                const double s = stretch * (step + 0.5) / _steps - before * curve.radius;
+                const double s = stretch * (step + 0.5) / _steps - curve.before;
                 const Sample sample = at(place.at(x * curve.radius, s), view.edgeWidth * curve.radius);
                 if (sample.ground) known = sample.height;
                 const double y = curve.foot(x, s) + view.exaggeration * curve.raised(known, s);
@@ -191,7 +198,7 @@ public:
                     {
                         shown += area;
                         worth += area * sample.worth;
-                        covered += sample.worth * stepArea;
+                        covered += sample.worth * stepArea * curve.widening(s);
                         if (sample.water) water += area;
                         const double height = area * sample.height;
                         if (top < 0.35 * view.horizonLine) nearHeight += height, nearCount += area;
@@ -265,13 +272,20 @@ private:
               _turn(relief.geocentric
                         ? std::tan(osg::DegreesToRadians(std::clamp(view.place.y(), -89.0, 89.0))) /
                               osg::WGS_84_RADIUS_EQUATOR
-                        : 0.0)
+                        : 0.0),
+              _ring(view.horizontalAngle > 0.0 ? 2.0 * view.viewRadius / view.horizontalAngle : 0.0)
         {
         }
 
         /// From x to the right and s up in the picture, metres, to the relief's units.
         osg::Vec2d at(double x, double s) const
         {
+            if (_ring > 0.0)
+            {
+                const double away = std::max(_ring + s, 0.0), azimuth = x / _ring;
+                x = away * std::sin(azimuth);
+                s = away * std::cos(azimuth);
+            }
             const double east = x * _cosine + s * _sine, north = s * _cosine - x * _sine;
             return {_place.x() + east * (1.0 + north * _turn) * _unit.x(),
                     _place.y() + (north - 0.5 * east * east * _turn) * _unit.y()};
@@ -286,12 +300,14 @@ private:
                 east = first / (1.0 + north * _turn);
                 north = (place.y() - _place.y()) / _unit.y() + 0.5 * east * east * _turn;
             }
-            return {east * _cosine - north * _sine, east * _sine + north * _cosine};
+            const osg::Vec2d ground(east * _cosine - north * _sine, east * _sine + north * _cosine);
+            if (!(_ring > 0.0)) return ground;
+            return {_ring * std::atan2(ground.x(), ground.y()), ground.length() - _ring};
         }
 
     private:
         osg::Vec2d _place, _unit;
-        double _sine, _cosine, _turn;
+        double _sine, _cosine, _turn, _ring;
     };
 
     double xOf(int column) const { return (2.0 * column + 1.0) / _columns - 1.0; }
@@ -331,7 +347,7 @@ private:
         if (std::abs(x) >= 1.0 || at.y() <= 0.0 || at.y() >= curve.end) return 0.0;
         const int column = std::clamp(static_cast<int>(0.5 * (x + 1.0) * _columns), 0, _columns - 1);
         // Its own foot does not hide it.
-        const int step = static_cast<int>((at.y() + before * curve.radius) / stretch * _steps) - 2;
+        const int step = static_cast<int>((at.y() + curve.before) / stretch * _steps) - 2;
         const double y = curve.foot(x, at.y()) + view.exaggeration * curve.raised(summit.height, at.y());
         const double hidden =
             step < 0 ? 0.0
@@ -383,6 +399,7 @@ std::string metres(double length)
 void PanoramaComposition::applyTo(PanoramaMap& map) const
 {
     map.setProjection(true);
+    map.setHorizontalAngle(horizontalAngle);
     map.setViewRadius(viewRadius);
     map.setHorizonLine(horizonLine);
     // D2 exceeds D1 at each step.
@@ -420,6 +437,7 @@ public:
           coarsest(rough, roughWorth, 16, 40), medium(rough, roughWorth, 40, 80)
     {
         wishes.aspect = std::clamp(wishes.aspect, 0.1, 10.0);
+        wishes.horizontalAngle = std::clamp(wishes.horizontalAngle, 0.0, 2.0 * osg::PI);
     }
 
     /// Fills in what follows from a view's place, heading and radius.
@@ -436,12 +454,16 @@ public:
         return wishes.heading && wishes.viewRadius && wishes.horizonLine && wishes.horizonDistance &&
                (wishes.place || wishes.focus);
     }
+    /// Whether the picture shows so much of the horizon that its sides have little to do with its middle.
+    bool isWide() const { return wishes.horizontalAngle > osg::PI_2; }
     std::vector<double> headings() const
     {
         if (wishes.heading) return {*wishes.heading};
         std::vector<double> result;
-        for (int i = 0; i < 24; ++i)
-            result.push_back(i * osg::PI / 12.0);
+        // A wide arc shows much the same from any of them.
+        const int count = isWide() ? 8 : 24;
+        for (int i = 0; i < count; ++i)
+            result.push_back(i * 2.0 * osg::PI / count);
         return result;
     }
     std::vector<double> radii() const
@@ -450,7 +472,11 @@ public:
         const osg::Vec2d size = relief.size();
         const double side = std::sqrt(size.x() * size.y());
         std::vector<double> result;
-        for (const double share : {0.46, 0.4, 0.34, 0.29, 0.24, 0.2})
+        // The ground of a cylindrical map lies all around its place.
+        const std::vector<double> shares = wishes.horizontalAngle > 0.0
+                                               ? std::vector<double>{0.2, 0.16, 0.13, 0.1, 0.08, 0.06}
+                                               : std::vector<double>{0.46, 0.4, 0.34, 0.29, 0.24, 0.2};
+        for (const double share : shares)
             result.push_back(std::min(share * side, farthest / 5.0));
         result.erase(std::unique(result.begin(), result.end()), result.end());
         return result;
@@ -463,6 +489,7 @@ public:
     std::vector<double> distances() const
     {
         if (wishes.horizonDistance) return {*wishes.horizonDistance};
+        if (isWide()) return {1.2, 1.6, 2.2};
         return {2.2, 2.8, 3.6};
     }
     std::vector<osg::Vec2d> places(const PanoramaComposition& view) const
@@ -480,7 +507,8 @@ public:
     /// The base from which a view has a place before it.
     osg::Vec2d behind(const osg::Vec2d& focus, const PanoramaComposition& view) const
     {
-        const double away = focusAt * view.horizonDistance * view.viewRadius;
+        const double ring = view.horizontalAngle > 0.0 ? 2.0 * view.viewRadius / view.horizontalAngle : 0.0;
+        const double away = focusAt * view.horizonDistance * view.viewRadius + ring;
         const osg::Vec2d unit = relief.metre(focus.y());
         return {focus.x() - away * std::sin(view.heading) * unit.x(),
                 focus.y() - away * std::cos(view.heading) * unit.y()};
@@ -510,6 +538,9 @@ public:
     {
         std::vector<Candidate> result;
         PanoramaComposition view;
+        view.horizontalAngle = wishes.horizontalAngle;
+        // Horizontals of a whole turn must meet where it ends.
+        if (isWide()) view.horizonBend = 0.0;
         for (const double distance : distances())
         {
             view.horizonDistance = distance;
@@ -556,7 +587,8 @@ public:
             if (!wishes.viewRadius)
                 next.view.viewRadius = std::min(next.view.viewRadius * (1.0 + zoom), farthest / 5.0);
             if (!wishes.horizonDistance)
-                next.view.horizonDistance = std::clamp(next.view.horizonDistance + farther, 1.8, 4.5);
+                next.view.horizonDistance =
+                    std::clamp(next.view.horizonDistance + farther, isWide() ? 1.0 : 1.8, 4.5);
             if (wishes.focus && !wishes.place)
                 next.view.place = behind(*wishes.focus, next.view);
             else if (!wishes.place)
@@ -659,11 +691,19 @@ std::vector<std::string> PanoramaComposer::explain(const PanoramaComposition& vi
              "horizon is %.0f %% of the relief higher than at the picture's base.",
              directionOf(view.heading), osg::RadiansToDegrees(view.heading), wishes.heading ? asked : "",
              100.0 * seen.rise));
-    lines.push_back(text("Place: the middle of the picture's base is at %.6g, %.6g%s.", view.place.x(),
-                         view.place.y(),
-                         wishes.place   ? asked
-                         : wishes.focus ? ", so that your focus lies before it"
-                                        : ""));
+    if (view.horizontalAngle > 0.0)
+        lines.push_back(
+            text("Around: the picture shows %.0f degrees of the horizon. Its base is a circle of ",
+                 osg::RadiansToDegrees(view.horizontalAngle)) +
+            metres(2.0 * view.viewRadius / view.horizontalAngle) +
+            " around the place, and heights get smaller with the distance as widths do.");
+    lines.push_back(
+        text("Place: the %s at %.6g, %.6g%s.",
+             view.horizontalAngle > 0.0 ? "eye stands above the ground" : "middle of the picture's base is",
+             view.place.x(), view.place.y(),
+             wishes.place   ? asked
+             : wishes.focus ? ", so that your focus lies before it"
+                            : ""));
     lines.push_back(
         "Width: " + metres(2.0 * view.viewRadius) + " of ground at the base" +
         (wishes.viewRadius ? asked : "") +

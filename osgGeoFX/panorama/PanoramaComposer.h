@@ -30,6 +30,7 @@ struct PanoramaWishes
     std::optional<double> horizonLine;
     std::optional<double> horizonDistance;
     std::optional<double> exaggeration;
+    double horizontalAngle = 0.0; ///< as PanoramaMap's; 0…2π
 };
 
 /// A camera for a panorama map, and the values of the map's projection that belong to it.
@@ -46,6 +47,8 @@ struct OSGGEOFX_EXPORT PanoramaComposition
     double exaggeration = 2.0;
     double baseHeight = 0.0; ///< metres
     double edgeWidth = 0.06; ///< in view radii
+    /// Radians; not 0 for a cylindrical map. `place` is then the ground below the eye, and the base a circle around it.
+    double horizontalAngle = 0.0;
 
     /// Sets the map's properties of these names, and `baseFromTerrain` to false.
     void applyTo(PanoramaMap& map) const;

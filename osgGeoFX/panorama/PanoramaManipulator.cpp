@@ -95,7 +95,7 @@ void PanoramaManipulator::setHeading(double radians)
     rest();
     const PanoramaHold hold = _pose.holdOnBase(_pose.middle());
     _pose.setHeading(radians);
-    _pose.keep(hold);
+    if (!_pose.isCylindrical()) _pose.keep(hold);
 }
 
 void PanoramaManipulator::home(double)
@@ -167,7 +167,7 @@ bool PanoramaManipulator::drag(const Event& event)
         return true;
     case Event::MIDDLE_MOUSE_BUTTON:
         _pose.setHeading(_pose.heading() - way.x() * dragTurn);
-        _pose.keep(*_hold);
+        if (!_pose.isCylindrical()) _pose.keep(*_hold);
         return true;
     default:
         _pose.setRadius(_pose.radius() * std::exp(-dragZoom * way.y()));
@@ -230,8 +230,13 @@ void PanoramaManipulator::step(double time)
     const double turn = _glide->heading - _pose.heading();
     const bool near = std::abs(way) < 1e-4 && std::abs(turn) < 1e-5;
     _pose.setRadius(former * std::exp(near ? way : share * way));
-    _pose.setHeading(_pose.heading() + (near ? turn : share * turn));
-    _pose.keep(_glide->hold);
+    const double turned = near ? turn : share * turn;
+    _pose.setHeading(_pose.heading() + turned);
+    // A cylindrical map turns about the eye, and what is held stays where it is in the picture only while it zooms.
+    if (_pose.isCylindrical() && turn != 0.0)
+        _glide->hold = _pose.holdOnBase(_pose.middle());
+    else
+        _pose.keep(_glide->hold);
     // It ends at the limits, too.
     const bool stuck = share > 0.0 && std::abs(turn) < 1e-5 &&
                        std::abs(std::log(_pose.radius() / former)) < 1e-3 * share * std::abs(way);

@@ -58,6 +58,12 @@ const Properties& PanoramaMap::properties() const
             Property::number("viewRadius", "half the width of the ground shown; 0 takes it from the camera",
                              0.0, 2e6, "m")
                 .of<&Self::_viewRadius>(),
+            Property::angle(
+                "horizontalAngle",
+                "the arc of the horizon that a cylindrical map shows, 360 for a strip all around; 0 "
+                "shows a rectangle of the ground; needs strength 1",
+                0.0, 2.0 * osg::PI)
+                .of<&Self::_horizontalAngle>(),
             Property::number("horizonLine",
                              "where a flat sea ends, as a share of the image's height from below", 0.1, 1.0)
                 .of<&Self::_horizonLine>(),
@@ -187,6 +193,10 @@ const Properties& PanoramaMap::properties() const
 std::string PanoramaMap::inconsistency() const
 {
     if (_curveDistance >= _horizonDistance) return "curveDistance must be less than horizonDistance.";
+    if (_horizontalAngle > 0.0 && _strength > 0.0 && _strength < 1.0)
+        return "A map with a horizontalAngle has no steps between the camera's picture and the map; set "
+               "strength to 1, or "
+               "horizontalAngle to 0.";
     if (_firstUnit >= 0 && _firstUnit < TextureUnits::first)
         return "firstUnit must be from 4 to 29, for the geometry has those below, or -1 for the scene's "
                "choice.";
@@ -210,6 +220,13 @@ osg::ref_ptr<const DeformationSnapshot> PanoramaMap::snapshot(const ViewGeometry
     const bool perspective = view.projection(3, 3) == 0.0;
     const double scale = perspective ? std::abs(view.projection(0, 0)) : orthographicScale;
     return new PanoramaSnapshot(*panorama, scale / panorama->across / _detail);
+}
+
+unsigned int PanoramaMap::leastParts() const
+{
+    // A part of 180 degrees keeps far from what lies opposite.
+    const double largest = 1.1 * osg::PI;
+    return _projection && _horizontalAngle > largest ? 2 : 1;
 }
 
 SurfaceEffect* PanoramaMap::asSurfaceEffect()

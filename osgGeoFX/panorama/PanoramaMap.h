@@ -69,6 +69,15 @@ public:
     /// The view radius: half the width of the ground shown, metres, 0…2e6. 0, the default, takes it from the camera.
     bool setViewRadius(double metres) { return assign("viewRadius", metres); }
     double getViewRadius() const { return _viewRadius; }
+    /// The arc of the horizon that the picture shows, for a cylindrical map as a strip of 360° is: radians, 0…2π. 0, the default:
+    /// the ground shown is a rectangle. The picture's base is then a circle around the ground below the eye; its part of this
+    /// arc is twice the view radius long. Distances D1 and D2 count from this circle. Widths get smaller with the distance
+    /// from it, as those of a panorama do, and heights with them: `exaggeration` is their ratio everywhere. Ground nearer to
+    /// the eye's foot than 0.3 radii of the circle is not drawn. One camera draws up to 330° of a map whole. Let several cameras draw
+    /// a larger one side by side, each a part of the view (CameraRole::LIKE, such as drawInParts() makes); a warning says
+    /// so. It needs `strength` 1 (or 0).
+    bool setHorizontalAngle(double radians) { return assign("horizontalAngle", radians); }
+    double getHorizontalAngle() const { return _horizontalAngle; }
     /// H: the height at which a flat sea ends, as a fraction of the picture's height; 0.1…1, 0.8 by default.
     bool setHorizonLine(double line) { return assign("horizonLine", line); }
     double getHorizonLine() const { return _horizonLine; }
@@ -247,6 +256,7 @@ public:
     osg::ref_ptr<const DeformationSnapshot> snapshot(const ViewGeometry& view) const override;
     double longestEdge(const CameraRange& cameras, double tolerance) const override;
     bool isProjection() const override { return getProjection(); }
+    unsigned int leastParts() const override;
     std::string vertexFile() const override { return "stages/panorama.glsl"; }
 
     using Deformation::asPassEffect;
@@ -279,6 +289,7 @@ private:
     double _strength = 1.0;
     bool _projection = true;
     double _viewRadius = 0.0;
+    double _horizontalAngle = 0.0;
     double _horizonLine = 0.8;
     double _curveDistance = 0.4;
     double _horizonDistance = 3.6;

@@ -45,9 +45,22 @@ double distanceOf(const glsl::geofx_Panorama& view, double rise)
 /// x and s of what appears at a point of the picture and has a height.
 glm::dvec2 placeOn(const glsl::geofx_Panorama& view, const osg::Vec2d& picture, double height)
 {
-    const double y =
-        picture.y() + 1.0 + glsl::geofx_panoramaArch(view, picture.x()) - view.lift * (height - view.base);
-    return {picture.x() / view.across, distanceOf(view, y / view.along)};
+    const double rise = picture.y() + 1.0 + glsl::geofx_panoramaArch(view, picture.x());
+    double s = distanceOf(view, (rise - view.lift * (height - view.base)) / view.along);
+    if (view.cylinder.ring > 0.0)
+    {
+        // The scale of heights depends on the distance, which lies between that of a full height and that of none.
+        double near = s, far = distanceOf(view, rise / view.along);
+        for (int step = 0; step < 60; ++step)
+        {
+            s = 0.5 * (near + far);
+            const double lift =
+                view.lift * glsl::geofx_cylinderWidth(view.cylinder, s) * (height - view.base);
+            const double found = distanceOf(view, (rise - lift) / view.along);
+            ((found > s) == (near < far) ? near : far) = s;
+        }
+    }
+    return {picture.x() / view.across, s};
 }
 
 /// Above or below `place`, as high as `other` is.
@@ -201,6 +214,7 @@ osg::Vec3d PanoramaPose::moved(const osg::Vec3d& step) const
 /// By Newton's method, with derivatives from two small steps: on a globe the way to north changes with the eye, too.
 bool PanoramaPose::keep(const PanoramaHold& hold)
 {
+    if (isCylindrical()) return keepAround(hold);
     const osg::Vec3d former = _eye;
     const auto first = panorama();
     if (!first) return false;
@@ -239,9 +253,60 @@ bool PanoramaPose::keep(const PanoramaHold& hold)
     return false;
 }
 
+bool PanoramaPose::keepAround(const PanoramaHold& hold)
+{
+    const osg::Vec3d formerEye = _eye;
+    const double formerHeading = _heading;
+    for (int i = 0; i < mostSteps; ++i)
+    {
+        const auto view = panorama();
+        if (!view) break;
+        const osg::Vec3d seen = hold.world * toEye();
+        const glm::dvec3 place = glsl::geofx_panoramaPlace(*view, toGlm(seen));
+        const glm::dvec2 target = placeOn(*view, hold.picture, place.z);
+        const double turn = (place.x - target.x) / view->cylinder.ring;
+        const double way = place.y - target.y;
+        const double scale = 1.0 / view->across;
+        if (!std::isfinite(turn + way)) break;
+        if (std::abs(way) < 1e-7 * scale && std::abs(turn) < 1e-9) return true;
+        osg::Vec3d towards = hold.world - _eye;
+        towards -= up() * (towards * up());
+        // Right above the place any way leads away from it.
+        if (!(towards.normalize() > 1e-6 * scale))
+        {
+            const osg::Matrixd pose = matrix();
+            towards = up() ^ osg::Vec3d(pose(0, 0), pose(0, 1), pose(0, 2));
+        }
+        _heading += turn;
+        _eye = moved(towards * std::clamp(way, -4.0 * scale, 4.0 * scale));
+    }
+    _eye = formerEye;
+    _heading = formerHeading;
+    return false;
+}
+
 bool PanoramaPose::setCenter(const osg::Vec3d& world)
 {
     const osg::Vec3d former = _eye;
+    const double heading = _heading;
+    if (isCylindrical())
+    {
+        // From where it looks at the place, at any distance; the heading stays.
+        const auto view = panorama();
+        if (!view) return false;
+        const osg::Matrixd pose = matrix();
+        const osg::Vec3d forward = up() ^ osg::Vec3d(pose(0, 0), pose(0, 1), pose(0, 2));
+        _eye = world;
+        _eye = moved(forward * -(view->cylinder.ring + 0.5 * view->horizon));
+        if (_ground.ellipsoid)
+            _eye = atHeightOf(*_ground.ellipsoid, _eye, former);
+        else
+            _eye.z() = former.z();
+        if (keep({world, middle()})) return true;
+        _eye = former;
+        _heading = heading;
+        return false;
+    }
     // From above the place it is never far.
     _eye = _ground.ellipsoid ? atHeightOf(*_ground.ellipsoid, world, _eye)
                              : osg::Vec3d(world.x(), world.y(), _eye.z());

@@ -56,9 +56,12 @@ public:
     /// none.
     PanoramaHold holdSeen(const osg::Vec2d& picture, const osg::Camera& camera) const;
     /// Moves the eye, at its height and heading, until the held place appears at its point of the picture. Returns
-    /// false if that is impossible; the eye then stays.
+    /// false if that is impossible; the eye then stays. In a cylindrical map the eye moves towards the place or away from
+    /// it, and turns.
     bool keep(const PanoramaHold& hold);
-    /// The same for any place, and the middle of the picture.
+    /// Whether the map is cylindrical.
+    bool isCylindrical() const { return _map->getHorizontalAngle() > 0.0; }
+    /// The same as keep() for any place, and the middle of the picture.
     bool setCenter(const osg::Vec3d& world);
 
 private:
@@ -68,6 +71,7 @@ private:
     std::optional<glsl::geofx_Panorama> panorama() const;
     std::optional<osg::Vec3d> pick(const osg::Vec2d& picture, const osg::Camera& camera) const;
     osg::Vec3d moved(const osg::Vec3d& step) const;
+    bool keepAround(const PanoramaHold& hold);
 
     osg::ref_ptr<EffectScene> _scene;
     osg::ref_ptr<PanoramaMap> _map;

@@ -7,6 +7,7 @@
 #include "lib/types.glsl"
 #include "lib/series.glsl"
 #include "lib/painting.glsl"
+#include "lib/cylinder.glsl"
 #endif
 
 // The place of a panorama map in this picture.
@@ -19,12 +20,15 @@ struct geofx_Edge
     Vector2 forward;  // the same for each metre away from the base
     Vector2 scale;    // of the picture, for each of these metres or radians
     Angle latitude;   // of the extent's middle
+    geofx_Cylinder cylinder;
 };
 
 // The place (x, s) of a panorama map in the picture, 0 to 1; other numbers lie outside of it. On a globe the way is a
 // great circle of the sphere that touches it below the eye. The error is less than 1e-3 of the distance up to 500 km.
-GEOFX_INLINE Vector2 geofx_edgePlace(geofx_Edge edge, Vector2 place)
+GEOFX_INLINE Vector2 geofx_edgePlace(geofx_Edge edge, Vector2 seen)
 {
+    Vector2 place = seen;
+    if (edge.cylinder.ring > 0) place = geofx_cylinderGround(edge.cylinder, seen);
     Vector2 way = place.x * edge.right + place.y * edge.forward;
     if (edge.globe < Number(0.5))
     {

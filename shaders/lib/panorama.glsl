@@ -5,11 +5,12 @@
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #include "lib/exaggeration.glsl"
+#include "lib/cylinder.glsl"
 #endif
 
 // A place of the map: x to the right of the middle and s away from the picture's base, along the ground, and the
 // height above the sea, metres. On a globe x and s are the azimuthal equidistant projection about the point below the
-// eye.
+// eye. In a cylindrical map x and s are those on the cylinder.
 //
 // A point of the picture has x and y from -1 to 1. n is the distance from the eye along its axis, and grows with s.
 // Of two places at the same point of the picture, the one with the smaller s hides the other.
@@ -36,6 +37,7 @@ struct geofx_Panorama
     Number plain;     // the share of the camera's own perspective, 0 to 1
     Number mirrored;  // 1: that perspective shows what is turned over at the height `water`, as still water does; else 0
     Length water;
+    geofx_Cylinder cylinder;
 };
 
 // The angle over its sine, from its cosine. It stretches the orthographic projection to the equidistant one. The
@@ -49,8 +51,8 @@ GEOFX_INLINE Number geofx_arcStretch(Number cosine)
                               u * (Number(8.0 / 315.0) + u * (Number(8.0 / 693.0) + u * Number(16.0 / 3003.0))))));
 }
 
-// (x, s, height) of a position.
-GEOFX_INLINE Position geofx_panoramaPlace(geofx_Panorama view, Position position)
+// (x, s, height) of a position, on the ground.
+GEOFX_INLINE Position geofx_panoramaGround(geofx_Panorama view, Position position)
 {
     Length height = geofx_exaggerationHeight(view.globe, position);
     Position foot = geofx_exaggerate(view.globe, position);
@@ -61,15 +63,30 @@ GEOFX_INLINE Position geofx_panoramaPlace(geofx_Panorama view, Position position
     return Position(stretch * dot(foot, view.right), stretch * dot(foot, view.forward) + behind, height);
 }
 
-// The inverse of geofx_panoramaPlace, up to 60 degrees from the eye's foot.
-GEOFX_INLINE Position geofx_panoramaPosition(geofx_Panorama view, Position place)
+// (x, s, height) of a position.
+GEOFX_INLINE Position geofx_panoramaPlace(geofx_Panorama view, Position position)
 {
+    Position ground = geofx_panoramaGround(view, position);
+    if (!(view.cylinder.ring > 0)) return ground;
+    Vector2 place = geofx_cylinderPlace(view.cylinder, Vector2(ground.x, ground.y));
+    return Position(place.x, place.y, ground.z);
+}
+
+// The inverse of geofx_panoramaPlace, up to 60 degrees from the eye's foot.
+GEOFX_INLINE Position geofx_panoramaPosition(geofx_Panorama view, Position seen)
+{
+    Position place = seen;
+    if (view.cylinder.ring > 0)
+    {
+        Vector2 plane = geofx_cylinderGround(view.cylinder, Vector2(seen.x, seen.y));
+        place = Position(plane.x, plane.y, seen.z);
+    }
     Vector3 ground = place.x * view.right + place.y * view.forward;
     Position position = ground + (place.z - view.globe.height) * view.globe.up;
     // Each step leaves a share of the last error: about the square of the angle.
     for (int i = 0; i < 24; ++i)
     {
-        Position error = place - geofx_panoramaPlace(view, position);
+        Position error = place - geofx_panoramaGround(view, position);
         Vector3 up = normalize(geofx_exaggerationGradient(view.globe, position));
         position += error.x * view.right + error.y * view.forward;
         position += (error.z - dot(error.x * view.right + error.y * view.forward, up)) * up;
@@ -103,6 +120,12 @@ GEOFX_INLINE Number geofx_panoramaFade(geofx_Panorama view, Length s)
     return geofx_panoramaFadeFrom(view, view.horizon, s);
 }
 
+// The picture's y of a metre of height at a distance s. In a cylindrical map heights get smaller with the distance as widths do.
+GEOFX_INLINE PerMetre geofx_panoramaLift(geofx_Panorama view, Length s)
+{
+    return view.lift * geofx_cylinderWidth(view.cylinder, s) * geofx_panoramaFade(view, s);
+}
+
 // How far Eq. 1 lowers a point of the picture.
 GEOFX_INLINE Number geofx_panoramaArch(geofx_Panorama view, Number x)
 {
@@ -112,11 +135,19 @@ GEOFX_INLINE Number geofx_panoramaArch(geofx_Panorama view, Number x)
 // The point (x, y) of the picture and n, of a place.
 GEOFX_INLINE Position geofx_panoramaPicture(geofx_Panorama view, Position place)
 {
-    Number x = place.x * view.across * geofx_panoramaFadeFrom(view, view.end, place.y);
-    Number y = view.along * geofx_panoramaRise(view, place.y) - 1 +
-               view.lift * (place.z - view.base) * geofx_panoramaFade(view, place.y) - geofx_panoramaArch(view, x);
+    Length side = place.x;
     Length n = place.y > 0 ? view.nearest + place.y
                            : view.nearest * view.nearest / (view.nearest - place.y);
+    if (view.cylinder.ring > 0)
+    {
+        Vector2 shown = geofx_cylinderShown(view.cylinder, Vector2(place.x, place.y));
+        Length middle = view.cylinder.ring * view.cylinder.middle;
+        side = middle + shown.y * (side - middle);
+        n *= shown.x;
+    }
+    Number x = side * view.across * geofx_panoramaFadeFrom(view, view.end, place.y);
+    Number y = view.along * geofx_panoramaRise(view, place.y) - 1 +
+               geofx_panoramaLift(view, place.y) * (place.z - view.base) - geofx_panoramaArch(view, x);
     return Position(x, y, n);
 }
 
@@ -126,7 +157,7 @@ GEOFX_INLINE Position geofx_panoramaPlaceAt(geofx_Panorama view, Position pictur
     Length s = picture.z > view.nearest ? picture.z - view.nearest
                                         : view.nearest - view.nearest * view.nearest / picture.z;
     Number y = picture.y + 1 + geofx_panoramaArch(view, picture.x) - view.along * geofx_panoramaRise(view, s);
-    Number lift = view.lift * max(geofx_panoramaFade(view, s), Number(1e-6));
+    Number lift = view.lift * geofx_cylinderWidth(view.cylinder, s) * max(geofx_panoramaFade(view, s), Number(1e-6));
     return Position(picture.x / view.across, s, view.base + y / lift);
 }
 

@@ -22,9 +22,10 @@ float geofx_edgeSeaReach(float reach, float width)
     return (reach - 0.16 * width) / 0.45 + 0.16 * width;
 }
 
-geofx_Edge geofx_edgeOf(vec4 eye, vec4 ways, vec4 kind)
+geofx_Edge geofx_edgeOf(vec4 eye, vec4 ways, vec4 kind, vec4 cylinder)
 {
-    return geofx_Edge(kind.x, eye.xy, ways.xy, ways.zw, eye.zw, kind.y);
+    return geofx_Edge(kind.x, eye.xy, ways.xy, ways.zw, eye.zw, kind.y,
+                      geofx_Cylinder(cylinder.x, cylinder.y, cylinder.z));
 }
 
 // The share of haze or paper on a place of the ground, and the share of that which is gone wholly: at 1, what lies
@@ -50,7 +51,8 @@ vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 
     float grows = textureLod(map, at + aside * ahead, 0.0).r - textureLod(map, at - aside * ahead, 0.0).r;
     float before = geofx_ease(grows / (2.0 * aside), 0.0, 0.5);
     float slope = clamp((curve.y - place.y) / max(curve.y - curve.x, 1e-3), 0.1, 1.0);
-    float rise = scale.z * (place.z - here.b) / (scale.y * slope);
+    float lift = scale.z * geofx_cylinderWidth(edge.cylinder, place.y);
+    float rise = lift * (place.z - here.b) / (scale.y * slope);
     rise = (1.0 - sea) * before * clamp(rise, -5.0 * width, 1.5 * width);
     float seen = textureLod(map, at + rise * ahead, 0.0).r;
     seen = mix(seen, geofx_edgeSeaReach(seen, width), sea);

@@ -22,6 +22,7 @@ uniform vec4 SLOT_window; // the viewport's corner, one over its size
 uniform vec4 SLOT_clock;  // seconds, the strength
 uniform vec4 SLOT_scale;
 uniform vec4 SLOT_curve;
+uniform vec4 SLOT_cylinder; // as in lib/cylinder.glsl
 uniform sampler2D SLOT_edgeMap; // the distance to the end of what is known, metres
 uniform sampler2D SLOT_edgeSky;
 uniform vec4 SLOT_edgeEye;      // as in lib/edge.glsl
@@ -57,8 +58,9 @@ vec3 SLOT_wet(float shore, vec2 picture, float far)
     return geofx_waterBody(max(shore, 0.0), SLOT_water.x);
 #else
     // The mirror is at height 0. The reflection in a lake lies higher by twice the lake's height.
-    geofx_WaterPlace place = geofx_WaterPlace(max(shore, 0.0), picture, SLOT_texels.zw, SLOT_scale.z * SLOT_place.z,
-                                              SLOT_place.y / SLOT_curve.z, far);
+    geofx_Cylinder cylinder = geofx_Cylinder(SLOT_cylinder.x, SLOT_cylinder.y, SLOT_cylinder.z);
+    float lift = SLOT_scale.z * geofx_cylinderWidth(cylinder, SLOT_place.y) * SLOT_place.z;
+    geofx_WaterPlace place = geofx_WaterPlace(max(shore, 0.0), picture, SLOT_texels.zw, lift, SLOT_place.y / SLOT_curve.z, far);
     return geofx_water(place, SLOT_water, SLOT_clock.x, SLOT_brush, SLOT_mirror);
 #endif
 }
@@ -67,7 +69,7 @@ vec3 SLOT_wet(float shore, vec2 picture, float far)
 vec2 SLOT_gone(float noise, float y, float wet, float shore)
 {
     if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return vec2(0.0);
-    geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind);
+    geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind, SLOT_cylinder);
     vec3 place = vec3(SLOT_place.x / SLOT_scale.x, SLOT_place.yz);
     // A lake runs out as the land around it does, and so does the shore.
     float sea = wet * (1.0 - geofx_ease(SLOT_place.z, 10.0, 30.0)) * geofx_ease(shore, 0.0, 0.2 * SLOT_edgeKind.z);

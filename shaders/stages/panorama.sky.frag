@@ -21,6 +21,7 @@ uniform sampler2D geofx_skyEdge; // the distances to the end of what is known: o
 uniform vec4 geofx_skyEdgeEye;   // as in lib/edge.glsl
 uniform vec4 geofx_skyEdgeWays;
 uniform vec4 geofx_skyEdgeKind;  // whether on a globe, the middle's latitude, the width, how it is drawn
+uniform vec4 geofx_skyCylinder;  // as in lib/cylinder.glsl
 
 in vec2 place; // -1 to 1
 
@@ -36,8 +37,14 @@ float distanceAt(float rise)
 float groundAt(float horizonDrop, out vec2 brush)
 {
     float s = distanceAt((place.y + 1.0 + 2.0 * horizonDrop) / geofx_skyCurve.x);
-    brush = vec2(geofx_skyAxisX.x * place.x + geofx_skyAxisX.y * s + geofx_skyAxisX.z,
-                 geofx_skyAxisY.x * place.x + geofx_skyAxisY.y * s + geofx_skyAxisY.z);
+    vec2 ground = vec2(place.x, s);
+    if (geofx_skyCylinder.x > 0.0)
+    {
+        geofx_Cylinder cylinder = geofx_Cylinder(geofx_skyCylinder.x, geofx_skyCylinder.y, geofx_skyCylinder.z);
+        ground = geofx_cylinderGround(cylinder, vec2(place.x * geofx_skyAxisX.w, s)) / vec2(geofx_skyAxisX.w, 1.0);
+    }
+    brush = vec2(geofx_skyAxisX.x * ground.x + geofx_skyAxisX.y * ground.y + geofx_skyAxisX.z,
+                 geofx_skyAxisY.x * ground.x + geofx_skyAxisY.y * ground.y + geofx_skyAxisY.z);
     return s;
 }
 
@@ -59,7 +66,7 @@ float unknown(float s)
 {
     float kind = geofx_skyEdgeKind.w;
     if (kind != GEOFX_EDGE_MAPPED) return kind == GEOFX_EDGE_UNKNOWN || kind == GEOFX_EDGE_LAND ? 1.0 : 0.0;
-    geofx_Edge edge = geofx_edgeOf(geofx_skyEdgeEye, geofx_skyEdgeWays, geofx_skyEdgeKind);
+    geofx_Edge edge = geofx_edgeOf(geofx_skyEdgeEye, geofx_skyEdgeWays, geofx_skyEdgeKind, geofx_skyCylinder);
     vec2 at = geofx_edgePlace(edge, vec2(place.x * geofx_skyAxisX.w, s));
     float width = geofx_skyEdgeKind.z;
     return geofx_edgeAmount(geofx_edgeSeaReach(texture(geofx_skyEdge, at).g, width), width, 0.0, 0.0);

@@ -26,8 +26,9 @@ float SLOT_groundScale(vec3 position)
 {
     if (SLOT_strokeView.x > 0.0) return SLOT_strokeView.x / max(length(position), 1e-3);
     geofx_Panorama view = SLOT_view();
-    float slope = geofx_panoramaSlope(view, SLOT_placeOf(position).y);
-    return 0.5 * sqrt(SLOT_strokeView.y * view.across * SLOT_strokeView.z * view.along * max(slope, 0.06));
+    float s = SLOT_placeOf(position).y;
+    float slope = geofx_panoramaSlope(view, s);
+    return 0.5 * sqrt(SLOT_strokeView.y * view.across * geofx_cylinderWidth(view.cylinder, s) * SLOT_strokeView.z * view.along * max(slope, 0.06));
 }
 
 float SLOT_strokeLight(vec3 position, vec3 normal, float y)
@@ -62,7 +63,7 @@ float SLOT_strokeTreeShare(vec3 position)
 float SLOT_strokeGone(vec3 position)
 {
     if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return 0.0;
-    geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind);
+    geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind, SLOT_cylinder);
     return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, SLOT_placeOf(position), SLOT_scale, SLOT_curve, 0.0, 0.0, 0.0).x;
 }
 

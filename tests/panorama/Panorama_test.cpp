@@ -180,6 +180,9 @@ glslf::geofx_Panorama inFloats(const PanoramaSnapshot& frame)
     view.direction = narrowed(all["direction"]);
     view.directionX = narrowed(all["directionX"]);
     view.directionY = narrowed(all["directionY"]);
+    view.cylinder.ring = number("cylinder", 0);
+    view.cylinder.middle = number("cylinder", 1);
+    view.cylinder.halfArc = number("cylinder", 2);
     return view;
 }
 

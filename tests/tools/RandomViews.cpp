@@ -46,7 +46,8 @@ double sensibleValue(const std::string& name, Random& random)
     if (name == "curveDistance") return die == 0 ? 0.0 : random.logarithmic(0.05, 5.0);
     if (name == "horizonDistance") return random.logarithmic(0.3, 20.0);
     if (name == "exaggeration") return die == 0 ? 0.0 : random.logarithmic(0.1, 20.0);
-    if (name == "baseHeight") return die < 5 ? 0.0 : random.uniform(-500.0, 4000.0);
+    if (name == "strength") return die < 5 ? 1.0 : random.uniform(0.0, 1.0);
+    if (name == "horizontalAngle") return die < 5 ? 0.0 : random.uniform(0.05, 2.0 * pi);
     return std::nan("");
 }
 

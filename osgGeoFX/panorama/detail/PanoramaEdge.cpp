@@ -15,7 +15,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// The part of the sky's whole turn that lies across the picture.
+/// The part of the sky's whole turn that lies across the picture, if this is not cylindrical.
 constexpr double skyAcross = 0.5;
 
 /// As in shaders/stages/panorama.edge.glsl.
@@ -44,8 +44,10 @@ PanoramaEdge::PanoramaEdge(const PanoramaMap& settings, PanoramaTextures& textur
     : map(textures.noCover()), skyTexture(map)
 {
     const osg::Vec3d right = toOsg(panorama.right), forward = toOsg(panorama.forward);
+    cylinder = panorama.cylinder;
+    const double turns = cylinder.ring > 0.0 ? settings.getHorizontalAngle() / (2.0 * osg::PI) : skyAcross;
     sky.set(settings.getHorizonLine(), settings.getHorizonBend(), headingOf(view, modelView, right, forward),
-            skyAcross);
+            turns);
     if (!settings.getSky() || settings.getEdge() == PanoramaMap::SEA) return;
     osg::ref_ptr<const osg::Node> root;
     view.ground.terrain.lock(root);
@@ -99,8 +101,13 @@ PanoramaEdge::PanoramaEdge(const PanoramaMap& settings, PanoramaTextures& textur
 
 glsl::geofx_Edge PanoramaEdge::frame() const
 {
-    return {kind.x(), {eye.x(), eye.y()}, {ways.x(), ways.y()}, {ways.z(), ways.w()}, {eye.z(), eye.w()},
-            kind.y()};
+    return {kind.x(),
+            {eye.x(), eye.y()},
+            {ways.x(), ways.y()},
+            {ways.z(), ways.w()},
+            {eye.z(), eye.w()},
+            kind.y(),
+            cylinder};
 }
 
 } // namespace osgGeoFX

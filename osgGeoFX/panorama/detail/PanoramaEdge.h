@@ -27,6 +27,7 @@ struct PanoramaEdge
         kind; ///< whether on a globe, the extent's middle latitude, how wide the land runs out (metres), how it is drawn
     osg::Vec4d
         sky; ///< the horizon's height in the picture, its arch, the heading and the part across, in turns
+    glsl::geofx_Cylinder cylinder{};         ///< the map's
     osg::ref_ptr<osg::Texture2D> map;        ///< an empty one if none is needed
     osg::ref_ptr<osg::Texture2D> skyTexture; ///< the same
 

@@ -211,6 +211,7 @@ private:
         put(state, "geofx_skyEdgeEye", edge.eye);
         put(state, "geofx_skyEdgeWays", edge.ways);
         put(state, "geofx_skyEdgeKind", edge.kind);
+        put(state, "geofx_skyCylinder", edge.cylinder.ring, edge.cylinder.middle, edge.cylinder.halfArc, 0.0);
         setTexture(state, 3, "geofx_skyEdge", edge.map);
     }
 

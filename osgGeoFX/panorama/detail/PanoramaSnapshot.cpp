@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/effect/detail/GlobeFrame.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/CylinderBounds.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,9 @@ constexpr double stretchBehind = 30.0;
 constexpr double leastDepth = 0.1;
 /// Without any exaggeration the picture would not tell heights.
 constexpr double leastExaggeration = 1e-6;
+/// Room beside the part of a cylindrical map that a camera draws, of the map's angle; and the largest half of such a part.
+constexpr double roomBeside = 0.01;
+const double largestHalf = 0.95 * osg::PI;
 /// The least distance of seen ground from the eye, of that of the picture's base.
 constexpr double leastDistance = 1e-6;
 
@@ -57,11 +61,25 @@ void setRays(glsl::geofx_Panorama& panorama, const ViewGeometry& view)
     panorama.directionY -= panorama.direction;
 }
 
+/// The circle that is the base of a cylindrical map, and the part of the map that the camera draws.
+glsl::geofx_Cylinder cylinderOf(const PanoramaMap& map, const ViewGeometry& view, double radius)
+{
+    glsl::geofx_Cylinder cylinder{};
+    const double angle = map.getHorizontalAngle();
+    if (!(angle > 0.0) || !map.getProjection()) return cylinder;
+    osg::Vec2d low, high;
+    view.picturePart(low, high);
+    cylinder.ring = 2.0 * radius / angle;
+    cylinder.middle = 0.25 * angle * (low.x() + high.x());
+    cylinder.halfArc = std::min(0.25 * angle * (high.x() - low.x()) + roomBeside * angle, largestHalf);
+    return cylinder;
+}
+
 bool finite(const glsl::geofx_Panorama& panorama)
 {
     double sum = 0.0;
     for (const double each : {panorama.across, panorama.along, panorama.lift, panorama.base, panorama.end,
-                              panorama.nearest, panorama.globe.height})
+                              panorama.nearest, panorama.globe.height, panorama.cylinder.ring})
         sum += std::abs(each);
     for (const glm::dvec3& each : {panorama.right, panorama.forward, panorama.origin, panorama.originX,
                                    panorama.originY, panorama.direction, panorama.directionX,
@@ -104,6 +122,7 @@ std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const Vie
     panorama.arch = 2.0 * map.getHorizonBend();
     panorama.nearest = radius * (perspective ? wide : 1.0);
     setRays(panorama, view);
+    panorama.cylinder = cylinderOf(map, view, radius);
     panorama.plain = 1.0 - shareOf(map.getStrength());
     if (!finite(panorama)) return std::nullopt;
     return panorama;
@@ -211,8 +230,12 @@ double PanoramaSnapshot::follow(const osg::Vec3d& position, double from, osg::Ve
 /// What bounds need of a ball: its place, and the largest change of the place over a metre within it.
 struct PanoramaSnapshot::Extent
 {
+    explicit Extent(const CylinderBounds& bounds) : cylinder(bounds) {}
+
+    CylinderBounds cylinder;
     glm::dvec3 place;  ///< of the middle
-    double reach;      ///< of x and s, metres: the radius, stretched
+    double away;       ///< of the middle from the eye's foot, metres
+    double reach;      ///< of x and s on the ground, metres: the radius, stretched
     double stretch;    ///< of x and s for each metre
     double curvature;  ///< of x, s and height: second derivatives, 1/metre
     double height;     ///< above or below the base at most
@@ -228,20 +251,25 @@ struct PanoramaSnapshot::Extent
 
 PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
 {
-    Extent extent;
-    extent.place = glsl::geofx_panoramaPlace(_view, toGlm(ball.center));
+    const glm::dvec3 ground = glsl::geofx_panoramaGround(_view, toGlm(ball.center));
     const double k = _view.globe.curvature;
-    const double tallest = std::abs(extent.place.z) + ball.radius;
+    const double tallest = std::abs(ground.z) + ball.radius;
     // The angle of arc that the ball reaches. The equidistant projection stretches by this angle over its sine.
-    const double arc = k * (std::hypot(extent.place.x, extent.place.y) + ball.radius);
-    extent.turned = k * (glm::length(toGlm(ball.center)) + ball.radius);
-    extent.stretch = 1.0 + 0.5 * arc * arc;
+    const double arc = k * (std::hypot(ground.x, ground.y) + ball.radius);
+    const double turned = k * (glm::length(toGlm(ball.center)) + ball.radius);
+    double stretch = 1.0 + 0.5 * arc * arc;
     // Points deep below the ground are nearer to each other than their feet.
-    const double deepest = std::min(extent.place.z - ball.radius, 0.0);
-    extent.stretch /= std::max(1.0 + k * deepest, leastDepth);
-    if (extent.turned > mostTurned) extent.stretch = std::max(extent.stretch, stretchBehind);
-    extent.reach = ball.radius * extent.stretch;
-    extent.curvature = 2.1 * (4.0 * k + 3.0 * k * k * tallest) * extent.stretch;
+    const double deepest = std::min(ground.z - ball.radius, 0.0);
+    stretch /= std::max(1.0 + k * deepest, leastDepth);
+    if (turned > mostTurned) stretch = std::max(stretch, stretchBehind);
+    const double reach = ball.radius * stretch;
+    Extent extent(CylinderBounds(_view.cylinder, glm::dvec2(ground), reach));
+    extent.place = glsl::geofx_panoramaPlace(_view, toGlm(ball.center));
+    extent.turned = turned;
+    extent.stretch = stretch;
+    extent.reach = reach;
+    extent.curvature = 2.1 * (4.0 * k + 3.0 * k * k * tallest) * stretch;
+    extent.away = std::hypot(ground.x, ground.y);
     extent.height = std::abs(extent.place.z - _view.base) + ball.radius;
     const double nearS = extent.place.y - extent.reach;
     const double farS = extent.place.y + extent.reach;
@@ -252,7 +280,7 @@ PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
     const bool fades = nearS < _view.end + fading && farS > _view.horizon;
     extent.fadeRate = fades ? 1.5 / fading : 0.0;
     extent.fadeSecond = fades ? 6.0 / (fading * fading) : 0.0;
-    extent.x = _view.across * (std::abs(extent.place.x) + extent.reach);
+    extent.x = _view.across * (std::abs(extent.place.x) + extent.cylinder.sideReach);
     extent.n = _view.nearest + std::max(farS, 0.0);
     extent.nSecond = nearS < 0.0 ? 2.0 / _view.nearest : 0.0;
     return extent;
@@ -268,18 +296,20 @@ double PanoramaSnapshot::ownStretch(const Extent& extent) const
 double PanoramaSnapshot::lipschitz(const Ball& ball) const
 {
     const Extent extent = extentOf(ball);
-    const double x = (_view.across + extent.x * extent.fadeRate) * extent.stretch;
+    const CylinderBounds& cylinder = extent.cylinder;
+    const double x = (_view.across * cylinder.sideStretch + extent.x * extent.fadeRate) * extent.stretch;
     const double arch = _view.arch * 1.5708 * x;
-    const double lift = std::abs(_view.lift);
-    const double bySide =
-        _view.along * extent.slope * extent.stretch + lift * extent.fadeRate * extent.height * extent.stretch;
+    const double lift = std::abs(_view.lift) * cylinder.width;
+    const double lowers = cylinder.width * extent.fadeRate + cylinder.widthRate;
+    const double bySide = _view.along * extent.slope * extent.stretch +
+                          std::abs(_view.lift) * lowers * extent.height * extent.stretch;
     const double y = std::hypot(bySide, lift) + arch;
     const double reachY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + y * ball.radius;
     const double acrossEye = x * (glm::length(_view.originX) + extent.n * glm::length(_view.directionX));
     const double upEye = y * (glm::length(_view.originY) + extent.n * glm::length(_view.directionY));
-    const double awayEye =
-        extent.stretch * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
-                          reachY * glm::length(_view.directionY));
+    const double awayEye = extent.stretch * (1.0 + extent.n * cylinder.shownRate) *
+                           (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
+                            reachY * glm::length(_view.directionY));
     const double map = std::hypot(acrossEye, upEye) + awayEye;
     return std::max(1.0, _view.plain * ownStretch(extent) + (1.0 - _view.plain) * map);
 }
@@ -288,27 +318,43 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
 {
     const Extent extent = extentOf(ball);
     const double length = edge.length();
+    const CylinderBounds& cylinder = extent.cylinder;
+    if (cylinder.leavesPicture) return {0.0, 2.0 * lipschitz(ball) * length};
+    const bool round = _view.cylinder.ring > 0.0;
     const double up = edge * toOsg(_view.globe.up);
     // A flat edge changes its height little: by its slope below the eye, and by the ground's curve.
-    const double turned = _view.globe.curvature * (std::hypot(extent.place.x, extent.place.y) + extent.reach);
+    const double turned = _view.globe.curvature * (extent.away + extent.reach);
     const double rise = std::min(length, std::abs(up) + 1.1 * turned * length);
+    // On a cylinder, an edge may lead anywhere.
     const double side =
-        std::min(1.0, std::abs(edge * toOsg(_view.right)) / std::max(length, 1e-30) + 1.1 * turned) * length *
-        extent.stretch;
+        round ? length * extent.stretch * cylinder.sideStretch
+              : std::min(1.0, std::abs(edge * toOsg(_view.right)) / std::max(length, 1e-30) + 1.1 * turned) *
+                    length * extent.stretch;
     const double ahead =
-        std::min(1.0, std::abs(edge * toOsg(_view.forward)) / std::max(length, 1e-30) + 1.1 * turned) *
-        length * extent.stretch;
-    const double second = extent.curvature * length * length;
+        round
+            ? length * extent.stretch
+            : std::min(1.0, std::abs(edge * toOsg(_view.forward)) / std::max(length, 1e-30) + 1.1 * turned) *
+                  length * extent.stretch;
+    const double way2 = extent.stretch * extent.stretch * length * length;
+    const double ground =
+        extent.curvature * length * length; // the second derivative of x and s on the ground
+    const double second = ground + cylinder.curvature * way2;
+    const double sideSecond = cylinder.sideStretch * ground + cylinder.sideCurvature * way2;
     const double lift = std::abs(_view.lift);
+    // Of the share of its height that a place shows.
+    const double lowers = cylinder.width * extent.fadeRate + cylinder.widthRate;
+    const double lowers2 = cylinder.width * extent.fadeSecond + 2.0 * cylinder.widthRate * extent.fadeRate +
+                           cylinder.widthSecond;
 
     const double x1 = _view.across * side + extent.x * extent.fadeRate * ahead;
-    const double x2 = _view.across * (second + 2.0 * side * extent.fadeRate * ahead) +
+    const double x2 = _view.across * (sideSecond + 2.0 * side * extent.fadeRate * ahead) +
                       extent.x * (extent.fadeSecond * ahead * ahead + extent.fadeRate * second);
     const double y1 = _view.along * extent.slope * ahead +
-                      lift * (extent.fadeRate * extent.height * ahead + rise) + _view.arch * 1.5708 * x1;
+                      lift * (lowers * extent.height * ahead + cylinder.width * rise) +
+                      _view.arch * 1.5708 * x1;
     const double y2 = _view.along * (extent.slopeRate * ahead * ahead + extent.slope * second) +
-                      lift * (extent.fadeSecond * ahead * ahead * extent.height +
-                              extent.fadeRate * (second * extent.height + 2.0 * ahead * rise) + second) +
+                      lift * (lowers2 * ahead * ahead * extent.height +
+                              lowers * (second * extent.height + 2.0 * ahead * rise) + second) +
                       _view.arch * (2.4675 * x1 * x1 + 1.5708 * x2);
     const double n1 = ahead;
     const double n2 = extent.nSecond * ahead * ahead + second;
@@ -328,16 +374,17 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
     // The error is nowhere larger than the ball's size in the picture.
     const double nearS = extent.place.y - extent.reach;
     const double farS = extent.place.y + extent.reach;
-    const double apartX = farS > _view.end ? 2.0 * extent.x : 2.0 * _view.across * extent.reach;
+    const double apartX = farS > _view.end ? 2.0 * extent.x : 2.0 * _view.across * cylinder.sideReach;
     const double apartY =
         _view.along * (glsl::geofx_panoramaRise(_view, farS) - glsl::geofx_panoramaRise(_view, nearS)) +
-        2.0 * lift * (farS > _view.horizon ? extent.height : ball.radius * extent.stretch) + 2.0 * _view.arch;
+        2.0 * lift * (round || farS > _view.horizon ? extent.height : ball.radius * extent.stretch) +
+        2.0 * _view.arch;
     const double apartN = 2.0 * extent.reach;
     const double mostY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + apartY;
     const double most = apartX * sideX + apartY * sideY +
                         apartN * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
                                   mostY * glm::length(_view.directionY));
-    return {curve, 0.0, own + map * most};
+    return {curve, map * lift * cylinder.widthKink * extent.height * ahead * sideY, own + map * most};
 }
 
 osg::ref_ptr<const PanoramaSnapshot> PanoramaSnapshot::mirrored(double level, double detail) const
@@ -357,7 +404,12 @@ double PanoramaSnapshot::longestEdge(const Ball& ball, double tolerance) const
     // The second derivative of the picture's y: that of the curve, and that of Eq. 1.
     const double second =
         _view.along * extent.slopeRate + std::abs(_view.arch) * 2.4675 * _view.across * _view.across;
-    return std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
+    const double flat = std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
+    if (!(_view.cylinder.ring > 0.0)) return flat;
+    const CylinderBounds& cylinder = extent.cylinder;
+    const double least = 8.0 * tolerance * _viewDistance;
+    return std::min({flat, std::sqrt(least / cylinder.sideCurvature),
+                     std::sqrt(least / std::max(extent.slope * cylinder.curvature, 1e-30))});
 }
 
 bool PanoramaSnapshot::isAroundTheEarth(const Ball& ball, const osg::Vec2d& room) const
@@ -376,7 +428,7 @@ bool PanoramaSnapshot::isAroundTheEarth(const Ball& ball, const osg::Vec2d& room
     constexpr double bulge = 22e3; // of the equator above the poles
     const double height = std::abs(distance - 1.0 / k) + ball.radius + std::abs(_view.base) + bulge;
     const double before = (std::abs(_view.lift) * height + room.y()) / _view.along;
-    const double along = std::max(2.0 * _view.end - _view.horizon, before);
+    const double along = std::max(2.0 * _view.end - _view.horizon, before) + _view.cylinder.ring;
     const double shown = std::hypot((beside + room.x()) / _view.across, along) * k * (1.0 + flat);
     // Nearer, what is beside the picture and what is behind it count each for itself: a triangle may reach from one to the other.
     const double promised = osg::PI / 3.0;
@@ -395,7 +447,13 @@ bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
     // A ball with known x and s is beside or below the picture as its ground is. Its bounds in eye space may not tell
     // this, since everything is stretched there.
     if (extent.turned > mostTurned || farS > _view.end) return false;
-    if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside + room.x()) return true;
+    if (_view.cylinder.ring > 0.0)
+    {
+        const double way = _view.cylinder.ring * (extent.cylinder.turned - _view.cylinder.halfArc);
+        if (extent.cylinder.belowEye || _view.across * way > room.x()) return true;
+    }
+    else if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside + room.x())
+        return true;
     return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside - room.y();
 }
 
@@ -405,11 +463,17 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     if (hides(ball, room)) return true;
     if (_view.plain > 0.0) return false;
     const Extent extent = extentOf(ball);
-    if (extent.turned > mostTurned) return false;
+    if (extent.turned > mostTurned || extent.cylinder.leavesPicture) return false;
     // Places within the box lie between those of its corners, except for the ground's curve.
-    double bent = 0.0;
+    glm::dvec3 bent(0.0);
+    const double stretched = extent.stretch * extent.stretch;
     for (const osg::Vec3d& half : box.half)
-        bent += extent.curvature * half.length2() / 2.0;
+    {
+        const double ground = extent.curvature, square = half.length2() / 2.0;
+        bent.x += (extent.cylinder.sideStretch * ground + extent.cylinder.sideCurvature * stretched) * square;
+        bent.y += (ground + extent.cylinder.curvature * stretched) * square;
+        bent.z += ground * square;
+    }
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
     for (int corner = 0; corner < 8; ++corner)
     {
@@ -422,15 +486,19 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     }
     if (low.y > 2.0 * _view.end - _view.horizon) return true;
     if (high.y > _view.end) return false;
-    const double side = beside + room.x();
-    if (_view.across * low.x > side || _view.across * high.x < -side) return true;
+    const double middle = _view.cylinder.ring * _view.cylinder.middle;
+    const double side =
+        (_view.cylinder.ring > 0.0 ? _view.across * _view.cylinder.ring * _view.cylinder.halfArc : beside) +
+        room.x();
+    if (_view.across * (low.x - middle) > side || _view.across * (high.x - middle) < -side) return true;
 
     // Heights and Eq. 1 move a place up or down in the picture.
     const double lifts[] = {_view.lift * (low.z - _view.base), _view.lift * (high.z - _view.base)};
     const auto lifted = [&](double lift, bool most)
     {
         const bool whole = (lift > 0.0) == most;
-        return lift * glsl::geofx_panoramaFade(_view, whole ? low.y : high.y);
+        const double s = whole ? low.y : high.y;
+        return lift * glsl::geofx_cylinderWidth(_view.cylinder, s) * glsl::geofx_panoramaFade(_view, s);
     };
     const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 +
                        lifted(std::max(lifts[0], lifts[1]), true);
@@ -442,8 +510,27 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     return foot > beside + room.y();
 }
 
+/// Widths get smaller with the distance. Ways from the base to the horizon do so by the curve alone.
+double PanoramaSnapshot::distanceAround(const Extent& extent) const
+{
+    const double n = _view.nearest;
+    const double high = glm::length(_view.originY + n * _view.directionY);
+    const double wide = glm::length(_view.originX + n * _view.directionX);
+    const double deep = extent.slope * _view.along * high / (_view.across * wide);
+    return _viewDistance / std::max(extent.cylinder.width, std::min(deep, 1.0));
+}
+
+std::string PanoramaSnapshot::complaint(const EyeBox& box) const
+{
+    if (!(_view.cylinder.halfArc >= largestHalf) || !extentOf(box.ball()).cylinder.leavesPicture) return {};
+    return "A camera that draws a PanoramaMap with a horizontalAngle of more than 330 degrees leaves a gap "
+           "opposite of its heading. Let two cameras draw parts of the picture side by side "
+           "(osgGeoFX::drawInParts), as osggeofx_render and osggeofx_viewer do.";
+}
+
 std::optional<double> PanoramaSnapshot::viewDistance(const Ball& ball) const
 {
+    if (_view.cylinder.ring > 0.0) return distanceAround(extentOf(ball));
     if (!(_view.plain > 0.0)) return _viewDistance;
     // Both pictures mix as their places in eye space do: the sizes by their shares, and so the distances.
     const double own = std::max(ball.center.length() - ball.radius, 0.0);
@@ -469,6 +556,7 @@ DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
         {"direction", vec4(_view.direction, _view.water)},
         {"directionX", vec4(_view.directionX, 0.0)},
         {"directionY", vec4(_view.directionY, 0.0)},
+        {"cylinder", {_view.cylinder.ring, _view.cylinder.middle, _view.cylinder.halfArc, 0.0}},
     };
 }
 

@@ -47,6 +47,7 @@ public:
     bool hides(const Ball& ball, const osg::Vec2d& room) const override;
     bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const override;
     std::optional<double> viewDistance(const Ball& ball) const override;
+    std::string complaint(const EyeBox& box) const override;
     Uniforms uniforms() const override;
 
     const glsl::geofx_Panorama& view() const { return _view; }
@@ -64,6 +65,7 @@ private:
     struct Extent;
     Extent extentOf(const Ball& ball) const;
     double ownStretch(const Extent& extent) const;
+    double distanceAround(const Extent& extent) const;
     osg::Vec3d undeformMixed(const osg::Vec3d& position) const;
     double follow(const osg::Vec3d& position, double from, osg::Vec3d& found) const;
 
