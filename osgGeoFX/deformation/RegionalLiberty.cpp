@@ -75,6 +75,7 @@ public:
     {
         return toOsg(glsl::geofx_libertyNormal(_view, toGlm(position), toGlm(normal)));
     }
+    osg::Matrixd turn(const osg::Vec3d& position) const override;
     bool looksAtBoxes() const override { return false; }
     Reach reach(const Ball& ball) const override
     {
@@ -85,7 +86,10 @@ public:
         const bool behind = _view.curvature * (local.z + ball.radius) < -0.5;
         return apart || behind ? Reach::Identity : Reach::Curved;
     }
-    double lipschitz(const Ball& ball) const override { return most(ball).growth; }
+    double lipschitz(const Ball& ball) const override
+    {
+        return reach(ball) == Reach::Identity ? 1.0 : most(ball).growth;
+    }
     Ball bound(const Ball& ball) const override
     {
         if (reach(ball) == Reach::Identity) return ball;
@@ -171,6 +175,18 @@ osg::Vec3d LibertySnapshot::undeform(const osg::Vec3d& position) const
     const glm::dvec3 local(place, own - k * glm::dot(place, place));
     const glm::dvec3 way = local - drawn;
     return position + toOsg(way.x * _view.across + way.y * _view.along + way.z * _view.up);
+}
+
+/// What stands on the ground stays upright, and turns as the ground does about it: by the rotation of the derivative's
+/// horizontal part.
+osg::Matrixd LibertySnapshot::turn(const osg::Vec3d& position) const
+{
+    if (reach({position, 0.0}) == Reach::Identity) return osg::Matrixd::identity();
+    const glm::dvec3 local = glsl::geofx_libertyLocal(_view, toGlm(position));
+    const double step = 0.0005 * std::min(_view.acrossRadius, _view.alongRadius);
+    const glm::dvec3 x = glsl::geofx_libertySlope(_view, local, glm::dvec3(step, 0.0, 0.0));
+    const glm::dvec3 y = glsl::geofx_libertySlope(_view, local, glm::dvec3(0.0, step, 0.0));
+    return osg::Matrixd::rotate(std::atan2(x.y - y.x, 2.0 + x.x + y.y), toOsg(_view.up));
 }
 
 /// The movements of a liberty, without a place.
@@ -274,7 +290,9 @@ osg::ref_ptr<const DeformationSnapshot> RegionalLiberty::snapshot(const ViewGeom
     liberty.up = axis({0.0, 0.0, 1.0});
     liberty.center = toGlm(toEye.getTrans());
     // Not a number, or beyond what floats can work with.
-    if (!(toEye.getTrans().length() + glm::length(liberty.across) < 1e15)) return nullptr;
+    const double largest = toEye.getTrans().length() + glm::length(liberty.across) +
+                           glm::length(liberty.along) + glm::length(liberty.up);
+    if (!(largest < 1e15)) return nullptr;
     return new LibertySnapshot(liberty);
 }
 

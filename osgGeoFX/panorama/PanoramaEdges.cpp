@@ -45,24 +45,28 @@ double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) co
                             : 0.0;
     const double globe = ground.ellipsoid ? globeCurvature / ground.ellipsoid->getRadiusPolar() : 0.0;
 
-    // Around a cylinder places turn about the eye's foot, and heights get smaller, most at the base.
-    const double around = _horizontalAngle > 0.0 ? 1.0 / (2.0 * radius / _horizontalAngle) : 0.0;
+    // Around a cylinder heights get smaller, most at the base, and places turn about the eye's foot: most where the nearest
+    // ground is drawn, at `partly` of CylinderBounds.cpp.
+    const double ring = _horizontalAngle > 0.0 ? 2.0 * radius / _horizontalAngle : 0.0;
+    const double around = ring > 0.0 ? 1.0 / ring : 0.0, turns = around / 0.3;
+    const double side = std::max(1.0, turns * ring);
 
     // Derivatives of the picture's x and y along an edge, for each metre of it and of its square.
-    const double x2 = across * (globe + 2.0 * around);
-    const double y1 =
-        std::hypot(along, lift) + lift * tallest * (1.5 / fading + around) + arch * 1.5708 * across;
+    const double x2 = across * (side * globe + 2.0 * turns * turns * ring);
+    const double y1 = std::hypot(along, lift) +
+                      lift * tallest * (1.5 / fading + around + tallest * around * turns) +
+                      arch * 1.5708 * across * side;
     const double y2 =
-        along / (horizon - curve) + (along + lift) * globe + along * around +
+        along / (horizon - curve) + (along + lift) * globe + along * turns +
         lift * (tallest * (6.0 / (fading * fading) + 3.0 * around / fading + 2.0 * around * around) +
-                1.5 / fading + around) +
-        arch * (2.4675 * across * across + 1.5708 * x2);
+                1.5 / fading + around + tallest * around * turns) +
+        arch * (2.4675 * across * across * side * side + 1.5708 * x2);
     // In eye space, for each metre of distance: the picture's, the way through the depths, and that before the base.
     const double widthX = 1.0 / wide / (perspective ? 1.0 : nearest);
     const double widthY = 1.0 / high / (perspective ? 1.0 : nearest);
     double second = x2 * widthX + y2 * widthY +
-                    (2.0 / nearest + globe + around) / nearest * std::hypot(1.0, 1.0 / wide, 1.0 / high);
-    if (perspective) second += 2.0 * (across / wide + y1 / high) / nearest;
+                    (2.0 / nearest + globe + turns) / nearest * std::hypot(1.0, 1.0 / wide, 1.0 / high);
+    if (perspective) second += 2.0 * (across * side / wide + y1 / high) / nearest;
     return std::sqrt(8.0 * tolerance / second);
 }
 

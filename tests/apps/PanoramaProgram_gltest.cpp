@@ -158,6 +158,52 @@ TEST_F(PanoramaProgram, TakesWishes)
     EXPECT_TRUE(fs::exists(file("kept/ground/terrain.osgb")));
 }
 
+TEST_F(PanoramaProgram, AStripAllAroundMeetsItself)
+{
+    invent("alps");
+    // The same pixel of the height of the picture at both ends, some of them ground.
+    const auto strip = [&](const std::string& from, const std::string& name, const std::string& pick)
+    {
+        std::vector<std::string> arguments = {from, "-o", name, "--pick", pick, "--work", "kept", "--quiet"};
+        if (from == "alps.tif")
+            for (const char* more : {"--around", "360", "--size", "480x96", "--samples", "0"})
+                arguments.emplace_back(more);
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        EXPECT_EQ(result.standardError, "");
+        osg::Vec2d place;
+        double height = 0.0;
+        EXPECT_EQ(std::sscanf(result.standardOutput.substr(result.standardOutput.find(':')).c_str(),
+                              ": longitude %lf, latitude %lf, height %lf", &place.x(), &place.y(), &height),
+                  3)
+            << result.standardOutput;
+        return place;
+    };
+    const osg::Vec2d left = strip("alps.tif", "map.png", "0,95");
+    const nlohmann::json recipe = nlohmann::json::parse(bytes("map.json"));
+    EXPECT_NEAR(recipe.at("view").at("horizontalAngle").get<double>(), 2.0 * M_PI, 1e-12);
+    const osg::Vec2d right = strip("map.json", "again.png", "479,95");
+    EXPECT_TRUE(bytes("map.png") == bytes("again.png")) << "the same to the byte";
+    const osg::Vec2d middle = strip("map.json", "again.png", "240,95");
+    EXPECT_LT((left - right).length(), 0.1 * (left - middle).length());
+
+    // What the ends show fits together as neighbours within the picture do.
+    const osg::ref_ptr<osg::Image> picture = osgDB::readRefImageFile(file("map.png"));
+    ASSERT_TRUE(picture);
+    const auto apart = [&](unsigned int a, unsigned int b)
+    {
+        double sum = 0.0;
+        for (unsigned int y = 0; y < 96; ++y)
+            sum += static_cast<double>((picture->getColor(a, y) - picture->getColor(b, y)).length());
+        return sum / 96.0;
+    };
+    double usual = 0.0;
+    for (unsigned int x = 0; x + 1 < 480; ++x)
+        usual += apart(x, x + 1) / 479.0;
+    EXPECT_LT(apart(479, 0), 2.0 * usual);
+    EXPECT_GT(apart(120, 0), 2.0 * usual);
+}
+
 TEST_F(PanoramaProgram, RefusesInASentence)
 {
     invent("nowhere", 50);

@@ -62,6 +62,7 @@ Row randomRow(int number)
         for (int i = random.integer(1, 2); i > 0; --i)
         {
             const auto effect = randomDeformation(random);
+            bringNear(*effect, pose, random);
             row.effects.emplace_back(effect);
             row.snapshots.push_back(effect->snapshot(view));
             if (row.snapshots.back()) row.chain->add(row.snapshots.back());

@@ -68,18 +68,31 @@ Error errorOf(const DeformationChain& chain, const osg::Matrixd& projection, con
     return error;
 }
 
+/// A map's view radius, metres.
+double radiusOf(const osgGeoFX::PanoramaMap& map, const CameraPose& pose)
+{
+    const double base =
+        std::max(map.getBaseHeight(), map.getBaseFromTerrain() ? pose.lowestGround : -HUGE_VAL);
+    return map.getViewRadius() > 0.0 ? map.getViewRadius()
+                                     : std::max(pose.height - base, 1.0) / pose.projection()(0, 0);
+}
+
 /// How far a scene's panorama map shows ground as it lies, metres from the eye's foot: behind that it gathers all ground in one point of
 /// the horizon.
 double farthestShown(const EffectScene& scene, const CameraPose& pose)
 {
     const auto* map = dynamic_cast<const osgGeoFX::PanoramaMap*>(scene.getEffect(0));
     if (!map) return HUGE_VAL;
-    const double base =
-        std::max(map->getBaseHeight(), map->getBaseFromTerrain() ? pose.lowestGround : -HUGE_VAL);
-    const double radius = map->getViewRadius() > 0.0
-                              ? map->getViewRadius()
-                              : std::max(pose.height - base, 1.0) / pose.projection()(0, 0);
-    return 1.25 * map->getHorizonDistance() * radius;
+    const double angle = map->getHorizontalAngle();
+    return radiusOf(*map, pose) * (1.25 * map->getHorizonDistance() + (angle > 0.0 ? 2.0 / angle : 0.0));
+}
+
+/// Ground nearer to the eye's foot than this is not drawn by a scene's panorama map, metres.
+double nearestShown(const EffectScene& scene, const CameraPose& pose)
+{
+    const auto* map = dynamic_cast<const osgGeoFX::PanoramaMap*>(scene.getEffect(0));
+    if (!map || map->getHorizontalAngle() == 0.0 || !map->getProjection()) return 0.0;
+    return 0.3 * 2.0 * radiusOf(*map, pose) / map->getHorizontalAngle();
 }
 
 /// Whether an end is farther from the reference plane than where bends are thought to be used.
@@ -141,12 +154,12 @@ void measure(const EffectScene& scene, const CameraPose& pose, Random& random, T
     }
     if (chain->empty()) return;
     const double length = std::min(longest, 1e5);
-    const double farthest = farthestShown(scene, pose);
+    const double farthest = farthestShown(scene, pose), nearest = nearestShown(scene, pose);
     for (int i = 0; i < 60; ++i)
     {
         const double low = pose.lowestGround, high = pose.highestGround;
         const double away = pose.height * random.logarithmic(0.05, 30.0), heading = random.uniform(-1.0, 1.0);
-        if (away + length > farthest) continue;
+        if (away + length > farthest || away - length < nearest) continue;
         const double turn = random.uniform(-3.2, 3.2);
         const double x = away * std::sin(pose.heading + heading) + length * std::sin(turn);
         const double y = away * std::cos(pose.heading + heading) + length * std::cos(turn);
@@ -186,7 +199,9 @@ TEST(MeshEdges, AreShortEnoughForEveryCameraOfTheRange)
             effect->setEnabled(true);
             const osg::ref_ptr<EffectScene> scene = new EffectScene;
             scene->addEffect(effect);
-            measure(*scene, poseFor(random), random, tally);
+            const CameraPose pose = poseFor(random);
+            bringNear(*effect, pose, random);
+            measure(*scene, pose, random, tally);
             if (HasFailure())
             {
                 ADD_FAILURE() << describe(*effect);

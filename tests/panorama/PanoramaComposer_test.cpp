@@ -172,6 +172,39 @@ TEST(PanoramaComposer, JudgesThePictureThatTheMapDraws)
     EXPECT_NEAR(base.y(), 0.0, 0.5);
 }
 
+/// The same of a cylindrical map, all of whose directions count.
+TEST(PanoramaComposer, JudgesTheStripThatTheMapDraws)
+{
+    TerrainRelief relief = reliefOf("hills", 100);
+    std::fill(relief.heights.begin(), relief.heights.end(), 100.0f);
+    const int column = 60, row = 70;
+    relief.heights[relief.index(column, row)] = 1500.0f;
+    PanoramaWishes wishes;
+    wishes.aspect = 5.0;
+    wishes.heading = 0.4;
+    wishes.horizontalAngle = 2.0 * osg::PI;
+    wishes.place = osg::Vec2d(319000.0, 5019000.0);
+    const PanoramaComposer composer(relief, wishes);
+    const PanoramaComposition view = composer.compose();
+    EXPECT_EQ(view.horizontalAngle, 2.0 * osg::PI);
+    EXPECT_EQ(view.horizonBend, 0.0);
+    EXPECT_LT(composer.judge(view).blank, 0.001);
+
+    const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
+    const osg::ref_ptr<osgGeoFX::PanoramaMap> map = new osgGeoFX::PanoramaMap;
+    view.applyTo(*map);
+    scene->addEffect(map);
+    const osgGeoFX::DeformedView picture(*scene, view.viewMatrix(relief),
+                                         osg::Matrixd::perspective(30.0, 5.0, 1.0, 1e6), 2000.0, 400.0);
+    const osg::Vec2d place = relief.place(column, row);
+    osg::Vec2d tip;
+    ASSERT_TRUE(picture.project(osg::Vec3d(place, 1500.0), tip));
+    EXPECT_NEAR(tip.y() / 400.0, composer.judge(view).top, 0.01);
+    const osg::Vec2d away = place - view.place;
+    const double azimuth = std::remainder(std::atan2(away.x(), away.y()) - view.heading, 2.0 * osg::PI);
+    EXPECT_NEAR(tip.x(), 2000.0 * (0.5 + azimuth / (2.0 * osg::PI)), 0.5);
+}
+
 TEST(PanoramaComposer, FindsAViewOfAnything)
 {
     for (const double height : {0.0, 12.0, -430.0})

@@ -3,6 +3,7 @@
 #include <tools/RandomViews.h>
 
 #include <osgGeoFX/deformation/PerspectiveBend.h>
+#include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 
@@ -216,6 +217,25 @@ osg::ref_ptr<osgGeoFX::Deformation> randomDeformation(Random& random)
     static const std::vector<std::string> kinds = deformationKinds();
     return randomDeformation(
         kinds[static_cast<std::size_t>(random.integer(0, static_cast<int>(kinds.size()) - 1))], random);
+}
+
+void bringNear(osgGeoFX::Deformation& deformation, const CameraPose& pose, Random& random)
+{
+    auto* liberty = dynamic_cast<osgGeoFX::RegionalLiberty*>(&deformation);
+    if (!liberty) return;
+    const double across = random.logarithmic(300.0, 1e5), along = across * random.logarithmic(0.3, 3.0);
+    liberty->setRadii(across, along);
+    const double away = random.uniform(0.0, 1.3) * across, way = random.uniform(-pi, pi);
+    const double east = away * std::sin(way), north = away * std::cos(way);
+    if (!pose.globe)
+    {
+        liberty->setCenter({pose.x + east, pose.y + north});
+        return;
+    }
+    const double radius = wgs84()->getRadiusEquator();
+    const double latitude = std::clamp(pose.y + north / radius, -0.499 * pi, 0.499 * pi);
+    liberty->setGeodeticCenter(std::remainder(pose.x + east / radius / std::cos(latitude), 2.0 * pi),
+                               latitude);
 }
 
 std::vector<std::string> deformationKinds()

@@ -61,6 +61,8 @@ void randomizeProperties(osgGeoFX::PropertyHolder& effect, Random& random);
 osg::ref_ptr<osgGeoFX::Deformation> randomDeformation(const std::string& kind, Random& random);
 /// Of any kind.
 osg::ref_ptr<osgGeoFX::Deformation> randomDeformation(Random& random);
+/// Moves what acts in one region of the ground to where a camera is, or near it. Other deformations stay as they are.
+void bringNear(osgGeoFX::Deformation& deformation, const CameraPose& pose, Random& random);
 /// The kinds that are deformations.
 std::vector<std::string> deformationKinds();
 
