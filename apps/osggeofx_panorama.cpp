@@ -342,19 +342,8 @@ osg::ref_ptr<PanoramaMap> mapOf(const Recipe& recipe)
 void printPick(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Scene& scene,
                const osgGeoFX::SceneRenderer& renderer)
 {
-    osg::Vec2d pixel = pairOf("--pick", arguments.pick);
-    const osg::ref_ptr<osg::Camera> camera = new osg::Camera(renderer.camera());
-    if (recipe.view.horizontalAngle > osg::PI)
-    {
-        // One camera does not show all of a turn. The same place stands in the middle of the picture if the viewer looks there.
-        osgGeoFX::PanoramaComposition turned = recipe.view;
-        turned.heading += recipe.view.horizontalAngle * ((pixel.x() + 0.5) / recipe.width - 0.5);
-        TerrainRelief frame;
-        frame.geocentric = recipe.geocentric;
-        camera->setViewMatrix(turned.viewMatrix(frame));
-        pixel.x() = 0.5 * recipe.width - 0.5;
-    }
-    const osgGeoFX::DeformedView view(*scene.effects, *camera);
+    const osg::Vec2d pixel = pairOf("--pick", arguments.pick);
+    const osgGeoFX::DeformedView view(*scene.effects, renderer.camera());
     double longitude = 0.0, latitude = 0.0, height = 0.0;
     if (scene.reference && view.unproject(pixel.x() + 0.5, recipe.height - pixel.y() - 0.5, *scene.reference,
                                           longitude, latitude, height))

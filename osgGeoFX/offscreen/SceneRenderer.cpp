@@ -139,7 +139,7 @@ void SceneRenderer::Parts::setUpCamera(const Scene& scene, osg::GraphicsContext&
     {
         camera.setCullingMode(osg::CullSettings::NO_CULLING);
     }
-    cameras = drawInParts(*viewer, leastPartsOf(*scene.effects));
+    cameras = drawInParts(*viewer, scene.effects->leastParts());
     osg::ref_ptr<osg::Camera> last = &camera;
     if (cameras.empty())
         cameras.push_back(last);

@@ -145,7 +145,9 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         const unsigned int* corner = &mesh.corners()[i];
         const Meeting met =
             meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]);
-        if (!(met.distance >= 0.0)) continue;
+        // Nothing is seen at the eye itself, where a cylindrical map gathers what lies opposite of its picture.
+        const double size = deformed[corner[0]].length() + deformed[corner[1]].length();
+        if (!(met.distance >= 0.0) || (_origin == osg::Vec3d() && met.distance <= 1e-9 * size)) continue;
         Intersection hit;
         hit.distance = met.distance;
         hit.deformed = _origin + _direction * met.distance;

@@ -4,6 +4,9 @@
 
 #include <osg/Transform>
 
+#include <algorithm>
+#include <cmath>
+
 namespace osgGeoFX
 {
 
@@ -45,11 +48,40 @@ DeformedView::DeformedView(EffectScene& scene, const osg::Matrixd& view, const o
     _toWorld.invert(_modelView);
     _ground = scene.ground(path);
     _chain = scene.deformation(_modelView, projection, path);
+    const unsigned int parts = scene.leastParts();
+    // Those that drawInParts() makes.
+    const unsigned int columns = parts > 1 ? parts : 0;
+    for (unsigned int i = 0; i < columns; ++i)
+        _columns.push_back(scene.deformationOfColumn(_modelView, projection, 2.0 * i / columns - 1.0,
+                                                     2.0 * (i + 1) / columns - 1.0, path));
+}
+
+const DeformationChain& DeformedView::chainAt(double x) const
+{
+    if (_columns.empty()) return *_chain;
+    const double column = 0.5 * (x + 1.0) * static_cast<double>(_columns.size());
+    const double last = static_cast<double>(_columns.size()) - 1.0;
+    return *_columns[static_cast<std::size_t>(std::clamp(std::floor(column), 0.0, last))];
+}
+
+const DeformationChain& DeformedView::chainOf(const osg::Vec3d& position) const
+{
+    for (std::size_t i = 0; i < _columns.size(); ++i)
+    {
+        const osg::Vec4d clip = osg::Vec4d(_columns[i]->deform(position), 1.0) * _projection;
+        const double column = 0.5 * (clip.x() / clip.w() + 1.0) * static_cast<double>(_columns.size());
+        // A place on the border of two columns is the same in both.
+        constexpr double room = 1e-6;
+        if (clip.w() > 0.0 && std::abs(column - static_cast<double>(i) - 0.5) <= 0.5 + room)
+            return *_columns[i];
+    }
+    return *_chain;
 }
 
 bool DeformedView::project(const osg::Vec3d& world, osg::Vec2d& pixel) const
 {
-    const osg::Vec3d eye = _chain->deform(world * _modelView);
+    const osg::Vec3d position = world * _modelView;
+    const osg::Vec3d eye = chainOf(position).deform(position);
     const osg::Vec4d clip = osg::Vec4d(eye, 1.0) * _projection;
     if (clip.w() <= 0.0) return false;
     pixel.set((clip.x() / clip.w() + 1.0) / 2.0 * _width, (clip.y() / clip.w() + 1.0) / 2.0 * _height);
@@ -77,7 +109,7 @@ std::optional<DeformedLineIntersector::Intersection> DeformedView::pick(double x
     const osg::Vec3d origin = perspective ? osg::Vec3d() : onNear;
     const osg::ref_ptr<DeformedLineIntersector> ray = new DeformedLineIntersector(origin, direction);
     const osg::ref_ptr<DeformedIntersectionVisitor> visitor =
-        new DeformedIntersectionVisitor(ray, *_chain, _modelView, _lodScale);
+        new DeformedIntersectionVisitor(ray, chainAt(ndcX), _modelView, _lodScale);
     visitor->setTraversalMask(mask);
     _scene->getTerrain()->traverse(*visitor);
     if (ray->intersections().empty()) return std::nullopt;
@@ -93,7 +125,8 @@ bool DeformedView::unproject(double x, double y, const Georeference& reference, 
 
 osg::Vec3d DeformedView::deform(const osg::Vec3d& world) const
 {
-    return _chain->deform(world * _modelView) * _toWorld;
+    const osg::Vec3d position = world * _modelView;
+    return chainOf(position).deform(position) * _toWorld;
 }
 
 osg::Vec3d DeformedView::undeform(const osg::Vec3d& world) const

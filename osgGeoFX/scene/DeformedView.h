@@ -54,7 +54,7 @@ public:
     /// The inverse of deform().
     osg::Vec3d undeform(const osg::Vec3d& world) const;
 
-    /// The camera's deformation.
+    /// The camera's deformation. If the picture needs several cameras, that of one camera for all of it.
     const DeformationChain& chain() const { return *_chain; }
     /// What is known of the ground.
     const Ground& ground() const { return _ground; }
@@ -64,7 +64,14 @@ public:
 private:
     osg::ref_ptr<EffectScene> _scene;
     Ground _ground;
+    /// The deformation of the camera that would draw a place of the picture, x from −1 to 1.
+    const DeformationChain& chainAt(double x) const;
+    /// The same of the one that would draw a position in eye space.
+    const DeformationChain& chainOf(const osg::Vec3d& position) const;
+
     osg::ref_ptr<const DeformationChain> _chain;
+    /// Of columns from left to right, if one camera does not draw the whole picture; else empty.
+    std::vector<osg::ref_ptr<const DeformationChain>> _columns;
     osg::Matrixd _modelView;
     osg::Matrixd _toWorld;
     osg::Matrixd _projection;

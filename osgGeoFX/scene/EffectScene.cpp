@@ -166,6 +166,29 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformation(const osg::Matrixd
         .chain(known);
 }
 
+osg::ref_ptr<const DeformationChain> EffectScene::deformationOfColumn(const osg::Matrixd& modelView,
+                                                                      const osg::Matrixd& projection,
+                                                                      double low, double high,
+                                                                      const osg::NodePath& above) const
+{
+    const Ground known = ground(above);
+    ViewGeometry view(modelView, projection, known);
+    view.setImage(modelView, projection * osg::Matrixd::translate(-0.5 * (low + high), 0.0, 0.0) *
+                                 osg::Matrixd::scale(2.0 / (high - low), 1.0, 1.0));
+    return CameraSnapshots(_effects, EffectsAtWork(_effects), view).chain(known);
+}
+
+unsigned int EffectScene::leastParts() const
+{
+    unsigned int parts = 1;
+    for (const osg::ref_ptr<Effect>& effect : _effects)
+    {
+        const Deformation* deformation = effect->isActive() ? effect->asDeformation() : nullptr;
+        if (deformation) parts = std::max(parts, deformation->leastParts());
+    }
+    return parts;
+}
+
 osg::ref_ptr<osg::Group> EffectScene::getTerrain()
 {
     const std::lock_guard<std::mutex> lock(_terrainMutex);

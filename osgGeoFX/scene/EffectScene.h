@@ -228,6 +228,14 @@ public:
     osg::ref_ptr<const DeformationChain> deformation(const osg::Matrixd& modelView,
                                                      const osg::Matrixd& projection,
                                                      const osg::NodePath& above = {}) const;
+    /// The same for a camera that draws a column of the picture, from `low` to `high` of its x, −1…1.
+    osg::ref_ptr<const DeformationChain> deformationOfColumn(const osg::Matrixd& modelView,
+                                                             const osg::Matrixd& projection, double low,
+                                                             double high,
+                                                             const osg::NodePath& above = {}) const;
+    /// The least number of cameras, side by side, that draw a whole picture of the scene with the effects that are switched
+    /// on now; 1 for most. A panorama map of 360° needs two (drawInParts()).
+    unsigned int leastParts() const;
     /// Lets effects process a tile on the thread of the pager that reads it, instead of in the first frame that shows
     /// it. This applies to the effects that the scene has now. It may be called again.
     void listenTo(TileGuard& guard);

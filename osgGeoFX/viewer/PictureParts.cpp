@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/viewer/PictureParts.h>
 
-#include <osgGeoFX/effect/Deformation.h>
-
 #include <osg/NodeCallback>
 #include <osgViewer/ViewerBase>
 
@@ -33,7 +31,7 @@ public:
         if (_done || event.getEventType() != osgGA::GUIEventAdapter::FRAME) return false;
         auto* view = dynamic_cast<osgViewer::View*>(action.asView());
         osg::ref_ptr<EffectScene> scene;
-        if (view && _scene.lock(scene)) _done = !drawInParts(*view, leastPartsOf(*scene)).empty();
+        if (view && _scene.lock(scene)) _done = !drawInParts(*view, scene->leastParts()).empty();
         return false;
     }
 
@@ -43,18 +41,6 @@ private:
 };
 
 } // namespace
-
-unsigned int leastPartsOf(const EffectScene& scene)
-{
-    unsigned int parts = 1;
-    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
-    {
-        const Effect* effect = scene.getEffect(i);
-        const Deformation* deformation = effect->isActive() ? effect->asDeformation() : nullptr;
-        if (deformation) parts = std::max(parts, deformation->leastParts());
-    }
-    return parts;
-}
 
 std::vector<osg::ref_ptr<osg::Camera>> drawInParts(osgViewer::View& view, unsigned int parts)
 {

@@ -14,12 +14,8 @@
 namespace osgGeoFX
 {
 
-/// The least number of cameras, side by side, that draw a whole picture of a scene with the effects that are switched on
-/// now; 1 for most. A panorama map of 360° needs two.
-/// @ingroup viewer
-OSGGEOFX_EXPORT unsigned int leastPartsOf(const EffectScene& scene);
-
-/** Lets several cameras draw a view's picture side by side, each a column of it. They are slaves of the view's camera, which
+/** Lets several cameras draw a view's picture side by side, each a column of it; EffectScene::leastParts() tells how many
+    are needed. They are slaves of the view's camera, which
     goes on to set the view, the projection and all else, and to get the events, but draws nothing itself. Its graphics context
     and its viewport must be there. The columns follow when the window's size changes.
 

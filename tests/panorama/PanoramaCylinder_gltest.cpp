@@ -4,6 +4,7 @@
 // Cylindrical panorama maps on the screen: a strip all around is the same in few and in many parts, turns as a ring does, has no
 // triangle across its seam, and culling leaves out nothing of it.
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
+#include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/viewer/PictureParts.h>
 #include <tools/GlFixture.h>
 #include <tools/ImageComparison.h>
@@ -147,7 +148,7 @@ TEST_P(PanoramaCylinder, CullsNothingThatShows)
 TEST_P(PanoramaCylinder, AViewersPartsAreTheWholePicture)
 {
     const osg::ref_ptr<osg::Image> expected = draw(2);
-    const std::vector<osg::ref_ptr<osg::Camera>> parts = drawInParts(viewer(), leastPartsOf(*_scene));
+    const std::vector<osg::ref_ptr<osg::Camera>> parts = drawInParts(viewer(), _scene->leastParts());
     ASSERT_EQ(parts.size(), 2u);
     std::vector<osg::ref_ptr<ImageCapture>> captures;
     for (const osg::ref_ptr<osg::Camera>& part : parts)
@@ -172,6 +173,35 @@ TEST_P(PanoramaCylinder, AViewersPartsAreTheWholePicture)
     keep(*expected, "expected");
     keep(*joined, "joined");
     EXPECT_LT(differing(*expected, *joined), 0.004);
+}
+
+TEST_P(PanoramaCylinder, APixelIsThePlaceThatItShows)
+{
+    const DeformedView view(*_scene, *viewer().getCamera());
+    int found = 0;
+    for (int x = 2; x < WIDTH; x += 17)
+    {
+        for (int y = 2; y < HEIGHT / 2; y += 13)
+        {
+            SCOPED_TRACE(std::to_string(x) + ", " + std::to_string(y));
+            const auto hit = view.pick(x + 0.5, y + 0.5);
+            if (!hit) continue;
+            ++found;
+            osg::Vec2d pixel;
+            ASSERT_TRUE(view.project(hit->world, pixel));
+            EXPECT_NEAR(pixel.x(), x + 0.5, 0.6);
+            EXPECT_NEAR(pixel.y(), y + 0.5, 0.6);
+            // Clockwise from the middle by the share of a turn.
+            const osg::Vec3d place = hit->world * viewer().getCamera()->getViewMatrix();
+            // The camera looks down by 30 degrees.
+            const osg::Vec3d up(0.0, std::cos(osg::PI / 6.0), std::sin(osg::PI / 6.0));
+            const osg::Vec3d ahead = up ^ osg::Vec3d(1.0, 0.0, 0.0);
+            const double azimuth = std::atan2(place.x(), place * ahead);
+            const double expected = 2.0 * osg::PI * ((x + 0.5) / WIDTH - 0.5);
+            EXPECT_NEAR(std::remainder(azimuth - expected, 2.0 * osg::PI), 0.0, 0.02);
+        }
+    }
+    EXPECT_GT(found, 60);
 }
 
 TEST_P(PanoramaCylinder, WhatTheHandHoldsStaysUnderIt)
