@@ -62,6 +62,10 @@ std::vector<Case> cases()
              "pedestrianView bendAngle=50 focusDistance=1500 zoneWidth=2500 planeHeight=20 tallest=700",
              place(-157.862, 21.281, 250.0, 20.0, 2.0), 1.0},
             {"exaggeration", "vertical exaggeration by 2, over Honolulu", "verticalExaggeration factor=2",
+             place(-157.862, 21.24, 3500.0, 20.0, -20.0), 0.0},
+            {"liberty", "a liberty with the mountains behind Honolulu: enlarged, widened and turned",
+             "regionalLiberty longitude=-157.83 latitude=21.34 across=9000 along=9000 enlarge=1.4 widen=1.3 "
+             "turn=15",
              place(-157.862, 21.24, 3500.0, 20.0, -20.0), 0.0}};
 }
 
@@ -519,10 +523,11 @@ std::vector<Figure> run(const Settings& settings)
 Suite deformationSuite()
 {
     return {"deformation",
-            "Draws Oahu bent and straight: frames, culling, picking (birdsEye, pedestrian, exaggeration), "
+            "Draws Oahu bent and straight: frames, culling, picking (birdsEye, pedestrian, exaggeration, "
+            "liberty), "
             "and the culling "
             "of the paged terrain (cull)",
-            {"birdsEye", "pedestrian", "exaggeration", "cull"},
+            {"birdsEye", "pedestrian", "exaggeration", "liberty", "cull"},
             run};
 }
 

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/effect/detail/EyeVector.h>
+#include <osgGeoFX/effect/detail/LibertyInverse.h>
 
 #include <algorithm>
 #include <cmath>
@@ -134,46 +135,11 @@ private:
     glsl::geofx_Liberty _view;
 };
 
-/// The argument at which a growing function with the values 0 at 0 and `end` at `end` takes a value between them.
-template<class Function>
-double inverse(double value, double end, const Function& function)
-{
-    double low = 0.0, high = end;
-    for (int step = 0; step < 200 && high - low > 0.0; ++step)
-    {
-        const double middle = low + 0.5 * (high - low);
-        if (middle <= low || middle >= high) break;
-        (function(middle) < value ? low : high) = middle;
-    }
-    return low + 0.5 * (high - low);
-}
-
-/// Undoes the movements in the reverse order. Those of the plane do not depend on heights.
 osg::Vec3d LibertySnapshot::undeform(const osg::Vec3d& position) const
 {
     const glm::dvec3 drawn = glsl::geofx_libertyLocal(_view, toGlm(position));
-    const double wide = drawn.x / _view.acrossRadius, deep = drawn.y / _view.alongRadius;
-    if (wide * wide + deep * deep >= 1.0 || _view.curvature * drawn.z < -0.5) return position;
-    const auto undone = [](double value, double other, double gain)
-    {
-        const double end = std::sqrt(1.0 - other * other);
-        const double found =
-            inverse(std::abs(value), end,
-                    [&](double way)
-                    { return way * (1.0 + gain * glsl::geofx_libertyShare(way * way + other * other)); });
-        return std::copysign(found, value);
-    };
-    const double turnedY = undone(deep, wide, _view.lengthen);
-    const double turnedX = undone(wide, turnedY, _view.widen);
-    const double share = glsl::geofx_libertyShare(turnedX * turnedX + turnedY * turnedY);
-    const double c = std::cos(_view.turn * share), s = std::sin(_view.turn * share);
-    const glm::dvec2 place((c * turnedX - s * turnedY) * _view.acrossRadius,
-                           (c * turnedY + s * turnedX) * _view.alongRadius);
-    const double k = _view.curvature / 2.0;
-    const double height = drawn.z + k * (drawn.x * drawn.x + drawn.y * drawn.y);
-    const double own = _view.base + (height - _view.base) / (1.0 + _view.enlarge * share);
-    const glm::dvec3 local(place, own - k * glm::dot(place, place));
-    const glm::dvec3 way = local - drawn;
+    const glm::dvec3 way = undoneLiberty(_view, drawn) - drawn;
+    if (way == glm::dvec3(0.0)) return position;
     return position + toOsg(way.x * _view.across + way.y * _view.along + way.z * _view.up);
 }
 

@@ -41,14 +41,19 @@ EffectScene::~EffectScene() = default;
 
 bool EffectScene::addEffect(Effect* effect)
 {
+    return insertEffect(getNumEffects(), effect);
+}
+
+bool EffectScene::insertEffect(unsigned int index, Effect* effect)
+{
     if (!effect || std::find(_effects.begin(), _effects.end(), effect) != _effects.end())
     {
-        OSG_WARN << "osgGeoFX: EffectScene::addEffect got "
+        OSG_WARN << "osgGeoFX: EffectScene got "
                  << (effect ? "an effect that the scene has already" : "no effect") << "; nothing changes."
                  << std::endl;
         return false;
     }
-    _effects.emplace_back(effect);
+    _effects.insert(_effects.begin() + std::min(index, getNumEffects()), effect);
     _drawing->programs.dirty();
     return true;
 }

@@ -110,6 +110,8 @@ public:
 
     /// Adds an effect after the others. Null, and an effect that the scene already has, are refused with a warning.
     bool addEffect(Effect* effect);
+    /// Adds an effect before the one at an index; after the others if there is none. It refuses what addEffect() refuses.
+    bool insertEffect(unsigned int index, Effect* effect);
     /// Removes an effect. False if the scene does not have it.
     bool removeEffect(Effect* effect);
     unsigned int getNumEffects() const { return static_cast<unsigned int>(_effects.size()); }

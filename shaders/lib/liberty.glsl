@@ -65,21 +65,46 @@ GEOFX_INLINE Position geofx_liberty(geofx_Liberty view, Position position)
     return position + way.x * view.across + way.y * view.along + way.z * view.up;
 }
 
-// The derivative of a local place's movement by one of its coordinates, from both sides.
-GEOFX_INLINE Vector3 geofx_libertySlope(geofx_Liberty view, Vector3 local, Vector3 step)
-{
-    return (geofx_libertyWay(view, local + step) - geofx_libertyWay(view, local - step)) / (2 * length(step));
-}
-
-// The deformed unit normal of a surface.
+// The deformed unit normal of a surface: that of the cofactors of the movement's derivatives.
 GEOFX_INLINE Vector3 geofx_libertyNormal(geofx_Liberty view, Position position, Vector3 normal)
 {
     Vector3 local = geofx_libertyLocal(view, position);
-    Length step = Number(0.0005) * min(view.acrossRadius, view.alongRadius);
-    Vector3 x = geofx_libertySlope(view, local, Vector3(step, 0, 0)) + Vector3(1, 0, 0);
-    Vector3 y = geofx_libertySlope(view, local, Vector3(0, step, 0)) + Vector3(0, 1, 0);
-    Vector3 z = geofx_libertySlope(view, local, Vector3(0, 0, step)) + Vector3(0, 0, 1);
-    Vector3 turned = dot(normal, view.across) * cross(y, z) + dot(normal, view.along) * cross(z, x) +
-                     dot(normal, view.up) * cross(x, y);
+    Number x = local.x / view.acrossRadius;
+    Number y = local.y / view.alongRadius;
+    Number squared = x * x + y * y;
+    if (squared >= 1 || view.curvature * local.z < Number(-0.5)) return normal;
+    // Each row has the derivatives by x and by y, in half widths.
+    Number share = geofx_libertyShare(squared);
+    Vector2 shareSlope = -4 * (1 - squared) * Vector2(x, y);
+    Number c = cos(view.turn * share);
+    Number s = sin(view.turn * share);
+    Number turnedX = c * x + s * y;
+    Number turnedY = c * y - s * x;
+    Vector2 slopeX = Vector2(c, s) + turnedY * view.turn * shareSlope;
+    Vector2 slopeY = Vector2(-s, c) - turnedX * view.turn * shareSlope;
+    Number wide = turnedX * (1 + view.widen * share);
+    Vector2 wideSlope = (1 + view.widen * share) * slopeX + turnedX * view.widen * shareSlope;
+    Number left = max(1 - wide * wide - turnedY * turnedY, Number(0));
+    Number deepShare = left * left;
+    Vector2 deepShareSlope = -4 * left * (wide * wideSlope + turnedY * slopeY);
+    Number deep = turnedY * (1 + view.lengthen * deepShare);
+    Vector2 deepSlope = (1 + view.lengthen * deepShare) * slopeY + turnedY * view.lengthen * deepShareSlope;
+    // In metres. A height has no influence on the place.
+    Vector2 perMetre = Vector2(1 / view.acrossRadius, 1 / view.alongRadius);
+    Vector2 acrossSlope = view.acrossRadius * wideSlope * perMetre;
+    Vector2 alongSlope = view.alongRadius * deepSlope * perMetre;
+    Number rise = 1 + view.enlarge * share;
+    Length height = local.z + view.curvature / 2 * (local.x * local.x + local.y * local.y);
+    Vector2 upSlope = view.enlarge * (height - view.base) * shareSlope * perMetre +
+                      view.curvature * (rise * Vector2(local.x, local.y) - wide * view.acrossRadius * acrossSlope -
+                                        deep * view.alongRadius * alongSlope);
+    Number acrossPart = dot(normal, view.across);
+    Number alongPart = dot(normal, view.along);
+    Number upPart = dot(normal, view.up);
+    // The columns' cross products: (across, along, up) of the surface that the three derivatives span.
+    Vector3 byX = Vector3(acrossSlope.x, alongSlope.x, upSlope.x);
+    Vector3 byY = Vector3(acrossSlope.y, alongSlope.y, upSlope.y);
+    Vector3 byZ = Vector3(0, 0, rise);
+    Vector3 turned = acrossPart * cross(byY, byZ) + alongPart * cross(byZ, byX) + upPart * cross(byX, byY);
     return normalize(turned.x * view.across + turned.y * view.along + turned.z * view.up);
 }

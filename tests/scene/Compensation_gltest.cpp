@@ -71,6 +71,8 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
     const OahuCase& sort = std::get<0>(GetParam());
     const SampleRange cameras(fullTest() ? sort.many : sort.few, std::get<1>(GetParam()), PARTS);
     const bool painted = sort.addEffects == addRandomPainting;
+    // Liberties bound what their whole region does, so some more tiles are drawn and asked for beside it.
+    const double slack = sort.addEffects == addRandomLiberties ? 2.0 : 1.0;
     const int count = cameras.count();
     std::vector<double> tileRatios;
     std::vector<double> requestRatios;
@@ -114,7 +116,7 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
         // A painting draws its mirror's tiles, too, and those beside the picture whose strokes reach into it.
         if (!painted)
         {
-            EXPECT_LE(static_cast<double>(drawn), 1.5 * needed + 4.0)
+            EXPECT_LE(static_cast<double>(drawn), 1.5 * slack * needed + 4.0)
                 << needed << " needed, " << _scene->getEffect(0)->className();
         }
         if (needed > 0.0) tileRatios.push_back(static_cast<double>(drawn) / needed);
@@ -125,7 +127,7 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
         const auto deserving = static_cast<double>(oracle.deserving.size());
         if (!painted)
         {
-            EXPECT_LE(asking, 2.0 * deserving + 4.0) << deserving << " deserving";
+            EXPECT_LE(asking, 2.0 * slack * deserving + 4.0) << deserving << " deserving";
         }
         if (deserving > 0.0) requestRatios.push_back(asking / deserving);
     }
@@ -135,7 +137,7 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
     const double tileRatio = median(tileRatios);
     if (!painted)
     {
-        EXPECT_LE(tileRatio, 1.10);
+        EXPECT_LE(tileRatio, slack > 1.0 ? 1.5 : 1.10);
     }
     RecordProperty("median tiles drawn over needed", std::to_string(tileRatio));
     RecordProperty("median requests over deserving", std::to_string(median(requestRatios)));
@@ -151,6 +153,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Combine(
         ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 24, 500},
                           OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 24, 500},
+                          OahuCase{"liberties", "oahu", addRandomLiberties, 12, 200},
+                          OahuCase{"liberties_projected", "oahu_projected", addRandomLiberties, 12, 200},
                           OahuCase{"panorama", "oahu", addRandomPanorama, 12, 100},
                           OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 12, 100},
                           OahuCase{"painting", "oahu", addRandomPainting, 8, 40},

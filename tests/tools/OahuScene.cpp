@@ -6,6 +6,7 @@
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
@@ -139,6 +140,32 @@ void addRandomEffects(EffectScene& scene, Random& random)
         blend->setBirdsEyeView(randomBirdsEye(random));
         blend->setPedestrianView(randomPedestrian(random));
         scene.addEffect(blend);
+    }
+}
+
+void addRandomLiberties(EffectScene& scene, Random& random)
+{
+    const int kind = random.integer(0, 4);
+    if (kind < 2)
+        addRandomPanorama(scene, random);
+    else if (kind < 4)
+        addRandomEffects(scene, random);
+    else
+        removeEffects(scene);
+    for (int more = random.integer(1, 4); more > 0; --more)
+    {
+        const osg::ref_ptr<RegionalLiberty> liberty = new RegionalLiberty;
+        const double longitude = random.uniform(-158.28, -157.66), latitude = random.uniform(21.26, 21.7);
+        liberty->setGeodeticCenter(osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude));
+        // Zone 4 of UTM, to some kilometres.
+        liberty->setCenter({500000.0 + 103600.0 * (longitude + 159.0), 110680.0 * latitude});
+        liberty->setRadii(random.logarithmic(500.0, 15000.0), random.logarithmic(500.0, 15000.0));
+        liberty->setHeading(random.uniform(-3.0, 3.0));
+        liberty->setBaseHeight(random.integer(0, 1) ? 0.0 : random.uniform(0.0, 800.0));
+        if (random.integer(0, 2)) liberty->setEnlarge(random.logarithmic(0.2, 5.0));
+        if (random.integer(0, 1)) liberty->setWiden(random.uniform(0.25, 2.0));
+        if (random.integer(0, 1)) liberty->setTurn(random.uniform(-osg::PI_2, osg::PI_2));
+        scene.insertEffect(0, liberty);
     }
 }
 

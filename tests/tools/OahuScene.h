@@ -31,6 +31,10 @@ void addRandomEffects(osgGeoFX::EffectScene& scene, Random& random);
 void addRandomPanorama(osgGeoFX::EffectScene& scene, Random& random);
 void addRandomPainting(osgGeoFX::EffectScene& scene, Random& random);
 
+/// Puts some random liberties with regions of Oahu in the place of a scene's effects, often before a bend or the projection
+/// of a panorama map.
+void addRandomLiberties(osgGeoFX::EffectScene& scene, Random& random);
+
 /// A parameter of tests: which effects, of which database.
 struct OahuCase
 {
