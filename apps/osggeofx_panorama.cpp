@@ -5,6 +5,7 @@
 #include "osggeofx_render_output.h"
 #include "panorama/GroundBuilder.h"
 #include "panorama/Recipe.h"
+#include "panorama/RecipeLiberties.h"
 
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/geodata/BuildError.h>
@@ -53,6 +54,8 @@ struct Arguments
     std::optional<double> around, width, exaggeration, horizonLine, horizonDistance;
     std::optional<unsigned int> samples;
     std::vector<std::string> settings;
+    std::string liberties; ///< the strength of those that are chosen; empty for none
+    std::vector<std::string> liberty;
     bool explain = false, quiet = false;
 };
 
@@ -130,6 +133,20 @@ void addOptions(CLI::App& app, Arguments& arguments)
                    "Print the place that a pixel shows: longitude, latitude and height; pixels count from "
                    "the upper left")
         ->type_name("X,Y");
+    app.add_flag(
+        "--liberties{0.7}", arguments.liberties,
+        "Take liberties as painters did: enlarge summits that look small, widen the main valley, turn a "
+        "mountain to the viewer; --liberties=STRENGTH takes less or more of them, 0 to 1 (0.7). Otherwise "
+        "none is taken");
+    static_assert(PanoramaComposer::usualLiberties == 0.7);
+    app.add_option(
+           "--liberty", arguments.liberty,
+           "A liberty of your own, such as '7.66,45.98 radius=6000 enlarge=1.3 turn=10': its center, and "
+           "properties of "
+           "regionalLiberty, which osggeofx_render --help-effects lists. As often as wanted")
+        ->expected(1)
+        ->type_name("'LON,LAT NAME=VALUE …'")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_flag("--explain", arguments.explain, "Say what was chosen, and why");
     app.add_flag("--quiet", arguments.quiet, "No progress");
     app.footer(
@@ -308,7 +325,8 @@ bool isIsland(const TerrainRelief& relief)
     return 2 * sea > all;
 }
 
-void chooseView(const PanoramaWishes& wishes, const std::string& terrain, Recipe& recipe)
+void chooseView(const Arguments& arguments, const PanoramaWishes& wishes, const std::string& terrain,
+                Recipe& recipe)
 {
     const osgGeoFX::Scene scene = load(terrain);
     std::string error;
@@ -323,6 +341,7 @@ void chooseView(const PanoramaWishes& wishes, const std::string& terrain, Recipe
     recipe.reasons.emplace_back(recipe.island ? "Beyond the data: sea, since most of its border is sea."
                                               : "Beyond the data: haze, since its border is land.");
     chooseTheRest(recipe);
+    geofx::panorama::takeLiberties(arguments.liberties, arguments.liberty, composer, recipe);
 }
 
 osg::ref_ptr<PanoramaMap> mapOf(const Recipe& recipe)
@@ -361,6 +380,7 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
         if (dynamic_cast<osgGeoFX::Deformation*>(scene.effects->getEffect(i)))
             scene.effects->getEffect(i)->setEnabled(false);
+    geofx::panorama::addLiberties(recipe, *scene.effects);
     scene.effects->addEffect(mapOf(recipe));
     scene.effects->listenTo(*scene.guard);
     osgGeoFX::SceneRenderer::Options options;
@@ -393,6 +413,10 @@ void run(const Arguments& arguments)
             throw Failure("A recipe has its view already; leave --view-from, --focus, --around, --width, "
                           "--exaggeration, "
                           "--horizon-line and --horizon-distance out, or change the recipe.");
+        if (!arguments.liberties.empty())
+            throw Failure(
+                "A recipe has its liberties already; leave --liberties out, or make the recipe again.");
+        geofx::panorama::takeOwnLiberties(arguments.liberty, recipe);
     }
     else if (arguments.sources.size() == 1 && Recipe::isTerrain(arguments.sources.front()))
         recipe.terrain = arguments.sources.front();
@@ -407,12 +431,13 @@ void run(const Arguments& arguments)
     takeOptions(arguments, recipe);
     const PanoramaWishes wishes = wishesOf(arguments, recipe);
     if (!arguments.pick.empty()) pairOf("--pick", arguments.pick);
+    geofx::panorama::checkLiberties(arguments.liberties, arguments.liberty);
 
     const fs::path beside = fs::path(arguments.output).replace_extension();
     const std::string work = arguments.work.empty() ? beside.string() + ".work" : arguments.work;
     std::optional<GroundBuilder> builder;
     if (recipe.terrain.empty()) builder.emplace(recipe, work, arguments.quiet);
-    if (!again) chooseView(wishes, builder ? builder->overview() : recipe.terrain, recipe);
+    if (!again) chooseView(arguments, wishes, builder ? builder->overview() : recipe.terrain, recipe);
     const std::string ground = builder ? builder->ground(recipe.view) : recipe.terrain;
     if (!again && builder)
         recipe.reasons.insert(recipe.reasons.end(), builder->notes().begin(), builder->notes().end());

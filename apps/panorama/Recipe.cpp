@@ -112,6 +112,7 @@ Recipe Recipe::read(const std::string& file)
                       if (view.contains(name) || !mayLack(name)) value = view.at(name).get<double>();
                   });
         recipe.map = json.at("map").get<std::map<std::string, std::string>>();
+        if (json.contains("liberties")) json.at("liberties").get_to(recipe.liberties);
     }
     catch (const nlohmann::json::exception& error)
     {
@@ -159,6 +160,7 @@ void Recipe::write(const std::string& file) const
     inView["heading"] = view.heading;
     forValues(view, [&](const char* name, double value) { inView[name] = value; });
     json["map"] = map;
+    if (!liberties.empty()) json["liberties"] = liberties;
     json["reasons"] = reasons;
 
     const std::string unfinished = file + ".part";

@@ -38,6 +38,8 @@ struct Recipe
     /// The map's properties that are not their defaults, by name, in text form.
     std::map<std::string, std::string> map;
     std::vector<std::string> reasons; ///< for people; not read
+    /// The properties of each liberty (RegionalLiberty) that are not their defaults, as those of the map. They come before it.
+    std::vector<std::map<std::string, std::string>> liberties;
 
     /// Whether a file is a recipe, by its name.
     static bool isRecipe(const std::string& file);

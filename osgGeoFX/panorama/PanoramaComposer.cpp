@@ -3,6 +3,8 @@
 #include <osgGeoFX/panorama/PanoramaComposer.h>
 
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/LibertyFinder.h>
+#include <osgGeoFX/panorama/detail/PictureCurve.h>
 #include <osgGeoFX/panorama/detail/ReliefWorth.h>
 
 #include <osg/Math>
@@ -20,10 +22,6 @@ namespace osgGeoFX
 namespace
 {
 
-/// Heights show up to this multiple of D2, as in PanoramaSnapshot.cpp.
-constexpr double endOfHeights = 1.25;
-/// The tip of the highest summit: so much of the sky lies below it. The title says "the sky's lower half".
-constexpr double tipInSky = 0.42;
 /// Land is not drawn so much higher than it is that a tenth of it would be steeper than this.
 constexpr double mostSlope = 1.6;
 /// An exaggeration suits a terrain if a tenth of the land then seems steeper than this.
@@ -34,51 +32,17 @@ constexpr double leastSuitable = 1.0, mostSuitable = 4.0;
 constexpr double muchWater = 0.45;
 /// So much of a picture may lie beyond the data before a view is changed.
 constexpr double littleBlank = 0.0003;
+/// Liberties may hide so much more of the picture's ground, and of the summits.
+constexpr double littleHidden = 0.03;
+/// Columns and steps of a judgement.
+constexpr int fineColumns = 96, fineSteps = 192;
 /// Horizons are no lower and no higher in the picture.
 constexpr double lowestLine = 0.64, highestLine = 0.84;
 constexpr double leastSky = 0.12, mostSky = 0.30;
-/// The ground before the picture's base that may rise into it, in view radii.
-constexpr double beforeBase = 1.0;
-/// The same in a cylindrical map, of the way from the base to the eye's foot.
-constexpr double leastWay = 0.7;
 /// Where a wish for a focus puts it, of the horizon's distance.
 constexpr double focusAt = 0.4;
 /// The horizon of a map lies no farther than 60 degrees of arc.
 constexpr double farthest = 6e6;
-
-/// Eq. 1 and the curve of a composition, for x in view radii and s in metres (shaders/lib/panorama.glsl).
-struct Curve
-{
-    Curve(const PanoramaComposition& composition, double aspect)
-        : radius(composition.viewRadius),
-          ring(composition.horizontalAngle > 0.0 ? 2.0 * radius / composition.horizontalAngle : 0.0),
-          before(ring > 0.0 ? std::min(leastWay * ring, radius) : beforeBase * radius),
-          curve(composition.curveDistance * radius), horizon(composition.horizonDistance * radius),
-          end(endOfHeights * horizon), along(4.0 * composition.horizonLine / (curve + horizon)),
-          lift(aspect / radius), arch(2.0 * composition.horizonBend), base(composition.baseHeight)
-    {
-    }
-
-    /// The picture's y, 0…1 from its base, of ground at the base height.
-    double foot(double x, double s) const
-    {
-        const double width = std::max(horizon - curve, 1e-3);
-        const double bent = std::clamp(s - curve, 0.0, width);
-        const double rise = std::min(s, curve) + bent - bent * bent / (2.0 * width);
-        return 0.5 * (along * rise - arch * (1.0 - std::cos(x * osg::PI_2)));
-    }
-    /// How much a height raises it, for an exaggeration of 1.
-    double raised(double height, double s) const
-    {
-        const double t = std::clamp(1.0 - (s - horizon) / std::max(end - horizon, 1e-3), 0.0, 1.0);
-        const double width = ring > 0.0 ? ring / (ring + std::max(s, 0.0)) : 1.0;
-        return 0.5 * lift * width * (height - base) * t * t * (3.0 - 2.0 * t);
-    }
-    /// How much wider than at the base a column is at a distance s.
-    double widening(double s) const { return ring > 0.0 ? std::max(ring + s, 0.0) / ring : 1.0; }
-
-    double radius, ring, before, curve, horizon, end, along, lift, arch, base;
-};
 
 /// What lies at a place of the terrain.
 struct Sample
@@ -99,7 +63,7 @@ public:
     /// Whether most of the picture's rectangle has ground; for a first choice among many views.
     bool hasGround(const PanoramaComposition& view) const
     {
-        const Place place(_relief, view);
+        const PicturePlace place(_relief, view);
         int ground = 0;
         for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0})
         {
@@ -117,7 +81,7 @@ public:
     double baseOf(const PanoramaComposition& view) const
     {
         double lowest = HUGE_VAL;
-        const Place place(_relief, view);
+        const PicturePlace place(_relief, view);
         for (int step = 0; step < 8; ++step)
         {
             for (int column = 0; column < _columns; ++column)
@@ -133,7 +97,7 @@ public:
     /// The exaggeration that puts the tip of the highest summit into the sky's lower half, within reason.
     double exaggerationOf(const PanoramaComposition& view, double aspect, double steep) const
     {
-        const Curve curve(view, aspect);
+        const PictureCurve curve(view, aspect);
         const double tip = view.horizonLine + tipInSky * (1.0 - view.horizonLine);
         double most = std::clamp(mostSlope / std::max(steep, 1e-3), modestExaggeration, mostExaggeration);
         const auto fit = [&](double x, double s, double height)
@@ -141,7 +105,7 @@ public:
             const double raised = curve.raised(height, s);
             if (raised > 1e-6) most = std::min(most, (tip - curve.foot(x, s)) / raised);
         };
-        const Place place(_relief, view);
+        const PicturePlace place(_relief, view);
         for (int column = 0; column < _columns; ++column)
         {
             for (int step = 0; step < _steps; ++step)
@@ -162,8 +126,8 @@ public:
 
     PanoramaJudgement judge(const PanoramaComposition& view, double aspect) const
     {
-        const Curve curve(view, aspect);
-        const Place place(_relief, view);
+        const PictureCurve curve(view, aspect);
+        const PicturePlace place(_relief, view);
         PanoramaJudgement result;
         double shown = 0.0, worth = 0.0, water = 0.0, walked = 0.0, seen = 0.0, blank = 0.0, sky = 0.0,
                cut = 0.0;
@@ -262,54 +226,6 @@ public:
     }
 
 private:
-    /// Places around the picture's base, up to the second order of the distance over the Earth's radius.
-    class Place
-    {
-    public:
-        Place(const TerrainRelief& relief, const PanoramaComposition& view)
-            : _place(view.place), _unit(relief.metre(view.place.y())), _sine(std::sin(view.heading)),
-              _cosine(std::cos(view.heading)),
-              _turn(relief.geocentric
-                        ? std::tan(osg::DegreesToRadians(std::clamp(view.place.y(), -89.0, 89.0))) /
-                              osg::WGS_84_RADIUS_EQUATOR
-                        : 0.0),
-              _ring(view.horizontalAngle > 0.0 ? 2.0 * view.viewRadius / view.horizontalAngle : 0.0)
-        {
-        }
-
-        /// From x to the right and s up in the picture, metres, to the relief's units.
-        osg::Vec2d at(double x, double s) const
-        {
-            if (_ring > 0.0)
-            {
-                const double away = std::max(_ring + s, 0.0), azimuth = x / _ring;
-                x = away * std::sin(azimuth);
-                s = away * std::cos(azimuth);
-            }
-            const double east = x * _cosine + s * _sine, north = s * _cosine - x * _sine;
-            return {_place.x() + east * (1.0 + north * _turn) * _unit.x(),
-                    _place.y() + (north - 0.5 * east * east * _turn) * _unit.y()};
-        }
-        /// The inverse.
-        osg::Vec2d of(const osg::Vec2d& place) const
-        {
-            double east = (place.x() - _place.x()) / _unit.x(), north = (place.y() - _place.y()) / _unit.y();
-            const double first = east;
-            for (int i = 0; i < 4; ++i)
-            {
-                east = first / (1.0 + north * _turn);
-                north = (place.y() - _place.y()) / _unit.y() + 0.5 * east * east * _turn;
-            }
-            const osg::Vec2d ground(east * _cosine - north * _sine, east * _sine + north * _cosine);
-            if (!(_ring > 0.0)) return ground;
-            return {_ring * std::atan2(ground.x(), ground.y()), ground.length() - _ring};
-        }
-
-    private:
-        osg::Vec2d _place, _unit;
-        double _sine, _cosine, _turn, _ring;
-    };
-
     double xOf(int column) const { return (2.0 * column + 1.0) / _columns - 1.0; }
 
     /// Ground nearer to the end of the data than `margin` does not count.
@@ -341,7 +257,7 @@ private:
 
     /// 1 if a summit is in sight and not at the picture's sides; 0 if it is not.
     double seenShare(const ReliefSummit& summit, const osg::Vec2d& at, const PanoramaComposition& view,
-                     const Curve& curve, const std::vector<float>& tops, double stretch) const
+                     const PictureCurve& curve, const std::vector<float>& tops, double stretch) const
     {
         const double x = at.x() / curve.radius;
         if (std::abs(x) >= 1.0 || at.y() <= 0.0 || at.y() >= curve.end) return 0.0;
@@ -433,7 +349,7 @@ class PanoramaComposer::Parts
 public:
     Parts(const TerrainRelief& given, const PanoramaWishes& wished)
         : relief(given), rough(given.coarser(std::max(std::max(given.columns, given.rows) / 128, 1))),
-          worth(relief), roughWorth(rough), wishes(wished), finest(relief, worth, 96, 192),
+          worth(relief), roughWorth(rough), wishes(wished), finest(relief, worth, fineColumns, fineSteps),
           coarsest(rough, roughWorth, 16, 40), medium(rough, roughWorth, 40, 80)
     {
         wishes.aspect = std::clamp(wishes.aspect, 0.1, 10.0);
@@ -677,6 +593,36 @@ PanoramaComposition PanoramaComposer::compose() const
 PanoramaJudgement PanoramaComposer::judge(const PanoramaComposition& composition) const
 {
     return _parts->finest.judge(composition, _parts->wishes.aspect);
+}
+
+PanoramaJudgement PanoramaComposer::judge(const PanoramaComposition& composition,
+                                          const std::vector<PanoramaLiberty>& liberties) const
+{
+    TerrainRelief relief = _parts->relief;
+    for (const PanoramaLiberty& liberty : liberties)
+        take(liberty, relief);
+    const ReliefWorth worth(relief);
+    return Walk(relief, worth, fineColumns, fineSteps).judge(composition, _parts->wishes.aspect);
+}
+
+std::vector<PanoramaLiberty> PanoramaComposer::liberties(const PanoramaComposition& composition,
+                                                         double strength) const
+{
+    const LibertyFinder finder(_parts->relief, _parts->worth, composition, _parts->wishes.aspect, strength);
+    std::vector<PanoramaLiberty> taken;
+    const PanoramaJudgement before = judge(composition);
+    const double sky = std::max({leastSky - before.sky, before.sky - mostSky, 0.0});
+    for (const PanoramaLiberty& liberty : finder.found())
+    {
+        taken.push_back(liberty);
+        const PanoramaJudgement now = judge(composition, taken);
+        const bool suits = now.cut <= before.cut && now.blank <= before.blank + littleBlank &&
+                           now.hidden <= before.hidden + littleHidden &&
+                           now.summits >= before.summits - littleHidden &&
+                           std::max({leastSky - now.sky, now.sky - mostSky, 0.0}) <= sky + 1e-9;
+        if (!suits) taken.pop_back();
+    }
+    return taken;
 }
 
 std::vector<std::string> PanoramaComposer::explain(const PanoramaComposition& view) const

@@ -56,6 +56,23 @@ struct OSGGEOFX_EXPORT PanoramaComposition
     osg::Matrixd viewMatrix(const TerrainRelief& relief) const;
 };
 
+/** A liberty that a painter would take with a region of a picture's terrain: an ellipse whose middle gets the whole of it.
+    The values are those of the effect RegionalLiberty. It is a plain value.
+    @ingroup panorama */
+struct PanoramaLiberty
+{
+    osg::Vec2d place;        ///< the region's center, in the relief's units
+    double across = 0.0;     ///< half its width across its heading, metres
+    double along = 0.0;      ///< and along it
+    double heading = 0.0;    ///< radians clockwise from north
+    double enlarge = 1.0;    ///< the factor of heights
+    double baseHeight = 0.0; ///< the height that stays, metres
+    double widen = 1.0;      ///< the factor of widths across the heading
+    double lengthen = 1.0;   ///< and along it
+    double turn = 0.0;       ///< clockwise from above, radians
+    std::string why;         ///< a sentence that names it and says why
+};
+
 /// How a composition shows the terrain. Shares are 0…1.
 /// @ingroup panorama
 struct PanoramaJudgement
@@ -107,6 +124,20 @@ public:
     /// The best composition that was found. The same relief and wishes give the same one.
     PanoramaComposition compose() const;
     PanoramaJudgement judge(const PanoramaComposition& composition) const;
+    /// The same, of the terrain with liberties, which act one after the other.
+    PanoramaJudgement judge(const PanoramaComposition& composition,
+                            const std::vector<PanoramaLiberty>& liberties) const;
+    /** The liberties that suit a composition (Section 2.1: Berann enlarged landmarks, widened valleys and turned mountains).
+        Up to three of the most prominent summits in sight that look small are enlarged above their foot, or above water
+        there, which stays level. The main valley that leads into the picture is widened if it is narrow or hidden. One
+        mountain whose broad side looks away is turned. `strength` 0…1: at 1 a summit grows by up to 1.5, the valley by
+        1.6, and the turn is up to 20 degrees.
+
+        No tip rises above the sky's lower half. A liberty is left out if, with it, the picture would hide notably more, show
+        fewer summits or less of the data. */
+    std::vector<PanoramaLiberty> liberties(const PanoramaComposition& composition, double strength) const;
+    /// The usual strength of liberties.
+    static constexpr double usualLiberties = 0.7;
     /// What was chosen and why, a sentence for each choice.
     std::vector<std::string> explain(const PanoramaComposition& composition) const;
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
 
+#include <osgGeoFX/viewer/Liberties.h>
+
 #include <osg/Notify>
 
 #include <chrono>
@@ -36,7 +38,7 @@ AutomaticPanorama::~AutomaticPanorama() = default;
 
 void AutomaticPanorama::getUsage(osg::ApplicationUsage& usage) const
 {
-    usage.addKeyboardMouseBinding("F11", "Make a panorama map of the terrain");
+    usage.addKeyboardMouseBinding("F11", "Make a panorama map; Shift: with liberties");
 }
 
 void AutomaticPanorama::begin(osgViewer::View& view)
@@ -52,15 +54,21 @@ void AutomaticPanorama::begin(osgViewer::View& view)
     PanoramaWishes wishes;
     wishes.aspect = aspectOf(view);
     _composition = std::async(std::launch::async,
-                              [terrain = std::move(*relief), wishes]() -> Result
+                              [terrain = std::move(*relief), wishes, strength = _strength]() -> Result
                               {
                                   const PanoramaComposer composer(terrain, wishes);
-                                  return {composer.compose(), terrain.geocentric};
+                                  const PanoramaComposition chosen = composer.compose();
+                                  return {chosen, terrain.geocentric,
+                                          strength > 0.0 ? composer.liberties(chosen, strength)
+                                                         : std::vector<PanoramaLiberty>()};
                               });
 }
 
 void AutomaticPanorama::show(const Result& result, osgViewer::View& view)
 {
+    for (const osg::ref_ptr<RegionalLiberty>& former : _liberties)
+        _scene->removeEffect(former);
+    _liberties.clear();
     osg::ref_ptr<PanoramaMap> map;
     for (unsigned int i = 0; i < _scene->getNumEffects(); ++i)
     {
@@ -68,7 +76,7 @@ void AutomaticPanorama::show(const Result& result, osgViewer::View& view)
         auto* const panorama = dynamic_cast<PanoramaMap*>(effect);
         if (panorama && !map)
             map = panorama;
-        else if (dynamic_cast<Deformation*>(effect))
+        else if (dynamic_cast<Deformation*>(effect) && !dynamic_cast<RegionalLiberty*>(effect))
             effect->setEnabled(false);
     }
     const bool known = map.valid();
@@ -76,6 +84,12 @@ void AutomaticPanorama::show(const Result& result, osgViewer::View& view)
     result.view.applyTo(*map);
     map->setEnabled(true);
     if (!known) _scene->addEffect(map);
+    for (const PanoramaLiberty& liberty : result.liberties)
+    {
+        _liberties.push_back(makeLiberty(liberty, result.geocentric));
+        addLiberty(*_scene, *_liberties.back());
+        OSG_NOTICE << "osgGeoFX: " << liberty.why << std::endl;
+    }
     if (_prepared) _prepared(*map);
     TerrainRelief frame;
     frame.geocentric = result.geocentric;
@@ -91,7 +105,9 @@ bool AutomaticPanorama::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAc
     if (event.getEventType() == osgGA::GUIEventAdapter::KEYDOWN &&
         event.getKey() == osgGA::GUIEventAdapter::KEY_F11)
     {
-        request();
+        request(event.getModKeyMask() & osgGA::GUIEventAdapter::MODKEY_SHIFT
+                    ? PanoramaComposer::usualLiberties
+                    : 0.0);
         action.requestRedraw();
         return true;
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
+#include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/panorama/PanoramaComposer.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -13,15 +14,17 @@
 #include <functional>
 #include <future>
 #include <string>
+#include <vector>
 
 namespace osgGeoFX
 {
 
 /** Makes a panorama map of whatever terrain a scene shows, by the key F11. PanoramaComposer chooses the view for the
-    window's shape.
+    window's shape. With Shift it takes liberties, too, as a painter would.
 
     The first PanoramaMap of the scene takes the values and is enabled; a scene without one gets one. Other
-    deformations are disabled, since the projection of a scene is one. Then the view's manipulator, or its camera, moves
+    deformations are disabled, since the projection of a scene is one; only a RegionalLiberty stays. Liberties of the map
+    before are removed. Then the view's manipulator, or its camera, moves
     to the map's place. The view stays as it is where there is no terrain, with a warning that says why.
 
     The terrain is read in the event traversal, which takes up to a second or two. The choice takes some seconds in a
@@ -35,7 +38,12 @@ public:
     AutomaticPanorama(EffectScene& scene, osg::Node& terrain);
 
     /// Makes the map in the next frames, as the key does. For the event traversal, such as a button's.
-    void request() { _requested = true; }
+    /// `liberties`: their strength, 0…1 (PanoramaComposer::liberties()); 0 for none.
+    void request(double liberties = 0.0)
+    {
+        _requested = true;
+        _strength = liberties;
+    }
     /// Whether a map is still being made.
     bool busy() const { return _requested || _composition.valid(); }
 
@@ -53,6 +61,7 @@ private:
     {
         PanoramaComposition view;
         bool geocentric;
+        std::vector<PanoramaLiberty> liberties;
     };
 
     void begin(osgViewer::View& view);
@@ -62,6 +71,8 @@ private:
     const osg::ref_ptr<osg::Node> _terrain;
     std::function<void(PanoramaMap&)> _prepared;
     bool _requested = false;
+    double _strength = 0.0;                                ///< of the liberties of the next map
+    std::vector<osg::ref_ptr<RegionalLiberty>> _liberties; ///< of the last one
     std::future<Result> _composition;
 };
 

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 #include <osg/Image>
+#include <osg/Vec2d>
 #include <osgDB/ReadFile>
 
 #include <algorithm>
@@ -88,6 +89,54 @@ TEST_F(PanoramaProgram, MakesAMapOfADemAndTheSameAgain)
     const ProgramResult again = run({"map.json", "-o", "again.png", "--quiet"});
     ASSERT_EQ(again.exitCode, 0) << again.standardError;
     EXPECT_TRUE(bytes("map.png") == bytes("again.png")) << "the same to the byte";
+}
+
+TEST_F(PanoramaProgram, TakesLibertiesWhereTheyAreAskedFor)
+{
+    invent("alps");
+    const std::vector<std::string> size = {"--size", "320x180", "--explain", "--quiet"};
+    const auto map = [&](std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.end(), size.begin(), size.end());
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        EXPECT_EQ(result.standardError, "");
+        return result.standardOutput;
+    };
+    const std::string plain = map({"alps.tif", "-o", "plain.png"});
+    EXPECT_FALSE(nlohmann::json::parse(bytes("plain.json")).contains("liberties"));
+    EXPECT_EQ(plain.find(" is enlarged "), std::string::npos);
+
+    const std::string explained = map({"--liberties", "alps.tif", "-o", "map.png"});
+    const nlohmann::json recipe = nlohmann::json::parse(bytes("map.json"));
+    const std::size_t count = recipe.at("liberties").size();
+    ASSERT_GT(count, 0u);
+    // A sentence for each, and the same view.
+    std::size_t named = 0;
+    for (const char* const what : {" is enlarged by ", " is widened by ", " is turned by "})
+        for (std::size_t at = explained.find(what); at != std::string::npos;
+             at = explained.find(what, at + 1))
+            ++named;
+    EXPECT_EQ(named, count) << explained;
+    EXPECT_EQ(recipe.at("view"), nlohmann::json::parse(bytes("plain.json")).at("view"));
+    EXPECT_FALSE(bytes("map.png") == bytes("plain.png"));
+    map({"map.json", "-o", "again.png"});
+    EXPECT_TRUE(bytes("map.png") == bytes("again.png")) << "the same to the byte";
+    EXPECT_EQ(nlohmann::json::parse(bytes("again.json")).at("liberties"), recipe.at("liberties"));
+
+    // One by hand, where the picture looks.
+    const osg::Vec2d base(recipe.at("view").at("place").at(0).get<double>(),
+                          recipe.at("view").at("place").at(1).get<double>());
+    const std::string own =
+        map({"alps.tif", "-o", "own.png", "--liberty",
+             std::to_string(base.x()) + "," + std::to_string(base.y()) + " radius=6000 enlarge=1.5 turn=10"});
+    const nlohmann::json byHand = nlohmann::json::parse(bytes("own.json")).at("liberties");
+    ASSERT_EQ(byHand.size(), 1u);
+    EXPECT_EQ(byHand[0].at("enlarge"), "1.5");
+    EXPECT_EQ(byHand[0].at("along"), "6000");
+    EXPECT_EQ(byHand[0].at("turn"), "10");
+    EXPECT_NE(own.find("enlarge=1.5"), std::string::npos);
+    EXPECT_FALSE(bytes("own.png") == bytes("plain.png"));
 }
 
 TEST_F(PanoramaProgram, KeepsTheNameOfAReadyPalette)
@@ -224,6 +273,10 @@ TEST_F(PanoramaProgram, RefusesInASentence)
     expectRefusal({"hills.tif", "-o", "map.png", "--size", "huge"}, "--size huge");
     expectRefusal({"hills.tif", "-o", "map.png", "--set", "snowline=1"}, "snowline");
     expectRefusal({"hills.tif", "-o", "map.png", "--palette", "none.png"}, "none.png");
+    expectRefusal({"hills.tif", "-o", "map.png", "--liberties=2"}, "--liberties=2");
+    expectRefusal({"hills.tif", "-o", "map.png", "--liberty", "7.6 enlarge=2"}, "names no center");
+    expectRefusal({"hills.tif", "-o", "map.png", "--liberty", "7.6,46 enlarge=9"}, "enlarge");
+    expectRefusal({"hills.tif", "-o", "map.png", "--liberty", "7.6,46 bigger=2"}, "bigger");
     std::ofstream(file("wrong.json")) << "{}";
     expectRefusal({"wrong.json", "-o", "map.png"}, "wrong.json");
 }

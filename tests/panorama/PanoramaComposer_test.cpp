@@ -5,6 +5,7 @@
 #include <osgGeoFX/panorama/PanoramaComposer.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/viewer/Liberties.h>
 #include <tools/InventedTerrain.h>
 #include <tools/RandomSamples.h>
 
@@ -18,6 +19,7 @@
 using osgGeoFX::PanoramaComposer;
 using osgGeoFX::PanoramaComposition;
 using osgGeoFX::PanoramaJudgement;
+using osgGeoFX::PanoramaLiberty;
 using osgGeoFX::PanoramaWishes;
 using osgGeoFX::TerrainRelief;
 
@@ -170,6 +172,226 @@ TEST(PanoramaComposer, JudgesThePictureThatTheMapDraws)
     ASSERT_TRUE(picture.project(osg::Vec3d(view.place, view.baseHeight), base));
     EXPECT_NEAR(base.x(), 800.0, 0.5);
     EXPECT_NEAR(base.y(), 0.0, 0.5);
+}
+
+namespace
+{
+
+/// Land at 100 m with one mountain, long in a direction (clockwise from north), and a composition that looks north at it.
+TerrainRelief mountainRelief(double direction, double height, double longer = 3.0)
+{
+    TerrainRelief relief = reliefOf("hills", 200);
+    for (int row = 0; row < relief.rows; ++row)
+    {
+        for (int column = 0; column < relief.columns; ++column)
+        {
+            const osg::Vec2d away = relief.place(column, row) - osg::Vec2d(320000.0, 5020000.0);
+            const double along = away.x() * std::sin(direction) + away.y() * std::cos(direction);
+            const double across = away.x() * std::cos(direction) - away.y() * std::sin(direction);
+            const double r = std::hypot(along / longer, across) / 1000.0;
+            const std::size_t cell = relief.index(column, row);
+            relief.water[cell] = 0;
+            relief.heights[cell] =
+                static_cast<float>(100.0 + height * std::exp(-r * r) + 3.0 * std::sin(column * 0.7));
+        }
+    }
+    return relief;
+}
+
+PanoramaComposition northwards()
+{
+    PanoramaWishes wishes;
+    wishes.heading = 0.0;
+    wishes.viewRadius = 12000.0;
+    wishes.horizonLine = 0.75;
+    wishes.horizonDistance = 2.0;
+    wishes.exaggeration = 2.0;
+    wishes.place = osg::Vec2d(320000.0, 5008000.0);
+    PanoramaComposition view = PanoramaComposer(mountainRelief(0.0, 900.0), wishes).compose();
+    return view;
+}
+
+/// How far a direction of the ground at a place turns, clockwise.
+double turned(const PanoramaLiberty& liberty, const osg::Vec2d& place, double direction)
+{
+    const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
+    scene->addEffect(osgGeoFX::makeLiberty(liberty, false));
+    const osgGeoFX::DeformedView view(
+        *scene,
+        osg::Matrixd::lookAt(osg::Vec3d(place, 1e4), osg::Vec3d(place, 0.0), osg::Vec3d(0.0, 1.0, 0.0)),
+        osg::Matrixd::perspective(30.0, 1.0, 1.0, 1e6), 100.0, 100.0);
+    const osg::Vec3d end(place + osg::Vec2d(std::sin(direction), std::cos(direction)) * 10.0, 500.0);
+    const osg::Vec3d way = view.deform(end) - view.deform(osg::Vec3d(place, 500.0));
+    return std::remainder(std::atan2(way.x(), way.y()) - direction, 2.0 * osg::PI);
+}
+
+} // namespace
+
+TEST_P(PanoramaComposers, LibertiesCutNothingOffAndHideNothing)
+{
+    const TerrainRelief relief = reliefOf(GetParam());
+    const PanoramaComposer composer(relief);
+    const PanoramaComposition view = composer.compose();
+    const PanoramaJudgement before = composer.judge(view);
+    EXPECT_TRUE(composer.liberties(view, 0.0).empty());
+    for (const double strength : {PanoramaComposer::usualLiberties, 1.0})
+    {
+        const std::vector<PanoramaLiberty> all = composer.liberties(view, strength);
+        const PanoramaJudgement seen = composer.judge(view, all);
+        EXPECT_EQ(seen.cut, 0.0);
+        EXPECT_LE(seen.top, view.horizonLine + 0.5 * (1.0 - view.horizonLine)) << "the sky's lower half";
+        EXPECT_LT(seen.blank, 0.001);
+        EXPECT_GE(seen.sky, 0.12);
+        EXPECT_LE(seen.sky, 0.30);
+        EXPECT_LE(seen.hidden, before.hidden + 0.03);
+        EXPECT_LE(all.size(), 5u);
+        for (const PanoramaLiberty& liberty : all)
+        {
+            EXPECT_LE(liberty.enlarge, 1.0 + 0.5 * strength + 1e-9);
+            EXPECT_LE(liberty.widen, 1.0 + 0.6 * strength + 0.01);
+            EXPECT_LE(std::abs(liberty.turn), osg::DegreesToRadians(20.0 * strength) + 1e-9);
+            EXPECT_TRUE(liberty.enlarge > 1.0 || liberty.widen > 1.0 || liberty.turn != 0.0);
+            EXPECT_EQ(liberty.why.substr(0, 4), "The ");
+            EXPECT_EQ(liberty.why.back(), '.');
+        }
+        // The same again.
+        const std::vector<PanoramaLiberty> again = PanoramaComposer(relief).liberties(view, strength);
+        ASSERT_EQ(again.size(), all.size());
+        for (std::size_t i = 0; i < all.size(); ++i)
+            EXPECT_EQ(again[i].why, all[i].why);
+    }
+}
+
+TEST(PanoramaComposer, EnlargesWhatLooksSmallAboveItsFoot)
+{
+    const PanoramaComposition view = northwards();
+    const auto enlarged = [&](double height)
+    {
+        double factor = 1.0;
+        for (const PanoramaLiberty& each :
+             PanoramaComposer(mountainRelief(0.5 * osg::PI, height)).liberties(view, 1.0))
+        {
+            if (each.enlarge == 1.0) continue;
+            factor = each.enlarge;
+            EXPECT_LT((each.place - osg::Vec2d(320000.0, 5020000.0)).length(), 500.0);
+            EXPECT_NEAR(each.baseHeight, 100.0, 30.0) << "the land around it";
+            EXPECT_GT(each.across, 2500.0);
+            EXPECT_LT(each.across, 7000.0);
+        }
+        return factor;
+    };
+    EXPECT_GT(enlarged(250.0), 1.3);
+    EXPECT_EQ(enlarged(1700.0), 1.0) << "it is tall already, and has room above";
+}
+
+TEST(PanoramaComposer, TurnsABroadSideToTheViewer)
+{
+    const PanoramaComposition view = northwards();
+    const osg::Vec2d place(320000.0, 5020000.0);
+    for (const double direction : {0.3, 0.8, -0.3, -0.8, 1.5})
+    {
+        SCOPED_TRACE(direction);
+        double turn = 0.0;
+        for (const PanoramaLiberty& each :
+             PanoramaComposer(mountainRelief(direction, 900.0)).liberties(view, 1.0))
+            if (each.turn != 0.0) turn = turned(each, place, direction);
+        if (direction == 1.5)
+        {
+            EXPECT_EQ(turn, 0.0) << "it lies across the picture";
+            continue;
+        }
+        // Its length comes nearer to the picture's width: away from north.
+        EXPECT_GT(turn * direction, 0.0);
+        EXPECT_LE(std::abs(turn), osg::DegreesToRadians(20.5));
+        EXPECT_GT(std::abs(turn), osg::DegreesToRadians(8.0));
+    }
+}
+
+TEST(PanoramaComposer, WidensTheValleyThatLeadsIntoThePicture)
+{
+    const double direction = 0.25;
+    TerrainRelief relief = reliefOf("hills", 200);
+    for (int row = 0; row < relief.rows; ++row)
+    {
+        for (int column = 0; column < relief.columns; ++column)
+        {
+            const osg::Vec2d away = relief.place(column, row) - osg::Vec2d(320000.0, 5018000.0);
+            const double across = away.x() * std::cos(direction) - away.y() * std::sin(direction);
+            const double from = std::abs(across) / 500.0;
+            const std::size_t cell = relief.index(column, row);
+            relief.water[cell] = 0;
+            relief.heights[cell] = static_cast<float>(100.0 + 500.0 * (1.0 - std::exp(-from * from)));
+        }
+    }
+    const PanoramaComposition view = northwards();
+    int valleys = 0;
+    for (const PanoramaLiberty& each : PanoramaComposer(relief).liberties(view, 1.0))
+    {
+        if (each.widen == 1.0) continue;
+        ++valleys;
+        EXPECT_NEAR(std::remainder(each.heading - direction, osg::PI), 0.0, 0.12);
+        const osg::Vec2d away = each.place - osg::Vec2d(320000.0, 5018000.0);
+        EXPECT_NEAR(away.x() * std::cos(direction) - away.y() * std::sin(direction), 0.0, 600.0);
+        EXPECT_GT(each.widen, 1.3);
+        // It widens across the valley.
+        EXPECT_LT(std::abs(turned(each, each.place, direction)), 0.05);
+    }
+    EXPECT_EQ(valleys, 1);
+}
+
+/// The composer's own liberties are those of the effect: a tip stands where map and liberty draw it.
+TEST(PanoramaComposer, JudgesLibertiesAsTheEffectTakesThem)
+{
+    TerrainRelief relief = reliefOf("hills", 100);
+    std::fill(relief.heights.begin(), relief.heights.end(), 100.0f);
+    std::fill(relief.water.begin(), relief.water.end(), 0);
+    const int column = 60, row = 70;
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x)
+            relief.heights[relief.index(column + x, row + y)] = 1200.0f;
+    PanoramaWishes wishes;
+    wishes.heading = 0.4;
+    wishes.viewRadius = 14000.0;
+    wishes.place = osg::Vec2d(316000.0, 5008000.0);
+    wishes.exaggeration = 1.5;
+    const PanoramaComposer composer(relief, wishes);
+    const PanoramaComposition view = composer.compose();
+    PanoramaLiberty liberty;
+    liberty.place = relief.place(column - 2, row + 3);
+    liberty.across = 5000.0;
+    liberty.along = 7000.0;
+    liberty.heading = 0.7;
+    liberty.enlarge = 1.6;
+    liberty.baseHeight = 150.0;
+    liberty.widen = 1.3;
+    liberty.turn = 0.3;
+    const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
+    const osg::ref_ptr<osgGeoFX::PanoramaMap> map = new osgGeoFX::PanoramaMap;
+    view.applyTo(*map);
+    scene->addEffect(map);
+    const osg::ref_ptr<osgGeoFX::RegionalLiberty> effect = osgGeoFX::makeLiberty(liberty, false);
+    osgGeoFX::addLiberty(*scene, *effect);
+    ASSERT_EQ(scene->getEffect(0), effect);
+    const PanoramaLiberty back = osgGeoFX::libertyOf(*effect, false);
+    EXPECT_EQ(back.place, liberty.place);
+    EXPECT_NEAR(back.enlarge, liberty.enlarge, 1e-12);
+    EXPECT_NEAR(back.turn, liberty.turn, 1e-12);
+    const osgGeoFX::DeformedView picture(*scene, view.viewMatrix(relief),
+                                         osg::Matrixd::perspective(30.0, 16.0 / 9.0, 1.0, 1e6), 1600.0,
+                                         900.0);
+    double top = 0.0;
+    for (int y = -1; y <= 1; ++y)
+    {
+        for (int x = -1; x <= 1; ++x)
+        {
+            osg::Vec2d tip;
+            ASSERT_TRUE(picture.project(osg::Vec3d(relief.place(column + x, row + y), 1200.0), tip));
+            top = std::max(top, tip.y() / 900.0);
+        }
+    }
+    EXPECT_GT(top, composer.judge(view).top + 0.02);
+    // Cells of 400 m move, and are sampled again.
+    EXPECT_NEAR(composer.judge(view, {liberty}).top, top, 0.02);
 }
 
 /// The same of a cylindrical map, all of whose directions count.

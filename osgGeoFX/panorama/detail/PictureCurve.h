@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/panorama/PanoramaComposer.h>
+
+#include <osg/Math>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+/// Heights show up to this multiple of D2, as in PanoramaSnapshot.cpp.
+constexpr double endOfHeights = 1.25;
+/// The tip of the highest summit: so much of the sky lies below it. The title says "the sky's lower half".
+constexpr double tipInSky = 0.42;
+/// The ground before the picture's base that may rise into it, in view radii.
+constexpr double beforeBase = 1.0;
+/// The same in a cylindrical map, of the way from the base to the eye's foot.
+constexpr double leastWay = 0.7;
+
+/// Eq. 1 and the curve of a composition, for x in view radii and s in metres (shaders/lib/panorama.glsl).
+struct PictureCurve
+{
+    PictureCurve(const PanoramaComposition& composition, double aspect)
+        : radius(composition.viewRadius),
+          ring(composition.horizontalAngle > 0.0 ? 2.0 * radius / composition.horizontalAngle : 0.0),
+          before(ring > 0.0 ? std::min(leastWay * ring, radius) : beforeBase * radius),
+          curve(composition.curveDistance * radius), horizon(composition.horizonDistance * radius), end(endOfHeights * horizon),
+          along(4.0 * composition.horizonLine / (curve + horizon)), lift(aspect / radius),
+          arch(2.0 * composition.horizonBend), base(composition.baseHeight)
+    {
+    }
+
+    /// The picture's y, 0…1 from its base, of ground at the base height.
+    double foot(double x, double s) const
+    {
+        const double width = std::max(horizon - curve, 1e-3);
+        const double bent = std::clamp(s - curve, 0.0, width);
+        const double rise = std::min(s, curve) + bent - bent * bent / (2.0 * width);
+        return 0.5 * (along * rise - arch * (1.0 - std::cos(x * osg::PI_2)));
+    }
+    /// How much a height raises it, for an exaggeration of 1.
+    double raised(double height, double s) const
+    {
+        const double t = std::clamp(1.0 - (s - horizon) / std::max(end - horizon, 1e-3), 0.0, 1.0);
+        const double width = ring > 0.0 ? ring / (ring + std::max(s, 0.0)) : 1.0;
+        return 0.5 * lift * width * (height - base) * t * t * (3.0 - 2.0 * t);
+    }
+    /// How much wider than at the base a column is at a distance s.
+    double widening(double s) const { return ring > 0.0 ? std::max(ring + s, 0.0) / ring : 1.0; }
+
+    double radius, ring, before, curve, horizon, end, along, lift, arch, base;
+};
+
+/// Places around the picture's base, up to the second order of the distance over the Earth's radius.
+class PicturePlace
+{
+public:
+    PicturePlace(const TerrainRelief& relief, const PanoramaComposition& view)
+        : _place(view.place), _unit(relief.metre(view.place.y())), _sine(std::sin(view.heading)),
+          _cosine(std::cos(view.heading)),
+          _turn(relief.geocentric ? std::tan(osg::DegreesToRadians(std::clamp(view.place.y(), -89.0, 89.0))) /
+                                        osg::WGS_84_RADIUS_EQUATOR
+                                  : 0.0),
+          _ring(view.horizontalAngle > 0.0 ? 2.0 * view.viewRadius / view.horizontalAngle : 0.0)
+    {
+    }
+
+    /// From x to the right and s up in the picture, metres, to the relief's units.
+    osg::Vec2d at(double x, double s) const
+    {
+        if (_ring > 0.0)
+        {
+            const double away = std::max(_ring + s, 0.0), azimuth = x / _ring;
+            x = away * std::sin(azimuth);
+            s = away * std::cos(azimuth);
+        }
+        const double east = x * _cosine + s * _sine, north = s * _cosine - x * _sine;
+        return {_place.x() + east * (1.0 + north * _turn) * _unit.x(),
+                _place.y() + (north - 0.5 * east * east * _turn) * _unit.y()};
+    }
+    /// The inverse.
+    osg::Vec2d of(const osg::Vec2d& place) const
+    {
+        double east = (place.x() - _place.x()) / _unit.x(), north = (place.y() - _place.y()) / _unit.y();
+        const double first = east;
+        for (int i = 0; i < 4; ++i)
+        {
+            east = first / (1.0 + north * _turn);
+            north = (place.y() - _place.y()) / _unit.y() + 0.5 * east * east * _turn;
+        }
+        const osg::Vec2d ground(east * _cosine - north * _sine, east * _sine + north * _cosine);
+        if (!(_ring > 0.0)) return ground;
+        return {_ring * std::atan2(ground.x(), ground.y()), ground.length() - _ring};
+    }
+
+private:
+    osg::Vec2d _place, _unit;
+    double _sine, _cosine, _turn, _ring;
+};
+
+} // namespace osgGeoFX
