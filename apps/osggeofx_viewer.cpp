@@ -37,7 +37,8 @@ void describe(osg::ApplicationUsage& usage)
         "mappings, F10 its effects with all their properties. A click makes a close-up active (the key u "
         "says when), Shift and the left button drag "
         "it. F11 makes a panorama map of any terrain, F12 saves it as a scene file and as a recipe of "
-        "osggeofx_panorama. A panorama map has a manipulator of its own, key 0.");
+        "osggeofx_panorama. k takes a painter's liberty with the ground below the pointer. A panorama map "
+        "has a manipulator of its own, key 0.");
     usage.setCommandLineUsage("osggeofx_viewer [options] FILE ...");
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",

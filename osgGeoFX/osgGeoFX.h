@@ -98,6 +98,8 @@
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
 #include <osgGeoFX/viewer/HelpPage.h>
+#include <osgGeoFX/viewer/Liberties.h>
+#include <osgGeoFX/viewer/LibertyHandler.h>
 #include <osgGeoFX/viewer/ListPanel.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
 #include <osgGeoFX/viewer/Overlay.h>

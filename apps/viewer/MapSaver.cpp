@@ -3,6 +3,7 @@
 #include "MapSaver.h"
 
 #include "panorama/Recipe.h"
+#include "panorama/RecipeLiberties.h"
 
 #include <osgGeoFX/panorama/PanoramaPose.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
@@ -17,6 +18,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <set>
 #include <system_error>
@@ -116,7 +118,11 @@ std::string freeName(const fs::path& folder, const std::string& stem)
 
 } // namespace
 
-MapSaver::MapSaver(const osgGeoFX::Scene& scene, std::string file) : _scene(scene), _file(std::move(file)) {}
+MapSaver::MapSaver(const osgGeoFX::Scene& scene, std::string file) : _scene(scene), _file(std::move(file))
+{
+    for (unsigned int i = 0; i < _scene.effects->getNumEffects(); ++i)
+        _known.emplace_back(_scene.effects->getEffect(i));
+}
 
 void MapSaver::getUsage(osg::ApplicationUsage& usage) const
 {
@@ -197,6 +203,12 @@ void MapSaver::writeRecipe(const PanoramaMap& map, const Pose& pose, const osg::
     // An edge that is not chosen is the terrain's own.
     for (const Property& property : map.properties())
         if (property.name == "edge") recipe.map["edge"] = property.text(property.get(map));
+    for (unsigned int i = 0; i < _scene.effects->getNumEffects() && _scene.effects->getEffect(i) != &map; ++i)
+    {
+        const auto* const liberty =
+            dynamic_cast<const osgGeoFX::RegionalLiberty*>(_scene.effects->getEffect(i));
+        if (liberty && liberty->isActive()) recipe.liberties.push_back(geofx::panorama::textsOf(*liberty));
+    }
     recipe.write(file);
 }
 
@@ -222,11 +234,25 @@ void MapSaver::writeScene(const PanoramaMap& map, const Pose& pose, const std::s
         set(home, "verticalFieldOfView", number(osg::RadiansToDegrees(pose.fieldOfView)));
     xmlUnsetProp(home, xml("roll"));
     xmlNode* const effects = childOf(root, "effects");
+    // Liberties may come before effects of the file, which keep their elements. Those of effects that are gone go, too.
+    std::map<const Effect*, xmlNode*> nodes;
+    xmlNode* next = effectNode(effects, 0);
+    for (const osg::ref_ptr<Effect>& known : _known)
+    {
+        if (!next || !xmlStrEqual(next->name, xml(osgGeoFX::kindOf(*known)))) continue;
+        nodes[known] = next;
+        next = xmlNextElementSibling(next);
+    }
+    for (const auto& [effect, node] : nodes)
+        xmlUnlinkNode(node);
     for (unsigned int i = 0; i < _scene.effects->getNumEffects(); ++i)
     {
         const Effect& effect = *_scene.effects->getEffect(i);
-        xmlNode* node = effectNode(effects, i);
-        if (!node)
+        const auto known = nodes.find(&effect);
+        xmlNode* node = known != nodes.end() ? xmlAddChild(effects, known->second) : nullptr;
+        if (node)
+            nodes.erase(known);
+        else
         {
             // A program's own effects have children that a file of another scene cannot name.
             if (&effect != &map && !effect.getEnabled()) continue;
@@ -234,6 +260,8 @@ void MapSaver::writeScene(const PanoramaMap& map, const Pose& pose, const std::s
         }
         setProperties(node, effect);
     }
+    for (const auto& [effect, node] : nodes)
+        xmlFreeNode(node);
     xmlChar* text = nullptr;
     int size = 0;
     xmlDocDumpFormatMemoryEnc(document.get(), &text, &size, "UTF-8", 1);

@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace geofx::viewer
 {
@@ -45,6 +46,8 @@ private:
 
     const osgGeoFX::Scene _scene;
     const std::string _file;
+    /// The scene's effects when it was made: first those of the file, in its order.
+    std::vector<osg::ref_ptr<osgGeoFX::Effect>> _known;
 };
 
 } // namespace geofx::viewer

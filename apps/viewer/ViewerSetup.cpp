@@ -11,6 +11,7 @@
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
 #include <osgGeoFX/viewer/HelpPage.h>
+#include <osgGeoFX/viewer/LibertyHandler.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
 #include <osgGeoFX/viewer/PictureParts.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
@@ -158,6 +159,8 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     automatic->setPrepared([manipulators = osg::ref_ptr(&manipulators), scene = scene.effects](
                                osgGeoFX::PanoramaMap& map) { selectPanorama(*manipulators, *scene, map); });
     effects->addButton("Make a panorama map", [automatic] { automatic->request(); });
+    effects->addButton("Make one with liberties",
+                       [automatic] { automatic->request(osgGeoFX::PanoramaComposer::usualLiberties); });
     const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
     if (panel->hasEffect()) add("List of mappings", panel);
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
@@ -165,6 +168,7 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
         auto* closeUps = dynamic_cast<osgGeoFX::CloseUps*>(scene.effects->getEffect(i));
         if (closeUps) add("Close-ups", new osgGeoFX::CloseUpHandler(*scene.effects, *closeUps));
     }
+    add("Effects", new osgGeoFX::LibertyHandler(*scene.effects));
     add("Panorama map", automatic);
     if (!file.empty()) add("Panorama map", new MapSaver(scene, file));
     for (const auto& [key, manipulator] : manipulators.getKeyManipMap())

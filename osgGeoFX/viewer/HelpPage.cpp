@@ -228,7 +228,7 @@ HelpPage::Layout HelpPage::layout() const
     const double height = _overlay->getViewport()->height();
     Layout page;
     page.text = std::round(std::clamp(std::min(height / 45.0, width / 60.0), 9.0, 40.0));
-    page.line = std::round(page.text * 1.4);
+    page.line = std::round(page.text * 1.25);
     page.margin = std::round(page.text);
     page.gap = 2.0 * page.text;
     page.left = page.margin;

@@ -7,6 +7,7 @@
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
 #include <osgGeoFX/viewer/HelpPage.h>
+#include <osgGeoFX/viewer/Liberties.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
 #include <panorama/Recipe.h>
 #include <tools/GlFixture.h>
@@ -446,6 +447,72 @@ TEST_F(ViewerKeys, ATunedMapIsSavedAsASceneAndAsARecipe)
     const osg::ref_ptr<geofx::viewer::MapSaver> nowhere =
         new geofx::viewer::MapSaver(*_scene, "/nowhere/at/all.osgb");
     EXPECT_NE(nowhere->save(viewer()).find("cannot be written"), std::string::npos);
+}
+
+TEST_F(ViewerKeys, LibertiesAreSavedWithAMap)
+{
+    ASSERT_NO_FATAL_FAILURE(setUpViewer());
+    _map->setEnabled(true);
+    _map->setViewRadius(9000.0);
+    _manipulators->selectMatrixManipulator(0);
+    frame();
+    const osg::ref_ptr<geofx::viewer::MapSaver> saver = new geofx::viewer::MapSaver(*_scene, _file);
+    const osg::ref_ptr<RegionalLiberty> liberty = new RegionalLiberty;
+    liberty->setGeodeticCenter(osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude));
+    liberty->setRadii(1500.0, 2500.0);
+    liberty->setEnlarge(1.25);
+    liberty->setTurn(osg::DegreesToRadians(12.0));
+    addLiberty(*_scene->effects, *liberty);
+    ASSERT_EQ(_scene->effects->getEffect(0), liberty) << "before the bend and the map";
+    const auto folder = std::filesystem::path(_file).parent_path();
+    const std::string stem = (folder / std::filesystem::path(_file).stem()).string();
+    saver->save(viewer());
+    std::string saved = stem + "-map.geofx";
+    const auto recipe = geofx::panorama::Recipe::read(stem + "-map.json");
+    ASSERT_EQ(recipe.liberties.size(), 1u);
+    EXPECT_EQ(recipe.liberties[0].at("enlarge"), "1.25");
+    EXPECT_EQ(recipe.liberties[0].at("turn"), "12");
+    EXPECT_EQ(recipe.liberties[0].count("widen"), 0u);
+    // The scene that was saved, and then one more liberty in it, and the first one removed.
+    for (int turn = 0; turn < 3; ++turn)
+    {
+        SCOPED_TRACE(turn);
+        std::string error;
+        const std::optional<Scene> again = Scene::load(saved, error);
+        ASSERT_TRUE(again) << error;
+        std::vector<const RegionalLiberty*> liberties;
+        const PanoramaMap* map = nullptr;
+        for (unsigned int i = 0; i < again->effects->getNumEffects(); ++i)
+        {
+            const Effect* const each = again->effects->getEffect(i);
+            if (const auto* one = dynamic_cast<const RegionalLiberty*>(each))
+            {
+                EXPECT_FALSE(map) << "liberties come first";
+                liberties.push_back(one);
+            }
+            if (const auto* one = dynamic_cast<const PanoramaMap*>(each)) map = one;
+        }
+        ASSERT_TRUE(map);
+        EXPECT_EQ(map->getViewRadius(), 9000.0);
+        ASSERT_EQ(liberties.size(), turn == 1 ? 2u : 1u);
+        EXPECT_NEAR(liberties[0]->getEnlarge(), turn < 2 ? 1.25 : 1.5, 1e-9);
+        EXPECT_NEAR(liberties[0]->getLatitude(), osg::DegreesToRadians(latitude), 1e-9);
+        EXPECT_NEAR(liberties[0]->getAlong(), turn < 2 ? 2500.0 : 2000.0, 1e-6);
+        if (turn == 2) break;
+        const osg::ref_ptr<geofx::viewer::MapSaver> next = new geofx::viewer::MapSaver(*again, saved);
+        if (turn == 0)
+        {
+            const osg::ref_ptr<RegionalLiberty> more = new RegionalLiberty;
+            more->setGeodeticCenter(osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude));
+            more->setEnlarge(1.5);
+            addLiberty(*again->effects, *more);
+        }
+        else
+            again->effects->removeEffect(again->effects->getEffect(0));
+        const std::string said = next->save(viewer());
+        saved = (folder / (std::filesystem::path(saved).stem().string() + "-map.geofx")).string();
+        EXPECT_NE(said.find("Saved " + saved), std::string::npos) << said;
+    }
 }
 
 TEST_F(ViewerKeys, HelpPagesFollowTheWindow)
