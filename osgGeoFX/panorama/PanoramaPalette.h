@@ -19,7 +19,7 @@ namespace osgGeoFX
     A palette is an image of 256 x 8 opaque RGBA8 texels, coded in sRGB. The columns are the light, from −1 (turned
     away) over 0 (grazing) to 1 (facing the light). The rows from the bottom are field, hill, cliff, snow, forest
     floor, trees, town and bare ground (GEOFX_PALETTE_... of shaders/lib/painting.glsl). The lit and the shaded ends of
-    a row are split complements: yellow-greens over blue-greens to blues, ochres to violets, red-browns to blues. All
+    a row are split complements: the light is warm, and the shade violet. All
     functions are thread-safe and return new images. */
 
 /// Makes the kit's own palette. `season`: 0 is midwinter, 1/4 spring, 1/2 midsummer, 3/4 autumn; only the fraction of

@@ -114,6 +114,21 @@ TEST(PanoramaPalette, LightRisesAndTurnsTheHue)
                 << row << " and " << other << " can be told apart";
 }
 
+TEST(PanoramaPalette, LightIsWarmAndShadeIsViolet)
+{
+    // In L*a*b*, a grows from green over grey to red, and b from blue to yellow.
+    const osg::ref_ptr<osg::Image> palette = makePalette();
+    for (int row = 0; row < rows; ++row)
+    {
+        const glm::dvec3 light = labOf(at(*palette, 0.7, row));
+        const glm::dvec3 shade = labOf(at(*palette, -0.6, row));
+        EXPECT_GT(shade.y, 10.0) << "the shade is blue or green, row " << row;
+        EXPECT_LT(shade.z, -25.0) << "the shade is red, row " << row;
+        EXPECT_GT(light.z, 5.0) << "the light is cold, row " << row;
+        EXPECT_GT(light.z - shade.z, row == glsl::GEOFX_PALETTE_SNOW ? 40.0 : 55.0) << "row " << row;
+    }
+}
+
 TEST(PanoramaPalette, SeasonsChangeWhatGrowsInTheLight)
 {
     const osg::ref_ptr<osg::Image> summer = makePalette(0.5);
