@@ -150,6 +150,21 @@ GEOFX_INLINE geofx_Classes geofx_classify(geofx_Cover cover, Length height, Numb
     return classes;
 }
 
+// The share, 0 to 1, of the way that a hand may go astray at an edge. `reach`: the whole way, metres. It keeps away from
+// the shore, or else the sea's bed would come on land, and trees would stand in the water. On steep ground a way on
+// the map is a long way up.
+GEOFX_INLINE Number geofx_handShare(Length shore, Number steepness, Length reach)
+{
+    return geofx_share(-shore / max(reach, Number(1e-3))) * (1 - geofx_ease(steepness, Number(0.5), Number(1.3)));
+}
+
+// The way that a hand strays, from the brush's picture (each part -1 to 1): broad in its tones and ripples, fine in its slopes. No
+// part is longer than 2, and on average it is none, so what edges enclose keeps its area.
+GEOFX_INLINE Vector2 geofx_handWay(Rgba brush)
+{
+    return Vector2(brush.z + Number(0.5) * brush.x, Number(1.3) * brush.w + Number(0.5) * brush.y);
+}
+
 // --- Light (Section 3.2.2) ---
 
 // The light that a palette is asked for, -1 to 1. `lambert` is the cosine of the angle between normal and light,

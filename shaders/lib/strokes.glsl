@@ -17,6 +17,8 @@ const int GEOFX_STROKE_HOUSE = 2;
 const int GEOFX_STROKE_ROAD = 3;
 const int GEOFX_STROKE_RIVER = 4;
 const int GEOFX_STROKE_CONIFER = 5; // what a tree may be drawn as
+const int GEOFX_STROKE_BLOCK = 6;   // what a house may be drawn as: one of several storeys,
+const int GEOFX_STROKE_TOWER = 7;   // and what one sees from afar
 
 // Half of the range of levels over which a stroke disappears.
 const Number GEOFX_STROKE_WINDOW = Number(0.06);
@@ -83,6 +85,47 @@ GEOFX_INLINE int geofx_strokeTree(Number share, Number seed)
                                                                                                    : GEOFX_STROKE_TREE;
 }
 
+// The share of open ground that has strokes along its fall line, 0 to 1: few on hills, most of it on cliffs. `cliff`: the slope of
+// those. Far tiles have lost the steepest of their slopes, so this begins far below it.
+GEOFX_INLINE Number geofx_strokeSlopes(Number steepness, Number cliff)
+{
+    Number t = clamp((steepness / max(cliff, Number(1e-3)) - Number(0.22)) / Number(0.6), Number(0), Number(1));
+    return Number(0.85) * t * (2 - t);
+}
+
+// How much light and shade of such a stroke differ, 0 to 1: a breath on a hill, all of it on a cliff.
+GEOFX_INLINE Number geofx_strokeDepth(Number steepness, Number cliff)
+{
+    return clamp(Number(0.25) + Number(0.75) * steepness / max(cliff, Number(1e-3)), Number(0), Number(1));
+}
+
+// How much of a city's middle a place is, 0 to 1. Blocks stand where the cover says that there is most town, on even ground, and
+// rather at the harbor than far from it. `shore`: metres from it, negative over land. Suburbs climb the slopes.
+GEOFX_INLINE Number geofx_townMiddle(Number town, Number steepness, Length shore)
+{
+    Number dense = clamp((town - Number(0.5)) / Number(0.5), Number(0), Number(1));
+    Number even = clamp((Number(0.16) - steepness) / Number(0.12), Number(0), Number(1));
+    Number harbor = exp(Number(-1.0 / 1500.0) * clamp(-shore, Length(0), Length(20000)));
+    return clamp(town, Number(0), Number(1)) * (Number(0.3) + dense * even * (Number(0.15) + Number(0.55) * harbor));
+}
+
+// What a house is drawn as, by how much of the city's middle its place is. Few are towers. In the suburbs gardens have trees.
+GEOFX_INLINE int geofx_strokeHouse(Number middle, Number seed)
+{
+    Number lot = geofx_strokeRandom(seed, Number(7));
+    if (lot < Number(0.03) * clamp(Number(1.2) * middle - Number(0.2), Number(0), Number(1))) return GEOFX_STROKE_TOWER;
+    if (lot < Number(0.04) + Number(0.3) * clamp(1 - 2 * middle, Number(0), Number(1))) return GEOFX_STROKE_TREE;
+    return lot > 1 - clamp(Number(1.25) * middle - Number(0.75), Number(0), Number(0.45)) ? GEOFX_STROKE_BLOCK : GEOFX_STROKE_HOUSE;
+}
+
+// The height of a house, block or tower over that of its shape.
+GEOFX_INLINE Number geofx_strokeStoreys(int kind, Number middle, Number seed)
+{
+    if (kind == GEOFX_STROKE_HOUSE) return Number(0.85) + Number(0.3) * middle;
+    Number high = geofx_strokeRandom(seed, Number(8));
+    return Number(0.5) + Number(0.5) * clamp(middle, Number(0), Number(1)) * (Number(0.3) + Number(0.7) * high);
+}
+
 // The variation of one stroke.
 struct geofx_StrokeShape
 {
@@ -117,6 +160,16 @@ GEOFX_INLINE geofx_StrokeShape geofx_strokeShape(int kind, Number seed)
         shape.size = Vector2(size * (Number(0.34) + Number(0.1) * slim), size * Number(0.34));
         shape.lean = Number(0.05) * turn;
     }
+    else if (kind == GEOFX_STROKE_BLOCK)
+    {
+        shape.size = Vector2(Number(0.27) + Number(0.13) * slim, size * Number(0.62));
+        shape.lean = Angle(0);
+    }
+    else if (kind == GEOFX_STROKE_TOWER)
+    {
+        shape.size = Vector2(Number(0.22) + Number(0.05) * slim, Number(0.9) + Number(0.2) * slim);
+        shape.lean = Angle(0);
+    }
     else if (kind == GEOFX_STROKE_CONIFER)
     {
         shape.size = Vector2(size * (Number(0.36) - Number(0.06) * slim), size * (Number(0.66) + Number(0.2) * slim));
@@ -149,6 +202,13 @@ GEOFX_INLINE Number geofx_strokeInside(int kind, Vector2 point, Number seed)
         Number sides = (y > 0 ? roof : Number(0.74)) - abs(x);
         return min(sides, min(Number(0.85) - y, y + Number(0.85)));
     }
+    if (kind == GEOFX_STROKE_BLOCK) return min(Number(0.8) - abs(x), Number(0.85) - abs(y));
+    if (kind == GEOFX_STROKE_TOWER)
+    {
+        // A spire above, or a flat roof.
+        Number spire = seed > Number(0.6) ? Number(0.8) - Number(1.1) * max(y - Number(0.1), Number(0)) : Number(0.62);
+        return min(spire - abs(x), Number(0.85) - abs(y));
+    }
     if (kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER) return 1 - max(abs(x), abs(y));
     Number bristle = geofx_strokeBristle(x, seed);
     if (kind == GEOFX_STROKE_CLIFF)
@@ -164,7 +224,7 @@ GEOFX_INLINE Number geofx_strokeInside(int kind, Vector2 point, Number seed)
         Number down = Number(0.5) * (Number(0.95) - y);
         Number tier = Number(0.26) * (fract(Number(3) * down + seed) - Number(0.5));
         Number width = down * (Number(0.92) + tier + Number(0.12) * bristle);
-        return min(width - abs(x), Number(0.45) * (y + Number(0.8)));
+        return min(min(width, Number(0.8)) - abs(x), Number(0.45) * (y + Number(0.8)));
     }
     // A drop with a ragged edge. Its foot is broader than its top.
     x = x * (Number(1.04) + Number(0.24) * y);

@@ -19,7 +19,7 @@ uniform vec4 SLOT_brushY;
 uniform vec4 SLOT_hand;   // the brush's strength, the share of its larger size, the air's strength, the scene's light
 uniform vec4 SLOT_water;  // where it is deep, the reflection's strength, the ripples', whether there is water
 uniform vec4 SLOT_window; // the viewport's corner, one over its size
-uniform vec4 SLOT_clock;  // seconds, the strength
+uniform vec4 SLOT_clock;  // seconds, the strength, how far the hand wanders at edges: in the brush's picture, metres
 uniform vec4 SLOT_scale;
 uniform vec4 SLOT_curve;
 uniform vec4 SLOT_cylinder; // as in lib/cylinder.glsl
@@ -52,8 +52,10 @@ vec3 SLOT_ground(geofx_Classes classes, float light)
     return color;
 }
 
-vec3 SLOT_wet(float shore, vec2 picture, float far)
+// `noise`, -1 to 1: a hand lays shallows down broader here than there.
+vec3 SLOT_wet(float shore, vec2 picture, float far, float noise)
 {
+    shore *= exp(0.8 * noise);
 #ifdef GEOFX_MIRROR
     return geofx_waterBody(max(shore, 0.0), SLOT_water.x);
 #else
@@ -91,13 +93,42 @@ vec4 SLOT_facingHere()
 #endif
 }
 
+// The cover as a hand paints it: what lies a little beside the place, as the brush's picture has it. So no edge is that of the
+// raster's cells. Strokes are moved the other way (panorama.strokes.ground.glsl). The shore is the data's.
+vec4 SLOT_handCover(vec4 here, vec2 way, float steepness)
+{
+    vec2 coverX = dFdx(SLOT_texels.xy), coverY = dFdy(SLOT_texels.xy);
+    vec2 brushX = dFdx(SLOT_texels.zw), brushY = dFdy(SLOT_texels.zw);
+    // From the brush's picture to the cover, on the ground. Ground that is seen from its edge tells it badly.
+    float area = brushX.x * brushY.y - brushX.y * brushY.x;
+    float sure = geofx_ease(abs(area), 0.002 * (dot(brushX, brushX) + dot(brushY, brushY)),
+                            0.01 * (dot(brushX, brushX) + dot(brushY, brushY)));
+    float over = area < 0.0 ? min(area, -1e-20) : max(area, 1e-20);
+    vec2 perX = SLOT_clock.z * (coverX * brushY.y - coverY * brushX.y) / over;
+    vec2 perY = SLOT_clock.z * (coverY * brushX.x - coverX * brushY.x) / over;
+    // A tile ends with texels that its neighbors have, too. There is no wandering there, so there is no seam.
+    vec2 texel = 0.5 / vec2(textureSize(SLOT_cover, 0));
+    vec2 room = min(SLOT_texels.xy, 1.0 - SLOT_texels.xy) - texel;
+    vec2 reach = 0.8 * (abs(perX) + abs(perY)) + 1e-9;
+    float inside = geofx_share(min(room.x / reach.x, room.y / reach.y));
+    float share = sure * inside * geofx_handShare(geofx_coverOf(here).shore, steepness, SLOT_clock.w);
+    vec2 at = SLOT_texels.xy + share * (perX * way.x + perY * way.y);
+    at = inside > 0.0 ? clamp(at, texel, 1.0 - texel) : SLOT_texels.xy;
+    vec4 there = textureGrad(SLOT_cover, at, coverX, coverY);
+    return vec4(there.rgb, here.a);
+}
+
 vec4 SLOT_color(vec4 color)
 {
 #ifndef GEOFX_PAINTED
     return color;
 #else
     vec4 facing = SLOT_facingHere();
-    vec4 texel = texture(SLOT_cover, SLOT_texels.xy);
+    vec4 fine = texture(SLOT_brush, SLOT_texels.zw);
+    vec4 coarse = texture(SLOT_brush, 0.5 * SLOT_texels.zw);
+    vec4 brush = 2.0 * mix(fine, coarse, SLOT_hand.y) - 1.0;
+
+    vec4 texel = SLOT_handCover(texture(SLOT_cover, SLOT_texels.xy), geofx_handWay(brush), facing.w);
     geofx_Cover cover;
     if (geofx_coverKnown(texel))
         cover = geofx_coverOf(texel);
@@ -109,9 +140,6 @@ vec4 SLOT_color(vec4 color)
                                         : step(0.0, cover.shore);
     wet *= SLOT_water.w;
 
-    vec4 fine = texture(SLOT_brush, SLOT_texels.zw);
-    vec4 coarse = texture(SLOT_brush, 0.5 * SLOT_texels.zw);
-    vec4 brush = 2.0 * mix(fine, coarse, SLOT_hand.y) - 1.0;
 #if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_CORE)
     vec3 towards = SLOT_light.xyz; // the lights are those of an engine, or of a program of the application
 #else
@@ -128,7 +156,7 @@ vec4 SLOT_color(vec4 color)
     vec3 painted = vec3(0.0);
     if (wet < 1.0)
         painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, facing.w, brush.z, style), light);
-    if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far), wet);
+    if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far, brush.z), wet);
     painted = geofx_atmosphere(painted, geofx_airColor(), geofx_airAmount(far, SLOT_hand.z));
     vec2 gone = SLOT_gone(brush.z, picture.y, wet, cover.shore);
 #ifdef GEOFX_MIRROR

@@ -33,6 +33,15 @@ void main()
         float gable = SLOT_point.x * (SLOT_light.x < 0.0 ? -1.0 : 1.0) < -0.1 ? 0.8 : 1.0;
         color = gable * (SLOT_point.y > 0.0 ? SLOT_darkTone : SLOT_lightTone);
     }
+    else if (kind == GEOFX_STROKE_BLOCK || kind == GEOFX_STROKE_TOWER)
+    {
+        // A side in the light and one in the shade, rows of windows, a roof.
+        float side = SLOT_point.x * (SLOT_light.x < 0.0 ? 1.0 : -1.0);
+        vec3 wall = mix(SLOT_lightTone, SLOT_darkTone, side > 0.2 ? 0.62 : 0.0);
+        float row = fract(1.5 * SLOT_stamp.y / max(SLOT_stamp.x, 0.5) * (0.5 + 0.5 * SLOT_point.y));
+        wall = mix(wall, SLOT_darkTone, 0.28 * step(0.55, row) * clamp(SLOT_stamp.x - 2.0, 0.0, 1.0));
+        color = SLOT_point.y > 0.66 ? mix(SLOT_lightTone, vec3(1.0), 0.3) : wall;
+    }
     else if (kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER)
     {
         color = mix(SLOT_lightTone, SLOT_darkTone, smoothstep(0.5, 0.85, abs(SLOT_point.x)));

@@ -9,6 +9,10 @@
 uniform vec4 SLOT_strokeView; // without the projection: the pixels of a metre at a distance of one, else 0; the picture's width and height in pixels
 uniform vec4 SLOT_slopes;
 uniform vec4 SLOT_hand;
+uniform vec4 SLOT_clock; // as in panorama.ground.frag.glsl
+uniform sampler2D SLOT_brush;
+uniform sampler2D SLOT_palette;
+uniform vec4 SLOT_snow;
 uniform sampler2D SLOT_edgeMap;
 uniform sampler2D SLOT_edgeSky;
 uniform vec4 SLOT_edgeEye;
@@ -43,6 +47,28 @@ float SLOT_strokeLight(vec3 position, vec3 normal, float y)
     return geofx_paintLight(dot(steep, towards), y, SLOT_slopes.w);
 }
 
+float SLOT_strokeSteepness(vec3 position, vec3 normal)
+{
+    vec3 vertical = normalize(geofx_exaggerationGradient(SLOT_view().globe, position));
+    float upward = max(dot(normal, vertical), 0.05);
+    return length(normal - upward * vertical) / upward;
+}
+
+// A stroke stands where the ground shows what lies at its place: the hand wanders, and the ground below wanders the other way.
+// `land`: metres from the shore.
+vec3 SLOT_strokeShift(vec3 position, vec3 normal, float land)
+{
+    vec2 at = vec2(dot(position, SLOT_brushX.xyz) + SLOT_brushX.w, dot(position, SLOT_brushY.xyz) + SLOT_brushY.w);
+    // As soft as the stroke is wide.
+    vec2 way = geofx_handWay(2.0 * mix(textureLod(SLOT_brush, at, 1.0), textureLod(SLOT_brush, 0.5 * at, 0.0), SLOT_hand.y) - 1.0);
+    vec3 vertical = normalize(geofx_exaggerationGradient(SLOT_view().globe, position));
+    float upward = max(dot(normal, vertical), 0.1);
+    float steepness = SLOT_strokeSteepness(position, normal);
+    vec3 level = way.x * normalize(SLOT_brushX.xyz) + way.y * normalize(SLOT_brushY.xyz);
+    vec3 along = level - dot(level, normal) / upward * vertical; // on the slope
+    return -SLOT_clock.w * geofx_handShare(-land, steepness, SLOT_clock.w) * along;
+}
+
 float SLOT_strokeFar(vec3 position)
 {
     geofx_Panorama view = SLOT_view();
@@ -57,6 +83,20 @@ float SLOT_strokeDepth(vec3 position)
 float SLOT_strokeTreeShare(vec3 position)
 {
     return SLOT_placeOf(position).z / max(SLOT_slopes.z, 1.0);
+}
+
+// Open ground of a share of bare ground, in a light: what the ground itself would be painted, but that it has no trees and no houses.
+vec3 SLOT_strokeOpen(vec3 position, float steepness, float bare, float light)
+{
+    geofx_PaintStyle style = geofx_PaintStyle(SLOT_snow.x, SLOT_snow.y, SLOT_snow.z, SLOT_slopes.x, SLOT_slopes.y, SLOT_snow.w);
+    geofx_Cover cover = geofx_Cover(0.0, 0.0, bare, -1000.0);
+    geofx_Classes classes = geofx_classify(cover, SLOT_placeOf(position).z, steepness, 0.0, style);
+    float shares[5] = float[5](classes.field, classes.hill, classes.cliff, classes.snow, classes.bare);
+    int rows[5] = int[5](GEOFX_PALETTE_FIELD, GEOFX_PALETTE_HILL, GEOFX_PALETTE_CLIFF, GEOFX_PALETTE_SNOW, GEOFX_PALETTE_BARE);
+    vec3 color = vec3(0.0);
+    for (int i = 0; i < 5; ++i)
+        if (shares[i] > 0.004) color += shares[i] * textureLod(SLOT_palette, geofx_palettePlace(light, rows[i]), 0.0).rgb;
+    return color;
 }
 
 // How far the ground below is gone at the end of the terrain.

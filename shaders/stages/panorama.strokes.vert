@@ -20,6 +20,12 @@ float SLOT_strokeFar(vec3 eyePosition);
 float SLOT_strokeDepth(vec3 eyePosition);
 // The height above the sea over that of the tree line.
 float SLOT_strokeTreeShare(vec3 eyePosition);
+// How far the painter's hand takes a stroke from its place. `land`: metres from the shore.
+vec3 SLOT_strokeShift(vec3 eyePosition, vec3 eyeNormal, float land);
+// Rise over run of the ground, and its color in a light if it is open. `bare` as in lib/cover.glsl.
+float SLOT_strokeSteepness(vec3 eyePosition, vec3 eyeNormal);
+vec3 SLOT_strokeOpen(vec3 eyePosition, float steepness, float bare, float light);
+uniform vec4 SLOT_slopes; // x: that of cliffs
 // The share of a stroke that is left behind the horizon.
 float SLOT_strokeShown(vec3 eyePosition);
 
@@ -50,12 +56,18 @@ void main()
 {
     vec4 eye = gl_ModelViewMatrix * gl_Vertex;
     vec3 ground = geofx_inView(eye.xyz);
-    SLOT_ground_in = ground;
+    vec3 normal = geofx_directionInView(normalize(gl_NormalMatrix * gl_Normal));
     float seed = gl_MultiTexCoord0.x / 32767.0;
     float level = 0.5 * gl_MultiTexCoord0.y;
     int kind = int(gl_MultiTexCoord0.z + 0.5);
     float threshold = gl_MultiTexCoord0.w / 32767.0;
     bool isLine = kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER;
+    if (!isLine)
+    {
+        ground += SLOT_strokeShift(ground, normal, gl_MultiTexCoord2.y);
+        eye.xyz = geofx_inEye(ground);
+    }
+    SLOT_ground_in = ground;
 
     float groundScale = SLOT_groundScale(ground);
     float shrink = isLine ? 1.0 : geofx_strokeShrink(SLOT_strokeDepth(ground));
@@ -69,7 +81,13 @@ void main()
     float shown = SLOT_strokeShown(ground);
     size *= shown;
 
+    // Of a house: how much of the city's middle it is. Of a cliff: how bare the ground is, as in lib/cover.glsl.
+    float ofKind = gl_MultiTexCoord2.x / 32767.0;
+    bool isBuilding = kind == GEOFX_STROKE_HOUSE;
+    if (isBuilding) kind = geofx_strokeHouse(ofKind, seed);
+    isBuilding = isBuilding && kind != GEOFX_STROKE_TREE;
     geofx_StrokeShape shape = geofx_strokeShape(kind, seed);
+    if (isBuilding) shape.size.y *= geofx_strokeStoreys(kind, ofKind, seed);
     vec2 axis = vec2(0.0, 1.0);
     float lineLength = 0.0; // half of it, pixels
     if (isLine && size > 0.0)
@@ -108,13 +126,15 @@ void main()
     if (nearer.w > 0.0) gl_Position.z = geofx_depthOf(nearer, gl_Position);
     vec4 picture = geofx_inPicture(moved);
     float y = 0.5 + 0.5 * picture.y / max(picture.w, 1e-6);
-    float light = SLOT_strokeLight(ground, geofx_directionInView(normalize(gl_NormalMatrix * gl_Normal)), y) +
-                  shape.tone * (1.0 - 0.6 * SLOT_strokeFar(ground));
-    if (kind == GEOFX_STROKE_HOUSE)
+    float light = SLOT_strokeLight(ground, normal, y) +
+                  shape.tone * (kind == GEOFX_STROKE_CLIFF ? 0.5 : 1.0) * (1.0 - 0.6 * SLOT_strokeFar(ground));
+    if (isBuilding)
     {
-        // Walls have the town's color, and roofs that of tiles or slate.
-        SLOT_lightTone_in = mix(SLOT_tone(6, light), vec3(1.0), 0.25);
-        vec3 roof = geofx_strokeRandom(seed, 5.0) < 0.7 ? vec3(0.80, 0.42, 0.30) : vec3(0.58, 0.56, 0.60);
+        // Walls have the town's color, those of the middle are paler. Roofs are of tiles or slate, and flat ones in their shade.
+        float hue = geofx_strokeRandom(seed, 5.0);
+        SLOT_lightTone_in = mix(SLOT_tone(6, light), vec3(1.0), kind == GEOFX_STROKE_HOUSE ? 0.25 : 0.3 + 0.3 * hue);
+        vec3 tiles = mix(vec3(0.84, 0.47, 0.31), vec3(0.68, 0.43, 0.36), fract(7.0 * hue));
+        vec3 roof = kind == GEOFX_STROKE_HOUSE ? (hue < 0.6 ? tiles : vec3(0.56, 0.56, 0.62)) : vec3(0.55, 0.52, 0.66);
         SLOT_darkTone_in = roof * (0.75 + 0.3 * light);
     }
     else if (kind == GEOFX_STROKE_ROAD)
@@ -127,13 +147,19 @@ void main()
         SLOT_lightTone_in = vec3(0.70, 0.84, 0.90);
         SLOT_darkTone_in = vec3(0.42, 0.64, 0.80);
     }
+    else if (kind == GEOFX_STROKE_CLIFF)
+    {
+        float steepness = SLOT_strokeSteepness(ground, normal);
+        // Far away, light and shade come nearer to each other, but ridges keep their lines.
+        float contrast = 0.22 * geofx_strokeDepth(steepness, SLOT_slopes.x) * (1.0 - 0.3 * SLOT_strokeFar(ground));
+        SLOT_lightTone_in = SLOT_strokeOpen(ground, steepness, ofKind, light + contrast);
+        SLOT_darkTone_in = SLOT_strokeOpen(ground, steepness, ofKind, light - contrast);
+    }
     else
     {
-        int row = kind == GEOFX_STROKE_CLIFF ? 2 : 5;
-        // Far away, light and shade come nearer to each other.
-        float contrast = (kind == GEOFX_STROKE_CLIFF ? 0.35 : 0.24) * (1.0 - 0.6 * SLOT_strokeFar(ground));
-        SLOT_lightTone_in = SLOT_tone(row, light + contrast);
-        SLOT_darkTone_in = SLOT_tone(row, light - contrast);
+        float contrast = 0.24 * (1.0 - 0.6 * SLOT_strokeFar(ground));
+        SLOT_lightTone_in = SLOT_tone(5, light + contrast);
+        SLOT_darkTone_in = SLOT_tone(5, light - contrast);
         if (kind == GEOFX_STROKE_CONIFER)
         {
             // Needles are darker than leaves, and bluer.

@@ -352,6 +352,144 @@ INSTANTIATE_TEST_SUITE_P(Classes, PaintedClass,
 namespace
 {
 
+/// Woods in stripes from the base on. Their borders are straight lines between cells of the cover.
+class ForestEdges : public PanoramaPainting
+{
+protected:
+    static constexpr double STRIPE = 16.0 * SIZE / 256.0; ///< metres
+    static constexpr int ROWS = HEIGHT / 2;
+
+    osg::ref_ptr<PanoramaMap> showStripes()
+    {
+        Land land;
+        land.height = [](double, double)
+        {
+            return 50.0;
+        };
+        land.cover = [](double x, double)
+        {
+            return coverOf(static_cast<int>((x - WEST) / STRIPE) % 2 ? 1.0 : 0.0, 0, 0, -5000);
+        };
+        const osg::ref_ptr<PanoramaMap> map = makeMap();
+        map->setSky(false);
+        map->setStrokes(false);
+        map->setAtmosphere(0.0);
+        map->setBrush(0.0);
+        map->setBottomShade(0.0);
+        show(land, map);
+        return map;
+    }
+
+    /// Which pixels of the lower half are forest floor rather than field.
+    static std::vector<bool> floorOf(const osg::Image& image)
+    {
+        std::vector<Pixel> pixels;
+        for (int row = 0; row < ROWS; ++row)
+            for (int column = 0; column < WIDTH; ++column)
+                pixels.push_back(pixelOf(image, column, row));
+        const auto [dark, bright] =
+            std::minmax_element(pixels.begin(), pixels.end(),
+                                [](const Pixel& a, const Pixel& b) { return a.value() < b.value(); });
+        const double between = 0.5 * (dark->value() + bright->value());
+        std::vector<bool> floor;
+        for (const Pixel& pixel : pixels)
+            floor.push_back(pixel.value() < between);
+        return floor;
+    }
+};
+
+/// The pixels of forest around each border, row by row.
+std::vector<std::vector<int>> bordersOf(const std::vector<bool>& floor, int width, int rows, double stripe,
+                                        double west)
+{
+    std::vector<std::vector<int>> borders;
+    const double perPixel = 2.0 * RADIUS / width;
+    for (int k = 1; west + k * stripe < RADIUS; ++k)
+    {
+        const double middle = (west + k * stripe + RADIUS) / perPixel, half = 0.5 * stripe / perPixel;
+        if (middle < half || middle + half > width) continue;
+        std::vector<int> border;
+        for (int row = 2; row < rows; ++row)
+        {
+            int count = 0;
+            for (int column = static_cast<int>(middle - half); column < static_cast<int>(middle + half);
+                 ++column)
+                count += floor[static_cast<std::size_t>(row * width + column)] ? 1 : 0;
+            border.push_back(count);
+        }
+        borders.push_back(border);
+    }
+    return borders;
+}
+
+} // namespace
+
+TEST_F(ForestEdges, AreBrokenAsByABrushAndCoverTheSame)
+{
+    const osg::ref_ptr<PanoramaMap> map = showStripes();
+    const double pixelsOfStripe = STRIPE / (2.0 * RADIUS / WIDTH);
+    const auto measure = [&](double size)
+    {
+        map->setStrokeSize(size);
+        const std::vector<std::vector<int>> borders = bordersOf(floorOf(*draw()), WIDTH, ROWS, STRIPE, WEST);
+        EXPECT_GE(borders.size(), 3u);
+        int longest = 0;
+        double sum = 0.0, count = 0.0;
+        for (const std::vector<int>& border : borders)
+        {
+            int run = 0, former = -1;
+            for (const int each : border)
+            {
+                run = each == former ? run + 1 : 1;
+                former = each;
+                longest = std::max(longest, run);
+                sum += each;
+                count += 1.0;
+            }
+        }
+        const double share = sum / count / pixelsOfStripe;
+        std::cout << "strokes of " << size << " pixels: straight for " << longest << " pixels, forest "
+                  << share << '\n';
+        EXPECT_NEAR(share, 0.5, 0.01);
+        return longest;
+    };
+    EXPECT_GT(measure(1.0), ROWS / 3) << "the cells' borders are straight, so the measure tells";
+    EXPECT_LE(measure(8.0), 12);
+}
+
+TEST_F(ForestEdges, TreesStandOnThePaintedFloor)
+{
+    const osg::ref_ptr<PanoramaMap> map = showStripes();
+    const osg::ref_ptr<osg::Image> bare = draw();
+    const std::vector<bool> floor = floorOf(*bare);
+    map->setStrokes(true);
+    const osg::ref_ptr<osg::Image> wooded = draw();
+    // A tree is up to 15 pixels high and 5 wide to each side.
+    const auto near = [&](int column, int row)
+    {
+        for (int y = std::max(row - 15, 0); y <= row; ++y)
+            for (int x = std::max(column - 6, 0); x <= std::min(column + 6, WIDTH - 1); ++x)
+                if (floor[static_cast<std::size_t>(y * WIDTH + x)]) return true;
+        return false;
+    };
+    int strokes = 0, lost = 0;
+    for (int row = 15; row < ROWS; ++row)
+    {
+        for (int column = 0; column < WIDTH; ++column)
+        {
+            if (pixelOf(*bare, column, row).off(pixelOf(*wooded, column, row)) < 0.05) continue;
+            ++strokes;
+            lost += near(column, row) ? 0 : 1;
+        }
+    }
+    std::cout << strokes << " pixels of trees, " << lost << " far from the floor\n";
+    EXPECT_GT(strokes, ROWS * WIDTH / 6);
+    EXPECT_LE(lost, strokes / 1000);
+}
+
+namespace
+{
+
 struct LandCase
 {
     const char* name;

@@ -339,8 +339,9 @@ TEST(StrokeShape, VariesWithinBounds)
     for (int i = 0; i < 2000; ++i)
     {
         const double seed = random.integer(0, 32767) / 32767.0;
-        for (const int kind : {glsl::GEOFX_STROKE_TREE, glsl::GEOFX_STROKE_CLIFF, glsl::GEOFX_STROKE_HOUSE,
-                               glsl::GEOFX_STROKE_CONIFER})
+        for (const int kind :
+             {glsl::GEOFX_STROKE_TREE, glsl::GEOFX_STROKE_CLIFF, glsl::GEOFX_STROKE_HOUSE,
+              glsl::GEOFX_STROKE_CONIFER, glsl::GEOFX_STROKE_BLOCK, glsl::GEOFX_STROKE_TOWER})
         {
             const glsl::geofx_StrokeShape shape = glsl::geofx_strokeShape(kind, seed);
             ASSERT_GT(std::min(shape.size.x, shape.size.y), 0.1);
@@ -390,6 +391,91 @@ TEST(StrokeShape, ConifersStandAboveBroadleavesAndPointUp)
     };
     EXPECT_GT(width(glsl::GEOFX_STROKE_CONIFER, -0.5), 2.0 * width(glsl::GEOFX_STROKE_CONIFER, 0.5));
     EXPECT_LT(width(glsl::GEOFX_STROKE_TREE, -0.5), 2.0 * width(glsl::GEOFX_STROKE_TREE, 0.5));
+}
+
+/// The mean height of what a house is drawn as, the share of each kind, and that of gardens.
+struct Street
+{
+    double height = 0.0, blocks = 0.0, towers = 0.0, gardens = 0.0;
+
+    explicit Street(double middle)
+    {
+        constexpr int houses = 4000;
+        Random random(9);
+        for (int i = 0; i < houses; ++i)
+        {
+            const double seed = random.integer(0, 32767) / 32767.0;
+            const int kind = glsl::geofx_strokeHouse(middle, seed);
+            blocks += kind == glsl::GEOFX_STROKE_BLOCK ? 1.0 / houses : 0.0;
+            towers += kind == glsl::GEOFX_STROKE_TOWER ? 1.0 / houses : 0.0;
+            gardens += kind == glsl::GEOFX_STROKE_TREE ? 1.0 / houses : 0.0;
+            if (kind == glsl::GEOFX_STROKE_TREE) continue;
+            const double storeys = glsl::geofx_strokeStoreys(kind, middle, seed);
+            EXPECT_TRUE(storeys > 0.3 && storeys < 1.5);
+            height += glsl::geofx_strokeShape(kind, seed).size.y * storeys / houses;
+        }
+    }
+};
+
+TEST(StrokeShape, BlocksGetTallerWithTheTown)
+{
+    double former = 0.0;
+    for (const double middle : {0.0, 0.25, 0.5, 0.75, 1.0})
+    {
+        const Street street(middle);
+        std::cout << "middle " << middle << ": height " << street.height << ", blocks " << street.blocks
+                  << ", towers " << street.towers << ", gardens " << street.gardens << '\n';
+        EXPECT_GT(street.height, 1.1 * former) << middle;
+        former = street.height;
+        // Landmarks are few.
+        EXPECT_LT(street.towers, 0.04);
+    }
+    const Street suburb(0.2), center(1.0);
+    EXPECT_EQ(suburb.blocks, 0.0);
+    EXPECT_GT(suburb.gardens, 0.1);
+    EXPECT_GT(center.blocks, 0.35);
+    EXPECT_GT(center.towers, 0.02);
+    EXPECT_LT(center.gardens, 0.02);
+    EXPECT_GT(center.height, 1.7 * suburb.height);
+}
+
+TEST(StrokeShape, TheMiddleOfATownIsWhereTheCoverHasMostOfIt)
+{
+    Random random(10);
+    for (int i = 0; i < 2000; ++i)
+    {
+        const double town = random.uniform(0.0, 1.0), steepness = random.uniform(0.0, 0.5);
+        const double shore = -random.logarithmic(1.0, 1e5);
+        const double middle = glsl::geofx_townMiddle(town, steepness, shore);
+        ASSERT_TRUE(middle >= 0.0 && middle <= 1.0);
+        // More town, more even ground and a nearer harbor never make less of it.
+        ASSERT_GE(glsl::geofx_townMiddle(std::min(town + 0.05, 1.0), steepness, shore), middle);
+        ASSERT_GE(glsl::geofx_townMiddle(town, 0.8 * steepness, shore), middle);
+        ASSERT_GE(glsl::geofx_townMiddle(town, steepness, 0.8 * shore), middle);
+    }
+    EXPECT_NEAR(glsl::geofx_townMiddle(1.0, 0.0, 0.0), 1.0, 1e-9);
+    EXPECT_LT(glsl::geofx_townMiddle(0.6, 0.0, 0.0), 0.4) << "a small town has no blocks";
+    EXPECT_LT(glsl::geofx_townMiddle(1.0, 0.3, -500.0), 0.4) << "nor has a slope";
+    EXPECT_EQ(glsl::geofx_townMiddle(0.0, 0.0, 0.0), 0.0);
+}
+
+TEST(StrokeShape, SlopesHaveMoreStrokesTheSteeperTheyAre)
+{
+    constexpr double cliff = 1.2;
+    EXPECT_EQ(glsl::geofx_strokeSlopes(0.0, cliff), 0.0);
+    EXPECT_EQ(glsl::geofx_strokeSlopes(0.2, cliff), 0.0) << "hills and fields are smooth";
+    EXPECT_GT(glsl::geofx_strokeSlopes(0.5 * cliff, cliff), 0.3) << "what a far tile has left of a cliff";
+    double former = 0.0;
+    for (double steepness = 0.0; steepness < 3.0; steepness += 0.05)
+    {
+        const double share = glsl::geofx_strokeSlopes(steepness, cliff);
+        ASSERT_GE(share, former);
+        ASSERT_LE(share - former, 0.15) << "no edge";
+        ASSERT_LE(share, 1.0);
+        former = share;
+        ASSERT_LE(glsl::geofx_strokeDepth(steepness, cliff), glsl::geofx_strokeDepth(steepness + 0.1, cliff));
+    }
+    EXPECT_LT(glsl::geofx_strokeDepth(0.3, cliff), 0.6 * glsl::geofx_strokeDepth(1.2, cliff));
 }
 
 TEST(StrokeShape, IsSmallerTowardsTheHorizon)

@@ -185,6 +185,55 @@ TEST(TileStrokes, SteepGroundIsCliffWithItsFallLine)
     EXPECT_EQ(gentle.strokes->points()->getTexCoordArray(1), nullptr);
 }
 
+TEST(TileStrokes, OpenSlopesHaveStrokesAlongTheirFallLines)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(0.0, 0.0);
+    // Half as steep as a cliff: what a far tile has left of one.
+    const double slope = 0.5 * StrokeParameters().cliffSlope;
+    tiles.height = [&](double x, double)
+    {
+        return slope * x;
+    };
+    const Made open = make(tiles);
+    EXPECT_GT(open.countOf(TileStrokes::Cliff), 3000u);
+    EXPECT_EQ(open.countOf(TileStrokes::Cliff), open.count());
+    const osg::Vec3d downhill = osg::Vec3d(-1.0, 0.0, -slope) / std::hypot(1.0, slope);
+    for (std::size_t i = 0; i < open.count(); i += 50)
+        EXPECT_LT((open.shorts(open.strokes->points()->getTexCoordArray(1), i) - downhill).length(), 1e-3);
+    // Woods hide them, and even ground has none.
+    tiles.cover = everywhere(1.0, 0.0);
+    EXPECT_EQ(make(tiles).countOf(TileStrokes::Cliff), 0u);
+    tiles.cover = everywhere(0.0, 0.0);
+    tiles.height = [](double x, double)
+    {
+        return 0.1 * x;
+    };
+    EXPECT_EQ(make(tiles).count(), 0u);
+}
+
+TEST(TileStrokes, TellTheShoreAndTheMiddleOfTheTown)
+{
+    StrokeTiles tiles;
+    // Town from west to east, and the sea in the south.
+    tiles.cover = [](double x, double y)
+    {
+        return everywhere(0.0, std::clamp(x / 2500.0, 0.0, 1.0), -y - 20.0)(x, y);
+    };
+    const Made made = make(tiles);
+    ASSERT_GT(made.count(), 3000u);
+    const auto& told = static_cast<const osg::Vec2sArray&>(*made.strokes->points()->getTexCoordArray(2));
+    for (std::size_t i = 0; i < made.count(); ++i)
+    {
+        const osg::Vec3d place = made.vertex(i) * made.tile->getMatrix();
+        ASSERT_EQ(made.traits(i).z(), TileStrokes::House);
+        // A byte codes the distance.
+        ASSERT_NEAR(told[i].y(), place.y() + 20.0, 4.0 + 0.06 * place.y());
+        ASSERT_NEAR(told[i].x() / 32767.0, glsl::geofx_townMiddle(place.x() / 2500.0, 0.0, -place.y() - 20.0),
+                    0.03);
+    }
+}
+
 TEST(TileStrokes, WithoutACoverItIsGuessed)
 {
     StrokeTiles tiles;

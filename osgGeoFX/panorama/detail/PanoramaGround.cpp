@@ -20,6 +20,8 @@ namespace
 
 /// How many times the brush's picture repeats across half of the picture's width.
 constexpr double brushRepeats = 1.6;
+/// How far edges stray for a way of 1 (geofx_handWay), in sizes of strokes. Ways are about 0.4.
+constexpr double handReach = 1.0;
 
 void set(osg::StateSet& state, const std::string& name, const osg::Vec4d& value)
 {
@@ -124,7 +126,9 @@ bool PanoramaMap::Ground::fill(osg::StateSet& state, const std::string& prefix, 
                            share.y() / std::max(view.viewportHeight, 1.0));
     put("window", {view.viewportX - (0.5 + 0.5 * low.x()) / pixel.x(),
                    view.viewportY - (0.5 + 0.5 * low.y()) / pixel.y(), pixel.x(), pixel.y()});
-    put("clock", {std::fmod(view.time, 3600.0), shareOf(_map.getStrength()), 0.0, 0.0});
+    // At edges the hand wanders as far as a tree is high, whatever the zoom.
+    const double wander = handReach * _map.getStrokeSize() * pixel.x() * 2.0 * radius;
+    put("clock", {std::fmod(view.time, 3600.0), shareOf(_map.getStrength()), wander / period, wander});
 
     setTexture(state, prefix + "palette", view.units[PaletteUnit], _textures.palette(_map));
     setTexture(state, prefix + "brush", view.units[BrushUnit], _textures.brush());

@@ -60,6 +60,8 @@ bool isGround(const osg::Geometry& geometry, unsigned int coverUnit)
 /// Half the length of the longest stroke, a cliff's, over the size. Half that of a road's over the spacing, seen at a
 /// slant.
 constexpr double longestStroke = 2.0, longestLine = 1.5;
+/// How far a stroke stands from its point at the most, over the size (handReach of PanoramaGround.cpp).
+constexpr double farthestShift = 2.5;
 
 } // namespace
 
@@ -94,7 +96,7 @@ bool StrokeCompanion::begin(const ScenePass& pass, const PanoramaMap& map, Strok
     const osg::Vec2d picture(2.0 * viewport->width() / (high.x() - low.x()),
                              2.0 * viewport->height() / (high.y() - low.y()));
     _reach = longestStroke * map.getStrokeSize() * growthOf(pass, map, picture) +
-             longestLine * map.getStrokeSpacing() + 2.0;
+             farthestShift * map.getStrokeSize() + longestLine * map.getStrokeSpacing() + 2.0;
     const auto put = [&](const char* name, double x, double y, double z, double w)
     {
         _state->getOrCreateUniform(pass.prefix + name, osg::Uniform::FLOAT_VEC4)

@@ -21,7 +21,8 @@ enum class StrokeChance
     Cover,
     Cliff,
     Seed,
-    Threshold
+    Threshold,
+    Slope
 };
 
 /** The lattice of the whole ground, on which brush strokes stand.

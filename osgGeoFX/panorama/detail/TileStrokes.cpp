@@ -91,9 +91,11 @@ private:
     std::optional<osg::Vec3d> between(const osg::Array* array, const StrokeSpot& spot) const;
     osg::Vec3d normalAt(const StrokeSpot& spot) const;
     glsl::geofx_Cover coverAt(const StrokeSpot& spot, double steepness) const;
-    std::optional<TileStrokes::Kind> kindAt(const StrokeSpot& spot, double steepness) const;
+    std::optional<TileStrokes::Kind> kindAt(const StrokeSpot& spot, double steepness,
+                                            const glsl::geofx_Cover& cover) const;
+    glsl::geofx_Cover withTowns(const StrokeSpot& spot, glsl::geofx_Cover cover) const;
     void add(const StrokeSpot& spot, const osg::Vec3d& normal, const osg::Vec3d& direction,
-             TileStrokes::Kind kind, GLshort threshold);
+             TileStrokes::Kind kind, GLshort threshold, const glsl::geofx_Cover& cover, double ofKind = 0.0);
 
     const osg::Geometry& _mesh;
     const StrokeScan& _scan;
@@ -106,6 +108,7 @@ private:
     osg::ref_ptr<osg::Vec3sArray> _normals = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec4sArray> _traits = new osg::Vec4sArray(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec3sArray> _directions = new osg::Vec3sArray(osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec2sArray> _places = new osg::Vec2sArray(osg::Array::BIND_PER_VERTEX);
     bool _directed = false; ///< whether any stroke has a direction of its own
 };
 
@@ -158,9 +161,18 @@ glsl::geofx_Cover Painter::coverAt(const StrokeSpot& spot, double steepness) con
     return glsl::geofx_likelyCover(height, steepness, _parameters.treeLine);
 }
 
-std::optional<TileStrokes::Kind> Painter::kindAt(const StrokeSpot& spot, double steepness) const
+/// The cover in a town from vector data.
+glsl::geofx_Cover Painter::withTowns(const StrokeSpot& spot, glsl::geofx_Cover cover) const
 {
-    glsl::geofx_Cover cover = coverAt(spot, steepness);
+    if (!_towns || !_towns->contain(_lattice.toMap(_lattice.place(spot.column, spot.row)))) return cover;
+    cover.town = std::max(cover.town, townShare);
+    cover.trees = std::min(cover.trees, 1.0 - townShare);
+    return cover;
+}
+
+std::optional<TileStrokes::Kind> Painter::kindAt(const StrokeSpot& spot, double steepness,
+                                                 const glsl::geofx_Cover& cover) const
+{
     if (cover.shore > 0.0) return {};
     const auto chance = [&](StrokeChance which)
     {
@@ -170,14 +182,11 @@ std::optional<TileStrokes::Kind> Painter::kindAt(const StrokeSpot& spot, double 
     const double cliff = std::max(_parameters.cliffSlope, 1e-3);
     if (chance(StrokeChance::Cliff) < std::clamp(2.0 * (steepness - cliff) / cliff, 0.0, 1.0))
         return TileStrokes::Cliff;
-    if (_towns && _towns->contain(_lattice.toMap(_lattice.place(spot.column, spot.row))))
-    {
-        cover.town = std::max(cover.town, townShare);
-        cover.trees = std::min(cover.trees, 1.0 - townShare);
-    }
     const double drawn = chance(StrokeChance::Cover);
     if (drawn < cover.trees) return TileStrokes::Tree;
     if (drawn < cover.trees + cover.town) return TileStrokes::House;
+    // What neither grows nor is built on shows the way that water takes down it: the more of it, the steeper.
+    if (chance(StrokeChance::Slope) < glsl::geofx_strokeSlopes(steepness, cliff)) return TileStrokes::Cliff;
     return {};
 }
 
@@ -186,7 +195,9 @@ void Painter::paint(const StrokeSpot& spot)
     const osg::Vec3d up = _scan.up(spot.corners[0]);
     const osg::Vec3d normal = normalAt(spot);
     const double cosine = std::clamp(normal * up, 0.01, 1.0);
-    const std::optional<TileStrokes::Kind> kind = kindAt(spot, std::sqrt(1.0 - cosine * cosine) / cosine);
+    const double steepness = std::sqrt(1.0 - cosine * cosine) / cosine;
+    const glsl::geofx_Cover cover = withTowns(spot, coverAt(spot, steepness));
+    const std::optional<TileStrokes::Kind> kind = kindAt(spot, steepness, cover);
     if (!kind) return;
     osg::Vec3d downhill;
     if (*kind == TileStrokes::Cliff)
@@ -196,22 +207,26 @@ void Painter::paint(const StrokeSpot& spot)
         _directed = true;
     }
     add(spot, normal, downhill, *kind,
-        toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Threshold)));
+        toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Threshold)), cover,
+        *kind == TileStrokes::House   ? glsl::geofx_townMiddle(cover.town, steepness, cover.shore)
+        : *kind == TileStrokes::Cliff ? cover.bare
+                                      : 0.0);
 }
 
 void Painter::paint(const StrokeLineSpot& spot)
 {
     // Roads cross water. A river in a lake is not seen.
-    if (spot.kind == StrokeLines::RIVER && coverAt(spot, 0.0).shore > 0.0) return;
+    const glsl::geofx_Cover cover = coverAt(spot, 0.0);
+    if (spot.kind == StrokeLines::RIVER && cover.shore > 0.0) return;
     osg::Vec3d along = spot.along;
     along.normalize();
     _directed = true;
     add(spot, normalAt(spot), along, spot.kind == StrokeLines::RIVER ? TileStrokes::River : TileStrokes::Road,
-        static_cast<GLshort>(_scan.finestOfLines()));
+        static_cast<GLshort>(_scan.finestOfLines()), cover);
 }
 
 void Painter::add(const StrokeSpot& spot, const osg::Vec3d& normal, const osg::Vec3d& direction,
-                  TileStrokes::Kind kind, GLshort threshold)
+                  TileStrokes::Kind kind, GLshort threshold, const glsl::geofx_Cover& cover, double ofKind)
 {
     _vertices->push_back(osg::Vec3(*between(_scan.vertices(), spot)));
     _normals->push_back(toShorts(normal));
@@ -219,6 +234,8 @@ void Painter::add(const StrokeSpot& spot, const osg::Vec3d& normal, const osg::V
     _traits->push_back(osg::Vec4s(toShort(_lattice.chance(spot.column, spot.row, StrokeChance::Seed)),
                                   static_cast<GLshort>(spot.halfLevel), static_cast<GLshort>(kind),
                                   threshold));
+    _places->push_back(
+        osg::Vec2s(toShort(ofKind), static_cast<GLshort>(std::clamp(-cover.shore, 0.0, whole))));
 }
 
 osg::ref_ptr<osg::Geometry> Painter::points() const
@@ -228,6 +245,7 @@ osg::ref_ptr<osg::Geometry> Painter::points() const
     _normals->trim();
     _traits->trim();
     _directions->trim();
+    _places->trim();
     _normals->setNormalize(true);
     osg::ref_ptr<osg::Geometry> points = new osg::Geometry;
     points->setName("strokes");
@@ -236,9 +254,11 @@ osg::ref_ptr<osg::Geometry> Painter::points() const
     points->setVertexArray(_vertices);
     points->setNormalArray(_normals);
     points->setTexCoordArray(0, _traits);
-    // In a buffer of its own: Mesa complains of more than three arrays that are written into one.
+    // In buffers of their own: Mesa complains of more than three arrays that are written into one.
     _directions->setVertexBufferObject(new osg::VertexBufferObject);
     if (_directed) points->setTexCoordArray(1, _directions);
+    _places->setVertexBufferObject(new osg::VertexBufferObject);
+    points->setTexCoordArray(2, _places);
     points->addPrimitiveSet(new osg::DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(_vertices->size())));
     points->getBound(); // computed here, not by two draw threads at once
     return points;

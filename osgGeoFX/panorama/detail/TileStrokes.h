@@ -27,6 +27,7 @@ namespace osgGeoFX
       finest level in the tile, in halves.
     - Texture coordinates 1 (3 shorts) exist if there are cliffs, roads or rivers. They are the direction on the ground,
       downhill or along the line.
+    - Texture coordinates 2 (2 shorts): of a house how much of a city's middle it is, of a cliff the cover's share of bare ground, 0…32767, else 0; and the distance from the nearest shore in whole metres, at most 32767.
 
     In copies and files it is an empty string. These get strokes of their own when they are drawn. */
 class TileStrokes : public osg::StringValueObject
