@@ -54,19 +54,30 @@ float SLOT_strokeSteepness(vec3 position, vec3 normal)
     return length(normal - upward * vertical) / upward;
 }
 
-// A stroke stands where the ground shows what lies at its place: the hand wanders, and the ground below wanders the other way.
-// `land`: metres from the shore.
-vec3 SLOT_strokeShift(vec3 position, vec3 normal, float land)
+// As the ground has it there, whose fragments take the brush's picture as fine as pixels are.
+vec2 SLOT_handWay(vec2 at, float detail)
 {
+    vec4 brush = mix(textureLod(SLOT_brush, at, detail), textureLod(SLOT_brush, 0.5 * at, detail - 1.0), SLOT_hand.y);
+    return geofx_handWay(2.0 * brush - 1.0);
+}
+
+// A stroke stands where the ground shows what lies at its place: the ground wanders, so the stroke wanders the other way.
+// `land`: metres from the shore. `scale`: pixels for each metre.
+vec3 SLOT_strokeShift(vec3 position, vec3 normal, float land, float scale)
+{
+    float share = geofx_handShare(-land, SLOT_strokeSteepness(position, normal), SLOT_clock.w);
     vec2 at = vec2(dot(position, SLOT_brushX.xyz) + SLOT_brushX.w, dot(position, SLOT_brushY.xyz) + SLOT_brushY.w);
-    // As soft as the stroke is wide.
-    vec2 way = geofx_handWay(2.0 * mix(textureLod(SLOT_brush, at, 1.0), textureLod(SLOT_brush, 0.5 * at, 0.0), SLOT_hand.y) - 1.0);
+    float texels = float(textureSize(SLOT_brush, 0).x) * length(SLOT_brushX.xyz) / max(scale, 1e-9);
+    float detail = log2(max(texels, 1.0));
+    // The way from where the stroke will stand.
+    vec2 there = at;
+    for (int i = 0; i < 2; ++i)
+        there = at - share * SLOT_clock.z * SLOT_handWay(there, detail);
+    vec2 way = SLOT_handWay(there, detail);
     vec3 vertical = normalize(geofx_exaggerationGradient(SLOT_view().globe, position));
-    float upward = max(dot(normal, vertical), 0.1);
-    float steepness = SLOT_strokeSteepness(position, normal);
     vec3 level = way.x * normalize(SLOT_brushX.xyz) + way.y * normalize(SLOT_brushY.xyz);
-    vec3 along = level - dot(level, normal) / upward * vertical; // on the slope
-    return -SLOT_clock.w * geofx_handShare(-land, steepness, SLOT_clock.w) * along;
+    vec3 along = level - dot(level, normal) / max(dot(normal, vertical), 0.1) * vertical; // on the slope
+    return -SLOT_clock.w * share * along;
 }
 
 float SLOT_strokeFar(vec3 position)

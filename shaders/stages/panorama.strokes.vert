@@ -20,8 +20,8 @@ float SLOT_strokeFar(vec3 eyePosition);
 float SLOT_strokeDepth(vec3 eyePosition);
 // The height above the sea over that of the tree line.
 float SLOT_strokeTreeShare(vec3 eyePosition);
-// How far the painter's hand takes a stroke from its place. `land`: metres from the shore.
-vec3 SLOT_strokeShift(vec3 eyePosition, vec3 eyeNormal, float land);
+// How far the painter's hand takes a stroke from its place. `land`: metres from the shore. `scale`: pixels for each metre.
+vec3 SLOT_strokeShift(vec3 eyePosition, vec3 eyeNormal, float land, float scale);
 // Rise over run of the ground, and its color in a light if it is open. `bare` as in lib/cover.glsl.
 float SLOT_strokeSteepness(vec3 eyePosition, vec3 eyeNormal);
 vec3 SLOT_strokeOpen(vec3 eyePosition, float steepness, float bare, float light);
@@ -64,7 +64,7 @@ void main()
     bool isLine = kind == GEOFX_STROKE_ROAD || kind == GEOFX_STROKE_RIVER;
     if (!isLine)
     {
-        ground += SLOT_strokeShift(ground, normal, gl_MultiTexCoord2.y);
+        ground += SLOT_strokeShift(ground, normal, gl_MultiTexCoord2.y, SLOT_groundScale(ground));
         eye.xyz = geofx_inEye(ground);
     }
     SLOT_ground_in = ground;

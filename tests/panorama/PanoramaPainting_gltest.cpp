@@ -460,31 +460,34 @@ TEST_F(ForestEdges, AreBrokenAsByABrushAndCoverTheSame)
 TEST_F(ForestEdges, TreesStandOnThePaintedFloor)
 {
     const osg::ref_ptr<PanoramaMap> map = showStripes();
+    map->setStrokeSize(12.0);
+    map->setStrokeSpacing(10.0);
     const osg::ref_ptr<osg::Image> bare = draw();
     const std::vector<bool> floor = floorOf(*bare);
     map->setStrokes(true);
     const osg::ref_ptr<osg::Image> wooded = draw();
-    // A tree is up to 15 pixels high and 5 wide to each side.
-    const auto near = [&](int column, int row)
+    const auto isTree = [&](int column, int row)
     {
-        for (int y = std::max(row - 15, 0); y <= row; ++y)
-            for (int x = std::max(column - 6, 0); x <= std::min(column + 6, WIDTH - 1); ++x)
-                if (floor[static_cast<std::size_t>(y * WIDTH + x)]) return true;
-        return false;
+        return pixelOf(*bare, column, row).off(pixelOf(*wooded, column, row)) > 0.05;
     };
-    int strokes = 0, lost = 0;
-    for (int row = 15; row < ROWS; ++row)
+    // The lowest pixels of trees are on the floor, or a pixel or two beside it.
+    int feet = 0, lost = 0;
+    for (int row = 4; row < ROWS; ++row)
     {
-        for (int column = 0; column < WIDTH; ++column)
+        for (int column = 2; column < WIDTH - 2; ++column)
         {
-            if (pixelOf(*bare, column, row).off(pixelOf(*wooded, column, row)) < 0.05) continue;
-            ++strokes;
-            lost += near(column, row) ? 0 : 1;
+            if (!isTree(column, row) || isTree(column, row - 1)) continue;
+            ++feet;
+            bool onFloor = false;
+            for (int y = row - 3; y <= row; ++y)
+                for (int x = column - 2; x <= column + 2; ++x)
+                    onFloor = onFloor || floor[static_cast<std::size_t>(y * WIDTH + x)];
+            lost += onFloor ? 0 : 1;
         }
     }
-    std::cout << strokes << " pixels of trees, " << lost << " far from the floor\n";
-    EXPECT_GT(strokes, ROWS * WIDTH / 6);
-    EXPECT_LE(lost, strokes / 1000);
+    std::cout << feet << " feet of trees, " << lost << " beside the floor\n";
+    EXPECT_GT(feet, 400);
+    EXPECT_LE(lost, 0.035 * feet) << "trees go another way than the ground";
 }
 
 namespace

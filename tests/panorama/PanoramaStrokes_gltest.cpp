@@ -144,7 +144,7 @@ float SLOT_strokeTreeShare(vec3 eye) { return 0.0; }
 float SLOT_strokeShown(vec3 eye) { return 1.0; }
 float SLOT_strokeSteepness(vec3 eye, vec3 normal) { return 1.0; }
 vec3 SLOT_strokeOpen(vec3 eye, float steepness, float bare, float light) { return vec3(0.5, 0.4, 0.35) + 0.3 * light; }
-vec3 SLOT_strokeShift(vec3 eye, vec3 normal, float land) { return vec3(0.0); }
+vec3 SLOT_strokeShift(vec3 eye, vec3 normal, float land, float scale) { return vec3(0.0); }
 )";
 const char* const fragmentStandIns = R"(
 vec4 SLOT_finish(vec4 color) { return color; }
