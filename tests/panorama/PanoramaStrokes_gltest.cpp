@@ -223,7 +223,8 @@ Map makeMap(bool treesOnly, bool withGround)
     const osg::ref_ptr<StrokeMaker> maker = new StrokeMaker(nullptr);
     StrokeParameters parameters;
     parameters.strokesAlongTile = 256.0;
-    parameters.cliffSlope = treesOnly ? 100.0 : 0.55;
+    parameters.cliffSlope =
+        treesOnly ? 100.0 : 2.0; // the ridge has strokes along its fall lines, the fields have none
     maker->setParameters(parameters);
     map.strokes = maker->strokes(*mesh, osg::Matrixd());
     if (!map.strokes) return map;
