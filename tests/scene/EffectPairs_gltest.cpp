@@ -452,7 +452,8 @@ TEST_F(EffectPairs, MappingsOnAPainting)
     EXPECT_GT(mapped, 0.05 * WIDTH * HEIGHT);
     EXPECT_EQ(off, 0);
     // The paint covers what comes before it.
-    EXPECT_TRUE(same(*picture({mappings, painting}, _ground), *painted));
+    // Within 2/255: another program rounds the directions of strokes on slopes otherwise.
+    EXPECT_EQ(differing(*picture({mappings, painting}, _ground), *painted), 0.0);
 }
 
 TEST_F(EffectPairs, CloseUpsOfExaggeratedGroundKeepTheirOwnHeights)
