@@ -71,6 +71,7 @@ using Rgba = glm::dvec4;
 #include <shaders/lib/strokes.glsl>
 
 #include <shaders/lib/painting.glsl>
+#include <shaders/lib/profile.glsl>
 #include <shaders/lib/panorama.glsl>
 
 #include <shaders/lib/edge.glsl>
@@ -106,6 +107,7 @@ using Rgba = glm::vec4;
 #include <shaders/lib/strokes.glsl>
 
 #include <shaders/lib/painting.glsl>
+#include <shaders/lib/profile.glsl>
 #include <shaders/lib/panorama.glsl>
 
 #include <shaders/lib/edge.glsl>

@@ -391,6 +391,7 @@ void PanoramaComposition::applyTo(PanoramaMap& map) const
     map.setCurveDistance(curveDistance);
     map.setHorizonBend(horizonBend);
     map.setExaggeration(exaggeration);
+    map.setHorizonExaggeration(-1.0);
     map.setBaseHeight(baseHeight);
     map.setBaseFromTerrain(false);
     map.setEdgeWidth(edgeWidth);

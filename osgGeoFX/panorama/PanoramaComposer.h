@@ -47,7 +47,8 @@ struct OSGGEOFX_EXPORT PanoramaComposition
     double baseHeight = 0.0; ///< metres
     double edgeWidth = 0.06; ///< in view radii
 
-    /// Sets the map's properties of these names, and `baseFromTerrain` to false.
+    /// Sets the map's properties of these names, `baseFromTerrain` to false, and one exaggeration for all distances, by which
+    /// views are judged.
     void applyTo(PanoramaMap& map) const;
     /// World to eye space, for a camera above the place.
     osg::Matrixd viewMatrix(const TerrainRelief& relief) const;

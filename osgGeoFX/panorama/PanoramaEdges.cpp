@@ -37,7 +37,9 @@ double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) co
     const double curve = _curveDistance * radius, horizon = _horizonDistance * radius;
     const double across = 1.0 / radius;
     const double along = 4.0 * _horizonLine / (curve + horizon);
-    const double lift = _exaggeration * high / wide / radius;
+    const double farther = _horizonExaggeration < 0.0 ? _exaggeration : _horizonExaggeration;
+    const double lift = std::max(_exaggeration, farther) * high / wide / radius;
+    const double growth = std::abs(farther - _exaggeration) * high / wide / radius / horizon;
     const double arch = 2.0 * std::abs(_horizonBend);
     const double fading = (endOfHeights - 1.0) * horizon;
     const double tallest =
@@ -47,9 +49,11 @@ double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) co
 
     // Derivatives of the picture's x and y along an edge, for each metre of it and of its square.
     const double x2 = across * globe;
-    const double y1 = std::hypot(along, lift) + 1.5 * lift * tallest / fading + arch * 1.5708 * across;
-    const double y2 = along / (horizon - curve) + (along + lift) * globe +
-                      lift * (6.0 * tallest / (fading * fading) + 1.5 / fading) +
+    // Heights fade only where their scale no longer changes.
+    const double lift1 = std::max(1.5 * lift / fading, 1.5 * growth);
+    const double lift2 = std::max(6.0 * lift / (fading * fading), 6.0 * growth / horizon);
+    const double y1 = std::hypot(along, lift) + lift1 * tallest + arch * 1.5708 * across;
+    const double y2 = along / (horizon - curve) + (along + lift) * globe + lift2 * tallest + lift1 +
                       arch * (2.4675 * across * across + 1.5708 * x2);
     // In eye space, for each metre of distance: the picture's, the way through the depths, and that before the base.
     const double widthX = 1.0 / wide / (perspective ? 1.0 : nearest);

@@ -78,6 +78,11 @@ const Properties& PanoramaMap::properties() const
             Property::number("exaggeration", "the ratio of heights to widths", 0.0, 20.0)
                 .of<&Self::_exaggeration>()
                 .turnedByFactor(1.15),
+            Property::number(
+                "horizonExaggeration",
+                "the same at the horizon, from exaggeration at the image's base; -1 is exaggeration", -1.0,
+                20.0)
+                .of<&Self::_horizonExaggeration>(),
             Property::number("baseHeight",
                              "the height above the database's zero height that lies on the curve", -12000.0,
                              12000.0, "m")

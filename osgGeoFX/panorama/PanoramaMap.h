@@ -54,7 +54,7 @@ public:
     /// Between them each place lies on the straight line in eye space from where the camera sees it to where the map
     /// draws it, a little beyond the strength's share of the way, and the paint, the strokes, the water and the sky fade in. Every strength is a deformation with the bounds,
     /// the picking and the levels of detail of one. Ground that both show stays one to one for cameras that look from
-    /// straight down to level, without a roll. PanoramaManipulator holds places exactly at strength 1 only.
+    /// straight down to level, without a roll, where heights have one scale. PanoramaManipulator holds places exactly at strength 1 only.
     bool setStrength(double strength) { return assign("strength", strength); }
     double getStrength() const { return _strength; }
     bool isActive() const override { return getEnabled() && _strength > 0.0; }
@@ -86,6 +86,11 @@ public:
     /// The scale factor of Eq. 2: the scale of heights over the scale of widths; 0…20, 2 by default.
     bool setExaggeration(double factor) { return assign("exaggeration", factor); }
     double getExaggeration() const { return _exaggeration; }
+    /// The scale factor of heights at the horizon and beyond; up to 20. −1, the default, is `exaggeration`, as the paper
+    /// has it: summits can be compared wherever they stand. With another value, `exaggeration` is that of the picture's
+    /// base, and the factor changes smoothly on the way to the horizon.
+    bool setHorizonExaggeration(double factor) { return assign("horizonExaggeration", factor); }
+    double getHorizonExaggeration() const { return _horizonExaggeration; }
     /// The height that lies on the curve, metres, −12 000…12 000; 0 by default.
     bool setBaseHeight(double metres) { return assign("baseHeight", metres); }
     double getBaseHeight() const { return _baseHeight; }
@@ -316,6 +321,7 @@ private:
     int _coverUnit = 7;
     int _firstUnit = -1;
     int _edgeUnit = -1;
+    double _horizonExaggeration = -1.0;
     osg::ref_ptr<osg::Image> _palette;
     osg::ref_ptr<osg::Image> _skyImage;
     osg::ref_ptr<StrokeLines> _lines;

@@ -42,12 +42,39 @@ double distanceOf(const glsl::geofx_Panorama& view, double rise)
     return std::min(distance, farthestHold * view.horizon);
 }
 
+/// Where ground of a height, from the base, is first seen so high above the base of the picture, if the scale of heights
+/// changes on the way.
+double firstAt(const glsl::geofx_Panorama& view, double y, double height)
+{
+    constexpr int parts = 64;
+    const auto seen = [&](double s)
+    {
+        return view.along * glsl::geofx_panoramaRise(view, s) + glsl::geofx_panoramaLift(view, s) * height;
+    };
+    const double farthest = farthestHold * view.horizon;
+    double near = std::min((y - seen(0.0)) / view.along, 0.0), far = near;
+    for (int part = 1; part <= parts && seen(far) < y; ++part)
+    {
+        near = far;
+        far = farthest * part / parts;
+    }
+    if (seen(far) < y) return farthest;
+    for (int step = 0; step < 60; ++step)
+    {
+        const double middle = 0.5 * (near + far);
+        (seen(middle) < y ? near : far) = middle;
+    }
+    return far;
+}
+
 /// x and s of what appears at a point of the picture and has a height.
 glm::dvec2 placeOn(const glsl::geofx_Panorama& view, const osg::Vec2d& picture, double height)
 {
-    const double y =
-        picture.y() + 1.0 + glsl::geofx_panoramaArch(view, picture.x()) - view.lift * (height - view.base);
-    return {picture.x() / view.across, distanceOf(view, y / view.along)};
+    const double above = picture.y() + 1.0 + glsl::geofx_panoramaArch(view, picture.x());
+    const double across = picture.x() / view.across;
+    if (view.liftGrowth != 0.0) return {across, firstAt(view, above, height - view.base)};
+    const double y = above - view.lift * (height - view.base);
+    return {across, distanceOf(view, y / view.along)};
 }
 
 /// Above or below `place`, as high as `other` is.

@@ -5,6 +5,7 @@
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #include "lib/exaggeration.glsl"
+#include "lib/profile.glsl"
 #endif
 
 // A place of the map: x to the right of the middle and s away from the picture's base, along the ground, and the
@@ -20,7 +21,7 @@ struct geofx_Panorama
     Vector3 forward;
     PerMetre across;  // of the picture's x for each metre of x; 1 / (half the width of the ground shown)
     PerMetre along;   // of the picture's y for each metre of s at the base
-    PerMetre lift;    // of the picture's y for each metre of height
+    PerMetre lift;    // of the picture's y for each metre of height, at the base
     Length base;      // the height that lies on the curve
     Length curve;     // D1, where the ground begins to curve
     Length horizon;   // D2, where it has reached the horizon; beyond, only what rises above it is seen
@@ -36,6 +37,7 @@ struct geofx_Panorama
     Number plain;     // the share of the camera's own perspective, 0 to 1
     Number mirrored;  // 1: that perspective shows what is turned over at the height `water`, as still water does; else 0
     Length water;
+    PerMetre liftGrowth; // how much more the lift is at the horizon
 };
 
 // The angle over its sine, from its cosine. It stretches the orthographic projection to the equidistant one. The
@@ -103,6 +105,12 @@ GEOFX_INLINE Number geofx_panoramaFade(geofx_Panorama view, Length s)
     return geofx_panoramaFadeFrom(view, view.horizon, s);
 }
 
+// Of the picture's y for each metre of height at a distance s, without what has faded.
+GEOFX_INLINE PerMetre geofx_panoramaLift(geofx_Panorama view, Length s)
+{
+    return geofx_profileLift(view.lift, view.liftGrowth, s / view.horizon);
+}
+
 // How far Eq. 1 lowers a point of the picture.
 GEOFX_INLINE Number geofx_panoramaArch(geofx_Panorama view, Number x)
 {
@@ -114,7 +122,8 @@ GEOFX_INLINE Position geofx_panoramaPicture(geofx_Panorama view, Position place)
 {
     Number x = place.x * view.across * geofx_panoramaFadeFrom(view, view.end, place.y);
     Number y = view.along * geofx_panoramaRise(view, place.y) - 1 +
-               view.lift * (place.z - view.base) * geofx_panoramaFade(view, place.y) - geofx_panoramaArch(view, x);
+               geofx_panoramaLift(view, place.y) * (place.z - view.base) * geofx_panoramaFade(view, place.y) -
+               geofx_panoramaArch(view, x);
     Length n = place.y > 0 ? view.nearest + place.y
                            : view.nearest * view.nearest / (view.nearest - place.y);
     return Position(x, y, n);
@@ -126,7 +135,7 @@ GEOFX_INLINE Position geofx_panoramaPlaceAt(geofx_Panorama view, Position pictur
     Length s = picture.z > view.nearest ? picture.z - view.nearest
                                         : view.nearest - view.nearest * view.nearest / picture.z;
     Number y = picture.y + 1 + geofx_panoramaArch(view, picture.x) - view.along * geofx_panoramaRise(view, s);
-    Number lift = view.lift * max(geofx_panoramaFade(view, s), Number(1e-6));
+    Number lift = geofx_panoramaLift(view, s) * max(geofx_panoramaFade(view, s), Number(1e-6));
     return Position(picture.x / view.across, s, view.base + y / lift);
 }
 

@@ -16,6 +16,7 @@ uniform vec4 SLOT_originY;
 uniform vec4 SLOT_direction;
 uniform vec4 SLOT_directionX;
 uniform vec4 SLOT_directionY;
+uniform vec4 SLOT_profile; // how much more heights are raised at the horizon, for each metre
 
 geofx_Panorama SLOT_view()
 {
@@ -24,7 +25,8 @@ geofx_Panorama SLOT_view()
     return geofx_Panorama(globe, SLOT_right.xyz, SLOT_forward.xyz, SLOT_scale.x, SLOT_scale.y, SLOT_scale.z,
                           SLOT_scale.w, SLOT_curve.x, SLOT_curve.y, SLOT_curve.z, SLOT_curve.w, SLOT_origin.w,
                           SLOT_origin.xyz, SLOT_originX.xyz, SLOT_originY.xyz, SLOT_direction.xyz,
-                          SLOT_directionX.xyz, SLOT_directionY.xyz, SLOT_originX.w, SLOT_originY.w, SLOT_direction.w);
+                          SLOT_directionX.xyz, SLOT_directionY.xyz, SLOT_originX.w, SLOT_originY.w, SLOT_direction.w,
+                          SLOT_profile.x);
 }
 
 // The place of the last position. The painting and the projection mostly ask for the same one.

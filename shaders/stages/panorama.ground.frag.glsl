@@ -22,6 +22,7 @@ uniform vec4 SLOT_window; // the viewport's corner, one over its size
 uniform vec4 SLOT_clock;  // seconds, the strength
 uniform vec4 SLOT_scale;
 uniform vec4 SLOT_curve;
+uniform vec4 SLOT_profile;
 uniform sampler2D SLOT_edgeMap; // the distance to the end of what is known, metres
 uniform sampler2D SLOT_edgeSky;
 uniform vec4 SLOT_edgeEye;      // as in lib/edge.glsl
@@ -57,7 +58,8 @@ vec3 SLOT_wet(float shore, vec2 picture, float far)
     return geofx_waterBody(max(shore, 0.0), SLOT_water.x);
 #else
     // The mirror is at height 0. The reflection in a lake lies higher by twice the lake's height.
-    geofx_WaterPlace place = geofx_WaterPlace(max(shore, 0.0), picture, SLOT_texels.zw, SLOT_scale.z * SLOT_place.z,
+    float lift = geofx_profileLift(SLOT_scale.z, SLOT_profile.x, SLOT_place.y / SLOT_curve.y);
+    geofx_WaterPlace place = geofx_WaterPlace(max(shore, 0.0), picture, SLOT_texels.zw, lift * SLOT_place.z,
                                               SLOT_place.y / SLOT_curve.z, far);
     return geofx_water(place, SLOT_water, SLOT_clock.x, SLOT_brush, SLOT_mirror);
 #endif
@@ -71,7 +73,7 @@ vec2 SLOT_gone(float noise, float y, float wet, float shore)
     vec3 place = vec3(SLOT_place.x / SLOT_scale.x, SLOT_place.yz);
     // A lake runs out as the land around it does, and so does the shore.
     float sea = wet * (1.0 - geofx_ease(SLOT_place.z, 10.0, 30.0)) * geofx_ease(shore, 0.0, 0.2 * SLOT_edgeKind.z);
-    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, place, SLOT_scale, SLOT_curve, sea, noise,
+    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, place, SLOT_scale, SLOT_curve, SLOT_profile, sea, noise,
                           mix(0.3, 0.2, geofx_edgePaper(y)));
 }
 

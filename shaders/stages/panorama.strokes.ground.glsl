@@ -63,7 +63,9 @@ float SLOT_strokeGone(vec3 position)
 {
     if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return 0.0;
     geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind);
-    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, SLOT_placeOf(position), SLOT_scale, SLOT_curve, 0.0, 0.0, 0.0).x;
+    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, SLOT_placeOf(position), SLOT_scale, SLOT_curve,
+                          SLOT_profile, 0.0, 0.0, 0.0)
+        .x;
 }
 
 float SLOT_strokeShown(vec3 position)

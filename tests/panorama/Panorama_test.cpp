@@ -74,6 +74,7 @@ void randomizeMap(PanoramaMap& map, Random& random)
     map.setBaseHeight(random.integer(0, 1) ? 0.0 : random.uniform(-500.0, 3000.0));
     map.setBaseFromTerrain(random.integer(0, 1) != 0);
     if (random.integer(0, 3) == 0) map.setViewRadius(random.logarithmic(100.0, 2e5));
+    map.setHorizonExaggeration(random.integer(0, 2) ? -1.0 : random.logarithmic(0.05, 10.0));
 }
 
 /// A camera as the map's contract wants it, that looks from straight down to level without a roll, with a map that is partly
@@ -92,6 +93,7 @@ Case randomMix(Random& random)
         found.map->setBaseFromTerrain(false);
         // A map that is flatter than what the camera shows would have to fold on its way.
         found.map->setExaggeration(random.uniform(1.0, 5.0));
+        found.map->setHorizonExaggeration(-1.0);
         found.map->setStrength(random.integer(0, 9) ? random.uniform(0.0, 1.0)
                                                     : random.logarithmic(1e-4, 1.0));
         if (found.pose.height < found.map->getBaseHeight() + 100.0 || found.pose.fieldOfView > 1.6) continue;
@@ -180,6 +182,7 @@ glslf::geofx_Panorama inFloats(const PanoramaSnapshot& frame)
     view.direction = narrowed(all["direction"]);
     view.directionX = narrowed(all["directionX"]);
     view.directionY = narrowed(all["directionY"]);
+    view.liftGrowth = number("profile", 0);
     return view;
 }
 
@@ -258,7 +261,8 @@ TEST(Panorama, HasNoKinks)
                 const Vec3d before = (here - picture(border - step)) / step * found.radius();
                 const Vec3d after = (picture(border + step) - here) / step * found.radius();
                 // What the fade, the steepest, changes over a step.
-                const double allowed = 1e-3 * (1.0 + std::abs(view.lift * (h - view.base)) + view.arch);
+                const double lift = std::max(view.lift, view.lift + view.liftGrowth);
+                const double allowed = 1e-3 * (1.0 + std::abs(lift * (h - view.base)) + view.arch);
                 const double scale = std::max(
                     1.0, found.radius() / std::min(view.horizon - view.curve, view.end - view.horizon));
                 EXPECT_LT((after - before).length(), allowed * scale * scale) << "at " << border;
@@ -294,6 +298,7 @@ TEST(Panorama, SummitsCompareWhereverTheyStand)
     forRandom(
         [](const Case& found, Random& random)
         {
+            if (found.map->getHorizonExaggeration() >= 0.0) return;
             const double plain = random.uniform(-400.0, 2000.0);
             const double height = random.logarithmic(10.0, 8000.0);
             const double k = random.logarithmic(0.1, 10.0);
@@ -315,6 +320,57 @@ TEST(Panorama, SummitsCompareWhereverTheyStand)
                                   found.pose.projection()(0, 0); // of pixels, not of the picture
             EXPECT_NEAR(shown[0], found.map->getExaggeration() * height / found.radius() * aspect,
                         1e-9 * (base + 1.0));
+        });
+}
+
+TEST(Panorama, ForegroundAndBackgroundHaveExaggerationsOfTheirOwn)
+{
+    int scales = 0;
+    forRandom(
+        [&](const Case& found, Random& random)
+        {
+            const double near = found.map->getExaggeration();
+            const double far = found.map->getHorizonExaggeration();
+            if (far < 0.0) return;
+            ++scales;
+            const double x = random.uniform(-1.0, 1.0) * found.radius();
+            const double height = random.logarithmic(10.0, 8000.0);
+            const double aspect = found.pose.projection()(1, 1) / found.pose.projection()(0, 0);
+            // By how much what is so high is drawn as higher, of D2.
+            const auto scaleAt = [&](double share)
+            {
+                const double s = share * found.panorama().horizon;
+                const double shown = found.seen(x, s, found.panorama().base + height).y() -
+                                     found.seen(x, s, found.panorama().base).y();
+                return shown / (height / found.radius() * aspect);
+            };
+            const double exact = 1e-8 * (near + far + found.radius() / height);
+            EXPECT_NEAR(scaleAt(0.0), near, exact);
+            EXPECT_NEAR(scaleAt(-random.uniform(0.0, 1.0)), near, exact);
+            EXPECT_NEAR(scaleAt(0.5), 0.5 * (near + far), exact);
+            EXPECT_NEAR(scaleAt(1.0), far, exact);
+            const double share = random.uniform(0.0, 1.0);
+            const double step = scaleAt(std::min(share + 0.05, 1.0)) - scaleAt(share);
+            EXPECT_GE(step * (far > near ? 1.0 : -1.0), -2.0 * exact);
+        });
+    EXPECT_GT(scales, sampleCount() / 10);
+}
+
+TEST(Panorama, EqualExaggerationsAreOneToTheBit)
+{
+    forRandom(
+        [](const Case& found, Random& random)
+        {
+            Case other = found;
+            other.map = new PanoramaMap(*found.map);
+            ASSERT_TRUE(other.map->setHorizonExaggeration(-1.0));
+            ASSERT_TRUE(other.update());
+            const Vec3d place = randomPlace(found, random);
+            const Vec3d point = other.at(place.x(), place.y(), place.z());
+            const Vec3d drawn = other.frame->deform(point);
+            ASSERT_TRUE(other.map->setHorizonExaggeration(other.map->getExaggeration()));
+            ASSERT_TRUE(other.update());
+            EXPECT_EQ(other.frame->deform(point), drawn);
         });
 }
 

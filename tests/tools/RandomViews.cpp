@@ -45,6 +45,7 @@ double sensibleValue(const std::string& name, Random& random)
     if (name == "viewRadius") return die < 6 ? 0.0 : random.logarithmic(100.0, 3e5);
     if (name == "curveDistance") return die == 0 ? 0.0 : random.logarithmic(0.05, 5.0);
     if (name == "horizonDistance") return random.logarithmic(0.3, 20.0);
+    if (name == "horizonExaggeration") return die < 5 ? -1.0 : random.logarithmic(0.1, 20.0);
     if (name == "exaggeration") return die == 0 ? 0.0 : random.logarithmic(0.1, 20.0);
     if (name == "baseHeight") return die < 5 ? 0.0 : random.uniform(-500.0, 4000.0);
     return std::nan("");

@@ -61,7 +61,7 @@ bool finite(const glsl::geofx_Panorama& panorama)
 {
     double sum = 0.0;
     for (const double each : {panorama.across, panorama.along, panorama.lift, panorama.base, panorama.end,
-                              panorama.nearest, panorama.globe.height})
+                              panorama.nearest, panorama.globe.height, panorama.liftGrowth})
         sum += std::abs(each);
     for (const glm::dvec3& each : {panorama.right, panorama.forward, panorama.origin, panorama.originX,
                                    panorama.originY, panorama.direction, panorama.directionX,
@@ -101,6 +101,9 @@ std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const Vie
     panorama.end = endOfHeights * panorama.horizon;
     panorama.along = 4.0 * map.getHorizonLine() / (panorama.curve + panorama.horizon);
     panorama.lift = std::max(map.getExaggeration(), leastExaggeration) * high / wide / radius;
+    if (map.getHorizonExaggeration() >= 0.0)
+        panorama.liftGrowth =
+            std::max(map.getHorizonExaggeration(), leastExaggeration) * high / wide / radius - panorama.lift;
     panorama.arch = 2.0 * map.getHorizonBend();
     panorama.nearest = radius * (perspective ? wide : 1.0);
     setRays(panorama, view);
@@ -220,6 +223,9 @@ struct PanoramaSnapshot::Extent
     double slopeRate;  ///< its derivative, 1/metre
     double fadeRate;   ///< of heights and of x beyond the horizon, 1/metre
     double fadeSecond; ///< 1/metre²
+    double lift;       ///< of the picture's y for each metre of height, at most
+    double liftRate;   ///< its derivative by s, faded heights included, 1/metre²
+    double liftSecond; ///< 1/metre³
     double x;          ///< of the picture, at most
     double n;          ///< at most
     double nSecond;    ///< of n by s, 1/metre
@@ -252,6 +258,13 @@ PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
     const bool fades = nearS < _view.end + fading && farS > _view.horizon;
     extent.fadeRate = fades ? 1.5 / fading : 0.0;
     extent.fadeSecond = fades ? 6.0 / (fading * fading) : 0.0;
+    extent.lift = std::max(std::abs(glsl::geofx_panoramaLift(_view, nearS)),
+                           std::abs(glsl::geofx_panoramaLift(_view, farS)));
+    // Heights fade only where their scale no longer changes.
+    const bool grows = nearS < _view.horizon && farS > 0.0;
+    const double growth = grows ? std::abs(_view.liftGrowth) / _view.horizon : 0.0;
+    extent.liftRate = std::max(1.5 * growth, extent.lift * extent.fadeRate);
+    extent.liftSecond = std::max(6.0 * growth / _view.horizon, extent.lift * extent.fadeSecond);
     extent.x = _view.across * (std::abs(extent.place.x) + extent.reach);
     extent.n = _view.nearest + std::max(farS, 0.0);
     extent.nSecond = nearS < 0.0 ? 2.0 / _view.nearest : 0.0;
@@ -270,10 +283,9 @@ double PanoramaSnapshot::lipschitz(const Ball& ball) const
     const Extent extent = extentOf(ball);
     const double x = (_view.across + extent.x * extent.fadeRate) * extent.stretch;
     const double arch = _view.arch * 1.5708 * x;
-    const double lift = std::abs(_view.lift);
     const double bySide =
-        _view.along * extent.slope * extent.stretch + lift * extent.fadeRate * extent.height * extent.stretch;
-    const double y = std::hypot(bySide, lift) + arch;
+        _view.along * extent.slope * extent.stretch + extent.liftRate * extent.height * extent.stretch;
+    const double y = std::hypot(bySide, extent.lift) + arch;
     const double reachY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + y * ball.radius;
     const double acrossEye = x * (glm::length(_view.originX) + extent.n * glm::length(_view.directionX));
     const double upEye = y * (glm::length(_view.originY) + extent.n * glm::length(_view.directionY));
@@ -299,16 +311,15 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
         std::min(1.0, std::abs(edge * toOsg(_view.forward)) / std::max(length, 1e-30) + 1.1 * turned) *
         length * extent.stretch;
     const double second = extent.curvature * length * length;
-    const double lift = std::abs(_view.lift);
 
     const double x1 = _view.across * side + extent.x * extent.fadeRate * ahead;
     const double x2 = _view.across * (second + 2.0 * side * extent.fadeRate * ahead) +
                       extent.x * (extent.fadeSecond * ahead * ahead + extent.fadeRate * second);
-    const double y1 = _view.along * extent.slope * ahead +
-                      lift * (extent.fadeRate * extent.height * ahead + rise) + _view.arch * 1.5708 * x1;
+    const double y1 = _view.along * extent.slope * ahead + extent.liftRate * extent.height * ahead +
+                      extent.lift * rise + _view.arch * 1.5708 * x1;
     const double y2 = _view.along * (extent.slopeRate * ahead * ahead + extent.slope * second) +
-                      lift * (extent.fadeSecond * ahead * ahead * extent.height +
-                              extent.fadeRate * (second * extent.height + 2.0 * ahead * rise) + second) +
+                      extent.liftSecond * ahead * ahead * extent.height +
+                      extent.liftRate * (second * extent.height + 2.0 * ahead * rise) + extent.lift * second +
                       _view.arch * (2.4675 * x1 * x1 + 1.5708 * x2);
     const double n1 = ahead;
     const double n2 = extent.nSecond * ahead * ahead + second;
@@ -331,7 +342,10 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
     const double apartX = farS > _view.end ? 2.0 * extent.x : 2.0 * _view.across * extent.reach;
     const double apartY =
         _view.along * (glsl::geofx_panoramaRise(_view, farS) - glsl::geofx_panoramaRise(_view, nearS)) +
-        2.0 * lift * (farS > _view.horizon ? extent.height : ball.radius * extent.stretch) + 2.0 * _view.arch;
+        2.0 * extent.lift * (farS > _view.horizon ? extent.height : ball.radius * extent.stretch) +
+        std::abs(glsl::geofx_panoramaLift(_view, farS) - glsl::geofx_panoramaLift(_view, nearS)) *
+            extent.height +
+        2.0 * _view.arch;
     const double apartN = 2.0 * extent.reach;
     const double mostY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + apartY;
     const double most = apartX * sideX + apartY * sideY +
@@ -344,6 +358,7 @@ osg::ref_ptr<const PanoramaSnapshot> PanoramaSnapshot::mirrored(double level, do
 {
     glsl::geofx_Panorama view = _view;
     view.lift = -view.lift;
+    view.liftGrowth = -view.liftGrowth;
     view.base = 2.0 * level - view.base;
     view.mirrored = 1.0;
     view.water = level;
@@ -354,9 +369,12 @@ double PanoramaSnapshot::longestEdge(const Ball& ball, double tolerance) const
 {
     const Extent extent = extentOf(ball);
     if (extent.place.y - extent.reach > _view.end) return HUGE_VAL;
-    // The second derivative of the picture's y: that of the curve, and that of Eq. 1.
-    const double second =
-        _view.along * extent.slopeRate + std::abs(_view.arch) * 2.4675 * _view.across * _view.across;
+    // The second derivative of the picture's y: that of the curve, that of the scale of heights, and that of Eq. 1.
+    const double growth = extent.place.y - extent.reach < _view.horizon && extent.place.y + extent.reach > 0.0
+                              ? 6.0 * std::abs(_view.liftGrowth) / (_view.horizon * _view.horizon)
+                              : 0.0;
+    const double second = _view.along * extent.slopeRate + growth * extent.height +
+                          std::abs(_view.arch) * 2.4675 * _view.across * _view.across;
     return std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
 }
 
@@ -426,18 +444,21 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     if (_view.across * low.x > side || _view.across * high.x < -side) return true;
 
     // Heights and Eq. 1 move a place up or down in the picture.
-    const double lifts[] = {_view.lift * (low.z - _view.base), _view.lift * (high.z - _view.base)};
-    const auto lifted = [&](double lift, bool most)
+    // Their scale changes one way up to the horizon, and falls behind it.
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (const double s : {low.y, std::clamp(_view.horizon, low.y, high.y), high.y})
     {
-        const bool whole = (lift > 0.0) == most;
-        return lift * glsl::geofx_panoramaFade(_view, whole ? low.y : high.y);
-    };
-    const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 +
-                       lifted(std::max(lifts[0], lifts[1]), true);
+        const double lift = glsl::geofx_panoramaLift(_view, s) * glsl::geofx_panoramaFade(_view, s);
+        for (const double height : {low.z, high.z})
+        {
+            least = std::min(least, lift * (height - _view.base));
+            most = std::max(most, lift * (height - _view.base));
+        }
+    }
+    const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 + most;
     if (top < -beside - room.y()) return true;
     const double farthest = std::min(_view.across * std::max(std::abs(low.x), std::abs(high.x)), 2.0);
-    const double foot = _view.along * glsl::geofx_panoramaRise(_view, low.y) - 1.0 +
-                        lifted(std::min(lifts[0], lifts[1]), false) -
+    const double foot = _view.along * glsl::geofx_panoramaRise(_view, low.y) - 1.0 + least -
                         std::abs(glsl::geofx_panoramaArch(_view, farthest));
     return foot > beside + room.y();
 }
@@ -469,6 +490,7 @@ DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
         {"direction", vec4(_view.direction, _view.water)},
         {"directionX", vec4(_view.directionX, 0.0)},
         {"directionY", vec4(_view.directionY, 0.0)},
+        {"profile", {_view.liftGrowth, 0.0, 0.0, 0.0}},
     };
 }
 
