@@ -180,6 +180,13 @@ PanoramaWishes wishesOf(const Arguments& arguments, const Recipe& recipe)
     wishes.exaggeration = arguments.exaggeration;
     wishes.horizonLine = arguments.horizonLine;
     wishes.horizonDistance = arguments.horizonDistance;
+    // The view is chosen for the curve and the scale of heights that were asked for.
+    const osg::ref_ptr<PanoramaMap> asked = new PanoramaMap;
+    std::string ignored;
+    for (const auto& [name, value] : recipe.map)
+        asked->setPropertyText(name, value, ignored);
+    wishes.horizonExaggeration = asked->getHorizonExaggeration();
+    wishes.curvePoints = asked->getCurvePoints();
     return wishes;
 }
 

@@ -3,6 +3,7 @@
 #include <osgGeoFX/panorama/PanoramaComposer.h>
 
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/PanoramaProfile.h>
 #include <osgGeoFX/panorama/detail/ReliefWorth.h>
 
 #include <osg/Math>
@@ -51,8 +52,10 @@ struct Curve
         : radius(composition.viewRadius), curve(composition.curveDistance * radius),
           horizon(composition.horizonDistance * radius), end(endOfHeights * horizon),
           along(4.0 * composition.horizonLine / (curve + horizon)), lift(aspect / radius),
-          arch(2.0 * composition.horizonBend), base(composition.baseHeight)
+          arch(2.0 * composition.horizonBend), base(composition.baseHeight), near(composition.exaggeration),
+          far(composition.horizonExaggeration), profile(profileThrough(composition.curvePoints))
     {
+        if (profile.first > 0.0) along = 2.0 * composition.horizonLine / horizon;
     }
 
     /// The picture's y, 0…1 from its base, of ground at the base height.
@@ -60,8 +63,17 @@ struct Curve
     {
         const double width = std::max(horizon - curve, 1e-3);
         const double bent = std::clamp(s - curve, 0.0, width);
-        const double rise = std::min(s, curve) + bent - bent * bent / (2.0 * width);
+        double rise = std::min(s, curve) + bent - bent * bent / (2.0 * width);
+        if (profile.first > 0.0) rise = horizon * glsl::geofx_profileRise(profile, s / horizon);
         return 0.5 * (along * rise - arch * (1.0 - std::cos(x * osg::PI_2)));
+    }
+    /// The share of the horizon's own exaggeration at a distance.
+    double share(double s) const { return far < 0.0 ? 0.0 : glsl::geofx_profileLift(0.0, 1.0, s / horizon); }
+    /// How much a height raises it.
+    double lifted(double height, double s) const
+    {
+        const double part = share(s);
+        return (near * (1.0 - part) + far * part) * raised(height, s);
     }
     /// How much a height raises it, for an exaggeration of 1.
     double raised(double height, double s) const
@@ -70,7 +82,8 @@ struct Curve
         return 0.5 * lift * (height - base) * t * t * (3.0 - 2.0 * t);
     }
 
-    double radius, curve, horizon, end, along, lift, arch, base;
+    double radius, curve, horizon, end, along, lift, arch, base, near, far;
+    glsl::geofx_Profile profile;
 };
 
 /// What lies at a place of the terrain.
@@ -131,8 +144,10 @@ public:
         double most = std::clamp(mostSlope / std::max(steep, 1e-3), modestExaggeration, mostExaggeration);
         const auto fit = [&](double x, double s, double height)
         {
+            const double part = curve.share(s);
             const double raised = curve.raised(height, s);
-            if (raised > 1e-6) most = std::min(most, (tip - curve.foot(x, s)) / raised);
+            const double room = tip - curve.foot(x, s) - part * curve.far * raised;
+            if ((1.0 - part) * raised > 1e-6) most = std::min(most, room / ((1.0 - part) * raised));
         };
         const Place place(_relief, view);
         for (int column = 0; column < _columns; ++column)
@@ -175,7 +190,7 @@ public:
                 const double s = stretch * (step + 0.5) / _steps - before * curve.radius;
                 const Sample sample = at(place.at(x * curve.radius, s), view.edgeWidth * curve.radius);
                 if (sample.ground) known = sample.height;
-                const double y = curve.foot(x, s) + view.exaggeration * curve.raised(known, s);
+                const double y = curve.foot(x, s) + curve.lifted(known, s);
                 const double area = std::min(y, 1.0) - top;
                 const bool inPicture = s >= 0.0 && s < curve.horizon;
                 walked += inPicture ? 1.0 : 0.0;
@@ -216,12 +231,11 @@ public:
             weights += summit.weight;
             squaredWeights += square;
             const osg::Vec2d at = place.of(summit.place);
-            const double share = seenShare(summit, at, view, curve, tops, stretch);
+            const double share = seenShare(summit, at, curve, tops, stretch);
             if (!(share > 0.0)) continue;
             result.summits += summit.weight * share;
             const double x = at.x() / curve.radius;
-            const double tip =
-                curve.foot(x, at.y()) + view.exaggeration * curve.raised(summit.height, at.y());
+            const double tip = curve.foot(x, at.y()) + curve.lifted(summit.height, at.y());
             const double above = (tip - curve.foot(x, curve.horizon)) / (0.25 * (1.0 - view.horizonLine));
             result.crown +=
                 square * std::clamp(above, 0.0, 1.0) * std::clamp((0.95 - std::abs(x)) / 0.4, 0.0, 1.0);
@@ -324,15 +338,15 @@ private:
     }
 
     /// 1 if a summit is in sight and not at the picture's sides; 0 if it is not.
-    double seenShare(const ReliefSummit& summit, const osg::Vec2d& at, const PanoramaComposition& view,
-                     const Curve& curve, const std::vector<float>& tops, double stretch) const
+    double seenShare(const ReliefSummit& summit, const osg::Vec2d& at, const Curve& curve,
+                     const std::vector<float>& tops, double stretch) const
     {
         const double x = at.x() / curve.radius;
         if (std::abs(x) >= 1.0 || at.y() <= 0.0 || at.y() >= curve.end) return 0.0;
         const int column = std::clamp(static_cast<int>(0.5 * (x + 1.0) * _columns), 0, _columns - 1);
         // Its own foot does not hide it.
         const int step = static_cast<int>((at.y() + before * curve.radius) / stretch * _steps) - 2;
-        const double y = curve.foot(x, at.y()) + view.exaggeration * curve.raised(summit.height, at.y());
+        const double y = curve.foot(x, at.y()) + curve.lifted(summit.height, at.y());
         const double hidden =
             step < 0 ? 0.0
                      : static_cast<double>(
@@ -391,7 +405,8 @@ void PanoramaComposition::applyTo(PanoramaMap& map) const
     map.setCurveDistance(curveDistance);
     map.setHorizonBend(horizonBend);
     map.setExaggeration(exaggeration);
-    map.setHorizonExaggeration(-1.0);
+    map.setHorizonExaggeration(horizonExaggeration);
+    map.setCurvePoints(curvePoints);
     map.setBaseHeight(baseHeight);
     map.setBaseFromTerrain(false);
     map.setEdgeWidth(edgeWidth);
@@ -426,6 +441,8 @@ public:
     /// Fills in what follows from a view's place, heading and radius.
     void complete(PanoramaComposition& view, const Walk& walk) const
     {
+        view.horizonExaggeration = wishes.horizonExaggeration;
+        view.curvePoints = wishes.curvePoints;
         view.baseHeight = walk.baseOf(view);
         view.exaggeration = wishes.exaggeration ? *wishes.exaggeration
                                                 : walk.exaggerationOf(view, wishes.aspect, worth.steep);

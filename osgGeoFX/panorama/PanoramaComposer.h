@@ -30,6 +30,8 @@ struct PanoramaWishes
     std::optional<double> horizonLine;
     std::optional<double> horizonDistance;
     std::optional<double> exaggeration;
+    double horizonExaggeration = -1.0;   ///< as PanoramaMap's; nothing is chosen in its place
+    std::vector<osg::Vec2d> curvePoints; ///< the same
 };
 
 /// A camera for a panorama map, and the values of the map's projection that belong to it.
@@ -44,11 +46,12 @@ struct OSGGEOFX_EXPORT PanoramaComposition
     double horizonDistance = 3.6; ///< in view radii
     double horizonBend = 0.05;
     double exaggeration = 2.0;
-    double baseHeight = 0.0; ///< metres
-    double edgeWidth = 0.06; ///< in view radii
+    double baseHeight = 0.0;             ///< metres
+    double edgeWidth = 0.06;             ///< in view radii
+    double horizonExaggeration = -1.0;   ///< of the wishes
+    std::vector<osg::Vec2d> curvePoints; ///< of the wishes
 
-    /// Sets the map's properties of these names, `baseFromTerrain` to false, and one exaggeration for all distances, by which
-    /// views are judged.
+    /// Sets the map's properties of these names, and `baseFromTerrain` to false.
     void applyTo(PanoramaMap& map) const;
     /// World to eye space, for a camera above the place.
     osg::Matrixd viewMatrix(const TerrainRelief& relief) const;

@@ -3,6 +3,7 @@
 //
 // How long the edges of a mesh may be that is made before a camera is known.
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/PanoramaProfile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +37,14 @@ double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) co
     const double nearest = radius * (perspective ? wide : 1.0);
     const double curve = _curveDistance * radius, horizon = _horizonDistance * radius;
     const double across = 1.0 / radius;
-    const double along = 4.0 * _horizonLine / (curve + horizon);
+    double along = 4.0 * _horizonLine / (curve + horizon); // at most
+    double along2 = along / (horizon - curve);
+    if (const glsl::geofx_Profile profile = profileThrough(getCurvePoints()); profile.first > 0.0)
+    {
+        const ProfileRates rates = ratesOf(profile, -1.0, 1.0);
+        along = 2.0 * _horizonLine / horizon * rates.slope;
+        along2 = 2.0 * _horizonLine / (horizon * horizon) * rates.second;
+    }
     const double farther = _horizonExaggeration < 0.0 ? _exaggeration : _horizonExaggeration;
     const double lift = std::max(_exaggeration, farther) * high / wide / radius;
     const double growth = std::abs(farther - _exaggeration) * high / wide / radius / horizon;
@@ -53,7 +61,7 @@ double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) co
     const double lift1 = std::max(1.5 * lift / fading, 1.5 * growth);
     const double lift2 = std::max(6.0 * lift / (fading * fading), 6.0 * growth / horizon);
     const double y1 = std::hypot(along, lift) + lift1 * tallest + arch * 1.5708 * across;
-    const double y2 = along / (horizon - curve) + (along + lift) * globe + lift2 * tallest + lift1 +
+    const double y2 = along2 + (along + lift) * globe + lift2 * tallest + lift1 +
                       arch * (2.4675 * across * across + 1.5708 * x2);
     // In eye space, for each metre of distance: the picture's, the way through the depths, and that before the base.
     const double widthX = 1.0 / wide / (perspective ? 1.0 : nearest);

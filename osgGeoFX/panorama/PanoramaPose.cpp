@@ -33,7 +33,9 @@ const double defaultPitch = -35.0 * osg::PI / 180.0;
 double distanceOf(const glsl::geofx_Panorama& view, double rise)
 {
     double distance = rise;
-    if (rise > view.curve)
+    if (view.profile.first > 0.0)
+        distance = view.horizon * glsl::geofx_profileDistance(view.profile, rise / view.horizon);
+    else if (rise > view.curve)
     {
         const double width = std::max(view.horizon - view.curve, 1e-3);
         const double left = std::max(1.0 - 2.0 * (rise - view.curve) / width, 0.0);
@@ -52,7 +54,8 @@ double firstAt(const glsl::geofx_Panorama& view, double y, double height)
         return view.along * glsl::geofx_panoramaRise(view, s) + glsl::geofx_panoramaLift(view, s) * height;
     };
     const double farthest = farthestHold * view.horizon;
-    double near = std::min((y - seen(0.0)) / view.along, 0.0), far = near;
+    const double before = view.along * glsl::geofx_panoramaSlope(view, 0.0);
+    double near = std::min((y - seen(0.0)) / before, 0.0), far = near;
     for (int part = 1; part <= parts && seen(far) < y; ++part)
     {
         near = far;

@@ -20,7 +20,7 @@ struct geofx_Panorama
     Vector3 right;            // in the plane of the ground below the eye, unit vectors
     Vector3 forward;
     PerMetre across;  // of the picture's x for each metre of x; 1 / (half the width of the ground shown)
-    PerMetre along;   // of the picture's y for each metre of s at the base
+    PerMetre along;   // of the picture's y for each metre up the curve (geofx_panoramaRise)
     PerMetre lift;    // of the picture's y for each metre of height, at the base
     Length base;      // the height that lies on the curve
     Length curve;     // D1, where the ground begins to curve
@@ -38,6 +38,7 @@ struct geofx_Panorama
     Number mirrored;  // 1: that perspective shows what is turned over at the height `water`, as still water does; else 0
     Length water;
     PerMetre liftGrowth; // how much more the lift is at the horizon
+    geofx_Profile profile; // the curve through points that a user sets
 };
 
 // The angle over its sine, from its cosine. It stretches the orthographic projection to the equidistant one. The
@@ -79,16 +80,19 @@ GEOFX_INLINE Position geofx_panoramaPosition(geofx_Panorama view, Position place
     return position;
 }
 
-// The distance up the curve at a distance s: metres at the scale of the base (paper, Figure 5).
+// The distance up the curve at a distance s: metres at the scale of the base (paper, Figure 5), or of the mean with
+// points that a user sets.
 GEOFX_INLINE Length geofx_panoramaRise(geofx_Panorama view, Length s)
 {
+    if (view.profile.first > 0) return view.horizon * geofx_profileRise(view.profile, s / view.horizon);
     Length bent = clamp(s - view.curve, Length(0), view.horizon - view.curve);
     return min(s, view.curve) + bent - bent * bent / (2 * max(view.horizon - view.curve, Length(1e-3)));
 }
 
-// The scale of ground along the view at a distance s, as a share of the base's.
+// The scale of ground along the view at a distance s: the derivative of geofx_panoramaRise.
 GEOFX_INLINE Number geofx_panoramaSlope(geofx_Panorama view, Length s)
 {
+    if (view.profile.first > 0) return geofx_profileSlope(view.profile, s / view.horizon);
     return clamp((view.horizon - s) / max(view.horizon - view.curve, Length(1e-3)), Number(0), Number(1));
 }
 

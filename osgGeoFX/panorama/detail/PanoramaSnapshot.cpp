@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/effect/detail/GlobeFrame.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/PanoramaProfile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -99,7 +100,10 @@ std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const Vie
     panorama.curve = map.getCurveDistance() * radius;
     panorama.horizon = map.getHorizonDistance() * radius;
     panorama.end = endOfHeights * panorama.horizon;
-    panorama.along = 4.0 * map.getHorizonLine() / (panorama.curve + panorama.horizon);
+    panorama.profile = profileThrough(map.getCurvePoints());
+    panorama.along = panorama.profile.first > 0.0
+                         ? 2.0 * map.getHorizonLine() / panorama.horizon
+                         : 4.0 * map.getHorizonLine() / (panorama.curve + panorama.horizon);
     panorama.lift = std::max(map.getExaggeration(), leastExaggeration) * high / wide / radius;
     if (map.getHorizonExaggeration() >= 0.0)
         panorama.liftGrowth =
@@ -219,7 +223,7 @@ struct PanoramaSnapshot::Extent
     double stretch;    ///< of x and s for each metre
     double curvature;  ///< of x, s and height: second derivatives, 1/metre
     double height;     ///< above or below the base at most
-    double slope;      ///< of the curve, at most; 0…1
+    double slope;      ///< of the curve, at most
     double slopeRate;  ///< its derivative, 1/metre
     double fadeRate;   ///< of heights and of x beyond the horizon, 1/metre
     double fadeSecond; ///< 1/metre²
@@ -254,6 +258,12 @@ PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
     const double width = std::max(_view.horizon - _view.curve, 1e-3);
     extent.slope = std::clamp((_view.horizon - nearS) / width, 0.0, 1.0);
     extent.slopeRate = nearS < _view.horizon && farS > _view.curve ? 1.0 / width : 0.0;
+    if (_view.profile.first > 0.0)
+    {
+        const ProfileRates rates = ratesOf(_view.profile, nearS / _view.horizon, farS / _view.horizon);
+        extent.slope = rates.slope;
+        extent.slopeRate = rates.second / _view.horizon;
+    }
     const double fading = _view.end - _view.horizon;
     const bool fades = nearS < _view.end + fading && farS > _view.horizon;
     extent.fadeRate = fades ? 1.5 / fading : 0.0;
@@ -393,7 +403,8 @@ bool PanoramaSnapshot::isAroundTheEarth(const Ball& ball, const osg::Vec2d& room
     // What stands before the base may rise into the picture, by its height above the base.
     constexpr double bulge = 22e3; // of the equator above the poles
     const double height = std::abs(distance - 1.0 / k) + ball.radius + std::abs(_view.base) + bulge;
-    const double before = (std::abs(_view.lift) * height + room.y()) / _view.along;
+    const double before =
+        (std::abs(_view.lift) * height + room.y()) / (_view.along * glsl::geofx_panoramaSlope(_view, 0.0));
     const double along = std::max(2.0 * _view.end - _view.horizon, before);
     const double shown = std::hypot((beside + room.x()) / _view.across, along) * k * (1.0 + flat);
     // Nearer, what is beside the picture and what is behind it count each for itself: a triangle may reach from one to the other.
@@ -414,7 +425,9 @@ bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
     // this, since everything is stretched there.
     if (extent.turned > mostTurned || farS > _view.end) return false;
     if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside + room.x()) return true;
-    return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside - room.y();
+    return farS < 0.0 &&
+           _view.along * glsl::geofx_panoramaRise(_view, farS) + std::abs(_view.lift) * extent.height <
+               1.0 - beside - room.y();
 }
 
 bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
@@ -477,7 +490,7 @@ std::optional<double> PanoramaSnapshot::viewDistance(const Ball& ball) const
 DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
 {
     const glsl::geofx_Exaggeration& globe = _view.globe;
-    return {
+    Uniforms all = {
         {"up", vec4(globe.up, globe.height)},
         {"axis", vec4(globe.axis, globe.flattening)},
         {"right", vec4(_view.right, globe.curvature)},
@@ -490,8 +503,11 @@ DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
         {"direction", vec4(_view.direction, _view.water)},
         {"directionX", vec4(_view.directionX, 0.0)},
         {"directionY", vec4(_view.directionY, 0.0)},
-        {"profile", {_view.liftGrowth, 0.0, 0.0, 0.0}},
+        {"profile", {_view.liftGrowth, _view.profile.first, 0.0, 0.0}},
     };
+    for (const osg::Vec3d& knot : knotsOf(_view.profile))
+        all.emplace_back("knot" + std::to_string(all.size() - 12), osg::Vec4d(knot, 0.0));
+    return all;
 }
 
 } // namespace osgGeoFX
