@@ -101,10 +101,10 @@ const Properties& PanoramaMap::properties() const
                 "how many times finer the level of detail is than in a plain view of the same scale", 0.05,
                 16.0)
                 .of<&Self::_detail>(),
-            Property::number(
-                "horizonExaggeration",
-                "the same at the horizon, from exaggeration at the image's base; -1 is exaggeration", -1.0,
-                20.0)
+            Property::number("horizonExaggeration",
+                             "the ratio of heights to widths at the horizon, which changes from exaggeration "
+                             "at the image's base; -1 is exaggeration",
+                             -1.0, 20.0)
                 .of<&Self::_horizonExaggeration>(),
             Property::number(
                 "curve1Distance",
