@@ -312,6 +312,21 @@ TEST(Panorama, KeepsOrientation)
         });
 }
 
+TEST(Panorama, NeighboursStayAsNearAsTheBoundSays)
+{
+    forRandom(
+        [](const Case& found, Random& random)
+        {
+            const Vec3d place = randomPlace(found, random);
+            const Vec3d point = found.at(place.x(), place.y(), place.z());
+            const osgGeoFX::Ball ball{point, 1e-4 * found.radius()};
+            const Vec3d beside = point + randomDirection(random) * ball.radius;
+            const double apart = (found.frame->deform(beside) - found.frame->deform(point)).length();
+            EXPECT_LE(apart, found.frame->lipschitz(ball) * ball.radius * (1.0 + 1e-6) +
+                                 1e-11 * found.scaleOf(point));
+        });
+}
+
 TEST(Panorama, SummitsCompareWhereverTheyStand)
 {
     forRandom(
