@@ -72,6 +72,7 @@ using Rgba = glm::dvec4;
 
 #include <shaders/lib/painting.glsl>
 #include <shaders/lib/profile.glsl>
+
 #include <shaders/lib/panorama.glsl>
 
 #include <shaders/lib/edge.glsl>
@@ -108,6 +109,7 @@ using Rgba = glm::vec4;
 
 #include <shaders/lib/painting.glsl>
 #include <shaders/lib/profile.glsl>
+
 #include <shaders/lib/panorama.glsl>
 
 #include <shaders/lib/edge.glsl>
