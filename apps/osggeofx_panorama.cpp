@@ -205,6 +205,13 @@ PanoramaWishes wishesOf(const Arguments& arguments, const Recipe& recipe)
     wishes.horizonLine = arguments.horizonLine;
     wishes.horizonDistance = arguments.horizonDistance;
     wishes.horizontalAngle = osg::DegreesToRadians(arguments.around.value_or(0.0));
+    // The view is chosen for the curve and the scale of heights that were asked for.
+    const osg::ref_ptr<PanoramaMap> asked = new PanoramaMap;
+    std::string ignored;
+    for (const auto& [name, value] : recipe.map)
+        asked->setPropertyText(name, value, ignored);
+    wishes.horizonExaggeration = asked->getHorizonExaggeration();
+    wishes.curvePoints = asked->getCurvePoints();
     return wishes;
 }
 
@@ -432,6 +439,10 @@ void run(const Arguments& arguments)
     const PanoramaWishes wishes = wishesOf(arguments, recipe);
     if (!arguments.pick.empty()) pairOf("--pick", arguments.pick);
     geofx::panorama::checkLiberties(arguments.liberties, arguments.liberty);
+    if (arguments.around && !arguments.liberties.empty())
+        throw Failure("--liberties turns mountains to a viewer who stands before them; leave it out with "
+                      "--around, or take "
+                      "liberties of your own with --liberty.");
 
     const fs::path beside = fs::path(arguments.output).replace_extension();
     const std::string work = arguments.work.empty() ? beside.string() + ".work" : arguments.work;

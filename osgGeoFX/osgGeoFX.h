@@ -93,6 +93,7 @@
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
 #include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
+#include <osgGeoFX/viewer/CurvePanel.h>
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectKinds.h>

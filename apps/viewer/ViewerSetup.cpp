@@ -8,6 +8,7 @@
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
+#include <osgGeoFX/viewer/CurvePanel.h>
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
 #include <osgGeoFX/viewer/HelpPage.h>
@@ -170,6 +171,7 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     }
     add("Effects", new osgGeoFX::LibertyHandler(*scene.effects));
     add("Panorama map", automatic);
+    add("Panorama map", new osgGeoFX::CurvePanel(*scene.effects));
     if (!file.empty()) add("Panorama map", new MapSaver(scene, file));
     for (const auto& [key, manipulator] : manipulators.getKeyManipMap())
     {

@@ -73,6 +73,8 @@ using Rgba = glm::dvec4;
 #include <shaders/lib/painting.glsl>
 
 #include <shaders/lib/cylinder.glsl>
+#include <shaders/lib/profile.glsl>
+
 #include <shaders/lib/panorama.glsl>
 
 #include <shaders/lib/edge.glsl>
@@ -110,6 +112,8 @@ using Rgba = glm::vec4;
 #include <shaders/lib/painting.glsl>
 
 #include <shaders/lib/cylinder.glsl>
+#include <shaders/lib/profile.glsl>
+
 #include <shaders/lib/panorama.glsl>
 
 #include <shaders/lib/edge.glsl>

@@ -102,8 +102,10 @@ public:
         double most = std::clamp(mostSlope / std::max(steep, 1e-3), modestExaggeration, mostExaggeration);
         const auto fit = [&](double x, double s, double height)
         {
+            const double part = curve.share(s);
             const double raised = curve.raised(height, s);
-            if (raised > 1e-6) most = std::min(most, (tip - curve.foot(x, s)) / raised);
+            const double room = tip - curve.foot(x, s) - part * curve.far * raised;
+            if ((1.0 - part) * raised > 1e-6) most = std::min(most, room / ((1.0 - part) * raised));
         };
         const PicturePlace place(_relief, view);
         for (int column = 0; column < _columns; ++column)
@@ -146,7 +148,7 @@ public:
                 const double s = stretch * (step + 0.5) / _steps - curve.before;
                 const Sample sample = at(place.at(x * curve.radius, s), view.edgeWidth * curve.radius);
                 if (sample.ground) known = sample.height;
-                const double y = curve.foot(x, s) + view.exaggeration * curve.raised(known, s);
+                const double y = curve.foot(x, s) + curve.lifted(known, s);
                 const double area = std::min(y, 1.0) - top;
                 const bool inPicture = s >= 0.0 && s < curve.horizon;
                 walked += inPicture ? 1.0 : 0.0;
@@ -187,12 +189,11 @@ public:
             weights += summit.weight;
             squaredWeights += square;
             const osg::Vec2d at = place.of(summit.place);
-            const double share = seenShare(summit, at, view, curve, tops, stretch);
+            const double share = seenShare(summit, at, curve, tops, stretch);
             if (!(share > 0.0)) continue;
             result.summits += summit.weight * share;
             const double x = at.x() / curve.radius;
-            const double tip =
-                curve.foot(x, at.y()) + view.exaggeration * curve.raised(summit.height, at.y());
+            const double tip = curve.foot(x, at.y()) + curve.lifted(summit.height, at.y());
             const double above = (tip - curve.foot(x, curve.horizon)) / (0.25 * (1.0 - view.horizonLine));
             result.crown +=
                 square * std::clamp(above, 0.0, 1.0) * std::clamp((0.95 - std::abs(x)) / 0.4, 0.0, 1.0);
@@ -256,15 +257,15 @@ private:
     }
 
     /// 1 if a summit is in sight and not at the picture's sides; 0 if it is not.
-    double seenShare(const ReliefSummit& summit, const osg::Vec2d& at, const PanoramaComposition& view,
-                     const PictureCurve& curve, const std::vector<float>& tops, double stretch) const
+    double seenShare(const ReliefSummit& summit, const osg::Vec2d& at, const PictureCurve& curve,
+                     const std::vector<float>& tops, double stretch) const
     {
         const double x = at.x() / curve.radius;
         if (std::abs(x) >= 1.0 || at.y() <= 0.0 || at.y() >= curve.end) return 0.0;
         const int column = std::clamp(static_cast<int>(0.5 * (x + 1.0) * _columns), 0, _columns - 1);
         // Its own foot does not hide it.
         const int step = static_cast<int>((at.y() + curve.before) / stretch * _steps) - 2;
-        const double y = curve.foot(x, at.y()) + view.exaggeration * curve.raised(summit.height, at.y());
+        const double y = curve.foot(x, at.y()) + curve.lifted(summit.height, at.y());
         const double hidden =
             step < 0 ? 0.0
                      : static_cast<double>(
@@ -324,6 +325,8 @@ void PanoramaComposition::applyTo(PanoramaMap& map) const
     map.setCurveDistance(curveDistance);
     map.setHorizonBend(horizonBend);
     map.setExaggeration(exaggeration);
+    map.setHorizonExaggeration(horizonExaggeration);
+    map.setCurvePoints(curvePoints);
     map.setBaseHeight(baseHeight);
     map.setBaseFromTerrain(false);
     map.setEdgeWidth(edgeWidth);
@@ -359,6 +362,8 @@ public:
     /// Fills in what follows from a view's place, heading and radius.
     void complete(PanoramaComposition& view, const Walk& walk) const
     {
+        view.horizonExaggeration = wishes.horizonExaggeration;
+        view.curvePoints = wishes.curvePoints;
         view.baseHeight = walk.baseOf(view);
         view.exaggeration = wishes.exaggeration ? *wishes.exaggeration
                                                 : walk.exaggerationOf(view, wishes.aspect, worth.steep);

@@ -30,7 +30,9 @@ struct PanoramaWishes
     std::optional<double> horizonLine;
     std::optional<double> horizonDistance;
     std::optional<double> exaggeration;
-    double horizontalAngle = 0.0; ///< as PanoramaMap's; 0…2π
+    double horizontalAngle = 0.0;        ///< as PanoramaMap's; 0…2π
+    double horizonExaggeration = -1.0;   ///< as PanoramaMap's; nothing is chosen in its place
+    std::vector<osg::Vec2d> curvePoints; ///< the same
 };
 
 /// A camera for a panorama map, and the values of the map's projection that belong to it.
@@ -49,6 +51,8 @@ struct OSGGEOFX_EXPORT PanoramaComposition
     double edgeWidth = 0.06; ///< in view radii
     /// Radians; not 0 for a cylindrical map. `place` is then the ground below the eye, and the base a circle around it.
     double horizontalAngle = 0.0;
+    double horizonExaggeration = -1.0;   ///< of the wishes
+    std::vector<osg::Vec2d> curvePoints; ///< of the wishes
 
     /// Sets the map's properties of these names, and `baseFromTerrain` to false.
     void applyTo(PanoramaMap& map) const;

@@ -3,6 +3,7 @@
 //
 // How long the edges of a mesh may be that is made before a camera is known.
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/panorama/detail/PanoramaProfile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +37,17 @@ double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) co
     const double nearest = radius * (perspective ? wide : 1.0);
     const double curve = _curveDistance * radius, horizon = _horizonDistance * radius;
     const double across = 1.0 / radius;
-    const double along = 4.0 * _horizonLine / (curve + horizon);
-    const double lift = _exaggeration * high / wide / radius;
+    double along = 4.0 * _horizonLine / (curve + horizon); // at most
+    double along2 = along / (horizon - curve);
+    if (const glsl::geofx_Profile profile = profileThrough(getCurvePoints()); profile.first > 0.0)
+    {
+        const ProfileRates rates = ratesOf(profile, -1.0, 1.0);
+        along = 2.0 * _horizonLine / horizon * rates.slope;
+        along2 = 2.0 * _horizonLine / (horizon * horizon) * rates.second;
+    }
+    const double farther = _horizonExaggeration < 0.0 ? _exaggeration : _horizonExaggeration;
+    const double lift = std::max(_exaggeration, farther) * high / wide / radius;
+    const double growth = std::abs(farther - _exaggeration) * high / wide / radius / horizon;
     const double arch = 2.0 * std::abs(_horizonBend);
     const double fading = (endOfHeights - 1.0) * horizon;
     const double tallest =
@@ -53,14 +63,15 @@ double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) co
 
     // Derivatives of the picture's x and y along an edge, for each metre of it and of its square.
     const double x2 = across * (side * globe + 2.0 * turns * turns * ring);
-    const double y1 = std::hypot(along, lift) +
-                      lift * tallest * (1.5 / fading + around + tallest * around * turns) +
-                      arch * 1.5708 * across * side;
-    const double y2 =
-        along / (horizon - curve) + (along + lift) * globe + along * turns +
-        lift * (tallest * (6.0 / (fading * fading) + 3.0 * around / fading + 2.0 * around * around) +
-                1.5 / fading + around + tallest * around * turns) +
-        arch * (2.4675 * across * across * side * side + 1.5708 * x2);
+    // Heights fade only where their scale no longer changes. Around a cylinder they shrink everywhere.
+    const double bare1 = std::max(1.5 * lift / fading, 1.5 * growth);
+    const double bare2 = std::max(6.0 * lift / (fading * fading), 6.0 * growth / horizon);
+    const double lift1 = bare1 + lift * around;
+    const double lift2 = bare2 + 2.0 * bare1 * around + 2.0 * lift * around * around;
+    const double y1 = std::hypot(along, lift) + lift1 * tallest + arch * 1.5708 * across * side;
+    const double y2 = along2 + (along + lift) * globe + along * turns + lift2 * tallest +
+                      lift1 * (1.0 + tallest * turns) +
+                      arch * (2.4675 * across * across * side * side + 1.5708 * x2);
     // In eye space, for each metre of distance: the picture's, the way through the depths, and that before the base.
     const double widthX = 1.0 / wide / (perspective ? 1.0 : nearest);
     const double widthY = 1.0 / high / (perspective ? 1.0 : nearest);

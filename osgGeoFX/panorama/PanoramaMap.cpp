@@ -4,12 +4,16 @@
 
 #include <osgGeoFX/panorama/StrokeLines.h>
 #include <osgGeoFX/panorama/detail/PanoramaGround.h>
+#include <osgGeoFX/panorama/detail/PanoramaProfile.h>
 #include <osgGeoFX/panorama/detail/PanoramaScenery.h>
 #include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 
+#include <osg/Notify>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace osgGeoFX
 {
@@ -19,6 +23,13 @@ namespace
 
 /// What stands for the projection's (0, 0) where the camera is orthographic: that of a field of view of 50° across.
 constexpr double orthographicScale = 2.1;
+/// Between points of the bending curve, and from the base and the horizon.
+constexpr double leastStep = 0.001;
+
+std::string curveName(unsigned int index, const char* part)
+{
+    return "curve" + std::to_string(index + 1) + part;
+}
 
 } // namespace
 
@@ -96,6 +107,40 @@ const Properties& PanoramaMap::properties() const
                 "how many times finer the level of detail is than in a plain view of the same scale", 0.05,
                 16.0)
                 .of<&Self::_detail>(),
+            Property::number("horizonExaggeration",
+                             "the ratio of heights to widths at the horizon, which changes from exaggeration "
+                             "at the image's base; -1 is exaggeration",
+                             -1.0, 20.0)
+                .of<&Self::_horizonExaggeration>(),
+            Property::number(
+                "curve1Distance",
+                "how far the first point of the bending curve lies, as a share of horizonDistance; a point "
+                "counts where its distance and its height are above 0, and curveDistance only without points",
+                0.0, 1.0)
+                .of<&Self::_curve1, &CurvePoint::distance>(),
+            Property::number("curve1Height", "how high the curve is there, as a share of horizonLine", 0.0,
+                             1.0)
+                .of<&Self::_curve1, &CurvePoint::height>(),
+            Property::number("curve2Distance", "the same of the second point", 0.0, 1.0)
+                .of<&Self::_curve2, &CurvePoint::distance>(),
+            Property::number("curve2Height", "how high the curve is there", 0.0, 1.0)
+                .of<&Self::_curve2, &CurvePoint::height>(),
+            Property::number("curve3Distance", "the same of the third point", 0.0, 1.0)
+                .of<&Self::_curve3, &CurvePoint::distance>(),
+            Property::number("curve3Height", "how high the curve is there", 0.0, 1.0)
+                .of<&Self::_curve3, &CurvePoint::height>(),
+            Property::number("curve4Distance", "the same of the fourth point", 0.0, 1.0)
+                .of<&Self::_curve4, &CurvePoint::distance>(),
+            Property::number("curve4Height", "how high the curve is there", 0.0, 1.0)
+                .of<&Self::_curve4, &CurvePoint::height>(),
+            Property::number("curve5Distance", "the same of the fifth point", 0.0, 1.0)
+                .of<&Self::_curve5, &CurvePoint::distance>(),
+            Property::number("curve5Height", "how high the curve is there", 0.0, 1.0)
+                .of<&Self::_curve5, &CurvePoint::height>(),
+            Property::number("curve6Distance", "the same of the sixth point", 0.0, 1.0)
+                .of<&Self::_curve6, &CurvePoint::distance>(),
+            Property::number("curve6Height", "how high the curve is there", 0.0, 1.0)
+                .of<&Self::_curve6, &CurvePoint::height>(),
             Property::flag("paint", "whether the ground is painted").of<&Self::_paint>(),
             Property::number("season",
                              "the time of the year, which palettes and the snow line follow; 0 and 1 are "
@@ -197,6 +242,7 @@ std::string PanoramaMap::inconsistency() const
         return "A map with a horizontalAngle has no steps between the camera's picture and the map; set "
                "strength to 1, or "
                "horizontalAngle to 0.";
+    if (const std::string fault = curveFault(); !fault.empty()) return fault;
     if (_firstUnit >= 0 && _firstUnit < TextureUnits::first)
         return "firstUnit must be from 4 to 29, for the geometry has those below, or -1 for the scene's "
                "choice.";
@@ -210,6 +256,82 @@ std::string PanoramaMap::inconsistency() const
     if (_edgeUnit >= 0 && _firstUnit >= 0 && _edgeUnit < _firstUnit + 3 && _firstUnit < _edgeUnit + 2)
         return "The two units from edgeUnit on must not be among the three from firstUnit on.";
     return {};
+}
+
+std::array<PanoramaMap::CurvePoint, PanoramaMap::mostCurvePoints> PanoramaMap::allCurvePoints() const
+{
+    return {_curve1, _curve2, _curve3, _curve4, _curve5, _curve6};
+}
+
+std::string PanoramaMap::curveFault() const
+{
+    osg::Vec2d last;
+    for (const osg::Vec2d& point : getCurvePoints())
+    {
+        if (point.x() > 1.0 - leastStep || point.x() < last.x() + leastStep)
+            return "the distances of the curve's points (curve1Distance, curve2Distance, …) must increase in "
+                   "steps of at least 0.001 and be at most 0.999.";
+        if (point.y() < leastStep || point.y() < last.y())
+            return "the heights of the curve's points (curve1Height, curve2Height, …) must not decrease, and "
+                   "be at least 0.001.";
+        last = point;
+    }
+    return {};
+}
+
+std::vector<osg::Vec2d> PanoramaMap::getCurvePoints() const
+{
+    std::vector<osg::Vec2d> points;
+    for (const CurvePoint& point : allCurvePoints())
+        if (point.distance > 0.0 && point.height > 0.0) points.emplace_back(point.distance, point.height);
+    return points;
+}
+
+bool PanoramaMap::setCurvePoints(const std::vector<osg::Vec2d>& points)
+{
+    if (points.size() > mostCurvePoints)
+    {
+        OSG_WARN << "osgGeoFX: PanoramaMap: a bending curve has at most " << mostCurvePoints
+                 << " points, not " << points.size() << ". The former ones stay." << std::endl;
+        return false;
+    }
+    std::map<std::string, double> values;
+    for (unsigned int i = 0; i < mostCurvePoints; ++i)
+    {
+        const osg::Vec2d point = i < points.size() ? points[i] : osg::Vec2d();
+        if (i < points.size() && !(point.x() > 0.0 && point.y() > 0.0))
+        {
+            OSG_WARN << "osgGeoFX: PanoramaMap: the distances and the heights of a bending curve's points "
+                        "must be above 0. The former points stay."
+                     << std::endl;
+            return false;
+        }
+        values[curveName(i, "Distance")] = point.x();
+        values[curveName(i, "Height")] = point.y();
+    }
+    return assign(values);
+}
+
+osg::Vec2d PanoramaMap::getCurvePoint(unsigned int index) const
+{
+    if (index >= mostCurvePoints) return {};
+    const CurvePoint point = allCurvePoints()[index];
+    return {point.distance, point.height};
+}
+
+bool PanoramaMap::setCurvePoint(unsigned int index, const osg::Vec2d& point)
+{
+    return index < mostCurvePoints &&
+           assign({{curveName(index, "Distance"), point.x()}, {curveName(index, "Height"), point.y()}});
+}
+
+double PanoramaMap::curveHeight(double distance) const
+{
+    glsl::geofx_Panorama view{};
+    view.profile = profileThrough(getCurvePoints());
+    view.horizon = 1.0;
+    view.curve = _curveDistance / _horizonDistance;
+    return glsl::geofx_panoramaRise(view, distance) / glsl::geofx_panoramaRise(view, 1.0);
 }
 
 osg::ref_ptr<const DeformationSnapshot> PanoramaMap::snapshot(const ViewGeometry& view) const

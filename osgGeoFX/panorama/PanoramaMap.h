@@ -7,8 +7,11 @@
 
 #include <osg/Image>
 #include <osg/Math>
+#include <osg/Vec2d>
 
+#include <array>
 #include <memory>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -22,7 +25,8 @@ class StrokeLines;
 
     **Projection** (Section 3.1): a modified orthographic projection. The ground is seen from above at the picture's
     base and curves away to a horizon at `horizonLine`. Heights point up in the picture, all at the same scale, so
-    that summits can be compared wherever they stand. The ground shown is a rectangle. The camera sets its place: the
+    that summits can be compared wherever they stand, unless `horizonExaggeration` says otherwise. A user may bend the curve
+    through points of his own (setCurvePoints()). The ground shown is a rectangle. The camera sets its place: the
     ground below the eye appears in the middle of the picture's base, and the camera's direction points up in the
     picture (the pitch has no effect). The width shown is the width that the camera would show if it looked straight
     down. So every manipulator pans, zooms and rotates the map. An orthographic camera shows its own width. The
@@ -54,7 +58,7 @@ public:
     /// Between them each place lies on the straight line in eye space from where the camera sees it to where the map
     /// draws it, a little beyond the strength's share of the way, and the paint, the strokes, the water and the sky fade in. Every strength is a deformation with the bounds,
     /// the picking and the levels of detail of one. Ground that both show stays one to one for cameras that look from
-    /// straight down to level, without a roll. PanoramaManipulator holds places exactly at strength 1 only.
+    /// straight down to level, without a roll, where heights have one scale. PanoramaManipulator holds places exactly at strength 1 only.
     bool setStrength(double strength) { return assign("strength", strength); }
     double getStrength() const { return _strength; }
     bool isActive() const override { return getEnabled() && _strength > 0.0; }
@@ -105,6 +109,30 @@ public:
     /// The exaggeration also magnifies the height errors of coarse tiles on the screen.
     bool setDetail(double factor) { return assign("detail", factor); }
     double getDetail() const { return _detail; }
+    /// The scale factor of heights at the horizon and beyond; up to 20. −1, the default, is `exaggeration`, as the paper
+    /// has it: summits can be compared wherever they stand. With another value, `exaggeration` is that of the picture's
+    /// base, and the factor changes smoothly on the way to the horizon.
+    bool setHorizonExaggeration(double factor) { return assign("horizonExaggeration", factor); }
+    double getHorizonExaggeration() const { return _horizonExaggeration; }
+    /// A point that the bending curve of the ground passes through: its distance as a share of D2 and its height as a share
+    /// of the horizon line. A point counts where both are above 0.
+    struct CurvePoint
+    {
+        double distance = 0.0;
+        double height = 0.0;
+    };
+    static constexpr unsigned int mostCurvePoints = 6;
+    /// The points that the bending curve passes through, in order, at most six; none by default. x is the distance and y
+    /// the height, as in CurvePoint. Distances are 0.001…0.999 and increase by 0.001 at least; heights are 0.001…1 and do
+    /// not decrease. With points, the curve is a monotone cubic through the base, the points and the horizon, level there
+    /// (Steffen 1990), and D1 has no effect. Without, it is the paper's: straight up to D1, then a parabola.
+    bool setCurvePoints(const std::vector<osg::Vec2d>& points);
+    std::vector<osg::Vec2d> getCurvePoints() const;
+    /// One of the six that are properties (`curve1Distance`, `curve1Height`, …), from 0; those between may be unused.
+    bool setCurvePoint(unsigned int index, const osg::Vec2d& point);
+    osg::Vec2d getCurvePoint(unsigned int index) const;
+    /// The height of the bending curve, with or without points, at a distance, both as in CurvePoint: from 0 at 0 to 1 at 1.
+    double curveHeight(double distance) const;
     /// @}
 
     /// @name The painting
@@ -273,6 +301,8 @@ protected:
     std::string inconsistency() const override;
 
 private:
+    std::string curveFault() const;
+    std::array<CurvePoint, mostCurvePoints> allCurvePoints() const;
     class Ground;
     class Scenery;
     /// Indices of its texture units in textureUnits().
@@ -327,6 +357,8 @@ private:
     int _coverUnit = 7;
     int _firstUnit = -1;
     int _edgeUnit = -1;
+    double _horizonExaggeration = -1.0;
+    CurvePoint _curve1, _curve2, _curve3, _curve4, _curve5, _curve6;
     osg::ref_ptr<osg::Image> _palette;
     osg::ref_ptr<osg::Image> _skyImage;
     osg::ref_ptr<StrokeLines> _lines;

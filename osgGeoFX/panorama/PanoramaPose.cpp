@@ -33,7 +33,9 @@ const double defaultPitch = -35.0 * osg::PI / 180.0;
 double distanceOf(const glsl::geofx_Panorama& view, double rise)
 {
     double distance = rise;
-    if (rise > view.curve)
+    if (view.profile.first > 0.0)
+        distance = view.horizon * glsl::geofx_profileDistance(view.profile, rise / view.horizon);
+    else if (rise > view.curve)
     {
         const double width = std::max(view.horizon - view.curve, 1e-3);
         const double left = std::max(1.0 - 2.0 * (rise - view.curve) / width, 0.0);
@@ -42,25 +44,41 @@ double distanceOf(const glsl::geofx_Panorama& view, double rise)
     return std::min(distance, farthestHold * view.horizon);
 }
 
+/// Where ground of a height, from the base, is first seen so high above the base of the picture, if the scale of heights
+/// changes on the way.
+double firstAt(const glsl::geofx_Panorama& view, double y, double height)
+{
+    constexpr int parts = 64;
+    const auto seen = [&](double s)
+    {
+        return view.along * glsl::geofx_panoramaRise(view, s) + glsl::geofx_panoramaLift(view, s) * height;
+    };
+    const double farthest = farthestHold * view.horizon;
+    const double before = view.along * glsl::geofx_panoramaSlope(view, 0.0);
+    double near = std::min((y - seen(0.0)) / before, 0.0), far = near;
+    for (int part = 1; part <= parts && seen(far) < y; ++part)
+    {
+        near = far;
+        far = farthest * part / parts;
+    }
+    if (seen(far) < y) return farthest;
+    for (int step = 0; step < 60; ++step)
+    {
+        const double middle = 0.5 * (near + far);
+        (seen(middle) < y ? near : far) = middle;
+    }
+    return far;
+}
+
 /// x and s of what appears at a point of the picture and has a height.
 glm::dvec2 placeOn(const glsl::geofx_Panorama& view, const osg::Vec2d& picture, double height)
 {
-    const double rise = picture.y() + 1.0 + glsl::geofx_panoramaArch(view, picture.x());
-    double s = distanceOf(view, (rise - view.lift * (height - view.base)) / view.along);
-    if (view.cylinder.ring > 0.0)
-    {
-        // The scale of heights depends on the distance, which lies between that of a full height and that of none.
-        double near = s, far = distanceOf(view, rise / view.along);
-        for (int step = 0; step < 60; ++step)
-        {
-            s = 0.5 * (near + far);
-            const double lift =
-                view.lift * glsl::geofx_cylinderWidth(view.cylinder, s) * (height - view.base);
-            const double found = distanceOf(view, (rise - lift) / view.along);
-            ((found > s) == (near < far) ? near : far) = s;
-        }
-    }
-    return {picture.x() / view.across, s};
+    const double above = picture.y() + 1.0 + glsl::geofx_panoramaArch(view, picture.x());
+    const double across = picture.x() / view.across;
+    if (view.liftGrowth != 0.0 || view.cylinder.ring > 0.0)
+        return {across, firstAt(view, above, height - view.base)};
+    const double y = above - view.lift * (height - view.base);
+    return {across, distanceOf(view, y / view.along)};
 }
 
 /// Above or below `place`, as high as `other` is.

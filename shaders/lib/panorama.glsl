@@ -6,6 +6,7 @@
 #include "lib/types.glsl"
 #include "lib/exaggeration.glsl"
 #include "lib/cylinder.glsl"
+#include "lib/profile.glsl"
 #endif
 
 // A place of the map: x to the right of the middle and s away from the picture's base, along the ground, and the
@@ -20,8 +21,8 @@ struct geofx_Panorama
     Vector3 right;            // in the plane of the ground below the eye, unit vectors
     Vector3 forward;
     PerMetre across;  // of the picture's x for each metre of x; 1 / (half the width of the ground shown)
-    PerMetre along;   // of the picture's y for each metre of s at the base
-    PerMetre lift;    // of the picture's y for each metre of height
+    PerMetre along;   // of the picture's y for each metre up the curve (geofx_panoramaRise)
+    PerMetre lift;    // of the picture's y for each metre of height, at the base
     Length base;      // the height that lies on the curve
     Length curve;     // D1, where the ground begins to curve
     Length horizon;   // D2, where it has reached the horizon; beyond, only what rises above it is seen
@@ -38,6 +39,8 @@ struct geofx_Panorama
     Number mirrored;  // 1: that perspective shows what is turned over at the height `water`, as still water does; else 0
     Length water;
     geofx_Cylinder cylinder;
+    PerMetre liftGrowth; // how much more the lift is at the horizon
+    geofx_Profile profile; // the curve through points that a user sets
 };
 
 // The angle over its sine, from its cosine. It stretches the orthographic projection to the equidistant one. The
@@ -94,16 +97,19 @@ GEOFX_INLINE Position geofx_panoramaPosition(geofx_Panorama view, Position seen)
     return position;
 }
 
-// The distance up the curve at a distance s: metres at the scale of the base (paper, Figure 5).
+// The distance up the curve at a distance s: metres at the scale of the base (paper, Figure 5), or of the mean with
+// points that a user sets.
 GEOFX_INLINE Length geofx_panoramaRise(geofx_Panorama view, Length s)
 {
+    if (view.profile.first > 0) return view.horizon * geofx_profileRise(view.profile, s / view.horizon);
     Length bent = clamp(s - view.curve, Length(0), view.horizon - view.curve);
     return min(s, view.curve) + bent - bent * bent / (2 * max(view.horizon - view.curve, Length(1e-3)));
 }
 
-// The scale of ground along the view at a distance s, as a share of the base's.
+// The scale of ground along the view at a distance s: the derivative of geofx_panoramaRise.
 GEOFX_INLINE Number geofx_panoramaSlope(geofx_Panorama view, Length s)
 {
+    if (view.profile.first > 0) return geofx_profileSlope(view.profile, s / view.horizon);
     return clamp((view.horizon - s) / max(view.horizon - view.curve, Length(1e-3)), Number(0), Number(1));
 }
 
@@ -120,10 +126,11 @@ GEOFX_INLINE Number geofx_panoramaFade(geofx_Panorama view, Length s)
     return geofx_panoramaFadeFrom(view, view.horizon, s);
 }
 
-// The picture's y of a metre of height at a distance s. In a cylindrical map heights get smaller with the distance as widths do.
+// Of the picture's y for each metre of height at a distance s, without what has faded. In a cylindrical map heights get smaller
+// with the distance as widths do.
 GEOFX_INLINE PerMetre geofx_panoramaLift(geofx_Panorama view, Length s)
 {
-    return view.lift * geofx_cylinderWidth(view.cylinder, s) * geofx_panoramaFade(view, s);
+    return geofx_profileLift(view.lift, view.liftGrowth, s / view.horizon) * geofx_cylinderWidth(view.cylinder, s);
 }
 
 // How far Eq. 1 lowers a point of the picture.
@@ -157,7 +164,7 @@ GEOFX_INLINE Position geofx_panoramaPlaceAt(geofx_Panorama view, Position pictur
     Length s = picture.z > view.nearest ? picture.z - view.nearest
                                         : view.nearest - view.nearest * view.nearest / picture.z;
     Number y = picture.y + 1 + geofx_panoramaArch(view, picture.x) - view.along * geofx_panoramaRise(view, s);
-    Number lift = view.lift * geofx_cylinderWidth(view.cylinder, s) * max(geofx_panoramaFade(view, s), Number(1e-6));
+    Number lift = geofx_panoramaLift(view, s) * max(geofx_panoramaFade(view, s), Number(1e-6));
     return Position(picture.x / view.across, s, view.base + y / lift);
 }
 

@@ -4,6 +4,7 @@
 // The sky of panorama maps, and the haze and the paper that their land ends in. Ground and sky get the same color for
 // the same point of the picture, so that no border shows between them.
 #include "lib/edge.glsl"
+#include "lib/profile.glsl"
 
 const vec3 geofx_paper = vec3(0.985, 0.968, 0.930);
 const vec3 geofx_haze = vec3(0.90, 0.925, 0.945);
@@ -28,15 +29,23 @@ geofx_Edge geofx_edgeOf(vec4 eye, vec4 ways, vec4 kind, vec4 cylinder)
                       geofx_Cylinder(cylinder.x, cylinder.y, cylinder.z));
 }
 
+// The slope of a map's ground at a distance, for geofx_edgeGone. `curve` is the projection's.
+float geofx_edgeSlope(geofx_Profile profile, vec4 curve, float s)
+{
+    if (profile.first > 0.0) return max(geofx_profileSlope(profile, s / curve.y), 0.1);
+    return clamp((curve.y - s) / max(curve.y - curve.x, 1e-3), 0.1, 1.0);
+}
+
 // The share of haze or paper on a place of the ground, and the share of that which is gone wholly: at 1, what lies
-// behind it shows. `place` is x, s and height. `scale` and `curve` are the projection's.
+// behind it shows. `place` is x, s and height. `lift` and `along` tell
+// how much the picture's y grows there for each metre of height and of s.
 //
 // Land that comes in from the picture's base does so as one wash, over ridges and over the valleys behind them. There
 // the distance to the end is that of land at the border's own height at the same point of the picture. Otherwise
 // ridges would be white before valleys. `sea`, 0 to 1: whether it is sea, which hides nothing and stays itself nearly
 // to the end.
-vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 scale, vec4 curve, float sea, float noise,
-                    float rough)
+vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, float lift, float along, float sea,
+                    float noise, float rough)
 {
     vec2 at = geofx_edgePlace(edge, place.xy);
     vec3 here = textureLod(map, at, 0.0).rgb;
@@ -50,9 +59,7 @@ vec2 geofx_edgeGone(sampler2D map, geofx_Edge edge, vec4 kind, vec3 place, vec4 
     vec2 ahead = (geofx_edgePlace(edge, place.xy + vec2(0.0, aside)) - at) / aside;
     float grows = textureLod(map, at + aside * ahead, 0.0).r - textureLod(map, at - aside * ahead, 0.0).r;
     float before = geofx_ease(grows / (2.0 * aside), 0.0, 0.5);
-    float slope = clamp((curve.y - place.y) / max(curve.y - curve.x, 1e-3), 0.1, 1.0);
-    float lift = scale.z * geofx_cylinderWidth(edge.cylinder, place.y);
-    float rise = lift * (place.z - here.b) / (scale.y * slope);
+    float rise = lift * (place.z - here.b) / along;
     rise = (1.0 - sea) * before * clamp(rise, -5.0 * width, 1.5 * width);
     float seen = textureLod(map, at + rise * ahead, 0.0).r;
     seen = mix(seen, geofx_edgeSeaReach(seen, width), sea);

@@ -17,6 +17,19 @@ uniform vec4 SLOT_direction;
 uniform vec4 SLOT_directionX;
 uniform vec4 SLOT_directionY;
 uniform vec4 SLOT_cylinder;
+uniform vec4 SLOT_profile; // how much more heights are raised at the horizon, for each metre; the curve's first slope
+uniform vec4 SLOT_knot1;   // of the bending curve, as in lib/profile.glsl
+uniform vec4 SLOT_knot2;
+uniform vec4 SLOT_knot3;
+uniform vec4 SLOT_knot4;
+uniform vec4 SLOT_knot5;
+uniform vec4 SLOT_knot6;
+
+geofx_Profile SLOT_bendingCurve()
+{
+    return geofx_Profile(SLOT_profile.y, SLOT_knot1.xyz, SLOT_knot2.xyz, SLOT_knot3.xyz, SLOT_knot4.xyz,
+                         SLOT_knot5.xyz, SLOT_knot6.xyz);
+}
 
 geofx_Panorama SLOT_view()
 {
@@ -26,7 +39,8 @@ geofx_Panorama SLOT_view()
                           SLOT_scale.w, SLOT_curve.x, SLOT_curve.y, SLOT_curve.z, SLOT_curve.w, SLOT_origin.w,
                           SLOT_origin.xyz, SLOT_originX.xyz, SLOT_originY.xyz, SLOT_direction.xyz,
                           SLOT_directionX.xyz, SLOT_directionY.xyz, SLOT_originX.w, SLOT_originY.w, SLOT_direction.w,
-                          geofx_Cylinder(SLOT_cylinder.x, SLOT_cylinder.y, SLOT_cylinder.z));
+                          geofx_Cylinder(SLOT_cylinder.x, SLOT_cylinder.y, SLOT_cylinder.z),
+                          SLOT_profile.x, SLOT_bendingCurve());
 }
 
 // The place of the last position. The painting and the projection mostly ask for the same one.

@@ -23,6 +23,13 @@ uniform vec4 SLOT_clock;  // seconds, the strength, how far the hand wanders at 
 uniform vec4 SLOT_scale;
 uniform vec4 SLOT_curve;
 uniform vec4 SLOT_cylinder; // as in lib/cylinder.glsl
+uniform vec4 SLOT_profile; // how much more heights are raised at the horizon, for each metre; the curve's first slope
+uniform vec4 SLOT_knot1;   // of the bending curve, as in lib/profile.glsl
+uniform vec4 SLOT_knot2;
+uniform vec4 SLOT_knot3;
+uniform vec4 SLOT_knot4;
+uniform vec4 SLOT_knot5;
+uniform vec4 SLOT_knot6;
 uniform sampler2D SLOT_edgeMap; // the distance to the end of what is known, metres
 uniform sampler2D SLOT_edgeSky;
 uniform vec4 SLOT_edgeEye;      // as in lib/edge.glsl
@@ -52,6 +59,20 @@ vec3 SLOT_ground(geofx_Classes classes, float light)
     return color;
 }
 
+geofx_Profile SLOT_bendingCurve()
+{
+    return geofx_Profile(SLOT_profile.y, SLOT_knot1.xyz, SLOT_knot2.xyz, SLOT_knot3.xyz, SLOT_knot4.xyz,
+                         SLOT_knot5.xyz, SLOT_knot6.xyz);
+}
+
+// Of the picture's y for each metre of height.
+float SLOT_lift()
+{
+    geofx_Cylinder cylinder = geofx_Cylinder(SLOT_cylinder.x, SLOT_cylinder.y, SLOT_cylinder.z);
+    return geofx_profileLift(SLOT_scale.z, SLOT_profile.x, SLOT_place.y / SLOT_curve.y) *
+           geofx_cylinderWidth(cylinder, SLOT_place.y);
+}
+
 // `noise`, -1 to 1: a hand lays shallows down broader here than there.
 vec3 SLOT_wet(float shore, vec2 picture, float far, float noise)
 {
@@ -60,9 +81,9 @@ vec3 SLOT_wet(float shore, vec2 picture, float far, float noise)
     return geofx_waterBody(max(shore, 0.0), SLOT_water.x);
 #else
     // The mirror is at height 0. The reflection in a lake lies higher by twice the lake's height.
-    geofx_Cylinder cylinder = geofx_Cylinder(SLOT_cylinder.x, SLOT_cylinder.y, SLOT_cylinder.z);
-    float lift = SLOT_scale.z * geofx_cylinderWidth(cylinder, SLOT_place.y) * SLOT_place.z;
-    geofx_WaterPlace place = geofx_WaterPlace(max(shore, 0.0), picture, SLOT_texels.zw, lift, SLOT_place.y / SLOT_curve.z, far);
+    float lift = SLOT_lift();
+    geofx_WaterPlace place = geofx_WaterPlace(max(shore, 0.0), picture, SLOT_texels.zw, lift * SLOT_place.z,
+                                              SLOT_place.y / SLOT_curve.z, far);
     return geofx_water(place, SLOT_water, SLOT_clock.x, SLOT_brush, SLOT_mirror);
 #endif
 }
@@ -73,9 +94,10 @@ vec2 SLOT_gone(float noise, float y, float wet, float shore)
     if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return vec2(0.0);
     geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind, SLOT_cylinder);
     vec3 place = vec3(SLOT_place.x / SLOT_scale.x, SLOT_place.yz);
+    float along = SLOT_scale.y * geofx_edgeSlope(SLOT_bendingCurve(), SLOT_curve, place.y);
     // A lake runs out as the land around it does, and so does the shore.
     float sea = wet * (1.0 - geofx_ease(SLOT_place.z, 10.0, 30.0)) * geofx_ease(shore, 0.0, 0.2 * SLOT_edgeKind.z);
-    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, place, SLOT_scale, SLOT_curve, sea, noise,
+    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, place, SLOT_lift(), along, sea, noise,
                           mix(0.3, 0.2, geofx_edgePaper(y)));
 }
 

@@ -4,7 +4,7 @@
 //
 // What shows behind a panorama map's terrain. Above the horizon it is the painted sky. Below it, without terrain, it
 // is the sea, or haze and paper if that is not known. In the water the sky hangs from the horizon.
-#pragma import_defines(GEOFX_MIRROR)
+#pragma import_defines(GEOFX_MIRROR, GEOFX_CURVE_POINTS)
 #include "stages/panorama.water.glsl"
 #include "stages/panorama.edge.glsl"
 
@@ -12,7 +12,7 @@ uniform sampler2D geofx_sky;
 uniform sampler2D geofx_skyMirror;
 uniform sampler2D geofx_skyBrush;
 uniform vec4 geofx_skyPlace; // the horizon's height in the picture, its arch; the heading, the part across, in turns
-uniform vec4 geofx_skyCurve; // the picture's y for a metre at the base, D1, D2, the end of what shows
+uniform vec4 geofx_skyCurve; // the picture's y for a metre up the curve, D1, D2, the end of what shows
 uniform vec4 geofx_skyAxisX; // from x and s to the brush's picture: of a picture's x, of a metre, the base's
 uniform vec4 geofx_skyAxisY;
 uniform vec4 geofx_skyWater; // as in panorama.ground.frag.glsl
@@ -22,15 +22,25 @@ uniform vec4 geofx_skyEdgeEye;   // as in lib/edge.glsl
 uniform vec4 geofx_skyEdgeWays;
 uniform vec4 geofx_skyEdgeKind;  // whether on a globe, the middle's latitude, the width, how it is drawn
 uniform vec4 geofx_skyCylinder;  // as in lib/cylinder.glsl
+#ifdef GEOFX_CURVE_POINTS
+uniform vec4 geofx_skyKnots[7]; // of the curve: its first slope; the knots, as in lib/profile.glsl
+#endif
 
 in vec2 place; // -1 to 1
 
 // The distance of the ground at a height of the picture above its base: the curve's inverse.
 float distanceAt(float rise)
 {
+#ifdef GEOFX_CURVE_POINTS
+    geofx_Profile profile = geofx_Profile(geofx_skyKnots[0].x, geofx_skyKnots[1].xyz, geofx_skyKnots[2].xyz,
+                                          geofx_skyKnots[3].xyz, geofx_skyKnots[4].xyz, geofx_skyKnots[5].xyz,
+                                          geofx_skyKnots[6].xyz);
+    return geofx_skyCurve.z * geofx_profileDistance(profile, rise / geofx_skyCurve.z);
+#else
     float width = max(geofx_skyCurve.z - geofx_skyCurve.y, 1e-3);
     float bent = clamp((rise - geofx_skyCurve.y) / width, 0.0, 0.5);
     return min(rise, geofx_skyCurve.y) + width * (1.0 - sqrt(1.0 - 2.0 * bent));
+#endif
 }
 
 // The distance of what lies below a point of the picture without terrain, and its place in the brush's picture.

@@ -115,7 +115,10 @@ float SLOT_strokeGone(vec3 position)
 {
     if (SLOT_edgeKind.w == GEOFX_EDGE_NONE || SLOT_edgeKind.w == GEOFX_EDGE_UNKNOWN) return 0.0;
     geofx_Edge edge = geofx_edgeOf(SLOT_edgeEye, SLOT_edgeWays, SLOT_edgeKind, SLOT_cylinder);
-    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, SLOT_placeOf(position), SLOT_scale, SLOT_curve, 0.0, 0.0, 0.0).x;
+    vec3 place = SLOT_placeOf(position);
+    float lift = geofx_panoramaLift(SLOT_view(), place.y);
+    float along = SLOT_scale.y * geofx_edgeSlope(SLOT_bendingCurve(), SLOT_curve, place.y);
+    return geofx_edgeGone(SLOT_edgeMap, edge, SLOT_edgeKind, place, lift, along, 0.0, 0.0, 0.0).x;
 }
 
 float SLOT_strokeShown(vec3 position)

@@ -5,6 +5,7 @@
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/panorama/PanoramaComposer.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
+#include <osgGeoFX/viewer/CurvePanel.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
 #include <osgGeoFX/viewer/HelpPage.h>
 #include <osgGeoFX/viewer/Liberties.h>
@@ -515,6 +516,106 @@ TEST_F(ViewerKeys, LibertiesAreSavedWithAMap)
     }
 }
 
+TEST_F(ViewerKeys, ABendingCurveIsDraggedAndSaved)
+{
+    _map->setEnabled(true);
+    ASSERT_NO_FATAL_FAILURE(setUpViewer());
+    const auto picture = [&]
+    {
+        const osg::ref_ptr<osg::Image> image = new osg::Image;
+        withContext([&](osg::State&) { image->readPixels(0, 0, 1280, 720, GL_RGB, GL_UNSIGNED_BYTE); });
+        return image;
+    };
+    /// Pixels beside the panel that differ.
+    const auto changed = [](const osg::Image& a, const osg::Image& b)
+    {
+        int count = 0;
+        for (int y = 0; y < 720; ++y)
+            for (int x = 0; x < 640; ++x)
+                count += std::equal(a.data(x, y), a.data(x, y) + 3, b.data(x, y)) ? 0 : 1;
+        return count;
+    };
+    _map->setRipples(0.0);
+    // Until all tiles are there.
+    osg::ref_ptr<osg::Image> before = picture();
+    for (int i = 0, same = 0; i < 200 && same < 5; ++i)
+    {
+        OpenThreads::Thread::microSleep(50000);
+        frame();
+        const osg::ref_ptr<osg::Image> now = picture();
+        same = changed(*before, *now) == 0 ? same + 1 : 0;
+        before = now;
+    }
+    press(Event::KEY_F4);
+    const auto texts = shownTexts();
+    EXPECT_TRUE(std::any_of(texts.begin(), texts.end(),
+                            [](const auto& text) { return wordsOf(*text) == "0 of 6 points"; }));
+    EXPECT_EQ(changed(*before, *picture()), 0) << "the panel changes nothing beside it";
+    keep("curve-none");
+
+    // The graph's field lies from the word "base" to the word "horizon", above them.
+    osg::Vec3d base, horizon;
+    for (const auto& text : texts)
+    {
+        if (wordsOf(*text) == "base") base = text->getPosition();
+        if (wordsOf(*text) == "horizon") horizon = text->getPosition();
+    }
+    ASSERT_GT(horizon.x(), base.x() + 100.0);
+    auto& queue = *viewer().getEventQueue();
+    const auto place = [&](double distance, double height)
+    {
+        // Thirteen heights of the text, above a line of text.
+        const double size = 14.0;
+        const double bottom = base.y() - 0.5 * (1.5 - 0.72) * size + 1.5 * size;
+        return osg::Vec2d(base.x() + distance * (horizon.x() - base.x()),
+                          bottom + height * _map->getHorizonLine() * 13.0 * size);
+    };
+    const auto from = place(0.5, _map->curveHeight(0.5)), to = place(0.4, 0.25);
+    const osg::Matrixd stood = viewer().getCamera()->getViewMatrix();
+    queue.mouseButtonPress(static_cast<float>(from.x()), static_cast<float>(from.y()), 1);
+    frame();
+    queue.mouseMotion(static_cast<float>(to.x()), static_cast<float>(to.y()));
+    frame();
+    ASSERT_EQ(_map->getCurvePoints().size(), 1u);
+    EXPECT_NEAR(_map->getCurvePoints()[0].x(), 0.4, 5e-3);
+    EXPECT_NEAR(_map->getCurvePoints()[0].y(), 0.25, 1e-2);
+    frame();
+    EXPECT_GT(changed(*before, *picture()), 2000) << "the map follows while the button is still down";
+    queue.mouseButtonRelease(static_cast<float>(to.x()), static_cast<float>(to.y()), 1);
+    frame();
+    EXPECT_EQ(viewer().getCamera()->getViewMatrix(), stood) << "the camera does not";
+    keep("curve-one");
+
+    ASSERT_TRUE(_map->setHorizonExaggeration(3.5));
+    press(Event::KEY_F12);
+    const std::string stem = std::filesystem::path(_file).replace_extension().string() + "-map";
+    std::string error;
+    const std::optional<Scene> again = Scene::load(stem + ".geofx", error);
+    ASSERT_TRUE(again) << error;
+    const PanoramaMap* map = nullptr;
+    for (unsigned int i = 0; i < again->effects->getNumEffects(); ++i)
+        if (auto* each = dynamic_cast<PanoramaMap*>(again->effects->getEffect(i))) map = each;
+    ASSERT_TRUE(map);
+    EXPECT_EQ(map->getCurvePoints(), _map->getCurvePoints());
+    EXPECT_EQ(map->getHorizonExaggeration(), 3.5);
+    const auto recipe = geofx::panorama::Recipe::read(stem + ".json");
+    EXPECT_EQ(recipe.map.at("horizonExaggeration"), "3.5");
+    EXPECT_EQ(recipe.map.count("curve1Distance") + recipe.map.count("curve1Height"), 2u);
+
+    press(Event::KEY_Delete);
+    EXPECT_TRUE(_map->getCurvePoints().empty());
+    _map->setHorizonExaggeration(-1.0);
+    press(Event::KEY_F4);
+    frame();
+    EXPECT_EQ(changed(*before, *picture()), 0) << "all is as it was";
+    _map->setEnabled(false);
+    press(Event::KEY_F4);
+    const auto sentence = shownTexts();
+    EXPECT_TRUE(std::any_of(sentence.begin(), sentence.end(),
+                            [](const auto& text)
+                            { return wordsOf(*text) == "No panorama map is shown; F11 makes one."; }));
+}
+
 TEST_F(ViewerKeys, HelpPagesFollowTheWindow)
 {
     ASSERT_NO_FATAL_FAILURE(setUpViewer());
@@ -633,7 +734,7 @@ TEST_F(ViewerKeys, NoKeyHasTwoMeanings)
                 if (!handles(*each, key)) continue;
                 add(std::string(1, static_cast<char>(key)) + nameOf(key), name);
                 // Lists are hidden again.
-                if (key >= Event::KEY_F9) handles(*each, key);
+                if (key == Event::KEY_F4 || key >= Event::KEY_F9) handles(*each, key);
             }
             continue;
         }

@@ -251,6 +251,31 @@ inline TypedSetters libertySetters()
     };
 }
 
+inline TypedSetters panoramaSetters()
+{
+    using Self = osgGeoFX::PanoramaMap;
+    TypedSetters result;
+    for (unsigned int i = 0; i < Self::mostCurvePoints; ++i)
+    {
+        for (const int axis : {0, 1})
+        {
+            const auto set = [=](osgGeoFX::PropertyHolder& holder, double value)
+            {
+                auto& map = static_cast<Self&>(holder);
+                osg::Vec2d point = map.getCurvePoint(i);
+                point[axis] = value;
+                return map.setCurvePoint(i, point);
+            };
+            const auto get = [=](const osgGeoFX::PropertyHolder& holder)
+            {
+                return static_cast<const Self&>(holder).getCurvePoint(i)[axis];
+            };
+            result["curve" + std::to_string(i + 1) + (axis == 0 ? "Distance" : "Height")] = Typed{set, get};
+        }
+    }
+    return result;
+}
+
 inline TypedSetters surfaceSetters()
 {
     using Self = osgGeoFX::SurfaceData;
@@ -301,6 +326,7 @@ inline const TypedSetters& typedSetters(const std::string& kind)
             {"dataLayer", layerSetters()},
             {"colorTransfer", transferSetters()},
             {"regionalLiberty", libertySetters()},
+            {"panoramaMap", panoramaSetters()},
             {"closeUps", closeUpsSetters()},
             {"closeUp", closeUpSetters()},
             {"regionOfInterest", regionSetters()},

@@ -143,8 +143,11 @@ TEST(PanoramaComposer, KeepsToTheWishes)
     EXPECT_LT(away * ahead, toFocus.horizonDistance * toFocus.viewRadius);
 }
 
+namespace
+{
+
 /// The composer's own curve is that of the map that it composes: the highest tip is where the map draws it.
-TEST(PanoramaComposer, JudgesThePictureThatTheMapDraws)
+void expectThePictureThatTheMapDraws(double horizonExaggeration, const std::vector<osg::Vec2d>& curvePoints)
 {
     TerrainRelief relief = reliefOf("hills", 100);
     std::fill(relief.heights.begin(), relief.heights.end(), 100.0f);
@@ -154,12 +157,16 @@ TEST(PanoramaComposer, JudgesThePictureThatTheMapDraws)
     wishes.heading = 0.4;
     wishes.viewRadius = 14000.0;
     wishes.place = osg::Vec2d(316000.0, 5008000.0);
+    wishes.horizonExaggeration = horizonExaggeration;
+    wishes.curvePoints = curvePoints;
     const PanoramaComposer composer(relief, wishes);
     const PanoramaComposition view = composer.compose();
 
     const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
     const osg::ref_ptr<osgGeoFX::PanoramaMap> map = new osgGeoFX::PanoramaMap;
     view.applyTo(*map);
+    EXPECT_EQ(map->getHorizonExaggeration(), horizonExaggeration);
+    EXPECT_EQ(map->getCurvePoints(), curvePoints);
     scene->addEffect(map);
     const osgGeoFX::DeformedView picture(*scene, view.viewMatrix(relief),
                                          osg::Matrixd::perspective(30.0, 16.0 / 9.0, 1.0, 1e6), 1600.0,
@@ -172,6 +179,18 @@ TEST(PanoramaComposer, JudgesThePictureThatTheMapDraws)
     ASSERT_TRUE(picture.project(osg::Vec3d(view.place, view.baseHeight), base));
     EXPECT_NEAR(base.x(), 800.0, 0.5);
     EXPECT_NEAR(base.y(), 0.0, 0.5);
+}
+
+} // namespace
+
+TEST(PanoramaComposer, JudgesThePictureThatTheMapDraws)
+{
+    expectThePictureThatTheMapDraws(-1.0, {});
+}
+
+TEST(PanoramaComposer, JudgesThePictureOfACurveOfOnesOwn)
+{
+    expectThePictureThatTheMapDraws(0.8, {{0.3, 0.2}, {0.6, 0.75}});
 }
 
 namespace

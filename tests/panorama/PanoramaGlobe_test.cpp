@@ -50,6 +50,8 @@ struct Case
             map->setCurveDistance(random.uniform(0.0, 0.9) * map->getHorizonDistance());
             map->setViewRadius(random.logarithmic(2e5, 2e6));
             map->setExaggeration(random.logarithmic(0.2, 20.0));
+            map->setHorizonExaggeration(random.integer(0, 1) ? -1.0 : random.logarithmic(0.2, 20.0));
+            map->setCurvePoints(random.integer(0, 1) ? randomCurve(random) : std::vector<osg::Vec2d>());
             frame = dynamic_cast<const PanoramaSnapshot*>(map->snapshot(pose.view()).get());
         } while (!frame);
     }

@@ -103,6 +103,13 @@ protected:
         _hand->setWidth(random.logarithmic(3000.0, 12000.0));
         _hand->setHeading(random.uniform(-4.0, 4.0));
         _hand->setPitch(random.uniform(-1.6, 0.1));
+        // Some with a curve and a scale of heights of their own.
+        const bool own = random.integer(0, 2) == 0;
+        const double first = random.uniform(0.2, 0.4), second = random.uniform(0.5, 0.8);
+        const double scale = random.uniform(0.5, 3.0);
+        EXPECT_TRUE(_map->setCurvePoints(own ? std::vector<Vec2d>{{0.3, first}, {0.6, second}}
+                                             : std::vector<Vec2d>()));
+        EXPECT_TRUE(_map->setHorizonExaggeration(own ? scale : -1.0));
         EXPECT_TRUE(_hand->setCenter(_middle));
         show();
         pixel = aim(random);

@@ -7,6 +7,7 @@
 #include <tools/ImageComparison.h>
 #include <tools/PanoramaHills.h>
 #include <tools/RandomSamples.h>
+#include <tools/RandomViews.h>
 
 #include <osg/Material>
 #include <osgDB/WriteFile>
@@ -128,6 +129,51 @@ TEST_P(PanoramaStrength, CullsNothingThatShows)
         camera.setCullingMode(culling);
         EXPECT_TRUE(imagesMatch(*culled, *whole));
     }
+}
+
+/// Of maps whose ground bends through points, and whose heights have another scale at the horizon.
+TEST_P(PanoramaStrength, CullsNothingThatShowsOfAnyCurve)
+{
+    osg::Camera& camera = *viewer().getCamera();
+    const osg::ref_ptr<osg::Image> usual = draw(1.0);
+    int different = 0;
+    for (int sample = 0; sample < (fullTest() ? 200 : 20); ++sample)
+    {
+        Random random(static_cast<std::uint64_t>(sample));
+        ASSERT_TRUE(
+            _map->setCurvePoints(random.integer(0, 3) ? randomCurve(random) : std::vector<osg::Vec2d>()));
+        ASSERT_TRUE(
+            _map->setHorizonExaggeration(random.integer(0, 2) ? random.logarithmic(0.1, 10.0) : -1.0));
+        SCOPED_TRACE(::testing::Message() << sample << ": " << describe(*_map));
+        const osg::ref_ptr<PanoramaManipulator> hand = new PanoramaManipulator(*_scene, *_map);
+        hand->setCameraProjection(camera.getProjectionMatrix());
+        hand->setWidth(random.logarithmic(4000.0, 40000.0));
+        hand->setHeading(random.uniform(-3.0, 3.0));
+        ASSERT_TRUE(hand->setCenter(_hills.middle()));
+        hand->updateCamera(camera);
+        const double strength = random.integer(0, 3) ? 1.0 : random.uniform(0.1, 1.0);
+        const osg::ref_ptr<osg::Image> culled = draw(strength);
+        const osg::CullSettings::CullingMode culling = camera.getCullingMode();
+        camera.setCullingMode(osg::CullSettings::NO_CULLING);
+        const osg::ref_ptr<osg::Image> whole = draw(strength);
+        camera.setCullingMode(culling);
+        EXPECT_TRUE(imagesMatch(*culled, *whole));
+        different += difference(*culled, *usual) > 1.0 ? 1 : 0;
+    }
+    EXPECT_GT(different, 10);
+}
+
+TEST_P(PanoramaStrength, WithoutPointsAndWithOneExaggerationThePictureIsAsEver)
+{
+    const osg::ref_ptr<osg::Image> before = draw(1.0);
+    ASSERT_TRUE(_map->setCurvePoints({{0.3, 0.2}, {0.6, 0.8}}));
+    EXPECT_GT(difference(*draw(1.0), *before), 2.0);
+    ASSERT_TRUE(_map->setCurvePoints({}));
+    EXPECT_TRUE(imagesMatch(*draw(1.0), *before));
+    ASSERT_TRUE(_map->setHorizonExaggeration(6.0));
+    EXPECT_GT(difference(*draw(1.0), *before), 2.0);
+    ASSERT_TRUE(_map->setHorizonExaggeration(_map->getExaggeration()));
+    EXPECT_TRUE(imagesMatch(*draw(1.0), *before));
 }
 
 INSTANTIATE_TEST_SUITE_P(Ground, PanoramaStrength, ::testing::Bool(),

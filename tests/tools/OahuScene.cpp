@@ -9,6 +9,7 @@
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
+#include <tools/RandomViews.h>
 
 #include <cmath>
 
@@ -109,6 +110,8 @@ void addRandomPainting(EffectScene& scene, Random& random)
     map->setExaggeration(random.logarithmic(0.3, 6.0));
     map->setDetail(random.uniform(0.3, 1.5));
     if (random.integer(0, 2) == 0) map->setViewRadius(random.logarithmic(1000.0, 4e4));
+    if (random.integer(0, 1) == 0) map->setHorizonExaggeration(random.logarithmic(0.3, 6.0));
+    if (random.integer(0, 1) == 0) map->setCurvePoints(randomCurve(random));
     scene.addEffect(map);
 }
 

@@ -82,6 +82,10 @@ inline std::vector<double> candidateValues(const osgGeoFX::Property& property)
     if (!isWhole(property))
     {
         const double digits = 1.0 / 3.0;
+        // The points of a bending curve lie in order, so that all of them can be there at once.
+        const std::string& name = property.name;
+        if (name.rfind("curve", 0) == 0 && name[5] >= '1' && name[5] <= '6')
+            return {(name[5] - '0') / 7.0, (name[5] - '0') / 7.0 - 0.01234567890123456789, low, high};
         return {low + (high - low) * 0.1234567890123456789,
                 low + (high - low) * 0.7234567890123456789,
                 property.defaultValue + digits,

@@ -46,9 +46,19 @@ double sensibleValue(const std::string& name, Random& random)
     if (name == "viewRadius") return die < 6 ? 0.0 : random.logarithmic(100.0, 3e5);
     if (name == "curveDistance") return die == 0 ? 0.0 : random.logarithmic(0.05, 5.0);
     if (name == "horizonDistance") return random.logarithmic(0.3, 20.0);
+    if (name == "horizonExaggeration") return die < 5 ? -1.0 : random.logarithmic(0.1, 20.0);
     if (name == "exaggeration") return die == 0 ? 0.0 : random.logarithmic(0.1, 20.0);
     if (name == "strength") return die < 5 ? 1.0 : random.uniform(0.0, 1.0);
     if (name == "horizontalAngle") return die < 5 ? 0.0 : random.uniform(0.05, 2.0 * pi);
+    if (name == "baseHeight") return die < 5 ? 0.0 : random.uniform(-500.0, 4000.0);
+    if (name.size() > 6 && name.compare(0, 5, "curve") == 0 && name[5] >= '1' && name[5] <= '6')
+    {
+        // The points of a bending curve, in order; where one is not, it has no distance.
+        const double place = (name[5] - '0') / 7.0;
+        const bool distance = name.find("Distance") != std::string::npos;
+        if (distance) return die < 6 ? 0.0 : place + random.uniform(-0.06, 0.06);
+        return std::clamp(place + random.uniform(-0.13, 0.3), 0.001, 1.0);
+    }
     return std::nan("");
 }
 
@@ -187,6 +197,23 @@ CameraPose randomPose(Random& random)
         break;
     }
     return pose;
+}
+
+std::vector<osg::Vec2d> randomCurve(Random& random)
+{
+    std::vector<osg::Vec2d> points(static_cast<std::size_t>(random.integer(1, 6)));
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        heights.push_back(random.uniform(0.01, 1.0));
+    std::sort(heights.begin(), heights.end());
+    const double width = 0.98 / static_cast<double>(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+        const bool level = i > 0 && random.integer(0, 9) == 0;
+        points[i].set(0.01 + width * (static_cast<double>(i) + random.uniform(0.05, 0.9)),
+                      level ? points[i - 1].y() : heights[i]);
+    }
+    return points;
 }
 
 void randomizeProperties(osgGeoFX::PropertyHolder& effect, Random& random)

@@ -73,6 +73,9 @@ std::string describe(osgGeoFX::PropertyHolder& effect);
 osg::Vec3d randomGroundPoint(Random& random, const osgGeoFX::ViewGeometry& view, double reach = 3e5);
 osg::Vec3d randomDirection(Random& random);
 
+/// Points of a panorama map's bending curve: one to six, now and then two of one height.
+std::vector<osg::Vec2d> randomCurve(Random& random);
+
 /// The numbers of a bend, from its uniforms.
 struct BendNumbers
 {

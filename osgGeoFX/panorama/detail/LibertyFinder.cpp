@@ -209,7 +209,7 @@ double LibertyFinder::height(double x, double s) const
 
 double LibertyFinder::tip(double x, double s, double height) const
 {
-    return _curve.foot(x / _curve.radius, s) + _view.exaggeration * _curve.raised(height, s);
+    return _curve.foot(x / _curve.radius, s) + _curve.lifted(height, s);
 }
 
 bool LibertyFinder::isSeen(double x, double s, double height) const
@@ -324,7 +324,7 @@ double LibertyFinder::mostEnlarged(const PanoramaLiberty& liberty, double wanted
                       if (std::isnan(there) || at.y() >= _curve.end) return;
                       const double now = tip(at.x(), at.y(), there);
                       const double gain =
-                          _view.exaggeration *
+                          _curve.exaggeration(at.y()) *
                           (_curve.raised(there, at.y()) - _curve.raised(liberty.baseHeight, at.y())) *
                           glsl::geofx_libertyShare(local.length2());
                       if (gain > 1e-9) most = std::min(most, std::max(limit - now, 0.0) / gain);

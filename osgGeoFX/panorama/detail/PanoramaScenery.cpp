@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/detail/EyeVector.h>
 #include <osgGeoFX/panorama/detail/PanoramaEdge.h>
+#include <osgGeoFX/panorama/detail/PanoramaProfile.h>
 #include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 #include <osgGeoFX/panorama/detail/PanoramaTextures.h>
 #include <osgGeoFX/panorama/detail/StrokeCompanion.h>
@@ -184,6 +185,7 @@ struct Sky
         if (!mirrored) pass.view.picturePart(low, high);
         put(state, "geofx_skyPart", low.x(), low.y(), high.x(), high.y());
         put(state, "geofx_skyCurve", panorama.along, panorama.curve, panorama.horizon, panorama.end);
+        setKnots(state);
         setWater(state);
         return state;
     }
@@ -201,6 +203,18 @@ private:
     {
         state.setTextureAttribute(static_cast<unsigned int>(unit), texture, forced);
         state.getOrCreateUniform(name, osg::Uniform::SAMPLER_2D)->set(unit);
+    }
+
+    void setKnots(osg::StateSet& state) const
+    {
+        // Without points the shader stays what it is, to the bit.
+        const bool points = panorama.profile.first > 0.0;
+        state.setDefine("GEOFX_CURVE_POINTS", points ? osg::StateAttribute::ON : osg::StateAttribute::OFF);
+        const auto knots = knotsOf(panorama.profile);
+        osg::Uniform* const uniform = state.getOrCreateUniform("geofx_skyKnots", osg::Uniform::FLOAT_VEC4, 7);
+        uniform->setElement(0, osg::Vec4(osg::Vec4d(panorama.profile.first, 0.0, 0.0, 0.0)));
+        for (unsigned int i = 1; i < 7; ++i)
+            uniform->setElement(i, osg::Vec4(osg::Vec4d(knots[i - 1], 0.0)));
     }
 
     /// Sets what lies behind the end of the terrain.

@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/detail/GlobeFrame.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/detail/CylinderBounds.h>
+#include <osgGeoFX/panorama/detail/PanoramaProfile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -78,8 +79,9 @@ glsl::geofx_Cylinder cylinderOf(const PanoramaMap& map, const ViewGeometry& view
 bool finite(const glsl::geofx_Panorama& panorama)
 {
     double sum = 0.0;
-    for (const double each : {panorama.across, panorama.along, panorama.lift, panorama.base, panorama.end,
-                              panorama.nearest, panorama.globe.height, panorama.cylinder.ring})
+    for (const double each :
+         {panorama.across, panorama.along, panorama.lift, panorama.base, panorama.end, panorama.nearest,
+          panorama.globe.height, panorama.cylinder.ring, panorama.liftGrowth})
         sum += std::abs(each);
     for (const glm::dvec3& each : {panorama.right, panorama.forward, panorama.origin, panorama.originX,
                                    panorama.originY, panorama.direction, panorama.directionX,
@@ -117,8 +119,14 @@ std::optional<glsl::geofx_Panorama> panoramaOf(const PanoramaMap& map, const Vie
     panorama.curve = map.getCurveDistance() * radius;
     panorama.horizon = map.getHorizonDistance() * radius;
     panorama.end = endOfHeights * panorama.horizon;
-    panorama.along = 4.0 * map.getHorizonLine() / (panorama.curve + panorama.horizon);
+    panorama.profile = profileThrough(map.getCurvePoints());
+    panorama.along = panorama.profile.first > 0.0
+                         ? 2.0 * map.getHorizonLine() / panorama.horizon
+                         : 4.0 * map.getHorizonLine() / (panorama.curve + panorama.horizon);
     panorama.lift = std::max(map.getExaggeration(), leastExaggeration) * high / wide / radius;
+    if (map.getHorizonExaggeration() >= 0.0)
+        panorama.liftGrowth =
+            std::max(map.getHorizonExaggeration(), leastExaggeration) * high / wide / radius - panorama.lift;
     panorama.arch = 2.0 * map.getHorizonBend();
     panorama.nearest = radius * (perspective ? wide : 1.0);
     setRays(panorama, view);
@@ -239,10 +247,13 @@ struct PanoramaSnapshot::Extent
     double stretch;    ///< of x and s for each metre
     double curvature;  ///< of x, s and height: second derivatives, 1/metre
     double height;     ///< above or below the base at most
-    double slope;      ///< of the curve, at most; 0…1
+    double slope;      ///< of the curve, at most
     double slopeRate;  ///< its derivative, 1/metre
     double fadeRate;   ///< of heights and of x beyond the horizon, 1/metre
     double fadeSecond; ///< 1/metre²
+    double lift;       ///< of the picture's y for each metre of height, at most
+    double liftRate;   ///< its derivative by s, faded heights included, 1/metre²
+    double liftSecond; ///< 1/metre³
     double x;          ///< of the picture, at most
     double n;          ///< at most
     double nSecond;    ///< of n by s, 1/metre
@@ -276,11 +287,30 @@ PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
     const double width = std::max(_view.horizon - _view.curve, 1e-3);
     extent.slope = std::clamp((_view.horizon - nearS) / width, 0.0, 1.0);
     extent.slopeRate = nearS < _view.horizon && farS > _view.curve ? 1.0 / width : 0.0;
+    if (_view.profile.first > 0.0)
+    {
+        const ProfileRates rates = ratesOf(_view.profile, nearS / _view.horizon, farS / _view.horizon);
+        extent.slope = rates.slope;
+        extent.slopeRate = rates.second / _view.horizon;
+    }
     const double fading = _view.end - _view.horizon;
     const bool fades = nearS < _view.end + fading && farS > _view.horizon;
     extent.fadeRate = fades ? 1.5 / fading : 0.0;
     extent.fadeSecond = fades ? 6.0 / (fading * fading) : 0.0;
-    extent.x = _view.across * (std::abs(extent.place.x) + extent.cylinder.sideReach);
+    // Heights fade only where their scale no longer changes. Around a cylinder they shrink everywhere.
+    const double bare =
+        std::max(std::abs(glsl::geofx_profileLift(_view.lift, _view.liftGrowth, nearS / _view.horizon)),
+                 std::abs(glsl::geofx_profileLift(_view.lift, _view.liftGrowth, farS / _view.horizon)));
+    const bool grows = nearS < _view.horizon && farS > 0.0;
+    const double growth = grows ? std::abs(_view.liftGrowth) / _view.horizon : 0.0;
+    const double rate = std::max(1.5 * growth, bare * extent.fadeRate);
+    const double second = std::max(6.0 * growth / _view.horizon, bare * extent.fadeSecond);
+    const CylinderBounds& cylinder = extent.cylinder;
+    extent.lift = bare * cylinder.width;
+    extent.liftRate = rate * cylinder.width + bare * cylinder.widthRate;
+    extent.liftSecond =
+        second * cylinder.width + 2.0 * rate * cylinder.widthRate + bare * cylinder.widthSecond;
+    extent.x = _view.across * (std::abs(extent.place.x) + cylinder.sideReach);
     extent.n = _view.nearest + std::max(farS, 0.0);
     extent.nSecond = nearS < 0.0 ? 2.0 / _view.nearest : 0.0;
     return extent;
@@ -299,11 +329,9 @@ double PanoramaSnapshot::lipschitz(const Ball& ball) const
     const CylinderBounds& cylinder = extent.cylinder;
     const double x = (_view.across * cylinder.sideStretch + extent.x * extent.fadeRate) * extent.stretch;
     const double arch = _view.arch * 1.5708 * x;
-    const double lift = std::abs(_view.lift) * cylinder.width;
-    const double lowers = cylinder.width * extent.fadeRate + cylinder.widthRate;
-    const double bySide = _view.along * extent.slope * extent.stretch +
-                          std::abs(_view.lift) * lowers * extent.height * extent.stretch;
-    const double y = std::hypot(bySide, lift) + arch;
+    const double bySide =
+        _view.along * extent.slope * extent.stretch + extent.liftRate * extent.height * extent.stretch;
+    const double y = std::hypot(bySide, extent.lift) + arch;
     const double reachY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + y * ball.radius;
     const double acrossEye = x * (glm::length(_view.originX) + extent.n * glm::length(_view.directionX));
     const double upEye = y * (glm::length(_view.originY) + extent.n * glm::length(_view.directionY));
@@ -340,21 +368,15 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
         extent.curvature * length * length; // the second derivative of x and s on the ground
     const double second = ground + cylinder.curvature * way2;
     const double sideSecond = cylinder.sideStretch * ground + cylinder.sideCurvature * way2;
-    const double lift = std::abs(_view.lift);
-    // Of the share of its height that a place shows.
-    const double lowers = cylinder.width * extent.fadeRate + cylinder.widthRate;
-    const double lowers2 = cylinder.width * extent.fadeSecond + 2.0 * cylinder.widthRate * extent.fadeRate +
-                           cylinder.widthSecond;
 
     const double x1 = _view.across * side + extent.x * extent.fadeRate * ahead;
     const double x2 = _view.across * (sideSecond + 2.0 * side * extent.fadeRate * ahead) +
                       extent.x * (extent.fadeSecond * ahead * ahead + extent.fadeRate * second);
-    const double y1 = _view.along * extent.slope * ahead +
-                      lift * (lowers * extent.height * ahead + cylinder.width * rise) +
-                      _view.arch * 1.5708 * x1;
+    const double y1 = _view.along * extent.slope * ahead + extent.liftRate * extent.height * ahead +
+                      extent.lift * rise + _view.arch * 1.5708 * x1;
     const double y2 = _view.along * (extent.slopeRate * ahead * ahead + extent.slope * second) +
-                      lift * (lowers2 * ahead * ahead * extent.height +
-                              lowers * (second * extent.height + 2.0 * ahead * rise) + second) +
+                      extent.liftSecond * ahead * ahead * extent.height +
+                      extent.liftRate * (second * extent.height + 2.0 * ahead * rise) + extent.lift * second +
                       _view.arch * (2.4675 * x1 * x1 + 1.5708 * x2);
     const double n1 = ahead;
     const double n2 = extent.nSecond * ahead * ahead + second;
@@ -377,20 +399,23 @@ DeformationSnapshot::Sag PanoramaSnapshot::sag(const Ball& ball, const osg::Vec3
     const double apartX = farS > _view.end ? 2.0 * extent.x : 2.0 * _view.across * cylinder.sideReach;
     const double apartY =
         _view.along * (glsl::geofx_panoramaRise(_view, farS) - glsl::geofx_panoramaRise(_view, nearS)) +
-        2.0 * lift * (round || farS > _view.horizon ? extent.height : ball.radius * extent.stretch) +
+        2.0 * extent.lift * (round || farS > _view.horizon ? extent.height : ball.radius * extent.stretch) +
+        std::abs(glsl::geofx_panoramaLift(_view, farS) - glsl::geofx_panoramaLift(_view, nearS)) *
+            extent.height +
         2.0 * _view.arch;
     const double apartN = 2.0 * extent.reach;
     const double mostY = std::abs(glsl::geofx_panoramaPicture(_view, extent.place).y) + apartY;
     const double most = apartX * sideX + apartY * sideY +
                         apartN * (glm::length(_view.direction) + extent.x * glm::length(_view.directionX) +
                                   mostY * glm::length(_view.directionY));
-    return {curve, map * lift * cylinder.widthKink * extent.height * ahead * sideY, own + map * most};
+    return {curve, map * extent.lift * cylinder.widthKink * extent.height * ahead * sideY, own + map * most};
 }
 
 osg::ref_ptr<const PanoramaSnapshot> PanoramaSnapshot::mirrored(double level, double detail) const
 {
     glsl::geofx_Panorama view = _view;
     view.lift = -view.lift;
+    view.liftGrowth = -view.liftGrowth;
     view.base = 2.0 * level - view.base;
     view.mirrored = 1.0;
     view.water = level;
@@ -401,9 +426,12 @@ double PanoramaSnapshot::longestEdge(const Ball& ball, double tolerance) const
 {
     const Extent extent = extentOf(ball);
     if (extent.place.y - extent.reach > _view.end) return HUGE_VAL;
-    // The second derivative of the picture's y: that of the curve, and that of Eq. 1.
-    const double second =
-        _view.along * extent.slopeRate + std::abs(_view.arch) * 2.4675 * _view.across * _view.across;
+    // The second derivative of the picture's y: that of the curve, that of the scale of heights, and that of Eq. 1.
+    const double growth = extent.place.y - extent.reach < _view.horizon && extent.place.y + extent.reach > 0.0
+                              ? 6.0 * std::abs(_view.liftGrowth) / (_view.horizon * _view.horizon)
+                              : 0.0;
+    const double second = _view.along * extent.slopeRate + growth * extent.height +
+                          std::abs(_view.arch) * 2.4675 * _view.across * _view.across;
     const double flat = std::sqrt(8.0 * tolerance * _viewDistance * _view.along / std::max(second, 1e-30));
     if (!(_view.cylinder.ring > 0.0)) return flat;
     const CylinderBounds& cylinder = extent.cylinder;
@@ -427,7 +455,8 @@ bool PanoramaSnapshot::isAroundTheEarth(const Ball& ball, const osg::Vec2d& room
     // What stands before the base may rise into the picture, by its height above the base.
     constexpr double bulge = 22e3; // of the equator above the poles
     const double height = std::abs(distance - 1.0 / k) + ball.radius + std::abs(_view.base) + bulge;
-    const double before = (std::abs(_view.lift) * height + room.y()) / _view.along;
+    const double before =
+        (std::abs(_view.lift) * height + room.y()) / (_view.along * glsl::geofx_panoramaSlope(_view, 0.0));
     const double along = std::max(2.0 * _view.end - _view.horizon, before) + _view.cylinder.ring;
     const double shown = std::hypot((beside + room.x()) / _view.across, along) * k * (1.0 + flat);
     // Nearer, what is beside the picture and what is behind it count each for itself: a triangle may reach from one to the other.
@@ -454,7 +483,9 @@ bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
     }
     else if (_view.across * (std::abs(extent.place.x) - extent.reach) > beside + room.x())
         return true;
-    return farS < 0.0 && _view.along * farS + std::abs(_view.lift) * extent.height < 1.0 - beside - room.y();
+    return farS < 0.0 &&
+           _view.along * glsl::geofx_panoramaRise(_view, farS) + std::abs(_view.lift) * extent.height <
+               1.0 - beside - room.y();
 }
 
 bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
@@ -493,19 +524,26 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
     if (_view.across * (low.x - middle) > side || _view.across * (high.x - middle) < -side) return true;
 
     // Heights and Eq. 1 move a place up or down in the picture.
-    const double lifts[] = {_view.lift * (low.z - _view.base), _view.lift * (high.z - _view.base)};
-    const auto lifted = [&](double lift, bool most)
+    // Their scale changes one way up to the horizon, and falls behind it.
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (const double s : {low.y, std::clamp(_view.horizon, low.y, high.y), high.y})
     {
-        const bool whole = (lift > 0.0) == most;
-        const double s = whole ? low.y : high.y;
-        return lift * glsl::geofx_cylinderWidth(_view.cylinder, s) * glsl::geofx_panoramaFade(_view, s);
-    };
-    const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 +
-                       lifted(std::max(lifts[0], lifts[1]), true);
+        for (const double widthAt : {low.y, high.y})
+        {
+            const double lift = glsl::geofx_profileLift(_view.lift, _view.liftGrowth, s / _view.horizon) *
+                                glsl::geofx_cylinderWidth(_view.cylinder, widthAt) *
+                                glsl::geofx_panoramaFade(_view, s);
+            for (const double height : {low.z, high.z})
+            {
+                least = std::min(least, lift * (height - _view.base));
+                most = std::max(most, lift * (height - _view.base));
+            }
+        }
+    }
+    const double top = _view.along * glsl::geofx_panoramaRise(_view, high.y) - 1.0 + most;
     if (top < -beside - room.y()) return true;
     const double farthest = std::min(_view.across * std::max(std::abs(low.x), std::abs(high.x)), 2.0);
-    const double foot = _view.along * glsl::geofx_panoramaRise(_view, low.y) - 1.0 +
-                        lifted(std::min(lifts[0], lifts[1]), false) -
+    const double foot = _view.along * glsl::geofx_panoramaRise(_view, low.y) - 1.0 + least -
                         std::abs(glsl::geofx_panoramaArch(_view, farthest));
     return foot > beside + room.y();
 }
@@ -543,7 +581,7 @@ std::optional<double> PanoramaSnapshot::viewDistance(const Ball& ball) const
 DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
 {
     const glsl::geofx_Exaggeration& globe = _view.globe;
-    return {
+    Uniforms all = {
         {"up", vec4(globe.up, globe.height)},
         {"axis", vec4(globe.axis, globe.flattening)},
         {"right", vec4(_view.right, globe.curvature)},
@@ -557,7 +595,11 @@ DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
         {"directionX", vec4(_view.directionX, 0.0)},
         {"directionY", vec4(_view.directionY, 0.0)},
         {"cylinder", {_view.cylinder.ring, _view.cylinder.middle, _view.cylinder.halfArc, 0.0}},
+        {"profile", {_view.liftGrowth, _view.profile.first, 0.0, 0.0}},
     };
+    for (const osg::Vec3d& knot : knotsOf(_view.profile))
+        all.emplace_back("knot" + std::to_string(all.size() - 12), osg::Vec4d(knot, 0.0));
+    return all;
 }
 
 } // namespace osgGeoFX

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/panorama/PanoramaComposer.h>
+#include <osgGeoFX/panorama/detail/PanoramaProfile.h>
 
 #include <osg/Math>
 
@@ -28,10 +29,13 @@ struct PictureCurve
         : radius(composition.viewRadius),
           ring(composition.horizontalAngle > 0.0 ? 2.0 * radius / composition.horizontalAngle : 0.0),
           before(ring > 0.0 ? std::min(leastWay * ring, radius) : beforeBase * radius),
-          curve(composition.curveDistance * radius), horizon(composition.horizonDistance * radius), end(endOfHeights * horizon),
-          along(4.0 * composition.horizonLine / (curve + horizon)), lift(aspect / radius),
-          arch(2.0 * composition.horizonBend), base(composition.baseHeight)
+          curve(composition.curveDistance * radius), horizon(composition.horizonDistance * radius),
+          end(endOfHeights * horizon), along(4.0 * composition.horizonLine / (curve + horizon)),
+          lift(aspect / radius), arch(2.0 * composition.horizonBend), base(composition.baseHeight),
+          near(composition.exaggeration), far(composition.horizonExaggeration),
+          profile(profileThrough(composition.curvePoints))
     {
+        if (profile.first > 0.0) along = 2.0 * composition.horizonLine / horizon;
     }
 
     /// The picture's y, 0…1 from its base, of ground at the base height.
@@ -39,9 +43,16 @@ struct PictureCurve
     {
         const double width = std::max(horizon - curve, 1e-3);
         const double bent = std::clamp(s - curve, 0.0, width);
-        const double rise = std::min(s, curve) + bent - bent * bent / (2.0 * width);
+        double rise = std::min(s, curve) + bent - bent * bent / (2.0 * width);
+        if (profile.first > 0.0) rise = horizon * glsl::geofx_profileRise(profile, s / horizon);
         return 0.5 * (along * rise - arch * (1.0 - std::cos(x * osg::PI_2)));
     }
+    /// The share of the horizon's own exaggeration at a distance.
+    double share(double s) const { return far < 0.0 ? 0.0 : glsl::geofx_profileLift(0.0, 1.0, s / horizon); }
+    /// The exaggeration at a distance.
+    double exaggeration(double s) const { return near * (1.0 - share(s)) + far * share(s); }
+    /// How much a height raises it.
+    double lifted(double height, double s) const { return exaggeration(s) * raised(height, s); }
     /// How much a height raises it, for an exaggeration of 1.
     double raised(double height, double s) const
     {
@@ -52,7 +63,8 @@ struct PictureCurve
     /// How much wider than at the base a column is at a distance s.
     double widening(double s) const { return ring > 0.0 ? std::max(ring + s, 0.0) / ring : 1.0; }
 
-    double radius, ring, before, curve, horizon, end, along, lift, arch, base;
+    double radius, ring, before, curve, horizon, end, along, lift, arch, base, near, far;
+    glsl::geofx_Profile profile;
 };
 
 /// Places around the picture's base, up to the second order of the distance over the Earth's radius.
