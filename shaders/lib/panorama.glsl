@@ -154,7 +154,8 @@ GEOFX_INLINE Position geofx_panoramaPicture(geofx_Panorama view, Position place)
     }
     Number x = side * view.across * geofx_panoramaFadeFrom(view, view.end, place.y);
     Number y = view.along * geofx_panoramaRise(view, place.y) - 1 +
-               geofx_panoramaLift(view, place.y) * (place.z - view.base) - geofx_panoramaArch(view, x);
+               geofx_panoramaLift(view, place.y) * (place.z - view.base) * geofx_panoramaFade(view, place.y) -
+               geofx_panoramaArch(view, x);
     return Position(x, y, n);
 }
 

@@ -127,7 +127,7 @@ void expectSameLook(const Row& row, std::size_t i, const Result& gpu)
             const double scale = std::abs(bend.start) + bend.size + start + point.length();
             allowed += 1e-6 * scale / std::max(bend.size, 1e-3);
         }
-        else if (row.effects[k]->getProperty("relight") != 0.0)
+        else if (!row.effects[k]->property("relight") || row.effects[k]->getProperty("relight") != 0.0)
         {
             normal = snapshot->deformNormal(point, normal);
         }

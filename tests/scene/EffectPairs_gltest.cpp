@@ -337,6 +337,7 @@ TEST_F(EffectPairs, APaintingUnderABend)
     osg::ref_ptr<PanoramaMap> painting = new PanoramaMap;
     painting->setProjection(false);
     painting->setSky(false);
+    painting->setRipples(0.0); // each frame has another time
     const osg::ref_ptr<BirdsEyeView> bend = makeBirdsEye();
     const Picture painted = picture({painting}, _ground);
     const Picture bent = picture({bend}, _ground);
@@ -667,6 +668,6 @@ TEST_F(PanoramaPairs, StrokesInCloseUps)
             };
             strokes += far(bare, ground) && far(drawn, bare) ? 1 : 0;
         }
-        EXPECT_GT(strokes, 100);
+        EXPECT_GT(strokes, 60); // none where strokes are missing
     }
 }

@@ -597,8 +597,9 @@ DeformationSnapshot::Uniforms PanoramaSnapshot::uniforms() const
         {"cylinder", {_view.cylinder.ring, _view.cylinder.middle, _view.cylinder.halfArc, 0.0}},
         {"profile", {_view.liftGrowth, _view.profile.first, 0.0, 0.0}},
     };
+    int number = 0;
     for (const osg::Vec3d& knot : knotsOf(_view.profile))
-        all.emplace_back("knot" + std::to_string(all.size() - 12), osg::Vec4d(knot, 0.0));
+        all.emplace_back("knot" + std::to_string(++number), osg::Vec4d(knot, 0.0));
     return all;
 }
 
