@@ -21,7 +21,8 @@ namespace osgGeoFX
 
     A scene may have any number of liberties, also of one region. They act in the order of the scene's list, and come
     before a panorama map or a bend. On a globe the ground below a region is a sphere's with the Earth's curvature there,
-    exact within 1 m up to 50 km from the center. Lighting follows the deformed surface. The result does not depend on
+    exact within 1 m up to 50 km from the center. The GPU places ground within 1e-7 of the region's size. Lighting follows
+    the deformed surface. What stands on the ground stays upright, and turns as the ground does. The result does not depend on
     the camera.
     @ingroup deformation */
 class OSGGEOFX_EXPORT RegionalLiberty : public Deformation, public NormalTurner
