@@ -106,6 +106,7 @@
 #include <osgGeoFX/viewer/Overlay.h>
 #include <osgGeoFX/viewer/PanelCursor.h>
 #include <osgGeoFX/viewer/PanelPicture.h>
+#include <osgGeoFX/viewer/PictureParts.h>
 #include <osgGeoFX/viewer/Scene.h>
 #include <osgGeoFX/viewer/ViewPoint.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>

@@ -86,6 +86,8 @@ inline std::vector<double> candidateValues(const osgGeoFX::Property& property)
         const std::string& name = property.name;
         if (name.rfind("curve", 0) == 0 && name[5] >= '1' && name[5] <= '6')
             return {(name[5] - '0') / 7.0, (name[5] - '0') / 7.0 - 0.01234567890123456789, low, high};
+        // A cylindrical map has no strength between none and all.
+        if (name == "strength") return {low, low + (high - low) * 0.1234567890123456789, high};
         return {low + (high - low) * 0.1234567890123456789,
                 low + (high - low) * 0.7234567890123456789,
                 property.defaultValue + digits,
