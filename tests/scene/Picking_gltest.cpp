@@ -202,7 +202,7 @@ TEST_P(Picking, WhatIsPickedIsDrawnWhateverTheLodScale)
         }
         const std::set<const osg::Drawable*> drawn = harness.frame(true, false).drawables();
         const DeformedView picture(*oahu->effects, view, projection, WIDTH, HEIGHT, lodScale);
-        for (int i = 0; i < 20; ++i)
+        for (int i = 0; i < 60; ++i)
         {
             const auto hit = picture.pick(random.uniform(0.0, WIDTH), random.uniform(0.0, HEIGHT));
             if (!hit) continue;
