@@ -56,9 +56,9 @@ double PanoramaMap::longestEdge(const CameraRange& cameras, double tolerance) co
     const double globe = ground.ellipsoid ? globeCurvature / ground.ellipsoid->getRadiusPolar() : 0.0;
 
     // Around a cylinder heights get smaller, most at the base, and places turn about the eye's foot: most where the nearest
-    // ground is drawn, at `partly` of CylinderBounds.cpp.
+    // ground is drawn in full.
     const double ring = _horizontalAngle > 0.0 ? 2.0 * radius / _horizontalAngle : 0.0;
-    const double around = ring > 0.0 ? 1.0 / ring : 0.0, turns = around / 0.3;
+    const double around = ring > 0.0 ? 1.0 / ring : 0.0, turns = around / glsl::GEOFX_CYLINDER_FULL;
     const double side = std::max(1.0, turns * ring);
 
     // Derivatives of the picture's x and y along an edge, for each metre of it and of its square.

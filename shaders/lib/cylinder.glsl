@@ -9,6 +9,10 @@
 #include "lib/series.glsl"
 #endif
 
+// How far from the eye's foot ground begins to be drawn, and from where on it is drawn in full; of the circle's radius.
+const Number GEOFX_CYLINDER_NONE = Number(0.1);
+const Number GEOFX_CYLINDER_FULL = Number(0.3);
+
 struct geofx_Cylinder
 {
     Length ring;  // the radius of the circle that is the picture's base; 0: the base is a straight line, and nothing here acts
@@ -66,8 +70,9 @@ GEOFX_INLINE Vector2 geofx_cylinderShown(geofx_Cylinder view, Vector2 place)
 {
     Angle turned = abs(place.x / view.ring - view.middle);
     Angle left = Angle(3.141592653589793) - view.halfArc;
-    Number near = geofx_cylinderEase(place.y / view.ring, Number(-0.9), Number(-0.7));
+    Number away = place.y / view.ring + 1;
+    Number near = geofx_cylinderEase(away, GEOFX_CYLINDER_NONE, GEOFX_CYLINDER_FULL);
     Number beside = 1 - geofx_cylinderEase(turned, view.halfArc + Number(0.25) * left, view.halfArc + Number(0.6) * left);
     Number seam = 1 - geofx_cylinderEase(turned, view.halfArc + Number(0.6) * left, Angle(3.141592653589793));
-    return Vector2(near * beside, geofx_cylinderEase(place.y / view.ring, Number(-1), Number(-0.9)) * seam);
+    return Vector2(near * beside, geofx_cylinderEase(away, Number(0), GEOFX_CYLINDER_NONE) * seam);
 }

@@ -102,13 +102,10 @@ double behindTheEye(const DeformationChain& chain)
     for (const auto& snapshot : chain.snapshots())
     {
         BendNumbers bend;
-        bool liberty = false;
-        for (const auto& [name, value] : snapshot->uniforms())
-            liberty = liberty || name == "taken";
+        LibertyNumbers liberty;
         if (bendNumbers(*snapshot, bend) && bend.start < 0.0) lost += 2e-7 * bend.size;
         // A region's places count from its center, which may be far from what is near the eye.
-        for (const auto& [name, value] : snapshot->uniforms())
-            if (liberty && (name == "across" || name == "along")) lost += 1e-7 * value.w();
+        if (libertyNumbers(*snapshot, liberty)) lost += 1e-7 * (liberty.across + liberty.along);
     }
     return lost;
 }

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <sstream>
 
 namespace glsl = osgGeoFX::glsl;
@@ -278,24 +277,6 @@ TEST(Deformation, TurnsNormalsAsItsDerivativeDoes)
     RecordProperty("worst_share_of_allowed", std::to_string(worst));
 }
 
-namespace
-{
-
-/// The vertical of a regional liberty in eye space; nothing of other deformations.
-std::optional<Vec3d> libertyUp(const osgGeoFX::DeformationSnapshot& snapshot)
-{
-    std::optional<Vec3d> up;
-    bool liberty = false;
-    for (const auto& [name, value] : snapshot.uniforms())
-    {
-        if (name == "up") up = Vec3d(value.x(), value.y(), value.z());
-        liberty = liberty || name == "taken";
-    }
-    return liberty ? up : std::nullopt;
-}
-
-} // namespace
-
 TEST(Deformation, TurnIsTheDerivativesRotation)
 {
     forRandom(anyCase,
@@ -320,11 +301,12 @@ TEST(Deformation, TurnIsTheDerivativesRotation)
                   Vec3d a = randomDirection(random);
                   Vec3d b = randomDirection(random);
                   // What stands in a region that a painter has changed stays upright, and turns as the ground does.
-                  if (const auto up = libertyUp(*found.snapshot))
+                  LibertyNumbers liberty;
+                  if (libertyNumbers(*found.snapshot, liberty))
                   {
-                      a -= *up * (*up * a);
-                      b -= *up * (*up * b);
-                      EXPECT_LT((turned(*up) - *up).length(), 1e-9);
+                      a -= liberty.up * (liberty.up * a);
+                      b -= liberty.up * (liberty.up * b);
+                      EXPECT_LT((turned(liberty.up) - liberty.up).length(), 1e-9);
                   }
                   const double size = (jacobian * a).length() + (jacobian * b).length();
                   EXPECT_NEAR((jacobian * a) * turned(b), (jacobian * b) * turned(a), 1e-3 * size);

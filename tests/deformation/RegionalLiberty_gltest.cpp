@@ -24,7 +24,6 @@ using namespace geofx::test;
 namespace
 {
 
-using Effects = std::vector<osg::ref_ptr<Effect>>;
 using Picture = osg::ref_ptr<osg::Image>;
 
 constexpr int WIDTH = 320, HEIGHT = 240;
@@ -88,24 +87,6 @@ protected:
             if (normals) all[i] = osg::Matrixd::transform3x3(chain->deformNormal(eye, normal), back);
         }
         return result;
-    }
-
-    static osg::ref_ptr<EffectScene> sceneOf(const Effects& effects, osg::Node* content)
-    {
-        osg::ref_ptr<EffectScene> scene = new EffectScene;
-        scene->addChild(content);
-        for (const osg::ref_ptr<Effect>& effect : effects)
-            scene->addEffect(effect);
-        return scene;
-    }
-
-    Picture picture(const Effects& effects, osg::Node* content)
-    {
-        _root->removeChild(_scene);
-        _scene = sceneOf(effects, content);
-        _root->addChild(_scene);
-        draw();
-        return draw();
     }
 
     osg::ref_ptr<osg::Geometry> _ground;

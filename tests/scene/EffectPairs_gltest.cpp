@@ -28,7 +28,6 @@ using namespace geofx::test;
 namespace
 {
 
-using Effects = std::vector<osg::ref_ptr<Effect>>;
 using Picture = osg::ref_ptr<osg::Image>;
 
 constexpr int WIDTH = 320, HEIGHT = 240;
@@ -239,24 +238,6 @@ protected:
         for (const osg::ref_ptr<osg::Node>& node : nodes)
             group->addChild(node);
         return group;
-    }
-
-    static osg::ref_ptr<EffectScene> sceneOf(const Effects& effects, osg::Node* content)
-    {
-        osg::ref_ptr<EffectScene> scene = new EffectScene;
-        scene->addChild(content);
-        for (const osg::ref_ptr<Effect>& effect : effects)
-            scene->addEffect(effect);
-        return scene;
-    }
-
-    Picture picture(const Effects& effects, osg::Node* content)
-    {
-        _root->removeChild(_scene);
-        _scene = sceneOf(effects, content);
-        _root->addChild(_scene);
-        draw();
-        return draw();
     }
 
     /// The pair's picture of the ground, in both orders if `both`, is `expected`, which neither of the two makes alone.

@@ -159,6 +159,24 @@ void CloseUpStage::lookAnyhow(Random& random)
                                       distance + 3000.0);
 }
 
+osg::ref_ptr<EffectScene> CloseUpStage::sceneOf(const Effects& effects, osg::Node* content)
+{
+    osg::ref_ptr<EffectScene> scene = new EffectScene;
+    scene->addChild(content);
+    for (const osg::ref_ptr<Effect>& effect : effects)
+        scene->addEffect(effect);
+    return scene;
+}
+
+osg::ref_ptr<osg::Image> CloseUpStage::picture(const Effects& effects, osg::Node* content)
+{
+    _root->removeChild(_scene);
+    _scene = sceneOf(effects, content);
+    _root->addChild(_scene);
+    draw();
+    return draw();
+}
+
 std::pair<osg::ref_ptr<osg::Image>, osg::ref_ptr<osg::Image>> CloseUpStage::drawBoth()
 {
     _closeUps->setPipeline(CloseUps::SINGLE_PASS);

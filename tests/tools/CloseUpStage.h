@@ -12,6 +12,9 @@
 #include <osg/Geometry>
 #include <osg/Group>
 
+#include <utility>
+#include <vector>
+
 namespace geofx::test
 {
 
@@ -20,6 +23,8 @@ namespace geofx::test
 class CloseUpStage : public GlFixture
 {
 protected:
+    using Effects = std::vector<osg::ref_ptr<osgGeoFX::Effect>>;
+
     explicit CloseUpStage(int width = 200, int height = 150);
     void SetUp() override;
 
@@ -35,6 +40,10 @@ protected:
     /// Somewhere above the ground; rolled, or without perspective, now and then.
     void lookAnyhow(Random& random);
     osg::ref_ptr<osg::Image> draw() { return render(_root); }
+    /// A scene with these effects.
+    static osg::ref_ptr<osgGeoFX::EffectScene> sceneOf(const Effects& effects, osg::Node* content);
+    /// The second picture of such a scene, which takes the place of the one before.
+    osg::ref_ptr<osg::Image> picture(const Effects& effects, osg::Node* content);
     /// One picture with each pipeline; both must have drawn what they were asked to.
     std::pair<osg::ref_ptr<osg::Image>, osg::ref_ptr<osg::Image>> drawBoth();
 

@@ -327,6 +327,19 @@ bool bendNumbers(const osgGeoFX::DeformationSnapshot& snapshot, BendNumbers& num
     return true;
 }
 
+bool libertyNumbers(const osgGeoFX::DeformationSnapshot& snapshot, LibertyNumbers& numbers)
+{
+    std::map<std::string, osg::Vec4d> uniforms;
+    for (const auto& [name, value] : snapshot.uniforms())
+        uniforms[name] = value;
+    if (!uniforms.count("taken")) return false;
+    const osg::Vec4d up = uniforms["up"];
+    numbers.up.set(up.x(), up.y(), up.z());
+    numbers.across = uniforms["across"].w();
+    numbers.along = uniforms["along"].w();
+    return true;
+}
+
 double bendCurvature(const BendNumbers& numbers, int curve)
 {
     return osgGeoFX::glsl::geofx_bendCurvature(

@@ -100,6 +100,18 @@ bool bendNumbers(const osgGeoFX::DeformationSnapshot& snapshot, BendNumbers& num
 /// The largest curvature of a bend, with the angle's sign; `curve` as PerspectiveBend has it.
 double bendCurvature(const BendNumbers& numbers, int curve);
 
+/// The numbers of a regional liberty, from its uniforms.
+struct LibertyNumbers
+{
+    osg::Vec3d up; ///< in eye space
+    /// Half of the region's widths, metres.
+    double across = 0.0;
+    double along = 0.0;
+};
+
+/// False where the frame is no regional liberty.
+bool libertyNumbers(const osgGeoFX::DeformationSnapshot& snapshot, LibertyNumbers& numbers);
+
 /// A point whose place in a bend's profile is random, before, in or behind the zone; else a ground point.
 osg::Vec3d randomPointFor(const osgGeoFX::DeformationSnapshot& snapshot, const osgGeoFX::ViewGeometry& view,
                           Random& random);

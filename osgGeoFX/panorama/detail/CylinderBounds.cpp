@@ -13,9 +13,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// As in shaders/lib/cylinder.glsl: nearer to the eye's foot, of the circle's radius, nothing is drawn; up to the second one it is
-/// drawn partly.
-constexpr double nothing = 0.1, partly = 0.3;
+const double nothing = glsl::GEOFX_CYLINDER_NONE, partly = glsl::GEOFX_CYLINDER_FULL;
 /// Where places begin to leave the picture and where they have left it, of the angle that is not drawn.
 constexpr double leaving = 0.25, gone = 0.6;
 /// The largest slope of the cubic that goes from 0 to 1.
