@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_panorama: any DEM to a panorama map.
+#include "names/SceneNames.h"
 #include "osggeofx_render_output.h"
 #include "panorama/GroundBuilder.h"
 #include "panorama/Recipe.h"
@@ -56,6 +57,8 @@ struct Arguments
     std::vector<std::string> settings;
     std::string liberties; ///< the strength of those that are chosen; empty for none
     std::vector<std::string> liberty;
+    std::vector<std::string> labels;
+    std::string style, font, svg;
     bool explain = false, quiet = false;
 };
 
@@ -147,6 +150,23 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->expected(1)
         ->type_name("'LON,LAT NAME=VALUE …'")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--labels", arguments.labels,
+                   "Names to put onto the picture: vector data of any kind that GDAL reads, FILE or "
+                   "FILE:LAYER. As often as "
+                   "wanted")
+        ->expected(1)
+        ->type_name("FILE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--style", arguments.style,
+                   "How names look: JSON such as {\"names\": {\"peak\": {\"size\": 16}}}")
+        ->type_name("FILE.json");
+    app.add_option("--font", arguments.font,
+                   "The names' font: the families of installed ones, or a font's file")
+        ->type_name("NAME|FILE");
+    app.add_option(
+           "--svg", arguments.svg,
+           "Also write the names as an SVG file over the picture, which has none then; to finish by hand")
+        ->type_name("FILE.svg");
     app.add_flag("--explain", arguments.explain, "Say what was chosen, and why");
     app.add_flag("--quiet", arguments.quiet, "No progress");
     app.footer(
@@ -265,6 +285,13 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
     take(arguments.landCoverTable, recipe.landCoverTable);
     take(arguments.treeCover, recipe.treeCover);
     take(arguments.vertical, recipe.vertical);
+    take(arguments.style, recipe.labelStyle);
+    take(arguments.font, recipe.font);
+    if (!arguments.labels.empty()) recipe.labels = arguments.labels;
+    if (!arguments.svg.empty() && recipe.labels.empty())
+        throw Failure("--svg writes names; give some with --labels.");
+    const std::string fault = arguments.svg.empty() ? std::string() : faultOfOutput(arguments.svg);
+    if (!fault.empty()) throw Failure(fault);
     if (arguments.samples) recipe.samples = *arguments.samples;
     if (!arguments.palette.empty()) takePalette(arguments.palette, recipe);
     const osg::ref_ptr<PanoramaMap> check = new PanoramaMap;
@@ -379,10 +406,25 @@ void printPick(const Arguments& arguments, const Recipe& recipe, const osgGeoFX:
         std::printf("%s: no ground\n", arguments.pick.c_str());
 }
 
+void putNames(const Arguments& arguments, const geofx::names::PictureNames& names,
+              const osgGeoFX::SceneRenderer& renderer, osg::Image& image)
+{
+    const osgGeoFX::LabelPicture placed = names.place(renderer.camera());
+    if (arguments.svg.empty())
+    {
+        placed.drawOnto(image);
+        return;
+    }
+    std::string error;
+    const fs::path folder = fs::absolute(arguments.svg).parent_path();
+    const std::string picture = fs::absolute(arguments.output).lexically_relative(folder).string();
+    if (!placed.writeSvg(arguments.svg, picture, error)) throw Failure(error);
+}
+
 void paint(const Arguments& arguments, const std::string& ground, const Recipe& recipe,
            PictureFiles& pictures)
 {
-    const osgGeoFX::Scene scene = load(ground);
+    osgGeoFX::Scene scene = load(ground);
     // A scene of one's own may have a projection already.
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
         if (dynamic_cast<osgGeoFX::Deformation*>(scene.effects->getEffect(i)))
@@ -395,6 +437,15 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     options.height = recipe.height;
     options.samples = recipe.samples;
     std::string error;
+    std::optional<geofx::names::PictureNames> names;
+    if (!recipe.labels.empty())
+    {
+        std::string notice;
+        const osg::ref_ptr<osgGeoFX::NameSet> set =
+            geofx::names::read({recipe.labels, recipe.labelStyle, recipe.font}, scene, notice);
+        if (!notice.empty() && !arguments.quiet) std::fprintf(stderr, "%s\n", notice.c_str());
+        names.emplace(*set, scene, recipe.height);
+    }
     const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
     if (!renderer) throw Failure(error);
     TerrainRelief frame;
@@ -402,6 +453,7 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     osgGeoFX::FrameStatistics unused;
     const auto image = renderer->render(recipe.view.viewMatrix(frame), 0.0, unused, error);
     if (!image) throw Failure(error);
+    if (names) putNames(arguments, *names, *renderer, *image);
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
     if (!arguments.pick.empty()) printPick(arguments, recipe, scene, *renderer);
 }

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_render: an OSG file or .geofx scene to pictures, off-screen.
+#include "names/SceneNames.h"
 #include "osggeofx_render_output.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
@@ -45,6 +46,7 @@ struct Arguments
     double fieldOfView = 0.0;
     unsigned int frames = 0;
     std::vector<std::string> effects;
+    geofx::names::Options names;
     bool inset = false;
     bool sky = false;
     bool noCull = false;
@@ -111,6 +113,19 @@ void addOptions(CLI::App& app, Arguments& arguments)
     // What CLI11 has for a version is a text that takes the place of everything else.
     app.set_version_flag("--help-effects", osgGeoFX::effectsHelp,
                          "List the effects with all their properties");
+    app.add_option("--labels", arguments.names.files,
+                   "Names to put onto the picture: vector data of any kind that GDAL reads, FILE or "
+                   "FILE:LAYER. As often as "
+                   "wanted")
+        ->expected(1)
+        ->type_name("FILE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--style", arguments.names.style,
+                   "How names look: JSON such as {\"names\": {\"peak\": {\"size\": 16}}}")
+        ->type_name("FILE.json");
+    app.add_option("--font", arguments.names.font,
+                   "The names' font: the families of installed ones, or a font's file")
+        ->type_name("NAME|FILE");
     app.add_flag("--inset", arguments.inset,
                  "Put the same view without effects, a quarter as wide, into the lower right corner");
     app.add_flag("--sky", arguments.sky,
@@ -311,6 +326,21 @@ void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const Camera
     image.copySubImage(left, margin, 0, straight);
 }
 
+geofx::names::PictureNames readNames(const Arguments& arguments, osgGeoFX::Scene& scene)
+{
+    try
+    {
+        std::string notice;
+        const osg::ref_ptr<osgGeoFX::NameSet> names = geofx::names::read(arguments.names, scene, notice);
+        if (!notice.empty()) std::cerr << "osggeofx_render: " << notice << std::endl;
+        return geofx::names::PictureNames(*names, scene, arguments.renderer.height);
+    }
+    catch (const std::runtime_error& fault)
+    {
+        throw Failure(badInput, fault.what());
+    }
+}
+
 void run(Arguments& arguments)
 {
     std::string error;
@@ -338,6 +368,8 @@ void run(Arguments& arguments)
     options.cull = !arguments.noCull;
     options.countTriangles = !arguments.stats.empty();
     const Camera camera(arguments, *scene);
+    std::optional<geofx::names::PictureNames> names;
+    if (!arguments.names.files.empty()) names = readNames(arguments, *scene);
 
     const auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
     if (!renderer) throw Failure(badInput, error);
@@ -347,6 +379,7 @@ void run(Arguments& arguments)
         osgGeoFX::FrameStatistics figures;
         const auto image = renderer->render(camera.view(frame), camera.time(frame), figures, error);
         if (!image) throw Failure(tookTooLong, error);
+        if (names) names->place(renderer->camera()).drawOnto(*image);
         if (arguments.inset) addInset(*image, *renderer, camera, frame, *scene->effects);
         if (!pictures.write(*image, frame)) throw Failure(badInput, pictures.error());
         statistics.add(figures);

@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_viewer: osgviewer, made for terrain.
+#include "names/SceneNames.h"
 #include "viewer/ViewerSetup.h"
 
+#include <osgGeoFX/labels/MapLabels.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -14,6 +16,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <stdexcept>
 
 namespace
 {
@@ -44,6 +47,11 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
                                "Add an effect to the scene's, as in osggeofx_render; as often as wanted.");
     usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
+    usage.addCommandLineOption("--labels <file>",
+                               "Show the names of a vector file, FILE or FILE:LAYER; as often as wanted.");
+    usage.addCommandLineOption("--style <file.json>", "How the names look, as in osggeofx_render.");
+    usage.addCommandLineOption("--font <name or file>",
+                               "The names' font: installed families, or a font's file.");
     usage.addCommandLineOption("--help-effects", "List the effects with all their properties.");
     usage.addCommandLineOption("--allow-outside",
                                "Let a .geofx scene name files outside its own folder, and addresses.");
@@ -102,6 +110,11 @@ int main(int argc, char** argv)
     const osg::ref_ptr<osgDB::Options> reading =
         arguments.read("--allow-outside") ? new osgDB::Options("allowOutside") : nullptr;
     const bool sky = arguments.read("--sky");
+    geofx::names::Options nameOptions;
+    while (arguments.read("--labels", text))
+        nameOptions.files.push_back(text);
+    arguments.read("--style", nameOptions.style);
+    arguments.read("--font", nameOptions.font);
     double fieldOfView = 0.0;
     const bool fieldOfViewGiven = arguments.read("--fov", fieldOfView);
     const osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> manipulators =
@@ -150,6 +163,23 @@ int main(int argc, char** argv)
         scene->effects->addEffect(effect);
     scene->effects->listenTo(*scene->guard);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
+    if (!nameOptions.files.empty())
+    {
+        try
+        {
+            std::string notice;
+            const osg::ref_ptr<osgGeoFX::NameSet> names = geofx::names::read(nameOptions, *scene, notice);
+            if (!notice.empty()) std::cerr << "osggeofx_viewer: " << notice << std::endl;
+            const osg::ref_ptr<osg::Group> both = new osg::Group;
+            both->addChild(scene->node);
+            both->addChild(new osgGeoFX::MapLabels(*scene->effects, names));
+            scene->node = both;
+        }
+        catch (const std::runtime_error& fault)
+        {
+            return refuse(fault.what());
+        }
+    }
     viewer.setSceneData(scene->node);
     const osg::Vec4 color = viewer.getCamera()->getClearColor();
     const double nearFarRatio = viewer.getCamera()->getNearFarRatio();

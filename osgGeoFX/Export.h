@@ -23,3 +23,10 @@
 #else
 #define OSGGEOFXDATA_EXPORT OSGGEOFX_SYMBOL_IN
 #endif
+
+/// Symbols of libosgGeoFXMaps.
+#if defined(osgGeoFXMaps_EXPORTS)
+#define OSGGEOFXMAPS_EXPORT OSGGEOFX_SYMBOL_OUT
+#else
+#define OSGGEOFXMAPS_EXPORT OSGGEOFX_SYMBOL_IN
+#endif

@@ -39,6 +39,7 @@
 #include <osgGeoFX/scene/CoreProfile.h>
 #include <osgGeoFX/scene/DeformedIntersector.h>
 #include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/scene/DepthReader.h>
 #include <osgGeoFX/scene/EffectCullCallback.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/EngineTiles.h>

@@ -9,6 +9,7 @@
 #include <osgGeoFX/geodata/LandCoverTable.h>
 #include <osgGeoFX/geodata/MappingRaster.h>
 #include <osgGeoFX/geodata/MaterialLegend.h>
+#include <osgGeoFX/geodata/NameVectors.h>
 #include <osgGeoFX/geodata/PalettePoints.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>

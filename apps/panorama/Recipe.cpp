@@ -112,6 +112,10 @@ Recipe Recipe::read(const std::string& file)
                       if (view.contains(name) || !mayLack(name)) value = view.at(name).get<double>();
                   });
         recipe.map = json.at("map").get<std::map<std::string, std::string>>();
+        for (const auto& names : json.value("labels", Json::array()))
+            recipe.labels.push_back(pathFrom(names.get<std::string>(), folder));
+        recipe.labelStyle = pathFrom(json.value("labelStyle", ""), folder);
+        recipe.font = pathFrom(json.value("font", ""), folder);
         if (json.contains("liberties")) json.at("liberties").get_to(recipe.liberties);
     }
     catch (const nlohmann::json::exception& error)
@@ -161,6 +165,10 @@ void Recipe::write(const std::string& file) const
     forValues(view, [&](const char* name, double value) { inView[name] = value; });
     json["map"] = map;
     if (!liberties.empty()) json["liberties"] = liberties;
+    for (const std::string& names : labels)
+        json["labels"].push_back(relativePath(names, folder));
+    put("labelStyle", labelStyle);
+    put("font", font);
     json["reasons"] = reasons;
 
     const std::string unfinished = file + ".part";

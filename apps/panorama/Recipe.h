@@ -37,6 +37,9 @@ struct Recipe
     bool island = false; ///< whether the sea goes on beyond the data
     /// The map's properties that are not their defaults, by name, in text form.
     std::map<std::string, std::string> map;
+    std::vector<std::string> labels;  ///< files with names, or FILE:LAYER
+    std::string labelStyle;           ///< a style file; empty for the usual styles
+    std::string font;                 ///< a font's file or families; empty for the styles'
     std::vector<std::string> reasons; ///< for people; not read
     /// The properties of each liberty (RegionalLiberty) that are not their defaults, as those of the map. They come before it.
     std::vector<std::map<std::string, std::string>> liberties;

@@ -32,6 +32,13 @@ if(GEOFX_BUILD_DATA)
   set_target_properties(geofx_squish PROPERTIES INTERFACE_LINK_LIBRARIES "${GEOFX_SQUISH_LIBRARY}"
                         INTERFACE_INCLUDE_DIRECTORIES "${GEOFX_SQUISH_INCLUDE}")
 endif()
+if(GEOFX_BUILD_MAPS)
+  find_package(PkgConfig REQUIRED)
+  # Lays out text in any script, and draws it as pixels, PDF and SVG.
+  pkg_check_modules(Pango REQUIRED IMPORTED_TARGET pangocairo fontconfig cairo-pdf cairo-svg)
+  # Its -pthread defines something that our precompiled headers do not know.
+  set_target_properties(PkgConfig::Pango PROPERTIES INTERFACE_COMPILE_OPTIONS "")
+endif()
 if(GEOFX_BUILD_APPS)
   find_package(CLI11 CONFIG REQUIRED)
   find_package(nlohmann_json CONFIG REQUIRED)

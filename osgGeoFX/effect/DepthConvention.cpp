@@ -4,6 +4,7 @@
 
 #include <osg/Texture>
 
+#include <algorithm>
 #include <cmath>
 
 namespace osgGeoFX
@@ -53,6 +54,11 @@ bool CameraDepth::reverses(const osg::Matrixd& projection)
 {
     // At a distance d the depth is b / d - a, or b - a d.
     return isPerspective(projection) ? projection(3, 2) > 0.0 : projection(2, 2) > 0.0;
+}
+
+double CameraDepth::logarithmicDepth(double w) const
+{
+    return 0.5 * std::log2(std::max(1e-6, 1.0 + w)) * _factor;
 }
 
 GLenum CameraDepth::format() const

@@ -65,6 +65,8 @@ public:
     bool logarithmic() const { return _factor > 0.0; }
     /// Whether the projection's near and far planes cut what is drawn.
     bool cutByProjection() const { return !logarithmic() || _byFragment; }
+    /// The logarithmic depth in the buffer of a place whose clip coordinate w is this one.
+    double logarithmicDepth(double w) const;
     /// The depth of the far plane in the buffer, to which the buffer is cleared: 1, or 0 where it is reversed.
     double farthest() const { return _reversed ? 0.0 : 1.0; }
     /// LEQUAL, or GEQUAL where it is reversed.

@@ -88,9 +88,9 @@ public:
 
     void collect(OGRLayer& layer)
     {
-        forEachGeometry(layer, _target, _file,
-                        [&](const OGRGeometry& geometry, OGRCoordinateTransformation& toTarget)
-                        { take(geometry, toTarget); });
+        forEachFeature(layer, _target, _file,
+                       [&](const OGRFeature&, const OGRGeometry& geometry,
+                           OGRCoordinateTransformation& toTarget) { take(geometry, toTarget); });
     }
 
 private:

@@ -362,9 +362,9 @@ void addLines(SurfaceData& data, const std::string& name, const std::string& fil
     target.SetFromUserInput(crs.definition.c_str());
     Pen pen(gridOf(data, 0.0, maxSide), width, color);
     for (OGRLayer* layer : dataset->GetLayers())
-        forEachGeometry(*layer, target, file,
-                        [&](const OGRGeometry& geometry, OGRCoordinateTransformation& toFrame)
-                        { draw(geometry, toFrame, crs, pen); });
+        forEachFeature(*layer, target, file,
+                       [&](const OGRFeature&, const OGRGeometry& geometry,
+                           OGRCoordinateTransformation& toFrame) { draw(geometry, toFrame, crs, pen); });
     checkAny(*pen.image, file);
     pen.image->setFileName(file);
     data.addLayer(name, SurfaceData::COLOR, pen.image);

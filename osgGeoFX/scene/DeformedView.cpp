@@ -95,6 +95,32 @@ bool DeformedView::project(double longitude, double latitude, double height, con
     return reference.toWorld(longitude, latitude, height, world) && project(world, pixel);
 }
 
+bool DeformedView::maySee(const osg::BoundingSphered& ball) const
+{
+    if (!ball.valid()) return false;
+    // Transforms above a scene do not scale.
+    const Ball eye = {ball.center() * _modelView, ball.radius()};
+    const auto within = [&](const DeformationChain& chain)
+    {
+        const Ball bound = chain.bound(eye);
+        for (const int axis : {0, 1})
+        {
+            for (const double side : {-1.0, 1.0})
+            {
+                // The plane of the picture's border: w + side * x >= 0.
+                osg::Vec3d normal;
+                for (int i = 0; i < 3; ++i)
+                    normal[i] = _projection(i, 3) + side * _projection(i, axis);
+                const double away = bound.center * normal + _projection(3, 3) + side * _projection(3, axis);
+                if (away < -bound.radius * normal.length()) return false;
+            }
+        }
+        return true;
+    };
+    if (_columns.empty()) return within(*_chain);
+    return std::any_of(_columns.begin(), _columns.end(), [&](const auto& column) { return within(*column); });
+}
+
 std::optional<DeformedLineIntersector::Intersection> DeformedView::pick(double x, double y,
                                                                         osg::Node::NodeMask mask) const
 {

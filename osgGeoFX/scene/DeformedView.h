@@ -6,6 +6,7 @@
 #include <osgGeoFX/scene/DeformedIntersector.h>
 #include <osgGeoFX/scene/EffectScene.h>
 
+#include <osg/BoundingSphere>
 #include <osg/Camera>
 #include <osg/Vec2d>
 
@@ -40,6 +41,10 @@ public:
     /// The same for a longitude and latitude, radians, and a height, metres. False also outside the projection.
     bool project(double longitude, double latitude, double height, const Georeference& reference,
                  osg::Vec2d& pixel) const;
+
+    /// Whether the picture may show something of a sphere of the undeformed world. It is true also for some spheres that are
+    /// out of sight, and whatever hides them.
+    bool maySee(const osg::BoundingSphered& ball) const;
 
     /// The point that a pixel shows; empty for the sky. `mask`: only nodes with one of these bits are visited.
     std::optional<DeformedLineIntersector::Intersection> pick(double x, double y,

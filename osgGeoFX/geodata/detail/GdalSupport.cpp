@@ -63,8 +63,9 @@ DatasetPtr openVectors(const std::string& file)
     return dataset;
 }
 
-void forEachGeometry(OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
-                     const std::function<void(const OGRGeometry&, OGRCoordinateTransformation&)>& take)
+void forEachFeature(
+    OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
+    const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take)
 {
     const OGRSpatialReference* srs = layer.GetSpatialRef();
     if (!srs || srs->IsEmpty() || srs->IsLocal())
@@ -78,7 +79,7 @@ void forEachGeometry(OGRLayer& layer, const OGRSpatialReference& target, const s
         if (!feature->GetGeometryRef()) continue;
         const std::unique_ptr<OGRGeometry> geometry(feature->GetGeometryRef()->getLinearGeometry());
         geometry->segmentize(part);
-        take(*geometry, *toTarget);
+        take(*feature, *geometry, *toTarget);
     }
     if (errors.failed())
         throw BuildError(file + ": its features cannot be read (" + errors.message() +

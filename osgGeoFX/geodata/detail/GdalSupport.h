@@ -71,9 +71,10 @@ TransformationPtr createTransformation(const OGRSpatialReference& from, const OG
 /// Opens vector data; throws BuildError where it is none.
 DatasetPtr openVectors(const std::string& file);
 
-/// Hands out each feature's geometry, curves as straight lines and nothing longer than about a kilometre, for what is straight in
+/// Hands out each feature with its geometry, curves as straight lines and nothing longer than about a kilometre, for what is straight in
 /// the file bends elsewhere; with the way to the target's coordinates. Throws BuildError where the layer has no CRS or cannot be read.
-void forEachGeometry(OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
-                     const std::function<void(const OGRGeometry&, OGRCoordinateTransformation&)>& take);
+void forEachFeature(
+    OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
+    const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take);
 
 } // namespace osgGeoFX

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/labels/NameSet.h>
+#include <osgGeoFX/scene/DepthReader.h>
+
+#include <osg/Camera>
+#include <osg/Image>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The names of one finished picture, for programs that write images. Live pictures have MapLabels.
+
+    It places the names once. They can be drawn onto the picture, or written as vectors that lie where the picture has them.
+    @ingroup labels */
+class OSGGEOFXMAPS_EXPORT LabelPicture
+{
+public:
+    struct Name
+    {
+        std::size_t name = 0;          ///< its index in the set
+        PlacedLabel label;             ///< pixels, y upwards
+        std::vector<osg::Vec2d> curve; ///< of a name along a curve; pixels, y upwards
+    };
+
+    /// `camera`: of the whole picture, with its viewport. `depths`: of the frame, from the cameras that drew the picture or its
+    /// parts (DepthReader::pictures()); what they show to be hidden gets no name. Empty: nothing counts as hidden.
+    LabelPicture(NameSet& names, EffectScene& scene, const osg::Camera& camera,
+                 const std::vector<std::shared_ptr<const DepthPicture>>& depths,
+                 const LabelLayout::Rules& rules = {}, std::size_t most = 2000);
+
+    const std::vector<Name>& placed() const { return _placed; }
+
+    /// Draws lines and names to Cairo, in the picture's pixels with y downwards.
+    void draw(_cairo* target) const;
+    /// Draws them onto an image of the picture's size with 8 bits for each of three or four channels. False if the image is another
+    /// one.
+    bool drawOnto(osg::Image& image) const;
+    /// Writes an SVG file of the picture's size: each name as text that can be searched and edited, and its line. `picture`: a
+    /// file to be shown behind them, named as from the SVG file; empty: none. False, with a sentence in `error`, if it cannot
+    /// be written.
+    bool writeSvg(const std::string& file, const std::string& picture, std::string& error) const;
+
+private:
+    osg::ref_ptr<NameSet> _names;
+    double _width;
+    double _height;
+    std::vector<Name> _placed;
+};
+
+} // namespace osgGeoFX

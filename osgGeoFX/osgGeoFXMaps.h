@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// All that the library osgGeoFXMaps offers: the names of maps.
+#pragma once
+
+#include <osgGeoFX/labels/LabelLayout.h>
+#include <osgGeoFX/labels/LabelPicture.h>
+#include <osgGeoFX/labels/LabelText.h>
+#include <osgGeoFX/labels/MapLabels.h>
+#include <osgGeoFX/labels/MapName.h>
+#include <osgGeoFX/labels/NameFile.h>
+#include <osgGeoFX/labels/NamePlacement.h>
+#include <osgGeoFX/labels/NameSet.h>
+#include <osgGeoFX/labels/Prominence.h>
