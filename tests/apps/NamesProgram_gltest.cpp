@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Names on the pictures of osggeofx_panorama and osggeofx_render, as a person asks for them.
+#include <tools/GlFixture.h>
+#include <tools/InventedTerrain.h>
+#include <tools/RunProgram.h>
+#include <tools/TempDir.h>
+
+#include <osg/Image>
+#include <osgDB/ReadFile>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+using geofx::test::ProgramResult;
+using geofx::test::TempDir;
+
+namespace fs = std::filesystem;
+
+namespace
+{
+
+class NamesProgram : public geofx::test::GlFixture
+{
+protected:
+    void SetUp() override
+    {
+        GlFixture::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        geofx::test::inventTerrain("volcano", file("volcano.tif"), 301);
+    }
+
+    ProgramResult run(const std::string& program, std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.begin(), geofx::test::builtProgram(program));
+        geofx::test::ProgramOptions options;
+        options.folder = fs::path(_folder.path()).string();
+        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
+        return geofx::test::runProgram(arguments, options);
+    }
+    ProgramResult panorama(std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.end(), {"--size", "640x360", "--samples", "0", "--quiet"});
+        return run("osggeofx_panorama", arguments);
+    }
+
+    std::string file(const std::string& name) const { return (fs::path(_folder.path()) / name).string(); }
+    void write(const std::string& name, const std::string& content) const
+    {
+        std::ofstream(file(name)) << content;
+    }
+    std::string bytes(const std::string& name) const
+    {
+        std::ifstream stream(file(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    }
+    /// The place that a pixel of the plain map shows.
+    osg::Vec2d placeOf(int x, int y)
+    {
+        const ProgramResult result = panorama({"volcano.tif", "-o", "plain.png", "--work", "work", "--pick",
+                                               std::to_string(x) + "," + std::to_string(y)});
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        osg::Vec2d place;
+        EXPECT_EQ(std::sscanf(result.standardOutput.c_str(), "%*[^:]: longitude %lf, latitude %lf",
+                              &place.x(), &place.y()),
+                  2)
+            << result.standardOutput;
+        return place;
+    }
+    static std::string feature(const std::string& name, const std::string& style, const osg::Vec2d& place)
+    {
+        char text[300];
+        std::snprintf(text, sizeof(text),
+                      R"({"type":"Feature","properties":{"name":"%s","style":"%s"},)"
+                      R"("geometry":{"type":"Point","coordinates":[%.8f,%.8f]}})",
+                      name.c_str(), style.c_str(), place.x(), place.y());
+        return text;
+    }
+    void writeNames(const std::string& features) const
+    {
+        write("names.geojson", R"({"type":"FeatureCollection","features":[)" + features + "]}");
+    }
+
+    TempDir _folder;
+};
+
+} // namespace
+
+// A name lies where --pick says that its place is: in the SVG file, and in the picture.
+TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
+{
+    const osg::Vec2d place = placeOf(300, 250);
+    writeNames(feature("Hütte <&>", "hut", place));
+    write(
+        "style.json",
+        R"({"names": {"hut": {"manner": "beside", "dot": 3, "color": "#ff00ff", "halo": "#ff00ff", "size": 20}}})");
+    const ProgramResult vectors = panorama({"volcano.tif", "-o", "map.png", "--work", "work", "--labels",
+                                            "names.geojson", "--style", "style.json", "--svg", "names.svg"});
+    ASSERT_EQ(vectors.exitCode, 0) << vectors.standardError;
+    EXPECT_EQ(vectors.standardError, "");
+    EXPECT_TRUE(bytes("map.png") == bytes("plain.png")) << "the names are in the SVG file";
+    const std::string svg = bytes("names.svg");
+    std::smatch match;
+    ASSERT_TRUE(std::regex_search(svg, match, std::regex("circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\""))) << svg;
+    EXPECT_NEAR(std::stod(match[1]), 300.5, 0.5);
+    EXPECT_NEAR(std::stod(match[2]), 250.5, 0.5);
+    EXPECT_NE(svg.find("Hütte &lt;&amp;&gt;</text>"), std::string::npos);
+    EXPECT_NE(svg.find("xlink:href=\"map.png\""), std::string::npos);
+
+    const ProgramResult raster = panorama({"volcano.tif", "-o", "named.png", "--work", "work", "--labels",
+                                           "names.geojson", "--style", "style.json"});
+    ASSERT_EQ(raster.exitCode, 0) << raster.standardError;
+    const osg::ref_ptr<osg::Image> plain = osgDB::readRefImageFile(file("plain.png"));
+    const osg::ref_ptr<osg::Image> named = osgDB::readRefImageFile(file("named.png"));
+    ASSERT_TRUE(plain && named);
+    int dot = 0, far = 0;
+    for (unsigned int y = 0; y < 360; ++y)
+    {
+        for (unsigned int x = 0; x < 640; ++x)
+        {
+            if (plain->getColor(x, y) == named->getColor(x, y)) continue;
+            const double dx = x + 0.5 - 300.5, dy = 359 - static_cast<int>(y) + 0.5 - 250.5;
+            // The dot is 3 pixels at a height of 900.
+            dot += std::hypot(dx, dy) < 2.0 ? 1 : 0;
+            far += dx < -60.0 || dx > 60.0 || std::abs(dy) > 12.0 ? 1 : 0;
+        }
+    }
+    EXPECT_GE(dot, 3);
+    EXPECT_EQ(far, 0);
+
+    // A recipe has the names, too.
+    const ProgramResult again = run("osggeofx_panorama", {"named.json", "-o", "again.png", "--quiet"});
+    ASSERT_EQ(again.exitCode, 0) << again.standardError;
+    EXPECT_TRUE(bytes("again.png") == bytes("named.png"));
+}
+
+TEST_F(NamesProgram, IsOnPicturesOfAnyScene)
+{
+    const osg::Vec2d place = placeOf(320, 240);
+    writeNames(feature("Middle", "hut", place));
+    char view[120];
+    std::snprintf(view, sizeof(view), "%.6f,%.6f,60000,0,-90", place.x(), place.y());
+    std::string terrain;
+    for (const auto& entry : fs::recursive_directory_iterator(file("work")))
+        if (entry.path().filename() == "terrain.osgb") terrain = entry.path().string();
+    ASSERT_FALSE(terrain.empty());
+    const auto draw = [&](const std::string& output, std::vector<std::string> more)
+    {
+        more.insert(more.begin(), {terrain, "-o", output, "--size", "400x300", "--view", view});
+        const ProgramResult result = run("osggeofx_render", more);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        return osgDB::readRefImageFile(file(output));
+    };
+    const osg::ref_ptr<osg::Image> plain = draw("a.png", {}),
+                                   named = draw("b.png", {"--labels", "names.geojson"});
+    ASSERT_TRUE(plain && named);
+    int near = 0, far = 0;
+    for (unsigned int y = 0; y < 300; ++y)
+    {
+        for (unsigned int x = 0; x < 400; ++x)
+        {
+            if (plain->getColor(x, y) == named->getColor(x, y)) continue;
+            const bool close = std::abs(static_cast<double>(x) - 200.0) < 60.0 &&
+                               std::abs(static_cast<double>(y) - 150.0) < 40.0;
+            (close ? near : far) += 1;
+        }
+    }
+    EXPECT_GT(near, 30);
+    EXPECT_EQ(far, 0);
+}
+
+TEST_F(NamesProgram, FaultsAreSentences)
+{
+    writeNames(feature("Elsewhere", "", {100.0, -80.0}));
+    const auto faultOf = [&](std::vector<std::string> more)
+    {
+        more.insert(more.begin(), {"volcano.tif", "-o", "map.png", "--work", "work"});
+        const ProgramResult result = panorama(more);
+        EXPECT_EQ(result.exitCode, 2) << result.standardError;
+        EXPECT_FALSE(fs::exists(file("map.png")));
+        return result.standardError;
+    };
+    EXPECT_NE(faultOf({"--labels", "names.geojson"}).find("lie beside the terrain"), std::string::npos);
+    EXPECT_NE(faultOf({"--labels", "none.gpkg"}).find("none.gpkg"), std::string::npos);
+    EXPECT_NE(faultOf({"--svg", "names.svg"}).find("--labels"), std::string::npos);
+    write("style.json", R"({"names": {"peak": {"size": -3}}})");
+    EXPECT_NE(faultOf({"--labels", "names.geojson", "--style", "style.json"})
+                  .find("\"size\" must be a number from"),
+              std::string::npos);
+    write("style.json", R"({"names": {"peak": {"colour": "#ffffff"}}})");
+    EXPECT_NE(faultOf({"--labels", "names.geojson", "--style", "style.json"}).find("\"colour\" is not known"),
+              std::string::npos);
+    write("style.json", "{");
+    EXPECT_NE(faultOf({"--labels", "names.geojson", "--style", "style.json"}).find("is no style file"),
+              std::string::npos);
+    write("font.ttf", "no font");
+    EXPECT_NE(faultOf({"--labels", "names.geojson", "--font", "font.ttf"}).find("is not a font"),
+              std::string::npos);
+}
