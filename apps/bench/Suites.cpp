@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "CloseUpSuite.h"
 #include "DeformationSuite.h"
+#include "LabelsSuite.h"
 #include "MappingSuite.h"
 #include "OsgEarthSuite.h"
 #include "PanoramaSuite.h"
@@ -17,7 +18,8 @@ namespace geofx::bench
 const std::vector<Suite>& suites()
 {
     static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite(),
-                                           closeUpSuite(), panoramaSuite(),    osgEarthSuite()};
+                                           closeUpSuite(), panoramaSuite(),    labelsSuite(),
+                                           osgEarthSuite()};
     return all;
 }
 

@@ -561,6 +561,29 @@ TEST(Panorama, ShowsNothingOfWhatItHides)
     EXPECT_GT(boxes.above, sampleCount() / 100);
 }
 
+// On the way from the camera's own picture to the map, what the map leaves out may be in the picture.
+TEST(Panorama, PartlyThereItHidesNothingThatShows)
+{
+    int shown = 0;
+    for (int sample = 0; sample < sampleCount(); ++sample)
+    {
+        Random random(static_cast<std::uint64_t>(sample));
+        const Case found = randomMix(random);
+        SCOPED_TRACE(sample);
+        osgGeoFX::Ball ball;
+        ball.center =
+            found.at(random.sign() * random.logarithmic(0.1, 30.0) * found.radius(),
+                     random.uniform(-3.0, 3.0) * found.panorama().end, random.uniform(-400.0, 9000.0));
+        ball.radius = random.logarithmic(1e-3, 0.1) * found.panorama().horizon;
+        const Vec3d deformed = found.frame->deform(ball.center);
+        const Vec3d seen = found.seen(ball.center);
+        const bool inPicture = deformed.z() < 0.0 && std::abs(seen.x()) < 1.0 && std::abs(seen.y()) < 1.0;
+        shown += inPicture ? 1 : 0;
+        EXPECT_FALSE(inPicture && found.arc(ball.center) < osg::PI / 3.0 && found.frame->hides(ball, {}));
+    }
+    EXPECT_GT(shown, sampleCount() / 20);
+}
+
 TEST(Panorama, StillWaterMirrorsHeights)
 {
     forRandom(

@@ -460,27 +460,31 @@ TEST_F(EffectPairs, CloseUpsOfBentGround)
 // Houses stand in the close-up as on the ground, wherever bend and close-up have moved them.
 TEST_F(EffectPairs, HousesInCloseUpsOfBentGround)
 {
-    const osg::Vec2d center(150.0, -350.0);
-    osg::ref_ptr<osg::ShapeDrawable> box = new osg::ShapeDrawable(new osg::Box({}, 120.0f, 90.0f, 160.0f));
+    osg::ref_ptr<osg::ShapeDrawable> box = new osg::ShapeDrawable(new osg::Box({}, 60.0f, 45.0f, 80.0f));
     box->setColor({0.9f, 0.1f, 0.1f, 1.0f});
-    osg::ref_ptr<osg::Group> houses = new osg::Group;
-    for (const double aside : {-60.0, 60.0})
-    {
-        const osg::Vec3d at(center + osg::Vec2d(aside, aside), groundHeight(center.x(), center.y()));
-        osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(osg::Matrixd::translate(at));
-        place->addChild(box);
-        osg::ref_ptr<RigidReference> rigid = new RigidReference;
-        rigid->setReference(at);
-        rigid->addChild(place);
-        houses->addChild(rigid);
-    }
-    houses->getOrCreateStateSet()->setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OFF);
-    const osg::ref_ptr<osg::Node> town = together({_ground, houses});
-    for (const osg::ref_ptr<Effect>& bend : Effects{makeBirdsEye(), makePedestrian()})
+    // The bird's-eye view puts what is far elsewhere, farther than a house is wide.
+    for (const auto& [bend, center] :
+         {std::pair<osg::ref_ptr<Effect>, osg::Vec2d>(makeBirdsEye(), {150.0, 450.0}),
+          std::pair<osg::ref_ptr<Effect>, osg::Vec2d>(makePedestrian(), {150.0, -350.0})})
     {
         SCOPED_TRACE(bend->className());
+        osg::ref_ptr<osg::Group> houses = new osg::Group;
+        for (const double aside : {-60.0, 60.0})
+        {
+            const osg::Vec3d at(center + osg::Vec2d(aside, aside), groundHeight(center.x(), center.y()));
+            osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(osg::Matrixd::translate(at));
+            place->addChild(box);
+            osg::ref_ptr<RigidReference> rigid = new RigidReference;
+            rigid->setReference(at);
+            rigid->addChild(place);
+            houses->addChild(rigid);
+        }
+        houses->getOrCreateStateSet()->setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OFF);
+        const osg::ref_ptr<osg::Node> town = together({_ground, houses});
         const osg::ref_ptr<CloseUp> closeUp = makeRectangle(center, 250.0);
-        closeUp->setOffset({-500.0, -400.0, 250.0});
+        // To where the picture has room.
+        const bool low = center.y() < 0.0;
+        closeUp->setOffset({low ? -150.0 : -500.0, low ? 30.0 : -400.0, 250.0});
         for (const CloseUp::Edge edge : {CloseUp::FRAGMENTS, CloseUp::PRIMITIVES})
         {
             closeUp->setEdge(edge);
@@ -491,6 +495,7 @@ TEST_F(EffectPairs, HousesInCloseUpsOfBentGround)
             houses->setNodeMask(~0u);
             // Both the two in the overview and those in the close-up, which are larger.
             const double overview = differing(*picture({bend}, town), *picture({bend}, _ground), 20);
+            EXPECT_GT(overview, 0.0);
             EXPECT_GT(differing(*drawn, *empty, 20), 1.15 * overview);
             osg::Camera& camera = *viewer().getCamera();
             const osg::CullSettings::CullingMode culling = camera.getCullingMode();

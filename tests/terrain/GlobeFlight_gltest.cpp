@@ -162,6 +162,12 @@ TEST_F(GlobeFlight, IsCalmAndWhole)
         const std::vector<bool> whole = covered(*render(_scene->node));
         camera.setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
         camera.setProjectionMatrix(projection);
+        // Nothing is in sight behind the highest mountain that stands above the horizon.
+        const auto horizon = [](double height)
+        {
+            return std::sqrt(height * (2.0 * osg::WGS_84_RADIUS_EQUATOR + height));
+        };
+        EXPECT_LE(far, 1.03 * (horizon(placeOf(step).height) + horizon(_scene->terrain->maxHeight)));
         const std::vector<bool> drawn = covered(*image);
         for (std::size_t i = 0; i < whole.size(); ++i)
             cut += whole[i] != drawn[i] ? 1 : 0;
