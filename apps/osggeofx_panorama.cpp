@@ -13,7 +13,9 @@
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/PanoramaPalette.h>
+#include <osgGeoFX/print/PicturePrint.h>
 #include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/terrain/ProgressLine.h>
 #include <osgGeoFX/viewer/Scene.h>
 
 #include <CLI/CLI.hpp>
@@ -75,7 +77,10 @@ void addOptions(CLI::App& app, Arguments& arguments)
                    "The picture; its extension names the format (png, jpg, tiff)")
         ->required()
         ->type_name("FILE");
-    app.add_option("--size", arguments.size, "Its size in pixels (1600x900)")->type_name("WxH");
+    app.add_option("--size", arguments.size,
+                   "Its size: in pixels (1600x900), or on paper, such as A1@300dpi, A3-portrait@300dpi, "
+                   "90x60cm@200dpi")
+        ->type_name("WxH|PAPER@DPI");
     app.add_option(
            "--view-from", arguments.viewFrom,
            "Where the viewer stands: south, north-east, …; or the place at the middle of the picture's base")
@@ -270,12 +275,12 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
 {
     if (!arguments.size.empty())
     {
-        int used = 0;
-        if (std::sscanf(arguments.size.c_str(), "%5dx%5d%n", &recipe.width, &recipe.height, &used) != 2 ||
-            static_cast<std::size_t>(used) != arguments.size.size() || recipe.width < 16 ||
-            recipe.height < 16)
-            throw Failure("--size " + arguments.size +
-                          ": write width and height in pixels, at least 16 each, such as 1600x900.");
+        std::string error;
+        const auto size = osgGeoFX::PrintSize::parse(arguments.size, error);
+        if (!size) throw Failure("--size " + error);
+        recipe.width = size->width;
+        recipe.height = size->height;
+        recipe.dpi = size->dpi;
     }
     const auto take = [](const std::string& given, std::string& value)
     {
@@ -393,10 +398,9 @@ osg::ref_ptr<PanoramaMap> mapOf(const Recipe& recipe)
 }
 
 void printPick(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Scene& scene,
-               const osgGeoFX::SceneRenderer& renderer)
+               const osgGeoFX::DeformedView& view)
 {
     const osg::Vec2d pixel = pairOf("--pick", arguments.pick);
-    const osgGeoFX::DeformedView view(*scene.effects, renderer.camera());
     double longitude = 0.0, latitude = 0.0, height = 0.0;
     if (scene.reference && view.unproject(pixel.x() + 0.5, recipe.height - pixel.y() - 0.5, *scene.reference,
                                           longitude, latitude, height))
@@ -421,6 +425,41 @@ void putNames(const Arguments& arguments, const geofx::names::PictureNames& name
     if (!placed.writeSvg(arguments.svg, picture, error)) throw Failure(error);
 }
 
+bool isPrint(const Recipe& recipe)
+{
+    const osgGeoFX::PrintSize size{recipe.width, recipe.height, recipe.dpi};
+    return size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size);
+}
+
+void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::SceneRenderer::Options& renderer,
+           const osg::ref_ptr<osgGeoFX::NameSet>& names, osgGeoFX::Scene& scene, const osg::Matrixd& view)
+{
+    osgGeoFX::PicturePrint::Options options;
+    options.size = {recipe.width, recipe.height, recipe.dpi};
+    options.renderer = renderer;
+    options.names = names;
+    if (names) names->setScale(recipe.height / usualHeight);
+    options.work = fs::path(arguments.output).replace_extension().string() + ".tiles";
+    options.recipe = recipe.text();
+    options.metadata = {{"Software", "osgGeoFX osggeofx_panorama"}, {"ImageDescription", recipe.text()}};
+    options.svg = arguments.svg;
+    osgGeoFX::ProgressLine line("osggeofx_panorama");
+    if (!arguments.quiet)
+        options.progress = [&](int done, int all)
+        {
+            line(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(all), "drawing");
+        };
+    std::string error;
+    if (!osgGeoFX::PicturePrint::write(scene, options, view, arguments.output, error)) throw Failure(error);
+    if (arguments.pick.empty()) return;
+    const double aspect = static_cast<double>(recipe.width) / recipe.height;
+    printPick(
+        arguments, recipe, scene,
+        {*scene.effects, view, osg::Matrixd::perspective(renderer.fieldOfView, aspect, 1.0, 1e6),
+         static_cast<double>(recipe.width), static_cast<double>(recipe.height),
+         static_cast<double>(scene.lodScale(recipe.height, osg::DegreesToRadians(renderer.fieldOfView)))});
+}
+
 void paint(const Arguments& arguments, const std::string& ground, const Recipe& recipe,
            PictureFiles& pictures)
 {
@@ -437,25 +476,30 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     options.height = recipe.height;
     options.samples = recipe.samples;
     std::string error;
-    std::optional<geofx::names::PictureNames> names;
+    osg::ref_ptr<osgGeoFX::NameSet> set;
     if (!recipe.labels.empty())
     {
         std::string notice;
-        const osg::ref_ptr<osgGeoFX::NameSet> set =
-            geofx::names::read({recipe.labels, recipe.labelStyle, recipe.font}, scene, notice);
+        set = geofx::names::read({recipe.labels, recipe.labelStyle, recipe.font}, scene, notice);
         if (!notice.empty() && !arguments.quiet) std::fprintf(stderr, "%s\n", notice.c_str());
-        names.emplace(*set, scene, recipe.height);
     }
-    const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
-    if (!renderer) throw Failure(error);
     TerrainRelief frame;
     frame.geocentric = recipe.geocentric;
+    if (isPrint(recipe))
+    {
+        print(arguments, recipe, options, set, scene, recipe.view.viewMatrix(frame));
+        return;
+    }
+    std::optional<geofx::names::PictureNames> names;
+    if (set) names.emplace(*set, scene, recipe.height);
+    const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
+    if (!renderer) throw Failure(error);
     osgGeoFX::FrameStatistics unused;
     const auto image = renderer->render(recipe.view.viewMatrix(frame), 0.0, unused, error);
     if (!image) throw Failure(error);
     if (names) putNames(arguments, *names, *renderer, *image);
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
-    if (!arguments.pick.empty()) printPick(arguments, recipe, scene, *renderer);
+    if (!arguments.pick.empty()) printPick(arguments, recipe, scene, {*scene.effects, renderer->camera()});
 }
 
 void run(const Arguments& arguments)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// All that the library osgGeoFXMaps offers: the names of maps.
+// All that the library osgGeoFXMaps offers: the names of maps, and pictures of any size.
 #pragma once
 
 #include <osgGeoFX/labels/LabelLayout.h>
@@ -13,3 +13,5 @@
 #include <osgGeoFX/labels/NamePlacement.h>
 #include <osgGeoFX/labels/NameSet.h>
 #include <osgGeoFX/labels/Prominence.h>
+
+#include <osgGeoFX/print/PicturePrint.h>

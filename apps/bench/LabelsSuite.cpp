@@ -132,8 +132,8 @@ std::vector<Figure> measure(const NamedView& view, const Settings& settings,
     drawing.camera().setLODScale(scene->lodScale(size.height, FIELD_OF_VIEW));
     drawing.look(matrix);
     drawing.settle();
-    for (int i = 0; i < 4; ++i)
-        drawing.frame(); // depths are known a frame later
+    for (int i = 0; i < 8; ++i)
+        drawing.frame(); // depths are known some frames later
     const std::size_t shown = labels->shown(drawing.camera()).size();
     if (!settings.pictures.empty())
     {

@@ -96,6 +96,7 @@ Recipe Recipe::read(const std::string& file)
         if (recipe.palette != colorBlind) recipe.palette = pathFrom(recipe.palette, folder);
         recipe.width = json.at("size").at(0).get<int>();
         recipe.height = json.at("size").at(1).get<int>();
+        recipe.dpi = json.value("dpi", 0.0);
         recipe.samples = json.value("samples", recipe.samples);
         recipe.island = json.value("island", false);
         const Json& view = json.at("view");
@@ -128,49 +129,66 @@ Recipe Recipe::read(const std::string& file)
     return recipe;
 }
 
-void Recipe::write(const std::string& file) const
+namespace
 {
-    const fs::path folder = folderOf(file);
+
+Json jsonOf(const Recipe& recipe, const fs::path& folder)
+{
     Json json;
     json["osggeofx_panorama"] = newestFormat;
-    if (terrain.empty())
+    if (recipe.terrain.empty())
     {
         json["dems"] = Json::array();
-        for (const std::string& dem : dems)
+        for (const std::string& dem : recipe.dems)
             json["dems"].push_back(relativePath(dem, folder));
     }
     else
     {
-        json["terrain"] = relativePath(terrain, folder);
-        json["geocentric"] = geocentric;
+        json["terrain"] = relativePath(recipe.terrain, folder);
+        json["geocentric"] = recipe.geocentric;
     }
     const auto put = [&](const char* name, const std::string& path)
     {
         if (!path.empty()) json[name] = relativePath(path, folder);
     };
-    put("landCover", landCover);
-    put("landCoverTable", landCoverTable);
-    put("treeCover", treeCover);
-    json["vertical"] = vertical;
-    if (palette == colorBlind)
-        json["palette"] = palette;
+    put("landCover", recipe.landCover);
+    put("landCoverTable", recipe.landCoverTable);
+    put("treeCover", recipe.treeCover);
+    json["vertical"] = recipe.vertical;
+    if (recipe.palette == colorBlind)
+        json["palette"] = recipe.palette;
     else
-        put("palette", palette);
-    json["size"] = {width, height};
-    json["samples"] = samples;
-    json["island"] = island;
+        put("palette", recipe.palette);
+    json["size"] = {recipe.width, recipe.height};
+    if (recipe.dpi > 0.0) json["dpi"] = recipe.dpi;
+    json["samples"] = recipe.samples;
+    json["island"] = recipe.island;
     Json& inView = json["view"];
-    inView["place"] = {view.place.x(), view.place.y()};
-    inView["heading"] = view.heading;
-    forValues(view, [&](const char* name, double value) { inView[name] = value; });
-    json["map"] = map;
-    if (!liberties.empty()) json["liberties"] = liberties;
-    for (const std::string& names : labels)
+    inView["place"] = {recipe.view.place.x(), recipe.view.place.y()};
+    inView["heading"] = recipe.view.heading;
+    forValues(recipe.view, [&](const char* name, double value) { inView[name] = value; });
+    json["map"] = recipe.map;
+    if (!recipe.liberties.empty()) json["liberties"] = recipe.liberties;
+    for (const std::string& names : recipe.labels)
         json["labels"].push_back(relativePath(names, folder));
-    put("labelStyle", labelStyle);
-    put("font", font);
-    json["reasons"] = reasons;
+    put("labelStyle", recipe.labelStyle);
+    put("font", recipe.font);
+    json["reasons"] = recipe.reasons;
+    return json;
+}
 
+} // namespace
+
+std::string Recipe::text() const
+{
+    Json json = jsonOf(*this, ".");
+    json.erase("reasons");
+    return json.dump();
+}
+
+void Recipe::write(const std::string& file) const
+{
+    const Json json = jsonOf(*this, folderOf(file));
     const std::string unfinished = file + ".part";
     std::ofstream stream(unfinished, std::ios::binary);
     stream << json.dump(2) << '\n';

@@ -32,6 +32,7 @@ struct Recipe
     std::string vertical = "none"; ///< as osggeofx_build's --vertical
     std::string palette;           ///< an image, or `colorBlind`; empty for the season's own
     int width = 1600, height = 900;
+    double dpi = 0.0;         ///< pixels for each inch of a print; 0: none
     unsigned int samples = 4; ///< for each pixel
     osgGeoFX::PanoramaComposition view;
     bool island = false; ///< whether the sea goes on beyond the data
@@ -50,6 +51,8 @@ struct Recipe
     static bool isTerrain(const std::string& file);
     static Recipe read(const std::string& file); ///< throws Failure
     void write(const std::string& file) const;   ///< a whole file or none; throws Failure
+    /// What read() needs, as a file in the current folder would have it.
+    std::string text() const;
 };
 
 } // namespace geofx::panorama

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/labels/LabelPicture.h>
 
-#include <osgGeoFX/labels/detail/NameSight.h>
-
 #include <cairo.h>
 #include <libxml/xmlwriter.h>
 
@@ -93,18 +91,35 @@ LabelPicture::LabelPicture(NameSet& names, EffectScene& scene, const osg::Camera
                            const LabelLayout::Rules& rules, std::size_t most)
     : _names(&names), _width(camera.getViewport()->width()), _height(camera.getViewport()->height())
 {
-    const DeformedView view(scene, camera);
-    const std::vector<NameSet::Seen> seen = names.inPicture(view, _width, _height, most);
-    std::vector<LabelCandidate> candidates;
+    const std::vector<NameSet::Seen> seen =
+        names.inPicture(DeformedView(scene, camera), _width, _height, most);
+    std::vector<bool> visible;
     for (const NameSet::Seen& each : seen)
+        visible.push_back(depths.empty() || NameSet::isShown(each, NameSet::placesShown(each, depths)));
+    place(seen, visible, rules);
+}
+
+LabelPicture::LabelPicture(NameSet& names, const std::vector<NameSet::Seen>& seen,
+                           const std::vector<bool>& visible, double width, double height,
+                           const LabelLayout::Rules& rules)
+    : _names(&names), _width(width), _height(height)
+{
+    place(seen, visible, rules);
+}
+
+void LabelPicture::place(const std::vector<NameSet::Seen>& seen, const std::vector<bool>& visible,
+                         const LabelLayout::Rules& rules)
+{
+    std::vector<LabelCandidate> candidates;
+    for (std::size_t i = 0; i < seen.size(); ++i)
     {
-        candidates.push_back(each.label);
-        candidates.back().id = candidates.size() - 1;
-        candidates.back().visible = depths.empty() || isSeen(each.drawn, depths);
+        candidates.push_back(seen[i].label);
+        candidates.back().id = i;
+        candidates.back().visible = i < visible.size() && visible[i];
     }
     LabelLayout::Rules scaled = rules;
-    scaled.gap *= names.getScale();
-    scaled.room *= names.getScale();
+    scaled.gap *= _names->getScale();
+    scaled.room *= _names->getScale();
     for (const PlacedLabel& label : LabelLayout::placeOnce(candidates, _width, _height, scaled))
     {
         _placed.push_back({seen[label.id].name, label, seen[label.id].label.curve});
@@ -157,18 +172,22 @@ void LabelPicture::draw(_cairo* target) const
 
 bool LabelPicture::drawOnto(osg::Image& image) const
 {
+    return image.t() == static_cast<int>(_height) && drawOnto(image, 0);
+}
+
+bool LabelPicture::drawOnto(osg::Image& image, int first) const
+{
     const int channels = image.getPixelFormat() == GL_RGB ? 3 : image.getPixelFormat() == GL_RGBA ? 4 : 0;
-    if (!channels || image.getDataType() != GL_UNSIGNED_BYTE || image.s() != static_cast<int>(_width) ||
-        image.t() != static_cast<int>(_height))
+    if (!channels || image.getDataType() != GL_UNSIGNED_BYTE || image.s() != static_cast<int>(_width))
         return false;
-    // In strips, so that large pictures need no second one.
+    // In parts, so that large pictures need no second one.
     constexpr int strip = 512;
     for (int top = 0; top < image.t(); top += strip)
     {
         const int rows = std::min(strip, image.t() - top);
         cairo_surface_t* const surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, image.s(), rows);
         cairo_t* const target = cairo_create(surface);
-        cairo_translate(target, 0.0, -top);
+        cairo_translate(target, 0.0, -(first + top));
         draw(target);
         cairo_destroy(target);
         cairo_surface_flush(surface);

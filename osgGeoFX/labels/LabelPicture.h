@@ -34,7 +34,13 @@ public:
     /// parts (DepthReader::pictures()); what they show to be hidden gets no name. Empty: nothing counts as hidden.
     LabelPicture(NameSet& names, EffectScene& scene, const osg::Camera& camera,
                  const std::vector<std::shared_ptr<const DepthPicture>>& depths,
-                 const LabelLayout::Rules& rules = {}, std::size_t most = 2000);
+                 const LabelLayout::Rules& rules = {}, std::size_t most = usualMost);
+    /// The same for names that NameSet::inPicture() has found in a picture of this size. `visible` tells which of them are to be seen, one
+    /// for each.
+    LabelPicture(NameSet& names, const std::vector<NameSet::Seen>& seen, const std::vector<bool>& visible,
+                 double width, double height, const LabelLayout::Rules& rules = {});
+    /// Names that are looked at in a picture.
+    static constexpr std::size_t usualMost = 2000;
 
     const std::vector<Name>& placed() const { return _placed; }
 
@@ -43,12 +49,18 @@ public:
     /// Draws them onto an image of the picture's size with 8 bits for each of three or four channels. False if the image is another
     /// one.
     bool drawOnto(osg::Image& image) const;
+    /// Draws them onto some rows of the picture, an image as wide as the picture. `top`: the row of the picture, counted from the uppermost
+    /// one, that is the image's uppermost.
+    bool drawOnto(osg::Image& rows, int top) const;
     /// Writes an SVG file of the picture's size: each name as text that can be searched and edited, and its line. `picture`: a
     /// file to be shown behind them, named as from the SVG file; empty: none. False, with a sentence in `error`, if it cannot
     /// be written.
     bool writeSvg(const std::string& file, const std::string& picture, std::string& error) const;
 
 private:
+    void place(const std::vector<NameSet::Seen>& seen, const std::vector<bool>& visible,
+               const LabelLayout::Rules& rules);
+
     osg::ref_ptr<NameSet> _names;
     double _width;
     double _height;

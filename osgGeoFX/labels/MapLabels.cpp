@@ -4,7 +4,6 @@
 
 #include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/labels/detail/LabelAtlas.h>
-#include <osgGeoFX/labels/detail/NameSight.h>
 
 #include <osg/BlendFunc>
 #include <osg/Depth>
@@ -132,8 +131,7 @@ struct ViewNames
     };
     std::unordered_map<std::size_t, Sight> sight;
     /// Where names were drawn in frames whose depths are awaited.
-    std::deque<std::pair<unsigned int, std::vector<std::pair<std::size_t, std::vector<osg::Vec3d>>>>> history;
-    std::map<const osg::Camera*, unsigned int> lastDepths;
+    std::deque<std::pair<unsigned int, std::vector<NameSet::Seen>>> history;
 };
 
 /// A map from the view's clip coordinates, x and y, to those of a camera that draws a part of the view's picture.
@@ -198,6 +196,8 @@ MapLabels::MapLabels(EffectScene& scene, NameSet* names)
     : _scene(&scene), _names(names), _reader(new DepthReader), _views(std::make_unique<Views>())
 {
     setCullingActive(false);
+    // A name waits longer before it comes or goes, and reading costs.
+    _reader->setInterval(3);
     _reader->setDepthConvention(scene.getDepthConvention());
 }
 
@@ -248,8 +248,8 @@ void lookAtDepths(ViewNames& view, const DepthReader& reader, const std::vector<
     while (!view.history.empty() && view.history.front().first < frame)
         view.history.pop_front();
     if (view.history.empty() || view.history.front().first != frame) return;
-    for (const auto& [name, drawn] : view.history.front().second)
-        view.sight[name] = {isSeen(drawn, pictures), frame};
+    for (const NameSet::Seen& seen : view.history.front().second)
+        view.sight[seen.name] = {NameSet::isShown(seen, NameSet::placesShown(seen, pictures)), frame};
     view.history.pop_front();
     // What has not been in the picture for long is to be looked at anew.
     for (auto entry = view.sight.begin(); entry != view.sight.end();)
@@ -307,7 +307,6 @@ void MapLabels::traverse(osg::NodeVisitor& visitor)
         view.seen = _names->inPicture(deformed, width, height, mostCandidates);
         view.index.clear();
         std::vector<LabelCandidate> candidates;
-        std::vector<std::pair<std::size_t, std::vector<osg::Vec3d>>> places;
         for (std::size_t i = 0; i < view.seen.size(); ++i)
         {
             NameSet::Seen& seen = view.seen[i];
@@ -315,9 +314,8 @@ void MapLabels::traverse(osg::NodeVisitor& visitor)
             seen.label.visible = _shown && known != view.sight.end() && known->second.visible;
             candidates.push_back(seen.label);
             view.index[seen.name] = i;
-            places.emplace_back(seen.name, seen.drawn);
         }
-        view.history.emplace_back(frame, std::move(places));
+        view.history.emplace_back(frame, view.seen);
         if (view.history.size() > longestWait) view.history.pop_front();
         view.layout.setRules(_rules);
         view.placed = view.layout.place(candidates, width, height, stamp ? stamp->getReferenceTime() : 0.0);

@@ -238,6 +238,21 @@ bool NameSet::see(std::size_t index, const DeformedView& view, double width, dou
     return true;
 }
 
+std::size_t NameSet::placesShown(const Seen& seen,
+                                 const std::vector<std::shared_ptr<const DepthPicture>>& pictures)
+{
+    const double tolerance = seen.drawn.size() > 1 ? 0.02 : 0.004;
+    const auto count =
+        std::count_if(seen.drawn.begin(), seen.drawn.end(),
+                      [&](const osg::Vec3d& place)
+                      {
+                          return std::any_of(pictures.begin(), pictures.end(),
+                                             [&](const auto& picture)
+                                             { return picture->shows(place * picture->view, 1, tolerance); });
+                      });
+    return static_cast<std::size_t>(count);
+}
+
 std::vector<NameSet::Seen> NameSet::inPicture(const DeformedView& view, double width, double height,
                                               std::size_t most)
 {

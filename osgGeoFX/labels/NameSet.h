@@ -7,6 +7,7 @@
 #include <osgGeoFX/labels/LabelText.h>
 #include <osgGeoFX/labels/MapName.h>
 #include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/scene/DepthReader.h>
 
 #include <osg/BoundingSphere>
 #include <osg/Referenced>
@@ -72,6 +73,12 @@ public:
     /** The names whose places lie in the picture of a view, `width` × `height` pixels, the most important ones first.
         `most`: how many at most. All are taken to be visible. */
     std::vector<Seen> inPicture(const DeformedView& view, double width, double height, std::size_t most);
+    /// How many of a name's places are to be seen in the pictures of a view's cameras, or of tiles.
+    static std::size_t placesShown(const Seen& seen,
+                                   const std::vector<std::shared_ptr<const DepthPicture>>& pictures);
+    /// Whether a name with so many places in sight is shown: a name of one place with this one, a curve's with a third of the curve, for trees and ridges
+    /// stand before parts of it.
+    static bool isShown(const Seen& seen, std::size_t places) { return 3 * places >= seen.drawn.size(); }
     /// The laid out text of a name.
     const LabelText& text(std::size_t name);
 

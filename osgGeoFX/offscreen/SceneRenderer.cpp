@@ -6,6 +6,7 @@
 #include <osgGeoFX/offscreen/LeastTriangles.h>
 #include <osgGeoFX/offscreen/detail/DrawnLeaves.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
+#include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/viewer/Overlay.h>
 #include <osgGeoFX/viewer/PictureParts.h>
 
@@ -114,12 +115,16 @@ struct SceneRenderer::Parts
     std::unique_ptr<PagerMonitor> monitor;
     std::unique_ptr<LeastTriangles> least;
     osg::ref_ptr<EffectScene> effects;
+    osg::ref_ptr<osg::Camera> whole = new osg::Camera; ///< of the picture; it draws nothing
+    osg::Vec2d corner;                                 ///< of the tile in the picture, pixels
     double pixelError = 0.0;
     std::string rendererName;
     std::string glVersion;
     unsigned int samples = 0;
 
+    bool tiled() const { return options.pictureWidth > 0 && options.pictureHeight > 0; }
     void setUpCamera(const Scene& scene, osg::GraphicsContext& context);
+    void look(const osg::Matrixd& view);
     void setUpScene(const Scene& scene);
     bool describe(osg::GraphicsContext& context);
     osg::ref_ptr<osg::Image> frame(double time, FrameStatistics& statistics);
@@ -129,11 +134,15 @@ struct SceneRenderer::Parts
 void SceneRenderer::Parts::setUpCamera(const Scene& scene, osg::GraphicsContext& context)
 {
     osg::Camera& camera = *viewer->getCamera();
-    const double height = options.height;
+    const double width = tiled() ? options.pictureWidth : options.width;
+    const double height = tiled() ? options.pictureHeight : options.height;
     camera.setGraphicsContext(&context);
     camera.setViewport(0, 0, options.width, options.height);
-    camera.setProjectionMatrixAsPerspective(options.fieldOfView, options.width / height, 1.0, 1e6);
+    camera.setProjectionMatrixAsPerspective(options.fieldOfView, width / height, 1.0, 1e6);
     camera.setLODScale(scene.lodScale(height, osg::DegreesToRadians(options.fieldOfView)));
+    whole->setViewport(new osg::Viewport(0, 0, width, height));
+    whole->setProjectionMatrix(camera.getProjectionMatrix());
+    whole->setLODScale(camera.getLODScale());
     scene.setUpView(*viewer);
     if (!options.cull)
     {
@@ -159,6 +168,25 @@ void SceneRenderer::Parts::setUpCamera(const Scene& scene, osg::GraphicsContext&
         each->addInitialDrawCallback(counters.back().get());
     }
     capture = ImageCapture::attach(last, options.format);
+}
+
+void SceneRenderer::Parts::look(const osg::Matrixd& view)
+{
+    osg::Camera& camera = *viewer->getCamera();
+    camera.setViewMatrix(view);
+    whole->setViewMatrix(view);
+    if (!tiled()) return;
+    // The part of the picture, −1…1, becomes all of the tile.
+    const osg::Vec2d scale(static_cast<double>(options.pictureWidth) / options.width,
+                           static_cast<double>(options.pictureHeight) / options.height);
+    const osg::Vec2d middle((2.0 * corner.x() + options.width) / options.pictureWidth - 1.0,
+                            (2.0 * corner.y() + options.height) / options.pictureHeight - 1.0);
+    camera.setProjectionMatrix(whole->getProjectionMatrix() *
+                               osg::Matrixd::translate(-middle.x(), -middle.y(), 0.0) *
+                               osg::Matrixd::scale(scale.x(), scale.y(), 1.0));
+    const CameraRole role = CameraRole::like(view, whole->getProjectionMatrix());
+    for (const osg::ref_ptr<osg::Camera>& each : cameras)
+        CameraEffects::of(*each).setRole(role);
 }
 
 void SceneRenderer::Parts::setUpScene(const Scene& scene)
@@ -219,11 +247,12 @@ osg::ref_ptr<osg::Image> SceneRenderer::Parts::frame(double time, FrameStatistic
 std::uint64_t SceneRenderer::Parts::leastTriangles() const
 {
     if (!least) return 0;
-    const osg::Matrixd& view = viewer->getCamera()->getViewMatrix();
-    const osg::Matrixd& projection = viewer->getCamera()->getProjectionMatrix();
-    return least->count(view, projection,
-                        pixelsPerRadian(options.height, osg::DegreesToRadians(options.fieldOfView)),
-                        pixelError, *effects->deformation(view, projection));
+    const osg::Matrixd& view = whole->getViewMatrix();
+    const osg::Matrixd& projection = whole->getProjectionMatrix();
+    return least->count(
+        view, projection,
+        pixelsPerRadian(whole->getViewport()->height(), osg::DegreesToRadians(options.fieldOfView)),
+        pixelError, *effects->deformation(view, projection));
 }
 
 SceneRenderer::SceneRenderer(std::unique_ptr<Parts> parts) : _parts(std::move(parts)) {}
@@ -260,12 +289,17 @@ std::unique_ptr<SceneRenderer> SceneRenderer::create(const Scene& scene, const O
     return std::unique_ptr<SceneRenderer>(new SceneRenderer(std::move(parts)));
 }
 
+void SceneRenderer::setTile(int x, int y)
+{
+    _parts->corner.set(x, y);
+}
+
 osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double time,
                                                FrameStatistics& statistics, std::string& error)
 {
     Parts& parts = *_parts;
     const auto start = Clock::now();
-    parts.viewer->getCamera()->setViewMatrix(view);
+    parts.look(view);
     parts.monitor->restart();
     osg::ref_ptr<osg::Image> image;
     for (bool done = false; !done;)
@@ -297,7 +331,7 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
 
 const osg::Camera& SceneRenderer::camera() const
 {
-    return *_parts->viewer->getCamera();
+    return *_parts->whole;
 }
 
 const std::string& SceneRenderer::rendererName() const

@@ -54,6 +54,9 @@ public:
     {
         int width = 1600;
         int height = 900;
+        /// The size of a larger picture, of which each image is a tile (setTile()); 0: each image is a picture.
+        int pictureWidth = 0;
+        int pictureHeight = 0;
         double fieldOfView = 30.0; ///< vertical, degrees
         unsigned int samples = 0;  ///< multisampling; 0 is off
         bool cull = true;          ///< false: neither frustum nor small-feature culling
@@ -72,12 +75,17 @@ public:
     SceneRenderer(const SceneRenderer&) = delete;
     SceneRenderer& operator=(const SceneRenderer&) = delete;
 
+    /// The next images are the tile with this lower left corner in the picture, pixels. Tiles show the same deformed world at the same
+    /// level of detail, so side by side they are the picture. What lies beyond the picture is drawn, too.
+    void setTile(int x, int y);
+
     /// Renders an image from a view matrix (world to eye space) at a time, seconds. Returns null, with a sentence in
     /// `error`, if the tiles did not arrive in time or the frame could not be read back.
     osg::ref_ptr<osg::Image> render(const osg::Matrixd& view, double time, FrameStatistics& statistics,
                                     std::string& error);
 
-    /// The camera as the last image had it, of the whole image even if several cameras draw parts of it, for a DeformedView that tells what pixels show.
+    /// The camera of the last image's whole picture, even if it was a tile or several cameras drew parts of it; for a DeformedView that
+    /// tells what pixels show.
     const osg::Camera& camera() const;
     const std::string& rendererName() const;
     const std::string& glVersion() const;

@@ -69,11 +69,11 @@ protected:
         _root->addChild(_labels);
     }
 
-    /// A picture whose names are settled: depths come a frame later.
+    /// A picture whose names are settled: depths come some frames later.
     osg::ref_ptr<osg::Image> drawSettled()
     {
         osg::ref_ptr<osg::Image> image;
-        for (int i = 0; i < 4; ++i)
+        for (int i = 0; i < 8; ++i)
             image = draw();
         return image;
     }
@@ -348,7 +348,7 @@ TEST_F(MapLabelsTest, PartsOfAPictureShareItsNames)
         whole.insert(each.name);
     ASSERT_GT(whole.size(), 10u);
     drawInParts(viewer(), 2);
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 8; ++i)
         viewer().frame();
     for (const MapLabels::Shown& each : _labels->shown(*viewer().getCamera()))
         parts.insert(each.name);

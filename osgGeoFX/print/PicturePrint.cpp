@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/print/PicturePrint.h>
+
+#include <osgGeoFX/labels/LabelPicture.h>
+#include <osgGeoFX/scene/DepthReader.h>
+
+#include <OpenImageIO/imageio.h>
+#include <osg/Group>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr int smallestSide = 16, largestSide = 200000;
+constexpr double millimetresPerInch = 25.4;
+constexpr double usualDpi = 300.0;
+
+class Fault : public std::runtime_error
+{
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// The numbers of a tile.
+struct Tile
+{
+    int column = 0, row = 0;   ///< rows from the uppermost one
+    int left = 0, top = 0;     ///< pixels of the picture
+    int width = 0, height = 0; ///< of what lies in the picture
+};
+
+/// The picture in tiles of about the same size.
+struct Plan
+{
+    int width, height, columns, rows, tileWidth, tileHeight;
+
+    Plan(const PrintSize& size, int longest) : width(size.width), height(size.height)
+    {
+        const int most = std::clamp(longest, 64, 16384);
+        columns = countOf(width, most);
+        rows = countOf(height, most);
+        tileWidth = (width + columns - 1) / columns;
+        tileHeight = (height + rows - 1) / rows;
+    }
+    /// Whole tiles where a side has a divisor: then the matrices of tiles are exact, and the edges of strokes fall into the same pixels
+    /// as in a picture that is drawn at once.
+    static int countOf(int side, int most)
+    {
+        const int least = (side + most - 1) / most;
+        for (int count = least; count <= 2 * least; ++count)
+            if (side % count == 0) return count;
+        return least;
+    }
+    Tile at(int column, int row) const
+    {
+        const int left = column * tileWidth, top = row * tileHeight;
+        return {
+            column, row, left, top, std::min(tileWidth, width - left), std::min(tileHeight, height - top)};
+    }
+};
+
+/// The tiles that are drawn, as files.
+class TileFiles
+{
+public:
+    TileFiles(fs::path folder, std::string key) : _folder(std::move(folder)), _key(std::move(key))
+    {
+        std::error_code fault;
+        fs::create_directories(_folder, fault);
+        if (fault)
+            throw Fault("The folder \"" + _folder.string() +
+                        "\" cannot be made; name another one, or free some space.");
+    }
+
+    fs::path pathOf(const Tile& tile) const
+    {
+        return _folder / ("tile-" + std::to_string(tile.row) + "-" + std::to_string(tile.column) + ".tif");
+    }
+
+    /// How many places of each name a tile shows; nothing where the tile is not there, or is one of another picture.
+    std::optional<std::map<std::size_t, std::size_t>> seenIn(const Tile& tile) const
+    {
+        const auto input = OIIO::ImageInput::open(pathOf(tile).string());
+        if (!input) return std::nullopt;
+        const OIIO::ImageSpec& spec = input->spec();
+        std::istringstream text(spec.get_string_attribute("ImageDescription"));
+        std::string key;
+        if (!std::getline(text, key) || key != _key || spec.width != tile.width ||
+            spec.height != tile.height || spec.nchannels != 3)
+            return std::nullopt;
+        std::map<std::size_t, std::size_t> seen;
+        std::size_t name = 0, count = 0;
+        while (text >> name >> count)
+            seen[name] = count;
+        return seen;
+    }
+
+    void write(const Tile& tile, const osg::Image& image, int tileHeight,
+               const std::map<std::size_t, std::size_t>& seen) const
+    {
+        std::ostringstream description;
+        description << _key << '\n';
+        for (const auto& [name, count] : seen)
+            description << name << ' ' << count << '\n';
+        OIIO::ImageSpec spec(tile.width, tile.height, 3, OIIO::TypeDesc::UINT8);
+        spec.attribute("ImageDescription", description.str());
+        spec.attribute("compression", "zip");
+        spec.attribute("tiff:zipquality", 1);
+        const fs::path unfinished = _folder / "unfinished.tif";
+        const auto output = OIIO::ImageOutput::create(unfinished.string());
+        bool good = output && output->open(unfinished.string(), spec);
+        // What a tile draws beyond the picture lies to the right and below.
+        for (int row = 0; good && row < tile.height; ++row)
+            good = output->write_scanline(row, 0, OIIO::TypeDesc::UINT8,
+                                          image.data(0, static_cast<unsigned int>(tileHeight - 1 - row)));
+        good = output && output->close() && good;
+        std::error_code fault;
+        if (good) fs::rename(unfinished, pathOf(tile), fault);
+        if (!good || fault)
+            throw Fault("A tile cannot be written to \"" + _folder.string() +
+                        "\"; check the folder, its permissions and the disk's space.");
+    }
+
+    void remove() const
+    {
+        std::error_code ignored;
+        fs::remove_all(_folder, ignored);
+    }
+
+private:
+    const fs::path _folder;
+    const std::string _key;
+};
+
+/// What tiles must have been drawn with to be used again; one line.
+std::string keyOf(const PicturePrint::Options& options, const Plan& plan, const osg::Matrixd& view)
+{
+    std::ostringstream text;
+    text.precision(17);
+    text << options.recipe << '|' << plan.width << 'x' << plan.height << '|' << plan.tileWidth << 'x'
+         << plan.tileHeight << '|' << options.renderer.fieldOfView << '|' << options.renderer.samples << '|';
+    for (int i = 0; i < 16; ++i)
+        text << view.ptr()[i] << ' ';
+    if (options.names)
+        for (const MapName& name : options.names->names())
+            text << name.text << ';';
+    char key[40];
+    std::snprintf(key, sizeof(key), "osgGeoFX %016zx", std::hash<std::string>()(text.str()));
+    return key;
+}
+
+/// Puts the tiles together.
+void assemble(const Plan& plan, const TileFiles& tiles, const PicturePrint::Options& options,
+              const LabelPicture* names, const std::string& file)
+{
+    const fs::path whole(file);
+    const fs::path unfinished =
+        whole.parent_path() / (whole.stem().string() + ".unfinished" + whole.extension().string());
+    const auto output = OIIO::ImageOutput::create(unfinished.string());
+    if (!output)
+        throw Fault("\"" + file + "\": pictures of this kind cannot be written; use png, tif, jpg or exr.");
+    OIIO::ImageSpec spec(plan.width, plan.height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("compression", "zip");
+    if (3.0 * plan.width * plan.height > 3.9e9) spec.attribute("tiff:bigtiff", 1);
+    if (options.size.dpi > 0.0)
+    {
+        spec.attribute("XResolution", static_cast<float>(options.size.dpi));
+        spec.attribute("YResolution", static_cast<float>(options.size.dpi));
+        spec.attribute("ResolutionUnit", "in");
+    }
+    for (const auto& [name, value] : options.metadata)
+        spec.attribute(name, value);
+    const auto fail = [&]() -> Fault
+    {
+        std::error_code ignored;
+        fs::remove(unfinished, ignored);
+        return Fault("\"" + file + "\" cannot be written (" + output->geterror() +
+                     "); check the folder, its permissions, the disk's space, and whether the format has "
+                     "pictures of this size.");
+    };
+    if (!output->open(unfinished.string(), spec)) throw fail();
+    const osg::ref_ptr<osg::Image> strip = new osg::Image;
+    for (int row = 0; row < plan.rows; ++row)
+    {
+        const int height = plan.at(0, row).height;
+        // OSG's rows go upwards.
+        strip->allocateImage(plan.width, height, 1, GL_RGB, GL_UNSIGNED_BYTE);
+        for (int column = 0; column < plan.columns; ++column)
+        {
+            const Tile tile = plan.at(column, row);
+            std::vector<unsigned char> pixels(3 * static_cast<std::size_t>(tile.width) *
+                                              static_cast<std::size_t>(height));
+            const auto input = OIIO::ImageInput::open(tiles.pathOf(tile).string());
+            if (!input || !input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data()))
+                throw Fault("The tile \"" + tiles.pathOf(tile).string() +
+                            "\" cannot be read any more; run it again.");
+            for (int y = 0; y < height; ++y)
+                std::memcpy(strip->data(static_cast<unsigned int>(tile.left),
+                                        static_cast<unsigned int>(height - 1 - y)),
+                            pixels.data() +
+                                3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(tile.width),
+                            3 * static_cast<std::size_t>(tile.width));
+        }
+        const int top = plan.at(0, row).top;
+        if (names) names->drawOnto(*strip, top);
+        for (int y = 0; y < height; ++y)
+            if (!output->write_scanline(top + y, 0, OIIO::TypeDesc::UINT8,
+                                        strip->data(0, static_cast<unsigned int>(height - 1 - y))))
+                throw fail();
+    }
+    std::error_code fault;
+    if (!output->close()) throw fail();
+    fs::rename(unfinished, whole, fault);
+    if (fault) throw fail();
+}
+
+void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrixd& view,
+           const std::string& file)
+{
+    const Plan plan(options.size, options.tile);
+    const TileFiles tiles(options.work, keyOf(options, plan, view));
+    const osg::ref_ptr<DepthReader> depths = new DepthReader;
+    if (options.names)
+    {
+        depths->setImmediate(true);
+        depths->setDepthConvention(scene.effects->getDepthConvention());
+        const osg::ref_ptr<osg::Group> both = new osg::Group;
+        both->addChild(scene.node);
+        both->addChild(depths);
+        scene.node = both;
+    }
+    SceneRenderer::Options drawing = options.renderer;
+    drawing.width = plan.tileWidth;
+    drawing.height = plan.tileHeight;
+    drawing.pictureWidth = plan.width;
+    drawing.pictureHeight = plan.height;
+    drawing.format = ImageCapture::Format::Rgb;
+    std::string error;
+    std::unique_ptr<SceneRenderer> renderer;
+    std::vector<NameSet::Seen> names;
+    std::map<std::size_t, std::size_t> seen; ///< places of each name, in all tiles
+    const auto start = [&]
+    {
+        if (renderer) return;
+        renderer = SceneRenderer::create(scene, drawing, error);
+        if (!renderer) throw Fault(error);
+    };
+    const auto find = [&](const osg::Camera& camera)
+    {
+        if (options.names && names.empty())
+            names = options.names->inPicture(DeformedView(*scene.effects, camera), plan.width, plan.height,
+                                             LabelPicture::usualMost);
+    };
+    int done = 0;
+    for (int row = 0; row < plan.rows; ++row)
+    {
+        for (int column = 0; column < plan.columns; ++column)
+        {
+            const Tile tile = plan.at(column, row);
+            std::optional<std::map<std::size_t, std::size_t>> shown = tiles.seenIn(tile);
+            if (!shown)
+            {
+                start();
+                renderer->setTile(tile.left, plan.height - tile.top - plan.tileHeight);
+                FrameStatistics unused;
+                const osg::ref_ptr<osg::Image> image = renderer->render(view, 0.0, unused, error);
+                if (!image) throw Fault(error);
+                find(renderer->camera());
+                shown.emplace();
+                for (const NameSet::Seen& name : names)
+                    if (const std::size_t count = NameSet::placesShown(name, depths->pictures()))
+                        (*shown)[name.name] = count;
+                tiles.write(tile, *image, plan.tileHeight, *shown);
+            }
+            for (const auto& [name, count] : *shown)
+                seen[name] += count;
+            if (options.progress) options.progress(++done, plan.columns * plan.rows);
+        }
+    }
+    std::optional<LabelPicture> labels;
+    if (options.names)
+    {
+        if (!renderer)
+        {
+            // All tiles were there. A small one tells the camera.
+            start();
+            FrameStatistics unused;
+            renderer->render(view, 0.0, unused, error);
+            find(renderer->camera());
+        }
+        std::vector<bool> visible;
+        for (const NameSet::Seen& name : names)
+            visible.push_back(NameSet::isShown(name, seen[name.name]));
+        labels.emplace(*options.names, names, visible, plan.width, plan.height);
+    }
+    if (labels && !options.svg.empty())
+    {
+        const fs::path folder = fs::absolute(options.svg).parent_path();
+        if (!labels->writeSvg(options.svg, fs::absolute(file).lexically_relative(folder).string(), error))
+            throw Fault(error);
+        labels.reset();
+    }
+    assemble(plan, tiles, options, labels ? &*labels : nullptr, file);
+    tiles.remove();
+}
+
+} // namespace
+
+std::optional<PrintSize> PrintSize::parse(const std::string& text, std::string& error)
+{
+    PrintSize size;
+    std::string paper = text;
+    const std::size_t at = text.find('@');
+    if (at != std::string::npos)
+    {
+        paper = text.substr(0, at);
+        int used = 0;
+        const std::string resolution = text.substr(at + 1);
+        if (std::sscanf(resolution.c_str(), "%lfdpi%n", &size.dpi, &used) != 1 ||
+            static_cast<std::size_t>(used) != resolution.size() || !(size.dpi >= 1.0 && size.dpi <= 10000.0))
+            size.dpi = -1.0;
+    }
+    double millimetresWide = 0.0, millimetresHigh = 0.0;
+    int used = 0, number = 0;
+    char unit[3] = "";
+    const auto whole = [&]
+    {
+        return used > 0 && static_cast<std::size_t>(used) == paper.size();
+    };
+    bool known = size.dpi >= 0.0;
+    if (known && paper.size() > 1 && paper[0] == 'A' &&
+        std::sscanf(paper.c_str(), "A%1d%n", &number, &used) == 1 && number <= 6 &&
+        (whole() || paper.substr(static_cast<std::size_t>(used)) == "-portrait"))
+    {
+        // ISO 216: A0 has a square metre, and sides of 1 to the root of 2; the others are halves, rounded down to a millimetre.
+        int wide = 1189, high = 841;
+        for (int i = 0; i < number; ++i)
+        {
+            const int half = wide / 2;
+            wide = high;
+            high = half;
+        }
+        millimetresWide = whole() ? wide : high;
+        millimetresHigh = whole() ? high : wide;
+    }
+    else if (known &&
+             std::sscanf(paper.c_str(), "%lfx%lf%2[cmin]%n", &millimetresWide, &millimetresHigh, unit,
+                         &used) == 3 &&
+             whole() && (std::string(unit) == "cm" || std::string(unit) == "mm" || std::string(unit) == "in"))
+    {
+        const double length = std::string(unit) == "cm"   ? 10.0
+                              : std::string(unit) == "mm" ? 1.0
+                                                          : millimetresPerInch;
+        millimetresWide *= length;
+        millimetresHigh *= length;
+    }
+    else
+    {
+        used = 0;
+        millimetresWide = millimetresHigh = 0.0;
+        known = known && std::sscanf(paper.c_str(), "%9dx%9d%n", &size.width, &size.height, &used) == 2 &&
+                whole();
+    }
+    if (known && millimetresWide > 0.0)
+    {
+        if (size.dpi <= 0.0) size.dpi = usualDpi;
+        const auto pixels = [&](double millimetres)
+        {
+            return static_cast<int>(std::lround(std::min(millimetres / millimetresPerInch * size.dpi, 1e9)));
+        };
+        size.width = pixels(millimetresWide);
+        size.height = pixels(millimetresHigh);
+    }
+    if (!known)
+    {
+        error = text + ": write a size such as 1600x900, A1@300dpi, A3-portrait@300dpi or 90x60cm@200dpi.";
+        return std::nullopt;
+    }
+    const int shorter = std::min(size.width, size.height), longer = std::max(size.width, size.height);
+    if (shorter < smallestSide || longer > largestSide)
+    {
+        error = text + ": " + std::to_string(size.width) + " x " + std::to_string(size.height) +
+                " pixels cannot be had; each side may have " + std::to_string(smallestSide) + " to " +
+                std::to_string(largestSide) + " pixels" +
+                (size.dpi > 0.0 ? ", so take fewer for each inch." : ".");
+        return std::nullopt;
+    }
+    return size;
+}
+
+bool PicturePrint::write(Scene& scene, const Options& options, const osg::Matrixd& view,
+                         const std::string& file, std::string& error)
+{
+    try
+    {
+        print(scene, options, view, file);
+        return true;
+    }
+    catch (const std::runtime_error& fault)
+    {
+        error = fault.what();
+        return false;
+    }
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/labels/NameSet.h>
+#include <osgGeoFX/offscreen/SceneRenderer.h>
+#include <osgGeoFX/viewer/Scene.h>
+
+#include <osg/Matrixd>
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace osgGeoFX
+{
+
+/// The size of a print, pixels, and its resolution.
+/// @ingroup print
+struct OSGGEOFXMAPS_EXPORT PrintSize
+{
+    int width = 0;
+    int height = 0;
+    double dpi = 0.0; ///< pixels for each inch; 0: not said
+
+    /** Reads "1600x900", "1600x900@300dpi", "A1@300dpi", "A1-portrait@300dpi" (the usual one is landscape), "90x60cm@200dpi" or
+        "36x24in@300dpi". A0 to A6; paper without a resolution gets 300. Empty, with a sentence in `error` that tells what can be had, if it is none of these, or
+        has a side of less than 16 or more than 200,000 pixels. */
+    static std::optional<PrintSize> parse(const std::string& text, std::string& error);
+};
+
+/** Writes pictures of any size, far beyond what the GPU can draw at once.
+
+    It draws tiles, keeps each one as a file in a work folder, and puts them together row by row, with names over them. So memory does not
+    grow with the picture, and a print that was interrupted goes on with the tiles that are there. Tiles show the same deformed world (CameraRole), so there
+    are no seams.
+
+    One thread at a time.
+    @ingroup print */
+class OSGGEOFXMAPS_EXPORT PicturePrint
+{
+public:
+    struct Options
+    {
+        PrintSize size;
+        int tile = 2048;                 ///< the longest side of a tile, pixels, 64…16,384
+        SceneRenderer::Options renderer; ///< sizes and format in it do not count
+        osg::ref_ptr<NameSet> names;     ///< null for none
+        std::string
+            svg; ///< a file for the names as vectors, in the place of names on the picture; empty: none
+        std::string work; ///< the folder for tiles; it is made, and removed when the picture is there
+        /// What the picture is made of, in any words: tiles of a former run are used only if it is the same.
+        std::string recipe;
+        /// Metadata to be written, by name and value.
+        std::map<std::string, std::string> metadata;
+        std::function<void(int done, int all)> progress; ///< called after each tile; empty for nobody
+    };
+
+    /// Whether a picture should be printed in tiles: whether it is larger than what any GPU draws at once.
+    static bool isLarge(const PrintSize& size) { return size.width > 4096 || size.height > 4096; }
+
+    /** Draws a scene from a view matrix and writes it. The file's extension names the format: png, tif, jpg, exr, or any other one that
+        OpenImageIO writes; tiff files beyond 4 GB are BigTIFF. A whole file or none is written. False, with a sentence in `error`, if it cannot; finished
+        tiles stay. `scene`: its node gets a child that reads depths. */
+    static bool write(Scene& scene, const Options& options, const osg::Matrixd& view, const std::string& file,
+                      std::string& error);
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Prints in tiles against the picture drawn at once, names and all; interrupted ones; sizes as people write them.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/labels/LabelPicture.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/print/PicturePrint.h>
+#include <tools/GlFixture.h>
+#include <tools/ImageComparison.h>
+#include <tools/PanoramaHills.h>
+#include <tools/TempDir.h>
+
+#include <OpenImageIO/imageio.h>
+#include <osg/Material>
+#include <osg/Math>
+#include <osgDB/ReadFile>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace fs = std::filesystem;
+
+namespace
+{
+
+constexpr int WIDTH = 300, HEIGHT = 200;
+
+class PicturePrintTest : public GlFixture
+{
+protected:
+    void SetUp() override
+    {
+        GlFixture::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        osg::Vec3d up = _hills.middle();
+        up.normalize();
+        osg::Vec3d east = osg::Vec3d(0.0, 0.0, 1.0) ^ up;
+        east.normalize();
+        const osg::Vec3d north = up ^ east;
+        _view = osg::Matrixd::lookAt(_hills.middle() + up * 9000.0 - north * 16000.0, _hills.middle(), up);
+        for (int i = 0; i < 60; ++i)
+        {
+            MapName name;
+            name.text = "Name " + std::to_string(i);
+            name.importance = 60 - i;
+            const double x = 1000.0 * (i % 8 - 4), y = 1500.0 * (i / 8 - 3);
+            osg::Vec3d place = _hills.middle() + east * x + north * y;
+            place += up * 1700.0; // above all hills
+            name.places = {place};
+            _names.push_back(name);
+        }
+    }
+
+    /// The hills with an effect; a scene of its own each time.
+    Scene scene(Effect* effect) const
+    {
+        std::string error;
+        const osg::ref_ptr<osg::Node> terrain = _hills.terrain();
+        // Without one OSG takes the color of whatever was drawn last.
+        terrain->getOrCreateStateSet()->setAttributeAndModes(new osg::Material);
+        std::optional<Scene> result = Scene::adopt(terrain, error);
+        EXPECT_TRUE(result) << error;
+        if (effect) result->effects->addEffect(effect);
+        return *result;
+    }
+    static osg::ref_ptr<PanoramaMap> map()
+    {
+        osg::ref_ptr<PanoramaMap> result = new PanoramaMap;
+        result->setViewRadius(9000.0);
+        result->setRipples(0.0);
+        return result;
+    }
+    osg::ref_ptr<NameSet> names() const
+    {
+        osg::ref_ptr<NameSet> result = new NameSet(_names);
+        NameStyle style;
+        style.text.size = 9.0;
+        style.text.font = "DejaVu Sans";
+        result->setStyle("", style);
+        return result;
+    }
+    PicturePrint::Options options(int tile, const osg::ref_ptr<NameSet>& set = nullptr) const
+    {
+        PicturePrint::Options result;
+        result.size = {WIDTH, HEIGHT, 0.0};
+        result.tile = tile;
+        result.renderer.fieldOfView = 40.0;
+        result.names = set;
+        result.work = file("tiles");
+        return result;
+    }
+    osg::ref_ptr<osg::Image> atOnce(Effect* effect, const osg::ref_ptr<NameSet>& set) const
+    {
+        Scene whole = scene(effect);
+        const osg::ref_ptr<DepthReader> reader = new DepthReader;
+        reader->setImmediate(true);
+        const osg::ref_ptr<osg::Group> both = new osg::Group;
+        both->addChild(whole.node);
+        both->addChild(reader);
+        whole.node = both;
+        SceneRenderer::Options drawing;
+        drawing.width = WIDTH;
+        drawing.height = HEIGHT;
+        drawing.fieldOfView = 40.0;
+        std::string error;
+        const auto renderer = SceneRenderer::create(whole, drawing, error);
+        EXPECT_TRUE(renderer) << error;
+        FrameStatistics unused;
+        const osg::ref_ptr<osg::Image> image = renderer->render(_view, 0.0, unused, error);
+        if (set) LabelPicture(*set, *whole.effects, renderer->camera(), reader->pictures()).drawOnto(*image);
+        return image;
+    }
+    std::string file(const std::string& name) const { return (fs::path(_folder.path()) / name).string(); }
+
+    TempDir _folder;
+    const PanoramaHills _hills{0.65};
+    osg::Matrixd _view;
+    std::vector<MapName> _names;
+};
+
+} // namespace
+
+TEST_F(PicturePrintTest, TilesAreThePictureWithItsNames)
+{
+    const std::vector<osg::ref_ptr<Effect>> effects = {nullptr, new BirdsEyeView, map()};
+    for (const osg::ref_ptr<Effect>& effect : effects)
+    {
+        SCOPED_TRACE(effect ? effect->className() : "plain");
+        const osg::ref_ptr<osg::Image> expected = atOnce(effect, names());
+        Scene printed = scene(effect);
+        std::string error;
+        int tiles = 0;
+        PicturePrint::Options how = options(60, names());
+        how.progress = [&](int done, int all)
+        {
+            EXPECT_EQ(all, 20);
+            EXPECT_EQ(done, ++tiles);
+        };
+        ASSERT_TRUE(PicturePrint::write(printed, how, _view, file("print.png"), error)) << error;
+        EXPECT_EQ(tiles, 20);
+        EXPECT_FALSE(fs::exists(file("tiles"))) << "nothing is left behind";
+        const osg::ref_ptr<osg::Image> print = osgDB::readRefImageFile(file("print.png"));
+        ASSERT_TRUE(print);
+        EXPECT_TRUE(imagesMatch(*print, *expected, {1.1f / 255.0f, 0.0, 1.0f}, "print"));
+
+        // No side of tiles fits 300 x 200 pixels evenly here, so where an edge of a stroke runs through a pixel's middle, rounding decides.
+        Scene uneven = scene(effect);
+        how = options(190, names());
+        how.size = {299, 199, 0.0};
+        ASSERT_TRUE(PicturePrint::write(uneven, how, _view, file("uneven.png"), error)) << error;
+        how.tile = 512;
+        Scene whole = scene(effect);
+        ASSERT_TRUE(PicturePrint::write(whole, how, _view, file("whole.png"), error)) << error;
+        EXPECT_TRUE(imagesMatch(*osgDB::readRefImageFile(file("uneven.png")),
+                                *osgDB::readRefImageFile(file("whole.png")), {1.1f / 255.0f, 0.015, 1.0f},
+                                "uneven"));
+    }
+}
+
+TEST_F(PicturePrintTest, GoesOnWhereItWasInterrupted)
+{
+    const osg::ref_ptr<PanoramaMap> effect = map();
+    Scene first = scene(effect);
+    PicturePrint::Options how = options(100);
+    how.recipe = "one";
+    how.progress = [](int done, int)
+    {
+        if (done == 3) throw std::runtime_error("interrupted.");
+    };
+    std::string error;
+    EXPECT_FALSE(PicturePrint::write(first, how, _view, file("print.tif"), error));
+    EXPECT_EQ(error, "interrupted.");
+    EXPECT_FALSE(fs::exists(file("print.tif")));
+    const fs::path tile = fs::path(file("tiles")) / "tile-0-1.tif";
+    ASSERT_TRUE(fs::exists(tile));
+    const auto drawn = fs::last_write_time(tile);
+    // One that a power cut has left unfinished.
+    fs::resize_file(fs::path(file("tiles")) / "tile-0-2.tif", 90);
+
+    how.progress = nullptr;
+    const auto lastTimes = [&](const std::string& recipe)
+    {
+        Scene again = scene(effect);
+        how.recipe = recipe;
+        fs::file_time_type time;
+        how.progress = [&](int done, int all)
+        {
+            if (done == all) time = fs::last_write_time(tile);
+        };
+        EXPECT_TRUE(PicturePrint::write(again, how, _view, file("print.tif"), error)) << error;
+        return time;
+    };
+    EXPECT_EQ(lastTimes("one"), drawn) << "the tile was used again";
+    const osg::ref_ptr<osg::Image> whole = atOnce(effect, nullptr);
+    const auto readBack = [&]
+    {
+        const auto input = OIIO::ImageInput::open(file("print.tif"));
+        EXPECT_TRUE(input);
+        std::vector<unsigned char> pixels(3 * WIDTH * HEIGHT);
+        EXPECT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data()));
+        return pixels;
+    };
+    const std::vector<unsigned char> pixels = readBack();
+    int off = 0;
+    for (int y = 0; y < HEIGHT; ++y)
+        for (int i = 0; i < 3 * WIDTH; ++i)
+            off += std::abs(pixels[static_cast<std::size_t>(3 * WIDTH * (HEIGHT - 1 - y) + i)] -
+                            whole->data(0, static_cast<unsigned int>(y))[i]) > 1
+                       ? 1
+                       : 0;
+    EXPECT_LT(off, 3 * WIDTH * HEIGHT / 300);
+
+    // Tiles of another picture are not used.
+    how.progress = [](int done, int)
+    {
+        if (done == 2) throw std::runtime_error("interrupted.");
+    };
+    Scene other = scene(effect);
+    how.recipe = "one";
+    EXPECT_FALSE(PicturePrint::write(other, how, _view, file("print.tif"), error));
+    const auto before = fs::last_write_time(tile);
+    EXPECT_NE(lastTimes("two"), before);
+}
+
+TEST_F(PicturePrintTest, SaysResolutionAndWhatItIs)
+{
+    Scene printed = scene(nullptr);
+    PicturePrint::Options how = options(512);
+    how.size.dpi = 200.0;
+    how.metadata = {{"Software", "a test"}};
+    std::string error;
+    ASSERT_TRUE(PicturePrint::write(printed, how, _view, file("print.tif"), error)) << error;
+    const auto input = OIIO::ImageInput::open(file("print.tif"));
+    ASSERT_TRUE(input);
+    EXPECT_EQ(input->spec().get_float_attribute("XResolution"), 200.0f);
+    EXPECT_EQ(input->spec().get_string_attribute("ResolutionUnit"), "in");
+    EXPECT_EQ(input->spec().get_string_attribute("Software"), "a test");
+}
+
+TEST_F(PicturePrintTest, FaultsAreSentences)
+{
+    const auto faultOf = [&](const std::string& output, const std::string& work)
+    {
+        Scene printed = scene(nullptr);
+        PicturePrint::Options how = options(512);
+        how.work = work;
+        std::string error;
+        EXPECT_FALSE(PicturePrint::write(printed, how, _view, output, error));
+        EXPECT_FALSE(error.empty());
+        EXPECT_EQ(error.back(), '.');
+        return error;
+    };
+    EXPECT_NE(faultOf(file("print.xyz"), file("tiles")).find("png, tif, jpg or exr"), std::string::npos);
+    EXPECT_NE(faultOf(file("none/print.png"), file("tiles")).find("cannot be written"), std::string::npos);
+    EXPECT_NE(faultOf(file("print.png"), "/proc/none/tiles").find("cannot be made"), std::string::npos);
+}
+
+TEST(PrintSize, IsReadAsPeopleWriteIt)
+{
+    const auto expectSize = [](const std::string& text, int width, int height, double dpi)
+    {
+        SCOPED_TRACE(text);
+        std::string error;
+        const auto size = PrintSize::parse(text, error);
+        ASSERT_TRUE(size) << error;
+        EXPECT_EQ(size->width, width);
+        EXPECT_EQ(size->height, height);
+        EXPECT_EQ(size->dpi, dpi);
+    };
+    expectSize("1600x900", 1600, 900, 0.0);
+    expectSize("1600x900@150dpi", 1600, 900, 150.0);
+    expectSize("A1@300dpi", 9933, 7016, 300.0); // 841 x 594 mm
+    expectSize("A0", 14043, 9933, 300.0);
+    expectSize("A4-portrait@72dpi", 595, 842, 72.0);
+    expectSize("90x60cm@200dpi", 7087, 4724, 200.0);
+    expectSize("25.4x12.7cm@100dpi", 1000, 500, 100.0);
+    expectSize("36x24in@300dpi", 10800, 7200, 300.0);
+    for (const std::string wrong :
+         {"", "1600", "A7", "A1@", "A1@dpi", "A1@0dpi", "A1@300", "1600x900px", "x900", "-5x900", "1e3x900",
+          "10x900", "A0@99999dpi", "1000000x900", "A1-landscape"})
+    {
+        SCOPED_TRACE(wrong);
+        std::string error;
+        EXPECT_FALSE(PrintSize::parse(wrong, error));
+        EXPECT_EQ(error.rfind(wrong + ": ", 0), 0u);
+        EXPECT_EQ(error.back(), '.');
+    }
+    std::string error;
+    EXPECT_FALSE(PrintSize::parse("A0@9000dpi", error));
+    EXPECT_NE(error.find("pixels cannot be had"), std::string::npos) << error;
+}
