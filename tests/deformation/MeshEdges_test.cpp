@@ -190,7 +190,7 @@ TEST(MeshEdges, AreShortEnoughForEveryCameraOfTheRange)
     {
         SCOPED_TRACE(kind);
         Tally tally;
-        const int count = fullTest() ? 20000 : 2000;
+        const int count = fullTest() ? 20000 : 8000;
         for (int sample = 0; sample < count; ++sample)
         {
             SCOPED_TRACE("sample " + std::to_string(sample));

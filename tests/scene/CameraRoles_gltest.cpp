@@ -141,6 +141,44 @@ TEST_F(CameraRoles, LikeAnotherCameraFromElsewhere)
     }
 }
 
+// Things of their own, which are culled one by one, by the frustum of the camera that draws.
+TEST_F(CameraRoles, LikeAnotherCameraNothingIsMissingFromElsewhere)
+{
+    const osg::Matrixd view = camera().getViewMatrix();
+    const osg::Matrixd projection = camera().getProjectionMatrix();
+    const osg::ref_ptr<EffectScene> scene = sceneWith(bentAndHigher());
+    for (int i = 0; i < 400; ++i)
+    {
+        const osg::Vec3 at(15.0f * static_cast<float>(i % 20 - 10), 15.0f * static_cast<float>(i / 20 - 10),
+                           3.0f);
+        osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
+        for (const osg::Vec3& corner :
+             {osg::Vec3(-3.0f, 0.0f, 0.0f), osg::Vec3(3.0f, 0.0f, 0.0f), osg::Vec3(0.0f, 0.0f, 8.0f)})
+            corners->push_back(at + corner);
+        osg::ref_ptr<osg::Geometry> post = new osg::Geometry;
+        post->setUseVertexBufferObjects(true);
+        post->setVertexArray(corners);
+        osg::ref_ptr<osg::Vec4Array> color = new osg::Vec4Array(1);
+        color->front().set(static_cast<float>(i % 7) / 7.0f, static_cast<float>(i % 5) / 5.0f, 1.0f, 1.0f);
+        post->setColorArray(color, osg::Array::BIND_OVERALL);
+        post->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
+        scene->addChild(post);
+    }
+    scene->setRoleCallback(new Role(CameraRole::like(view, projection)));
+    camera().setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    const osg::CullSettings::CullingMode mode = camera().getCullingMode();
+    for (const osg::Vec3d& eye :
+         {osg::Vec3d(60.0, -130.0, 90.0), osg::Vec3d(150.0, 20.0, 60.0), osg::Vec3d(-100.0, 100.0, 120.0)})
+    {
+        camera().setViewMatrixAsLookAt(eye, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0});
+        const osg::ref_ptr<osg::Image> culled = render(scene);
+        camera().setCullingMode(osg::CullSettings::NO_CULLING);
+        const osg::ref_ptr<osg::Image> whole = render(scene);
+        camera().setCullingMode(mode);
+        EXPECT_TRUE(same(*culled, *whole));
+    }
+}
+
 TEST_F(CameraRoles, TheDefaultNearAndFarPlanesHoldWhatIsSeenFromElsewhere)
 {
     const osg::ref_ptr<EffectScene> scene = sceneWith(bentAndHigher());
