@@ -31,6 +31,12 @@ Color colorAt(const osg::Image& image, int column, int row)
     return {texel[0], texel[1], texel[2]};
 }
 
+/// Classes have one byte for each texel.
+int classAt(const osg::Image& image, int column, int row)
+{
+    return *image.data(static_cast<unsigned>(column), static_cast<unsigned>(row));
+}
+
 int distance(const Color& a, const Color& b)
 {
     return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
@@ -148,16 +154,16 @@ TEST(DatabaseSurface, LandCover)
     EXPECT_EQ(DatabaseRoot(o.output).value<std::string>("geofx.landCoverTable"), table);
     const int finest = DatabaseRoot(o.output).finestLevel();
     for (int level = finest; level >= finest - 1; --level)
-        forEachTexel(o.output, level, 1,
-                     [&](double x, double y, const osg::Image& picture, int column, int row)
-                     {
-                         const double px = (x - 10.0) / 0.001, py = (50.0 - y) / 0.001;
-                         const double toBorder = std::min(std::abs(px - 50.0), std::abs(py - 70.0));
-                         if (toBorder < 0.05) return;
-                         ASSERT_EQ(colorAt(picture, column, row)[0],
-                                   classOf(static_cast<int>(px), static_cast<int>(py)))
-                             << px << " " << py << " level " << level;
-                     });
+        forEachTexel(
+            o.output, level, 1,
+            [&](double x, double y, const osg::Image& picture, int column, int row)
+            {
+                const double px = (x - 10.0) / 0.001, py = (50.0 - y) / 0.001;
+                const double toBorder = std::min(std::abs(px - 50.0), std::abs(py - 70.0));
+                if (toBorder < 0.05) return;
+                ASSERT_EQ(classAt(picture, column, row), classOf(static_cast<int>(px), static_cast<int>(py)))
+                    << px << " " << py << " level " << level;
+            });
     forEachTexel(o.output, finest, 0,
                  [&](double x, double y, const osg::Image& picture, int column, int row)
                  {
