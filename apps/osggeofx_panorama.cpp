@@ -278,6 +278,9 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
         std::string error;
         const auto size = osgGeoFX::PrintSize::parse(arguments.size, error);
         if (!size) throw Failure("--size " + error);
+        if (std::min(size->width, size->height) < 16)
+            throw Failure("--size " + arguments.size +
+                          ": write width and height in pixels, at least 16 each, such as 1600x900.");
         recipe.width = size->width;
         recipe.height = size->height;
         recipe.dpi = size->dpi;

@@ -6,6 +6,7 @@
 #include "osggeofx_render_output.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
+#include <osgGeoFX/print/PicturePrint.h>
 #include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <stdexcept>
@@ -68,8 +70,10 @@ void addOptions(CLI::App& app, Arguments& arguments)
            "such as f%04d.png")
         ->required()
         ->type_name("FILE");
-    app.add_option("--size", arguments.size, "Size of the picture in pixels")
-        ->type_name("WxH")
+    app.add_option("--size", arguments.size,
+                   "Size of the picture: in pixels, or on paper, such as A1@300dpi, A3-portrait@300dpi, "
+                   "90x60cm@200dpi")
+        ->type_name("WxH|PAPER@DPI")
         ->capture_default_str();
     app.add_option("--fov", arguments.fieldOfView,
                    "Vertical field of view in degrees (default: the scene's, or 30)")
@@ -184,17 +188,14 @@ osg::Vec3d vectorOf(const std::string& option, const std::string& text)
     return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
-void readSize(Arguments& arguments)
+osgGeoFX::PrintSize readSize(Arguments& arguments)
 {
-    int used = 0;
-    int& width = arguments.renderer.width;
-    int& height = arguments.renderer.height;
-    if (std::sscanf(arguments.size.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 ||
-        static_cast<std::size_t>(used) != arguments.size.size() || width < 1 || height < 1)
-    {
-        throw Failure(badInput,
-                      "--size " + arguments.size + ": write width and height in pixels, such as 1600x900.");
-    }
+    std::string error;
+    const auto size = osgGeoFX::PrintSize::parse(arguments.size, error);
+    if (!size) throw Failure(badInput, "--size " + error);
+    arguments.renderer.width = size->width;
+    arguments.renderer.height = size->height;
+    return *size;
 }
 
 /// One view matrix for each picture, and its time.
@@ -326,14 +327,14 @@ void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const Camera
     image.copySubImage(left, margin, 0, straight);
 }
 
-geofx::names::PictureNames readNames(const Arguments& arguments, osgGeoFX::Scene& scene)
+osg::ref_ptr<osgGeoFX::NameSet> readNames(const Arguments& arguments, const osgGeoFX::Scene& scene)
 {
     try
     {
         std::string notice;
-        const osg::ref_ptr<osgGeoFX::NameSet> names = geofx::names::read(arguments.names, scene, notice);
+        osg::ref_ptr<osgGeoFX::NameSet> names = geofx::names::read(arguments.names, scene, notice);
         if (!notice.empty()) std::cerr << "osggeofx_render: " << notice << std::endl;
-        return geofx::names::PictureNames(*names, scene, arguments.renderer.height);
+        return names;
     }
     catch (const std::runtime_error& fault)
     {
@@ -341,10 +342,34 @@ geofx::names::PictureNames readNames(const Arguments& arguments, osgGeoFX::Scene
     }
 }
 
+/// A picture that is larger than the GPU draws at once, or has a resolution.
+void print(const Arguments& arguments, const osgGeoFX::PrintSize& size,
+           const osg::ref_ptr<osgGeoFX::NameSet>& names, const osg::Matrixd& view, osgGeoFX::Scene& scene)
+{
+    if (!arguments.path.empty() || arguments.inset || !arguments.stats.empty())
+        throw Failure(badInput,
+                      "--size " + arguments.size +
+                          ": such a picture is drawn in tiles, without --path, --inset and --stats; leave "
+                          "them out, or take a smaller size.");
+    osgGeoFX::PicturePrint::Options options;
+    options.size = size;
+    options.renderer = arguments.renderer;
+    options.names = names;
+    if (names) names->setScale(size.height / geofx::names::usualHeight);
+    options.work = std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
+    options.recipe = arguments.scene;
+    for (const std::string& effect : arguments.effects)
+        options.recipe += "; " + effect;
+    options.metadata = {{"Software", "osgGeoFX osggeofx_render"}};
+    std::string error;
+    if (!osgGeoFX::PicturePrint::write(scene, options, view, arguments.output, error))
+        throw Failure(badInput, error);
+}
+
 void run(Arguments& arguments)
 {
     std::string error;
-    readSize(arguments);
+    const osgGeoFX::PrintSize size = readSize(arguments);
     PictureFiles pictures(arguments.output, !arguments.path.empty());
     if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
     const std::string statsFault = arguments.stats.empty() ? std::string() : faultOfOutput(arguments.stats);
@@ -368,8 +393,15 @@ void run(Arguments& arguments)
     options.cull = !arguments.noCull;
     options.countTriangles = !arguments.stats.empty();
     const Camera camera(arguments, *scene);
+    osg::ref_ptr<osgGeoFX::NameSet> set;
+    if (!arguments.names.files.empty()) set = readNames(arguments, *scene);
+    if (size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size))
+    {
+        print(arguments, size, set, camera.view(0), *scene);
+        return;
+    }
     std::optional<geofx::names::PictureNames> names;
-    if (!arguments.names.files.empty()) names = readNames(arguments, *scene);
+    if (set) names.emplace(*set, *scene, options.height);
 
     const auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
     if (!renderer) throw Failure(badInput, error);

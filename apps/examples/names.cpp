@@ -30,7 +30,8 @@ int main(int argc, char** argv)
     std::string error;
     const auto relief = osgGeoFX::TerrainRelief::read(*terrain, globe, 1024, error);
     if (!relief) return std::cerr << error << '\n', 1;
-    osgGeoFX::NamePlacement().place(names, *terrain, globe, *relief); // onto the ground, summits onto their summits
+    osgGeoFX::NamePlacement().place(names, *terrain, globe,
+                                    *relief); // onto the ground, summits onto their summits
     const osg::ref_ptr<osgGeoFX::NameSet> set = new osgGeoFX::NameSet(names);
     for (const auto& [kind, style] : osgGeoFX::usualNameStyles())
         set->setStyle(kind, style);

@@ -26,7 +26,6 @@ using osgGeoFX::NameStyle;
 
 /// Cells of the relief in which summits are looked for, along the longer side.
 constexpr int reliefCells = 2048;
-constexpr double usualHeight = 900.0;
 
 class Fault : public std::runtime_error
 {

@@ -16,6 +16,9 @@
 namespace geofx::names
 {
 
+/// The height of pictures for which names have their styles' sizes, pixels.
+constexpr double usualHeight = 900.0;
+
 struct Options
 {
     std::vector<std::string> files; ///< vector data with names, or FILE:LAYER
@@ -35,7 +38,7 @@ osg::ref_ptr<osgGeoFX::NameSet> read(const Options& options, const osgGeoFX::Sce
 class PictureNames
 {
 public:
-    /// `height`: of the pictures, pixels. Names have their styles' sizes at a height of 900 pixels, and grow with it.
+    /// `height`: of the pictures, pixels. Names grow with it.
     PictureNames(osgGeoFX::NameSet& names, osgGeoFX::Scene& scene, int height);
 
     /// Places the names of the renderer's last picture. `camera`: SceneRenderer::camera().

@@ -34,7 +34,7 @@ namespace osgGeoFX
     walls of screens show parts of the view's names. Cameras above or below the node (shadow maps, textures) show none.
 
     **Hidden places** are found by the depths of earlier frames, a frame or two ago. So the first frames of a viewer have no names.
-    For a single picture use LabelPicture.
+    For a single picture use LabelPicture. Files do not keep the node.
 
     **Threads.** All threading models of OSG's viewers. Change names and styles between frames.
     @ingroup labels */

@@ -27,7 +27,7 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr int smallestSide = 16, largestSide = 200000;
+constexpr int smallestSide = 1, largestSide = 200000;
 constexpr double millimetresPerInch = 25.4;
 constexpr double usualDpi = 300.0;
 

@@ -197,12 +197,6 @@ DepthReader::DepthReader() : _shared(std::make_unique<Shared>())
     getOrCreateStateSet()->setRenderBinDetails(900000, "RenderBin");
 }
 
-DepthReader::DepthReader(const DepthReader& other, const osg::CopyOp& copy)
-    : osg::Drawable(other, copy), _immediate(other._immediate), _interval(other._interval),
-      _convention(other._convention), _shared(std::make_unique<Shared>())
-{
-}
-
 DepthReader::~DepthReader() = default;
 
 void DepthReader::setInterval(unsigned int frames)

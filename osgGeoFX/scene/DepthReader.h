@@ -42,14 +42,16 @@ struct OSGGEOFX_EXPORT DepthPicture
     own stage has been drawn. The picture of a frame is there when a later frame is drawn, or at once where the reader is
     immediate. Reading into a buffer does not wait for the GPU. Multisampled targets are resolved first.
 
+    Files do not keep it.
+
     Threads: any thread may ask for pictures.
     @ingroup scene */
 class OSGGEOFX_EXPORT DepthReader : public osg::Drawable
 {
 public:
     DepthReader();
-    DepthReader(const DepthReader& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
-    META_Node(osgGeoFX, DepthReader);
+    const char* libraryName() const override { return "osgGeoFX"; }
+    const char* className() const override { return "DepthReader"; }
 
     /// Whether a frame's depths are there as soon as it has been drawn. It makes the CPU wait for the GPU. False by default.
     void setImmediate(bool on) { _immediate = on; }

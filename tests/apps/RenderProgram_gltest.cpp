@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The program osggeofx_render, as a person calls it.
 #include <tools/GlFixture.h>
+#include <tools/ImageComparison.h>
 #include <tools/PagedScene.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
@@ -11,6 +12,7 @@
 #include <osgDB/ReadFile>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -185,6 +187,28 @@ TEST_F(RenderProgram, RefusesBadInputWithASentence)
     expectRefusal({"terrain.osgb", "-o", "out.png", "--platform", "x11"}, "DISPLAY");
     expectRefusal({"terrain.osgb", "-o", "out.png", "--stats", "no/such/folder.json"}, "folder.json");
     expectRefusal({"terrain.osgb", "-o", "out.png", "--least-triangles"}, "--stats");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--size", "64x48@100dpi", "--inset"}, "--inset");
+}
+
+// A print is the picture in tiles, with its resolution.
+TEST_F(RenderProgram, Prints)
+{
+    PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
+    const std::vector<std::string> view = {"--eye", "0,0,8000", "--look", "0,0,0", "--up", "0,1,0"};
+    const auto draw = [&](std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.begin(), "terrain.osgb");
+        arguments.insert(arguments.end(), view.begin(), view.end());
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+    };
+    draw({"-o", "plain.png", "--size", "160x120"});
+    draw({"-o", "print.png", "--size", "160x120@100dpi"});
+    const osg::ref_ptr<osg::Image> plain = osgDB::readRefImageFile((_folder.path() / "plain.png").string());
+    const osg::ref_ptr<osg::Image> print = osgDB::readRefImageFile((_folder.path() / "print.png").string());
+    ASSERT_TRUE(plain && print);
+    EXPECT_TRUE(geofx::test::imagesMatch(*print, *plain));
+    EXPECT_FALSE(std::filesystem::exists(_folder.path() / "print.tiles"));
 }
 
 TEST_F(RenderProgram, GivesUpAfterTheTimeout)
