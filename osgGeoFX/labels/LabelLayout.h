@@ -76,8 +76,8 @@ public:
     void setRules(const Rules& rules) { _rules = rules; }
     const Rules& getRules() const { return _rules; }
 
-    /// The names of the next picture, of `width` × `height` pixels, at a time in seconds. Those that are drawn over others come last;
-    /// the order is that of the candidates. A name that is no candidate any more fades out where it was.
+    /// The names of the next picture, of `width` × `height` pixels, at a time in seconds, in the order of the candidates. A name
+    /// that is no candidate any more fades out where it was.
     std::vector<PlacedLabel> place(const std::vector<LabelCandidate>& candidates, double width, double height,
                                    double time);
     /// The same for a single picture: nothing fades, and former pictures do not count.

@@ -207,9 +207,10 @@ bool LabelText::drawAlong(_cairo* target, const std::vector<osg::Vec2d>& curve) 
 {
     if (_layout->ink.width <= 0 || curve.size() < 2) return false;
     const Ruler ruler(curve);
-    const double long_ = static_cast<double>(_layout->ink.width) / PANGO_SCALE;
-    if (!(ruler.length() >= long_)) return false;
-    const double start = 0.5 * (ruler.length() - long_) - static_cast<double>(_layout->ink.x) / PANGO_SCALE;
+    const double inkWidth = static_cast<double>(_layout->ink.width) / PANGO_SCALE;
+    if (!(ruler.length() >= inkWidth)) return false;
+    const double start =
+        0.5 * (ruler.length() - inkWidth) - static_cast<double>(_layout->ink.x) / PANGO_SCALE;
     // The middle of low letters lies on the curve.
     const double lower = 0.25 * _layout->style.size;
     cairo_save(target);

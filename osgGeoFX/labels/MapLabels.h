@@ -33,7 +33,7 @@ namespace osgGeoFX
     **Cameras.** Each view has names of its own. Slaves that draw parts of a view's picture, as drawInParts() makes them, and
     walls of screens show parts of the view's names. Cameras above or below the node (shadow maps, textures) show none.
 
-    **Hidden places** are found by the depths of earlier frames, a frame or two ago. So the first frames of a viewer have no names.
+    **Hidden places** are found by the depths of earlier frames, up to four frames ago. So the first frames of a viewer have no names.
     For a single picture use LabelPicture. Files do not keep the node.
 
     **Threads.** All threading models of OSG's viewers. Change names and styles between frames.
