@@ -59,8 +59,8 @@ struct Arguments
     std::vector<std::string> settings;
     std::string liberties; ///< the strength of those that are chosen; empty for none
     std::vector<std::string> liberty;
-    std::vector<std::string> labels;
-    std::string style, font, svg;
+    geofx::names::Options names;
+    std::string svg;
     bool explain = false, quiet = false;
 };
 
@@ -155,19 +155,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->expected(1)
         ->type_name("'LON,LAT NAME=VALUE …'")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--labels", arguments.labels,
-                   "Names to put onto the picture: vector data of any kind that GDAL reads, FILE or "
-                   "FILE:LAYER. As often as "
-                   "wanted")
-        ->expected(1)
-        ->type_name("FILE")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--style", arguments.style,
-                   "How names look: JSON such as {\"names\": {\"peak\": {\"size\": 16}}}")
-        ->type_name("FILE.json");
-    app.add_option("--font", arguments.font,
-                   "The names' font: the families of installed ones, or a font's file")
-        ->type_name("NAME|FILE");
+    geofx::names::addOptions(app, arguments.names);
     app.add_option(
            "--svg", arguments.svg,
            "Also write the names as an SVG file over the picture, which has none then; to finish by hand")
@@ -293,11 +281,11 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
     take(arguments.landCoverTable, recipe.landCoverTable);
     take(arguments.treeCover, recipe.treeCover);
     take(arguments.vertical, recipe.vertical);
-    take(arguments.style, recipe.labelStyle);
-    take(arguments.font, recipe.font);
-    if (!arguments.labels.empty()) recipe.labels = arguments.labels;
-    if (!arguments.svg.empty() && recipe.labels.empty())
-        throw Failure("--svg writes names; give some with --labels.");
+    take(arguments.names.style, recipe.labelStyle);
+    take(arguments.names.font, recipe.font);
+    if (!arguments.names.files.empty()) recipe.labels = arguments.names.files;
+    if (recipe.labels.empty() && !(arguments.svg + arguments.names.style + arguments.names.font).empty())
+        throw Failure("--svg, --style and --font are for names; give some with --labels.");
     const std::string fault = arguments.svg.empty() ? std::string() : faultOfOutput(arguments.svg);
     if (!fault.empty()) throw Failure(fault);
     if (arguments.samples) recipe.samples = *arguments.samples;
@@ -435,7 +423,8 @@ bool isPrint(const Recipe& recipe)
 }
 
 void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::SceneRenderer::Options& renderer,
-           const osg::ref_ptr<osgGeoFX::NameSet>& names, osgGeoFX::Scene& scene, const osg::Matrixd& view)
+           const osg::ref_ptr<osgGeoFX::NameSet>& names, osgGeoFX::Scene& scene, const osg::Matrixd& view,
+           const std::string& ground)
 {
     osgGeoFX::PicturePrint::Options options;
     options.size = {recipe.width, recipe.height, recipe.dpi};
@@ -443,7 +432,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
     options.names = names;
     if (names) names->setScale(recipe.height / usualHeight);
     options.work = fs::path(arguments.output).replace_extension().string() + ".tiles";
-    options.recipe = recipe.text();
+    options.recipe = recipe.text() + geofx::names::ageOf(ground);
     options.metadata = {{"Software", "osgGeoFX osggeofx_panorama"}, {"ImageDescription", recipe.text()}};
     options.svg = arguments.svg;
     osgGeoFX::ProgressLine line("osggeofx_panorama");
@@ -490,7 +479,7 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     frame.geocentric = recipe.geocentric;
     if (isPrint(recipe))
     {
-        print(arguments, recipe, options, set, scene, recipe.view.viewMatrix(frame));
+        print(arguments, recipe, options, set, scene, recipe.view.viewMatrix(frame), ground);
         return;
     }
     std::optional<geofx::names::PictureNames> names;

@@ -117,19 +117,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
     // What CLI11 has for a version is a text that takes the place of everything else.
     app.set_version_flag("--help-effects", osgGeoFX::effectsHelp,
                          "List the effects with all their properties");
-    app.add_option("--labels", arguments.names.files,
-                   "Names to put onto the picture: vector data of any kind that GDAL reads, FILE or "
-                   "FILE:LAYER. As often as "
-                   "wanted")
-        ->expected(1)
-        ->type_name("FILE")
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--style", arguments.names.style,
-                   "How names look: JSON such as {\"names\": {\"peak\": {\"size\": 16}}}")
-        ->type_name("FILE.json");
-    app.add_option("--font", arguments.names.font,
-                   "The names' font: the families of installed ones, or a font's file")
-        ->type_name("NAME|FILE");
+    geofx::names::addOptions(app, arguments.names);
     app.add_flag("--inset", arguments.inset,
                  "Put the same view without effects, a quarter as wide, into the lower right corner");
     app.add_flag("--sky", arguments.sky,
@@ -357,7 +345,7 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size,
     options.names = names;
     if (names) names->setScale(size.height / geofx::names::usualHeight);
     options.work = std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
-    options.recipe = arguments.scene;
+    options.recipe = arguments.scene + geofx::names::ageOf(arguments.scene);
     for (const std::string& effect : arguments.effects)
         options.recipe += "; " + effect;
     options.metadata = {{"Software", "osgGeoFX osggeofx_render"}};
@@ -394,6 +382,8 @@ void run(Arguments& arguments)
     options.countTriangles = !arguments.stats.empty();
     const Camera camera(arguments, *scene);
     osg::ref_ptr<osgGeoFX::NameSet> set;
+    if (arguments.names.files.empty() && !(arguments.names.style + arguments.names.font).empty())
+        throw Failure(badInput, "--style and --font are for names; give some with --labels.");
     if (!arguments.names.files.empty()) set = readNames(arguments, *scene);
     if (size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size))
     {

@@ -163,6 +163,8 @@ int main(int argc, char** argv)
         scene->effects->addEffect(effect);
     scene->effects->listenTo(*scene->guard);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
+    if (nameOptions.files.empty() && !(nameOptions.style + nameOptions.font).empty())
+        return refuse("--style and --font are for names; give some with --labels.");
     if (!nameOptions.files.empty())
     {
         try

@@ -5,6 +5,7 @@
 #include <osgGeoFX/labels/NameFile.h>
 #include <osgGeoFX/panorama/TerrainRelief.h>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <osg/Group>
 #include <osgDB/FileUtils>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -130,6 +132,30 @@ std::string wktOf(osg::Node& node)
 }
 
 } // namespace
+
+void addOptions(CLI::App& app, Options& options)
+{
+    app.add_option("--labels", options.files,
+                   "Names to put onto the picture: vector data of any kind that GDAL reads, FILE or "
+                   "FILE:LAYER. As often as "
+                   "wanted")
+        ->expected(1)
+        ->type_name("FILE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--style", options.style,
+                   "How names look: JSON such as {\"names\": {\"peak\": {\"size\": 16}}}")
+        ->type_name("FILE.json");
+    app.add_option("--font", options.font,
+                   "The names' font: the families of installed ones, or a font's file")
+        ->type_name("NAME|FILE");
+}
+
+std::string ageOf(const std::string& file)
+{
+    std::error_code fault;
+    const auto time = std::filesystem::last_write_time(file, fault);
+    return fault ? std::string() : " of " + std::to_string(time.time_since_epoch().count());
+}
 
 std::map<std::string, NameStyle> readStyles(const std::string& file)
 {

@@ -12,6 +12,11 @@
 #include <string>
 #include <vector>
 
+namespace CLI
+{
+class App;
+}
+
 /// The names that the programs' options ask for: --labels, --style and --font.
 namespace geofx::names
 {
@@ -25,6 +30,12 @@ struct Options
     std::string style;              ///< a JSON file; empty for the usual styles
     std::string font;               ///< a font's file or its families; empty for the styles' own
 };
+
+/// Adds --labels, --style and --font to a program.
+void addOptions(CLI::App& app, Options& options);
+
+/// When a file was changed last, as a text: what was drawn of a former one must not be used again. Empty if there is none.
+std::string ageOf(const std::string& file);
 
 /// The styles of a JSON file over the usual ones. Throws std::runtime_error with a sentence.
 std::map<std::string, osgGeoFX::NameStyle> readStyles(const std::string& file);

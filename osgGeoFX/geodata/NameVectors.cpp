@@ -256,31 +256,12 @@ void collect(OGRLayer& layer, const NameVectors::Options& options, const OGRSpat
 void readAll(const std::string& file, const NameVectors::Options& options, const MappingFrame& frame,
              std::vector<MapName>& names)
 {
-    OGRSpatialReference target;
-    double metresPerUnit = 1.0;
-    if (frame.globe)
-        target.importFromEPSG(4326);
-    else
-    {
-        const FrameCrs crs = crsOf(frame, file);
-        target.SetFromUserInput(crs.definition.c_str());
-        metresPerUnit = crs.metresPerUnit;
-    }
+    const VectorTarget target = vectorTargetOf(frame, file);
     const DatasetPtr dataset = openVectors(file);
     std::vector<MapName> found;
-    if (options.layer.empty())
-    {
-        for (OGRLayer* const each : dataset->GetLayers())
-            collect(*each, options, target, metresPerUnit, frame.globe, file, found);
-    }
-    else
-    {
-        OGRLayer* const named = dataset->GetLayerByName(options.layer.c_str());
-        if (!named)
-            throw BuildError(file + ": it has no layer \"" + options.layer +
-                             "\"; ogrinfo lists those it has.");
-        collect(*named, options, target, metresPerUnit, frame.globe, file, found);
-    }
+    forEachLayer(*dataset, options.layer, file,
+                 [&](OGRLayer& layer)
+                 { collect(layer, options, target.crs, target.metresPerUnit, frame.globe, file, found); });
     if (found.empty())
         throw BuildError(
             file +

@@ -19,7 +19,7 @@ struct OSGGEOFXDATA_EXPORT NameVectors
     struct Options
     {
         std::string layer; ///< one layer; empty: all that have names
-        /// The fields of a feature; empty: the first one that there is of name, NAME, Name, label and title; of importance,
+        /// The fields of a feature; empty: the first one that there is of name, label and title, in upper or lower case; of importance,
         /// rank_score and prominence; of ele, elevation and height; of style, natural, place, water, waterway and class.
         std::string name, importance, height, style;
     };

@@ -164,32 +164,11 @@ private:
 void readAll(const std::string& file, const std::string& layer, StrokeLines::Kind kind,
              const MappingFrame& frame, std::vector<StrokeLines::Line>& lines)
 {
-    OGRSpatialReference target;
-    double metresPerUnit = 1.0;
-    if (frame.globe)
-    {
-        target.importFromEPSG(4326);
-    }
-    else
-    {
-        const FrameCrs crs = crsOf(frame, file);
-        target.SetFromUserInput(crs.definition.c_str());
-        metresPerUnit = crs.metresPerUnit;
-    }
+    const VectorTarget target = vectorTargetOf(frame, file);
     const DatasetPtr dataset = openVectors(file);
     const bool areas = kind == StrokeLines::TOWN;
-    Collector collector(file, areas, target, metresPerUnit, frame.globe);
-    if (layer.empty())
-    {
-        for (OGRLayer* each : dataset->GetLayers())
-            collector.collect(*each);
-    }
-    else
-    {
-        OGRLayer* named = dataset->GetLayerByName(layer.c_str());
-        if (!named) fail(file, "it has no layer \"" + layer + "\"; ogrinfo lists those it has");
-        collector.collect(*named);
-    }
+    Collector collector(file, areas, target.crs, target.metresPerUnit, frame.globe);
+    forEachLayer(*dataset, layer, file, [&](OGRLayer& each) { collector.collect(each); });
     if (collector.found.empty())
         fail(file,
              areas ? "it has no areas, which towns are; name another layer or kind, or check it with ogrinfo"

@@ -159,10 +159,21 @@ std::string keyOf(const PicturePrint::Options& options, const Plan& plan, const 
         text << view.ptr()[i] << ' ';
     if (options.names)
         for (const MapName& name : options.names->names())
+        {
             text << name.text << ';';
+            for (const osg::Vec3d& place : name.places)
+                text << place.x() << ' ' << place.y() << ' ' << place.z() << ' ';
+        }
     char key[40];
     std::snprintf(key, sizeof(key), "osgGeoFX %016zx", std::hash<std::string>()(text.str()));
     return key;
+}
+
+/// The light of an sRGB byte, 0…1 (IEC 61966-2-1).
+float lightOf(unsigned char byte)
+{
+    const float value = static_cast<float>(byte) / 255.0f;
+    return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
 }
 
 /// Puts the tiles together.
@@ -175,8 +186,10 @@ void assemble(const Plan& plan, const TileFiles& tiles, const PicturePrint::Opti
     const auto output = OIIO::ImageOutput::create(unfinished.string());
     if (!output)
         throw Fault("\"" + file + "\": pictures of this kind cannot be written; use png, tif, jpg or exr.");
-    OIIO::ImageSpec spec(plan.width, plan.height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
+    // OpenEXR has light and not its code.
+    const bool linear = std::string(output->format_name()) == "openexr";
+    OIIO::ImageSpec spec(plan.width, plan.height, 3, linear ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
     spec.attribute("compression", "zip");
     if (3.0 * plan.width * plan.height > 3.9e9) spec.attribute("tiff:bigtiff", 1);
     if (options.size.dpi > 0.0)
@@ -196,6 +209,7 @@ void assemble(const Plan& plan, const TileFiles& tiles, const PicturePrint::Opti
                      "pictures of this size.");
     };
     if (!output->open(unfinished.string(), spec)) throw fail();
+    std::vector<float> light(linear ? 3 * static_cast<std::size_t>(plan.width) : 0);
     const osg::ref_ptr<osg::Image> strip = new osg::Image;
     for (int row = 0; row < plan.rows; ++row)
     {
@@ -221,9 +235,13 @@ void assemble(const Plan& plan, const TileFiles& tiles, const PicturePrint::Opti
         const int top = plan.at(0, row).top;
         if (names) names->drawOnto(*strip, top);
         for (int y = 0; y < height; ++y)
-            if (!output->write_scanline(top + y, 0, OIIO::TypeDesc::UINT8,
-                                        strip->data(0, static_cast<unsigned int>(height - 1 - y))))
+        {
+            const unsigned char* const bytes = strip->data(0, static_cast<unsigned int>(height - 1 - y));
+            if (linear) std::transform(bytes, bytes + light.size(), light.begin(), lightOf);
+            if (!output->write_scanline(top + y, 0, linear ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8,
+                                        linear ? static_cast<const void*>(light.data()) : bytes))
                 throw fail();
+        }
     }
     std::error_code fault;
     if (!output->close()) throw fail();

@@ -33,8 +33,8 @@ struct OSGGEOFXMAPS_EXPORT PrintSize
 
 /** Writes pictures of any size, far beyond what the GPU can draw at once.
 
-    It draws tiles, keeps each one as a file in a work folder, and puts them together row by row, with names over them. So memory does not
-    grow with the picture, and a print that was interrupted goes on with the tiles that are there. Tiles show the same deformed world (CameraRole), so there
+    It draws tiles, keeps each one as a file in a work folder, and puts them together row by row, with names over them. So memory has one row
+    of tiles, and a print that was interrupted goes on with the tiles that are there. Tiles show the same deformed world (CameraRole), so there
     are no seams.
 
     One thread at a time.
@@ -61,7 +61,7 @@ public:
     /// Whether a picture should be printed in tiles: whether it is larger than what any GPU draws at once.
     static bool isLarge(const PrintSize& size) { return size.width > 4096 || size.height > 4096; }
 
-    /** Draws a scene from a view matrix and writes it. The file's extension names the format: png, tif, jpg, exr, or any other one that
+    /** Draws a scene from a view matrix and writes it. The file's extension names the format: png, tif, jpg, exr (linear, as half floats of 8 bits), or any other one that
         OpenImageIO writes; tiff files beyond 4 GB are BigTIFF. A whole file or none is written. False, with a sentence in `error`, if it cannot; finished
         tiles stay. `scene`: its node gets a child that reads depths. */
     static bool write(Scene& scene, const Options& options, const osg::Matrixd& view, const std::string& file,

@@ -142,6 +142,7 @@ bool DepthPicture::shows(const osg::Vec3d& eye, int around, double tolerance) co
     const double x = 0.5 * (clip.x() / clip.w() + 1.0) * width,
                  y = 0.5 * (clip.y() / clip.w() + 1.0) * height;
     if (!(x >= 0.0 && y >= 0.0 && x < width && y < height)) return false;
+    if (depths.empty()) return true;
     // A little nearer to the eye along its ray; without a perspective, along the axis.
     const bool perspective = projection(3, 3) == 0.0;
     const osg::Vec3d nearer =
@@ -263,7 +264,12 @@ void DepthReader::drawImplementation(osg::RenderInfo& renderInfo) const
                            static_cast<std::size_t>(picture->height));
     const auto bytes = static_cast<GLsizeiptr>(picture->depths.size() * sizeof(float));
     const Readable readable(extensions, objects, *port);
-    if (objects.unresolvable) return;
+    if (objects.unresolvable)
+    {
+        picture->depths.clear();
+        _shared->publish(*camera, std::move(picture));
+        return;
+    }
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);
     const bool buffered = extensions.isPBOSupported && !_immediate;

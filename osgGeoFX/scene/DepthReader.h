@@ -24,10 +24,11 @@ struct OSGGEOFX_EXPORT DepthPicture
     unsigned int frame = 0; ///< OSG's frame number
     int width = 0;          ///< of the camera's viewport, pixels
     int height = 0;
-    std::vector<float> depths; ///< window depths, 0…1, row by row from the lowest one
-    osg::Matrixd view;         ///< from world to eye coordinates
-    osg::Matrixd projection;   ///< with the near and far planes of the frame
-    bool zeroToOne = false;    ///< whether clip space has depths of 0…1 (glClipControl)
+    /// Window depths, 0…1, row by row from the lowest one. Empty where they could not be read; then nothing counts as hidden.
+    std::vector<float> depths;
+    osg::Matrixd view;       ///< from world to eye coordinates
+    osg::Matrixd projection; ///< with the near and far planes of the frame
+    bool zeroToOne = false;  ///< whether clip space has depths of 0…1 (glClipControl)
     DepthConvention convention;
 
     /** Whether a place in eye space is to be seen: whether at its pixel, or at one of those around it, nothing was drawn
@@ -64,7 +65,7 @@ public:
 
     /// The newest picture of a camera; null if there is none yet.
     std::shared_ptr<const DepthPicture> picture(const osg::Camera& camera) const;
-    /// The newest picture of any camera whose viewport has a pixel of the context; null if there is none.
+    /// The newest picture of each camera; empty if there is none yet.
     std::vector<std::shared_ptr<const DepthPicture>> pictures() const;
 
     void drawImplementation(osg::RenderInfo& renderInfo) const override;

@@ -189,6 +189,8 @@ TEST_F(NamesProgram, FaultsAreSentences)
     EXPECT_NE(faultOf({"--labels", "names.geojson"}).find("lie beside the terrain"), std::string::npos);
     EXPECT_NE(faultOf({"--labels", "none.gpkg"}).find("none.gpkg"), std::string::npos);
     EXPECT_NE(faultOf({"--svg", "names.svg"}).find("--labels"), std::string::npos);
+    write("style.json", R"({"names": {"peak": {"size": 12}}})");
+    EXPECT_NE(faultOf({"--style", "style.json"}).find("give some with --labels"), std::string::npos);
     write("style.json", R"({"names": {"peak": {"size": -3}}})");
     EXPECT_NE(faultOf({"--labels", "names.geojson", "--style", "style.json"})
                   .find("\"size\" must be a number from"),

@@ -70,6 +70,20 @@ FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
     return crs;
 }
 
+VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file)
+{
+    VectorTarget target;
+    if (frame.globe)
+    {
+        target.crs.importFromEPSG(4326);
+        return target;
+    }
+    const FrameCrs crs = crsOf(frame, file);
+    target.crs.SetFromUserInput(crs.definition.c_str());
+    target.metresPerUnit = crs.metresPerUnit;
+    return target;
+}
+
 FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed)
     : _file(std::move(file))
 {

@@ -32,6 +32,16 @@ struct FrameCrs
 /// Throws BuildError, naming `file`, where a projected terrain's coordinate system is none.
 FrameCrs crsOf(const MappingFrame& frame, const std::string& file);
 
+/// What vector data are brought to for a frame: degrees on a globe, else the frame's coordinate system.
+struct VectorTarget
+{
+    OGRSpatialReference crs;
+    double metresPerUnit = 1.0;
+};
+
+/// Throws BuildError, naming `file`, where a projected terrain's coordinate system is none.
+VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file);
+
 /** A raster file to be warped into a frame, with the virtual datasets on top of it that make colors or values of its
     bands. All of it throws BuildError, naming file and remedy. */
 class FrameRaster

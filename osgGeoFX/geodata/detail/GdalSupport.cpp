@@ -63,6 +63,20 @@ DatasetPtr openVectors(const std::string& file)
     return dataset;
 }
 
+void forEachLayer(GDALDataset& dataset, const std::string& layer, const std::string& file,
+                  const std::function<void(OGRLayer&)>& take)
+{
+    if (layer.empty())
+    {
+        for (OGRLayer* const each : dataset.GetLayers())
+            take(*each);
+        return;
+    }
+    OGRLayer* const named = dataset.GetLayerByName(layer.c_str());
+    if (!named) throw BuildError(file + ": it has no layer \"" + layer + "\"; ogrinfo lists those it has.");
+    take(*named);
+}
+
 void forEachFeature(
     OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
     const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take)

@@ -71,6 +71,10 @@ TransformationPtr createTransformation(const OGRSpatialReference& from, const OG
 /// Opens vector data; throws BuildError where it is none.
 DatasetPtr openVectors(const std::string& file);
 
+/// Hands out the layer of this name, or all layers if it is empty; throws BuildError where there is none of the name.
+void forEachLayer(GDALDataset& dataset, const std::string& layer, const std::string& file,
+                  const std::function<void(OGRLayer&)>& take);
+
 /// Hands out each feature with its geometry, curves as straight lines and nothing longer than about a kilometre, for what is straight in
 /// the file bends elsewhere; with the way to the target's coordinates. Throws BuildError where the layer has no CRS or cannot be read.
 void forEachFeature(
