@@ -259,20 +259,40 @@ void takePalette(const std::string& name, Recipe& recipe)
     recipe.palette = name;
 }
 
+void takeSize(const Arguments& arguments, Recipe& recipe)
+{
+    if (arguments.size.empty()) return;
+    std::string error;
+    const auto size = osgGeoFX::PrintSize::parse(arguments.size, error);
+    if (!size) throw Failure("--size " + error);
+    if (std::min(size->width, size->height) < 16)
+        throw Failure("--size " + arguments.size +
+                      ": write width and height in pixels, at least 16 each, such as 1600x900.");
+    recipe.width = size->width;
+    recipe.height = size->height;
+    recipe.dpi = size->dpi;
+}
+
+/// A recipe's strokes in another size of the picture.
+void growStrokes(double factor, Recipe& recipe)
+{
+    if (std::abs(factor - 1.0) < 0.001) return;
+    const osg::ref_ptr<const PanoramaMap> usual = new PanoramaMap;
+    const std::pair<const char*, double> sizes[] = {{"strokeSize", usual->getStrokeSize()},
+                                                    {"strokeSpacing", usual->getStrokeSpacing()}};
+    for (const auto& [name, byDefault] : sizes)
+    {
+        const auto found = recipe.map.find(name);
+        const double former = found == recipe.map.end() ? byDefault : std::stod(found->second);
+        char text[64];
+        std::snprintf(text, sizeof(text), "%.4g", std::clamp(former * factor, 1.0, 200.0));
+        recipe.map[name] = text;
+    }
+}
+
 void takeOptions(const Arguments& arguments, Recipe& recipe)
 {
-    if (!arguments.size.empty())
-    {
-        std::string error;
-        const auto size = osgGeoFX::PrintSize::parse(arguments.size, error);
-        if (!size) throw Failure("--size " + error);
-        if (std::min(size->width, size->height) < 16)
-            throw Failure("--size " + arguments.size +
-                          ": write width and height in pixels, at least 16 each, such as 1600x900.");
-        recipe.width = size->width;
-        recipe.height = size->height;
-        recipe.dpi = size->dpi;
-    }
+    takeSize(arguments, recipe);
     const auto take = [](const std::string& given, std::string& value)
     {
         if (!given.empty()) value = given;
@@ -522,6 +542,12 @@ void run(const Arguments& arguments)
         // A strip is long. 360 degrees are as wide as the screens that people join.
         recipe.width = static_cast<int>(std::lround(std::clamp(10.0 * *arguments.around, 960.0, 3600.0)));
         recipe.height = 720;
+    }
+    const int formerHeight = recipe.height;
+    if (again)
+    {
+        takeSize(arguments, recipe);
+        growStrokes(static_cast<double>(recipe.height) / formerHeight, recipe);
     }
     takeOptions(arguments, recipe);
     const PanoramaWishes wishes = wishesOf(arguments, recipe);

@@ -91,6 +91,34 @@ TEST_F(PanoramaProgram, MakesAMapOfADemAndTheSameAgain)
     EXPECT_TRUE(bytes("map.png") == bytes("again.png")) << "the same to the byte";
 }
 
+// A recipe in another size is the same picture, so its strokes grow with it; those that were asked for stay.
+TEST_F(PanoramaProgram, StrokesOfARecipeGrowWithTheSize)
+{
+    invent("volcano");
+    const auto make = [&](const std::string& source, const std::string& name, const std::string& size,
+                          const std::vector<std::string>& more)
+    {
+        std::vector<std::string> arguments = {source, "-o",        name + ".png", "--size",
+                                              size,   "--samples", "0",           "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        const nlohmann::json map = nlohmann::json::parse(bytes(name + ".json")).at("map");
+        return osg::Vec2d(std::stod(map.value("strokeSize", "0")),
+                          std::stod(map.value("strokeSpacing", "0")));
+    };
+    const osg::Vec2d small = make("volcano.tif", "small", "640x360", {});
+    ASSERT_GT(small.x(), 1.0);
+    const osg::Vec2d large = make("small.json", "large", "1280x720", {});
+    EXPECT_NEAR(large.x(), 2.0 * small.x(), 0.01);
+    EXPECT_NEAR(large.y(), 2.0 * small.y(), 0.01);
+    EXPECT_EQ(make("small.json", "own", "1280x720", {"--set", "strokeSize=3"}).x(), 3.0);
+    // Of the usual height recipes do not name them.
+    const osg::Vec2d usual = make("volcano.tif", "usual", "1600x900", {});
+    EXPECT_EQ(usual.x(), 0.0);
+    EXPECT_NEAR(make("usual.json", "half", "800x450", {}).x(), 1.25 * small.x(), 0.01);
+}
+
 TEST_F(PanoramaProgram, TakesLibertiesWhereTheyAreAskedFor)
 {
     invent("alps");
