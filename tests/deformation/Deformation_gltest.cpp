@@ -116,7 +116,7 @@ void expectSameLook(const Row& row, std::size_t i, const Result& gpu)
     Vec3d point = row.points[i];
     Vec3d normal = row.normals[i];
     double style = 0.0;
-    double allowed = 1e-5;
+    double allowed = 1e-5, allowedOfNormal = 1e-4;
     const double start = point.length();
     for (std::size_t k = 0; k < row.snapshots.size(); ++k)
     {
@@ -134,10 +134,14 @@ void expectSameLook(const Row& row, std::size_t i, const Result& gpu)
         {
             normal = snapshot->deformNormal(point, normal);
         }
+        // What an effect before a region has moved far away is rounded more coarsely than the region turns its ground.
+        LibertyNumbers liberty;
+        if (libertyNumbers(*snapshot, liberty))
+            allowedOfNormal += 2e-6 * point.length() / std::min(liberty.across, liberty.along);
         point = snapshot->deform(point);
     }
     EXPECT_NEAR(gpu.style, style, allowed * stretchAt(*row.chain, row.points[i]));
-    EXPECT_LT((gpu.normal - normal).length(), 1e-4);
+    EXPECT_LT((gpu.normal - normal).length(), allowedOfNormal);
 }
 
 osg::ref_ptr<osg::Image> makeFloatImage(int rows)

@@ -158,6 +158,9 @@ struct Jacobian
 double stepAt(const Case& found, const Vec3d& point)
 {
     const double step = 1e-5 * scaleOf(found, point);
+    LibertyNumbers liberty;
+    if (libertyNumbers(*found.snapshot, liberty))
+        return std::min(step, 1e-3 * std::min(liberty.across, liberty.along));
     return found.bends ? std::min(step, 1e-4 * found.bend.size) : step;
 }
 
