@@ -109,18 +109,21 @@ struct Case
 };
 
 template<class Check>
+void forSample(int sample, const Check& check)
+{
+    Random random(static_cast<std::uint64_t>(sample));
+    const Case found(random);
+    SCOPED_TRACE(::testing::Message()
+                 << sample << ": " << describe(*found.map) << "; " << found.pose << "; column " << found.low
+                 << " to " << found.high << "; radius " << found.radius());
+    check(found, random);
+}
+
+template<class Check>
 void forRandom(int samples, const Check& check)
 {
-    for (int sample = 0; sample < samples; ++sample)
-    {
-        Random random(static_cast<std::uint64_t>(sample));
-        const Case found(random);
-        SCOPED_TRACE(::testing::Message()
-                     << sample << ": " << describe(*found.map) << "; " << found.pose << "; column "
-                     << found.low << " to " << found.high << "; radius " << found.radius());
-        check(found, random);
-        if (::testing::Test::HasFailure()) return;
-    }
+    for (int sample = 0; sample < samples && !::testing::Test::HasFailure(); ++sample)
+        forSample(sample, check);
 }
 
 } // namespace
@@ -138,13 +141,20 @@ TEST(PanoramaCylinder, ShowsAzimuthsAcrossAndDistancesUpwards)
                   const double azimuth = 0.5 * angle * x;
                   const double arch = bend * (1.0 - std::cos(x * osg::PI_2));
                   const double base = found.map->getBaseHeight();
+                  // Its ground is higher or lower by a share of the sagitta, which the exaggeration enlarges.
+                  const auto exactUpwards = [&](double away)
+                  {
+                      const double sagitta = found.pose.globe ? 0.5 * away * away / 6.37e6 : 0.0;
+                      return 4.0 * exact + 0.0067 * sagitta * found.map->getExaggeration() / found.radius();
+                  };
                   const Vec3d foot = found.seen(found.at(azimuth, found.ring(), base));
                   EXPECT_NEAR(foot.x(), x, exact);
-                  EXPECT_NEAR(foot.y(), -1.0 - arch, 4.0 * exact);
+                  EXPECT_NEAR(foot.y(), -1.0 - arch, exactUpwards(found.ring()));
                   const double d2 = found.map->getHorizonDistance() * found.radius();
                   const Vec3d horizon = found.seen(found.at(azimuth, found.ring() + d2, base));
                   EXPECT_NEAR(horizon.x(), x, exact);
-                  EXPECT_NEAR(horizon.y(), 2.0 * found.map->getHorizonLine() - 1.0 - arch, 4.0 * exact);
+                  EXPECT_NEAR(horizon.y(), 2.0 * found.map->getHorizonLine() - 1.0 - arch,
+                              exactUpwards(found.ring() + d2));
               });
 }
 
@@ -206,25 +216,25 @@ TEST(PanoramaCylinder, PartsOfAPictureAgreeWithTheWhole)
 
 TEST(PanoramaCylinder, BallsHoldWhereverTheyLie)
 {
-    forRandom(sampleCount(),
-              [](const Case& found, Random& random)
-              {
-                  const Ball ball = {found.anywhere(random), random.logarithmic(1e-3, 1.0) * found.ring()};
-                  const double grows = found.frame->lipschitz(ball);
-                  for (int i = 0; i < 20; ++i)
-                  {
-                      const Vec3d a =
-                          ball.center + randomDirection(random) * (ball.radius * random.uniform(0.0, 1.0));
-                      const Vec3d b = random.integer(0, 1)
-                                          ? ball.center
-                                          : a + randomDirection(random) * (1e-3 * ball.radius);
-                      if ((b - ball.center).length() > ball.radius) continue;
-                      const double apart = (found.frame->deform(a) - found.frame->deform(b)).length();
-                      EXPECT_LE(apart, grows * (a - b).length() * (1.0 + 1e-6) + 1e-9 * found.scaleOf(a))
-                          << "radius " << ball.radius << ", grows by " << apart / (a - b).length()
-                          << " instead of " << grows;
-                  }
-              });
+    const auto holds = [](const Case& found, Random& random)
+    {
+        const Ball ball = {found.anywhere(random), random.logarithmic(1e-3, 1.0) * found.ring()};
+        const double grows = found.frame->lipschitz(ball);
+        for (int i = 0; i < 20; ++i)
+        {
+            const Vec3d a = ball.center + randomDirection(random) * (ball.radius * random.uniform(0.0, 1.0));
+            const Vec3d b =
+                random.integer(0, 1) ? ball.center : a + randomDirection(random) * (1e-3 * ball.radius);
+            if ((b - ball.center).length() > ball.radius) continue;
+            const double apart = (found.frame->deform(a) - found.frame->deform(b)).length();
+            EXPECT_LE(apart, grows * (a - b).length() * (1.0 + 1e-6) + 1e-9 * found.scaleOf(a))
+                << "radius " << ball.radius << ", grows by " << apart / (a - b).length() << " instead of "
+                << grows;
+        }
+    };
+    // A narrow column far to the left: what is kept out of it goes a long way to its middle.
+    forSample(45533, holds);
+    forRandom(sampleCount(), holds);
 }
 
 TEST(PanoramaCylinder, EdgesSagNoMoreThanTheySay)

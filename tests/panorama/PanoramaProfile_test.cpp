@@ -153,7 +153,8 @@ TEST(PanoramaProfile, HasTheSlopeThatItsHeightsTell)
 
 TEST(PanoramaProfile, BoundsHoldItsDerivatives)
 {
-    double loosest = 1.0;
+    double tight = 0.0;
+    int count = 0;
     forRandomCurves(
         [&](const Points& points, Random& random)
         {
@@ -172,9 +173,12 @@ TEST(PanoramaProfile, BoundsHoldItsDerivatives)
             }
             EXPECT_LE(slope, rates.slope * (1.0 + 1e-9));
             EXPECT_LE(second, rates.second * (1.0 + 1e-6) + 1e-6);
-            if (rates.slope > 0.01 && to - from < 0.2) loosest = std::min(loosest, slope / rates.slope);
+            if (!(rates.slope > 0.01 && to - from < 0.2)) return;
+            tight += slope / rates.slope;
+            ++count;
         });
-    EXPECT_GT(loosest, 0.9) << "the bound of the slope is that of another interval";
+    RecordProperty("tight", std::to_string(tight / count));
+    EXPECT_GT(tight / count, 0.99) << "the bound of the slope is that of another interval";
 }
 
 TEST(PanoramaProfile, IsUndoneByItsInverse)
@@ -189,7 +193,7 @@ TEST(PanoramaProfile, IsUndoneByItsInverse)
                 const double u = random.uniform(-0.5, 0.999);
                 const double height = glsl::geofx_profileRise(profile, u);
                 const double found = glsl::geofx_profileDistance(profile, height);
-                EXPECT_NEAR(glsl::geofx_profileRise(profile, found), height, 1e-11) << "at " << u;
+                EXPECT_NEAR(glsl::geofx_profileRise(profile, found), height, 1e-9) << "at " << u;
                 // The place itself, where the curve is not nearly level.
                 if (glsl::geofx_profileSlope(profile, u) > 0.05)
                 {

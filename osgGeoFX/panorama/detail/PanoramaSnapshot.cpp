@@ -310,7 +310,9 @@ PanoramaSnapshot::Extent PanoramaSnapshot::extentOf(const Ball& ball) const
     extent.liftRate = rate * cylinder.width + bare * cylinder.widthRate;
     extent.liftSecond =
         second * cylinder.width + 2.0 * rate * cylinder.widthRate + bare * cylinder.widthSecond;
-    extent.x = _view.across * (std::abs(extent.place.x) + cylinder.sideReach);
+    // What is kept out of a cylinder's picture goes back to the middle of the part that is drawn.
+    extent.x = _view.across * std::max(std::abs(extent.place.x) + cylinder.sideReach,
+                                       std::abs(_view.cylinder.ring * _view.cylinder.middle));
     extent.n = _view.nearest + std::max(farS, 0.0);
     extent.nSecond = nearS < 0.0 ? 2.0 / _view.nearest : 0.0;
     return extent;
