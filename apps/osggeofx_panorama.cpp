@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_panorama: any DEM to a panorama map.
-#include "names/SceneNames.h"
+#include "names/PictureMap.h"
 #include "osggeofx_render_output.h"
 #include "panorama/GroundBuilder.h"
 #include "panorama/Recipe.h"
@@ -60,7 +60,6 @@ struct Arguments
     std::string liberties; ///< the strength of those that are chosen; empty for none
     std::vector<std::string> liberty;
     geofx::names::Options names;
-    std::string svg;
     bool explain = false, quiet = false;
 };
 
@@ -73,8 +72,10 @@ void addOptions(CLI::App& app, Arguments& arguments)
            "map, which makes the same map again")
         ->required()
         ->type_name("DEM…|TERRAIN.osgb|RECIPE.json");
-    app.add_option("-o,--output", arguments.output,
-                   "The picture; its extension names the format (png, jpg, tiff)")
+    app.add_option(
+           "-o,--output", arguments.output,
+           "The picture; its extension names the format (png, jpg, tiff, exr; pdf with names and lines "
+           "as vectors)")
         ->required()
         ->type_name("FILE");
     app.add_option("--size", arguments.size,
@@ -156,10 +157,6 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("'LON,LAT NAME=VALUE …'")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     geofx::names::addOptions(app, arguments.names);
-    app.add_option(
-           "--svg", arguments.svg,
-           "Also write the names as an SVG file over the picture, which has none then; to finish by hand")
-        ->type_name("FILE.svg");
     app.add_flag("--explain", arguments.explain, "Say what was chosen, and why");
     app.add_flag("--quiet", arguments.quiet, "No progress");
     app.footer(
@@ -290,6 +287,13 @@ void growStrokes(double factor, Recipe& recipe)
     }
 }
 
+/// Names and lines as the recipe has them, and the files for them that are asked for now.
+geofx::names::Options mapOptions(const Arguments& arguments, const Recipe& recipe)
+{
+    return {recipe.labels, recipe.lines,        recipe.labelStyle,
+            recipe.font,   arguments.names.svg, arguments.names.geoJson};
+}
+
 void takeOptions(const Arguments& arguments, Recipe& recipe)
 {
     takeSize(arguments, recipe);
@@ -304,10 +308,14 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
     take(arguments.names.style, recipe.labelStyle);
     take(arguments.names.font, recipe.font);
     if (!arguments.names.files.empty()) recipe.labels = arguments.names.files;
-    if (recipe.labels.empty() && !(arguments.svg + arguments.names.style + arguments.names.font).empty())
-        throw Failure("--svg, --style and --font are for names; give some with --labels.");
-    const std::string fault = arguments.svg.empty() ? std::string() : faultOfOutput(arguments.svg);
+    if (!arguments.names.lines.empty()) recipe.lines = arguments.names.lines;
+    const std::string fault = geofx::names::faultOf(mapOptions(arguments, recipe));
     if (!fault.empty()) throw Failure(fault);
+    for (const std::string& file : {arguments.names.svg, arguments.names.geoJson})
+    {
+        const std::string outputFault = file.empty() ? std::string() : faultOfOutput(file);
+        if (!outputFault.empty()) throw Failure(outputFault);
+    }
     if (arguments.samples) recipe.samples = *arguments.samples;
     if (!arguments.palette.empty()) takePalette(arguments.palette, recipe);
     const osg::ref_ptr<PanoramaMap> check = new PanoramaMap;
@@ -421,40 +429,30 @@ void printPick(const Arguments& arguments, const Recipe& recipe, const osgGeoFX:
         std::printf("%s: no ground\n", arguments.pick.c_str());
 }
 
-void putNames(const Arguments& arguments, const geofx::names::PictureNames& names,
-              const osgGeoFX::SceneRenderer& renderer, osg::Image& image)
+osgGeoFX::PrintSize sizeOf(const Recipe& recipe)
 {
-    const osgGeoFX::LabelPicture placed = names.place(renderer.camera());
-    if (arguments.svg.empty())
-    {
-        placed.drawOnto(image);
-        return;
-    }
-    std::string error;
-    const fs::path folder = fs::absolute(arguments.svg).parent_path();
-    const std::string picture = fs::absolute(arguments.output).lexically_relative(folder).string();
-    if (!placed.writeSvg(arguments.svg, picture, error)) throw Failure(error);
+    return {recipe.width, recipe.height, recipe.dpi};
 }
 
-bool isPrint(const Recipe& recipe)
+bool isPrint(const Arguments& arguments, const Recipe& recipe)
 {
-    const osgGeoFX::PrintSize size{recipe.width, recipe.height, recipe.dpi};
-    return size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size);
+    return recipe.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(sizeOf(recipe)) ||
+           geofx::names::PictureMap::isPdf(arguments.output);
 }
 
 void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::SceneRenderer::Options& renderer,
-           const osg::ref_ptr<osgGeoFX::NameSet>& names, osgGeoFX::Scene& scene, const osg::Matrixd& view,
+           geofx::names::PictureMap& map, osgGeoFX::Scene& scene, const osg::Matrixd& view,
            const std::string& ground)
 {
     osgGeoFX::PicturePrint::Options options;
-    options.size = {recipe.width, recipe.height, recipe.dpi};
+    options.size = sizeOf(recipe);
     options.renderer = renderer;
-    options.names = names;
-    if (names) names->setScale(recipe.height / usualHeight);
+    map.prepare(options);
     options.work = fs::path(arguments.output).replace_extension().string() + ".tiles";
-    options.recipe = recipe.text() + geofx::names::ageOf(ground);
+    options.recipe = recipe.text() + geofx::names::ageOf(ground) +
+                     geofx::names::agesOf(mapOptions(arguments, recipe)) +
+                     geofx::names::PictureMap::rasterOf(arguments.output);
     options.metadata = {{"Software", "osgGeoFX osggeofx_panorama"}, {"ImageDescription", recipe.text()}};
-    options.svg = arguments.svg;
     osgGeoFX::ProgressLine line("osggeofx_panorama");
     if (!arguments.quiet)
         options.progress = [&](int done, int all)
@@ -462,7 +460,10 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
             line(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(all), "drawing");
         };
     std::string error;
-    if (!osgGeoFX::PicturePrint::write(scene, options, view, arguments.output, error)) throw Failure(error);
+    if (!osgGeoFX::PicturePrint::write(scene, options, view,
+                                       geofx::names::PictureMap::rasterOf(arguments.output), error))
+        throw Failure(error);
+    map.finish(options, view);
     if (arguments.pick.empty()) return;
     const double aspect = static_cast<double>(recipe.width) / recipe.height;
     printPick(
@@ -488,35 +489,30 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     options.height = recipe.height;
     options.samples = recipe.samples;
     std::string error;
-    osg::ref_ptr<osgGeoFX::NameSet> set;
-    if (!recipe.labels.empty())
-    {
-        std::string notice;
-        set = geofx::names::read({recipe.labels, recipe.labelStyle, recipe.font}, scene, notice);
-        if (!notice.empty() && !arguments.quiet) std::fprintf(stderr, "%s\n", notice.c_str());
-    }
+    geofx::names::PictureMap map(mapOptions(arguments, recipe), arguments.output, sizeOf(recipe), scene);
+    for (const std::string& notice : map.notices())
+        if (!arguments.quiet) std::fprintf(stderr, "%s\n", notice.c_str());
     TerrainRelief frame;
     frame.geocentric = recipe.geocentric;
-    if (isPrint(recipe))
+    if (isPrint(arguments, recipe))
     {
-        print(arguments, recipe, options, set, scene, recipe.view.viewMatrix(frame), ground);
+        print(arguments, recipe, options, map, scene, recipe.view.viewMatrix(frame), ground);
         return;
     }
-    std::optional<geofx::names::PictureNames> names;
-    if (set) names.emplace(*set, scene, recipe.height);
+    map.prepare();
     const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
     if (!renderer) throw Failure(error);
     osgGeoFX::FrameStatistics unused;
     const auto image = renderer->render(recipe.view.viewMatrix(frame), 0.0, unused, error);
     if (!image) throw Failure(error);
-    if (names) putNames(arguments, *names, *renderer, *image);
+    map.finish(renderer->camera(), *image);
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
     if (!arguments.pick.empty()) printPick(arguments, recipe, scene, {*scene.effects, renderer->camera()});
 }
 
 void run(const Arguments& arguments)
 {
-    PictureFiles pictures(arguments.output, false);
+    PictureFiles pictures(geofx::names::PictureMap::rasterOf(arguments.output), false);
     if (!pictures.error().empty()) throw Failure(pictures.error());
     Recipe recipe;
     const bool again = arguments.sources.size() == 1 && Recipe::isRecipe(arguments.sources.front());

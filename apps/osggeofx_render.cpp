@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_render: an OSG file or .geofx scene to pictures, off-screen.
-#include "names/SceneNames.h"
+#include "names/PictureMap.h"
 #include "osggeofx_render_output.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
@@ -66,7 +66,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("SCENE");
     app.add_option(
            "-o,--output", arguments.output,
-           "Picture to write; its extension names the format (png, jpg, tiff, …). With --path a pattern "
+           "Picture to write; its extension names the format (png, jpg, tiff, …; pdf with names and lines as "
+           "vectors). With --path a pattern "
            "such as f%04d.png")
         ->required()
         ->type_name("FILE");
@@ -315,24 +316,9 @@ void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const Camera
     image.copySubImage(left, margin, 0, straight);
 }
 
-osg::ref_ptr<osgGeoFX::NameSet> readNames(const Arguments& arguments, const osgGeoFX::Scene& scene)
-{
-    try
-    {
-        std::string notice;
-        osg::ref_ptr<osgGeoFX::NameSet> names = geofx::names::read(arguments.names, scene, notice);
-        if (!notice.empty()) std::cerr << "osggeofx_render: " << notice << std::endl;
-        return names;
-    }
-    catch (const std::runtime_error& fault)
-    {
-        throw Failure(badInput, fault.what());
-    }
-}
-
 /// A picture that is larger than the GPU draws at once, or has a resolution.
-void print(const Arguments& arguments, const osgGeoFX::PrintSize& size,
-           const osg::ref_ptr<osgGeoFX::NameSet>& names, const osg::Matrixd& view, osgGeoFX::Scene& scene)
+void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::names::PictureMap& map,
+           const osg::Matrixd& view, osgGeoFX::Scene& scene)
 {
     if (!arguments.path.empty() || arguments.inset || !arguments.stats.empty())
         throw Failure(badInput,
@@ -342,29 +328,40 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size,
     osgGeoFX::PicturePrint::Options options;
     options.size = size;
     options.renderer = arguments.renderer;
-    options.names = names;
-    if (names) names->setScale(size.height / geofx::names::usualHeight);
+    map.prepare(options);
     options.work = std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
-    options.recipe = arguments.scene + geofx::names::ageOf(arguments.scene);
+    options.recipe = arguments.scene + geofx::names::ageOf(arguments.scene) +
+                     geofx::names::agesOf(arguments.names) +
+                     geofx::names::PictureMap::rasterOf(arguments.output);
     for (const std::string& effect : arguments.effects)
         options.recipe += "; " + effect;
     options.metadata = {{"Software", "osgGeoFX osggeofx_render"}};
     std::string error;
-    if (!osgGeoFX::PicturePrint::write(scene, options, view, arguments.output, error))
-        throw Failure(badInput, error);
+    const std::string raster = geofx::names::PictureMap::rasterOf(arguments.output);
+    if (!osgGeoFX::PicturePrint::write(scene, options, view, raster, error)) throw Failure(badInput, error);
+    map.finish(options, view);
 }
 
 void run(Arguments& arguments)
 {
     std::string error;
     const osgGeoFX::PrintSize size = readSize(arguments);
-    PictureFiles pictures(arguments.output, !arguments.path.empty());
+    PictureFiles pictures(geofx::names::PictureMap::rasterOf(arguments.output), !arguments.path.empty());
     if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
     const std::string statsFault = arguments.stats.empty() ? std::string() : faultOfOutput(arguments.stats);
     if (!statsFault.empty()) throw Failure(badInput, statsFault);
 
     const osg::ref_ptr<osgDB::Options> reading =
         new osgDB::Options(arguments.allowOutside ? "allowOutside" : "");
+    const std::string mapFault = geofx::names::faultOf(arguments.names);
+    if (!mapFault.empty()) throw Failure(badInput, mapFault);
+    for (const std::string& file : {arguments.names.svg, arguments.names.geoJson})
+    {
+        const std::string outputFault = file.empty() ? std::string() : faultOfOutput(file);
+        if (!outputFault.empty()) throw Failure(badInput, outputFault);
+    }
+    if (!arguments.path.empty() && !(arguments.names.svg + arguments.names.geoJson).empty())
+        throw Failure(badInput, "--svg and --geojson are for one picture; leave --path out.");
     std::optional<osgGeoFX::Scene> scene =
         osgGeoFX::Scene::load(arguments.scene, error, arguments.allowOutside ? reading.get() : nullptr);
     if (!scene) throw Failure(badInput, error);
@@ -381,17 +378,16 @@ void run(Arguments& arguments)
     options.cull = !arguments.noCull;
     options.countTriangles = !arguments.stats.empty();
     const Camera camera(arguments, *scene);
-    osg::ref_ptr<osgGeoFX::NameSet> set;
-    if (arguments.names.files.empty() && !(arguments.names.style + arguments.names.font).empty())
-        throw Failure(badInput, "--style and --font are for names; give some with --labels.");
-    if (!arguments.names.files.empty()) set = readNames(arguments, *scene);
-    if (size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size))
+    geofx::names::PictureMap map(arguments.names, arguments.output, size, *scene);
+    for (const std::string& notice : map.notices())
+        std::cerr << "osggeofx_render: " << notice << std::endl;
+    if (size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size) ||
+        geofx::names::PictureMap::isPdf(arguments.output))
     {
-        print(arguments, size, set, camera.view(0), *scene);
+        print(arguments, size, map, camera.view(0), *scene);
         return;
     }
-    std::optional<geofx::names::PictureNames> names;
-    if (set) names.emplace(*set, *scene, options.height);
+    map.prepare();
 
     const auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
     if (!renderer) throw Failure(badInput, error);
@@ -401,7 +397,7 @@ void run(Arguments& arguments)
         osgGeoFX::FrameStatistics figures;
         const auto image = renderer->render(camera.view(frame), camera.time(frame), figures, error);
         if (!image) throw Failure(tookTooLong, error);
-        if (names) names->place(renderer->camera()).drawOnto(*image);
+        map.finish(renderer->camera(), *image);
         if (arguments.inset) addInset(*image, *renderer, camera, frame, *scene->effects);
         if (!pictures.write(*image, frame)) throw Failure(badInput, pictures.error());
         statistics.add(figures);
@@ -441,6 +437,11 @@ int main(int argc, char** argv)
     {
         std::cerr << "osggeofx_render: " << failure.what() << std::endl;
         return failure.exitCode;
+    }
+    catch (const std::runtime_error& fault)
+    {
+        std::cerr << "osggeofx_render: " << fault.what() << std::endl;
+        return badInput;
     }
     return 0;
 }

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_viewer: osgviewer, made for terrain.
-#include "names/SceneNames.h"
+#include "names/SceneLines.h"
 #include "viewer/ViewerSetup.h"
 
 #include <osgGeoFX/labels/MapLabels.h>
@@ -49,7 +49,9 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
     usage.addCommandLineOption("--labels <file>",
                                "Show the names of a vector file, FILE or FILE:LAYER; as often as wanted.");
-    usage.addCommandLineOption("--style <file.json>", "How the names look, as in osggeofx_render.");
+    usage.addCommandLineOption("--lines <file>",
+                               "Show the lines of a vector file, such as roads; FILE or FILE:LAYER.");
+    usage.addCommandLineOption("--style <file.json>", "How names and lines look, as in osggeofx_render.");
     usage.addCommandLineOption("--font <name or file>",
                                "The names' font: installed families, or a font's file.");
     usage.addCommandLineOption("--help-effects", "List the effects with all their properties.");
@@ -113,6 +115,8 @@ int main(int argc, char** argv)
     geofx::names::Options nameOptions;
     while (arguments.read("--labels", text))
         nameOptions.files.push_back(text);
+    while (arguments.read("--lines", text))
+        nameOptions.lines.push_back(text);
     arguments.read("--style", nameOptions.style);
     arguments.read("--font", nameOptions.font);
     double fieldOfView = 0.0;
@@ -163,13 +167,18 @@ int main(int argc, char** argv)
         scene->effects->addEffect(effect);
     scene->effects->listenTo(*scene->guard);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
-    if (nameOptions.files.empty() && !(nameOptions.style + nameOptions.font).empty())
-        return refuse("--style and --font are for names; give some with --labels.");
-    if (!nameOptions.files.empty())
+    if (const std::string fault = geofx::names::faultOf(nameOptions); !fault.empty()) return refuse(fault);
+    try
     {
-        try
+        std::string notice;
+        if (!nameOptions.lines.empty())
         {
-            std::string notice;
+            geofx::names::SceneLines::read(nameOptions, *scene, notice)
+                .addTo(*scene, geofx::names::usualHeight);
+            if (!notice.empty()) std::cerr << "osggeofx_viewer: " << notice << std::endl;
+        }
+        if (!nameOptions.files.empty())
+        {
             const osg::ref_ptr<osgGeoFX::NameSet> names = geofx::names::read(nameOptions, *scene, notice);
             if (!notice.empty()) std::cerr << "osggeofx_viewer: " << notice << std::endl;
             const osg::ref_ptr<osg::Group> both = new osg::Group;
@@ -177,10 +186,10 @@ int main(int argc, char** argv)
             both->addChild(new osgGeoFX::MapLabels(*scene->effects, names));
             scene->node = both;
         }
-        catch (const std::runtime_error& fault)
-        {
-            return refuse(fault.what());
-        }
+    }
+    catch (const std::runtime_error& fault)
+    {
+        return refuse(fault.what());
     }
     viewer.setSceneData(scene->node);
     const osg::Vec4 color = viewer.getCamera()->getClearColor();

@@ -7,6 +7,7 @@
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/FileSources.h>
 #include <osgGeoFX/geodata/LandCoverTable.h>
+#include <osgGeoFX/geodata/LineVectors.h>
 #include <osgGeoFX/geodata/MappingRaster.h>
 #include <osgGeoFX/geodata/MaterialLegend.h>
 #include <osgGeoFX/geodata/NameVectors.h>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// All that the library osgGeoFXMaps offers: the names of maps, and pictures of any size.
+// All that the library osgGeoFXMaps offers: the names and lines of maps, and pictures of any size.
 #pragma once
 
+#include <osgGeoFX/labels/FinestGround.h>
 #include <osgGeoFX/labels/LabelLayout.h>
 #include <osgGeoFX/labels/LabelPicture.h>
 #include <osgGeoFX/labels/LabelText.h>
@@ -14,4 +15,12 @@
 #include <osgGeoFX/labels/NameSet.h>
 #include <osgGeoFX/labels/Prominence.h>
 
+#include <osgGeoFX/lines/LineFile.h>
+#include <osgGeoFX/lines/LinePicture.h>
+#include <osgGeoFX/lines/LinePlacement.h>
+#include <osgGeoFX/lines/LineStyle.h>
+#include <osgGeoFX/lines/MapLine.h>
+#include <osgGeoFX/lines/MapLines.h>
+
 #include <osgGeoFX/print/PicturePrint.h>
+#include <osgGeoFX/print/PictureVectors.h>

@@ -2,14 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/labels/LabelPicture.h>
 #include <osgGeoFX/labels/NamePlacement.h>
 #include <osgGeoFX/labels/NameSet.h>
-#include <osgGeoFX/scene/DepthReader.h>
 #include <osgGeoFX/viewer/Scene.h>
 
-#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI
@@ -17,7 +15,7 @@ namespace CLI
 class App;
 }
 
-/// The names that the programs' options ask for: --labels, --style and --font.
+/// The names and lines that the programs' options ask for: --labels, --lines, --style and --font.
 namespace geofx::names
 {
 
@@ -27,38 +25,31 @@ constexpr double usualHeight = 900.0;
 struct Options
 {
     std::vector<std::string> files; ///< vector data with names, or FILE:LAYER
+    std::vector<std::string> lines; ///< vector data with lines, or FILE:LAYER
     std::string style;              ///< a JSON file; empty for the usual styles
     std::string font;               ///< a font's file or its families; empty for the styles' own
+    std::string svg;                ///< a file for names and lines as vectors; empty: none
+    std::string geoJson;            ///< a file for them in the picture's coordinates; empty: none
 };
 
-/// Adds --labels, --style and --font to a program.
+/// Adds --labels, --lines, --style, --font, --svg and --geojson to a program.
 void addOptions(CLI::App& app, Options& options);
+/// A sentence if one of them is given for nothing, or a file cannot be written there; else empty.
+std::string faultOf(const Options& options);
+
+/// FILE, or FILE:LAYER where there is no file of the whole name: the file, and the layer or nothing.
+std::pair<std::string, std::string> fileAndLayer(const std::string& text);
+/// The coordinate system of a projected scene, as WKT; empty if it states none.
+std::string wktOf(osg::Node& node);
 
 /// When a file was changed last, as a text: what was drawn of a former one must not be used again. Empty if there is none.
 std::string ageOf(const std::string& file);
-
-/// The styles of a JSON file over the usual ones. Throws std::runtime_error with a sentence.
-std::map<std::string, osgGeoFX::NameStyle> readStyles(const std::string& file);
+/// The same of all files of names, lines and styles.
+std::string agesOf(const Options& options);
 
 /** The names of all files on a scene's ground, with their styles. Throws std::runtime_error with a sentence. `notice`: what people should know
     of the names, in a sentence; empty where all are well. */
 osg::ref_ptr<osgGeoFX::NameSet> read(const Options& options, const osgGeoFX::Scene& scene,
                                      std::string& notice);
-
-/** Names on pictures of a SceneRenderer. Make it before the renderer, since it adds to the scene's node what reads the depths. */
-class PictureNames
-{
-public:
-    /// `height`: of the pictures, pixels. Names grow with it.
-    PictureNames(osgGeoFX::NameSet& names, osgGeoFX::Scene& scene, int height);
-
-    /// Places the names of the renderer's last picture. `camera`: SceneRenderer::camera().
-    osgGeoFX::LabelPicture place(const osg::Camera& camera) const;
-
-private:
-    osg::ref_ptr<osgGeoFX::NameSet> _names;
-    osg::ref_ptr<osgGeoFX::EffectScene> _effects;
-    osg::ref_ptr<osgGeoFX::DepthReader> _reader = new osgGeoFX::DepthReader;
-};
 
 } // namespace geofx::names

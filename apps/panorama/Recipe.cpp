@@ -115,6 +115,8 @@ Recipe Recipe::read(const std::string& file)
         recipe.map = json.at("map").get<std::map<std::string, std::string>>();
         for (const auto& names : json.value("labels", Json::array()))
             recipe.labels.push_back(pathFrom(names.get<std::string>(), folder));
+        for (const auto& lines : json.value("lines", Json::array()))
+            recipe.lines.push_back(pathFrom(lines.get<std::string>(), folder));
         recipe.labelStyle = pathFrom(json.value("labelStyle", ""), folder);
         recipe.font = pathFrom(json.value("font", ""), folder);
         if (json.contains("liberties")) json.at("liberties").get_to(recipe.liberties);
@@ -171,6 +173,8 @@ Json jsonOf(const Recipe& recipe, const fs::path& folder)
     if (!recipe.liberties.empty()) json["liberties"] = recipe.liberties;
     for (const std::string& names : recipe.labels)
         json["labels"].push_back(relativePath(names, folder));
+    for (const std::string& lines : recipe.lines)
+        json["lines"].push_back(relativePath(lines, folder));
     put("labelStyle", recipe.labelStyle);
     put("font", recipe.font);
     json["reasons"] = recipe.reasons;

@@ -39,6 +39,7 @@ struct Recipe
     /// The map's properties that are not their defaults, by name, in text form.
     std::map<std::string, std::string> map;
     std::vector<std::string> labels;  ///< files with names, or FILE:LAYER
+    std::vector<std::string> lines;   ///< files with lines, or FILE:LAYER
     std::string labelStyle;           ///< a style file; empty for the usual styles
     std::string font;                 ///< a font's file or families; empty for the styles'
     std::vector<std::string> reasons; ///< for people; not read

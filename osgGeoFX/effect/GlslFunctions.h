@@ -70,6 +70,8 @@ using Rgba = glm::dvec4;
 #include <shaders/lib/cover.glsl>
 #include <shaders/lib/strokes.glsl>
 
+#include <shaders/lib/lines.glsl>
+
 #include <shaders/lib/painting.glsl>
 
 #include <shaders/lib/cylinder.glsl>
@@ -108,6 +110,8 @@ using Rgba = glm::vec4;
 
 #include <shaders/lib/cover.glsl>
 #include <shaders/lib/strokes.glsl>
+
+#include <shaders/lib/lines.glsl>
 
 #include <shaders/lib/painting.glsl>
 

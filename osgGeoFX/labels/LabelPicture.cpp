@@ -3,11 +3,9 @@
 #include <osgGeoFX/labels/LabelPicture.h>
 
 #include <cairo.h>
-#include <libxml/xmlwriter.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 namespace osgGeoFX
@@ -21,68 +19,6 @@ void setColor(cairo_t* target, const osg::Vec4& color)
     cairo_set_source_rgba(target, static_cast<double>(color.r()), static_cast<double>(color.g()),
                           static_cast<double>(color.b()), static_cast<double>(color.a()));
 }
-
-std::string hexOf(const osg::Vec4& color)
-{
-    const auto byte = [](float value)
-    {
-        return static_cast<int>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
-    };
-    char text[8];
-    std::snprintf(text, sizeof(text), "#%02x%02x%02x", byte(color.r()), byte(color.g()), byte(color.b()));
-    return text;
-}
-
-struct FreeWriter
-{
-    void operator()(xmlTextWriter* writer) const { xmlFreeTextWriter(writer); }
-};
-
-/// An XML file in the making.
-class XmlFile
-{
-public:
-    explicit XmlFile(const std::string& file) : _writer(xmlNewTextWriterFilename(file.c_str(), 0)) {}
-
-    bool good() const { return _writer && _good; }
-    void begin()
-    {
-        if (!_writer) return;
-        xmlTextWriterSetIndent(_writer.get(), 1);
-        check(xmlTextWriterStartDocument(_writer.get(), nullptr, "UTF-8", nullptr));
-    }
-    void open(const char* element)
-    {
-        check(_writer ? xmlTextWriterStartElement(_writer.get(), text(element)) : -1);
-    }
-    void close() { check(_writer ? xmlTextWriterEndElement(_writer.get()) : -1); }
-    void set(const char* name, const std::string& value)
-    {
-        check(_writer ? xmlTextWriterWriteAttribute(_writer.get(), text(name), text(value.c_str())) : -1);
-    }
-    void set(const char* name, double value)
-    {
-        char number[32];
-        std::snprintf(number, sizeof(number), "%.2f", value);
-        set(name, std::string(number));
-    }
-    void write(const std::string& content)
-    {
-        check(_writer ? xmlTextWriterWriteString(_writer.get(), text(content.c_str())) : -1);
-    }
-    bool end()
-    {
-        check(_writer ? xmlTextWriterEndDocument(_writer.get()) : -1);
-        return good();
-    }
-
-private:
-    static const xmlChar* text(const char* value) { return reinterpret_cast<const xmlChar*>(value); }
-    void check(int result) { _good = _good && result >= 0; }
-
-    std::unique_ptr<xmlTextWriter, FreeWriter> _writer;
-    bool _good = true;
-};
 
 } // namespace
 
@@ -214,111 +150,6 @@ bool LabelPicture::drawOnto(osg::Image& image, int first) const
         cairo_surface_destroy(surface);
     }
     return true;
-}
-
-bool LabelPicture::writeSvg(const std::string& file, const std::string& picture, std::string& error) const
-{
-    const double scale = _names->getScale();
-    XmlFile svg(file);
-    svg.begin();
-    svg.open("svg");
-    svg.set("xmlns", std::string("http://www.w3.org/2000/svg"));
-    svg.set("xmlns:xlink", std::string("http://www.w3.org/1999/xlink"));
-    svg.set("width", _width);
-    svg.set("height", _height);
-    svg.set("viewBox", "0 0 " + std::to_string(static_cast<int>(_width)) + " " +
-                           std::to_string(static_cast<int>(_height)));
-    if (!picture.empty())
-    {
-        svg.open("image");
-        svg.set("xlink:href", picture);
-        svg.set("width", _width);
-        svg.set("height", _height);
-        svg.close();
-    }
-    int curves = 0;
-    for (const Name& each : _placed)
-    {
-        const MapName& name = _names->names()[each.name];
-        const NameStyle& style = _names->styleOf(name);
-        const LabelText& text = _names->text(each.name);
-        svg.open("g");
-        svg.set("class", name.style.empty() ? std::string("name") : name.style);
-        if (each.label.leader)
-        {
-            svg.open("line");
-            svg.set("x1", each.label.anchor.x());
-            svg.set("y1", _height - each.label.anchor.y());
-            svg.set("x2", each.label.anchor.x());
-            svg.set("y2", _height - each.label.corner.y());
-            svg.set("stroke", hexOf(style.text.color));
-            svg.set("stroke-width", scale * style.lineWidth);
-            svg.close();
-        }
-        if (style.dot > 0.0)
-        {
-            svg.open("circle");
-            svg.set("cx", each.label.anchor.x());
-            svg.set("cy", _height - each.label.anchor.y());
-            svg.set("r", scale * style.dot);
-            svg.set("fill", hexOf(style.text.color));
-            svg.close();
-        }
-        std::string path;
-        if (!each.curve.empty())
-        {
-            path = "curve" + std::to_string(++curves);
-            std::string way;
-            for (const osg::Vec2d& point : each.curve)
-            {
-                char pair[64];
-                std::snprintf(pair, sizeof(pair), "%c%.2f %.2f", way.empty() ? 'M' : 'L', point.x(),
-                              _height - point.y() + 0.25 * scale * style.text.size);
-                way += pair;
-            }
-            svg.open("path");
-            svg.set("id", path);
-            svg.set("d", way);
-            svg.set("fill", std::string("none"));
-            svg.close();
-        }
-        svg.open("text");
-        svg.set("font-family", style.text.font);
-        svg.set("font-size", scale * style.text.size);
-        if (style.text.bold) svg.set("font-weight", std::string("bold"));
-        if (style.text.italic) svg.set("font-style", std::string("italic"));
-        if (style.text.spacing > 0.0) svg.set("letter-spacing", scale * style.text.size * style.text.spacing);
-        svg.set("fill", hexOf(style.text.color));
-        if (style.text.haloWidth > 0.0)
-        {
-            svg.set("stroke", hexOf(style.text.halo));
-            svg.set("stroke-opacity", static_cast<double>(style.text.halo.a()));
-            svg.set("stroke-width", 2.0 * scale * style.text.size * style.text.haloWidth);
-            svg.set("stroke-linejoin", std::string("round"));
-            svg.set("paint-order", std::string("stroke"));
-        }
-        if (path.empty())
-        {
-            svg.set("x", each.label.corner.x() + text.left());
-            svg.set("y", _height - (each.label.corner.y() + each.label.size.y()) + text.above());
-            svg.write(name.text);
-        }
-        else
-        {
-            svg.set("text-anchor", std::string("middle"));
-            svg.open("textPath");
-            svg.set("xlink:href", "#" + path);
-            svg.set("startOffset", std::string("50%"));
-            svg.write(name.text);
-            svg.close();
-        }
-        svg.close();
-        svg.close();
-    }
-    svg.close();
-    if (svg.end()) return true;
-    error = "\"" + file + "\" cannot be written; check the folder, its permissions and the disk's space.";
-    return false;
 }
 
 } // namespace osgGeoFX

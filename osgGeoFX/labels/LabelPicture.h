@@ -18,7 +18,8 @@ namespace osgGeoFX
 
 /** The names of one finished picture, for programs that write images. Live pictures have MapLabels.
 
-    It places the names once. They can be drawn onto the picture, or written as vectors that lie where the picture has them.
+    It places the names once. They can be drawn onto the picture; PictureVectors writes them as vectors that lie where the picture
+    has them.
     @ingroup labels */
 class OSGGEOFXMAPS_EXPORT LabelPicture
 {
@@ -52,10 +53,10 @@ public:
     /// Draws them onto some rows of the picture, an image as wide as the picture. `top`: the row of the picture, counted from the uppermost
     /// one, that is the image's uppermost.
     bool drawOnto(osg::Image& rows, int top) const;
-    /// Writes an SVG file of the picture's size: each name as text that can be searched and edited, and its line. `picture`: a
-    /// file to be shown behind them, named as from the SVG file; empty: none. False, with a sentence in `error`, if it cannot
-    /// be written.
-    bool writeSvg(const std::string& file, const std::string& picture, std::string& error) const;
+    /// The set, whose texts and styles the names have.
+    NameSet& names() const { return *_names; }
+    double width() const { return _width; }
+    double height() const { return _height; }
 
 private:
     void place(const std::vector<NameSet::Seen>& seen, const std::vector<bool>& visible,

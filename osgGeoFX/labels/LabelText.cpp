@@ -92,6 +92,14 @@ struct LabelText::Layout
     /// Paints the path of the letters, halo first.
     void paint(cairo_t* target) const
     {
+        paintHalo(target);
+        setColor(target, style.color);
+        cairo_fill(target);
+    }
+
+    /// Leaves the path as it is.
+    void paintHalo(cairo_t* target) const
+    {
         if (style.haloWidth > 0.0 && style.halo.a() > 0.0f)
         {
             cairo_set_line_join(target, CAIRO_LINE_JOIN_ROUND);
@@ -100,8 +108,6 @@ struct LabelText::Layout
             setColor(target, style.halo);
             cairo_stroke_preserve(target);
         }
-        setColor(target, style.color);
-        cairo_fill(target);
     }
 
     static void setColor(cairo_t* target, const osg::Vec4& color)
@@ -199,7 +205,16 @@ void LabelText::draw(_cairo* target, double x, double y) const
     cairo_translate(target, x, y);
     cairo_new_path(target);
     pango_cairo_layout_line_path(target, _layout->line());
-    _layout->paint(target);
+    if (cairo_surface_get_type(cairo_get_target(target)) == CAIRO_SURFACE_TYPE_PDF)
+    {
+        // As letters, which people search and copy.
+        _layout->paintHalo(target);
+        cairo_new_path(target);
+        Layout::setColor(target, _layout->style.color);
+        pango_cairo_show_layout_line(target, _layout->line());
+    }
+    else
+        _layout->paint(target);
     cairo_restore(target);
 }
 

@@ -2,18 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/labels/NamePlacement.h>
 
+#include <osgGeoFX/labels/FinestGround.h>
 #include <osgGeoFX/labels/Prominence.h>
 
 #include <osg/Math>
-#include <osgDB/ReadFile>
-#include <osgUtil/IntersectionVisitor>
-#include <osgUtil/LineSegmentIntersector>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <list>
-#include <map>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -23,98 +19,6 @@ namespace osgGeoFX
 
 namespace
 {
-
-/// Files of a paged database that were read last.
-class TileCache : public osgUtil::IntersectionVisitor::ReadCallback
-{
-public:
-    osg::ref_ptr<osg::Node> readNodeFile(const std::string& file) override
-    {
-        const auto found = _tiles.find(file);
-        if (found != _tiles.end())
-        {
-            _order.splice(_order.begin(), _order, found->second.second);
-            return found->second.first;
-        }
-        const osg::ref_ptr<osg::Node> tile = osgDB::readRefNodeFile(file);
-        _order.push_front(file);
-        _tiles[file] = {tile, _order.begin()};
-        if (_order.size() > most)
-        {
-            _tiles.erase(_order.back());
-            _order.pop_back();
-        }
-        return tile;
-    }
-
-private:
-    static constexpr std::size_t most = 64;
-    std::list<std::string> _order;
-    std::map<std::string, std::pair<osg::ref_ptr<osg::Node>, std::list<std::string>::iterator>> _tiles;
-};
-
-/// The ground at places of the extent.
-class Ground
-{
-public:
-    Ground(const osg::Node& terrain, const osg::EllipsoidModel* ellipsoid, const TerrainRelief& relief)
-        : _terrain(const_cast<osg::Node&>(terrain)), _ellipsoid(ellipsoid), _relief(relief)
-    {
-        for (const float height : relief.heights)
-        {
-            if (std::isnan(height)) continue;
-            _low = std::min(_low, static_cast<double>(height));
-            _high = std::max(_high, static_cast<double>(height));
-        }
-    }
-
-    osg::Vec3d world(double x, double y, double height) const
-    {
-        if (!_ellipsoid) return {x, y, height};
-        osg::Vec3d place;
-        _ellipsoid->convertLatLongHeightToXYZ(osg::DegreesToRadians(y), osg::DegreesToRadians(x), height,
-                                              place.x(), place.y(), place.z());
-        return place;
-    }
-
-    /// As fine as the database is; not a number beside it.
-    double finest(double x, double y) const
-    {
-        // The relief's cells may be lower than their ground.
-        const double room = 1000.0 + 0.1 * (_high - _low);
-        const osg::ref_ptr<osgUtil::LineSegmentIntersector> line =
-            new osgUtil::LineSegmentIntersector(world(x, y, _high + room), world(x, y, _low - room));
-        line->setIntersectionLimit(osgUtil::Intersector::LIMIT_NEAREST);
-        osgUtil::IntersectionVisitor visitor(line, _tiles.get());
-        visitor.setLODSelectionMode(osgUtil::IntersectionVisitor::USE_HIGHEST_LEVEL_OF_DETAIL);
-        _terrain.accept(visitor);
-        if (!line->containsIntersections()) return std::numeric_limits<double>::quiet_NaN();
-        const osg::Vec3d hit = line->getFirstIntersection().getWorldIntersectPoint();
-        if (!_ellipsoid) return hit.z();
-        double latitude = 0.0, longitude = 0.0, height = 0.0;
-        _ellipsoid->convertXYZToLatLongHeight(hit.x(), hit.y(), hit.z(), latitude, longitude, height);
-        return height;
-    }
-
-    /// That of the relief; not a number where it has none.
-    double coarse(double x, double y) const
-    {
-        const auto column = static_cast<int>(
-            std::floor((x - _relief.west) / (_relief.east - _relief.west) * _relief.columns));
-        const auto row = static_cast<int>(
-            std::floor((y - _relief.south) / (_relief.north - _relief.south) * _relief.rows));
-        if (column < 0 || row < 0 || column >= _relief.columns || row >= _relief.rows)
-            return std::numeric_limits<double>::quiet_NaN();
-        return static_cast<double>(_relief.heights[_relief.index(column, row)]);
-    }
-
-private:
-    osg::Node& _terrain;
-    osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
-    const TerrainRelief& _relief;
-    double _low = HUGE_VAL, _high = -HUGE_VAL;
-    osg::ref_ptr<TileCache> _tiles = new TileCache;
-};
 
 /// The summits of a relief by their cells.
 class Summits
@@ -167,7 +71,7 @@ private:
 };
 
 /// The highest place within half a cell around one, in steps that become smaller.
-osg::Vec2d climb(const Ground& ground, osg::Vec2d place, osg::Vec2d step, double& height)
+osg::Vec2d climb(const FinestGround& ground, osg::Vec2d place, osg::Vec2d step, double& height)
 {
     height = ground.finest(place.x(), place.y());
     for (int pass = 0; pass < 3; ++pass)
@@ -196,7 +100,7 @@ NamePlacement::Result NamePlacement::place(std::vector<MapName>& names, const os
                                            const TerrainRelief& relief) const
 {
     Result result;
-    const Ground ground(terrain, ellipsoid, relief);
+    const FinestGround ground(terrain, ellipsoid, relief);
     std::optional<Summits> known;
     const osg::Vec2d cell((relief.east - relief.west) / relief.columns,
                           (relief.north - relief.south) / relief.rows);

@@ -328,13 +328,8 @@ void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrix
             visible.push_back(NameSet::isShown(name, seen[name.name]));
         labels.emplace(*options.names, names, visible, plan.width, plan.height);
     }
-    if (labels && !options.svg.empty())
-    {
-        const fs::path folder = fs::absolute(options.svg).parent_path();
-        if (!labels->writeSvg(options.svg, fs::absolute(file).lexically_relative(folder).string(), error))
-            throw Fault(error);
-        labels.reset();
-    }
+    if (labels && options.placed) options.placed(*labels);
+    if (!options.drawNames) labels.reset();
     assemble(plan, tiles, options, labels ? &*labels : nullptr, file);
     tiles.remove();
 }

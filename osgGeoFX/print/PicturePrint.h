@@ -3,7 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
-#include <osgGeoFX/labels/NameSet.h>
+#include <osgGeoFX/labels/LabelPicture.h>
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -48,8 +48,10 @@ public:
         int tile = 2048;                 ///< the longest side of a tile, pixels, 64…16,384
         SceneRenderer::Options renderer; ///< sizes and format in it do not count
         osg::ref_ptr<NameSet> names;     ///< null for none
-        std::string
-            svg; ///< a file for the names as vectors, in the place of names on the picture; empty: none
+        bool drawNames =
+            true; ///< whether names are drawn on the picture; false for those that become vectors
+        /// Called with the placed names when all tiles are there; empty for nobody.
+        std::function<void(const LabelPicture& names)> placed;
         std::string work; ///< the folder for tiles; it is made, and removed when the picture is there
         /// What the picture is made of, in any words: tiles of a former run are used only if it is the same.
         std::string recipe;

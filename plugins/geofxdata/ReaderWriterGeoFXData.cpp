@@ -12,11 +12,13 @@
 #include <geofx/SceneReach.h>
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/FileSources.h>
+#include <osgGeoFX/geodata/LineVectors.h>
 #include <osgGeoFX/geodata/NameVectors.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 #include <osgGeoFX/labels/NameFile.h>
+#include <osgGeoFX/lines/LineFile.h>
 
 #include <osg/ValueObject>
 #include <osgDB/Registry>
@@ -33,7 +35,7 @@ public:
         supportsOption("wkt", "for the object \"georeference\": the projected coordinate system, as WKT");
         supportsOption("rasters", "for the object \"terrain\": the rasters of a .geofx scene (plugin data)");
         supportsOption("request", "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
-                                  "\"names\", \"picture\" and \"sources\": a raster "
+                                  "\"names\", \"lines\", \"picture\" and \"sources\": a raster "
                                   "or vector data of a .geofx scene (plugin data)");
         supportsOption("version", "for the objects of scenes: the version of the plugin that asks");
     }
@@ -48,6 +50,7 @@ public:
         if (name == "surfaceData" && options) return surfaceData(*options);
         if (name == "strokeVectors" && options) return strokeVectors(*options);
         if (name == "names" && options) return names(*options);
+        if (name == "lines" && options) return lines(*options);
         if (name == "picture" && options) return picture(*options);
         if (name == "sources" && options) return sources(*options);
         return ReadResult::FILE_NOT_HANDLED;
@@ -142,6 +145,21 @@ private:
         frame.globe = request->globe;
         frame.wkt = request->wkt;
         if (!NameVectors::read(request->file, how, frame, request->names, error)) return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult lines(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<LineFile*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        MappingFrame frame;
+        frame.globe = request->globe;
+        frame.wkt = request->wkt;
+        if (!LineVectors::read(request->file, {request->layer, request->style}, frame, request->lines, error))
+            return error;
         return ReadResult(ReadResult::FILE_LOADED);
     }
 

@@ -4,6 +4,7 @@
 // Prints in tiles against the picture drawn at once, names and all; interrupted ones; sizes as people write them.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/labels/LabelPicture.h>
+#include <osgGeoFX/lines/MapLines.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/print/PicturePrint.h>
 #include <tools/GlFixture.h>
@@ -66,6 +67,11 @@ protected:
         std::optional<Scene> result = Scene::adopt(terrain, error);
         EXPECT_TRUE(result) << error;
         if (effect) result->effects->addEffect(effect);
+        if (_lines.empty()) return *result;
+        std::map<std::string, LineStyle> styles;
+        styles[""].width = 2.5;
+        styles[""].casingWidth = 0.5;
+        result->effects->addChild(new MapLines(_lines, styles));
         return *result;
     }
     static osg::ref_ptr<PanoramaMap> map()
@@ -121,6 +127,7 @@ protected:
     const PanoramaHills _hills{0.65};
     osg::Matrixd _view;
     std::vector<MapName> _names;
+    std::vector<MapLine> _lines;
 };
 
 } // namespace
@@ -160,6 +167,33 @@ TEST_F(PicturePrintTest, TilesAreThePictureWithItsNames)
                                 *osgDB::readRefImageFile(file("whole.png")), {1.1f / 255.0f, 0.015, 1.0f},
                                 "uneven"));
     }
+}
+
+// Lines cross the borders of tiles with the width and the place that they have in the whole picture.
+TEST_F(PicturePrintTest, TilesHaveTheLinesOfThePicture)
+{
+    osg::Vec3d up = _hills.middle();
+    up.normalize();
+    osg::Vec3d east = osg::Vec3d(0.0, 0.0, 1.0) ^ up;
+    east.normalize();
+    for (int i = -3; i <= 3; ++i)
+    {
+        MapLine line;
+        for (int k = -20; k <= 20; ++k)
+            line.places.push_back(_hills.middle() + east * (400.0 * k) +
+                                  (up ^ east) * (2000.0 * i + 40.0 * k) + up * 1600.0);
+        _lines.push_back(line);
+    }
+    const osg::ref_ptr<Effect> bend = new BirdsEyeView;
+    const osg::ref_ptr<osg::Image> expected = atOnce(bend, nullptr);
+    Scene printed = scene(bend);
+    std::string error;
+    ASSERT_TRUE(PicturePrint::write(printed, options(60), _view, file("lines.png"), error)) << error;
+    const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(file("lines.png"));
+    ASSERT_TRUE(image);
+    EXPECT_TRUE(imagesMatch(*image, *expected, {1.1f / 255.0f, 0.0, 1.0f}, "lines"));
+    _lines.clear();
+    EXPECT_FALSE(imagesMatch(*image, *atOnce(bend, nullptr), {1.1f / 255.0f, 0.0, 1.0f}, "no lines"));
 }
 
 TEST_F(PicturePrintTest, GoesOnWhereItWasInterrupted)

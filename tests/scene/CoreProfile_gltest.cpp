@@ -12,10 +12,10 @@
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <tools/CloseUpStage.h>
+#include <tools/CoreView.h>
 #include <tools/PanoramaHills.h>
 #include <tools/RandomSamples.h>
 
-#include <osg/DisplaySettings>
 #include <osg/Program>
 
 #include <algorithm>
@@ -29,77 +29,6 @@ namespace
 {
 
 constexpr int WIDTH = 240, HEIGHT = 160;
-
-/// An error of what OSG itself calls in any context, and of GL_CLAMP, with which its textures begin.
-bool isOfOsg(const std::string& message)
-{
-    for (const char* part : {"deprecated function", "GL_COLOR_MATERIAL", "param=0x2900"})
-        if (message.find(part) != std::string::npos) return true;
-    return false;
-}
-
-/// A viewer in a context of OpenGL 3.3 with the core profile.
-class CoreView
-{
-public:
-    CoreView()
-    {
-        const osg::ref_ptr<CoreProfileOperation> operation = new CoreProfileOperation;
-        osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
-        traits->width = WIDTH;
-        traits->height = HEIGHT;
-        traits->alpha = 8;
-        traits->glContextVersion = "3.3";
-        traits->glContextProfileMask = 1;
-        EglGraphicsContext::Options options;
-        options.debugCallback = [this](const EglGraphicsContext::DebugMessage& message)
-        {
-            if (message.type == 0x824C && !isOfOsg(message.text)) errors.push_back(message.text);
-        };
-        _context = new EglGraphicsContext(traits, options);
-        if (!_context->valid()) return;
-        viewer = new osgViewer::Viewer;
-        viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-        viewer->setLightingMode(osg::View::NO_LIGHT);
-        osg::Camera* camera = viewer->getCamera();
-        camera->setGraphicsContext(_context);
-        camera->setViewport(0, 0, WIDTH, HEIGHT);
-        camera->setClearColor({0.0f, 0.0f, 0.0f, 1.0f});
-        _capture = ImageCapture::attach(camera, ImageCapture::Format::Rgba);
-        viewer->setRealizeOperation(operation);
-        viewer->realize();
-    }
-    ~CoreView()
-    {
-        viewer = nullptr;
-        _capture = nullptr;
-        _context->close();
-        osg::DisplaySettings::instance()->setVertexBufferHint(osg::DisplaySettings::NO_PREFERENCE);
-    }
-
-    bool valid() const { return viewer.valid(); }
-    osg::State& state() { return *_context->getState(); }
-    osg::ref_ptr<osg::Image> render(osg::Node* scene, const osg::Camera& like, int frames = 1)
-    {
-        if (viewer->getSceneData() != scene) viewer->setSceneData(scene);
-        osg::Camera* camera = viewer->getCamera();
-        camera->setViewMatrix(like.getViewMatrix());
-        camera->setProjectionMatrix(like.getProjectionMatrix());
-        camera->setComputeNearFarMode(like.getComputeNearFarMode());
-        for (int i = 1; i < frames; ++i)
-            viewer->frame();
-        _capture->request();
-        viewer->frame();
-        return _capture->take();
-    }
-
-    osg::ref_ptr<osgViewer::Viewer> viewer;
-    std::vector<std::string> errors;
-
-private:
-    osg::ref_ptr<EglGraphicsContext> _context;
-    osg::ref_ptr<ImageCapture> _capture;
-};
 
 /// The program of an application, in both profiles: `calls`, it calls the effects' functions.
 osg::ref_ptr<osg::Program> makeProgram(bool core, bool calls)
@@ -139,7 +68,7 @@ protected:
     {
         GlFixture::SetUp();
         if (HasFailure() || IsSkipped()) return;
-        _core = std::make_unique<CoreView>();
+        _core = std::make_unique<CoreView>(WIDTH, HEIGHT);
         ASSERT_TRUE(_core->valid());
         look({0.0, -1700.0, 900.0}, {0.0, 0.0, 100.0});
     }

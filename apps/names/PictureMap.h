@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include "names/SceneLines.h"
+#include "names/SceneNames.h"
+
+#include <osgGeoFX/labels/LabelPicture.h>
+#include <osgGeoFX/lines/LinePicture.h>
+#include <osgGeoFX/print/PicturePrint.h>
+#include <osgGeoFX/scene/DepthReader.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace geofx::names
+{
+
+/** The names and lines of a program's pictures: on the picture itself, or as vectors in files beside it, as the options say.
+
+    Make it before the pictures' renderer, since it adds to the scene. All of it throws std::runtime_error with a sentence. */
+class PictureMap
+{
+public:
+    /// `output`: the file of the picture. `size`: its size; names and lines grow with it.
+    PictureMap(const Options& options, const std::string& output, const osgGeoFX::PrintSize& size,
+               osgGeoFX::Scene& scene);
+
+    /// What people should know of names and lines, as sentences.
+    const std::vector<std::string>& notices() const { return _notices; }
+
+    /// Whether a file is a PDF, which is made of a JPEG and vectors.
+    static bool isPdf(const std::string& output);
+    /// Where the picture itself is to be written for an output: there, or for a PDF beside it.
+    static std::string rasterOf(const std::string& output);
+
+    /// For pictures of a renderer: call it before the renderer is made.
+    void prepare() { readDepths(); }
+    /// For a picture that a renderer has just drawn: draws on it, and writes the files. `camera`: SceneRenderer::camera().
+    void finish(const osg::Camera& camera, osg::Image& image);
+
+    /// For a print: sets what it does with names.
+    void prepare(osgGeoFX::PicturePrint::Options& options);
+    /// … and writes the files when the print is there. `view`: the print's.
+    void finish(const osgGeoFX::PicturePrint::Options& options, const osg::Matrixd& view);
+
+private:
+    bool onPicture() const { return _options.svg.empty() && !isPdf(_output); }
+    bool wantsLineVectors() const { return _lines && (!onPicture() || !_options.geoJson.empty()); }
+    void readDepths();
+    void takeLines(const osg::Camera& camera, double scale);
+    void write();
+
+    const Options _options;
+    const std::string _output;
+    const osgGeoFX::PrintSize _size;
+    osgGeoFX::Scene& _scene;
+    std::vector<std::string> _notices;
+    osg::ref_ptr<osgGeoFX::NameSet> _names;
+    std::optional<SceneLines> _lines;
+    osg::ref_ptr<osgGeoFX::DepthReader> _reader;
+    std::optional<osgGeoFX::LabelPicture> _placedNames;
+    std::optional<osgGeoFX::LinePicture> _placedLines;
+};
+
+} // namespace geofx::names

@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-2.0-only
+# SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+"""Derives lines.geojson from landcover.tif: the middles of the cells of roads, freeways, railroads and streams.
+
+    lines.py landcover.tif lines.geojson
+
+Needs Debian's python3-gdal and python3-numpy. Thinning is Zhang and Suen's (1984)."""
+import json
+import sys
+
+import numpy
+from osgeo import gdal
+
+# Class of the land cover, style of a line, the least length in cells.
+KINDS = [(3, "river", 25), (21, "rail", 20), (19, "secondary", 25), (20, "motorway", 12)]
+AROUND = [(-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1)]
+
+
+def shifted(cells, row, column):
+    padded = numpy.pad(cells, 1)
+    return padded[1 + row:1 + row + cells.shape[0], 1 + column:1 + column + cells.shape[1]]
+
+
+def thin(cells):
+    cells = cells.copy()
+    changed = True
+    while changed:
+        changed = False
+        for half in (0, 1):
+            n = [shifted(cells, *way) for way in AROUND]
+            count = sum(each.astype(int) for each in n)
+            turns = sum((~n[i] & n[(i + 1) % 8]).astype(int) for i in range(8))
+            if half == 0:
+                sides = ~(n[0] & n[2] & n[4]) & ~(n[2] & n[4] & n[6])
+            else:
+                sides = ~(n[0] & n[2] & n[6]) & ~(n[0] & n[4] & n[6])
+            gone = cells & (count >= 2) & (count <= 6) & (turns == 1) & sides
+            if gone.any():
+                cells &= ~gone
+                changed = True
+    return cells
+
+
+def trace(cells):
+    """Lines between ends and crossings, as lists of cells."""
+    left = {tuple(each) for each in numpy.argwhere(cells)}
+
+    def neighbors(cell):
+        near = [(cell[0] + r, cell[1] + c) for r, c in AROUND]
+        found = [each for each in near if each in left]
+        # A diagonal step beside a straight one is no branch.
+        straight = [each for each in found if each[0] == cell[0] or each[1] == cell[1]]
+        return straight + [each for each in found if each not in straight and
+                           not any(abs(each[0] - s[0]) + abs(each[1] - s[1]) == 1 for s in straight)]
+
+    nodes = sorted(cell for cell in left if len(neighbors(cell)) != 2)
+    steps, lines = set(), []
+
+    def walk(first, second):
+        line = [first, second]
+        steps.update({(first, second), (second, first)})
+        while len(neighbors(line[-1])) == 2:
+            onward = [each for each in neighbors(line[-1]) if each != line[-2]]
+            if len(onward) != 1 or (line[-1], onward[0]) in steps:
+                break
+            steps.update({(line[-1], onward[0]), (onward[0], line[-1])})
+            line.append(onward[0])
+        lines.append(line)
+
+    for node in nodes:
+        for other in neighbors(node):
+            if (node, other) not in steps:
+                walk(node, other)
+    for cell in sorted(left):
+        for other in neighbors(cell):
+            if len(neighbors(cell)) == 2 and (cell, other) not in steps:
+                walk(cell, other)
+    return lines
+
+
+def smooth(points, passes=4):
+    points = numpy.array(points, float)
+    for _ in range(passes):
+        points[1:-1] = 0.25 * points[:-2] + 0.5 * points[1:-1] + 0.25 * points[2:]
+    return points
+
+
+def simplify(points, tolerance):
+    if len(points) < 3:
+        return points
+    way = points[-1] - points[0]
+    length = max(numpy.hypot(*way), 1e-9)
+    away = numpy.abs(way[0] * (points[:, 1] - points[0, 1]) - way[1] * (points[:, 0] - points[0, 0])) / length
+    if numpy.hypot(*way) < 1e-6:
+        away = numpy.hypot(*(points - points[0]).T)
+    at = int(away.argmax())
+    if away[at] <= tolerance:
+        return points[[0, -1]]
+    return numpy.vstack([simplify(points[:at + 1], tolerance)[:-1], simplify(points[at:], tolerance)])
+
+
+def main(source, target):
+    sys.setrecursionlimit(100000)
+    data = gdal.Open(source)
+    classes = data.ReadAsArray()
+    left, wide, _, top, _, high = data.GetGeoTransform()
+    features = []
+    for value, style, least in KINDS:
+        cells = classes == value
+        # Streams flow below roads, and roads end at crossings with larger ones.
+        cells = thin(cells)
+        for line in trace(cells):
+            if len(line) < least:
+                continue
+            points = simplify(smooth(line), 0.4)
+            features.append({"type": "Feature", "properties": {"style": style},
+                             "geometry": {"type": "LineString", "coordinates": [
+                                 [round(left + wide * (c + 0.5), 5), round(top + high * (r + 0.5), 5)]
+                                 for r, c in points]}})
+    with open(target, "w") as file:
+        file.write('{"type": "FeatureCollection", "features": [\n')
+        file.write(",\n".join(json.dumps(each, separators=(",", ":")) for each in features))
+        file.write("\n]}\n")
+    print(len(features), "lines,", sum(len(each["geometry"]["coordinates"]) for each in features), "places")
+
+
+main(*sys.argv[1:])

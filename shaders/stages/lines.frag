@@ -1,0 +1,27 @@
+#version 330 compatibility
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// A segment of a map's lines: smooth at its edges.
+#include "stages/depth.glsl"
+#include "lib/lines.glsl"
+
+vec4 geofx_fragment(vec4 color, vec4 map);
+
+in vec4 geofx_linesPlace;
+flat in float geofx_linesLength;
+in vec2 geofx_linesDash;
+
+uniform vec4 geofx_linesColor;
+uniform vec3 geofx_linesDashes; // dash and gap, metres; the shortest dash, pixels
+
+void main()
+{
+    vec3 place = geofx_linesPlace.xyz / geofx_linesPlace.w; // along, across, half the width
+    float away = length(vec2(place.x - clamp(place.x, 0.0, geofx_linesLength), place.y));
+    float cover = clamp(place.z + 0.5 - away, 0.0, 1.0) * min(2.0 * place.z, 1.0);
+    cover *= geofx_lineDash(geofx_linesDash.x, geofx_linesDashes.x, geofx_linesDashes.y, geofx_linesDashes.z, geofx_linesDash.y);
+    if (cover < 0.004) discard;
+    gl_FragColor = geofx_fragment(vec4(geofx_linesColor.rgb, geofx_linesColor.a * cover), vec4(0.0));
+    GEOFX_PUT_FRAGMENT_DEPTH;
+}

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Lines on the pictures of osggeofx_panorama and osggeofx_render, and names and lines as SVG, GeoJSON and PDF, as a person asks for
+// them.
+#include <tools/GlFixture.h>
+#include <tools/InventedTerrain.h>
+#include <tools/RunProgram.h>
+#include <tools/TempDir.h>
+
+#include <nlohmann/json.hpp>
+#include <osg/Image>
+#include <osgDB/ReadFile>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+using geofx::test::ProgramResult;
+using geofx::test::TempDir;
+
+namespace fs = std::filesystem;
+
+namespace
+{
+
+constexpr int WIDTH = 480, HEIGHT = 270;
+
+class LinesProgram : public geofx::test::GlFixture
+{
+protected:
+    void SetUp() override
+    {
+        GlFixture::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        geofx::test::inventTerrain("volcano", file("volcano.tif"), 201);
+        write("style.json", R"({"lines": {"trail": {"color": "#ff00ff", "width": 14, "least": 14, "hand": 0},
+                                          "secret": {"shown": false}},
+                                "names": {"hut": {"manner": "beside", "color": "#ff00ff", "halo": "#ff00ff"}}})");
+    }
+
+    ProgramResult run(const std::string& program, std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.begin(), geofx::test::builtProgram(program));
+        geofx::test::ProgramOptions options;
+        options.folder = fs::path(_folder.path()).string();
+        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
+        return geofx::test::runProgram(arguments, options);
+    }
+    ProgramResult panorama(std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.end(), {"--size", std::to_string(WIDTH) + "x" + std::to_string(HEIGHT),
+                                           "--samples", "0", "--quiet", "--work", "work"});
+        return run("osggeofx_panorama", arguments);
+    }
+    std::string file(const std::string& name) const { return (fs::path(_folder.path()) / name).string(); }
+    void write(const std::string& name, const std::string& content) const
+    {
+        std::ofstream(file(name)) << content;
+    }
+    std::string bytes(const std::string& name) const
+    {
+        std::ifstream stream(file(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    }
+    osg::Vec2d placeOf(int x, int y)
+    {
+        const ProgramResult result = panorama(
+            {"volcano.tif", "-o", "plain.png", "--pick", std::to_string(x) + "," + std::to_string(y)});
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        osg::Vec2d place;
+        EXPECT_EQ(std::sscanf(result.standardOutput.c_str(), "%*[^:]: longitude %lf, latitude %lf",
+                              &place.x(), &place.y()),
+                  2)
+            << result.standardOutput;
+        return place;
+    }
+    void writeLine(const std::string& style, const osg::Vec2d& from, const osg::Vec2d& to) const
+    {
+        char text[400];
+        std::snprintf(
+            text, sizeof(text),
+            R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"highway":"%s",)"
+            R"("name":"Way & <way>"},"geometry":{"type":"LineString","coordinates":[[%.8f,%.8f],[%.8f,%.8f]]}}]})",
+            style.c_str(), from.x(), from.y(), to.x(), to.y());
+        write("lines.geojson", text);
+    }
+    static bool isMagenta(const osg::Image& image, int x, int y)
+    {
+        const unsigned char* const pixel =
+            image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(image.t() - 1 - y));
+        return pixel[0] > 180 && pixel[1] < 90 && pixel[2] > 180;
+    }
+    static int magentaIn(const osg::Image& image)
+    {
+        int count = 0;
+        for (int y = 0; y < image.t(); ++y)
+            for (int x = 0; x < image.s(); ++x)
+                count += isMagenta(image, x, y) ? 1 : 0;
+        return count;
+    }
+
+    TempDir _folder;
+};
+
+} // namespace
+
+// A line begins and ends where --pick says that its places are: in the picture, in the SVG and in the GeoJSON file.
+TEST_F(LinesProgram, LieWhereTheirPlacesArePicked)
+{
+    const osg::Vec2d from = placeOf(150, 200), to = placeOf(300, 215);
+    writeLine("trail", from, to);
+    const std::vector<std::string> usual = {"volcano.tif", "--lines", "lines.geojson", "--style",
+                                            "style.json"};
+    const auto with = [&](std::vector<std::string> more)
+    {
+        more.insert(more.begin(), usual.begin(), usual.end());
+        return panorama(more);
+    };
+    const ProgramResult raster = with({"-o", "lines.png", "--geojson", "picture.geojson"});
+    ASSERT_EQ(raster.exitCode, 0) << raster.standardError;
+    EXPECT_EQ(raster.standardError, "");
+    const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(file("lines.png"));
+    ASSERT_TRUE(image);
+    const nlohmann::json vectors = nlohmann::json::parse(bytes("picture.geojson"));
+    double left = 1e9, right = 0.0;
+    int on = 0, all = 0;
+    for (const nlohmann::json& feature : vectors.at("features"))
+    {
+        EXPECT_EQ(feature.at("geometry").at("type"), "LineString");
+        EXPECT_EQ(feature.at("properties").at("name"), "Way & <way>");
+        for (const nlohmann::json& place : feature.at("geometry").at("coordinates"))
+        {
+            const double x = place[0].get<double>(), y = -place[1].get<double>();
+            ++all;
+            on += isMagenta(*image, static_cast<int>(x), static_cast<int>(y)) ? 1 : 0;
+            left = std::min(left, x);
+            right = std::max(right, x);
+        }
+    }
+    // Gaps of a few pixels behind strokes are closed.
+    EXPECT_GT(on, 0.9 * all);
+    EXPECT_NEAR(left, 150.5, 1.0);
+    EXPECT_NEAR(right, 300.5, 1.0);
+    EXPECT_GT(magentaIn(*image), 400);
+    EXPECT_LT(magentaIn(*image), 1400) << "a line 4.2 pixels wide";
+
+    const ProgramResult svg = with({"-o", "map.png", "--svg", "map.svg"});
+    ASSERT_EQ(svg.exitCode, 0) << svg.standardError;
+    EXPECT_TRUE(bytes("map.png") == bytes("plain.png")) << "the lines are in the SVG file";
+    const std::string text = bytes("map.svg");
+    EXPECT_NE(text.find("class=\"line trail\""), std::string::npos);
+    EXPECT_NE(text.find("Way &amp; &lt;way&gt;</title>"), std::string::npos);
+    EXPECT_NE(text.find("stroke=\"#ff00ff\""), std::string::npos);
+    std::smatch match;
+    ASSERT_TRUE(std::regex_search(text, match, std::regex("d=\"M([0-9.]+) ([0-9.]+)L"))) << text;
+    EXPECT_NEAR(std::stod(match[1]), 150.5, 1.0);
+    EXPECT_NEAR(std::stod(match[2]), 200.5, 1.0);
+
+    // The recipe has them.
+    const ProgramResult again =
+        run("osggeofx_panorama", {"lines.json", "-o", "again.png", "--quiet", "--work", "work"});
+    ASSERT_EQ(again.exitCode, 0) << again.standardError;
+    EXPECT_TRUE(bytes("again.png") == bytes("lines.png"));
+}
+
+// A PDF is the picture with its names and lines, which are letters and paths.
+TEST_F(LinesProgram, APdfIsThePictureWithVectors)
+{
+    const osg::Vec2d from = placeOf(150, 200), to = placeOf(300, 215), hut = placeOf(220, 240);
+    writeLine("trail", from, to);
+    char names[300];
+    std::snprintf(
+        names, sizeof(names),
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"Zirbenhütte",)"
+        R"("style":"hut"},"geometry":{"type":"Point","coordinates":[%.8f,%.8f]}}]})",
+        hut.x(), hut.y());
+    write("names.geojson", names);
+    const auto make = [&](const std::string& output)
+    {
+        return run("osggeofx_panorama", {"volcano.tif", "-o", output, "--lines", "lines.geojson", "--labels",
+                                         "names.geojson", "--style", "style.json", "--samples", "0",
+                                         "--quiet", "--work", "work", "--size", "6.4x3.6in@75dpi"});
+    };
+    const ProgramResult pdf = make("map.pdf");
+    ASSERT_EQ(pdf.exitCode, 0) << pdf.standardError;
+    EXPECT_EQ(pdf.standardError, "");
+    EXPECT_FALSE(fs::exists(file("map.unfinished.jpg")));
+    EXPECT_FALSE(fs::exists(file("map.unfinished.pdf")));
+    ASSERT_EQ(make("map.png").exitCode, 0);
+
+    const auto poppler = [&](const std::string& program, std::vector<std::string> arguments)
+    {
+        arguments.insert(arguments.begin(), "/usr/bin/" + program);
+        geofx::test::ProgramOptions options;
+        options.folder = fs::path(_folder.path()).string();
+        return geofx::test::runProgram(arguments, options);
+    };
+    EXPECT_NE(poppler("pdftotext", {"map.pdf", "-"}).standardOutput.find("Zirbenhütte"), std::string::npos);
+    EXPECT_NE(poppler("pdfinfo", {"map.pdf"}).standardOutput.find("460.8 x 259.2 pts"), std::string::npos)
+        << "6.4 x 3.6 inches";
+    const std::string images = poppler("pdfimages", {"-list", "map.pdf"}).standardOutput;
+    EXPECT_NE(images.find("480   270"), std::string::npos) << images;
+    EXPECT_NE(images.find("jpeg"), std::string::npos) << images;
+    ASSERT_EQ(poppler("pdftoppm", {"-r", "75", "-png", "-singlefile", "map.pdf", "page"}).exitCode, 0);
+    const osg::ref_ptr<osg::Image> page = osgDB::readRefImageFile(file("page.png"));
+    const osg::ref_ptr<osg::Image> picture = osgDB::readRefImageFile(file("map.png"));
+    ASSERT_TRUE(page && picture);
+    ASSERT_EQ(page->s(), picture->s());
+    ASSERT_EQ(page->t(), picture->t());
+    double difference = 0.0;
+    int both = 0, either = 0;
+    for (int y = 0; y < page->t(); ++y)
+        for (int x = 0; x < page->s(); ++x)
+        {
+            const bool here = isMagenta(*page, x, y), there = isMagenta(*picture, x, y);
+            both += here && there ? 1 : 0;
+            either += here || there ? 1 : 0;
+            for (unsigned int channel = 0; channel < 3; ++channel)
+                difference += std::abs(static_cast<int>(page->data(x, y)[channel]) -
+                                       static_cast<int>(picture->data(x, y)[channel])) /
+                              (3.0 * WIDTH * HEIGHT);
+        }
+    EXPECT_LT(difference, 6.0) << "of 255: a JPEG's loss";
+    EXPECT_GT(both, 0.6 * either);
+    EXPECT_GT(both, 400);
+}
+
+// Scenes of any kind; a line that no style shows is not there.
+TEST_F(LinesProgram, AreOnPicturesOfAnyScene)
+{
+    const osg::Vec2d from = placeOf(150, 200), to = placeOf(300, 215);
+    ASSERT_EQ(run("osggeofx_build", {"--dem", "volcano.tif", "-o", "db"}).exitCode, 0);
+    const auto render = [&](const std::string& style)
+    {
+        writeLine(style, from, to);
+        const ProgramResult result =
+            run("osggeofx_render", {"db/terrain.osgb", "-o", "scene.png", "--size", "480x270", "--lines",
+                                    "lines.geojson", "--style", "style.json", "--effect", "birdsEyeView"});
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        return osgDB::readRefImageFile(file("scene.png"));
+    };
+    EXPECT_GT(magentaIn(*render("trail")), 40);
+    EXPECT_EQ(magentaIn(*render("secret")), 0);
+}
+
+TEST_F(LinesProgram, FaultsAreSentences)
+{
+    writeLine("trail", {100.0, -80.0}, {100.1, -80.0});
+    const auto faultOf = [&](std::vector<std::string> more)
+    {
+        more.insert(more.begin(), {"volcano.tif", "-o", "map.png"});
+        const ProgramResult result = panorama(more);
+        EXPECT_EQ(result.exitCode, 2) << result.standardError;
+        EXPECT_FALSE(fs::exists(file("map.png")));
+        return result.standardError;
+    };
+    const auto has = [](const std::string& text, const std::string& part)
+    {
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    };
+    has(faultOf({"--lines", "lines.geojson"}), "lie beside the terrain");
+    has(faultOf({"--lines", "none.gpkg"}), "none.gpkg");
+    has(faultOf({"--geojson", "picture.geojson"}), "give some with --labels or --lines");
+    has(faultOf({"--lines", "lines.geojson", "--svg", "none/map.svg"}), "none/map.svg");
+    write("bad.json", R"({"lines": {"trail": {"widht": 2}}})");
+    has(faultOf({"--lines", "lines.geojson", "--style", "bad.json"}), "\"widht\" is not known");
+    write("bad.json", R"({"lines": {"trail": {"width": 0}}})");
+    has(faultOf({"--lines", "lines.geojson", "--style", "bad.json"}), "must be a number from");
+    write("bad.json", R"({"roads": {}})");
+    has(faultOf({"--lines", "lines.geojson", "--style", "bad.json"}), "is no style file");
+    write("bad.json", R"({"lines": {}, "lineField": "grade"})");
+    has(faultOf({"--lines", "lines.geojson", "--style", "bad.json"}), "no field \"grade\"");
+}
