@@ -15,3 +15,4 @@
 #include <osgGeoFX/labels/Prominence.h>
 
 #include <osgGeoFX/print/PicturePrint.h>
+#include <osgGeoFX/print/PlacePicture.h>
