@@ -7,6 +7,7 @@
 #include "panorama/GroundBuilder.h"
 #include "panorama/Recipe.h"
 #include "panorama/RecipeLiberties.h"
+#include "web/ScenePage.h"
 
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/geodata/BuildError.h>
@@ -61,6 +62,7 @@ struct Arguments
     std::vector<std::string> liberty;
     geofx::names::Options names;
     std::string svg;
+    geofx::web::Options web;
     bool explain = false, quiet = false;
 };
 
@@ -160,6 +162,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
            "--svg", arguments.svg,
            "Also write the names as an SVG file over the picture, which has none then; to finish by hand")
         ->type_name("FILE.svg");
+    geofx::web::addOptions(app, arguments.web);
     app.add_flag("--explain", arguments.explain, "Say what was chosen, and why");
     app.add_flag("--quiet", arguments.quiet, "No progress");
     app.footer(
@@ -444,7 +447,7 @@ bool isPrint(const Recipe& recipe)
 
 void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::SceneRenderer::Options& renderer,
            const osg::ref_ptr<osgGeoFX::NameSet>& names, osgGeoFX::Scene& scene, const osg::Matrixd& view,
-           const std::string& ground)
+           const std::string& ground, const geofx::web::ScenePage* page)
 {
     osgGeoFX::PicturePrint::Options options;
     options.size = {recipe.width, recipe.height, recipe.dpi};
@@ -455,6 +458,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
     options.recipe = recipe.text() + geofx::names::ageOf(ground);
     options.metadata = {{"Software", "osgGeoFX osggeofx_panorama"}, {"ImageDescription", recipe.text()}};
     options.svg = arguments.svg;
+    if (page) options.plain = page->plain();
     osgGeoFX::ProgressLine line("osggeofx_panorama");
     if (!arguments.quiet)
         options.progress = [&](int done, int all)
@@ -463,6 +467,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
         };
     std::string error;
     if (!osgGeoFX::PicturePrint::write(scene, options, view, arguments.output, error)) throw Failure(error);
+    if (page) page->write(scene, renderer, view, names);
     if (arguments.pick.empty()) return;
     const double aspect = static_cast<double>(recipe.width) / recipe.height;
     printPick(
@@ -473,7 +478,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
 }
 
 void paint(const Arguments& arguments, const std::string& ground, const Recipe& recipe,
-           PictureFiles& pictures)
+           PictureFiles& pictures, const geofx::web::ScenePage* page)
 {
     osgGeoFX::Scene scene = load(ground);
     // A scene of one's own may have a projection already.
@@ -499,7 +504,7 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     frame.geocentric = recipe.geocentric;
     if (isPrint(recipe))
     {
-        print(arguments, recipe, options, set, scene, recipe.view.viewMatrix(frame), ground);
+        print(arguments, recipe, options, set, scene, recipe.view.viewMatrix(frame), ground, page);
         return;
     }
     std::optional<geofx::names::PictureNames> names;
@@ -509,8 +514,10 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     osgGeoFX::FrameStatistics unused;
     const auto image = renderer->render(recipe.view.viewMatrix(frame), 0.0, unused, error);
     if (!image) throw Failure(error);
+    if (page) page->setPicture(*image);
     if (names) putNames(arguments, *names, *renderer, *image);
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
+    if (page) page->write(scene, options, recipe.view.viewMatrix(frame), set);
     if (!arguments.pick.empty()) printPick(arguments, recipe, scene, {*scene.effects, renderer->camera()});
 }
 
@@ -518,6 +525,8 @@ void run(const Arguments& arguments)
 {
     PictureFiles pictures(arguments.output, false);
     if (!pictures.error().empty()) throw Failure(pictures.error());
+    std::optional<geofx::web::ScenePage> page;
+    if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
     Recipe recipe;
     const bool again = arguments.sources.size() == 1 && Recipe::isRecipe(arguments.sources.front());
     if (again)
@@ -572,7 +581,7 @@ void run(const Arguments& arguments)
             std::printf("%s\n", reason.c_str());
         std::fflush(stdout);
     }
-    paint(arguments, ground, recipe, pictures);
+    paint(arguments, ground, recipe, pictures, page ? &*page : nullptr);
     if (arguments.recipe != "none")
         recipe.write(arguments.recipe.empty() ? beside.string() + ".json" : arguments.recipe);
     std::error_code ignored;

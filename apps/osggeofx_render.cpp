@@ -4,6 +4,7 @@
 // osggeofx_render: an OSG file or .geofx scene to pictures, off-screen.
 #include "names/SceneNames.h"
 #include "osggeofx_render_output.h"
+#include "web/ScenePage.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/print/PicturePrint.h>
@@ -49,6 +50,7 @@ struct Arguments
     unsigned int frames = 0;
     std::vector<std::string> effects;
     geofx::names::Options names;
+    geofx::web::Options web;
     bool inset = false;
     bool sky = false;
     bool noCull = false;
@@ -118,6 +120,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
     app.set_version_flag("--help-effects", osgGeoFX::effectsHelp,
                          "List the effects with all their properties");
     geofx::names::addOptions(app, arguments.names);
+    geofx::web::addOptions(app, arguments.web);
     app.add_flag("--inset", arguments.inset,
                  "Put the same view without effects, a quarter as wide, into the lower right corner");
     app.add_flag("--sky", arguments.sky,
@@ -332,7 +335,8 @@ osg::ref_ptr<osgGeoFX::NameSet> readNames(const Arguments& arguments, const osgG
 
 /// A picture that is larger than the GPU draws at once, or has a resolution.
 void print(const Arguments& arguments, const osgGeoFX::PrintSize& size,
-           const osg::ref_ptr<osgGeoFX::NameSet>& names, const osg::Matrixd& view, osgGeoFX::Scene& scene)
+           const osg::ref_ptr<osgGeoFX::NameSet>& names, const osg::Matrixd& view, osgGeoFX::Scene& scene,
+           const geofx::web::ScenePage* page)
 {
     if (!arguments.path.empty() || arguments.inset || !arguments.stats.empty())
         throw Failure(badInput,
@@ -349,9 +353,11 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size,
     for (const std::string& effect : arguments.effects)
         options.recipe += "; " + effect;
     options.metadata = {{"Software", "osgGeoFX osggeofx_render"}};
+    if (page) options.plain = page->plain();
     std::string error;
     if (!osgGeoFX::PicturePrint::write(scene, options, view, arguments.output, error))
         throw Failure(badInput, error);
+    if (page) page->write(scene, arguments.renderer, view, names);
 }
 
 void run(Arguments& arguments)
@@ -360,6 +366,10 @@ void run(Arguments& arguments)
     const osgGeoFX::PrintSize size = readSize(arguments);
     PictureFiles pictures(arguments.output, !arguments.path.empty());
     if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
+    if (arguments.web.wanted() && !arguments.path.empty())
+        throw Failure(badInput, "--web shows one picture; leave --path out, or --web.");
+    std::optional<geofx::web::ScenePage> page;
+    if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
     const std::string statsFault = arguments.stats.empty() ? std::string() : faultOfOutput(arguments.stats);
     if (!statsFault.empty()) throw Failure(badInput, statsFault);
 
@@ -387,7 +397,7 @@ void run(Arguments& arguments)
     if (!arguments.names.files.empty()) set = readNames(arguments, *scene);
     if (size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size))
     {
-        print(arguments, size, set, camera.view(0), *scene);
+        print(arguments, size, set, camera.view(0), *scene, page ? &*page : nullptr);
         return;
     }
     std::optional<geofx::names::PictureNames> names;
@@ -401,11 +411,13 @@ void run(Arguments& arguments)
         osgGeoFX::FrameStatistics figures;
         const auto image = renderer->render(camera.view(frame), camera.time(frame), figures, error);
         if (!image) throw Failure(tookTooLong, error);
+        if (page) page->setPicture(*image);
         if (names) names->place(renderer->camera()).drawOnto(*image);
         if (arguments.inset) addInset(*image, *renderer, camera, frame, *scene->effects);
         if (!pictures.write(*image, frame)) throw Failure(badInput, pictures.error());
         statistics.add(figures);
     }
+    if (page) page->write(*scene, options, camera.view(0), set);
     if (!arguments.stats.empty() && !statistics.write(arguments.stats))
     {
         throw Failure(badInput, "The figures cannot be written to \"" + arguments.stats +
@@ -441,6 +453,11 @@ int main(int argc, char** argv)
     {
         std::cerr << "osggeofx_render: " << failure.what() << std::endl;
         return failure.exitCode;
+    }
+    catch (const std::runtime_error& fault)
+    {
+        std::cerr << "osggeofx_render: " << fault.what() << std::endl;
+        return badInput;
     }
     return 0;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// All that the library osgGeoFXMaps offers: the names of maps, and pictures of any size.
+// All that the library osgGeoFXMaps offers: the names of maps, pictures of any size, and web pages.
 #pragma once
 
 #include <osgGeoFX/labels/LabelLayout.h>
@@ -16,3 +16,6 @@
 
 #include <osgGeoFX/print/PicturePrint.h>
 #include <osgGeoFX/print/PlacePicture.h>
+
+#include <osgGeoFX/web/WebNames.h>
+#include <osgGeoFX/web/WebPage.h>

@@ -335,6 +335,7 @@ void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrix
             throw Fault(error);
         labels.reset();
     }
+    if (!options.plain.empty()) assemble(plan, tiles, options, nullptr, options.plain);
     assemble(plan, tiles, options, labels ? &*labels : nullptr, file);
     tiles.remove();
 }

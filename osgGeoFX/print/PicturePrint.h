@@ -50,6 +50,8 @@ public:
         osg::ref_ptr<NameSet> names;     ///< null for none
         std::string
             svg; ///< a file for the names as vectors, in the place of names on the picture; empty: none
+        std::string
+            plain; ///< a file for the picture without names, such as a web page is made of; empty: none
         std::string work; ///< the folder for tiles; it is made, and removed when the picture is there
         /// What the picture is made of, in any words: tiles of a former run are used only if it is the same.
         std::string recipe;

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The map: the picture in tiles, what keys and buttons do, and what the page tells about places.
+'use strict';
+
+(() => {
+  const {picture} = geofx.data;
+  const container = document.getElementById('map'), readout = document.getElementById('place');
+  const snap = 1 / geofx.data.names.stepsOfZoom;
+  const touches = matchMedia('(hover: none)').matches;
+
+  const map = L.map(container, {
+    crs: L.CRS.Simple, zoomControl: false, attributionControl: false, keyboard: false,
+    zoomSnap: snap, wheelPxPerZoomLevel: 100, maxZoom: picture.zoom + 1, maxBoundsViscosity: 0.9,
+    zoomAnimation: !geofx.still(), fadeAnimation: !geofx.still(), inertia: !geofx.still(), markerZoomAnimation: !geofx.still(),
+  });
+  geofx.map = map;
+  const size = () => L.point(picture.width, picture.height);
+  /** From pixels of the picture to Leaflet's coordinates, and back. */
+  geofx.latLng = ([x, y]) => map.unproject([x, y], picture.zoom);
+  geofx.pixel = (latLng) => map.project(latLng, picture.zoom);
+  const bounds = L.latLngBounds(geofx.latLng([0, 0]), geofx.latLng([picture.width, picture.height]));
+  map.setMaxBounds(bounds);
+
+  // Screens with fine pixels take the tiles of the next level, half as large.
+  const finer = devicePixelRatio > 1.25 ? 1 : 0;
+  const side = picture.tile >> finer;
+  const Tiles = L.GridLayer.extend({
+    createTile({x, y, z}, done) {
+      const level = z + finer;
+      const levelSize = size().divideBy(Math.pow(2, picture.zoom - level));
+      // A tile has the first pixels of those beside it; at the right and the lower border it is smaller.
+      const share = (number, all) => `${100 * Math.min(picture.tile + 1, Math.ceil(all) - number * picture.tile) / picture.tile}%`;
+      const tile = document.createElement('div'), image = document.createElement('img');
+      image.alt = '';
+      image.draggable = false;
+      image.style.width = share(x, levelSize.x);
+      image.style.height = share(y, levelSize.y);
+      image.onload = () => done(null, tile);
+      image.onerror = () => done(new Error(`The tile ${image.src} is missing.`), tile);
+      image.src = `tiles/${level}/${x}/${y}.jpg`;
+      tile.append(image);
+      return tile;
+    },
+    // Between two levels the finer one, unless the coarser one is nearly as large.
+    _setView(center, zoom, ...rest) {
+      this._exact = zoom;
+      L.GridLayer.prototype._setView.call(this, center, zoom, ...rest);
+    },
+    _clampZoom() {
+      return L.GridLayer.prototype._clampZoom.call(this, Math.ceil(this._exact - 0.3));
+    },
+  });
+  const tiles = new Tiles({
+    tileSize: side, bounds, noWrap: true, keepBuffer: 1, className: 'tiles',
+    minNativeZoom: Math.min(0, picture.zoom - finer), maxNativeZoom: picture.zoom - finer, maxZoom: picture.zoom + 1,
+  });
+
+  const zoomOf = (scale) => picture.zoom + Math.log2(scale);
+  /** The zoom that shows all of the picture. */
+  const least = () => {
+    const view = map.getSize().unscaleBy(size());
+    return Math.floor(zoomOf(Math.min(view.x, view.y)) / snap) * snap;
+  };
+  /** The zoom that leaves no border, as far as the picture has the pixels for it. */
+  const filling = () => {
+    const view = map.getSize().unscaleBy(size());
+    return Math.max(least(), Math.ceil(zoomOf(Math.min(Math.max(view.x, view.y), 1)) / snap) * snap);
+  };
+  const showAll = () => map.setView(bounds.getCenter(), least(), {animate: !geofx.still()});
+  const limit = () => map.setMinZoom(Math.max(Math.min(least(), picture.zoom), 0));
+
+  /** The nearest center for which no more than needed lies beyond the picture's border. */
+  function centerAt(pixel, zoom) {
+    const half = map.getSize().divideBy(2 * Math.pow(2, zoom - picture.zoom));
+    const within = (value, room, all) => 2 * room >= all ? all / 2 : Math.min(Math.max(value, room), all - room);
+    return geofx.latLng([within(pixel[0], half.x, picture.width), within(pixel[1], half.y, picture.height)]);
+  }
+
+  // ---- The place under the pointer ----
+
+  const hint = !geofx.data.names.names.length ? ''
+             : touches ? 'Tap the picture for a place’s coordinates' : 'Point at the picture for a place’s coordinates';
+  let mark = null;
+  function tell(latLng, live) {
+    const pixel = geofx.pixel(latLng);
+    const text = geofx.places.describe(pixel.x, pixel.y);
+    readout.setAttribute('aria-live', live ? 'polite' : 'off');
+    readout.textContent = text || hint;
+    readout.classList.toggle('hint', !text);
+    return text;
+  }
+  const forget = () => {
+    if (mark) mark.remove();
+    mark = null;
+  };
+  readout.textContent = hint;
+  readout.classList.add('hint');
+  map.on('mousemove', (event) => tell(event.latlng, false));
+  let hadPopup = false;
+  map.on('preclick', () => { hadPopup = Boolean(map._popup && map.hasLayer(map._popup)); });
+  map.on('click', (event) => {
+    forget();
+    if (hadPopup || !tell(event.latlng, true)) return;
+    const icon = L.divIcon({className: 'mark', html: geofx.element('i'), iconSize: [0, 0]});
+    mark = L.marker(event.latlng, {icon, keyboard: false, interactive: false}).addTo(map);
+  });
+
+  // ---- A name's popup ----
+
+  function contentOf(name) {
+    const root = geofx.element('div', {class: 'about', tabindex: '-1', role: 'group', 'aria-label': name.text},
+      geofx.element('h2', {}, name.text));
+    const list = geofx.element('dl');
+    if (name.height !== undefined)
+      list.append(geofx.element('dt', {}, 'Height'), geofx.element('dd', {class: 'up'}, geofx.metres(name.height)));
+    if (name.place) {
+      const [longitude, latitude] = name.place;
+      list.append(geofx.element('dt', {}, 'Place'),
+        geofx.element('dd', {class: 'coordinates'}, geofx.coordinates(longitude, latitude)));
+      const numbers = `${latitude.toFixed(6)}, ${longitude.toFixed(6)}`;
+      const copy = geofx.element('button', {type: 'button', class: 'copy'}, 'Copy coordinates');
+      copy.addEventListener('click', () => copyText(numbers, copy));
+      const link = geofx.element('a', {href: `geo:${latitude.toFixed(6)},${longitude.toFixed(6)}`}, 'Open in maps');
+      root.append(list, geofx.element('p', {class: 'actions'}, copy, link));
+    } else if (list.children.length) {
+      root.append(list);
+    }
+    return root;
+  }
+
+  async function copyText(text, button) {
+    let done = true;
+    try {
+      await navigator.clipboard.writeText(text);
+    } catch (error) {
+      // Pages that were opened by a double click, or without https, may have no clipboard.
+      const field = geofx.element('textarea', {readonly: '', class: 'unseen'});
+      field.value = text;
+      document.body.append(field);
+      field.select();
+      done = document.execCommand('copy');
+      field.remove();
+      button.focus();
+    }
+    button.textContent = done ? 'Copied' : text;
+    setTimeout(() => { button.textContent = 'Copy coordinates'; }, 2000);
+  }
+
+  let opener = null; // what gets the focus back
+  function showPopup(name, focus) {
+    const straight = name.curve ? 0 : geofx.data.names.styles[name.style].dot;
+    const card = document.querySelector('.card').getBoundingClientRect();
+    const content = contentOf(name);
+    const narrow = map.getSize().x < 600;
+    L.popup({
+      className: 'paper', offset: [0, -Math.max(straight, 2)], minWidth: 150, maxWidth: 260, autoPan: !focus,
+      autoPanPaddingTopLeft: [12, narrow ? card.bottom + 8 : 12], autoPanPaddingBottomRight: [64, 48], closeButton: true,
+    }).setLatLng(geofx.latLng(name.at)).setContent(content).openOn(map);
+    const close = document.querySelector('.leaflet-popup-close-button');
+    close.setAttribute('aria-label', 'Close');
+    close.setAttribute('role', 'button');
+    if (focus) content.focus({preventScroll: true});
+  }
+
+  const step = (name) => (name.shown.length ? name.shown[0][0] * snap : picture.zoom);
+
+  /** Goes to a name and tells about it. */
+  function goTo(name) {
+    forget();
+    map.closePopup();
+    opener = document.getElementById('search');
+    const zoom = Math.min(Math.max(map.getZoom(), step(name), picture.zoom - 1), map.getMaxZoom());
+    const center = centerAt(name.at, zoom);
+    const arrived = () => showPopup(name, true);
+    if (geofx.still()) {
+      map.setView(center, zoom, {animate: false});
+      arrived();
+    } else {
+      map.once('moveend', arrived);
+      map.flyTo(center, zoom, {duration: 0.9});
+    }
+  }
+
+  map.on('popupclose', () => {
+    const inside = document.activeElement && document.activeElement.closest('.leaflet-popup');
+    if (inside || document.activeElement === document.body) container.focus({preventScroll: true});
+  });
+
+  // ---- Keys and buttons ----
+
+  const pan = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+  document.addEventListener('keydown', (event) => {
+    const search = document.getElementById('search');
+    if (event.altKey || event.ctrlKey || event.metaKey || event.target === search) return;
+    if (event.key === '/') {
+      event.preventDefault();
+      search.focus();
+      return;
+    }
+    if (event.key === 'Escape') {
+      forget();
+      map.closePopup();
+      if (opener) opener.focus();
+      opener = null;
+      return;
+    }
+    // Elsewhere the keys are the page's own.
+    const focused = document.activeElement;
+    if (focused !== container && focused !== document.body && !focused.closest('.leaflet-popup')) return;
+    if (pan[event.key]) {
+      const far = (event.shiftKey ? 0.5 : 0.15) * Math.min(map.getSize().x, map.getSize().y);
+      map.panBy(L.point(pan[event.key]).multiplyBy(far), {animate: !geofx.still(), duration: 0.2});
+    } else if (event.key === '+' || event.key === '=') map.zoomIn(event.shiftKey && event.key === '+' ? 1 : 0.5);
+    else if (event.key === '-' || event.key === '_') map.zoomOut(0.5);
+    else if (event.key === '0' || event.key === 'Home') showAll();
+    else return;
+    event.preventDefault();
+    map.once('moveend', () => tell(map.getCenter(), true));
+  });
+
+  const buttons = {nearer: () => map.zoomIn(1), farther: () => map.zoomOut(1), whole: showAll};
+  for (const [id, action] of Object.entries(buttons)) document.getElementById(id).addEventListener('click', action);
+  const dim = (id, off) => document.getElementById(id).setAttribute('aria-disabled', String(off));
+  map.on('zoomend zoomlevelschange', () => {
+    dim('nearer', map.getZoom() >= map.getMaxZoom());
+    dim('farther', map.getZoom() <= map.getMinZoom());
+  });
+
+  // ---- The first view ----
+
+  tiles.once('load', () => {
+    performance.mark('first view');
+    document.documentElement.dataset.ready = Math.round(performance.now());
+  });
+  map.setView(bounds.getCenter(), filling(), {animate: false});
+  limit();
+  map.on('resize', limit);
+  tiles.addTo(map);
+  new geofx.NamesLayer((name) => showPopup(name, false)).addTo(map);
+  geofx.search(goTo);
+})();
