@@ -100,6 +100,8 @@ std::vector<WebName> WebNames::layOut(NameSet& names, EffectScene& scene) const
             }
             setPlace(name, reference, web);
         }
+        // At whole zooms names move to better places, if there are any by now.
+        if (step % stepsOfZoom == 0) layout.clear();
         // Those that are shown come first, so that none goes away because one zooms in.
         std::stable_partition(candidates.begin(), candidates.end(),
                               [&](const LabelCandidate& candidate)

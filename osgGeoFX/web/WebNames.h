@@ -42,8 +42,8 @@ struct WebName
     std::vector<Shown> shown; ///< none, if there is no room at any zoom
 };
 
-/** Lays the names of a picture out for each zoom. At each one no two overlap, and more important ones come first. Names keep their place as
-    one zooms in, as long as they can.
+/** Lays the names of a picture out for each zoom. At each one no two overlap. Those of the zoom before stay, and more important ones come first.
+    Within a zoom names keep their places as one zooms in, as long as they can.
 
     Zoom 0 shows the picture at most 256 pixels wide and high, as the lowest level of its tiles does; each zoom doubles that. A step is a quarter of a zoom.
     @ingroup web */

@@ -21,7 +21,6 @@
   geofx.latLng = ([x, y]) => map.unproject([x, y], picture.zoom);
   geofx.pixel = (latLng) => map.project(latLng, picture.zoom);
   const bounds = L.latLngBounds(geofx.latLng([0, 0]), geofx.latLng([picture.width, picture.height]));
-  map.setMaxBounds(bounds);
 
   // Screens with fine pixels take the tiles of the next level, half as large.
   const finer = devicePixelRatio > 1.25 ? 1 : 0;
@@ -69,13 +68,25 @@
     return Math.max(least(), Math.ceil(zoomOf(Math.min(Math.max(view.x, view.y), 1)) / snap) * snap);
   };
   const showAll = () => map.setView(bounds.getCenter(), least(), {animate: !geofx.still()});
-  const limit = () => map.setMinZoom(Math.max(Math.min(least(), picture.zoom), 0));
 
-  /** The nearest center for which no more than needed lies beyond the picture's border. */
-  function centerAt(pixel, zoom) {
-    const half = map.getSize().divideBy(2 * Math.pow(2, zoom - picture.zoom));
-    const within = (value, room, all) => 2 * room >= all ? all / 2 : Math.min(Math.max(value, room), all - room);
-    return geofx.latLng([within(pixel[0], half.x, picture.width), within(pixel[1], half.y, picture.height)]);
+  // A border of the screen's pixels around the picture, so that the page's controls hide nothing of it for good: above, to the side, below.
+  const border = () => {
+    const narrow = map.getSize().x < 600;
+    return {top: narrow ? document.querySelector('.card').getBoundingClientRect().bottom + 8 : 28, side: narrow ? 0 : 28, bottom: narrow ? 64 : 28};
+  };
+  function limit() {
+    map.setMinZoom(Math.max(Math.min(least(), picture.zoom), 0));
+    const {top, side, bottom} = border(), pixel = Math.pow(2, picture.zoom - map.getZoom());
+    map.setMaxBounds(L.latLngBounds(geofx.latLng([-side * pixel, -top * pixel]),
+      geofx.latLng([picture.width + side * pixel, picture.height + bottom * pixel])));
+  }
+
+  /** The nearest center for which no more than the border lies beyond the picture. */
+  function centerAt(at, zoom) {
+    const {top, side, bottom} = border(), pixel = Math.pow(2, picture.zoom - zoom), half = map.getSize().multiplyBy(0.5 * pixel);
+    const within = (value, room, low, high) => 2 * room >= high - low ? (low + high) / 2 : Math.min(Math.max(value, low + room), high - room);
+    return geofx.latLng([within(at[0], half.x, -side * pixel, picture.width + side * pixel),
+      within(at[1], half.y, -top * pixel, picture.height + bottom * pixel)]);
   }
 
   // ---- The place under the pointer ----
@@ -150,14 +161,21 @@
 
   let opener = null; // what gets the focus back
   function showPopup(name, focus) {
-    const straight = name.curve ? 0 : geofx.data.names.styles[name.style].dot;
-    const card = document.querySelector('.card').getBoundingClientRect();
-    const content = contentOf(name);
-    const narrow = map.getSize().x < 600;
-    L.popup({
-      className: 'paper', offset: [0, -Math.max(straight, 2)], minWidth: 150, maxWidth: 260, autoPan: !focus,
-      autoPanPaddingTopLeft: [12, narrow ? card.bottom + 8 : 12], autoPanPaddingBottomRight: [64, 48], closeButton: true,
-    }).setLatLng(geofx.latLng(name.at)).setContent(content).openOn(map);
+    const dot = name.curve ? 0 : geofx.data.names.styles[name.style].dot;
+    const content = contentOf(name), {top} = border();
+    const popup = L.popup({className: 'paper', offset: [0, -Math.max(dot, 2)], minWidth: 236, maxWidth: 300, autoPan: false})
+      .setLatLng(geofx.latLng(name.at)).setContent(content).openOn(map);
+    // Summits stand high in the picture: where there is no room above, the popup hangs below.
+    const container = popup.getElement(), height = container.offsetHeight;
+    if (map.latLngToContainerPoint(popup.getLatLng()).y - height - 16 < top) {
+      container.classList.add('below');
+      popup.options.offset = [0, height + 16];
+      popup.update();
+    }
+    const {x, y} = map.latLngToContainerPoint(popup.getLatLng()), size = map.getSize();
+    const half = container.offsetWidth / 2 + 10, below = container.classList.contains('below');
+    const beyond = [Math.min(x - half, 0) + Math.max(x + half - size.x, 0), below ? Math.max(y + height + 70 - size.y, 0) : 0];
+    if (beyond[0] || beyond[1]) map.panBy(beyond, {animate: !geofx.still()});
     const close = document.querySelector('.leaflet-popup-close-button');
     close.setAttribute('aria-label', 'Close');
     close.setAttribute('role', 'button');
@@ -236,7 +254,7 @@
   });
   map.setView(bounds.getCenter(), filling(), {animate: false});
   limit();
-  map.on('resize', limit);
+  map.on('resize zoomend', limit);
   tiles.addTo(map);
   new geofx.NamesLayer((name) => showPopup(name, false)).addTo(map);
   geofx.search(goTo);

@@ -47,7 +47,7 @@ geofx.places = (() => {
       }
       ground[i++] = 1;
     }
-    return {...data, longitude: values[0], latitude: values[1], height: values[2], ground};
+    return {...data, longitudes: values[0], latitudes: values[1], heights: values[2], ground};
   }
 
   const isEven = (column, row) => {
@@ -71,7 +71,7 @@ geofx.places = (() => {
     if (column < 0 || row < 0 || !isEven(column, row)) {
       // Across the edge of a ridge, or a shore of the sky: the nearest sample.
       const i = Math.round(v) * grid.columns + Math.round(u);
-      return grid.ground[i] ? place(grid.longitude[i], grid.latitude[i], grid.height[i]) : 'sky';
+      return grid.ground[i] ? place(grid.longitudes[i], grid.latitudes[i], grid.heights[i]) : 'sky';
     }
     const i = row * grid.columns + column;
     const s = u - column, t = v - row;
@@ -84,7 +84,7 @@ geofx.places = (() => {
       });
       return from + s * (1 - t) * right + (1 - s) * t * lower + s * t * corner;
     };
-    return place(mean(grid.longitude, true), mean(grid.latitude), mean(grid.height));
+    return place(mean(grid.longitudes, true), mean(grid.latitudes), mean(grid.heights));
   }
 
   /** The same as a text for people. */
