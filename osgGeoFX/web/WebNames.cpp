@@ -18,6 +18,8 @@ namespace
 
 /// Every so many points of a curve are kept.
 constexpr std::size_t thinning = 4;
+/// The gap between a place and its name, of the picture's height on the screen, and its bounds in pixels. A small picture has no room above its summits.
+constexpr double gapShare = 0.02, leastGap = 5.0, mostGap = 10.0;
 /// Boxes that a line may lead up. Names on the screen have less room than those of a print.
 constexpr int rows = 4;
 
@@ -69,6 +71,8 @@ std::vector<WebName> WebNames::layOut(NameSet& names, EffectScene& scene) const
     {
         const double scale = scaleAt(step);
         const DeformedView deformed(scene, view, projection, scale * width, scale * height);
+        rules.gap = std::clamp(gapShare * scale * height, leastGap, mostGap);
+        layout.setRules(rules);
         std::vector<LabelCandidate> candidates;
         for (const NameSet::Seen& seen : names.inPicture(deformed, scale * width, scale * height, most))
         {
