@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_panorama: any DEM to a panorama map.
+#include "layers/SceneLayers.h"
 #include "names/SceneNames.h"
 #include "osggeofx_render_output.h"
 #include "panorama/GroundBuilder.h"
@@ -61,6 +62,7 @@ struct Arguments
     std::string liberties; ///< the strength of those that are chosen; empty for none
     std::vector<std::string> liberty;
     geofx::names::Options names;
+    geofx::layers::Options layers;
     std::string svg;
     geofx::web::Options web;
     bool explain = false, quiet = false;
@@ -158,6 +160,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("'LON,LAT NAME=VALUE …'")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     geofx::names::addOptions(app, arguments.names);
+    geofx::layers::addOptions(app, arguments.layers);
     app.add_option(
            "--svg", arguments.svg,
            "Also write the names as an SVG file over the picture, which has none then; to finish by hand")
@@ -502,29 +505,35 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     }
     TerrainRelief frame;
     frame.geocentric = recipe.geocentric;
+    const osg::Matrixd view = recipe.view.viewMatrix(frame);
+    const osgGeoFX::PrintSize size{recipe.width, recipe.height, recipe.dpi};
     if (isPrint(recipe))
     {
-        print(arguments, recipe, options, set, scene, recipe.view.viewMatrix(frame), ground, page);
+        print(arguments, recipe, options, set, scene, view, ground, page);
+        geofx::layers::write(arguments.layers, scene, size, options, set, view);
         return;
     }
     std::optional<geofx::names::PictureNames> names;
     if (set) names.emplace(*set, scene, recipe.height);
-    const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
+    auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
     if (!renderer) throw Failure(error);
     osgGeoFX::FrameStatistics unused;
-    const auto image = renderer->render(recipe.view.viewMatrix(frame), 0.0, unused, error);
+    const auto image = renderer->render(view, 0.0, unused, error);
     if (!image) throw Failure(error);
     if (page) page->setPicture(*image);
     if (names) putNames(arguments, *names, *renderer, *image);
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
-    if (page) page->write(scene, options, recipe.view.viewMatrix(frame), set);
     if (!arguments.pick.empty()) printPick(arguments, recipe, scene, {*scene.effects, renderer->camera()});
+    renderer.reset();
+    if (page) page->write(scene, options, view, set);
+    geofx::layers::write(arguments.layers, scene, size, options, set, view);
 }
 
 void run(const Arguments& arguments)
 {
     PictureFiles pictures(arguments.output, false);
     if (!pictures.error().empty()) throw Failure(pictures.error());
+    geofx::layers::check(arguments.layers);
     std::optional<geofx::web::ScenePage> page;
     if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
     Recipe recipe;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_render: an OSG file or .geofx scene to pictures, off-screen.
+#include "layers/SceneLayers.h"
 #include "names/SceneNames.h"
 #include "osggeofx_render_output.h"
 #include "web/ScenePage.h"
@@ -50,6 +51,7 @@ struct Arguments
     unsigned int frames = 0;
     std::vector<std::string> effects;
     geofx::names::Options names;
+    geofx::layers::Options layers;
     geofx::web::Options web;
     bool inset = false;
     bool sky = false;
@@ -120,6 +122,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
     app.set_version_flag("--help-effects", osgGeoFX::effectsHelp,
                          "List the effects with all their properties");
     geofx::names::addOptions(app, arguments.names);
+    geofx::layers::addOptions(app, arguments.layers);
     geofx::web::addOptions(app, arguments.web);
     app.add_flag("--inset", arguments.inset,
                  "Put the same view without effects, a quarter as wide, into the lower right corner");
@@ -366,6 +369,11 @@ void run(Arguments& arguments)
     const osgGeoFX::PrintSize size = readSize(arguments);
     PictureFiles pictures(arguments.output, !arguments.path.empty());
     if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
+    geofx::layers::check(arguments.layers);
+    if (!arguments.layers.folder.empty() && !arguments.path.empty())
+        throw Failure(
+            badInput,
+            "--layers is for one picture; leave --path out, or give the view of one picture with --view.");
     if (arguments.web.wanted() && !arguments.path.empty())
         throw Failure(badInput, "--web shows one picture; leave --path out, or --web.");
     std::optional<geofx::web::ScenePage> page;
@@ -398,12 +406,13 @@ void run(Arguments& arguments)
     if (size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size))
     {
         print(arguments, size, set, camera.view(0), *scene, page ? &*page : nullptr);
+        geofx::layers::write(arguments.layers, *scene, size, options, set, camera.view(0));
         return;
     }
     std::optional<geofx::names::PictureNames> names;
     if (set) names.emplace(*set, *scene, options.height);
 
-    const auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
+    auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
     if (!renderer) throw Failure(badInput, error);
     StatisticsFile statistics(*renderer, options);
     for (unsigned int frame = 0; frame < camera.count(); ++frame)
@@ -454,9 +463,9 @@ int main(int argc, char** argv)
         std::cerr << "osggeofx_render: " << failure.what() << std::endl;
         return failure.exitCode;
     }
-    catch (const std::runtime_error& fault)
+    catch (const std::runtime_error& failure)
     {
-        std::cerr << "osggeofx_render: " << fault.what() << std::endl;
+        std::cerr << "osggeofx_render: " << failure.what() << std::endl;
         return badInput;
     }
     return 0;

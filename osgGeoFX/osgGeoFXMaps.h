@@ -14,6 +14,7 @@
 #include <osgGeoFX/labels/NameSet.h>
 #include <osgGeoFX/labels/Prominence.h>
 
+#include <osgGeoFX/print/PictureLayers.h>
 #include <osgGeoFX/print/PicturePrint.h>
 #include <osgGeoFX/print/PlacePicture.h>
 

@@ -41,9 +41,15 @@ double zOf(double depth, const DepthPicture& picture, const CameraDepth& kind)
 PlacePicture::PlacePicture(EffectScene& scene, const osg::Camera& camera,
                            const std::vector<std::shared_ptr<const DepthPicture>>& depths,
                            const Georeference& reference)
+    : PlacePicture(scene, camera, depths)
+{
+    _reference = &reference;
+}
+
+PlacePicture::PlacePicture(EffectScene& scene, const osg::Camera& camera,
+                           const std::vector<std::shared_ptr<const DepthPicture>>& depths)
     : _width(camera.getViewport() ? static_cast<int>(camera.getViewport()->width()) : 0),
-      _height(camera.getViewport() ? static_cast<int>(camera.getViewport()->height()) : 0),
-      _reference(&reference)
+      _height(camera.getViewport() ? static_cast<int>(camera.getViewport()->height()) : 0)
 {
     const DeformedView view(scene, camera);
     _toWorld.invert(view.modelView());
@@ -119,6 +125,7 @@ std::optional<double> PlacePicture::distanceAt(int x, int y) const
 
 std::optional<PlacePicture::Place> PlacePicture::at(int x, int y) const
 {
+    if (!_reference) return std::nullopt;
     const std::optional<Seen> seen = seenAt(x, y);
     if (!seen) return std::nullopt;
     const DeformationChain& chain = *seen->part->chain;

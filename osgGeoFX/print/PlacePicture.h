@@ -49,6 +49,9 @@ public:
     PlacePicture(EffectScene& scene, const osg::Camera& camera,
                  const std::vector<std::shared_ptr<const DepthPicture>>& depths,
                  const Georeference& reference);
+    /// The same for a scene without a georeference: there are distances, and no places.
+    PlacePicture(EffectScene& scene, const osg::Camera& camera,
+                 const std::vector<std::shared_ptr<const DepthPicture>>& depths);
 
     int width() const { return _width; } ///< pixels
     int height() const { return _height; }

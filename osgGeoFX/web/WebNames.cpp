@@ -58,6 +58,7 @@ double WebNames::scaleAt(int step) const
 
 std::vector<WebName> WebNames::layOut(NameSet& names, EffectScene& scene) const
 {
+    const double formerScale = names.getScale();
     names.setScale(1.0);
     LabelLayout::Rules rules;
     rules.rows = rows;
@@ -128,6 +129,7 @@ std::vector<WebName> WebNames::layOut(NameSet& names, EffectScene& scene) const
                 web.shown.push_back({step, step, corner});
         }
     }
+    names.setScale(formerScale);
     std::vector<WebName> result;
     for (auto& [index, name] : found)
         result.push_back(std::move(name));

@@ -67,7 +67,7 @@ struct OSGGEOFXMAPS_EXPORT WebNames
     /// Screen pixels for each pixel of the picture, at a step.
     double scaleAt(int step) const;
 
-    /// The names that the picture shows, the most important ones first. It sets the set's scale to 1.
+    /// The names that the picture shows, the most important ones first, in their styles' own sizes.
     std::vector<WebName> layOut(NameSet& names, EffectScene& scene) const;
 };
 

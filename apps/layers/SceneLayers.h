@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/print/PictureLayers.h>
+#include <osgGeoFX/viewer/Scene.h>
+
+#include <string>
+
+namespace CLI
+{
+class App;
+}
+
+/// A picture in parts, to be finished by hand: the programs' option --layers.
+namespace geofx::layers
+{
+
+struct Options
+{
+    std::string folder; ///< for the layers; empty for none
+};
+
+void addOptions(CLI::App& app, Options& options);
+
+/// Makes sure, before anything is drawn, that all can be written. Throws std::runtime_error with a sentence.
+void check(const Options& options);
+
+/** Draws the scene again and writes what the options ask for. Throws std::runtime_error with a sentence. No renderer may show the scene any more.
+    `size`, `names`: of the picture. */
+void write(const Options& options, const osgGeoFX::Scene& scene, const osgGeoFX::PrintSize& size,
+           const osgGeoFX::SceneRenderer::Options& renderer, const osg::ref_ptr<osgGeoFX::NameSet>& names,
+           const osg::Matrixd& view);
+
+} // namespace geofx::layers

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/print/detail/LayerDrawing.h>
+
+#include <osgGeoFX/print/detail/LayerFile.h>
+
+#include <optional>
+#include <string>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+LayerDrawing::Kinds kindsOf(const EffectScene& scene)
+{
+    LayerDrawing::Kinds kinds;
+    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+    {
+        const Effect& effect = *scene.getEffect(i);
+        if (!effect.isActive()) continue;
+        kinds.effects = true;
+        const auto* map = dynamic_cast<const PanoramaMap*>(&effect);
+        if (!map || !map->getPaint()) continue;
+        kinds.painted = true;
+        kinds.water = kinds.water || map->getWater();
+        kinds.strokes = kinds.strokes || map->getStrokes();
+    }
+    return kinds;
+}
+
+} // namespace
+
+int LayerDrawing::Kinds::count() const
+{
+    // Sky, flat, all and classes; two for the opacity; land and woods.
+    return 4 + (effects ? 2 : 0) + (painted ? 2 : 0) + (strokes ? 3 : 0);
+}
+
+LayerDrawing::LayerDrawing(const Scene& scene, const SceneRenderer::Options& options, const TilePlan& plan)
+    : _scene(scene), _kinds(kindsOf(*scene.effects)), _mask(scene.effects->getNodeMask()),
+      _pictureHeight(plan.height), _tileHeight(plan.tileHeight)
+{
+    _reader->setImmediate(true);
+    _reader->setDepthConvention(scene.effects->getDepthConvention());
+    _top->addChild(scene.node);
+    _top->addChild(_reader);
+    _scene.node = _top;
+    SceneRenderer::Options drawing = options;
+    drawing.width = plan.tileWidth;
+    drawing.height = plan.tileHeight;
+    drawing.pictureWidth = plan.columns * plan.rows > 1 ? plan.width : 0;
+    drawing.pictureHeight = plan.columns * plan.rows > 1 ? plan.height : 0;
+    drawing.format = ImageCapture::Format::Rgb;
+    drawing.countTriangles = drawing.leastTriangles = false;
+    std::string error;
+    _renderer = SceneRenderer::create(_scene, drawing, error);
+    if (!_renderer) throw LayerFault(error);
+}
+
+LayerDrawing::~LayerDrawing()
+{
+    _scene.effects->setNodeMask(_mask);
+    _renderer.reset();
+    _top->removeChildren(0, _top->getNumChildren());
+}
+
+void LayerDrawing::look(Part part)
+{
+    osg::StateSet& state = *_top->getOrCreateStateSet();
+    state.removeDefine("GEOFX_PART");
+    state.removeMode(GL_LIGHTING);
+    state.removeMode(GL_MULTISAMPLE);
+    // Where no effect draws the ground, no shader of the kit's does.
+    _scene.effects->setNodeMask(part == NOTHING && !_kinds.effects ? 0 : _mask);
+    if (part != ALL && _kinds.effects) state.setDefine("GEOFX_PART", std::to_string(part));
+    if (part == FLAT) state.setMode(GL_LIGHTING, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
+    // Numbers and depths have no mean.
+    if (part == CLASSES)
+        state.setMode(GL_MULTISAMPLE, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
+}
+
+osg::ref_ptr<osg::Image> LayerDrawing::picture(Part part, const osg::Matrixd& view)
+{
+    look(part);
+    std::string error;
+    FrameStatistics unused;
+    const osg::ref_ptr<osg::Image> image = _renderer->render(view, 0.0, unused, error);
+    look(ALL);
+    if (!image) throw LayerFault(error);
+    return image;
+}
+
+LayerDrawing::Tile LayerDrawing::draw(const PictureTile& tile, const osg::Matrixd& view,
+                                      const std::function<void()>& drawn)
+{
+    _renderer->setTile(tile.left, _pictureHeight - tile.top - _tileHeight);
+    const auto drawPart = [&](Part part)
+    {
+        const osg::ref_ptr<osg::Image> image = picture(part, view);
+        drawn();
+        return image;
+    };
+    Tile result;
+    result.all = drawPart(ALL);
+    result.depths = _reader->pictures();
+    if (_kinds.strokes)
+    {
+        result.strokesBlack = drawPart(BLACK);
+        result.strokesWhite = drawPart(WHITE);
+    }
+    const WithoutStrokes without(*_scene.effects);
+    result.whole = _kinds.strokes ? drawPart(ALL) : result.all;
+    result.sky = drawPart(NOTHING);
+    result.flat = drawPart(FLAT);
+    if (_kinds.effects)
+    {
+        result.black = drawPart(BLACK);
+        result.shares = drawPart(SHARES);
+    }
+    result.land = _kinds.painted ? drawPart(LAND) : result.whole;
+    result.woods = _kinds.painted ? drawPart(WOODS) : result.land;
+    result.classes = drawPart(CLASSES);
+    result.ground = _reader->pictures();
+    return result;
+}
+
+} // namespace osgGeoFX
