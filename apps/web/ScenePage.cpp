@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 #include <OpenImageIO/imageio.h>
 #include <osg/Group>
+#include <stdlib.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +74,12 @@ ScenePage::ScenePage(const Options& options, const std::string& picture) : _opti
     if (!fault.empty()) throw Fault("--web: " + fault);
     const fs::path file(picture);
     if (_options.title.empty()) _options.title = file.stem().string();
-    _plain = (file.parent_path() / (file.stem().string() + ".plain.tif")).string();
+    // A name that no file has.
+    _plain = (file.parent_path() / (file.stem().string() + ".XXXXXX.tif")).string();
+    const int made = mkstemps(_plain.data(), 4);
+    if (made < 0)
+        throw Fault("No file can be made beside \"" + picture + "\"; check the folder and its permissions.");
+    close(made);
 }
 
 ScenePage::~ScenePage()

@@ -9,6 +9,10 @@
 #include <OpenImageIO/imageio.h>
 #include <nlohmann/json.hpp>
 
+#include <fcntl.h>
+#include <stdio.h> // renameat2()
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -281,12 +285,29 @@ void writeLeaflet(const fs::path& from, const fs::path& to)
             writeFile(to / "images" / entry.path().filename(), contentOf(entry.path()));
 }
 
-/// The new folder takes the place of the former one, which is removed only then.
+/// A new folder beside another one, with a name that nobody has.
+fs::path newFolderBeside(const fs::path& folder)
+{
+    const std::string stem = "." + folder.filename().string() + "." + std::to_string(getpid()) + ".";
+    for (int number = 0;; ++number)
+    {
+        const fs::path made = folder.parent_path() / (stem + std::to_string(number));
+        if (fs::create_directory(made)) return made;
+    }
+}
+
+/// The new folder takes the place of the former one, in one step where the file system can.
 void moveTo(const fs::path& folder, const fs::path& unfinished)
 {
-    const fs::path former = folder.parent_path() / (folder.filename().string() + ".former");
     std::error_code fault, ignored;
-    fs::remove_all(former, ignored);
+#ifdef RENAME_EXCHANGE
+    if (renameat2(AT_FDCWD, unfinished.c_str(), AT_FDCWD, folder.c_str(), RENAME_EXCHANGE) == 0)
+    {
+        fs::remove_all(unfinished, ignored);
+        return;
+    }
+#endif
+    const fs::path former = unfinished.string() + ".former";
     const bool replaces = fs::exists(folder, ignored);
     if (replaces) fs::rename(folder, former, fault);
     if (!fault) fs::rename(unfinished, folder, fault);
@@ -317,9 +338,7 @@ void writePage(const WebPage::Options& options, const fs::path& folder)
 
 void writeFolder(const WebPage::Options& options, const fs::path& folder)
 {
-    const fs::path unfinished = folder.parent_path() / (folder.filename().string() + ".unfinished");
-    std::error_code ignored;
-    fs::remove_all(unfinished, ignored);
+    const fs::path unfinished = newFolderBeside(folder);
     try
     {
         fs::create_directories(unfinished / "data");
@@ -330,6 +349,7 @@ void writeFolder(const WebPage::Options& options, const fs::path& folder)
         picture["height"] = height;
         picture["zoom"] = TilePyramid::levelsOf(width, height);
         picture["tile"] = TilePyramid::side;
+        picture["places"] = static_cast<bool>(options.places.at);
         writeData(unfinished / "data", "picture", picture);
         writeNames(unfinished / "data", options.names);
         writePlaces(unfinished / "data", options.places);
@@ -339,6 +359,7 @@ void writeFolder(const WebPage::Options& options, const fs::path& folder)
     }
     catch (...)
     {
+        std::error_code ignored;
         fs::remove_all(unfinished, ignored);
         throw;
     }

@@ -16,6 +16,7 @@
 #include <iterator>
 #include <optional>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -498,9 +499,12 @@ TEST_F(WebPageTest, ReplacesAFormerPageAndNothingElse)
     broken.picture = path("file").string();
     refused("empty", "cannot be read", broken);
     EXPECT_TRUE(fs::exists(path("empty/index.html")));
+    // Nothing is left beside them, and what others have there stays.
+    std::set<std::string> names;
     for (const auto& entry : fs::directory_iterator(_folder.path()))
-    {
-        EXPECT_EQ(entry.path().string().find(".unfinished"), std::string::npos) << entry.path();
-        EXPECT_EQ(entry.path().string().find(".former"), std::string::npos) << entry.path();
-    }
+        names.insert(entry.path().filename().string());
+    EXPECT_EQ(names,
+              (std::set<std::string>{"page", "empty", "link", "notes", "file", "large.png", "small.png"}));
+    // A server of another user may read it.
+    EXPECT_EQ(fs::status(path("empty")).permissions(), fs::status(path("notes")).permissions());
 }

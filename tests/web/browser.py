@@ -123,7 +123,7 @@ def tearDownModule():
 class PageTest(unittest.TestCase):
     """Each test opens the page anew; afterwards nothing may have gone wrong, and nobody else may have been asked."""
 
-    def open(self, url=None, size=WIDE, touch=False, scale=1, still=False):
+    def open(self, url=None, size=WIDE, touch=False, scale=1, still=False, hash=""):
         self.url = url or SERVER.url
         self.mine = (self.url,)
         BROWSER.get("about:blank")
@@ -133,7 +133,7 @@ class PageTest(unittest.TestCase):
         command("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-reduced-motion", "value": "reduce" if still else "no-preference"},
                                                             {"name": "hover", "value": "none" if touch else "hover"}]})
         BROWSER.get_log("browser"), BROWSER.get_log("performance")
-        BROWSER.get(self.url + ("index.html" if self.url.startswith("file:") else ""))
+        BROWSER.get(self.url + ("index.html" if self.url.startswith("file:") else "") + hash)
         self.wait(lambda: self.js("return document.documentElement.dataset.ready"))
 
     def tearDown(self):
@@ -346,6 +346,23 @@ class PageTest(unittest.TestCase):
         self.assertEqual(curved.text, "Long Plain")
         ActionChains(BROWSER).move_to_element(curved).click().perform()
         self.wait(lambda: self.find(".leaflet-popup .about h2").text == "Long Plain")
+
+    def test_an_address_leads_to_a_name(self):
+        self.open()
+        self.press("/", Keys.ENTER)
+        self.assertEqual(BROWSER.find_elements(By.CSS_SELECTOR, ".leaflet-popup"), [], "nothing was asked for")
+        self.press("puoko", Keys.ENTER)
+        self.assert_tells_summit()
+        address = BROWSER.current_url
+        self.assertTrue(address.endswith("#P%C5%AB%CA%BBoko"), address)
+        self.press(Keys.ESCAPE)
+        self.wait(lambda: "#" not in BROWSER.current_url)
+        for hash in (address[address.index("#"):], "#nobody", "#%"):
+            self.open(hash=hash)
+            if hash == address[address.index("#"):]:
+                self.assert_tells_summit()
+            else:
+                self.assertEqual(BROWSER.find_elements(By.CSS_SELECTOR, ".leaflet-popup"), [])
 
     # ---- The place under the pointer ----
 

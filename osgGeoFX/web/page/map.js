@@ -91,7 +91,7 @@
 
   // ---- The place under the pointer ----
 
-  const hint = !geofx.data.names.names.length ? ''
+  const hint = !picture.places ? ''
              : touches ? 'Tap the picture for a place’s coordinates' : 'Point at the picture for a place’s coordinates';
   let mark = null;
   function tell(latLng, live) {
@@ -161,6 +161,7 @@
 
   let opener = null; // what gets the focus back
   function showPopup(name, focus) {
+    address(name);
     const dot = name.curve ? 0 : geofx.data.names.styles[name.style].dot;
     const content = contentOf(name), {top} = border();
     const popup = L.popup({className: 'paper', offset: [0, -Math.max(dot, 2)], minWidth: 236, maxWidth: 300, autoPan: false})
@@ -182,17 +183,26 @@
     if (focus) content.focus({preventScroll: true});
   }
 
+  /** The page's address leads to a name, for people to send it to others. */
+  function address(name) {
+    try {
+      history.replaceState(null, '', name ? `#${encodeURIComponent(name.text)}` : location.pathname + location.search);
+    } catch (error) {
+      // Some browsers allow it on servers only.
+    }
+  }
+
   const step = (name) => (name.shown.length ? name.shown[0][0] * snap : picture.zoom);
 
   /** Goes to a name and tells about it. */
-  function goTo(name) {
+  function goTo(name, jump) {
     forget();
     map.closePopup();
     opener = document.getElementById('search');
     const zoom = Math.min(Math.max(map.getZoom(), step(name), picture.zoom - 1), map.getMaxZoom());
     const center = centerAt(name.at, zoom);
     const arrived = () => showPopup(name, true);
-    if (geofx.still()) {
+    if (jump || geofx.still()) {
       map.setView(center, zoom, {animate: false});
       arrived();
     } else {
@@ -202,6 +212,7 @@
   }
 
   map.on('popupclose', () => {
+    address(null);
     const inside = document.activeElement && document.activeElement.closest('.leaflet-popup');
     if (inside || document.activeElement === document.body) container.focus({preventScroll: true});
   });
@@ -257,5 +268,18 @@
   map.on('resize zoomend', limit);
   tiles.addTo(map);
   new geofx.NamesLayer((name) => showPopup(name, false)).addTo(map);
-  geofx.search(goTo);
+  geofx.search((name) => goTo(name, false));
+
+  function follow() {
+    let wanted = '';
+    try {
+      wanted = decodeURIComponent(location.hash.slice(1));
+    } catch (error) {
+      // Percent signs that somebody has broken lead nowhere.
+    }
+    const name = wanted && geofx.data.names.names.find((each) => each.text === wanted);
+    if (name) goTo(name, true);
+  }
+  addEventListener('hashchange', follow);
+  follow();
 })();

@@ -91,8 +91,7 @@ geofx.search = (choose) => {
     } else if (event.key === 'Enter') {
       event.preventDefault();
       if (list.hidden) open();
-      const chosen = shown[Math.max(active, 0)];
-      if (chosen) take(chosen.name);
+      if (shown[active]) take(shown[active].name);
     } else if (event.key === 'Escape') {
       event.stopPropagation();
       if (!list.hidden) close();
