@@ -32,7 +32,8 @@ WEST, SOUTH, SIDE = 173.8, -39.6, 0.6
 
 
 def skip(reason):
-    print(f"Skipped: {reason}")
+    # As gtest says it, so that tests/run lists it.
+    print(f"{sys.argv[0]}: Skipped\n{reason}")
     sys.exit(SKIPPED)
 
 
