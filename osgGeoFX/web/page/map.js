@@ -133,8 +133,10 @@
       const numbers = `${latitude.toFixed(6)}, ${longitude.toFixed(6)}`;
       const copy = geofx.element('button', {type: 'button', class: 'copy'}, 'Copy coordinates');
       copy.addEventListener('click', () => copyText(numbers, copy));
-      const link = geofx.element('a', {href: `geo:${latitude.toFixed(6)},${longitude.toFixed(6)}`}, 'Open in maps');
-      root.append(list, geofx.element('p', {class: 'actions'}, copy, link));
+      const actions = geofx.element('p', {class: 'actions'}, copy);
+      // Telephones have a program for such addresses.
+      if (touches) actions.append(geofx.element('a', {href: `geo:${latitude.toFixed(6)},${longitude.toFixed(6)}`}, 'Open in maps'));
+      root.append(list, actions);
     } else if (list.children.length) {
       root.append(list);
     }
