@@ -196,6 +196,7 @@ class PageTest(unittest.TestCase):
     def assert_tells_summit(self):
         """The popup of the summit: as the names' file says."""
         popup = self.wait(lambda: self.find(".leaflet-popup .about"))
+        self.wait(lambda: popup.find_element(By.TAG_NAME, "h2").text)  # it fades in
         self.assertEqual(popup.find_element(By.TAG_NAME, "h2").text, "Pūʻoko")
         self.assertEqual(popup.find_element(By.CSS_SELECTOR, ".up").text.replace("\u00a0", " "), "2,718 m")
         latitude, longitude = self.numbers(popup.find_element(By.CSS_SELECTOR, ".coordinates").text)
@@ -250,6 +251,24 @@ class PageTest(unittest.TestCase):
         self.assertIsNone(self.js("return window.stranger || null"))
         BROWSER.get_log("browser")  # they are told there
         self.mine += ("http://127.0.0.1:9/elsewhere.png",)  # chromium lists it, although it was stopped
+
+    def test_does_without_names_and_without_places(self):
+        """Pictures of scenes without a georeference, or without --labels."""
+        plain = WORK / "plain"
+        shutil.copytree(PAGE, plain, dirs_exist_ok=True)
+        (plain / "data/names.js").write_text('geofx.data.names = {"stepsOfZoom": 4, "styles": {}, "names": []};')
+        (plain / "data/places.js").write_text("geofx.data.places = null;")
+        picture = (plain / "data/picture.js").read_text()
+        self.assertIn('"places":true', picture)
+        (plain / "data/picture.js").write_text(picture.replace('"places":true', '"places":false'))
+        self.open(f"file://{plain}/")
+        self.assertFalse(self.find("#search").is_displayed())
+        self.assertFalse(self.find("#place").is_displayed())
+        ActionChains(BROWSER).move_to_element(self.find("#map")).click().perform()
+        self.press("/", "+")
+        self.settle()
+        self.assertEqual(self.find("#place").text, "")
+        self.assertEqual(BROWSER.find_elements(By.CSS_SELECTOR, ".mark, .name, .leaflet-popup"), [])
 
     # ---- Zooming ----
 

@@ -122,7 +122,7 @@
 
   function contentOf(name) {
     const root = geofx.element('div', {class: 'about', tabindex: '-1', role: 'group', 'aria-label': name.text},
-      geofx.element('h2', {}, name.text));
+      geofx.element('h2', {dir: 'auto'}, name.text));
     const list = geofx.element('dl');
     if (name.height !== undefined)
       list.append(geofx.element('dt', {}, 'Height'), geofx.element('dd', {class: 'up'}, geofx.metres(name.height)));
@@ -225,7 +225,7 @@
   document.addEventListener('keydown', (event) => {
     const search = document.getElementById('search');
     if (event.altKey || event.ctrlKey || event.metaKey || event.target === search) return;
-    if (event.key === '/') {
+    if (event.key === '/' && geofx.data.names.names.length) {
       event.preventDefault();
       search.focus();
       return;
@@ -271,6 +271,7 @@
   tiles.addTo(map);
   new geofx.NamesLayer((name) => showPopup(name, false)).addTo(map);
   geofx.search((name) => goTo(name, false));
+  document.querySelector('.search').hidden = !geofx.data.names.names.length;
 
   function follow() {
     let wanted = '';

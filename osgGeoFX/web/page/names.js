@@ -74,7 +74,7 @@ geofx.NamesLayer = L.Layer.extend({
       dot.style.left = dot.style.top = `${-style.dot}px`;
       root.append(dot);
     }
-    const text = geofx.element('button', {type: 'button', tabindex: '-1', class: 'text'}, name.text);
+    const text = geofx.element('button', {type: 'button', tabindex: '-1', class: 'text', dir: 'auto'}, name.text);
     Object.assign(text.style, {left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px`});
     text.style.lineHeight = `${height}px`;
     // Fonts differ. Narrower text stays at the side of its place.

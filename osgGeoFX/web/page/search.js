@@ -56,7 +56,7 @@ geofx.search = (choose) => {
     shown = matches(input.value);
     list.replaceChildren(...shown.map(({name}, i) => {
       const item = geofx.element('li', {role: 'option', id: `result${i}`, 'aria-selected': 'false'},
-        geofx.element('span', {class: 'what'}, name.text));
+        geofx.element('span', {class: 'what', dir: 'auto'}, name.text));
       if (name.height !== undefined) item.append(geofx.element('span', {class: 'height'}, geofx.metres(name.height)));
       // The pointer's button going down would take the focus away.
       item.addEventListener('mousedown', (event) => event.preventDefault());
