@@ -306,6 +306,9 @@ TEST_F(WebPageTest, ThePageNeedsNothingFromElsewhere)
     EXPECT_NE(page.find("Content-Security-Policy"), std::string::npos);
     EXPECT_EQ(page.find("unsafe"), std::string::npos);
     EXPECT_FALSE(std::regex_search(page, std::regex("<script(?![^>]*src=)|<style|\\son[a-z]+=|\\sstyle=")));
+    const std::string leaflet = bytes(path("page/leaflet/leaflet.js"));
+    EXPECT_GT(leaflet.size(), 100000u);
+    EXPECT_EQ(leaflet.find("sourceMappingURL"), std::string::npos);
     EXPECT_NE(bytes(path("page/leaflet/LICENSE.txt")).find("Redistribution and use"), std::string::npos);
 }
 
