@@ -364,10 +364,10 @@ void run(Arguments& arguments)
     PictureFiles pictures(arguments.output, !arguments.path.empty());
     if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
     geofx::layers::check(arguments.layers);
-    if (!arguments.layers.folder.empty() && !arguments.path.empty())
+    if (arguments.layers.any() && (!arguments.path.empty() || arguments.inset))
         throw Failure(
             badInput,
-            "--layers is for one picture; leave --path out, or give the view of one picture with --view.");
+            "--layers and --mesh are for one picture as it is drawn; leave --path and --inset out.");
     const std::string statsFault = arguments.stats.empty() ? std::string() : faultOfOutput(arguments.stats);
     if (!statsFault.empty()) throw Failure(badInput, statsFault);
 
