@@ -420,6 +420,8 @@ void run(Arguments& arguments)
         throw Failure(badInput, "The figures cannot be written to \"" + arguments.stats +
                                     "\"; check the folder, its permissions and the disk's space.");
     }
+    renderer.reset();
+    geofx::layers::write(arguments.layers, *scene, size, options, set, camera.view(0));
 }
 
 } // namespace

@@ -94,6 +94,21 @@ int outside(const osg::Vec4d& clip)
            (clip.y() > clip.w() ? 8 : 0);
 }
 
+/// A state with a texture like this one. Those of tiles have what files do not keep.
+osg::ref_ptr<osg::StateSet> stateOf(osg::Texture2D& texture)
+{
+    const osg::ref_ptr<osg::Texture2D> plain = new osg::Texture2D(texture.getImage());
+    plain->setResizeNonPowerOfTwoHint(false);
+    plain->setMaxAnisotropy(texture.getMaxAnisotropy());
+    for (const osg::Texture::WrapParameter side : {osg::Texture::WRAP_S, osg::Texture::WRAP_T})
+        plain->setWrap(side, texture.getWrap(side));
+    for (const osg::Texture::FilterParameter filter : {osg::Texture::MIN_FILTER, osg::Texture::MAG_FILTER})
+        plain->setFilter(filter, texture.getFilter(filter));
+    osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    state->setTextureAttributeAndModes(0, plain);
+    return state;
+}
+
 std::string text(const osg::Matrixd& matrix)
 {
     std::string result;
@@ -303,6 +318,7 @@ std::size_t PictureMesh::triangles() const
 osg::ref_ptr<osg::Node> PictureMesh::node() const
 {
     const osg::ref_ptr<osg::Geode> geode = new osg::Geode;
+    std::map<const osg::Texture2D*, osg::ref_ptr<osg::StateSet>> states;
     for (const Piece& piece : _pieces)
     {
         const osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
@@ -314,7 +330,9 @@ osg::ref_ptr<osg::Node> PictureMesh::node() const
         {
             geometry->setTexCoordArray(0, new osg::Vec2Array(piece.places.begin(), piece.places.end()),
                                        osg::Array::BIND_PER_VERTEX);
-            geometry->getOrCreateStateSet()->setTextureAttributeAndModes(0, piece.texture);
+            osg::ref_ptr<osg::StateSet>& state = states[piece.texture];
+            if (!state) state = stateOf(*piece.texture);
+            geometry->setStateSet(state);
         }
         geometry->addPrimitiveSet(
             new osg::DrawElementsUInt(GL_TRIANGLES, piece.corners.begin(), piece.corners.end()));

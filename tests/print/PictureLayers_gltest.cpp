@@ -332,10 +332,13 @@ TEST_F(PictureLayersTest, HaveWhatTheyAreCalled)
 
 TEST_F(PictureLayersTest, OfOtherViewsAreTheirPictures)
 {
-    const osg::ref_ptr<BirdsEyeView> bird = new BirdsEyeView;
+    const osg::ref_ptr<BirdsEyeView> bird = new BirdsEyeView, idle = new BirdsEyeView;
     bird->setFocusLine(0.3);
     bird->setHorizonLine(0.85);
-    for (const osg::ref_ptr<Effect>& effect : std::vector<osg::ref_ptr<Effect>>{nullptr, bird})
+    // The camera looks so far down that this one has nothing to bend.
+    idle->setFocusLine(0.8);
+    idle->setHorizonLine(0.99);
+    for (const osg::ref_ptr<Effect>& effect : std::vector<osg::ref_ptr<Effect>>{nullptr, bird, idle})
     {
         for (const unsigned int samples : {0u, 4u})
         {
@@ -347,6 +350,12 @@ TEST_F(PictureLayersTest, OfOtherViewsAreTheirPictures)
             for (const char* const name : {"forest", "water", "strokes", "classes"})
                 EXPECT_FALSE(has(name)) << name;
             EXPECT_EQ(_json["leftOut"].size(), 4u);
+            const Layer distance = read("distance.tif"), terrain = read("terrain.png");
+            int wrong = 0;
+            for (int y = 0; y < HEIGHT; ++y)
+                for (int x = 0; x < WIDTH; ++x)
+                    wrong += std::isnan(distance.at(x, y, 0)) == (terrain.at(x, y, 3) > 0.99) ? 1 : 0;
+            EXPECT_LT(wrong, samples ? WIDTH * HEIGHT / 50 : 20) << "the ground is in the layer of terrain";
             EXPECT_TRUE(has("shade") && has("labels") && has("lonlat"));
         }
     }

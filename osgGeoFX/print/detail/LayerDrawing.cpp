@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/print/detail/LayerFile.h>
 
-#include <optional>
+#include <algorithm>
 #include <string>
 
 namespace osgGeoFX
@@ -28,6 +28,11 @@ LayerDrawing::Kinds kindsOf(const EffectScene& scene)
         kinds.strokes = kinds.strokes || map->getStrokes();
     }
     return kinds;
+}
+
+bool sameBytes(const osg::Image& a, const osg::Image& b)
+{
+    return std::equal(a.data(), a.data() + a.getTotalSizeInBytes(), b.data());
 }
 
 } // namespace
@@ -71,9 +76,8 @@ void LayerDrawing::look(Part part)
     osg::StateSet& state = *_top->getOrCreateStateSet();
     state.removeDefine("GEOFX_PART");
     state.removeMode(GL_LIGHTING);
-    // Where no effect draws the ground, no shader of the kit's does.
-    _scene.effects->setNodeMask(part == NOTHING && !_kinds.effects ? 0 : _mask);
-    if (part != ALL && _kinds.effects) state.setDefine("GEOFX_PART", std::to_string(part));
+    _scene.effects->setNodeMask(part == NOTHING && !_partly ? 0 : _mask);
+    if (part != ALL) state.setDefine("GEOFX_PART", std::to_string(part));
     if (part == FLAT) state.setMode(GL_LIGHTING, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
 }
 
@@ -90,6 +94,7 @@ osg::ref_ptr<osg::Image> LayerDrawing::picture(Part part, const osg::Matrixd& vi
 
 void LayerDrawing::moveTo(const PictureTile& tile)
 {
+    _partly = _kinds.effects;
     _renderer->setTile(tile.left, _pictureHeight - tile.top - _tileHeight);
 }
 
@@ -113,13 +118,16 @@ LayerDrawing::Colors LayerDrawing::colors(const PictureTile& tile, const osg::Ma
     }
     const WithoutStrokes without(*_scene.effects);
     result.whole = _kinds.strokes ? drawPart(ALL) : result.all;
-    result.sky = drawPart(NOTHING);
-    result.flat = drawPart(FLAT);
     if (_kinds.effects)
     {
         result.black = drawPart(BLACK);
         result.shares = drawPart(SHARES);
+        // A deformation that moves nothing in this view leaves the ground to OpenGL's own shaders, as in a scene without effects.
+        _partly = _kinds.painted || !sameBytes(*result.black, *result.shares);
+        if (!_partly) result.black = result.shares = nullptr;
     }
+    result.sky = drawPart(NOTHING);
+    result.flat = drawPart(FLAT);
     result.land = _kinds.painted ? drawPart(LAND) : result.whole;
     result.woods = _kinds.painted ? drawPart(WOODS) : result.land;
     return result;

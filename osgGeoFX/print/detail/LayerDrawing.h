@@ -39,7 +39,7 @@ public:
     /// What there is in the scene.
     struct Kinds
     {
-        bool effects = false; ///< whether effects draw the ground
+        bool effects = false; ///< whether any is switched on
         bool painted = false; ///< whether a panorama map paints it
         bool water = false;   ///< whether it paints water
         bool strokes = false; ///< and strokes
@@ -78,6 +78,7 @@ private:
     osg::ref_ptr<DepthReader> _reader = new DepthReader;
     osg::Node::NodeMask _mask;
     const int _pictureHeight, _tileHeight;
+    bool _partly = false; ///< whether shaders of the kit draw the ground, and so its parts
     std::unique_ptr<SceneRenderer> _renderer;
 };
 
