@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/print/PictureMesh.h>
 
+#include <osgGeoFX/print/detail/MeshPiece.h>
 #include <osgGeoFX/scene/DeformedIntersector.h>
 #include <osgGeoFX/scene/DeformedView.h>
 
@@ -19,10 +20,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <system_error>
 
 #include <unistd.h>
@@ -56,6 +56,10 @@ public:
         put(osg::Vec3d(static_cast<double>(v.x()), static_cast<double>(v.y()), 0.0));
     }
     void apply(const osg::Vec3& v) override { put(v); }
+    void apply(const osg::Vec3b& v) override
+    {
+        put({static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())});
+    }
     void apply(const osg::Vec2d& v) override { put({v.x(), v.y(), 0.0}); }
     void apply(const osg::Vec3d& v) override { put(v); }
     void apply(const osg::Vec4& v) override { put(osg::Vec3d(osg::Vec3(v.x(), v.y(), v.z()) / v.w())); }
@@ -128,7 +132,7 @@ class PictureMesh::Collector : public osgUtil::Intersector
 {
 public:
     /// `clip`: from eye space to the picture.
-    Collector(std::vector<Piece>& pieces, const osg::Matrixd& clip)
+    Collector(std::vector<MeshPiece>& pieces, const osg::Matrixd& clip)
         : osgUtil::Intersector(osgUtil::Intersector::MODEL), _pieces(pieces), _clip(clip),
           _chain(new DeformationChain)
     {
@@ -160,7 +164,7 @@ public:
         osg::Geometry* const geometry = drawable->asGeometry();
         const osg::Array* const vertices = geometry ? geometry->getVertexArray() : nullptr;
         if (!vertices || vertices->getNumElements() == 0) return;
-        Piece piece;
+        MeshPiece piece;
         std::vector<int> sides; // of the picture that a vertex lies outside of; −1: it cannot be drawn
         for (unsigned int i = 0; i < vertices->getNumElements(); ++i)
         {
@@ -185,6 +189,7 @@ public:
         }
         if (piece.corners.empty()) return;
         takeLook(visitor.getNodePath(), *geometry, piece);
+        takeNormals(*geometry, piece);
         keepUsed(piece);
         _pieces.push_back(std::move(piece));
     }
@@ -208,7 +213,7 @@ private:
         return true;
     }
 
-    static void takeLook(const osg::NodePath& path, osg::Geometry& geometry, Piece& piece)
+    static void takeLook(const osg::NodePath& path, osg::Geometry& geometry, MeshPiece& piece)
     {
         Look look;
         for (osg::Node* const node : path)
@@ -226,12 +231,31 @@ private:
         }
     }
 
+    void takeNormals(const osg::Geometry& geometry, MeshPiece& piece) const
+    {
+        const osg::Array *const normals = geometry.getNormalArray(), *const vertices =
+                                                                         geometry.getVertexArray();
+        if (!normals || normals->getBinding() != osg::Array::BIND_PER_VERTEX ||
+            normals->getNumElements() < piece.positions.size())
+            return;
+        for (unsigned int i = 0; i < piece.positions.size(); ++i)
+        {
+            Values normal, vertex;
+            normals->accept(i, normal);
+            vertices->accept(i, vertex);
+            osg::Vec3d turned = _chain->deformNormal(vertex.value * _modelView,
+                                                     osg::Matrixd::transform3x3(normal.value, _modelView));
+            turned.normalize();
+            piece.normals.push_back(turned);
+        }
+    }
+
     /// Leaves out vertices that no triangle has.
-    static void keepUsed(Piece& piece)
+    static void keepUsed(MeshPiece& piece)
     {
         constexpr unsigned int unused = std::numeric_limits<unsigned int>::max();
         std::vector<unsigned int> numbers(piece.positions.size(), unused);
-        Piece kept;
+        MeshPiece kept;
         kept.texture = piece.texture;
         for (const unsigned int corner : piece.corners)
         {
@@ -239,6 +263,7 @@ private:
             {
                 numbers[corner] = static_cast<unsigned int>(kept.positions.size());
                 kept.positions.push_back(piece.positions[corner]);
+                if (!piece.normals.empty()) kept.normals.push_back(piece.normals[corner]);
                 if (!piece.places.empty()) kept.places.push_back(piece.places[corner]);
             }
             kept.corners.push_back(numbers[corner]);
@@ -246,14 +271,14 @@ private:
         piece = std::move(kept);
     }
 
-    std::vector<Piece>& _pieces;
+    std::vector<MeshPiece>& _pieces;
     const osg::Matrixd _clip;
     osg::ref_ptr<const DeformationChain> _chain;
     osg::Matrixd _modelView;
 };
 
 PictureMesh::PictureMesh(EffectScene& scene, const osg::Camera& camera, const Georeference* reference)
-    : _projection(camera.getProjectionMatrix())
+    : _pieces(std::make_shared<std::vector<MeshPiece>>()), _projection(camera.getProjectionMatrix())
 {
     const DeformedView view(scene, camera);
     _modelView = view.modelView();
@@ -278,7 +303,7 @@ PictureMesh::PictureMesh(EffectScene& scene, const osg::Camera& camera, const Ge
 void PictureMesh::collect(EffectScene& scene, const DeformationChain& chain, const osg::Matrixd& clip,
                           double lodScale)
 {
-    const osg::ref_ptr<Collector> collector = new Collector(_pieces, clip);
+    const osg::ref_ptr<Collector> collector = new Collector(*_pieces, clip);
     const osg::ref_ptr<DeformedIntersectionVisitor> visitor =
         new DeformedIntersectionVisitor(collector, chain, _modelView, lodScale);
     scene.getTerrain()->traverse(*visitor);
@@ -288,7 +313,7 @@ void PictureMesh::settle(const Georeference* reference)
 {
     osg::Vec3d middle;
     double count = 0.0;
-    for (const Piece& piece : _pieces)
+    for (const MeshPiece& piece : *_pieces)
         for (const osg::Vec3d& position : piece.positions)
         {
             count += 1.0;
@@ -302,15 +327,19 @@ void PictureMesh::settle(const Georeference* reference)
         !reference->localToWorld(longitude, latitude, 0.0, _frame))
         _frame = osg::Matrixd::translate(std::round(middle.x()), std::round(middle.y()), 0.0);
     const osg::Matrixd toLocal = toWorld * osg::Matrixd::inverse(_frame);
-    for (Piece& piece : _pieces)
+    for (MeshPiece& piece : *_pieces)
+    {
         for (osg::Vec3d& position : piece.positions)
             position = position * toLocal;
+        for (osg::Vec3d& normal : piece.normals)
+            normal = osg::Matrixd::transform3x3(normal, toLocal);
+    }
 }
 
 std::size_t PictureMesh::triangles() const
 {
     std::size_t count = 0;
-    for (const Piece& piece : _pieces)
+    for (const MeshPiece& piece : *_pieces)
         count += piece.corners.size() / 3;
     return count;
 }
@@ -319,7 +348,7 @@ osg::ref_ptr<osg::Node> PictureMesh::node() const
 {
     const osg::ref_ptr<osg::Geode> geode = new osg::Geode;
     std::map<const osg::Texture2D*, osg::ref_ptr<osg::StateSet>> states;
-    for (const Piece& piece : _pieces)
+    for (const MeshPiece& piece : *_pieces)
     {
         const osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
         const osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
@@ -337,7 +366,11 @@ osg::ref_ptr<osg::Node> PictureMesh::node() const
         geometry->addPrimitiveSet(
             new osg::DrawElementsUInt(GL_TRIANGLES, piece.corners.begin(), piece.corners.end()));
         geometry->setUseVertexBufferObjects(true);
-        osgUtil::SmoothingVisitor::smooth(*geometry, osg::PI);
+        if (piece.normals.empty())
+            osgUtil::SmoothingVisitor::smooth(*geometry, osg::PI);
+        else
+            geometry->setNormalArray(new osg::Vec3Array(piece.normals.begin(), piece.normals.end()),
+                                     osg::Array::BIND_PER_VERTEX);
         geode->addDrawable(geometry);
     }
     geode->setUserValue("geofx.frame", _frame);
@@ -364,72 +397,20 @@ bool PictureMesh::write(const std::string& file, std::string& error) const
 {
     error = faultOf(file);
     if (!error.empty()) return false;
-    if (_pieces.empty())
+    if (_pieces->empty())
     {
         error = "\"" + file + "\" is not written, since the picture shows no ground; choose another view.";
         return false;
     }
-    if (osgDB::getLowerCaseFileExtension(file) == "obj") return writeObj(file, error);
+    const std::vector<std::string> notes = {
+        "The terrain as a picture shows it, deformed. Metres; x is east, y up and z south of a local frame.",
+        "Matrices have rows of four, and multiply rows of coordinates x east, y north, z up from the right.",
+        "frame, from local coordinates to the world: " + text(_frame),
+        "view, from local coordinates to the eye's: " + text(view()), "projection: " + text(_projection)};
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("WriteImageHint=IncludeData");
-    if (osgDB::writeNodeFile(*node(), file, options)) return true;
-    error = "\"" + file + "\" cannot be written; check the folder, its permissions and the disk's space.";
-    return false;
-}
-
-bool PictureMesh::writeObj(const std::string& file, std::string& error) const
-{
-    const fs::path whole(file);
-    const fs::path materials = fs::path(whole).replace_extension(".mtl");
-    const fs::path textures = fs::path(whole).replace_extension(".textures");
-    std::error_code fault;
-    fs::create_directories(textures, fault);
-    std::ofstream mesh(whole), material(materials);
-    mesh << "# The terrain as a picture shows it, deformed. Metres; x is east, y up and z south of a local "
-            "frame.\n"
-            "# Matrices have rows of four, and multiply rows of coordinates x east, y north, z up from the "
-            "right.\n"
-            "# frame, from local coordinates to the world: "
-         << text(_frame) << "\n# view, from local coordinates to the eye's: " << text(view())
-         << "\n# projection: " << text(_projection) << "\nmtllib " << materials.filename().string() << '\n';
-    std::map<const osg::Image*, std::string> names;
-    std::size_t first = 1, firstPlace = 1, number = 0;
-    char line[120];
-    for (const Piece& piece : _pieces)
-    {
-        const osg::Image* const image = piece.texture ? piece.texture->getImage() : nullptr;
-        const auto [known, isNew] = names.try_emplace(image, "ground" + std::to_string(names.size()));
-        if (isNew)
-        {
-            material << "newmtl " << known->second << "\nKa 1 1 1\nKd 1 1 1\nillum 1\n";
-            const std::string name = known->second + ".png";
-            if (image && osgDB::writeImageFile(*image, (textures / name).string()))
-                material << "map_Kd " << (textures.filename() / name).generic_string() << '\n';
-        }
-        mesh << "o piece" << number++ << "\nusemtl " << known->second << '\n';
-        for (const osg::Vec3d& position : piece.positions)
-        {
-            std::snprintf(line, sizeof(line), "v %.3f %.3f %.3f\n", position.x(), position.z(),
-                          -position.y());
-            mesh << line;
-        }
-        for (const osg::Vec2f& place : piece.places)
-        {
-            std::snprintf(line, sizeof(line), "vt %.6f %.6f\n", static_cast<double>(place.x()),
-                          static_cast<double>(place.y()));
-            mesh << line;
-        }
-        for (std::size_t i = 0; i < piece.corners.size(); ++i)
-        {
-            mesh << (i % 3 == 0 ? "f " : " ") << first + piece.corners[i];
-            if (!piece.places.empty()) mesh << '/' << firstPlace + piece.corners[i];
-            if (i % 3 == 2) mesh << '\n';
-        }
-        first += piece.positions.size();
-        firstPlace += piece.places.size();
-    }
-    mesh.close();
-    material.close();
-    if (mesh && material && !fault) return true;
+    if (osgDB::getLowerCaseFileExtension(file) == "obj" ? writeObjFile(file, *_pieces, notes)
+                                                        : osgDB::writeNodeFile(*node(), file, options))
+        return true;
     error = "\"" + file + "\" cannot be written; check the folder, its permissions and the disk's space.";
     return false;
 }

@@ -10,20 +10,20 @@
 #include <osg/Camera>
 #include <osg/Matrixd>
 #include <osg/Node>
-#include <osg/Texture2D>
-#include <osg/Vec2f>
-#include <osg/Vec3d>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace osgGeoFX
 {
 
+struct MeshPiece;
+
 /** The terrain as one picture shows it, as a mesh that is deformed: seen from the picture's camera, without any effect, it has the same outlines.
 
     It has the tiles that are loaded, at the levels of detail of the camera, and what of their triangles lies in the picture. Vertices are moved as the GPU
-    moves them. Triangles that have a corner behind the eye, or one that cannot be moved, are left out. Texture coordinates and textures are
+    moves them, and normals turn with them. Triangles that have a corner behind the eye, or one that cannot be moved, are left out. Texture coordinates and textures are
     those of the tiles (unit 0). What effects paint, and strokes, are not in it: the layers of the picture are (PictureLayers).
 
     Coordinates are local, metres, x east, y north, z up, so that floats are exact; frame() tells where that is.
@@ -42,7 +42,7 @@ public:
     const osg::Matrixd& frame() const { return _frame; }
     /// From local coordinates to eye space; with the camera's projection it gives the picture's outlines.
     osg::Matrixd view() const { return _frame * _modelView; }
-    /// The mesh in local coordinates, with normals. User values: `geofx.frame` and `geofx.view` (the two matrices), `geofx.projection`.
+    /// The mesh in local coordinates. User values: `geofx.frame` and `geofx.view` (the two matrices), `geofx.projection`.
     osg::ref_ptr<osg::Node> node() const;
 
     /** Writes the mesh by the file's extension. `.obj`: y is up there, as usual in this format; a comment tells the frame and the camera. Materials
@@ -53,22 +53,13 @@ public:
     static std::string faultOf(const std::string& file);
 
 private:
-    /// What one drawable has.
-    struct Piece
-    {
-        std::vector<osg::Vec3d> positions; ///< eye space, deformed; local from the end of the constructor on
-        std::vector<osg::Vec2f> places;    ///< in the texture; empty where there are none
-        std::vector<unsigned int> corners; ///< three for each triangle
-        osg::ref_ptr<osg::Texture2D> texture;
-    };
     class Collector;
 
     void collect(EffectScene& scene, const DeformationChain& chain, const osg::Matrixd& clip,
                  double lodScale);
     void settle(const Georeference* reference);
-    bool writeObj(const std::string& file, std::string& error) const;
 
-    std::vector<Piece> _pieces;
+    std::shared_ptr<std::vector<MeshPiece>> _pieces;
     osg::Matrixd _frame;
     osg::Matrixd _modelView; ///< from the scene's world to eye space
     osg::Matrixd _projection;
