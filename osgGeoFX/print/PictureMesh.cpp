@@ -190,6 +190,7 @@ public:
         if (piece.corners.empty()) return;
         takeLook(visitor.getNodePath(), *geometry, piece);
         takeNormals(*geometry, piece);
+        turnFronts(piece);
         keepUsed(piece);
         _pieces.push_back(std::move(piece));
     }
@@ -247,6 +248,23 @@ private:
                                                      osg::Matrixd::transform3x3(normal.value, _modelView));
             turned.normalize();
             piece.normals.push_back(turned);
+        }
+    }
+
+    /// Turns triangles so that their front is where their normals are, as readers of files expect. Walls between tiles have normals of the
+    /// ground above them.
+    static void turnFronts(MeshPiece& piece)
+    {
+        if (piece.normals.empty()) return;
+        for (std::size_t i = 0; i + 2 < piece.corners.size(); i += 3)
+        {
+            unsigned int* const corner = &piece.corners[i];
+            const osg::Vec3d& a = piece.positions[corner[0]];
+            const osg::Vec3d front = (piece.positions[corner[1]] - a) ^ (piece.positions[corner[2]] - a);
+            osg::Vec3d normal;
+            for (int j = 0; j < 3; ++j)
+                normal += piece.normals[corner[j]];
+            if (front * normal < 0.0) std::swap(corner[1], corner[2]);
         }
     }
 

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <system_error>
+#include <utility>
 
 namespace fs = std::filesystem;
 
@@ -31,6 +32,31 @@ void putTriangles(std::ofstream& mesh, const std::vector<unsigned int>& corners,
         if (normal) mesh << '/' << normal + corners[i];
         if (i % 3 == 2) mesh << '\n';
     }
+}
+
+/// Takes those triangles out that stand upright to their normals: walls between tiles, which have the normals of the ground above them, and
+/// what rounding leaves of slivers. Readers of files would turn them over, some here and some there.
+std::vector<unsigned int> takeWalls(const MeshPiece& piece, std::vector<unsigned int>& corners)
+{
+    constexpr double upright = 0.05;
+    std::vector<unsigned int> walls, others;
+    for (std::size_t i = 0; i + 2 < corners.size() && !piece.normals.empty(); i += 3)
+    {
+        const unsigned int* const corner = &corners[i];
+        osg::Vec3f at[3];
+        osg::Vec3d normal;
+        for (std::size_t j = 0; j < 3; ++j)
+        {
+            at[j] = osg::Vec3f(piece.positions[corner[j]]);
+            normal += piece.normals[corner[j]];
+        }
+        const osg::Vec3d front = osg::Vec3d(at[1] - at[0]) ^ osg::Vec3d(at[2] - at[0]);
+        const bool wall = !(front * normal > upright * front.length() * normal.length());
+        std::vector<unsigned int>& kind = wall ? walls : others;
+        kind.insert(kind.end(), corner, corner + 3);
+    }
+    if (!piece.normals.empty()) corners = std::move(others);
+    return walls;
 }
 
 /// In these files y is up.
@@ -82,10 +108,14 @@ bool writeObjFile(const std::string& file, const std::vector<MeshPiece>& pieces,
             if (image && osgDB::writeImageFile(*image, (textures / name).string()))
                 material << "map_Kd " << (textures.filename() / name).generic_string() << '\n';
         }
-        mesh << "o piece" << number++ << "\nusemtl " << known->second << '\n';
+        std::vector<unsigned int> corners = piece.corners;
+        const std::vector<unsigned int> walls = takeWalls(piece, corners);
+        const std::size_t firstPlace = piece.places.empty() ? 0 : place;
+        mesh << "o piece" << ++number << "\nusemtl " << known->second << '\n';
         putVertices(mesh, piece);
-        putTriangles(mesh, piece.corners,
-                     {vertex, piece.places.empty() ? 0 : place, piece.normals.empty() ? 0 : normal});
+        putTriangles(mesh, corners, {vertex, firstPlace, piece.normals.empty() ? 0 : normal});
+        if (!walls.empty()) mesh << "o piece" << number << ".walls\nusemtl " << known->second << '\n';
+        putTriangles(mesh, walls, {vertex, firstPlace, 0});
         vertex += piece.positions.size();
         place += piece.places.size();
         normal += piece.normals.size();
