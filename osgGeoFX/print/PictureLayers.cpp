@@ -312,10 +312,13 @@ void writeLayers(const Scene& scene, const PictureLayers::Options& options, cons
     TiledNames names(options.names, plan);
     writeColors(scene, options, view, *drawing, open, names, drawn);
     // Numbers have no mean: values are those of the pixels' middles.
-    drawing.reset();
-    SceneRenderer::Options single = options.renderer;
-    single.samples = 0;
-    drawing = std::make_unique<LayerDrawing>(scene, single, plan);
+    if (options.renderer.samples > 1)
+    {
+        drawing.reset();
+        SceneRenderer::Options single = options.renderer;
+        single.samples = 0;
+        drawing = std::make_unique<LayerDrawing>(scene, single, plan);
+    }
     writeValues(scene, view, *drawing, open, drawn);
     std::vector<PictureLayers::Overlay> overlays = options.overlays;
     std::optional<LabelPicture> labels;
