@@ -370,10 +370,10 @@ void run(Arguments& arguments)
     PictureFiles pictures(arguments.output, !arguments.path.empty());
     if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
     geofx::layers::check(arguments.layers);
-    if (!arguments.layers.folder.empty() && !arguments.path.empty())
+    if (arguments.layers.any() && (!arguments.path.empty() || arguments.inset))
         throw Failure(
             badInput,
-            "--layers is for one picture; leave --path out, or give the view of one picture with --view.");
+            "--layers and --mesh are for one picture as it is drawn; leave --path and --inset out.");
     if (arguments.web.wanted() && !arguments.path.empty())
         throw Failure(badInput, "--web shows one picture; leave --path out, or --web.");
     std::optional<geofx::web::ScenePage> page;
@@ -432,6 +432,8 @@ void run(Arguments& arguments)
         throw Failure(badInput, "The figures cannot be written to \"" + arguments.stats +
                                     "\"; check the folder, its permissions and the disk's space.");
     }
+    renderer.reset();
+    geofx::layers::write(arguments.layers, *scene, size, options, set, camera.view(0));
 }
 
 } // namespace

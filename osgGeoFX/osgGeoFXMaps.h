@@ -15,6 +15,7 @@
 #include <osgGeoFX/labels/Prominence.h>
 
 #include <osgGeoFX/print/PictureLayers.h>
+#include <osgGeoFX/print/PictureMesh.h>
 #include <osgGeoFX/print/PicturePrint.h>
 #include <osgGeoFX/print/PlacePicture.h>
 

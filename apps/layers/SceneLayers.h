@@ -12,13 +12,16 @@ namespace CLI
 class App;
 }
 
-/// A picture in parts, to be finished by hand: the programs' option --layers.
+/// A picture in parts, to be finished by hand: the programs' options --layers and --mesh.
 namespace geofx::layers
 {
 
 struct Options
 {
     std::string folder; ///< for the layers; empty for none
+    std::string mesh;   ///< a file for the deformed terrain; empty for none
+
+    bool any() const { return !folder.empty() || !mesh.empty(); }
 };
 
 void addOptions(CLI::App& app, Options& options);

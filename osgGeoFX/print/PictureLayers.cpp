@@ -60,22 +60,37 @@ private:
     LayerFile _file;
 };
 
-/// All layers but the overlays.
-struct Strip
+template<class Value>
+using RowsOf = std::unique_ptr<Rows<Value>>;
+
+/// A row of tiles of the colors, but for overlays.
+struct ColorStrip
 {
-    using Bytes = std::unique_ptr<Rows<unsigned char>>;
-    using Floats = std::unique_ptr<Rows<float>>;
-    Bytes sky, terrain, forest, water, strokes, classes;
-    Floats shade, distance, height;
-    std::unique_ptr<Rows<double>> places;
+    RowsOf<unsigned char> sky, terrain, forest, water, strokes;
+    RowsOf<float> shade;
 
     template<class Action>
     void each(const Action& action)
     {
-        for (const Bytes* layer : {&sky, &terrain, &forest, &water, &strokes, &classes})
+        for (const RowsOf<unsigned char>* layer : {&sky, &terrain, &forest, &water, &strokes})
             if (*layer) action(**layer);
-        for (const Floats* layer : {&shade, &distance, &height})
+        action(*shade);
+    }
+};
+
+/// The same of the values.
+struct ValueStrip
+{
+    RowsOf<unsigned char> classes;
+    RowsOf<float> distance, height;
+    RowsOf<double> places;
+
+    template<class Action>
+    void each(const Action& action)
+    {
+        for (const RowsOf<float>* layer : {&distance, &height})
             if (*layer) action(**layer);
+        if (classes) action(*classes);
         if (places) action(*places);
     }
 };
@@ -91,7 +106,7 @@ float lessOf(const unsigned char* a, const unsigned char* b, int channel)
 }
 
 /// The colors of a pixel's layers.
-void putColors(Strip& strip, const LayerDrawing::Kinds& kinds, const LayerDrawing::Tile& parts,
+void putColors(ColorStrip& strip, const LayerDrawing::Kinds& kinds, const LayerDrawing::Colors& parts,
                const PlacePicture& places, const PictureTile& tile, int x, int row)
 {
     const int column = tile.left + x;
@@ -126,13 +141,13 @@ void putColors(Strip& strip, const LayerDrawing::Kinds& kinds, const LayerDrawin
     layers::putLayer(made, color(parts.all), covered, strip.strokes->at(column, row));
 }
 
-void putValues(Strip& strip, const LayerDrawing::Tile& parts, const PlacePicture& places,
+void putValues(ValueStrip& strip, const osg::ref_ptr<osg::Image>& classes, const PlacePicture& places,
                const PictureTile& tile, int x, int row)
 {
     const int column = tile.left + x, line = tile.top + row;
     const std::optional<double> distance = places.distanceAt(column, line);
     *strip.distance->at(column, row) = distance ? static_cast<float>(*distance) : none;
-    if (strip.classes && distance) *strip.classes->at(column, row) = *pixelOf(parts.classes, x, row);
+    if (strip.classes && distance) *strip.classes->at(column, row) = *pixelOf(classes, x, row);
     if (!strip.places) return;
     const std::optional<PlacePicture::Place> place = places.at(column, line);
     *strip.height->at(column, row) = place ? static_cast<float>(place->height) : none;
@@ -184,7 +199,6 @@ public:
     void look(EffectScene& scene, const osg::Camera& camera,
               const std::vector<std::shared_ptr<const DepthPicture>>& depths)
     {
-        if (!_names) return;
         if (_seen.empty())
             _seen = _names->inPicture(DeformedView(scene, camera), _plan.width, _plan.height,
                                       LabelPicture::usualMost);
@@ -206,75 +220,106 @@ private:
     std::map<std::size_t, std::size_t> _shown;
 };
 
-Strip stripOf(const LayerList& list, const fs::path& folder, const TilePlan& plan, double dpi)
+/// What opens the layers that a list has.
+struct Opening
 {
-    Strip strip;
-    const auto open = [&](const char* name, auto& rows)
+    const LayerList& list;
+    const fs::path& folder;
+    const TilePlan& plan;
+    double dpi;
+
+    template<class Value>
+    void operator()(const char* name, RowsOf<Value>& rows) const
     {
-        using Layer = typename std::decay_t<decltype(rows)>::element_type;
         if (const LayerList::Layer* const layer = list.find(name))
-            rows = std::make_unique<Layer>(folder, *layer, plan, dpi);
-    };
+            rows = std::make_unique<Rows<Value>>(folder, *layer, plan, dpi);
+    }
+};
+
+void writeColors(const Scene& scene, const PictureLayers::Options& options, const osg::Matrixd& view,
+                 LayerDrawing& drawing, const Opening& open, TiledNames& names,
+                 const std::function<void()>& drawn)
+{
+    const TilePlan& plan = open.plan;
+    ColorStrip strip;
     open("sky", strip.sky);
     open("terrain", strip.terrain);
     open("shade", strip.shade);
     open("forest", strip.forest);
     open("water", strip.water);
     open("strokes", strip.strokes);
+    for (int row = 0; row < plan.rows; ++row)
+    {
+        for (int column = 0; column < plan.columns; ++column)
+        {
+            const PictureTile tile = plan.at(column, row);
+            const LayerDrawing::Colors parts = drawing.colors(tile, view, drawn);
+            const PlacePicture places(*scene.effects, drawing.camera(), parts.depths);
+            for (int y = 0; y < tile.height; ++y)
+                for (int x = 0; x < tile.width; ++x)
+                    putColors(strip, drawing.kinds(), parts, places, tile, x, y);
+            if (options.names) names.look(*scene.effects, drawing.camera(), parts.depths);
+        }
+        strip.each([&](auto& rows) { rows.write(plan.at(0, row).height); });
+    }
+    strip.each([](auto& rows) { rows.finish(); });
+}
+
+void writeValues(const Scene& scene, const osg::Matrixd& view, LayerDrawing& drawing, const Opening& open,
+                 const std::function<void()>& drawn)
+{
+    const TilePlan& plan = open.plan;
+    ValueStrip strip;
     open("classes", strip.classes);
     open("distance", strip.distance);
     open("height", strip.height);
     open("lonlat", strip.places);
-    return strip;
-}
-
-/// Draws a tile and puts its pixels where they belong in the row of tiles.
-void putTile(Strip& strip, LayerDrawing& drawing, const LayerDrawing::Tile& parts, const PictureTile& tile,
-             const Scene& scene)
-{
-    std::optional<PlacePicture> places;
-    if (scene.reference)
-        places.emplace(*scene.effects, drawing.camera(), parts.ground, *scene.reference);
-    else
-        places.emplace(*scene.effects, drawing.camera(), parts.ground);
-    for (int row = 0; row < tile.height; ++row)
+    for (int row = 0; row < plan.rows; ++row)
     {
-        for (int x = 0; x < tile.width; ++x)
+        for (int column = 0; column < plan.columns; ++column)
         {
-            putColors(strip, drawing.kinds(), parts, *places, tile, x, row);
-            putValues(strip, parts, *places, tile, x, row);
+            const PictureTile tile = plan.at(column, row);
+            std::vector<std::shared_ptr<const DepthPicture>> depths;
+            const osg::ref_ptr<osg::Image> classes = drawing.ground(tile, view, depths);
+            drawn();
+            const PlacePicture places =
+                scene.reference ? PlacePicture(*scene.effects, drawing.camera(), depths, *scene.reference)
+                                : PlacePicture(*scene.effects, drawing.camera(), depths);
+            for (int y = 0; y < tile.height; ++y)
+                for (int x = 0; x < tile.width; ++x)
+                    putValues(strip, classes, places, tile, x, y);
         }
+        strip.each([&](auto& rows) { rows.write(plan.at(0, row).height); });
     }
+    strip.each([](auto& rows) { rows.finish(); });
 }
 
 void writeLayers(const Scene& scene, const PictureLayers::Options& options, const osg::Matrixd& view,
                  const fs::path& folder)
 {
     const TilePlan plan(options.size.width, options.size.height, options.tile);
-    LayerDrawing drawing(scene, options.renderer, plan);
-    const LayerDrawing::Kinds& kinds = drawing.kinds();
+    auto drawing = std::make_unique<LayerDrawing>(scene, options.renderer, plan);
+    const LayerDrawing::Kinds kinds = drawing->kinds();
     LayerList list(kinds.painted, kinds.water, kinds.strokes,
                    scene.reference ? std::string() : scene.referenceError);
-    Strip strip = stripOf(list, folder, plan, options.size.dpi);
-    TiledNames names(options.names, plan);
+    const Opening open{list, folder, plan, options.size.dpi};
     int done = 0;
-    const int all = plan.columns * plan.rows * kinds.count();
+    const int all = plan.columns * plan.rows * (kinds.count() + 1);
     const auto drawn = [&]
     {
         if (options.progress) options.progress(++done, all);
     };
-    for (int row = 0; row < plan.rows; ++row)
+    TiledNames names(options.names, plan);
+    writeColors(scene, options, view, *drawing, open, names, drawn);
+    // Numbers have no mean: values are those of the pixels' middles.
+    if (options.renderer.samples > 1)
     {
-        for (int column = 0; column < plan.columns; ++column)
-        {
-            const PictureTile tile = plan.at(column, row);
-            const LayerDrawing::Tile parts = drawing.draw(tile, view, drawn);
-            putTile(strip, drawing, parts, tile, scene);
-            names.look(*scene.effects, drawing.camera(), parts.depths);
-        }
-        strip.each([&](auto& rows) { rows.write(plan.at(0, row).height); });
+        drawing.reset();
+        SceneRenderer::Options single = options.renderer;
+        single.samples = 0;
+        drawing = std::make_unique<LayerDrawing>(scene, single, plan);
     }
-    strip.each([](auto& rows) { rows.finish(); });
+    writeValues(scene, view, *drawing, open, drawn);
     std::vector<PictureLayers::Overlay> overlays = options.overlays;
     std::optional<LabelPicture> labels;
     if (options.names)

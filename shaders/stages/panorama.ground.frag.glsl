@@ -144,12 +144,7 @@ vec4 SLOT_handCover(vec4 here, vec2 way, float steepness)
 
 #if defined(GEOFX_PART) && !defined(GEOFX_MIRROR)
 #define SLOT_PARTED
-// The light of level ground, without the shade of the picture's base.
-float SLOT_levelLight(vec3 facing, vec3 towards)
-{
-    vec3 vertical = normalize(cross(SLOT_brushX.xyz, SLOT_brushY.xyz));
-    return geofx_paintLight(dot(dot(vertical, facing) < 0.0 ? -vertical : vertical, towards), 1.0, 0.0);
-}
+uniform vec4 SLOT_up; // as in panorama.glsl
 
 // What would be there without the forest: the other classes in its place.
 geofx_Classes SLOT_cleared(geofx_Classes classes)
@@ -216,7 +211,7 @@ vec4 SLOT_color(vec4 color)
 #ifdef SLOT_PARTED
     geofx_Classes classes = geofx_classify(cover, SLOT_place.z, facing.w, brush.z, style);
 #if GEOFX_PART == GEOFX_PART_FLAT
-    painted = SLOT_ground(SLOT_cleared(classes), SLOT_levelLight(facing.xyz, towards));
+    painted = SLOT_ground(SLOT_cleared(classes), geofx_paintLight(dot(SLOT_up.xyz, towards), 1.0, 0.0)); // of level ground
 #elif GEOFX_PART == GEOFX_PART_WOODS
     painted = SLOT_ground(classes, light);
 #else

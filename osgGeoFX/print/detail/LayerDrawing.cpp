@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/print/detail/LayerFile.h>
 
-#include <optional>
+#include <algorithm>
 #include <string>
 
 namespace osgGeoFX
@@ -30,12 +30,17 @@ LayerDrawing::Kinds kindsOf(const EffectScene& scene)
     return kinds;
 }
 
+bool sameBytes(const osg::Image& a, const osg::Image& b)
+{
+    return std::equal(a.data(), a.data() + a.getTotalSizeInBytes(), b.data());
+}
+
 } // namespace
 
 int LayerDrawing::Kinds::count() const
 {
-    // Sky, flat, all and classes; two for the opacity; land and woods.
-    return 4 + (effects ? 2 : 0) + (painted ? 2 : 0) + (strokes ? 3 : 0);
+    // Sky, flat and all; two for the opacity; land and woods; strokes on black and on white, and none.
+    return 3 + (effects ? 2 : 0) + (painted ? 2 : 0) + (strokes ? 3 : 0);
 }
 
 LayerDrawing::LayerDrawing(const Scene& scene, const SceneRenderer::Options& options, const TilePlan& plan)
@@ -71,14 +76,9 @@ void LayerDrawing::look(Part part)
     osg::StateSet& state = *_top->getOrCreateStateSet();
     state.removeDefine("GEOFX_PART");
     state.removeMode(GL_LIGHTING);
-    state.removeMode(GL_MULTISAMPLE);
-    // Where no effect draws the ground, no shader of the kit's does.
-    _scene.effects->setNodeMask(part == NOTHING && !_kinds.effects ? 0 : _mask);
-    if (part != ALL && _kinds.effects) state.setDefine("GEOFX_PART", std::to_string(part));
+    _scene.effects->setNodeMask(part == NOTHING && !_partly ? 0 : _mask);
+    if (part != ALL) state.setDefine("GEOFX_PART", std::to_string(part));
     if (part == FLAT) state.setMode(GL_LIGHTING, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
-    // Numbers and depths have no mean.
-    if (part == CLASSES)
-        state.setMode(GL_MULTISAMPLE, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
 }
 
 osg::ref_ptr<osg::Image> LayerDrawing::picture(Part part, const osg::Matrixd& view)
@@ -92,17 +92,23 @@ osg::ref_ptr<osg::Image> LayerDrawing::picture(Part part, const osg::Matrixd& vi
     return image;
 }
 
-LayerDrawing::Tile LayerDrawing::draw(const PictureTile& tile, const osg::Matrixd& view,
-                                      const std::function<void()>& drawn)
+void LayerDrawing::moveTo(const PictureTile& tile)
 {
+    _partly = _kinds.effects;
     _renderer->setTile(tile.left, _pictureHeight - tile.top - _tileHeight);
+}
+
+LayerDrawing::Colors LayerDrawing::colors(const PictureTile& tile, const osg::Matrixd& view,
+                                          const std::function<void()>& drawn)
+{
+    moveTo(tile);
     const auto drawPart = [&](Part part)
     {
         const osg::ref_ptr<osg::Image> image = picture(part, view);
         drawn();
         return image;
     };
-    Tile result;
+    Colors result;
     result.all = drawPart(ALL);
     result.depths = _reader->pictures();
     if (_kinds.strokes)
@@ -112,18 +118,29 @@ LayerDrawing::Tile LayerDrawing::draw(const PictureTile& tile, const osg::Matrix
     }
     const WithoutStrokes without(*_scene.effects);
     result.whole = _kinds.strokes ? drawPart(ALL) : result.all;
-    result.sky = drawPart(NOTHING);
-    result.flat = drawPart(FLAT);
     if (_kinds.effects)
     {
         result.black = drawPart(BLACK);
         result.shares = drawPart(SHARES);
+        // A deformation that moves nothing in this view leaves the ground to OpenGL's own shaders, as in a scene without effects.
+        _partly = _kinds.painted || !sameBytes(*result.black, *result.shares);
+        if (!_partly) result.black = result.shares = nullptr;
     }
+    result.sky = drawPart(NOTHING);
+    result.flat = drawPart(FLAT);
     result.land = _kinds.painted ? drawPart(LAND) : result.whole;
     result.woods = _kinds.painted ? drawPart(WOODS) : result.land;
-    result.classes = drawPart(CLASSES);
-    result.ground = _reader->pictures();
     return result;
+}
+
+osg::ref_ptr<osg::Image> LayerDrawing::ground(const PictureTile& tile, const osg::Matrixd& view,
+                                              std::vector<std::shared_ptr<const DepthPicture>>& depths)
+{
+    moveTo(tile);
+    const WithoutStrokes without(*_scene.effects);
+    osg::ref_ptr<osg::Image> classes = picture(CLASSES, view);
+    depths = _reader->pictures();
+    return classes;
 }
 
 } // namespace osgGeoFX

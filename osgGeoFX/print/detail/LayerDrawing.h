@@ -39,14 +39,14 @@ public:
     /// What there is in the scene.
     struct Kinds
     {
-        bool effects = false; ///< whether effects draw the ground
+        bool effects = false; ///< whether any is switched on
         bool painted = false; ///< whether a panorama map paints it
         bool water = false;   ///< whether it paints water
         bool strokes = false; ///< and strokes
-        int count() const;    ///< of the pictures of each tile
+        int count() const;    ///< of the pictures of each tile's colors
     };
-    /// The pictures of a tile; those that its kinds do not need are null. RGB, rows upwards.
-    struct Tile
+    /// The pictures of a tile's colors; those that its kinds do not need are null. RGB, rows upwards.
+    struct Colors
     {
         osg::ref_ptr<osg::Image> sky, black, shares, flat, land, woods, whole, strokesBlack, strokesWhite,
             all;
@@ -62,19 +62,23 @@ public:
     const Kinds& kinds() const { return _kinds; }
     const osg::Camera& camera() const { return _renderer->camera(); } ///< of the whole picture
     /// Draws all parts of a tile. `drawn` is called after each one.
-    Tile draw(const PictureTile& tile, const osg::Matrixd& view, const std::function<void()>& drawn);
+    Colors colors(const PictureTile& tile, const osg::Matrixd& view, const std::function<void()>& drawn);
+    /// The classes of a tile's ground and its depths, without strokes.
+    osg::ref_ptr<osg::Image> ground(const PictureTile& tile, const osg::Matrixd& view,
+                                    std::vector<std::shared_ptr<const DepthPicture>>& depths);
 
 private:
     osg::ref_ptr<osg::Image> picture(Part part, const osg::Matrixd& view);
     void look(Part part);
+    void moveTo(const PictureTile& tile);
 
     Scene _scene;
     Kinds _kinds;
     osg::ref_ptr<osg::Group> _top = new osg::Group;
     osg::ref_ptr<DepthReader> _reader = new DepthReader;
     osg::Node::NodeMask _mask;
-    int _pictureHeight;
-    int _tileHeight;
+    const int _pictureHeight, _tileHeight;
+    bool _partly = false; ///< whether shaders of the kit draw the ground, and so its parts
     std::unique_ptr<SceneRenderer> _renderer;
 };
 
