@@ -9,11 +9,11 @@
 #include <CLI/CLI.hpp>
 #include <OpenImageIO/imageio.h>
 #include <osg/Group>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 

@@ -10,12 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include <fcntl.h>
-#include <stdio.h> // renameat2()
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <cstdio> // renameat2(), too
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -97,8 +96,12 @@ std::string faultOfFolder(const fs::path& path, const std::string& folder)
     const std::set<std::string> parts = partsOf();
     for (const fs::directory_entry& entry : fs::directory_iterator(path, fault))
         if (!parts.count(entry.path().filename().string()))
-            return "\"" + folder + "\" has \"" + entry.path().filename().string() +
-                   "\" beside the page, which is not removed" + other;
+            return std::string("\"")
+                .append(folder)
+                .append("\" has \"")
+                .append(entry.path().filename().string())
+                .append("\" beside the page, which is not removed")
+                .append(other);
     return {};
 }
 
@@ -296,7 +299,7 @@ fs::path newFolderBeside(const fs::path& folder)
     const std::string stem = "." + folder.filename().string() + "." + std::to_string(getpid()) + ".";
     for (int number = 0;; ++number)
     {
-        const fs::path made = folder.parent_path() / (stem + std::to_string(number));
+        fs::path made = folder.parent_path() / (stem + std::to_string(number));
         if (fs::create_directory(made)) return made;
     }
 }

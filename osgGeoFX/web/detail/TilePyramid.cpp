@@ -50,7 +50,7 @@ unsigned char byteOf(float light)
         }
         return bytes;
     }();
-    return table[static_cast<std::size_t>(std::clamp(light, 0.0f, 1.0f) * 65535.0f + 0.5f)];
+    return table[static_cast<std::size_t>(std::lround(std::clamp(light, 0.0f, 1.0f) * 65535.0f))];
 }
 
 } // namespace
