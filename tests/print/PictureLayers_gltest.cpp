@@ -335,9 +335,11 @@ TEST_F(PictureLayersTest, OfOtherViewsAreTheirPictures)
     const osg::ref_ptr<BirdsEyeView> bird = new BirdsEyeView, idle = new BirdsEyeView;
     bird->setFocusLine(0.3);
     bird->setHorizonLine(0.85);
-    // The camera looks so far down that this one has nothing to bend.
-    idle->setFocusLine(0.8);
-    idle->setHorizonLine(0.99);
+    // Where the horizon is in sight already, below its line, there is nothing to bend.
+    idle->setFocusLine(0.3);
+    idle->setHorizonLine(0.85);
+    const osg::Matrixd down = _view,
+                       level = _view * osg::Matrixd::rotate(osg::DegreesToRadians(-25.0), osg::X_AXIS);
     for (const osg::ref_ptr<Effect>& effect : std::vector<osg::ref_ptr<Effect>>{nullptr, bird, idle})
     {
         for (const unsigned int samples : {0u, 4u})
@@ -345,6 +347,7 @@ TEST_F(PictureLayersTest, OfOtherViewsAreTheirPictures)
             SCOPED_TRACE((effect ? effect->className() : "plain") + std::string(" ") +
                          std::to_string(samples));
             _drawing.samples = samples;
+            _view = effect == idle ? level : down;
             write(effect, options(4096, names()));
             expectThePicture(*picture(effect, names()));
             for (const char* const name : {"forest", "water", "strokes", "classes"})
