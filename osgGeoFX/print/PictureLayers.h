@@ -51,7 +51,9 @@ public:
     struct Options
     {
         PrintSize size;
-        int tile = 1024;                 ///< the longest side of what is drawn at once, pixels, 64…16,384
+        /// The longest side of what is drawn at once, pixels, 64…16,384. That of the picture: where its sides have no divisor, edges of strokes
+        /// depend on it.
+        int tile = 2048;
         SceneRenderer::Options renderer; ///< sizes and format in it do not count
         osg::ref_ptr<NameSet> names;     ///< null for none
         std::vector<Overlay> overlays;   ///< above the names, the lowest first
