@@ -2,11 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_panorama: any DEM to a panorama map.
+#include "layers/SceneLayers.h"
 #include "names/PictureMap.h"
 #include "osggeofx_render_output.h"
 #include "panorama/GroundBuilder.h"
 #include "panorama/Recipe.h"
 #include "panorama/RecipeLiberties.h"
+#include "web/ScenePage.h"
 
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/geodata/BuildError.h>
@@ -60,6 +62,8 @@ struct Arguments
     std::string liberties; ///< the strength of those that are chosen; empty for none
     std::vector<std::string> liberty;
     geofx::names::Options names;
+    geofx::layers::Options layers;
+    geofx::web::Options web;
     bool explain = false, quiet = false;
 };
 
@@ -157,6 +161,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("'LON,LAT NAME=VALUE …'")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     geofx::names::addOptions(app, arguments.names);
+    geofx::layers::addOptions(app, arguments.layers);
+    geofx::web::addOptions(app, arguments.web);
     app.add_flag("--explain", arguments.explain, "Say what was chosen, and why");
     app.add_flag("--quiet", arguments.quiet, "No progress");
     app.footer(
@@ -442,7 +448,7 @@ bool isPrint(const Arguments& arguments, const Recipe& recipe)
 
 void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::SceneRenderer::Options& renderer,
            geofx::names::PictureMap& map, osgGeoFX::Scene& scene, const osg::Matrixd& view,
-           const std::string& ground)
+           const std::string& ground, const geofx::web::ScenePage* page)
 {
     osgGeoFX::PicturePrint::Options options;
     options.size = sizeOf(recipe);
@@ -453,6 +459,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
                      geofx::names::agesOf(mapOptions(arguments, recipe)) +
                      geofx::names::PictureMap::rasterOf(arguments.output);
     options.metadata = {{"Software", "osgGeoFX osggeofx_panorama"}, {"ImageDescription", recipe.text()}};
+    if (page) options.plain = page->plain();
     osgGeoFX::ProgressLine line("osggeofx_panorama");
     if (!arguments.quiet)
         options.progress = [&](int done, int all)
@@ -464,6 +471,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
                                        geofx::names::PictureMap::rasterOf(arguments.output), error))
         throw Failure(error);
     map.finish(options, view);
+    if (page) page->write(scene, renderer, view, map.names());
     if (arguments.pick.empty()) return;
     const double aspect = static_cast<double>(recipe.width) / recipe.height;
     printPick(
@@ -474,7 +482,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
 }
 
 void paint(const Arguments& arguments, const std::string& ground, const Recipe& recipe,
-           PictureFiles& pictures)
+           PictureFiles& pictures, const geofx::web::ScenePage* page)
 {
     osgGeoFX::Scene scene = load(ground);
     // A scene of one's own may have a projection already.
@@ -489,31 +497,44 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     options.height = recipe.height;
     options.samples = recipe.samples;
     std::string error;
-    geofx::names::PictureMap map(mapOptions(arguments, recipe), arguments.output, sizeOf(recipe), scene);
+    geofx::names::PictureMap map(mapOptions(arguments, recipe), arguments.output, sizeOf(recipe), scene,
+                                 !arguments.layers.folder.empty());
     for (const std::string& notice : map.notices())
         if (!arguments.quiet) std::fprintf(stderr, "%s\n", notice.c_str());
     TerrainRelief frame;
     frame.geocentric = recipe.geocentric;
+    const osg::Matrixd view = recipe.view.viewMatrix(frame);
     if (isPrint(arguments, recipe))
     {
-        print(arguments, recipe, options, map, scene, recipe.view.viewMatrix(frame), ground);
+        print(arguments, recipe, options, map, scene, view, ground, page);
+        geofx::layers::write(arguments.layers, scene, sizeOf(recipe), options, map, view);
         return;
     }
     map.prepare();
-    const auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
+    auto renderer = osgGeoFX::SceneRenderer::create(scene, options, error);
     if (!renderer) throw Failure(error);
     osgGeoFX::FrameStatistics unused;
-    const auto image = renderer->render(recipe.view.viewMatrix(frame), 0.0, unused, error);
+    const auto image = renderer->render(view, 0.0, unused, error);
     if (!image) throw Failure(error);
-    map.finish(renderer->camera(), *image);
+    map.finish(renderer->camera(), *image,
+               [&]
+               {
+                   if (page) page->setPicture(*image);
+               });
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
     if (!arguments.pick.empty()) printPick(arguments, recipe, scene, {*scene.effects, renderer->camera()});
+    renderer.reset();
+    if (page) page->write(scene, options, view, map.names());
+    geofx::layers::write(arguments.layers, scene, sizeOf(recipe), options, map, view);
 }
 
 void run(const Arguments& arguments)
 {
     PictureFiles pictures(geofx::names::PictureMap::rasterOf(arguments.output), false);
     if (!pictures.error().empty()) throw Failure(pictures.error());
+    geofx::layers::check(arguments.layers);
+    std::optional<geofx::web::ScenePage> page;
+    if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
     Recipe recipe;
     const bool again = arguments.sources.size() == 1 && Recipe::isRecipe(arguments.sources.front());
     if (again)
@@ -568,7 +589,7 @@ void run(const Arguments& arguments)
             std::printf("%s\n", reason.c_str());
         std::fflush(stdout);
     }
-    paint(arguments, ground, recipe, pictures);
+    paint(arguments, ground, recipe, pictures, page ? &*page : nullptr);
     if (arguments.recipe != "none")
         recipe.write(arguments.recipe.empty() ? beside.string() + ".json" : arguments.recipe);
     std::error_code ignored;

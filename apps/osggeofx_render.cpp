@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_render: an OSG file or .geofx scene to pictures, off-screen.
+#include "layers/SceneLayers.h"
 #include "names/PictureMap.h"
 #include "osggeofx_render_output.h"
+#include "web/ScenePage.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/print/PicturePrint.h>
@@ -49,6 +51,8 @@ struct Arguments
     unsigned int frames = 0;
     std::vector<std::string> effects;
     geofx::names::Options names;
+    geofx::layers::Options layers;
+    geofx::web::Options web;
     bool inset = false;
     bool sky = false;
     bool noCull = false;
@@ -119,6 +123,8 @@ void addOptions(CLI::App& app, Arguments& arguments)
     app.set_version_flag("--help-effects", osgGeoFX::effectsHelp,
                          "List the effects with all their properties");
     geofx::names::addOptions(app, arguments.names);
+    geofx::layers::addOptions(app, arguments.layers);
+    geofx::web::addOptions(app, arguments.web);
     app.add_flag("--inset", arguments.inset,
                  "Put the same view without effects, a quarter as wide, into the lower right corner");
     app.add_flag("--sky", arguments.sky,
@@ -318,7 +324,7 @@ void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const Camera
 
 /// A picture that is larger than the GPU draws at once, or has a resolution.
 void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::names::PictureMap& map,
-           const osg::Matrixd& view, osgGeoFX::Scene& scene)
+           const osg::Matrixd& view, osgGeoFX::Scene& scene, const geofx::web::ScenePage* page)
 {
     if (!arguments.path.empty() || arguments.inset || !arguments.stats.empty())
         throw Failure(badInput,
@@ -336,10 +342,12 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
     for (const std::string& effect : arguments.effects)
         options.recipe += "; " + effect;
     options.metadata = {{"Software", "osgGeoFX osggeofx_render"}};
+    if (page) options.plain = page->plain();
     std::string error;
     const std::string raster = geofx::names::PictureMap::rasterOf(arguments.output);
     if (!osgGeoFX::PicturePrint::write(scene, options, view, raster, error)) throw Failure(badInput, error);
     map.finish(options, view);
+    if (page) page->write(scene, arguments.renderer, view, map.names());
 }
 
 void run(Arguments& arguments)
@@ -348,6 +356,15 @@ void run(Arguments& arguments)
     const osgGeoFX::PrintSize size = readSize(arguments);
     PictureFiles pictures(geofx::names::PictureMap::rasterOf(arguments.output), !arguments.path.empty());
     if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
+    geofx::layers::check(arguments.layers);
+    if (arguments.layers.any() && (!arguments.path.empty() || arguments.inset))
+        throw Failure(
+            badInput,
+            "--layers and --mesh are for one picture as it is drawn; leave --path and --inset out.");
+    if (arguments.web.wanted() && !arguments.path.empty())
+        throw Failure(badInput, "--web shows one picture; leave --path out, or --web.");
+    std::optional<geofx::web::ScenePage> page;
+    if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
     const std::string statsFault = arguments.stats.empty() ? std::string() : faultOfOutput(arguments.stats);
     if (!statsFault.empty()) throw Failure(badInput, statsFault);
 
@@ -378,18 +395,20 @@ void run(Arguments& arguments)
     options.cull = !arguments.noCull;
     options.countTriangles = !arguments.stats.empty();
     const Camera camera(arguments, *scene);
-    geofx::names::PictureMap map(arguments.names, arguments.output, size, *scene);
+    geofx::names::PictureMap map(arguments.names, arguments.output, size, *scene,
+                                 !arguments.layers.folder.empty());
     for (const std::string& notice : map.notices())
         std::cerr << "osggeofx_render: " << notice << std::endl;
     if (size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size) ||
         geofx::names::PictureMap::isPdf(arguments.output))
     {
-        print(arguments, size, map, camera.view(0), *scene);
+        print(arguments, size, map, camera.view(0), *scene, page ? &*page : nullptr);
+        geofx::layers::write(arguments.layers, *scene, size, options, map, camera.view(0));
         return;
     }
     map.prepare();
 
-    const auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
+    auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
     if (!renderer) throw Failure(badInput, error);
     StatisticsFile statistics(*renderer, options);
     for (unsigned int frame = 0; frame < camera.count(); ++frame)
@@ -397,16 +416,23 @@ void run(Arguments& arguments)
         osgGeoFX::FrameStatistics figures;
         const auto image = renderer->render(camera.view(frame), camera.time(frame), figures, error);
         if (!image) throw Failure(tookTooLong, error);
-        map.finish(renderer->camera(), *image);
+        map.finish(renderer->camera(), *image,
+                   [&]
+                   {
+                       if (page) page->setPicture(*image);
+                   });
         if (arguments.inset) addInset(*image, *renderer, camera, frame, *scene->effects);
         if (!pictures.write(*image, frame)) throw Failure(badInput, pictures.error());
         statistics.add(figures);
     }
+    if (page) page->write(*scene, options, camera.view(0), map.names());
     if (!arguments.stats.empty() && !statistics.write(arguments.stats))
     {
         throw Failure(badInput, "The figures cannot be written to \"" + arguments.stats +
                                     "\"; check the folder, its permissions and the disk's space.");
     }
+    renderer.reset();
+    geofx::layers::write(arguments.layers, *scene, size, options, map, camera.view(0));
 }
 
 } // namespace

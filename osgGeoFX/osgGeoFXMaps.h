@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// All that the library osgGeoFXMaps offers: the names and lines of maps, and pictures of any size.
+// All that the library osgGeoFXMaps offers: the names and lines of maps, pictures of any size, and web pages.
 #pragma once
 
 #include <osgGeoFX/labels/FinestGround.h>
@@ -22,5 +22,11 @@
 #include <osgGeoFX/lines/MapLine.h>
 #include <osgGeoFX/lines/MapLines.h>
 
+#include <osgGeoFX/print/PictureLayers.h>
+#include <osgGeoFX/print/PictureMesh.h>
 #include <osgGeoFX/print/PicturePrint.h>
 #include <osgGeoFX/print/PictureVectors.h>
+#include <osgGeoFX/print/PlacePicture.h>
+
+#include <osgGeoFX/web/WebNames.h>
+#include <osgGeoFX/web/WebPage.h>

@@ -27,8 +27,8 @@ constexpr double usualDpi = 150.0;
 } // namespace
 
 PictureMap::PictureMap(const Options& options, const std::string& output, const osgGeoFX::PrintSize& size,
-                       osgGeoFX::Scene& scene)
-    : _options(options), _output(output), _size(size), _scene(scene)
+                       osgGeoFX::Scene& scene, bool layered)
+    : _options(options), _output(output), _size(size), _scene(scene), _layered(layered)
 {
     std::string notice;
     if (!options.files.empty())
@@ -41,7 +41,7 @@ PictureMap::PictureMap(const Options& options, const std::string& output, const 
     {
         _lines = SceneLines::read(options, scene, notice);
         if (!notice.empty()) _notices.push_back(notice);
-        if (onPicture()) _lines->addTo(scene, size.height);
+        if (onPicture() && !layered) _lines->addTo(scene, size.height);
     }
 }
 
@@ -75,16 +75,23 @@ void PictureMap::takeLines(const osg::Camera& camera, double scale)
     _placedLines.emplace(_lines->lines, _lines->styles, *_scene.effects, camera, _reader->pictures(), scale);
 }
 
-void PictureMap::finish(const osg::Camera& camera, osg::Image& image)
+void PictureMap::finish(const osg::Camera& camera, osg::Image& image,
+                        const std::function<void()>& beforeNames)
 {
     if (_names) _placedNames.emplace(*_names, *_scene.effects, camera, _reader->pictures());
     if (wantsLineVectors()) takeLines(camera, _size.height / usualHeight);
+    if (linesAbove() && onPicture()) linesAbove()->drawOnto(image);
+    if (beforeNames) beforeNames();
     if (_placedNames && onPicture()) _placedNames->drawOnto(image);
     write();
 }
 
 void PictureMap::prepare(osgGeoFX::PicturePrint::Options& options)
 {
+    if (_lines && _layered)
+        throw std::runtime_error(
+            "--layers: lines are a layer of pictures of up to 4096 pixels without a resolution only; take "
+            "such a --size, or leave --lines out.");
     options.names = _names;
     options.drawNames = onPicture();
     options.placed = [this](const osgGeoFX::LabelPicture& placed)

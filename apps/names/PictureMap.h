@@ -10,6 +10,7 @@
 #include <osgGeoFX/print/PicturePrint.h>
 #include <osgGeoFX/scene/DepthReader.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,18 @@ namespace geofx::names
 class PictureMap
 {
 public:
-    /// `output`: the file of the picture. `size`: its size; names and lines grow with it.
+    /// `output`: the file of the picture. `size`: its size; names and lines grow with it. `layered`: whether lines are to be a layer of their own,
+    /// over what the scene draws.
     PictureMap(const Options& options, const std::string& output, const osgGeoFX::PrintSize& size,
-               osgGeoFX::Scene& scene);
+               osgGeoFX::Scene& scene, bool layered = false);
+
+    /// Null if there are none.
+    const osg::ref_ptr<osgGeoFX::NameSet>& names() const { return _names; }
+    /// The lines that are a layer over the picture, once it is finished; null if there are none.
+    const osgGeoFX::LinePicture* linesAbove() const
+    {
+        return _layered && _placedLines ? &*_placedLines : nullptr;
+    }
 
     /// What people should know of names and lines, as sentences.
     const std::vector<std::string>& notices() const { return _notices; }
@@ -38,7 +48,8 @@ public:
     /// For pictures of a renderer: call it before the renderer is made.
     void prepare() { readDepths(); }
     /// For a picture that a renderer has just drawn: draws on it, and writes the files. `camera`: SceneRenderer::camera().
-    void finish(const osg::Camera& camera, osg::Image& image);
+    /// `beforeNames`: called when the picture has its lines and no names yet.
+    void finish(const osg::Camera& camera, osg::Image& image, const std::function<void()>& beforeNames = {});
 
     /// For a print: sets what it does with names.
     void prepare(osgGeoFX::PicturePrint::Options& options);
@@ -47,7 +58,10 @@ public:
 
 private:
     bool onPicture() const { return _options.svg.empty() && !isPdf(_output); }
-    bool wantsLineVectors() const { return _lines && (!onPicture() || !_options.geoJson.empty()); }
+    bool wantsLineVectors() const
+    {
+        return _lines && (_layered || !onPicture() || !_options.geoJson.empty());
+    }
     void readDepths();
     void takeLines(const osg::Camera& camera, double scale);
     void write();
@@ -56,6 +70,7 @@ private:
     const std::string _output;
     const osgGeoFX::PrintSize _size;
     osgGeoFX::Scene& _scene;
+    const bool _layered;
     std::vector<std::string> _notices;
     osg::ref_ptr<osgGeoFX::NameSet> _names;
     std::optional<SceneLines> _lines;

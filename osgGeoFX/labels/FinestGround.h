@@ -24,8 +24,7 @@ class OSGGEOFXMAPS_EXPORT FinestGround
 {
 public:
     /// `ellipsoid`: as for TerrainRelief::read().
-    FinestGround(const osg::Node& terrain, const osg::EllipsoidModel* ellipsoid,
-                 const TerrainRelief& relief);
+    FinestGround(const osg::Node& terrain, const osg::EllipsoidModel* ellipsoid, const TerrainRelief& relief);
     ~FinestGround();
     FinestGround(const FinestGround&) = delete;
     FinestGround& operator=(const FinestGround&) = delete;

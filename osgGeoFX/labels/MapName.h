@@ -29,6 +29,8 @@ struct MapName
     double importance = std::numeric_limits<double>::quiet_NaN();
     /// The style's name, such as "summit" or "lake"; empty for the usual one.
     std::string style;
+    /// The height that the data state, metres; not a number: none.
+    double height = std::numeric_limits<double>::quiet_NaN();
 };
 
 } // namespace osgGeoFX

@@ -121,6 +121,7 @@ NamePlacement::Result NamePlacement::place(std::vector<MapName>& names, const os
                 place.x() = middle + std::remainder(place.x() - middle, 360.0);
             }
             const double stated = place.z();
+            if (name.kind == MapName::POINT && std::isnan(name.height)) name.height = stated;
             double height = ground.coarse(place.x(), place.y());
             outside = outside || std::isnan(height);
             if (outside) break;

@@ -3,6 +3,7 @@
 #include <osgGeoFX/lines/LinePicture.h>
 
 #include <osgGeoFX/effect/GlslFunctions.h>
+#include <osgGeoFX/labels/detail/CairoRows.h>
 #include <osgGeoFX/scene/DeformedView.h>
 
 #include <osg/BoundingBox>
@@ -308,6 +309,11 @@ void LinePicture::draw(_cairo* target) const
         }
     }
     cairo_set_dash(target, nullptr, 0, 0.0);
+}
+
+bool LinePicture::drawOnto(osg::Image& rows, int top) const
+{
+    return drawOver(rows, top, static_cast<int>(_width), [this](cairo_t* target) { draw(target); });
 }
 
 } // namespace osgGeoFX

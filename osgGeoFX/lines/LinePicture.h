@@ -9,6 +9,7 @@
 #include <osgGeoFX/scene/EffectScene.h>
 
 #include <osg/Camera>
+#include <osg/Image>
 #include <osg/Vec2d>
 
 #include <cstddef>
@@ -69,6 +70,8 @@ public:
 
     /// Draws outlines and lines to Cairo, in the picture's pixels with y downwards.
     void draw(_cairo* target) const;
+    /// Draws them onto some rows of the picture, as LabelPicture::drawOnto() does.
+    bool drawOnto(osg::Image& rows, int top = 0) const;
 
 private:
     std::vector<MapLine> _lines;

@@ -3,6 +3,7 @@
 #include <osgGeoFX/print/PicturePrint.h>
 
 #include <osgGeoFX/labels/LabelPicture.h>
+#include <osgGeoFX/print/detail/TilePlan.h>
 #include <osgGeoFX/scene/DepthReader.h>
 
 #include <OpenImageIO/imageio.h>
@@ -37,44 +38,6 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// The numbers of a tile.
-struct Tile
-{
-    int column = 0, row = 0;   ///< rows from the uppermost one
-    int left = 0, top = 0;     ///< pixels of the picture
-    int width = 0, height = 0; ///< of what lies in the picture
-};
-
-/// The picture in tiles of about the same size.
-struct Plan
-{
-    int width, height, columns, rows, tileWidth, tileHeight;
-
-    Plan(const PrintSize& size, int longest) : width(size.width), height(size.height)
-    {
-        const int most = std::clamp(longest, 64, 16384);
-        columns = countOf(width, most);
-        rows = countOf(height, most);
-        tileWidth = (width + columns - 1) / columns;
-        tileHeight = (height + rows - 1) / rows;
-    }
-    /// Whole tiles where a side has a divisor: then the matrices of tiles are exact, and the edges of strokes fall into the same pixels
-    /// as in a picture that is drawn at once.
-    static int countOf(int side, int most)
-    {
-        const int least = (side + most - 1) / most;
-        for (int count = least; count <= 2 * least; ++count)
-            if (side % count == 0) return count;
-        return least;
-    }
-    Tile at(int column, int row) const
-    {
-        const int left = column * tileWidth, top = row * tileHeight;
-        return {
-            column, row, left, top, std::min(tileWidth, width - left), std::min(tileHeight, height - top)};
-    }
-};
-
 /// The tiles that are drawn, as files.
 class TileFiles
 {
@@ -88,13 +51,13 @@ public:
                         "\" cannot be made; name another one, or free some space.");
     }
 
-    fs::path pathOf(const Tile& tile) const
+    fs::path pathOf(const PictureTile& tile) const
     {
         return _folder / ("tile-" + std::to_string(tile.row) + "-" + std::to_string(tile.column) + ".tif");
     }
 
     /// How many places of each name a tile shows; nothing where the tile is not there, or is one of another picture.
-    std::optional<std::map<std::size_t, std::size_t>> seenIn(const Tile& tile) const
+    std::optional<std::map<std::size_t, std::size_t>> seenIn(const PictureTile& tile) const
     {
         const auto input = OIIO::ImageInput::open(pathOf(tile).string());
         if (!input) return std::nullopt;
@@ -111,7 +74,7 @@ public:
         return seen;
     }
 
-    void write(const Tile& tile, const osg::Image& image, int tileHeight,
+    void write(const PictureTile& tile, const osg::Image& image, int tileHeight,
                const std::map<std::size_t, std::size_t>& seen) const
     {
         std::ostringstream description;
@@ -149,7 +112,7 @@ private:
 };
 
 /// What tiles must have been drawn with to be used again; one line.
-std::string keyOf(const PicturePrint::Options& options, const Plan& plan, const osg::Matrixd& view)
+std::string keyOf(const PicturePrint::Options& options, const TilePlan& plan, const osg::Matrixd& view)
 {
     std::ostringstream text;
     text.precision(17);
@@ -177,7 +140,7 @@ float lightOf(unsigned char byte)
 }
 
 /// Puts the tiles together.
-void assemble(const Plan& plan, const TileFiles& tiles, const PicturePrint::Options& options,
+void assemble(const TilePlan& plan, const TileFiles& tiles, const PicturePrint::Options& options,
               const LabelPicture* names, const std::string& file)
 {
     const fs::path whole(file);
@@ -218,7 +181,7 @@ void assemble(const Plan& plan, const TileFiles& tiles, const PicturePrint::Opti
         strip->allocateImage(plan.width, height, 1, GL_RGB, GL_UNSIGNED_BYTE);
         for (int column = 0; column < plan.columns; ++column)
         {
-            const Tile tile = plan.at(column, row);
+            const PictureTile tile = plan.at(column, row);
             std::vector<unsigned char> pixels(3 * static_cast<std::size_t>(tile.width) *
                                               static_cast<std::size_t>(height));
             const auto input = OIIO::ImageInput::open(tiles.pathOf(tile).string());
@@ -252,7 +215,7 @@ void assemble(const Plan& plan, const TileFiles& tiles, const PicturePrint::Opti
 void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrixd& view,
            const std::string& file)
 {
-    const Plan plan(options.size, options.tile);
+    const TilePlan plan(options.size.width, options.size.height, options.tile);
     const TileFiles tiles(options.work, keyOf(options, plan, view));
     const osg::ref_ptr<DepthReader> depths = new DepthReader;
     if (options.names)
@@ -291,7 +254,7 @@ void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrix
     {
         for (int column = 0; column < plan.columns; ++column)
         {
-            const Tile tile = plan.at(column, row);
+            const PictureTile tile = plan.at(column, row);
             std::optional<std::map<std::size_t, std::size_t>> shown = tiles.seenIn(tile);
             if (!shown)
             {
@@ -330,6 +293,7 @@ void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrix
     }
     if (labels && options.placed) options.placed(*labels);
     if (!options.drawNames) labels.reset();
+    if (!options.plain.empty()) assemble(plan, tiles, options, nullptr, options.plain);
     assemble(plan, tiles, options, labels ? &*labels : nullptr, file);
     tiles.remove();
 }

@@ -52,6 +52,8 @@ public:
             true; ///< whether names are drawn on the picture; false for those that become vectors
         /// Called with the placed names when all tiles are there; empty for nobody.
         std::function<void(const LabelPicture& names)> placed;
+        std::string
+            plain; ///< a file for the picture without names, such as a web page is made of; empty: none
         std::string work; ///< the folder for tiles; it is made, and removed when the picture is there
         /// What the picture is made of, in any words: tiles of a former run are used only if it is the same.
         std::string recipe;

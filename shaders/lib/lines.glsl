@@ -30,7 +30,7 @@ GEOFX_INLINE Number geofx_lineWave(Length along, Length wave)
     return 1 + Number(0.6) * sin(8 * turn) + Number(0.4) * sin(3 * turn + Number(1.7));
 }
 
-// The factor of a width that a hand draws: 1 − hand to 1 + hand, 1 in the mean, smooth along the line. `hand`: 0 to 1. A wave is some
+// The factor of a width that a hand draws: 1 - hand to 1 + hand, 1 in the mean, smooth along the line. `hand`: 0 to 1. A wave is some
 // 90 pixels long at any zoom, for waves of one zoom turn into those of the next.
 GEOFX_INLINE Number geofx_linePressure(Length along, Number hand, Number perMetre)
 {

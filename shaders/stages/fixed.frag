@@ -10,6 +10,7 @@
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_NORMAL_MAP)
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE)
 #pragma import_defines(GEOFX_HDR)
+#pragma import_defines(GEOFX_PART, GEOFX_MIRROR)
 
 // OpenGL bounds the colors of fragments where the frame buffer does, too (ARB_color_buffer_float).
 #ifdef GEOFX_HDR
@@ -31,6 +32,7 @@
 #endif
 
 #include "stages/depth.glsl"
+#include "stages/parts.glsl"
 vec4 geofx_fragment(vec4 color, vec4 map);
 
 #if defined(GEOFX_LIGHTS) && defined(GEOFX_NORMAL_MAP)
@@ -149,6 +151,15 @@ void main()
 #endif
 #if defined(GEOFX_FOG) && !(defined(GEOFX_PAINTED) && defined(GEOFX_FADING))
     color = fogged(color);
+#endif
+#if defined(GEOFX_PART) && !defined(GEOFX_MIRROR)
+#if GEOFX_PART == GEOFX_PART_NOTHING
+    discard;
+#elif GEOFX_PART == GEOFX_PART_BLACK || GEOFX_PART == GEOFX_PART_WHITE
+    color.rgb = vec3(GEOFX_PART == GEOFX_PART_WHITE ? 1.0 : 0.0);
+#elif (GEOFX_PART == GEOFX_PART_SHARES || GEOFX_PART == GEOFX_PART_CLASSES) && !defined(GEOFX_PAINTED)
+    color.rgb = vec3(0.0, 0.0, GEOFX_PART == GEOFX_PART_SHARES ? 1.0 : 0.0);
+#endif
 #endif
     gl_FragColor = color;
     GEOFX_PUT_FRAGMENT_DEPTH;

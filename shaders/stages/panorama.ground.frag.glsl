@@ -4,6 +4,8 @@
 // The painting of a panorama map's ground, after Sections 3.2, 3.4 and 3.5 of Brown and Samavati (2017). SLOT_ stands for the
 // effect's prefix.
 #pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR)
+#pragma import_defines(GEOFX_PART)
+#include "stages/parts.glsl"
 #include "stages/panorama.water.glsl"
 #include "stages/panorama.edge.glsl"
 
@@ -140,6 +142,36 @@ vec4 SLOT_handCover(vec4 here, vec2 way, float steepness)
     return vec4(there.rgb, here.a);
 }
 
+#if defined(GEOFX_PART) && !defined(GEOFX_MIRROR)
+#define SLOT_PARTED
+uniform vec4 SLOT_up; // as in panorama.glsl
+
+// What would be there without the forest: the other classes in its place.
+geofx_Classes SLOT_cleared(geofx_Classes classes)
+{
+    float share = 1.0 / max(1.0 - classes.forest, 0.02);
+    classes.hill *= share;
+    classes.cliff *= share;
+    classes.snow *= share;
+    classes.town *= share;
+    classes.bare *= share;
+    classes.forest = 0.0;
+    classes.field = 1.0 - classes.hill - classes.cliff - classes.snow - classes.town - classes.bare;
+    return classes;
+}
+
+// Numbers as PictureLayers names them.
+float SLOT_largestClass(geofx_Classes classes, float wet)
+{
+    float shares[7] = float[7](classes.field, classes.hill, classes.cliff, classes.snow, classes.forest, classes.town,
+                               classes.bare);
+    int largest = 0;
+    for (int i = 1; i < 7; ++i)
+        if (shares[i] > shares[largest]) largest = i;
+    return (wet > 0.5 ? 8.0 : float(largest + 1)) / 255.0;
+}
+#endif
+
 vec4 SLOT_color(vec4 color)
 {
 #ifndef GEOFX_PAINTED
@@ -176,9 +208,20 @@ vec4 SLOT_color(vec4 color)
                                               SLOT_snow.w);
     float far = clamp(SLOT_place.y / SLOT_curve.y, 0.0, 1.0);
     vec3 painted = vec3(0.0);
+#ifdef SLOT_PARTED
+    geofx_Classes classes = geofx_classify(cover, SLOT_place.z, facing.w, brush.z, style);
+#if GEOFX_PART == GEOFX_PART_FLAT
+    painted = SLOT_ground(SLOT_cleared(classes), geofx_paintLight(dot(SLOT_up.xyz, towards), 1.0, 0.0)); // of level ground
+#elif GEOFX_PART == GEOFX_PART_WOODS
+    painted = SLOT_ground(classes, light);
+#else
+    painted = SLOT_ground(SLOT_cleared(classes), light);
+#endif
+#else
     if (wet < 1.0)
         painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, facing.w, brush.z, style), light);
     if (wet > 0.0) painted = mix(painted, SLOT_wet(cover.shore, picture, far, brush.z), wet);
+#endif
     painted = geofx_atmosphere(painted, geofx_airColor(), geofx_airAmount(far, SLOT_hand.z));
     vec2 gone = SLOT_gone(brush.z, picture.y, wet, cover.shore);
 #ifdef GEOFX_MIRROR
@@ -193,7 +236,13 @@ vec4 SLOT_color(vec4 color)
         float paper = SLOT_edgeKind.w < GEOFX_EDGE_LAND ? 1.0 : 0.0;
         painted = mix(painted, geofx_edgeColor(SLOT_edgeSky, SLOT_edgePlace, 2.0 * picture.x - 1.0, picture.y, paper), gone.x);
     }
+#if defined(SLOT_PARTED) && GEOFX_PART == GEOFX_PART_SHARES
+    return vec4((1.0 - gone.x) * SLOT_clock.y * vec2(wet, classes.forest), 1.0, 1.0);
+#elif defined(SLOT_PARTED) && GEOFX_PART == GEOFX_PART_CLASSES
+    return vec4(vec3(SLOT_largestClass(classes, wet)), 1.0);
+#else
     return mix(color, vec4(painted, 1.0), SLOT_clock.y);
+#endif
 #endif
 #endif
 }
