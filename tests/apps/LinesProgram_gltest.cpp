@@ -168,6 +168,37 @@ TEST_F(LinesProgram, LieWhereTheirPlacesArePicked)
     EXPECT_TRUE(bytes("again.png") == bytes("lines.png"));
 }
 
+// With layers, lines are one of them: where the picture has them, and nowhere else.
+TEST_F(LinesProgram, AreALayerOfTheirOwn)
+{
+    writeLine("trail", placeOf(150, 200), placeOf(300, 215));
+    const ProgramResult result = panorama({"volcano.tif", "-o", "map.png", "--lines", "lines.geojson",
+                                           "--style", "style.json", "--layers", "layers"});
+    ASSERT_EQ(result.exitCode, 0) << result.standardError;
+    const osg::ref_ptr<osg::Image> picture = osgDB::readRefImageFile(file("map.png"));
+    const osg::ref_ptr<osg::Image> layer = osgDB::readRefImageFile(file("layers/lines.png"));
+    const osg::ref_ptr<osg::Image> ground = osgDB::readRefImageFile(file("layers/terrain.png"));
+    ASSERT_TRUE(picture && layer && ground);
+    int lines = 0;
+    for (int y = 0; y < HEIGHT; ++y)
+        for (int x = 0; x < WIDTH; ++x)
+        {
+            const bool drawn =
+                layer->getColor(static_cast<unsigned int>(x), static_cast<unsigned int>(y)).a() > 0.95f;
+            lines += drawn ? 1 : 0;
+            EXPECT_TRUE(!drawn || isMagenta(*picture, x, HEIGHT - 1 - y)) << x << ", " << y;
+            EXPECT_FALSE(isMagenta(*ground, x, y));
+        }
+    EXPECT_GT(lines, 400);
+    const std::string list = bytes("layers/layers.json");
+    EXPECT_NE(list.find("--no-autopremult lines.png --premult strokes.png"), std::string::npos) << list;
+    const ProgramResult print =
+        run("osggeofx_panorama", {"volcano.tif", "-o", "print.png", "--work", "work", "--size", "A6@72dpi",
+                                  "--quiet", "--lines", "lines.geojson", "--layers", "layers"});
+    EXPECT_EQ(print.exitCode, 2);
+    EXPECT_NE(print.standardError.find("leave --lines out"), std::string::npos) << print.standardError;
+}
+
 // A PDF is the picture with its names and lines, which are letters and paths.
 TEST_F(LinesProgram, APdfIsThePictureWithVectors)
 {

@@ -16,6 +16,7 @@
 
 #include <cairo.h>
 #include <osg/Program>
+#include <osg/ShapeDrawable>
 
 #include <algorithm>
 #include <cmath>
@@ -250,6 +251,31 @@ TEST_F(MapLinesTest, VectorsAreThePicture)
         EXPECT_LT(strays(*byCairo, *image, 1), 0.03);
         if (effect) _scene->removeEffect(effect);
     }
+}
+
+// Poles before a line leave it whole; a wall cuts it.
+TEST_F(MapLinesTest, VectorsHaveNoGapsOfAFewPixels)
+{
+    _lines = {MapLine()};
+    for (int k = 0; k <= 60; ++k)
+    {
+        const double x = -300.0 + 10.0 * k;
+        _lines.front().places.emplace_back(x, 0.0, groundHeight(x, 0.0) + 3.0);
+    }
+    look({0.0, -1000.0, 500.0}, {0.0, 0.0, 20.0});
+    const auto partsBehind = [&](float width)
+    {
+        const osg::ref_ptr<osg::Group> poles = new osg::Group;
+        for (const float x : {-200.0f, -50.0f, 120.0f})
+            poles->addChild(new osg::ShapeDrawable(new osg::Box({x, -60.0f, 100.0f}, width, 10.0f, 300.0f)));
+        _scene->addChild(poles);
+        draw();
+        const std::size_t parts = vectors().parts().size();
+        _scene->removeChild(poles);
+        return parts;
+    };
+    EXPECT_EQ(partsBehind(8.0f), 1u);
+    EXPECT_EQ(partsBehind(60.0f), 4u);
 }
 
 // Widths by the distance, casings and dashes are those of the vectors, too.
