@@ -23,8 +23,8 @@ namespace
 /// The share of its distance by which a line may lie behind what is drawn: that of MapLines.
 constexpr double tolerance = 0.006;
 /// Between two places of a line it is looked whether it is hidden at least that often; pixels.
-constexpr double sampleStep = 6.0;
-constexpr int mostSamples = 400;
+constexpr double sampleStep = 2.0;
+constexpr int mostSamples = 1000;
 /// Hidden parts that are no longer than this are shown, and shown ones that are shorter are left out; pixels.
 constexpr double shortestGap = 5.0, shortestPart = 1.5;
 /// By how much the width of a piece may differ from that of the line.
