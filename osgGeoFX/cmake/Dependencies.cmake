@@ -40,6 +40,8 @@ if(GEOFX_BUILD_MAPS)
   pkg_check_modules(Pango REQUIRED IMPORTED_TARGET pangocairo fontconfig cairo-pdf cairo-svg)
   # Its -pthread defines something that our precompiled headers do not know.
   set_target_properties(PkgConfig::Pango PROPERTIES INTERFACE_COMPILE_OPTIONS "")
+  # The color profile of pictures.
+  pkg_check_modules(Lcms REQUIRED IMPORTED_TARGET lcms2)
   # Web pages have a copy of it. It is needed only when one is written, so it may be installed later.
   find_path(GEOFX_LEAFLET leaflet.js PATHS /usr/share/javascript/leaflet PATH_SUFFIXES javascript/leaflet)
   if(NOT GEOFX_LEAFLET)

@@ -7,6 +7,7 @@
 #include <osgGeoFX/scene/DepthReader.h>
 
 #include <OpenImageIO/imageio.h>
+#include <lcms2.h>
 #include <osg/Group>
 
 #include <algorithm>
@@ -139,6 +140,22 @@ float lightOf(unsigned char byte)
     return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
 }
 
+/// The profile of sRGB as the International Color Consortium has it, the same at any time.
+std::vector<unsigned char> colorProfile()
+{
+    const cmsHPROFILE profile = cmsCreate_sRGBProfile();
+    cmsUInt32Number size = 0;
+    cmsSaveProfileToMem(profile, nullptr, &size);
+    std::vector<unsigned char> bytes(size);
+    const bool good = size > 0 && cmsSaveProfileToMem(profile, bytes.data(), &size);
+    cmsCloseProfile(profile);
+    // The header has the hour at which it was made.
+    constexpr std::ptrdiff_t date = 24, dateSize = 12;
+    if (!good || bytes.size() < 128) return {};
+    std::fill_n(bytes.begin() + date, dateSize, static_cast<unsigned char>(0));
+    return bytes;
+}
+
 /// Puts the tiles together.
 void assemble(const TilePlan& plan, const TileFiles& tiles, const PicturePrint::Options& options,
               const LabelPicture* names, const std::string& file)
@@ -153,6 +170,10 @@ void assemble(const TilePlan& plan, const TileFiles& tiles, const PicturePrint::
     const bool linear = std::string(output->format_name()) == "openexr";
     OIIO::ImageSpec spec(plan.width, plan.height, 3, linear ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
+    const std::vector<unsigned char> profile = linear ? std::vector<unsigned char>() : colorProfile();
+    if (!profile.empty())
+        spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
+                       profile.data());
     spec.attribute("compression", "zip");
     if (3.0 * plan.width * plan.height > 3.9e9) spec.attribute("tiff:bigtiff", 1);
     if (options.size.dpi > 0.0)

@@ -274,6 +274,30 @@ TEST_F(PicturePrintTest, SaysResolutionAndWhatItIs)
     EXPECT_EQ(input->spec().get_float_attribute("XResolution"), 200.0f);
     EXPECT_EQ(input->spec().get_string_attribute("ResolutionUnit"), "in");
     EXPECT_EQ(input->spec().get_string_attribute("Software"), "a test");
+    // The color profile, the same in each format.
+    std::string former;
+    for (const char* const name : {"print.tif", "print.png", "print.jpg"})
+    {
+        SCOPED_TRACE(name);
+        if (std::string(name) != "print.tif")
+        {
+            ASSERT_TRUE(PicturePrint::write(printed, how, _view, file(name), error)) << error;
+        }
+        const auto picture = OIIO::ImageInput::open(file(name));
+        ASSERT_TRUE(picture);
+        const OIIO::ParamValue* const profile = picture->spec().find_attribute("ICCProfile");
+        ASSERT_TRUE(profile);
+        const std::string bytes(static_cast<const char*>(profile->data()),
+                                static_cast<std::size_t>(profile->type().size()));
+        ASSERT_GT(bytes.size(), 200u);
+        EXPECT_EQ(bytes.substr(16, 4), "RGB ");
+        EXPECT_EQ(bytes.substr(36, 4), "acsp");
+        if (!former.empty())
+        {
+            EXPECT_TRUE(bytes == former);
+        }
+        former = bytes;
+    }
 }
 
 // OpenEXR has light: half of the code's 255 is about a fifth of it.
