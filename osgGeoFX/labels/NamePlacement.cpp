@@ -93,6 +93,84 @@ osg::Vec2d climb(const FinestGround& ground, osg::Vec2d place, osg::Vec2d step, 
     return place;
 }
 
+/// A place of a name, in the units of the extent, on the relief.
+struct Rough
+{
+    std::size_t name = 0, place = 0;
+    bool climbs = false; ///< whether it is a summit, whose highest place is near
+};
+
+/// The places of the most important names, so many at most, in an order in which neighbors come together: then each tile is read once.
+std::vector<Rough> finestFirst(std::vector<Rough> all, const std::vector<MapName>& names,
+                               const TerrainRelief& relief, std::size_t most)
+{
+    const auto importance = [&](const Rough& each)
+    {
+        const double value = names[each.name].importance;
+        return std::isnan(value) ? -HUGE_VAL : value;
+    };
+    std::stable_sort(all.begin(), all.end(),
+                     [&](const Rough& a, const Rough& b) { return importance(a) > importance(b); });
+    if (all.size() > most) all.resize(most);
+    constexpr double blocks = 64.0;
+    const auto block = [&](const Rough& each)
+    {
+        const osg::Vec3d& place = names[each.name].places[each.place];
+        const int row = static_cast<int>((place.y() - relief.south) / (relief.north - relief.south) * blocks);
+        const int column = static_cast<int>((place.x() - relief.west) / (relief.east - relief.west) * blocks);
+        return std::make_pair(row, row % 2 == 0 ? column : -column);
+    };
+    std::stable_sort(all.begin(), all.end(),
+                     [&](const Rough& a, const Rough& b) { return block(a) < block(b); });
+    return all;
+}
+
+/// Puts a name onto the relief, without its world coordinates. False if it lies beside the terrain.
+class RoughPlacement
+{
+public:
+    RoughPlacement(const FinestGround& ground, const TerrainRelief& relief, double reach)
+        : _ground(ground), _relief(relief), _reach(reach)
+    {
+    }
+
+    std::size_t moved = 0;
+
+    /// `climbs`: whether the place is that of a summit of the relief.
+    bool place(MapName& name, osg::Vec3d& place, bool summit, bool& climbs)
+    {
+        // Longitudes of an extent may go on beyond 180.
+        if (_relief.geocentric)
+        {
+            const double middle = 0.5 * (_relief.west + _relief.east);
+            place.x() = middle + std::remainder(place.x() - middle, 360.0);
+        }
+        const double stated = place.z();
+        if (name.kind == MapName::POINT && std::isnan(name.height)) name.height = stated;
+        place.z() = _ground.coarse(place.x(), place.y());
+        if (std::isnan(place.z())) return false;
+        if (!summit) return true;
+        if (!_known) _known.emplace(_relief);
+        const std::optional<Summit> meant =
+            _reach > 0.0 ? _known->near(place.x(), place.y(), _reach) : std::nullopt;
+        if (std::isnan(name.importance))
+            name.importance = meant ? static_cast<double>(meant->prominence)
+                                    : 1e-4 * (std::isnan(stated) ? place.z() : stated);
+        if (!meant) return true;
+        const osg::Vec2d at = _relief.place(meant->column, meant->row);
+        place.set(at.x(), at.y(), static_cast<double>(meant->height));
+        climbs = true;
+        ++moved;
+        return true;
+    }
+
+private:
+    const FinestGround& _ground;
+    const TerrainRelief& _relief;
+    const double _reach;
+    std::optional<Summits> _known;
+};
+
 } // namespace
 
 NamePlacement::Result NamePlacement::place(std::vector<MapName>& names, const osg::Node& terrain,
@@ -101,62 +179,46 @@ NamePlacement::Result NamePlacement::place(std::vector<MapName>& names, const os
 {
     Result result;
     const FinestGround ground(terrain, ellipsoid, relief);
-    std::optional<Summits> known;
-    const osg::Vec2d cell((relief.east - relief.west) / relief.columns,
-                          (relief.north - relief.south) / relief.rows);
-    std::size_t fine = 0;
+    RoughPlacement roughly(ground, relief, reach);
     std::vector<MapName> placed;
     placed.reserve(names.size());
+    std::vector<Rough> places;
     for (MapName& name : names)
     {
-        bool outside = false;
         const bool summit = name.kind == MapName::POINT &&
                             std::find(summits.begin(), summits.end(), name.style) != summits.end();
-        for (osg::Vec3d& place : name.places)
+        const std::size_t former = places.size();
+        bool inside = true;
+        for (std::size_t i = 0; inside && i < name.places.size(); ++i)
         {
-            // Longitudes of an extent may go on beyond 180.
-            if (relief.geocentric)
-            {
-                const double middle = 0.5 * (relief.west + relief.east);
-                place.x() = middle + std::remainder(place.x() - middle, 360.0);
-            }
-            const double stated = place.z();
-            if (name.kind == MapName::POINT && std::isnan(name.height)) name.height = stated;
-            double height = ground.coarse(place.x(), place.y());
-            outside = outside || std::isnan(height);
-            if (outside) break;
-            const bool finely = fine < finest;
-            fine += finely ? 1 : 0;
-            if (summit)
-            {
-                if (!known) known.emplace(relief);
-                const std::optional<Summit> meant =
-                    reach > 0.0 ? known->near(place.x(), place.y(), reach) : std::nullopt;
-                if (meant)
-                {
-                    osg::Vec2d at = relief.place(meant->column, meant->row);
-                    height = static_cast<double>(meant->height);
-                    if (finely) at = climb(ground, at, cell, height);
-                    place.x() = at.x();
-                    place.y() = at.y();
-                    ++result.moved;
-                }
-                else if (finely)
-                    height = ground.finest(place.x(), place.y());
-                if (std::isnan(name.importance))
-                    name.importance = meant ? static_cast<double>(meant->prominence)
-                                            : 1e-4 * (std::isnan(stated) ? height : stated);
-            }
-            else if (finely)
-                height = ground.finest(place.x(), place.y());
-            if (std::isnan(height)) height = ground.coarse(place.x(), place.y());
-            place = ground.world(place.x(), place.y(), height);
+            places.push_back({placed.size(), i, false});
+            inside = roughly.place(name, name.places[i], summit, places.back().climbs);
         }
-        if (outside)
-            ++result.outside;
-        else
+        if (inside)
+        {
             placed.push_back(std::move(name));
+            continue;
+        }
+        places.resize(former);
+        ++result.outside;
     }
+    result.moved = roughly.moved;
+    const osg::Vec2d cell((relief.east - relief.west) / relief.columns,
+                          (relief.north - relief.south) / relief.rows);
+    for (const Rough& each : finestFirst(std::move(places), placed, relief, finest))
+    {
+        osg::Vec3d& place = placed[each.name].places[each.place];
+        double height = 0.0;
+        osg::Vec2d at(place.x(), place.y());
+        if (each.climbs)
+            at = climb(ground, at, cell, height);
+        else
+            height = ground.finest(at.x(), at.y());
+        if (!std::isnan(height)) place.set(at.x(), at.y(), height);
+    }
+    for (MapName& name : placed)
+        for (osg::Vec3d& place : name.places)
+            place = ground.world(place.x(), place.y(), place.z());
     names = std::move(placed);
     return result;
 }

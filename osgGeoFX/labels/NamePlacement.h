@@ -27,9 +27,9 @@ struct OSGGEOFXMAPS_EXPORT NamePlacement
     double reach = 250.0;
     /// The styles of names that are summits, and are moved.
     std::vector<std::string> summits = {"", "summit", "peak", "volcano", "mountain", "hill"};
-    /// Names whose ground is read as finely as the database has it; others get that of the relief, whose cells may be
-    /// coarse.
-    std::size_t finest = 20000;
+    /// Places whose ground is read as finely as the database has it, those of the most important names first; others get that of the relief, whose
+    /// cells may be coarse.
+    std::size_t finest = 5000;
 
     struct Result
     {
