@@ -189,7 +189,7 @@ TEST_F(LinesProgram, AreALayerOfTheirOwn)
             EXPECT_TRUE(!drawn || isMagenta(*picture, x, HEIGHT - 1 - y)) << x << ", " << y;
             EXPECT_FALSE(isMagenta(*ground, x, y));
         }
-    EXPECT_GT(lines, 400);
+    EXPECT_GT(lines, 150);
     const std::string list = bytes("layers/layers.json");
     EXPECT_NE(list.find("--no-autopremult lines.png --premult strokes.png"), std::string::npos) << list;
     const ProgramResult print =
