@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/labels/FinestGround.h>
 
-#include <osg/KdTree>
 #include <osg/Math>
 #include <osgDB/ReadFile>
 #include <osgUtil/IntersectionVisitor>
@@ -32,12 +31,6 @@ public:
             return found->second.first;
         }
         const osg::ref_ptr<osg::Node> tile = osgDB::readRefNodeFile(file);
-        // A line asks a tile for hundreds of heights.
-        if (tile)
-        {
-            const osg::ref_ptr<osg::KdTreeBuilder> trees = new osg::KdTreeBuilder;
-            tile->accept(*trees);
-        }
         _order.push_front(file);
         _tiles[file] = {tile, _order.begin()};
         if (_order.size() > most)
@@ -49,7 +42,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t most = 24;
+    static constexpr std::size_t most = 64;
     std::list<std::string> _order;
     std::map<std::string, std::pair<osg::ref_ptr<osg::Node>, std::list<std::string>::iterator>> _tiles;
 };
