@@ -4,8 +4,6 @@
 
 #include <osgGeoFX/print/PictureVectors.h>
 
-#include <osg/Group>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -61,13 +59,7 @@ std::string PictureMap::rasterOf(const std::string& output)
 void PictureMap::readDepths()
 {
     if (_reader || !(_names || wantsLineVectors())) return;
-    _reader = new osgGeoFX::DepthReader;
-    _reader->setImmediate(true);
-    _reader->setDepthConvention(_scene.effects->getDepthConvention());
-    const osg::ref_ptr<osg::Group> both = new osg::Group;
-    both->addChild(_scene.node);
-    both->addChild(_reader);
-    _scene.node = both;
+    _reader = _scene.readDepths();
 }
 
 void PictureMap::takeLines(const osg::Camera& camera, double scale)

@@ -109,14 +109,8 @@ void ScenePage::setPicture(const osg::Image& image) const
 void ScenePage::write(osgGeoFX::Scene& scene, const SceneRenderer::Options& renderer,
                       const osg::Matrixd& view, osgGeoFX::NameSet* names) const
 {
-    const osg::ref_ptr<osgGeoFX::DepthReader> reader = new osgGeoFX::DepthReader;
-    reader->setImmediate(true);
-    reader->setDepthConvention(scene.effects->getDepthConvention());
     osgGeoFX::Scene both = scene;
-    const osg::ref_ptr<osg::Group> group = new osg::Group;
-    group->addChild(scene.node);
-    group->addChild(reader);
-    both.node = group;
+    const osg::ref_ptr<osgGeoFX::DepthReader> reader = both.readDepths();
     SceneRenderer::Options reduced = renderer;
     reduced.samples = 0;
     reduced.countTriangles = reduced.leastTriangles = false;

@@ -2,32 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/lines/LineFile.h>
 
-#include <osgDB/Options>
-#include <osgDB/Registry>
+#include <osgGeoFX/labels/detail/DataPlugin.h>
 
 namespace osgGeoFX
 {
 
 bool LineFile::read(std::string& error)
 {
-    osgDB::ReaderWriter* const plugin = osgDB::Registry::instance()->getReaderWriterForExtension("geofxdata");
-    if (!plugin)
-    {
-        error = "\"" + file +
-                "\" cannot be read: the OSG plugin osgdb_geofxdata, which reads vector data, was not found; "
-                "put its folder on "
-                "OSG_LIBRARY_PATH.";
-        return false;
-    }
-    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
-    options->setPluginStringData("version", GEOFX_VERSION);
-    options->setPluginData("request", this);
-    const osgDB::ReaderWriter::ReadResult result = plugin->readObject("lines", options.get());
-    if (result.status() == osgDB::ReaderWriter::ReadResult::FILE_LOADED) return true;
-    error = result.message().empty()
-                ? "\"" + file + "\" cannot be read: the OSG plugin osgdb_geofxdata is too old."
-                : result.message();
-    return false;
+    return askDataPlugin("lines", this, file, error);
 }
 
 } // namespace osgGeoFX

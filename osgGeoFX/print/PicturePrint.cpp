@@ -238,16 +238,7 @@ void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrix
 {
     const TilePlan plan(options.size.width, options.size.height, options.tile);
     const TileFiles tiles(options.work, keyOf(options, plan, view));
-    const osg::ref_ptr<DepthReader> depths = new DepthReader;
-    if (options.names)
-    {
-        depths->setImmediate(true);
-        depths->setDepthConvention(scene.effects->getDepthConvention());
-        const osg::ref_ptr<osg::Group> both = new osg::Group;
-        both->addChild(scene.node);
-        both->addChild(depths);
-        scene.node = both;
-    }
+    const osg::ref_ptr<DepthReader> depths = options.names ? scene.readDepths() : nullptr;
     SceneRenderer::Options drawing = options.renderer;
     drawing.width = plan.tileWidth;
     drawing.height = plan.tileHeight;

@@ -189,6 +189,18 @@ bool Scene::addSky(std::string& error)
     return true;
 }
 
+osg::ref_ptr<DepthReader> Scene::readDepths()
+{
+    osg::ref_ptr<DepthReader> reader = new DepthReader;
+    reader->setImmediate(true);
+    reader->setDepthConvention(effects->getDepthConvention());
+    const osg::ref_ptr<osg::Group> both = new osg::Group;
+    both->addChild(node);
+    both->addChild(reader);
+    node = both;
+    return reader;
+}
+
 void Scene::setUpView(osg::View& view) const
 {
     view.getCamera()->setClearColor(settings.background);

@@ -6,6 +6,7 @@
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>
+#include <osgGeoFX/scene/DepthReader.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/viewer/ViewPoint.h>
 
@@ -68,6 +69,9 @@ struct OSGGEOFX_EXPORT Scene
     /// Puts a sky around the Earth (makeEarthSky()) behind the scene. The color of its deep air is the background's.
     /// False, with a sentence in `error`, if the scene is not geocentric. Call it before the scene is shown, once.
     bool addSky(std::string& error);
+
+    /// Adds to the node what reads the depths of each picture as soon as it is drawn, for what is put onto pictures. Call it before the scene is shown.
+    osg::ref_ptr<DepthReader> readDepths();
 
     /// The LOD scale that keeps the terrain's pixel-error bound; 1 for a scene without a terrain of osggeofx_build.
     /// `height` is the height of the viewport in pixels, `fieldOfView` is vertical, in radians.

@@ -7,6 +7,7 @@
 #include <osgGeoFX/web/detail/TilePyramid.h>
 
 #include <OpenImageIO/imageio.h>
+#include <libxml/entities.h>
 #include <nlohmann/json.hpp>
 
 #include <fcntl.h>
@@ -19,6 +20,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <set>
 #include <stdexcept>
 
@@ -113,28 +115,9 @@ fs::path leafletOf(const std::string& folder)
 /// Text in HTML, also within quotes.
 std::string escaped(const std::string& text)
 {
-    std::string result;
-    for (const char c : text)
-    {
-        switch (c)
-        {
-        case '&':
-            result += "&amp;";
-            break;
-        case '<':
-            result += "&lt;";
-            break;
-        case '>':
-            result += "&gt;";
-            break;
-        case '"':
-            result += "&quot;";
-            break;
-        default:
-            result += c;
-        }
-    }
-    return result;
+    const std::unique_ptr<xmlChar, void (*)(void*)> result(
+        xmlEncodeSpecialChars(nullptr, reinterpret_cast<const xmlChar*>(text.c_str())), xmlFree);
+    return result ? reinterpret_cast<const char*>(result.get()) : std::string();
 }
 
 void replace(std::string& text, const std::string& key, const std::string& value)

@@ -3,10 +3,7 @@
 //
 // Lines on the pictures of osggeofx_panorama and osggeofx_render, and names and lines as SVG, GeoJSON and PDF, as a person asks for
 // them.
-#include <tools/GlFixture.h>
-#include <tools/InventedTerrain.h>
-#include <tools/RunProgram.h>
-#include <tools/TempDir.h>
+#include <tools/MapProgram.h>
 
 #include <nlohmann/json.hpp>
 #include <osg/Image>
@@ -21,7 +18,6 @@
 #include <regex>
 
 using geofx::test::ProgramResult;
-using geofx::test::TempDir;
 
 namespace fs = std::filesystem;
 
@@ -30,55 +26,21 @@ namespace
 
 constexpr int WIDTH = 480, HEIGHT = 270;
 
-class LinesProgram : public geofx::test::GlFixture
+class LinesProgram : public geofx::test::MapProgram
 {
 protected:
+    LinesProgram() : MapProgram(201, WIDTH, HEIGHT) {}
+
     void SetUp() override
     {
-        GlFixture::SetUp();
+        MapProgram::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        geofx::test::inventTerrain("volcano", file("volcano.tif"), 201);
-        write("style.json", R"({"lines": {"trail": {"color": "#ff00ff", "width": 14, "least": 14, "hand": 0},
+        write("style.json",
+              R"({"lines": {"trail": {"color": "#ff00ff", "width": 14, "least": 14, "hand": 0},
                                           "secret": {"shown": false}},
                                 "names": {"hut": {"manner": "beside", "color": "#ff00ff", "halo": "#ff00ff"}}})");
     }
 
-    ProgramResult run(const std::string& program, std::vector<std::string> arguments)
-    {
-        arguments.insert(arguments.begin(), geofx::test::builtProgram(program));
-        geofx::test::ProgramOptions options;
-        options.folder = fs::path(_folder.path()).string();
-        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
-        return geofx::test::runProgram(arguments, options);
-    }
-    ProgramResult panorama(std::vector<std::string> arguments)
-    {
-        arguments.insert(arguments.end(), {"--size", std::to_string(WIDTH) + "x" + std::to_string(HEIGHT),
-                                           "--samples", "0", "--quiet", "--work", "work"});
-        return run("osggeofx_panorama", arguments);
-    }
-    std::string file(const std::string& name) const { return (fs::path(_folder.path()) / name).string(); }
-    void write(const std::string& name, const std::string& content) const
-    {
-        std::ofstream(file(name)) << content;
-    }
-    std::string bytes(const std::string& name) const
-    {
-        std::ifstream stream(file(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    }
-    osg::Vec2d placeOf(int x, int y)
-    {
-        const ProgramResult result = panorama(
-            {"volcano.tif", "-o", "plain.png", "--pick", std::to_string(x) + "," + std::to_string(y)});
-        EXPECT_EQ(result.exitCode, 0) << result.standardError;
-        osg::Vec2d place;
-        EXPECT_EQ(std::sscanf(result.standardOutput.c_str(), "%*[^:]: longitude %lf, latitude %lf",
-                              &place.x(), &place.y()),
-                  2)
-            << result.standardOutput;
-        return place;
-    }
     void writeLine(const std::string& style, const osg::Vec2d& from, const osg::Vec2d& to) const
     {
         char text[400];
@@ -89,12 +51,6 @@ protected:
             style.c_str(), from.x(), from.y(), to.x(), to.y());
         write("lines.geojson", text);
     }
-    static bool isMagenta(const osg::Image& image, int x, int y)
-    {
-        const unsigned char* const pixel =
-            image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(image.t() - 1 - y));
-        return pixel[0] > 180 && pixel[1] < 90 && pixel[2] > 180;
-    }
     static int magentaIn(const osg::Image& image)
     {
         int count = 0;
@@ -103,8 +59,6 @@ protected:
                 count += isMagenta(image, x, y) ? 1 : 0;
         return count;
     }
-
-    TempDir _folder;
 };
 
 } // namespace

@@ -2,10 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Names on the pictures of osggeofx_panorama and osggeofx_render, as a person asks for them.
-#include <tools/GlFixture.h>
-#include <tools/InventedTerrain.h>
-#include <tools/RunProgram.h>
-#include <tools/TempDir.h>
+#include <tools/MapProgram.h>
 
 #include <osg/Image>
 #include <osgDB/ReadFile>
@@ -19,60 +16,17 @@
 #include <regex>
 
 using geofx::test::ProgramResult;
-using geofx::test::TempDir;
 
 namespace fs = std::filesystem;
 
 namespace
 {
 
-class NamesProgram : public geofx::test::GlFixture
+class NamesProgram : public geofx::test::MapProgram
 {
 protected:
-    void SetUp() override
-    {
-        GlFixture::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
-        geofx::test::inventTerrain("volcano", file("volcano.tif"), 301);
-    }
+    NamesProgram() : MapProgram(301, 640, 360) {}
 
-    ProgramResult run(const std::string& program, std::vector<std::string> arguments)
-    {
-        arguments.insert(arguments.begin(), geofx::test::builtProgram(program));
-        geofx::test::ProgramOptions options;
-        options.folder = fs::path(_folder.path()).string();
-        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
-        return geofx::test::runProgram(arguments, options);
-    }
-    ProgramResult panorama(std::vector<std::string> arguments)
-    {
-        arguments.insert(arguments.end(), {"--size", "640x360", "--samples", "0", "--quiet"});
-        return run("osggeofx_panorama", arguments);
-    }
-
-    std::string file(const std::string& name) const { return (fs::path(_folder.path()) / name).string(); }
-    void write(const std::string& name, const std::string& content) const
-    {
-        std::ofstream(file(name)) << content;
-    }
-    std::string bytes(const std::string& name) const
-    {
-        std::ifstream stream(file(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    }
-    /// The place that a pixel of the plain map shows.
-    osg::Vec2d placeOf(int x, int y)
-    {
-        const ProgramResult result = panorama({"volcano.tif", "-o", "plain.png", "--work", "work", "--pick",
-                                               std::to_string(x) + "," + std::to_string(y)});
-        EXPECT_EQ(result.exitCode, 0) << result.standardError;
-        osg::Vec2d place;
-        EXPECT_EQ(std::sscanf(result.standardOutput.c_str(), "%*[^:]: longitude %lf, latitude %lf",
-                              &place.x(), &place.y()),
-                  2)
-            << result.standardOutput;
-        return place;
-    }
     static std::string feature(const std::string& name, const std::string& style, const osg::Vec2d& place)
     {
         char text[300];
@@ -86,8 +40,6 @@ protected:
     {
         write("names.geojson", R"({"type":"FeatureCollection","features":[)" + features + "]}");
     }
-
-    TempDir _folder;
 };
 
 } // namespace
@@ -100,8 +52,8 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
     write(
         "style.json",
         R"({"names": {"hut": {"manner": "beside", "dot": 3, "color": "#ff00ff", "halo": "#ff00ff", "size": 20}}})");
-    const ProgramResult vectors = panorama({"volcano.tif", "-o", "map.png", "--work", "work", "--labels",
-                                            "names.geojson", "--style", "style.json", "--svg", "names.svg"});
+    const ProgramResult vectors = panorama({"volcano.tif", "-o", "map.png", "--labels", "names.geojson",
+                                            "--style", "style.json", "--svg", "names.svg"});
     ASSERT_EQ(vectors.exitCode, 0) << vectors.standardError;
     EXPECT_EQ(vectors.standardError, "");
     EXPECT_TRUE(bytes("map.png") == bytes("plain.png")) << "the names are in the SVG file";
@@ -113,8 +65,8 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
     EXPECT_NE(svg.find("Hütte &lt;&amp;&gt;</text>"), std::string::npos);
     EXPECT_NE(svg.find("xlink:href=\"map.png\""), std::string::npos);
 
-    const ProgramResult raster = panorama({"volcano.tif", "-o", "named.png", "--work", "work", "--labels",
-                                           "names.geojson", "--style", "style.json"});
+    const ProgramResult raster =
+        panorama({"volcano.tif", "-o", "named.png", "--labels", "names.geojson", "--style", "style.json"});
     ASSERT_EQ(raster.exitCode, 0) << raster.standardError;
     const osg::ref_ptr<osg::Image> plain = osgDB::readRefImageFile(file("plain.png"));
     const osg::ref_ptr<osg::Image> named = osgDB::readRefImageFile(file("named.png"));
@@ -135,7 +87,8 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
     EXPECT_EQ(far, 0);
 
     // A recipe has the names, too.
-    const ProgramResult again = run("osggeofx_panorama", {"named.json", "-o", "again.png", "--quiet"});
+    const ProgramResult again =
+        run("osggeofx_panorama", {"named.json", "-o", "again.png", "--work", "work", "--quiet"});
     ASSERT_EQ(again.exitCode, 0) << again.standardError;
     EXPECT_TRUE(bytes("again.png") == bytes("named.png"));
 }
@@ -180,7 +133,7 @@ TEST_F(NamesProgram, FaultsAreSentences)
     writeNames(feature("Elsewhere", "", {100.0, -80.0}));
     const auto faultOf = [&](std::vector<std::string> more)
     {
-        more.insert(more.begin(), {"volcano.tif", "-o", "map.png", "--work", "work"});
+        more.insert(more.begin(), {"volcano.tif", "-o", "map.png"});
         const ProgramResult result = panorama(more);
         EXPECT_EQ(result.exitCode, 2) << result.standardError;
         EXPECT_FALSE(fs::exists(file("map.png")));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/labels/NamePlacement.h>
+#include <tools/HeightMesh.h>
 
 #include <gtest/gtest.h>
 #include <osg/Geometry>
@@ -29,25 +30,7 @@ double heightAt(double x, double y)
 
 osg::ref_ptr<osg::Geometry> mesh(int cells)
 {
-    osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
-    osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
-    const auto row = static_cast<unsigned int>(cells + 1);
-    for (int j = 0; j <= cells; ++j)
-    {
-        for (int i = 0; i <= cells; ++i)
-        {
-            const double x = -1e4 + 2e4 * i / cells, y = -1e4 + 2e4 * j / cells;
-            vertices->push_back(osg::Vec3d(x, y, heightAt(x, y)));
-            if (i == cells || j == cells) continue;
-            const auto a = static_cast<unsigned int>(vertices->size()) - 1;
-            for (const unsigned int index : {a, a + 1, a + row + 1, a, a + row + 1, a + row})
-                triangles->push_back(index);
-        }
-    }
-    osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
-    geometry->setVertexArray(vertices);
-    geometry->addPrimitiveSet(triangles);
-    return geometry;
+    return geofx::test::HeightMesh{heightAt}.mesh(cells);
 }
 
 /// Fine from near, coarse from afar, as paged terrain is.
@@ -61,18 +44,7 @@ osg::ref_ptr<osg::LOD> terrain()
 
 TerrainRelief relief(int cells)
 {
-    TerrainRelief result;
-    result.west = result.south = -1e4;
-    result.east = result.north = 1e4;
-    result.columns = result.rows = cells;
-    for (int row = 0; row < cells; ++row)
-        for (int column = 0; column < cells; ++column)
-        {
-            const osg::Vec2d place = result.place(column, row);
-            result.heights.push_back(static_cast<float>(heightAt(place.x(), place.y())));
-            result.water.push_back(0);
-        }
-    return result;
+    return geofx::test::HeightMesh{heightAt}.relief(cells);
 }
 
 MapName named(const std::string& text, double x, double y, double z = unknown,

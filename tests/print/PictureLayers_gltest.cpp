@@ -8,14 +8,11 @@
 #include <osgGeoFX/print/PictureLayers.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/DepthReader.h>
-#include <tools/GlFixture.h>
-#include <tools/PanoramaHills.h>
+#include <print/HillsPicture.h>
 #include <tools/RandomSamples.h>
-#include <tools/TempDir.h>
 
 #include <OpenImageIO/imageio.h>
 #include <nlohmann/json.hpp>
-#include <osg/Material>
 #include <osg/Math>
 
 #include <cmath>
@@ -43,77 +40,25 @@ struct Layer
     }
 };
 
-class PictureLayersTest : public GlFixture
+class PictureLayersTest : public HillsPicture
 {
 protected:
+    PictureLayersTest() : HillsPicture(WIDTH, HEIGHT) {}
+
     void SetUp() override
     {
-        GlFixture::SetUp();
+        HillsPicture::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        osg::Vec3d up = _hills.middle();
-        up.normalize();
-        osg::Vec3d east = osg::Vec3d(0.0, 0.0, 1.0) ^ up;
-        east.normalize();
-        const osg::Vec3d north = up ^ east;
-        _view = osg::Matrixd::lookAt(_hills.middle() + up * 9000.0 - north * 16000.0, _hills.middle(), up);
         for (int i = 0; i < 12; ++i)
-        {
-            MapName name;
-            name.text = "Name " + std::to_string(i);
-            name.importance = 60 - i;
-            name.places = {_hills.middle() + east * (3000.0 * (i % 4 - 2)) + north * (4000.0 * (i / 4 - 1)) +
-                           up * 1700.0};
-            _names.push_back(name);
-        }
-        _drawing.fieldOfView = 40.0;
+            addName(3000.0 * (i % 4 - 2), 4000.0 * (i / 4 - 1));
     }
 
-    Scene scene(Effect* effect) const
-    {
-        std::string error;
-        const osg::ref_ptr<osg::Node> terrain = _hills.terrain();
-        terrain->getOrCreateStateSet()->setAttributeAndModes(new osg::Material);
-        std::optional<Scene> result = Scene::adopt(terrain, error);
-        EXPECT_TRUE(result) << error;
-        if (effect) result->effects->addEffect(effect);
-        return *result;
-    }
     static osg::ref_ptr<PanoramaMap> map()
     {
         osg::ref_ptr<PanoramaMap> result = new PanoramaMap;
         result->setViewRadius(9000.0);
         result->setStrokeSize(10.0);
         return result;
-    }
-    osg::ref_ptr<NameSet> names() const
-    {
-        osg::ref_ptr<NameSet> result = new NameSet(_names);
-        NameStyle style;
-        style.text.size = 9.0;
-        style.text.font = "DejaVu Sans";
-        result->setStyle("", style);
-        return result;
-    }
-    /// The picture at once, names and all.
-    osg::ref_ptr<osg::Image> picture(Effect* effect, const osg::ref_ptr<NameSet>& set) const
-    {
-        Scene whole = scene(effect);
-        const osg::ref_ptr<DepthReader> reader = new DepthReader;
-        reader->setImmediate(true);
-        const osg::ref_ptr<osg::Group> both = new osg::Group;
-        both->addChild(whole.node);
-        both->addChild(reader);
-        whole.node = both;
-        SceneRenderer::Options drawing = _drawing;
-        drawing.width = WIDTH;
-        drawing.height = HEIGHT;
-        std::string error;
-        const auto renderer = SceneRenderer::create(whole, drawing, error);
-        EXPECT_TRUE(renderer) << error;
-        FrameStatistics unused;
-        const osg::ref_ptr<osg::Image> image = renderer->render(_view, 0.0, unused, error);
-        if (set) LabelPicture(*set, *whole.effects, renderer->camera(), reader->pictures()).drawOnto(*image);
-        return image;
     }
     PictureLayers::Options options(int tile, const osg::ref_ptr<NameSet>& set = nullptr) const
     {
@@ -196,11 +141,6 @@ protected:
     }
     std::string folder() const { return (fs::path(_folder.path()) / "layers").string(); }
 
-    TempDir _folder;
-    const PanoramaHills _hills{0.65};
-    osg::Matrixd _view;
-    std::vector<MapName> _names;
-    SceneRenderer::Options _drawing;
     nlohmann::json _json;
 };
 
@@ -224,7 +164,7 @@ osg::Vec2d coverOf(const Layer& layer)
 TEST_F(PictureLayersTest, OfAPanoramaMapAreThePictureWithItsNames)
 {
     const osg::ref_ptr<PanoramaMap> effect = map();
-    const osg::ref_ptr<osg::Image> expected = picture(effect, names());
+    const osg::ref_ptr<osg::Image> expected = atOnce(effect, names());
     write(effect, options(4096, names()));
     expectThePicture(*expected);
     EXPECT_TRUE(_json["leftOut"].empty());
@@ -255,7 +195,7 @@ TEST_F(PictureLayersTest, WithSamplesEdgesAreThoseOfThePicture)
     _drawing.samples = 4;
     const osg::ref_ptr<PanoramaMap> effect = map();
     write(effect, options(4096));
-    expectThePicture(*picture(effect, nullptr));
+    expectThePicture(*atOnce(effect, nullptr));
     ASSERT_FALSE(has("labels"));
     EXPECT_EQ(_json["leftOut"][0]["name"], "labels");
     // A class is a number and no mean of two, and ends where the ground does.
@@ -349,7 +289,7 @@ TEST_F(PictureLayersTest, OfOtherViewsAreTheirPictures)
             _drawing.samples = samples;
             _view = effect == idle ? level : down;
             write(effect, options(4096, names()));
-            expectThePicture(*picture(effect, names()));
+            expectThePicture(*atOnce(effect, names()));
             for (const char* const name : {"forest", "water", "strokes", "classes"})
                 EXPECT_FALSE(has(name)) << name;
             EXPECT_EQ(_json["leftOut"].size(), 4u);
@@ -426,7 +366,7 @@ TEST_F(PictureLayersTest, HaveOverlays)
     how.overlays.push_back({"lines", "Red.", draw});
     write(nullptr, how);
     ASSERT_TRUE(has("lines"));
-    osg::ref_ptr<osg::Image> expected = picture(nullptr, nullptr);
+    osg::ref_ptr<osg::Image> expected = atOnce(nullptr, nullptr);
     draw(*expected, 0);
     expectThePicture(*expected);
     const Layer lines = read("lines.png");

@@ -80,12 +80,7 @@ protected:
     Drawn draw(const Scene& scene, const osg::Matrixd& view) const
     {
         Scene whole = scene;
-        const osg::ref_ptr<DepthReader> reader = new DepthReader;
-        reader->setImmediate(true);
-        const osg::ref_ptr<osg::Group> both = new osg::Group;
-        both->addChild(whole.node);
-        both->addChild(reader);
-        whole.node = both;
+        const osg::ref_ptr<DepthReader> reader = whole.readDepths();
         SceneRenderer::Options drawing;
         drawing.width = WIDTH;
         drawing.height = HEIGHT;

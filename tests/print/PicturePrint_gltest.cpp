@@ -7,13 +7,10 @@
 #include <osgGeoFX/lines/MapLines.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/print/PicturePrint.h>
-#include <tools/GlFixture.h>
+#include <print/HillsPicture.h>
 #include <tools/ImageComparison.h>
-#include <tools/PanoramaHills.h>
-#include <tools/TempDir.h>
 
 #include <OpenImageIO/imageio.h>
-#include <osg/Material>
 #include <osg/Math>
 #include <osgDB/ReadFile>
 
@@ -31,63 +28,34 @@ namespace
 
 constexpr int WIDTH = 300, HEIGHT = 200;
 
-class PicturePrintTest : public GlFixture
+class PicturePrintTest : public HillsPicture
 {
 protected:
+    PicturePrintTest() : HillsPicture(WIDTH, HEIGHT) {}
+
     void SetUp() override
     {
-        GlFixture::SetUp();
+        HillsPicture::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        osg::Vec3d up = _hills.middle();
-        up.normalize();
-        osg::Vec3d east = osg::Vec3d(0.0, 0.0, 1.0) ^ up;
-        east.normalize();
-        const osg::Vec3d north = up ^ east;
-        _view = osg::Matrixd::lookAt(_hills.middle() + up * 9000.0 - north * 16000.0, _hills.middle(), up);
         for (int i = 0; i < 60; ++i)
-        {
-            MapName name;
-            name.text = "Name " + std::to_string(i);
-            name.importance = 60 - i;
-            const double x = 1000.0 * (i % 8 - 4), y = 1500.0 * (i / 8 - 3);
-            osg::Vec3d place = _hills.middle() + east * x + north * y;
-            place += up * 1700.0; // above all hills
-            name.places = {place};
-            _names.push_back(name);
-        }
+            addName(1000.0 * (i % 8 - 4), 1500.0 * (i / 8 - 3));
     }
 
-    /// The hills with an effect; a scene of its own each time.
-    Scene scene(Effect* effect) const
+    Scene scene(Effect* effect) const override
     {
-        std::string error;
-        const osg::ref_ptr<osg::Node> terrain = _hills.terrain();
-        // Without one OSG takes the color of whatever was drawn last.
-        terrain->getOrCreateStateSet()->setAttributeAndModes(new osg::Material);
-        std::optional<Scene> result = Scene::adopt(terrain, error);
-        EXPECT_TRUE(result) << error;
-        if (effect) result->effects->addEffect(effect);
-        if (_lines.empty()) return *result;
+        Scene result = HillsPicture::scene(effect);
+        if (_lines.empty()) return result;
         std::map<std::string, LineStyle> styles;
         styles[""].width = 2.5;
         styles[""].casingWidth = 0.5;
-        result->effects->addChild(new MapLines(_lines, styles));
-        return *result;
+        result.effects->addChild(new MapLines(_lines, styles));
+        return result;
     }
     static osg::ref_ptr<PanoramaMap> map()
     {
         osg::ref_ptr<PanoramaMap> result = new PanoramaMap;
         result->setViewRadius(9000.0);
         result->setRipples(0.0);
-        return result;
-    }
-    osg::ref_ptr<NameSet> names() const
-    {
-        osg::ref_ptr<NameSet> result = new NameSet(_names);
-        NameStyle style;
-        style.text.size = 9.0;
-        style.text.font = "DejaVu Sans";
-        result->setStyle("", style);
         return result;
     }
     PicturePrint::Options options(int tile, const osg::ref_ptr<NameSet>& set = nullptr) const
@@ -100,33 +68,7 @@ protected:
         result.work = file("tiles");
         return result;
     }
-    osg::ref_ptr<osg::Image> atOnce(Effect* effect, const osg::ref_ptr<NameSet>& set) const
-    {
-        Scene whole = scene(effect);
-        const osg::ref_ptr<DepthReader> reader = new DepthReader;
-        reader->setImmediate(true);
-        const osg::ref_ptr<osg::Group> both = new osg::Group;
-        both->addChild(whole.node);
-        both->addChild(reader);
-        whole.node = both;
-        SceneRenderer::Options drawing;
-        drawing.width = WIDTH;
-        drawing.height = HEIGHT;
-        drawing.fieldOfView = 40.0;
-        std::string error;
-        const auto renderer = SceneRenderer::create(whole, drawing, error);
-        EXPECT_TRUE(renderer) << error;
-        FrameStatistics unused;
-        const osg::ref_ptr<osg::Image> image = renderer->render(_view, 0.0, unused, error);
-        if (set) LabelPicture(*set, *whole.effects, renderer->camera(), reader->pictures()).drawOnto(*image);
-        return image;
-    }
-    std::string file(const std::string& name) const { return (fs::path(_folder.path()) / name).string(); }
 
-    TempDir _folder;
-    const PanoramaHills _hills{0.65};
-    osg::Matrixd _view;
-    std::vector<MapName> _names;
     std::vector<MapLine> _lines;
 };
 
@@ -172,16 +114,12 @@ TEST_F(PicturePrintTest, TilesAreThePictureWithItsNames)
 // Lines cross the borders of tiles with the width and the place that they have in the whole picture.
 TEST_F(PicturePrintTest, TilesHaveTheLinesOfThePicture)
 {
-    osg::Vec3d up = _hills.middle();
-    up.normalize();
-    osg::Vec3d east = osg::Vec3d(0.0, 0.0, 1.0) ^ up;
-    east.normalize();
     for (int i = -3; i <= 3; ++i)
     {
         MapLine line;
         for (int k = -20; k <= 20; ++k)
-            line.places.push_back(_hills.middle() + east * (400.0 * k) +
-                                  (up ^ east) * (2000.0 * i + 40.0 * k) + up * 1600.0);
+            line.places.push_back(_hills.middle() + _east * (400.0 * k) + _north * (2000.0 * i + 40.0 * k) +
+                                  _up * 1600.0);
         _lines.push_back(line);
     }
     const osg::ref_ptr<Effect> bend = new BirdsEyeView;

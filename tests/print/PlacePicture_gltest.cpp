@@ -100,12 +100,7 @@ protected:
             _scene->effects->removeEffect(_scene->effects->getEffect(0));
         if (effect) _scene->effects->addEffect(effect);
         Scene whole = *_scene;
-        _reader = new DepthReader;
-        _reader->setImmediate(true);
-        const osg::ref_ptr<osg::Group> both = new osg::Group;
-        both->addChild(whole.node);
-        both->addChild(_reader);
-        whole.node = both;
+        _reader = whole.readDepths();
         std::string error;
         _renderer = SceneRenderer::create(whole, _drawing, error);
         ASSERT_TRUE(_renderer) << error;

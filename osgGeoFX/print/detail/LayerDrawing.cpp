@@ -47,10 +47,8 @@ LayerDrawing::LayerDrawing(const Scene& scene, const SceneRenderer::Options& opt
     : _scene(scene), _kinds(kindsOf(*scene.effects)), _mask(scene.effects->getNodeMask()),
       _pictureHeight(plan.height), _tileHeight(plan.tileHeight)
 {
-    _reader->setImmediate(true);
-    _reader->setDepthConvention(scene.effects->getDepthConvention());
-    _top->addChild(scene.node);
-    _top->addChild(_reader);
+    _reader = _scene.readDepths();
+    _top->addChild(_scene.node);
     _scene.node = _top;
     SceneRenderer::Options drawing = options;
     drawing.width = plan.tileWidth;

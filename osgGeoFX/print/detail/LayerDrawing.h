@@ -75,7 +75,7 @@ private:
     Scene _scene;
     Kinds _kinds;
     osg::ref_ptr<osg::Group> _top = new osg::Group;
-    osg::ref_ptr<DepthReader> _reader = new DepthReader;
+    osg::ref_ptr<DepthReader> _reader;
     osg::Node::NodeMask _mask;
     const int _pictureHeight, _tileHeight;
     bool _partly = false; ///< whether shaders of the kit draw the ground, and so its parts
