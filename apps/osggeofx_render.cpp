@@ -322,6 +322,24 @@ void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const Camera
     image.copySubImage(left, margin, 0, straight);
 }
 
+/// What a print shows, for its metadata: JSON with the scene, its effects, and the camera, in world coordinates and, where the scene has
+/// a georeference, on the ground's terms.
+std::string describe(const Arguments& arguments, const osgGeoFX::Scene& scene, const osg::Matrixd& view)
+{
+    nlohmann::json json = {{"scene", arguments.scene},
+                           {"effects", arguments.effects},
+                           {"fieldOfView", arguments.renderer.fieldOfView},
+                           {"viewMatrix", std::vector<double>(view.ptr(), view.ptr() + 16)}};
+    osg::Vec3d eye, at, up;
+    view.getLookAt(eye, at, up);
+    double longitude = 0.0, latitude = 0.0, height = 0.0;
+    if (scene.reference && scene.reference->toGeodetic(eye, longitude, latitude, height))
+        json["eye"] = {{"longitude", osg::RadiansToDegrees(longitude)},
+                       {"latitude", osg::RadiansToDegrees(latitude)},
+                       {"height", height}};
+    return json.dump();
+}
+
 /// A picture that is larger than the GPU draws at once, or has a resolution.
 void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::names::PictureMap& map,
            const osg::Matrixd& view, osgGeoFX::Scene& scene, const geofx::web::ScenePage* page)
@@ -341,7 +359,8 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
                      geofx::names::PictureMap::rasterOf(arguments.output);
     for (const std::string& effect : arguments.effects)
         options.recipe += "; " + effect;
-    options.metadata = {{"Software", "osgGeoFX osggeofx_render"}};
+    options.metadata = {{"Software", "osgGeoFX osggeofx_render"},
+                        {"ImageDescription", describe(arguments, scene, view)}};
     if (page) options.plain = page->plain();
     std::string error;
     const std::string raster = geofx::names::PictureMap::rasterOf(arguments.output);

@@ -35,8 +35,8 @@ struct OSGGEOFXMAPS_EXPORT PictureVectors
 
     /** Writes a GeoJSON file (RFC 7946 but for its coordinates, which are pixels): names as points with `name`, `style` and `importance`, and with
         `curve`, the pixels of the curve that the text follows; lines with `name`, `style` and `width`, pixels. x goes to the right
-        from the picture's left side, y upwards from its upper side, so it is negative, as in programs that show pictures without a
-        georeference (QGIS). False, with a sentence in `error`, if it cannot be written. */
+        from the picture's left side, y upwards from its upper side, so it is negative, and the map stands upright where y goes up.
+        False, with a sentence in `error`, if it cannot be written. */
     bool writeGeoJson(const std::string& file, std::string& error) const;
 };
 

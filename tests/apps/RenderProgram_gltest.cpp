@@ -211,6 +211,33 @@ TEST_F(RenderProgram, Prints)
     EXPECT_FALSE(std::filesystem::exists(_folder.path() / "print.tiles"));
 }
 
+// What a print shows stands in the print.
+TEST_F(RenderProgram, PrintsTellTheirView)
+{
+    PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric);
+    const ProgramResult result = run({"terrain.osgb", "-o", "print.png", "--size", "160x120@100dpi", "--view",
+                                      "-157.8,21.4,5000,30,-60", "--effect", "birdsEyeView"});
+    ASSERT_EQ(result.exitCode, 0) << result.standardError;
+    geofx::test::ProgramOptions options;
+    options.folder = _folder.path().string();
+    const std::string told =
+        geofx::test::runProgram({"/usr/bin/oiiotool", "--info", "-v", "print.png"}, options).standardOutput;
+    const std::size_t begin = told.find("ImageDescription: \"");
+    ASSERT_NE(begin, std::string::npos) << told;
+    const std::size_t from = told.find('{', begin), to = told.find('\n', from);
+    std::string text = told.substr(from, told.rfind('}', to) + 1 - from);
+    // oiiotool shows quotes with backslashes.
+    text.erase(std::remove(text.begin(), text.end(), '\\'), text.end());
+    const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    ASSERT_TRUE(json.is_object()) << text;
+    EXPECT_EQ(json["scene"], "terrain.osgb");
+    EXPECT_EQ(json["effects"][0], "birdsEyeView");
+    EXPECT_NEAR(json["eye"]["longitude"].get<double>(), -157.8, 1e-6);
+    EXPECT_NEAR(json["eye"]["latitude"].get<double>(), 21.4, 1e-6);
+    EXPECT_NEAR(json["eye"]["height"].get<double>(), 5000.0, 0.01);
+    EXPECT_EQ(json["viewMatrix"].size(), 16u);
+}
+
 TEST_F(RenderProgram, GivesUpAfterTheTimeout)
 {
     PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
