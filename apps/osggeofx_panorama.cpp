@@ -332,7 +332,12 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
             throw Failure("--set " + setting + ": write NAME=VALUE, such as snowLine=2500.");
         const std::string name = setting.substr(0, equals), value = setting.substr(equals + 1);
         std::string error;
-        if (!check->setPropertyText(name, value, error)) throw Failure("--set " + setting + ": " + error);
+        if (!check->setPropertyText(name, value, error))
+        {
+            std::string sentence = "--set ";
+            sentence += setting;
+            throw Failure(sentence.append(": ").append(error));
+        }
         recipe.map[name] = value;
     }
 }
@@ -415,7 +420,12 @@ osg::ref_ptr<PanoramaMap> mapOf(const Recipe& recipe)
     map->setEdge(recipe.island ? PanoramaMap::SEA : PanoramaMap::HAZE);
     std::string error;
     for (const auto& [name, value] : recipe.map)
-        if (!map->setPropertyText(name, value, error)) throw Failure("The recipe's " + name + ": " + error);
+    {
+        if (map->setPropertyText(name, value, error)) continue;
+        std::string sentence = "The recipe's ";
+        sentence += name;
+        throw Failure(sentence.append(": ").append(error));
+    }
     if (!recipe.palette.empty())
         map->setPalette(recipe.palette == colorBlind ? osgGeoFX::makeColorBlindPalette()
                                                      : readPalette(recipe.palette));

@@ -52,7 +52,9 @@ public:
             std::string all = known.front();
             for (std::size_t i = 1; i < known.size(); ++i)
                 all += (i + 1 == known.size() ? " and " : ", ") + known[i];
-            throw Fault(_where + " \"" + key + "\" is not known; there are " + all + ".");
+            std::string sentence = _where + " \"";
+            sentence += key;
+            throw Fault(sentence.append("\" is not known; there are ").append(all).append("."));
         }
     }
 
@@ -142,7 +144,9 @@ void readAll(const json& whole, const std::string& file, const char* key,
         throw Fault("\"" + file + "\": \"" + key + "\" must be an object of styles by name.");
     for (const auto& [name, style] : whole.at(key).items())
     {
-        const Entry entry(style, "\"" + file + "\", style \"" + name + "\":", known);
+        std::string where = "\"" + file + "\", style \"";
+        where += name;
+        const Entry entry(style, where + "\":", known);
         const auto found = styles.find(name);
         Style changed = found != styles.end() ? found->second : styles[""];
         read(entry, changed);
@@ -164,9 +168,12 @@ Styles readStyles(const std::string& file)
                     "\" is no style file; it must be JSON such as {\"names\": {\"peak\": {\"size\": 16}}, "
                     "\"lines\": {\"river\": {\"width\": 2}}}.");
     for (const auto& [key, value] : whole.items())
-        if (key != "names" && key != "lines" && key != "lineField")
-            throw Fault("\"" + file + "\": \"" + key +
-                        "\" is not known; there are names, lines and lineField.");
+    {
+        if (key == "names" || key == "lines" || key == "lineField") continue;
+        std::string sentence = "\"" + file + "\": \"";
+        sentence += key;
+        throw Fault(sentence + "\" is not known; there are names, lines and lineField.");
+    }
     readAll(whole, file, "names",
             {"font", "size", "bold", "italic", "spacing", "color", "halo", "haloWidth", "manner", "longest",
              "line", "dot"},
