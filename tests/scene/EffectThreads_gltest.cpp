@@ -8,6 +8,7 @@
 #include <tools/NotifyWatch.h>
 #include <tools/OahuScene.h>
 
+#include <osg/DisplaySettings>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
@@ -106,6 +107,13 @@ osg::ref_ptr<osg::Group> ordered(osg::Node* scene)
 /// More than there are at a time.
 constexpr unsigned int contexts = 32;
 
+/// For objects that are made from now on, such as tiles: an osg::Texture2D makes room for a context when it is first drawn there, without
+/// a lock, and resizeGLObjectBuffers() does not reach what it counts.
+void makeRoom()
+{
+    osg::DisplaySettings::instance()->setMaxNumberOfGraphicsContexts(contexts);
+}
+
 /// A composite viewer (of one view or more) that draws frames until every view has all its tiles.
 class Views
 {
@@ -151,6 +159,8 @@ public:
         for (unsigned int i = 0; i < _viewer->getNumViews(); ++i)
             _viewer->getView(i)->getSceneData()->resizeGLObjectBuffers(contexts);
         _viewer->realize();
+        // It counts the contexts of this viewer only.
+        makeRoom();
         for (unsigned int i = 0; i < _windows.size(); ++i)
         {
             _monitors.push_back(
@@ -200,6 +210,7 @@ class EffectThreads : public ::testing::Test
 protected:
     void SetUp() override
     {
+        makeRoom();
         osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
         traits->width = traits->height = 8;
         const osg::ref_ptr<EglGraphicsContext> context = new EglGraphicsContext(traits);
