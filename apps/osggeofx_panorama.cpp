@@ -8,6 +8,7 @@
 #include "panorama/GroundBuilder.h"
 #include "panorama/Recipe.h"
 #include "panorama/RecipeLiberties.h"
+#include "print/PrintOptions.h"
 #include "web/ScenePage.h"
 
 #include <osgGeoFX/effect/GlslFunctions.h>
@@ -64,6 +65,7 @@ struct Arguments
     geofx::names::Options names;
     geofx::layers::Options layers;
     geofx::web::Options web;
+    geofx::print::Options print;
     bool explain = false, quiet = false;
 };
 
@@ -163,6 +165,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
     geofx::names::addOptions(app, arguments.names);
     geofx::layers::addOptions(app, arguments.layers);
     geofx::web::addOptions(app, arguments.web);
+    geofx::print::addOptions(app, arguments.print);
     app.add_flag("--explain", arguments.explain, "Say what was chosen, and why");
     app.add_flag("--quiet", arguments.quiet, "No progress");
     app.footer(
@@ -450,20 +453,15 @@ osgGeoFX::PrintSize sizeOf(const Recipe& recipe)
     return {recipe.width, recipe.height, recipe.dpi};
 }
 
-bool isPrint(const Arguments& arguments, const Recipe& recipe)
-{
-    return recipe.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(sizeOf(recipe)) ||
-           geofx::names::PictureMap::isPdf(arguments.output);
-}
-
 void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::SceneRenderer::Options& renderer,
            geofx::names::PictureMap& map, osgGeoFX::Scene& scene, const osg::Matrixd& view,
            const std::string& ground, const geofx::web::ScenePage* page)
 {
     osgGeoFX::PicturePrint::Options options;
     options.size = sizeOf(recipe);
+    options.bits = arguments.print.bits;
     options.renderer = renderer;
-    map.prepare(options);
+    map.prepare(options, view);
     options.work = fs::path(arguments.output).replace_extension().string() + ".tiles";
     options.recipe = recipe.text() + geofx::names::ageOf(ground) +
                      geofx::names::agesOf(mapOptions(arguments, recipe)) +
@@ -480,7 +478,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
     if (!osgGeoFX::PicturePrint::write(scene, options, view,
                                        geofx::names::PictureMap::rasterOf(arguments.output), error))
         throw Failure(error);
-    map.finish(options, view);
+    map.finish();
     if (page) page->write(scene, renderer, view, map.names());
     if (arguments.pick.empty()) return;
     const double aspect = static_cast<double>(recipe.width) / recipe.height;
@@ -514,7 +512,7 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     TerrainRelief frame;
     frame.geocentric = recipe.geocentric;
     const osg::Matrixd view = recipe.view.viewMatrix(frame);
-    if (isPrint(arguments, recipe))
+    if (geofx::print::isPrint(arguments.print, arguments.output, sizeOf(recipe)))
     {
         print(arguments, recipe, options, map, scene, view, ground, page);
         geofx::layers::write(arguments.layers, scene, sizeOf(recipe), options, map, view);
@@ -527,9 +525,9 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     const auto image = renderer->render(view, 0.0, unused, error);
     if (!image) throw Failure(error);
     map.finish(renderer->camera(), *image,
-               [&]
+               [&](const osg::Image& plain)
                {
-                   if (page) page->setPicture(*image);
+                   if (page) page->setPicture(plain);
                });
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
     if (!arguments.pick.empty()) printPick(arguments, recipe, scene, {*scene.effects, renderer->camera()});
@@ -542,6 +540,8 @@ void run(const Arguments& arguments)
 {
     PictureFiles pictures(geofx::names::PictureMap::rasterOf(arguments.output), false);
     if (!pictures.error().empty()) throw Failure(pictures.error());
+    const std::string bitsFault = geofx::print::faultOf(arguments.print, arguments.output);
+    if (!bitsFault.empty()) throw Failure(bitsFault);
     geofx::layers::check(arguments.layers);
     std::optional<geofx::web::ScenePage> page;
     if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);

@@ -5,6 +5,7 @@
 #include "layers/SceneLayers.h"
 #include "names/PictureMap.h"
 #include "osggeofx_render_output.h"
+#include "print/PrintOptions.h"
 #include "web/ScenePage.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
@@ -53,6 +54,7 @@ struct Arguments
     geofx::names::Options names;
     geofx::layers::Options layers;
     geofx::web::Options web;
+    geofx::print::Options print;
     bool inset = false;
     bool sky = false;
     bool noCull = false;
@@ -125,6 +127,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
     geofx::names::addOptions(app, arguments.names);
     geofx::layers::addOptions(app, arguments.layers);
     geofx::web::addOptions(app, arguments.web);
+    geofx::print::addOptions(app, arguments.print);
     app.add_flag("--inset", arguments.inset,
                  "Put the same view without effects, a quarter as wide, into the lower right corner");
     app.add_flag("--sky", arguments.sky,
@@ -345,14 +348,16 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
            const osg::Matrixd& view, osgGeoFX::Scene& scene, const geofx::web::ScenePage* page)
 {
     if (!arguments.path.empty() || arguments.inset || !arguments.stats.empty())
-        throw Failure(badInput,
-                      "--size " + arguments.size +
-                          ": such a picture is drawn in tiles, without --path, --inset and --stats; leave "
-                          "them out, or take a smaller size.");
+        throw Failure(
+            badInput,
+            "A picture with a resolution, of more than 4096 pixels or 8 bits, an exr or a pdf is drawn in "
+            "tiles, "
+            "without --path, --inset and --stats; leave them out, or take another --size, --bits or -o.");
     osgGeoFX::PicturePrint::Options options;
     options.size = size;
+    options.bits = arguments.print.bits;
     options.renderer = arguments.renderer;
-    map.prepare(options);
+    map.prepare(options, view);
     options.work = std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
     options.recipe = arguments.scene + geofx::names::ageOf(arguments.scene) +
                      geofx::names::agesOf(arguments.names) +
@@ -365,7 +370,7 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
     std::string error;
     const std::string raster = geofx::names::PictureMap::rasterOf(arguments.output);
     if (!osgGeoFX::PicturePrint::write(scene, options, view, raster, error)) throw Failure(badInput, error);
-    map.finish(options, view);
+    map.finish();
     if (page) page->write(scene, arguments.renderer, view, map.names());
 }
 
@@ -375,6 +380,8 @@ void run(Arguments& arguments)
     const osgGeoFX::PrintSize size = readSize(arguments);
     PictureFiles pictures(geofx::names::PictureMap::rasterOf(arguments.output), !arguments.path.empty());
     if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
+    const std::string bitsFault = geofx::print::faultOf(arguments.print, arguments.output);
+    if (!bitsFault.empty()) throw Failure(badInput, bitsFault);
     geofx::layers::check(arguments.layers);
     if (arguments.layers.any() && (!arguments.path.empty() || arguments.inset))
         throw Failure(
@@ -418,8 +425,7 @@ void run(Arguments& arguments)
                                  !arguments.layers.folder.empty());
     for (const std::string& notice : map.notices())
         std::cerr << "osggeofx_render: " << notice << std::endl;
-    if (size.dpi > 0.0 || osgGeoFX::PicturePrint::isLarge(size) ||
-        geofx::names::PictureMap::isPdf(arguments.output))
+    if (geofx::print::isPrint(arguments.print, arguments.output, size))
     {
         print(arguments, size, map, camera.view(0), *scene, page ? &*page : nullptr);
         geofx::layers::write(arguments.layers, *scene, size, options, map, camera.view(0));
@@ -436,9 +442,9 @@ void run(Arguments& arguments)
         const auto image = renderer->render(camera.view(frame), camera.time(frame), figures, error);
         if (!image) throw Failure(tookTooLong, error);
         map.finish(renderer->camera(), *image,
-                   [&]
+                   [&](const osg::Image& plain)
                    {
-                       if (page) page->setPicture(*image);
+                       if (page) page->setPicture(plain);
                    });
         if (arguments.inset) addInset(*image, *renderer, camera, frame, *scene->effects);
         if (!pictures.write(*image, frame)) throw Failure(badInput, pictures.error());

@@ -2,23 +2,18 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "LabelsSuite.h"
 
-#include "BenchError.h"
+#include "MapStage.h"
 #include "OahuTerrain.h"
-#include "OffscreenView.h"
 
-#include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/labels/MapLabels.h>
 #include <osgGeoFX/labels/NamePlacement.h>
-#include <osgGeoFX/panorama/PanoramaMap.h>
-#include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/Group>
-#include <osg/Math>
-#include <osgDB/WriteFile>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <random>
 
 namespace geofx::bench
@@ -27,36 +22,9 @@ namespace geofx::bench
 namespace
 {
 
-constexpr OffscreenView::Size FULL_SIZE = {1600, 900};
-const double FIELD_OF_VIEW = osg::DegreesToRadians(30.0);
 constexpr int NAMES = 500;
 /// What 500 names may cost, milliseconds.
 constexpr double ASKED = 2.0;
-
-struct NamedView
-{
-    const char* name;
-    const char* what;
-    osgGeoFX::ViewPoint place;
-    osg::ref_ptr<osgGeoFX::Effect> effect;
-};
-
-std::vector<NamedView> views()
-{
-    const auto place = [](double longitude, double latitude, double height, double heading, double pitch)
-    {
-        return osgGeoFX::ViewPoint{osg::DegreesToRadians(longitude), osg::DegreesToRadians(latitude), height,
-                                   osg::DegreesToRadians(heading),   osg::DegreesToRadians(pitch),    0.0};
-    };
-    osg::ref_ptr<osgGeoFX::BirdsEyeView> bird = new osgGeoFX::BirdsEyeView;
-    bird->setFocusLine(0.35);
-    bird->setHorizonLine(0.85);
-    osg::ref_ptr<osgGeoFX::PanoramaMap> map = new osgGeoFX::PanoramaMap;
-    map->setViewRadius(24000.0);
-    return {{"plain", "a plain view", place(-157.9, 21.2, 12000.0, 0.0, -25.0), nullptr},
-            {"bent", "a bird's-eye view", place(-157.9, 21.25, 9000.0, 0.0, -45.0), bird},
-            {"map", "a panorama map", place(-157.753, 21.22, 8000.0, 0.0, -40.0), map}};
-}
 
 std::vector<osgGeoFX::MapName> scatter(const osgGeoFX::TerrainRelief& relief)
 {
@@ -98,26 +66,16 @@ public:
     double seconds = 0.0;
 };
 
-std::vector<Figure> measure(const NamedView& view, const Settings& settings,
+std::vector<Figure> measure(const MapView& view, const Settings& settings,
                             const std::filesystem::path& terrain)
 {
     announce(std::string("drawing names in ") + view.what);
-    std::string error;
-    std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(terrain.string(), error);
-    if (!scene) throw BenchError(error);
-    osg::Matrixd matrix;
-    if (!scene->reference || !view.place.viewMatrix(*scene->reference, matrix))
-        throw BenchError(terrain.string() +
-                         ": it has no place for the views; name a database of Oahu with --terrain FILE.");
-    const osg::ref_ptr<const osg::EllipsoidModel> ellipsoid = scene->effects->ground().ellipsoid;
-    const auto relief =
-        osgGeoFX::TerrainRelief::read(*scene->node, ellipsoid.get(), settings.smoke ? 256 : 1024, error);
-    if (!relief) throw BenchError(terrain.string() + ": " + error);
-    std::vector<osgGeoFX::MapName> names = scatter(*relief);
-    osgGeoFX::NamePlacement().place(names, *scene->node, ellipsoid.get(), *relief);
-    if (view.effect) scene->effects->addEffect(view.effect);
+    const MapStage stage(view, settings, terrain);
+    std::vector<osgGeoFX::MapName> names = scatter(stage.relief);
+    osgGeoFX::NamePlacement().place(names, *stage.scene.effects->getTerrain(), stage.ellipsoid(),
+                                    stage.relief);
     const osg::ref_ptr<osgGeoFX::MapLabels> labels =
-        new osgGeoFX::MapLabels(*scene->effects, new osgGeoFX::NameSet(std::move(names)));
+        new osgGeoFX::MapLabels(*stage.scene.effects, new osgGeoFX::NameSet(std::move(names)));
     // The clock of the drawing stands still, so nothing would fade in.
     osgGeoFX::LabelLayout::Rules rules;
     rules.fading = rules.patience = 0.0;
@@ -125,23 +83,14 @@ std::vector<Figure> measure(const NamedView& view, const Settings& settings,
     const osg::ref_ptr<Stopwatch> watch = new Stopwatch;
     labels->setCullCallback(watch);
     const osg::ref_ptr<osg::Group> root = new osg::Group;
-    root->addChild(scene->node);
+    root->addChild(stage.scene.node);
     root->addChild(labels);
-    const OffscreenView::Size size = settings.smoke ? OffscreenView::Size{320, 180} : FULL_SIZE;
-    OffscreenView drawing(size, FIELD_OF_VIEW, root);
-    drawing.camera().setLODScale(scene->lodScale(size.height, FIELD_OF_VIEW));
-    drawing.look(matrix);
-    drawing.settle();
+    const std::unique_ptr<OffscreenView> offscreen = stage.draw(*root, MapStage::sizeFor(settings));
+    OffscreenView& drawing = *offscreen;
     for (int i = 0; i < 8; ++i)
         drawing.frame(); // depths are known some frames later
     const std::size_t shown = labels->shown(drawing.camera()).size();
-    if (!settings.pictures.empty())
-    {
-        const std::filesystem::path file = settings.pictures / (std::string("names-") + view.name + ".png");
-        if (!osgDB::writeImageFile(*drawing.capture(), file.string()))
-            throw BenchError(file.string() +
-                             ": the picture cannot be written; name another folder with --pictures.");
-    }
+    MapStage::save(drawing, settings, std::string("names-") + view.name);
     const int rounds = settings.smoke ? 3 : settings.quick ? 15 : 61;
     std::vector<double> with, without, culling;
     for (int round = 0; round < rounds; ++round)
@@ -178,7 +127,7 @@ std::vector<Figure> run(const Settings& settings)
     const WorkFolder folder(settings.work);
     const std::filesystem::path terrain = terrainToDraw(settings, folder);
     std::vector<Figure> figures;
-    for (const NamedView& view : views())
+    for (const MapView& view : mapViews())
     {
         if (!settings.wants(view.name)) continue;
         for (const Figure& figure : measure(view, settings, terrain))

@@ -3,6 +3,7 @@
 #include "CloseUpSuite.h"
 #include "DeformationSuite.h"
 #include "LabelsSuite.h"
+#include "LinesSuite.h"
 #include "MappingSuite.h"
 #include "OsgEarthSuite.h"
 #include "PanoramaSuite.h"
@@ -19,7 +20,7 @@ const std::vector<Suite>& suites()
 {
     static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite(),
                                            closeUpSuite(), panoramaSuite(),    labelsSuite(),
-                                           osgEarthSuite()};
+                                           linesSuite(),   osgEarthSuite()};
     return all;
 }
 

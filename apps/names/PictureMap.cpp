@@ -56,62 +56,72 @@ std::string PictureMap::rasterOf(const std::string& output)
     return isPdf(output) ? fs::path(output).replace_extension(".unfinished.jpg").string() : output;
 }
 
-void PictureMap::readDepths()
+void PictureMap::prepare()
 {
     if (_reader || !(_names || wantsLineVectors())) return;
     _reader = _scene.readDepths();
 }
 
-void PictureMap::takeLines(const osg::Camera& camera, double scale)
+void PictureMap::takeLines(const osg::Camera& camera, const osgGeoFX::DepthReader& reader, double scale)
 {
-    _placedLines.emplace(_lines->lines, _lines->styles, *_scene.effects, camera, _reader->pictures(), scale);
+    _placedLines.emplace(_lines->lines, _lines->styles, *_scene.effects, camera, reader.pictures(), scale);
+}
+
+/// Lines of a print, by the depths of a smaller picture.
+void PictureMap::takeLines(const osgGeoFX::SceneRenderer::Options& options, const osg::Matrixd& view)
+{
+    osgGeoFX::SceneRenderer::Options small = options;
+    const double factor =
+        std::max(static_cast<double>(std::max(_size.width, _size.height)) / depthsSide, 1.0);
+    small.width = static_cast<int>(std::lround(_size.width / factor));
+    small.height = static_cast<int>(std::lround(_size.height / factor));
+    small.samples = 0;
+    // Tiles of the print need not be read.
+    osgGeoFX::Scene scene = _scene;
+    const osg::ref_ptr<osgGeoFX::DepthReader> reader = scene.readDepths();
+    std::string error;
+    const auto renderer = osgGeoFX::SceneRenderer::create(scene, small, error);
+    osgGeoFX::FrameStatistics unused;
+    if (!renderer || !renderer->render(view, 0.0, unused, error)) throw std::runtime_error(error);
+    const double larger = static_cast<double>(_size.height) / small.height;
+    takeLines(renderer->camera(), *reader, small.height / usualHeight);
+    _placedLines = _placedLines->enlarged(larger);
 }
 
 void PictureMap::finish(const osg::Camera& camera, osg::Image& image,
-                        const std::function<void()>& beforeNames)
+                        const std::function<void(const osg::Image& plain)>& beforeNames)
 {
     if (_names) _placedNames.emplace(*_names, *_scene.effects, camera, _reader->pictures());
-    if (wantsLineVectors()) takeLines(camera, _size.height / usualHeight);
-    if (linesAbove() && onPicture()) linesAbove()->drawOnto(image);
-    if (beforeNames) beforeNames();
+    if (wantsLineVectors()) takeLines(camera, *_reader, _size.height / usualHeight);
+    if (drawsLines() && onPicture()) _placedLines->drawOnto(image);
+    if (beforeNames && drawsLines() && !onPicture())
+    {
+        const osg::ref_ptr<osg::Image> plain = new osg::Image(image, osg::CopyOp::DEEP_COPY_ALL);
+        _placedLines->drawOnto(*plain);
+        beforeNames(*plain);
+    }
+    else if (beforeNames)
+    {
+        beforeNames(image);
+    }
     if (_placedNames && onPicture()) _placedNames->drawOnto(image);
     write();
 }
 
-void PictureMap::prepare(osgGeoFX::PicturePrint::Options& options)
+void PictureMap::prepare(osgGeoFX::PicturePrint::Options& options, const osg::Matrixd& view)
 {
-    if (_lines && _layered)
-        throw std::runtime_error(
-            "--layers: lines are a layer of pictures of up to 4096 pixels without a resolution only; take "
-            "such a --size, or leave --lines out.");
+    if (wantsLineVectors()) takeLines(options.renderer, view);
     options.names = _names;
-    options.drawNames = onPicture();
+    options.drawOver = onPicture();
     options.placed = [this](const osgGeoFX::LabelPicture& placed)
     {
         _placedNames = placed;
     };
-}
-
-void PictureMap::finish(const osgGeoFX::PicturePrint::Options& options, const osg::Matrixd& view)
-{
-    if (wantsLineVectors())
-    {
-        readDepths();
-        osgGeoFX::SceneRenderer::Options small = options.renderer;
-        const double factor =
-            std::max(static_cast<double>(std::max(_size.width, _size.height)) / depthsSide, 1.0);
-        small.width = static_cast<int>(std::lround(_size.width / factor));
-        small.height = static_cast<int>(std::lround(_size.height / factor));
-        small.samples = 0;
-        std::string error;
-        const auto renderer = osgGeoFX::SceneRenderer::create(_scene, small, error);
-        osgGeoFX::FrameStatistics unused;
-        if (!renderer || !renderer->render(view, 0.0, unused, error)) throw std::runtime_error(error);
-        const double larger = static_cast<double>(_size.height) / small.height;
-        takeLines(renderer->camera(), small.height / usualHeight);
-        _placedLines = _placedLines->enlarged(larger);
-    }
-    write();
+    if (drawsLines())
+        options.overlay = [this](osg::Image& rows, int top)
+        {
+            _placedLines->drawOnto(rows, top);
+        };
 }
 
 void PictureMap::write()

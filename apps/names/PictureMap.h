@@ -46,15 +46,16 @@ public:
     static std::string rasterOf(const std::string& output);
 
     /// For pictures of a renderer: call it before the renderer is made.
-    void prepare() { readDepths(); }
+    void prepare();
     /// For a picture that a renderer has just drawn: draws on it, and writes the files. `camera`: SceneRenderer::camera().
-    /// `beforeNames`: called when the picture has its lines and no names yet.
-    void finish(const osg::Camera& camera, osg::Image& image, const std::function<void()>& beforeNames = {});
+    /// `beforeNames`: called with the picture as it is with its lines and without names, even where both become vectors.
+    void finish(const osg::Camera& camera, osg::Image& image,
+                const std::function<void(const osg::Image& plain)>& beforeNames = {});
 
-    /// For a print: sets what it does with names.
-    void prepare(osgGeoFX::PicturePrint::Options& options);
-    /// … and writes the files when the print is there. `view`: the print's.
-    void finish(const osgGeoFX::PicturePrint::Options& options, const osg::Matrixd& view);
+    /// For a print: sets what it does with names and lines. `view`: the print's.
+    void prepare(osgGeoFX::PicturePrint::Options& options, const osg::Matrixd& view);
+    /// … and writes the files when the print is there.
+    void finish() { write(); }
 
 private:
     bool onPicture() const { return _options.svg.empty() && !isPdf(_output); }
@@ -62,8 +63,10 @@ private:
     {
         return _lines && (_layered || !onPicture() || !_options.geoJson.empty());
     }
-    void readDepths();
-    void takeLines(const osg::Camera& camera, double scale);
+    void takeLines(const osg::Camera& camera, const osgGeoFX::DepthReader& reader, double scale);
+    void takeLines(const osgGeoFX::SceneRenderer::Options& options, const osg::Matrixd& view);
+    /// Whether lines are drawn over what the scene has drawn.
+    bool drawsLines() const { return _placedLines && (_layered || !onPicture()); }
     void write();
 
     const Options _options;

@@ -47,7 +47,7 @@ public:
 
     /// Draws lines and names to Cairo, in the picture's pixels with y downwards.
     void draw(_cairo* target) const;
-    /// Draws them onto an image of the picture's size with 8 bits for each of three or four channels. False if the image is another
+    /// Draws them onto an image of the picture's size with 8 or 16 bits for each of three or four channels. False if the image is another
     /// one.
     bool drawOnto(osg::Image& image) const;
     /// Draws them onto some rows of the picture, an image as wide as the picture. `top`: the row of the picture, counted from the uppermost

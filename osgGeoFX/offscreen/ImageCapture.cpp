@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/offscreen/ImageCapture.h>
 
+#include <osgGeoFX/offscreen/detail/DeepFrame.h>
+
 #include <osg/GLExtensions>
 #include <osg/RenderInfo>
 #include <osg/State>
@@ -38,7 +40,7 @@ private:
 class ResolvedFrame
 {
 public:
-    ResolvedFrame(const osg::GLExtensions& extensions, int x, int y, int width, int height)
+    ResolvedFrame(const osg::GLExtensions& extensions, GLenum format, int x, int y, int width, int height)
         : _extensions(extensions), _x(x), _y(y)
     {
         GLint samples = 0;
@@ -52,7 +54,7 @@ public:
         _extensions.glGenFramebuffers(1, &_frameBuffer);
         _extensions.glGenRenderbuffers(1, &_renderBuffer);
         _extensions.glBindRenderbuffer(GL_RENDERBUFFER, _renderBuffer);
-        _extensions.glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+        _extensions.glRenderbufferStorage(GL_RENDERBUFFER, format, width, height);
         _extensions.glBindRenderbuffer(GL_RENDERBUFFER, 0);
         _extensions.glBindFramebuffer(GL_DRAW_FRAMEBUFFER, _frameBuffer);
         _extensions.glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
@@ -147,9 +149,10 @@ void ImageCapture::operator()(osg::RenderInfo& renderInfo) const
     }
     else
     {
-        const ResolvedFrame frame(extensions, x, y, width, height);
-        _image->readPixels(frame.x(), frame.y(), width, height, _format == Format::Rgb ? GL_RGB : GL_RGBA,
-                           GL_UNSIGNED_BYTE, 1);
+        const bool deep = _format == Format::Rgb16;
+        const ResolvedFrame frame(extensions, deep ? DeepFrame::colorFormat : GL_RGBA8, x, y, width, height);
+        _image->readPixels(frame.x(), frame.y(), width, height, _format == Format::Rgba ? GL_RGBA : GL_RGB,
+                           deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, 1);
     }
     _requested = false;
     _captured.notify_all();

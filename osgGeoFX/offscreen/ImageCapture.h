@@ -30,6 +30,7 @@ public:
     {
         Rgb,       ///< 8 bits per channel
         Rgba,      ///< 8 bits per channel
+        Rgb16,     ///< 16 bits per channel; for a frame buffer that has them
         DepthFloat ///< one float, 0…1
     };
 

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
 #include <osgGeoFX/offscreen/LeastTriangles.h>
+#include <osgGeoFX/offscreen/detail/DeepFrame.h>
 #include <osgGeoFX/offscreen/detail/DrawnLeaves.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
 #include <osgGeoFX/scene/CameraEffects.h>
@@ -67,6 +68,12 @@ struct NoSwap : public osg::GraphicsContext::SwapCallback
     void swapBuffersImplementation(osg::GraphicsContext*) override {}
 };
 
+/// Whether it draws into a frame buffer of its own, since contexts have none of 16 bits.
+bool isDeep(const SceneRenderer::Options& options)
+{
+    return options.format == ImageCapture::Format::Rgb16;
+}
+
 osg::ref_ptr<osg::GraphicsContext> createContext(const SceneRenderer::Options& options, std::string& error)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
@@ -74,8 +81,9 @@ osg::ref_ptr<osg::GraphicsContext> createContext(const SceneRenderer::Options& o
     traits->height = options.height;
     traits->alpha = 8;
     traits->stencil = 8;
-    traits->samples = options.samples;
-    traits->sampleBuffers = options.samples > 1 ? 1 : 0;
+    const unsigned int samples = isDeep(options) ? 0 : options.samples;
+    traits->samples = samples;
+    traits->sampleBuffers = samples > 1 ? 1 : 0;
     if (options.platform == SceneRenderer::Platform::Egl)
     {
         osg::ref_ptr<EglGraphicsContext> context = new EglGraphicsContext(traits);
@@ -163,6 +171,8 @@ void SceneRenderer::Parts::setUpCamera(const Scene& scene, osg::GraphicsContext&
     {
         each->setStats(new osg::Stats("Camera"));
         each->getStats()->collectStats("rendering", true);
+        // Effects that draw into textures of their own follow the picture's format.
+        if (isDeep(options)) each->attach(osg::Camera::COLOR_BUFFER, DeepFrame::colorFormat);
         if (!options.countTriangles) continue;
         counters.push_back(new CountCallback);
         each->addInitialDrawCallback(counters.back().get());
@@ -280,7 +290,16 @@ std::unique_ptr<SceneRenderer> SceneRenderer::create(const Scene& scene, const O
     parts->viewer->setThreadingModel(osgViewer::Viewer::SingleThreaded);
     parts->setUpCamera(scene, *context);
     parts->setUpScene(scene);
+    osg::ref_ptr<DeepFrame> deep;
+    if (isDeep(options)) deep = new DeepFrame(options.width, options.height, options.samples);
+    if (deep) parts->viewer->setRealizeOperation(deep);
     parts->viewer->realize();
+    if (deep && !deep->isThere())
+    {
+        error =
+            "The graphics card draws no pictures of 16 bits and this size; take 8 bits, or fewer samples.";
+        return nullptr;
+    }
     if (!parts->viewer->isRealized() || !parts->describe(*context))
     {
         error = "The OpenGL context cannot be used; check the driver.";

@@ -64,7 +64,7 @@ public:
         double timeout = 600.0;      ///< seconds for each image
         bool countTriangles = false; ///< fill triangles, drawables and tilesDrawn; costs a little
         bool leastTriangles = false; ///< fill leastTriangles; reads the whole database first
-        ImageCapture::Format format = ImageCapture::Format::Rgb;
+        ImageCapture::Format format = ImageCapture::Format::Rgb; ///< Rgb16 draws with 16 bits, too
         Platform platform = Platform::Egl;
     };
 

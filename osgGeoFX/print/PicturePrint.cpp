@@ -43,7 +43,8 @@ public:
 class TileFiles
 {
 public:
-    TileFiles(fs::path folder, std::string key) : _folder(std::move(folder)), _key(std::move(key))
+    TileFiles(fs::path folder, std::string key, OIIO::TypeDesc type)
+        : _folder(std::move(folder)), _key(std::move(key)), _type(type)
     {
         std::error_code fault;
         fs::create_directories(_folder, fault);
@@ -66,7 +67,7 @@ public:
         std::istringstream text(spec.get_string_attribute("ImageDescription"));
         std::string key;
         if (!std::getline(text, key) || key != _key || spec.width != tile.width ||
-            spec.height != tile.height || spec.nchannels != 3)
+            spec.height != tile.height || spec.nchannels != 3 || spec.format != _type)
             return std::nullopt;
         std::map<std::size_t, std::size_t> seen;
         std::size_t name = 0, count = 0;
@@ -82,7 +83,7 @@ public:
         description << _key << '\n';
         for (const auto& [name, count] : seen)
             description << name << ' ' << count << '\n';
-        OIIO::ImageSpec spec(tile.width, tile.height, 3, OIIO::TypeDesc::UINT8);
+        OIIO::ImageSpec spec(tile.width, tile.height, 3, _type);
         spec.attribute("ImageDescription", description.str());
         spec.attribute("compression", "zip");
         spec.attribute("tiff:zipquality", 1);
@@ -91,7 +92,7 @@ public:
         bool good = output && output->open(unfinished.string(), spec);
         // What a tile draws beyond the picture lies to the right and below.
         for (int row = 0; good && row < tile.height; ++row)
-            good = output->write_scanline(row, 0, OIIO::TypeDesc::UINT8,
+            good = output->write_scanline(row, 0, _type,
                                           image.data(0, static_cast<unsigned int>(tileHeight - 1 - row)));
         good = output && output->close() && good;
         std::error_code fault;
@@ -110,6 +111,7 @@ public:
 private:
     const fs::path _folder;
     const std::string _key;
+    const OIIO::TypeDesc _type;
 };
 
 /// What tiles must have been drawn with to be used again; one line.
@@ -133,10 +135,10 @@ std::string keyOf(const PicturePrint::Options& options, const TilePlan& plan, co
     return key;
 }
 
-/// The light of an sRGB byte, 0…1 (IEC 61966-2-1).
-float lightOf(unsigned char byte)
+/// The light of an sRGB value of 16 bits, 0…1 (IEC 61966-2-1).
+float lightOf(unsigned short code)
 {
-    const float value = static_cast<float>(byte) / 255.0f;
+    const float value = static_cast<float>(code) / 65535.0f;
     return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
 }
 
@@ -156,95 +158,168 @@ std::vector<unsigned char> colorProfile()
     return bytes;
 }
 
-/// Puts the tiles together.
-void assemble(const TilePlan& plan, const TileFiles& tiles, const PicturePrint::Options& options,
-              const LabelPicture* names, const std::string& file)
+/// What tiles and pictures have in each channel.
+OIIO::TypeDesc typeOf(int bits)
 {
-    const fs::path whole(file);
-    const fs::path unfinished =
-        whole.parent_path() / (whole.stem().string() + ".unfinished" + whole.extension().string());
-    const auto output = OIIO::ImageOutput::create(unfinished.string());
-    if (!output)
-        throw Fault("\"" + file + "\": pictures of this kind cannot be written; use png, tif, jpg or exr.");
-    // OpenEXR has light and not its code.
-    const bool linear = std::string(output->format_name()) == "openexr";
-    OIIO::ImageSpec spec(plan.width, plan.height, 3, linear ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
-    const std::vector<unsigned char> profile = linear ? std::vector<unsigned char>() : colorProfile();
-    if (!profile.empty())
-        spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
-                       profile.data());
-    spec.attribute("compression", "zip");
-    if (3.0 * plan.width * plan.height > 3.9e9) spec.attribute("tiff:bigtiff", 1);
-    if (options.size.dpi > 0.0)
+    return bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
+}
+
+/// Whether the file's format has light and not its code.
+bool isLinear(const std::string& file)
+{
+    const auto output = OIIO::ImageOutput::create(file);
+    return output && std::string(output->format_name()) == "openexr";
+}
+
+/// A picture's file, written row by row. It is there when it is whole.
+class PictureFile
+{
+public:
+    PictureFile(const TilePlan& plan, const PicturePrint::Options& options, int bits, const std::string& file)
+        : _plan(plan), _whole(file),
+          _unfinished(_whole.parent_path() /
+                      (_whole.stem().string() + ".unfinished" + _whole.extension().string())),
+          _output(OIIO::ImageOutput::create(_unfinished.string()))
     {
-        spec.attribute("XResolution", static_cast<float>(options.size.dpi));
-        spec.attribute("YResolution", static_cast<float>(options.size.dpi));
-        spec.attribute("ResolutionUnit", "in");
+        if (!_output)
+            throw Fault("\"" + file +
+                        "\": pictures of this kind cannot be written; use png, tif, jpg or exr.");
+        _linear = isLinear(file);
+        OIIO::ImageSpec spec(plan.width, plan.height, 3, _linear ? OIIO::TypeDesc::HALF : typeOf(bits));
+        describe(spec, options);
+        if (!_output->open(_unfinished.string(), spec)) throw fault();
+        if (_output->spec().format == spec.format) return;
+        remove();
+        throw Fault("\"" + file + "\": pictures of this kind have no " + std::to_string(bits) +
+                    " bits for each channel; use png, tif or exr, or take 8 bits.");
     }
-    for (const auto& [name, value] : options.metadata)
-        spec.attribute(name, value);
-    const auto fail = [&]() -> Fault
+
+    ~PictureFile()
     {
+        if (!_finished) remove();
+    }
+    PictureFile(const PictureFile&) = delete;
+    PictureFile& operator=(const PictureFile&) = delete;
+
+    /// A row, whose values have the tiles' type.
+    void write(int row, const unsigned char* values, OIIO::TypeDesc type)
+    {
+        const void* from = values;
+        if (_linear)
+        {
+            _light.resize(3 * static_cast<std::size_t>(_plan.width));
+            const auto* codes = reinterpret_cast<const unsigned short*>(values);
+            std::transform(codes, codes + _light.size(), _light.begin(), lightOf);
+            from = _light.data();
+            type = OIIO::TypeDesc::FLOAT;
+        }
+        if (!_output->write_scanline(row, 0, type, from)) throw fault();
+    }
+    void finish()
+    {
+        if (!_output->close()) throw fault();
+        std::error_code failure;
+        fs::rename(_unfinished, _whole, failure);
+        if (failure) throw fault();
+        _finished = true;
+    }
+
+private:
+    void describe(OIIO::ImageSpec& spec, const PicturePrint::Options& options) const
+    {
+        spec.attribute("oiio:ColorSpace", _linear ? "Linear" : "sRGB");
+        const std::vector<unsigned char> profile = _linear ? std::vector<unsigned char>() : colorProfile();
+        if (!profile.empty())
+            spec.attribute("ICCProfile",
+                           OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
+                           profile.data());
+        spec.attribute("compression", "zip");
+        if (static_cast<double>(spec.image_bytes()) > 3.9e9) spec.attribute("tiff:bigtiff", 1);
+        if (options.size.dpi > 0.0)
+        {
+            spec.attribute("XResolution", static_cast<float>(options.size.dpi));
+            spec.attribute("YResolution", static_cast<float>(options.size.dpi));
+            spec.attribute("ResolutionUnit", "in");
+        }
+        for (const auto& [name, value] : options.metadata)
+            spec.attribute(name, value);
+    }
+    void remove()
+    {
+        if (!_output) return;
+        _output.reset();
         std::error_code ignored;
-        fs::remove(unfinished, ignored);
-        return Fault("\"" + file + "\" cannot be written (" + output->geterror() +
+        fs::remove(_unfinished, ignored);
+    }
+    Fault fault()
+    {
+        const std::string reason = _output->geterror();
+        remove();
+        return Fault("\"" + _whole.string() + "\" cannot be written (" + reason +
                      "); check the folder, its permissions, the disk's space, and whether the format has "
                      "pictures of this size.");
-    };
-    if (!output->open(unfinished.string(), spec)) throw fail();
-    std::vector<float> light(linear ? 3 * static_cast<std::size_t>(plan.width) : 0);
+    }
+
+    const TilePlan& _plan;
+    const fs::path _whole, _unfinished;
+    std::unique_ptr<OIIO::ImageOutput> _output;
+    bool _linear = false, _finished = false;
+    std::vector<float> _light;
+};
+
+/// Puts the tiles of a row side by side. OSG's rows go upwards.
+void readRow(const TilePlan& plan, const TileFiles& tiles, int row, OIIO::TypeDesc type, osg::Image& strip)
+{
+    const std::size_t pixelSize = 3 * type.size();
+    for (int column = 0; column < plan.columns; ++column)
+    {
+        const PictureTile tile = plan.at(column, row);
+        const std::size_t rowSize = pixelSize * static_cast<std::size_t>(tile.width);
+        std::vector<unsigned char> pixels(rowSize * static_cast<std::size_t>(tile.height));
+        const auto input = OIIO::ImageInput::open(tiles.pathOf(tile).string());
+        if (!input || !input->read_image(0, 0, 0, 3, type, pixels.data()))
+            throw Fault("The tile \"" + tiles.pathOf(tile).string() +
+                        "\" cannot be read any more; run it again.");
+        for (int y = 0; y < tile.height; ++y)
+            std::memcpy(strip.data(static_cast<unsigned int>(tile.left),
+                                   static_cast<unsigned int>(tile.height - 1 - y)),
+                        pixels.data() + static_cast<std::size_t>(y) * rowSize, rowSize);
+    }
+}
+
+/// Puts the tiles together. `bits`: of the tiles and of the file. `drawOver` draws over rows; the second number is the uppermost row's.
+void assemble(const TilePlan& plan, const TileFiles& tiles, const PicturePrint::Options& options, int bits,
+              const std::string& file, const std::function<void(osg::Image&, int)>& drawOver)
+{
+    PictureFile picture(plan, options, bits, file);
+    // Tiles are read in the file's type; those of 16 bits give one of 8, too.
+    const OIIO::TypeDesc type = typeOf(bits);
     const osg::ref_ptr<osg::Image> strip = new osg::Image;
     for (int row = 0; row < plan.rows; ++row)
     {
-        const int height = plan.at(0, row).height;
-        // OSG's rows go upwards.
-        strip->allocateImage(plan.width, height, 1, GL_RGB, GL_UNSIGNED_BYTE);
-        for (int column = 0; column < plan.columns; ++column)
-        {
-            const PictureTile tile = plan.at(column, row);
-            std::vector<unsigned char> pixels(3 * static_cast<std::size_t>(tile.width) *
-                                              static_cast<std::size_t>(height));
-            const auto input = OIIO::ImageInput::open(tiles.pathOf(tile).string());
-            if (!input || !input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data()))
-                throw Fault("The tile \"" + tiles.pathOf(tile).string() +
-                            "\" cannot be read any more; run it again.");
-            for (int y = 0; y < height; ++y)
-                std::memcpy(strip->data(static_cast<unsigned int>(tile.left),
-                                        static_cast<unsigned int>(height - 1 - y)),
-                            pixels.data() +
-                                3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(tile.width),
-                            3 * static_cast<std::size_t>(tile.width));
-        }
-        const int top = plan.at(0, row).top;
-        if (names) names->drawOnto(*strip, top);
+        const int top = plan.at(0, row).top, height = plan.at(0, row).height;
+        strip->allocateImage(plan.width, height, 1, GL_RGB, bits > 8 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE);
+        readRow(plan, tiles, row, type, *strip);
+        drawOver(*strip, top);
         for (int y = 0; y < height; ++y)
-        {
-            const unsigned char* const bytes = strip->data(0, static_cast<unsigned int>(height - 1 - y));
-            if (linear) std::transform(bytes, bytes + light.size(), light.begin(), lightOf);
-            if (!output->write_scanline(top + y, 0, linear ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8,
-                                        linear ? static_cast<const void*>(light.data()) : bytes))
-                throw fail();
-        }
+            picture.write(top + y, strip->data(0, static_cast<unsigned int>(height - 1 - y)), type);
     }
-    std::error_code fault;
-    if (!output->close()) throw fail();
-    fs::rename(unfinished, whole, fault);
-    if (fault) throw fail();
+    picture.finish();
 }
 
 void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrixd& view,
            const std::string& file)
 {
     const TilePlan plan(options.size.width, options.size.height, options.tile);
-    const TileFiles tiles(options.work, keyOf(options, plan, view));
+    const int bits = options.bits > 8 || isLinear(file) ? 16 : 8;
+    const TileFiles tiles(options.work, keyOf(options, plan, view), typeOf(bits));
     const osg::ref_ptr<DepthReader> depths = options.names ? scene.readDepths() : nullptr;
     SceneRenderer::Options drawing = options.renderer;
     drawing.width = plan.tileWidth;
     drawing.height = plan.tileHeight;
     drawing.pictureWidth = plan.width;
     drawing.pictureHeight = plan.height;
-    drawing.format = ImageCapture::Format::Rgb;
+    drawing.format = bits > 8 ? ImageCapture::Format::Rgb16 : ImageCapture::Format::Rgb;
     std::string error;
     std::unique_ptr<SceneRenderer> renderer;
     std::vector<NameSet::Seen> names;
@@ -304,9 +379,18 @@ void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrix
         labels.emplace(*options.names, names, visible, plan.width, plan.height);
     }
     if (labels && options.placed) options.placed(*labels);
-    if (!options.drawNames) labels.reset();
-    if (!options.plain.empty()) assemble(plan, tiles, options, nullptr, options.plain);
-    assemble(plan, tiles, options, labels ? &*labels : nullptr, file);
+    const auto drawOverlay = [&](osg::Image& rows, int top)
+    {
+        if (options.overlay) options.overlay(rows, top);
+    };
+    if (!options.plain.empty()) assemble(plan, tiles, options, 8, options.plain, drawOverlay);
+    assemble(plan, tiles, options, bits, file,
+             [&](osg::Image& rows, int top)
+             {
+                 if (!options.drawOver) return;
+                 drawOverlay(rows, top);
+                 if (labels) labels->drawOnto(rows, top);
+             });
     tiles.remove();
 }
 

@@ -7,6 +7,7 @@
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/viewer/Scene.h>
 
+#include <osg/Image>
 #include <osg/Matrixd>
 
 #include <functional>
@@ -45,15 +46,19 @@ public:
     struct Options
     {
         PrintSize size;
+        int bits = 8;                    ///< of each channel, 8 or 16; OpenEXR always gets 16
         int tile = 2048;                 ///< the longest side of a tile, pixels, 64…16,384
         SceneRenderer::Options renderer; ///< sizes and format in it do not count
         osg::ref_ptr<NameSet> names;     ///< null for none
-        bool drawNames =
-            true; ///< whether names are drawn on the picture; false for those that become vectors
+        /// Draws below the names onto some rows of the picture, which have its bits, such as lines; empty: nothing. `top`: the picture's
+        /// row, from the uppermost one, that is the uppermost of the image.
+        std::function<void(osg::Image& rows, int top)> overlay;
+        /// Whether overlay and names are drawn on the picture; false for those that become vectors.
+        bool drawOver = true;
         /// Called with the placed names when all tiles are there; empty for nobody.
         std::function<void(const LabelPicture& names)> placed;
-        std::string
-            plain; ///< a file for the picture without names, such as a web page is made of; empty: none
+        /// A file for the picture with the overlay and without names, of 8 bits, such as a web page is made of; empty: none.
+        std::string plain;
         std::string work; ///< the folder for tiles; it is made, and removed when the picture is there
         /// What the picture is made of, in any words: tiles of a former run are used only if it is the same.
         std::string recipe;
@@ -65,8 +70,8 @@ public:
     /// Whether a picture should be printed in tiles: whether it is larger than what any GPU draws at once.
     static bool isLarge(const PrintSize& size) { return size.width > 4096 || size.height > 4096; }
 
-    /** Draws a scene from a view matrix and writes it. The file's extension names the format: png, tif, jpg, exr (linear, as half floats of 8 bits), or any other one that
-        OpenImageIO writes; tiff files beyond 4 GB are BigTIFF. A whole file or none is written. False, with a sentence in `error`, if it cannot; finished
+    /** Draws a scene from a view matrix and writes it. The file's extension names the format: png, tif, jpg, exr (linear, half floats), or any other one that
+        OpenImageIO writes; tiff files beyond 4 GB are BigTIFF. Formats without 16 bits are refused where these are wanted. A whole file or none is written. False, with a sentence in `error`, if it cannot; finished
         tiles stay. `scene`: its node gets a child that reads depths. */
     static bool write(Scene& scene, const Options& options, const osg::Matrixd& view, const std::string& file,
                       std::string& error);

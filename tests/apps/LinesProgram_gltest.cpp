@@ -146,11 +146,62 @@ TEST_F(LinesProgram, AreALayerOfTheirOwn)
     EXPECT_GT(lines, 150);
     const std::string list = bytes("layers/layers.json");
     EXPECT_NE(list.find("--no-autopremult lines.png --premult strokes.png"), std::string::npos) << list;
-    const ProgramResult print =
-        run("osggeofx_panorama", {"volcano.tif", "-o", "print.png", "--work", "work", "--size", "A6@72dpi",
-                                  "--quiet", "--lines", "lines.geojson", "--layers", "layers"});
-    EXPECT_EQ(print.exitCode, 2);
-    EXPECT_NE(print.standardError.find("leave --lines out"), std::string::npos) << print.standardError;
+}
+
+// The same of a print, which is drawn in tiles: its lines are over the picture, and in the layer at the same pixels.
+TEST_F(LinesProgram, AreALayerOfPrints)
+{
+    writeLine("trail", placeOf(150, 200), placeOf(300, 215));
+    const auto print = [&](const std::string& output, std::vector<std::string> more)
+    {
+        more.insert(more.begin(), {"volcano.tif", "-o", output, "--work", "work", "--size", "6.4x3.6in@75dpi",
+                                   "--quiet", "--lines", "lines.geojson", "--style", "style.json"});
+        const ProgramResult result = run("osggeofx_panorama", more);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        return osgDB::readRefImageFile(file(output));
+    };
+    const osg::ref_ptr<osg::Image> picture = print("print.png", {"--layers", "layers", "--bits", "16"});
+    const osg::ref_ptr<osg::Image> layer = osgDB::readRefImageFile(file("layers/lines.png"));
+    ASSERT_TRUE(picture && layer);
+    ASSERT_EQ(picture->s(), WIDTH);
+    ASSERT_EQ(layer->s(), WIDTH);
+    int drawn = 0;
+    for (int y = 0; y < HEIGHT; ++y)
+        for (int x = 0; x < WIDTH; ++x)
+        {
+            const auto column = static_cast<unsigned int>(x), row = static_cast<unsigned int>(y);
+            const osg::Vec4 color = picture->getColor(column, row);
+            const bool magenta = color.r() > 0.9f && color.g() < 0.2f && color.b() > 0.9f;
+            drawn += magenta ? 1 : 0;
+            EXPECT_EQ(layer->getColor(column, row).a() > 0.8f, magenta) << x << ", " << y;
+        }
+    EXPECT_GT(drawn, 150);
+    // Without layers the scene draws the lines; they lie at the same pixels.
+    const osg::ref_ptr<osg::Image> usual = print("usual.png", {});
+    ASSERT_TRUE(usual);
+    EXPECT_NEAR(magentaIn(*usual), drawn, 0.4 * drawn);
+}
+
+// A web page has lines even where the picture has them as vectors.
+TEST_F(LinesProgram, AreOnTheWebPageBesideVectors)
+{
+    writeLine("trail", placeOf(150, 200), placeOf(300, 215));
+    const auto linesOf = [&](const std::string& output, std::vector<std::string> more)
+    {
+        more.insert(more.begin(), {"volcano.tif", "-o", output, "--lines", "lines.geojson", "--style",
+                                   "style.json", "--web", "page"});
+        const ProgramResult result = panorama(more);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        int count = 0;
+        // The tiles of the picture's own size.
+        for (const auto& entry : fs::recursive_directory_iterator(file("page/tiles/1")))
+            if (entry.is_regular_file()) count += magentaIn(*osgDB::readRefImageFile(entry.path().string()));
+        return count;
+    };
+    const int usual = linesOf("map.png", {});
+    EXPECT_GT(usual, 150);
+    EXPECT_NEAR(linesOf("map.png", {"--svg", "map.svg"}), usual, 0.4 * usual);
+    EXPECT_NEAR(linesOf("map.pdf", {}), usual, 0.4 * usual);
 }
 
 // A PDF is the picture with its names and lines, which are letters and paths.
@@ -250,6 +301,9 @@ TEST_F(LinesProgram, FaultsAreSentences)
     };
     has(faultOf({"--lines", "lines.geojson"}), "lie beside the terrain");
     has(faultOf({"--lines", "none.gpkg"}), "none.gpkg");
+    const ProgramResult bits = panorama({"volcano.tif", "-o", "map.jpg", "--bits", "16"});
+    EXPECT_EQ(bits.exitCode, 2);
+    has(bits.standardError, "write png, tiff or exr");
     has(faultOf({"--geojson", "picture.geojson"}), "give some with --labels or --lines");
     has(faultOf({"--lines", "lines.geojson", "--svg", "none/map.svg"}), "none/map.svg");
     write("bad.json", R"({"lines": {"trail": {"widht": 2}}})");

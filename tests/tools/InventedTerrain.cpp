@@ -131,6 +131,7 @@ public:
 private:
     static constexpr int side = 400, steps = 140;
     static constexpr double power = 0.0012, share = 0.45;
+    static constexpr double diagonal = 1.4142135623730951; ///< between the middles of two cells
 
     static int index(int column, int row) { return row * side + column; }
     static double cubic(double a, double b, double c, double d, double t)
@@ -138,10 +139,39 @@ private:
         return b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)));
     }
 
+    /// All cells, each one after the one that its water goes to.
+    static std::vector<int> upstream(const std::vector<int>& to)
+    {
+        // The givers of each cell, one behind the other.
+        std::vector<int> first(to.size(), -1), next(to.size(), -1), order, waiting;
+        order.reserve(to.size());
+        for (int cell = static_cast<int>(to.size()) - 1; cell >= 0; --cell)
+        {
+            const int taker = to[static_cast<std::size_t>(cell)];
+            if (taker == cell)
+            {
+                waiting.push_back(cell);
+                continue;
+            }
+            next[static_cast<std::size_t>(cell)] = first[static_cast<std::size_t>(taker)];
+            first[static_cast<std::size_t>(taker)] = cell;
+        }
+        while (!waiting.empty())
+        {
+            const int cell = waiting.back();
+            waiting.pop_back();
+            order.push_back(cell);
+            for (int giver = first[static_cast<std::size_t>(cell)]; giver >= 0;
+                 giver = next[static_cast<std::size_t>(giver)])
+                waiting.push_back(giver);
+        }
+        return order;
+    }
+
     void grow()
     {
         // Water goes to the steepest of eight neighbours.
-        std::vector<int> to(_height.size()), order(_height.size());
+        std::vector<int> to(_height.size());
         for (int row = 0; row < side; ++row)
         {
             for (int column = 0; column < side; ++column)
@@ -149,7 +179,6 @@ private:
                 const int cell = index(column, row);
                 double steepest = 0.0;
                 to[static_cast<std::size_t>(cell)] = cell;
-                order[static_cast<std::size_t>(cell)] = cell;
                 if (_end[static_cast<std::size_t>(cell)]) continue;
                 for (int y = std::max(row - 1, 0); y <= std::min(row + 1, side - 1); ++y)
                 {
@@ -157,7 +186,7 @@ private:
                     {
                         const double fall = (_height[static_cast<std::size_t>(cell)] -
                                              _height[static_cast<std::size_t>(index(x, y))]) /
-                                            std::max(std::hypot(x - column, y - row), 1.0);
+                                            (x != column && y != row ? diagonal : 1.0);
                         if (fall <= steepest) continue;
                         steepest = fall;
                         to[static_cast<std::size_t>(cell)] = index(x, y);
@@ -165,9 +194,7 @@ private:
                 }
             }
         }
-        std::sort(order.begin(), order.end(),
-                  [&](int a, int b)
-                  { return _height[static_cast<std::size_t>(a)] < _height[static_cast<std::size_t>(b)]; });
+        const std::vector<int> order = upstream(to);
         std::vector<double> water(_height.size(), 1.0);
         for (auto cell = order.rbegin(); cell != order.rend(); ++cell)
             if (to[static_cast<std::size_t>(*cell)] != *cell)
@@ -180,7 +207,7 @@ private:
             _height[cell] += 0.01 * _rise[cell];
             const int next = to[cell];
             if (next == number) continue;
-            const double away = std::hypot(next % side - number % side, next / side - number / side);
+            const double away = next % side != number % side && next / side != number / side ? diagonal : 1.0;
             const double force = 130.0 * power * std::pow(water[cell], share) / away;
             _height[cell] = (_height[cell] + force * _height[static_cast<std::size_t>(next)]) / (1.0 + force);
             // Nothing stands steeper than scree and rock allow.
