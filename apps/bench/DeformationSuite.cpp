@@ -34,7 +34,7 @@ namespace
 
 using osgGeoFX::EffectScene;
 
-constexpr OffscreenView::Size SIZE = {1600, 900};
+constexpr OffscreenView::Size FULL_SIZE = {1600, 900};
 const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
 
 /// One of the paper's situations on Oahu.
@@ -202,7 +202,8 @@ class Bench
 {
 public:
     Bench(const std::filesystem::path& terrain, const Settings& settings)
-        : _terrain(terrain), _pictures(settings.pictures), _rounds(settings.smoke ? 2 : 15),
+        : _terrain(terrain), _pictures(settings.pictures),
+          _size(settings.smoke ? OffscreenView::Size{320, 180} : FULL_SIZE), _rounds(settings.smoke ? 2 : 15),
           _picks(settings.smoke ? 5 : 200)
     {
         std::string error;
@@ -212,9 +213,9 @@ public:
             throw BenchError(terrain.string() + ": it is no terrain database; name one with --terrain FILE.");
         _scene = *scene;
         _root->addChild(_scene.node);
-        _view = std::make_unique<OffscreenView>(SIZE, FIELD_OF_VIEW, _root);
+        _view = std::make_unique<OffscreenView>(_size, FIELD_OF_VIEW, _root);
         _view->camera().setLODScale(
-            osgGeoFX::lodScaleFor(*scene->terrain, osgGeoFX::pixelsPerRadian(SIZE.height, FIELD_OF_VIEW)));
+            osgGeoFX::lodScaleFor(*scene->terrain, osgGeoFX::pixelsPerRadian(_size.height, FIELD_OF_VIEW)));
     }
 
     std::vector<Figure> measure(const Case& each)
@@ -395,8 +396,8 @@ private:
     {
         const osgGeoFX::DeformedView picture(*_scene.effects, _view->camera());
         std::mt19937 engine(1);
-        std::uniform_real_distribution<double> across(0.0, SIZE.width);
-        std::uniform_real_distribution<double> up(0.0, 0.8 * SIZE.height);
+        std::uniform_real_distribution<double> across(0.0, _size.width);
+        std::uniform_real_distribution<double> up(0.0, 0.8 * _size.height);
         std::vector<double> times;
         for (int i = 0; i < _picks; ++i)
         {
@@ -495,6 +496,7 @@ private:
 
     const std::filesystem::path _terrain;
     const std::filesystem::path _pictures;
+    const OffscreenView::Size _size;
     const int _rounds;
     const int _picks;
     osgGeoFX::Scene _scene;

@@ -22,11 +22,11 @@ namespace geofx::bench
 namespace
 {
 
-constexpr int NAMES = 500;
+constexpr std::size_t NAMES = 500;
 /// What 500 names may cost, milliseconds.
 constexpr double ASKED = 2.0;
 
-std::vector<osgGeoFX::MapName> scatter(const osgGeoFX::TerrainRelief& relief)
+std::vector<osgGeoFX::MapName> scatter(const osgGeoFX::TerrainRelief& relief, std::size_t count)
 {
     std::mt19937 random(7);
     const auto within = [&](double low, double high)
@@ -34,7 +34,7 @@ std::vector<osgGeoFX::MapName> scatter(const osgGeoFX::TerrainRelief& relief)
         return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
     };
     std::vector<osgGeoFX::MapName> names;
-    while (names.size() < NAMES)
+    while (names.size() < count)
     {
         osgGeoFX::MapName name;
         name.text = "Place number " + std::to_string(names.size());
@@ -66,16 +66,24 @@ public:
     double seconds = 0.0;
 };
 
-std::vector<Figure> measure(const MapView& view, const Settings& settings,
-                            const std::filesystem::path& terrain)
+/// Names on the ground, which all views have.
+std::vector<osgGeoFX::MapName> placeNames(const Settings& settings, const std::filesystem::path& terrain)
+{
+    announce("putting names on the ground");
+    const MapStage stage(mapViews().front(), terrain);
+    const osgGeoFX::TerrainRelief relief = stage.relief(settings);
+    std::vector<osgGeoFX::MapName> names = scatter(relief, settings.smoke ? 30 : NAMES);
+    osgGeoFX::NamePlacement().place(names, *stage.scene.effects->getTerrain(), stage.ellipsoid(), relief);
+    return names;
+}
+
+std::vector<Figure> measure(const MapView& view, const std::vector<osgGeoFX::MapName>& names,
+                            const Settings& settings, const std::filesystem::path& terrain)
 {
     announce(std::string("drawing names in ") + view.what);
-    const MapStage stage(view, settings, terrain);
-    std::vector<osgGeoFX::MapName> names = scatter(stage.relief);
-    osgGeoFX::NamePlacement().place(names, *stage.scene.effects->getTerrain(), stage.ellipsoid(),
-                                    stage.relief);
+    const MapStage stage(view, terrain);
     const osg::ref_ptr<osgGeoFX::MapLabels> labels =
-        new osgGeoFX::MapLabels(*stage.scene.effects, new osgGeoFX::NameSet(std::move(names)));
+        new osgGeoFX::MapLabels(*stage.scene.effects, new osgGeoFX::NameSet(names));
     // The clock of the drawing stands still, so nothing would fade in.
     osgGeoFX::LabelLayout::Rules rules;
     rules.fading = rules.patience = 0.0;
@@ -126,11 +134,12 @@ std::vector<Figure> run(const Settings& settings)
 {
     const WorkFolder folder(settings.work);
     const std::filesystem::path terrain = terrainToDraw(settings, folder);
+    const std::vector<osgGeoFX::MapName> names = placeNames(settings, terrain);
     std::vector<Figure> figures;
     for (const MapView& view : mapViews())
     {
         if (!settings.wants(view.name)) continue;
-        for (const Figure& figure : measure(view, settings, terrain))
+        for (const Figure& figure : measure(view, names, settings, terrain))
             figures.push_back(figure);
     }
     return figures;

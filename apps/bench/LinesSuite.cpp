@@ -30,7 +30,7 @@ constexpr double STEP = 250.0; ///< between two of them, metres
 constexpr double PER_DEGREE = 111320.0;
 
 /// Roads that wander over the land, as long as those of an island: 500 of up to 10 km each.
-std::vector<osgGeoFX::MapLine> wander(const osgGeoFX::TerrainRelief& relief)
+std::vector<osgGeoFX::MapLine> wander(const osgGeoFX::TerrainRelief& relief, std::size_t count)
 {
     std::mt19937 random(11);
     const auto within = [&](double low, double high)
@@ -48,7 +48,7 @@ std::vector<osgGeoFX::MapLine> wander(const osgGeoFX::TerrainRelief& relief)
     };
     const char* const styles[] = {"motorway", "primary", "residential", "trail", "river"};
     std::vector<osgGeoFX::MapLine> lines;
-    while (lines.size() < LINES)
+    while (lines.size() < count)
     {
         osg::Vec2d place(within(relief.west, relief.east), within(relief.south, relief.north));
         osgGeoFX::MapLine line;
@@ -68,19 +68,35 @@ std::vector<osgGeoFX::MapLine> wander(const osgGeoFX::TerrainRelief& relief)
     return lines;
 }
 
-std::vector<Figure> measure(const MapView& view, const Settings& settings,
+/// The lines on the ground, which all views have.
+struct PlacedLines
+{
+    PlacedLines(const Settings& settings, const std::filesystem::path& terrain)
+    {
+        announce("putting lines on the ground");
+        const MapStage stage(mapViews().front(), terrain);
+        const osgGeoFX::TerrainRelief relief = stage.relief(settings);
+        lines = wander(relief, settings.smoke ? 30 : LINES);
+        const auto start = std::chrono::steady_clock::now();
+        places = osgGeoFX::LinePlacement()
+                     .place(lines, styles, *stage.scene.effects->getTerrain(), stage.ellipsoid(), relief)
+                     .places;
+        seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (places == 0) throw BenchError(terrain.string() + ": no line lies on it.");
+    }
+
+    const std::map<std::string, osgGeoFX::LineStyle> styles = osgGeoFX::usualLineStyles();
+    std::vector<osgGeoFX::MapLine> lines;
+    std::size_t places = 0;
+    double seconds = 0.0;
+};
+
+std::vector<Figure> measure(const MapView& view, const PlacedLines& placed, const Settings& settings,
                             const std::filesystem::path& terrain)
 {
     announce(std::string("drawing lines in ") + view.what);
-    const MapStage stage(view, settings, terrain);
-    std::vector<osgGeoFX::MapLine> lines = wander(stage.relief);
-    const std::map<std::string, osgGeoFX::LineStyle> styles = osgGeoFX::usualLineStyles();
-    const auto start = std::chrono::steady_clock::now();
-    const osgGeoFX::LinePlacement::Result placed = osgGeoFX::LinePlacement().place(
-        lines, styles, *stage.scene.effects->getTerrain(), stage.ellipsoid(), stage.relief);
-    const double placing = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (placed.places == 0) throw BenchError(terrain.string() + ": no line lies on it.");
-    const osg::ref_ptr<osgGeoFX::MapLines> node = new osgGeoFX::MapLines(lines, styles);
+    const MapStage stage(view, terrain);
+    const osg::ref_ptr<osgGeoFX::MapLines> node = new osgGeoFX::MapLines(placed.lines, placed.styles);
     stage.scene.effects->addChild(node);
     const std::unique_ptr<OffscreenView> drawing = stage.draw(*stage.scene.node, MapStage::sizeFor(settings));
     MapStage::save(*drawing, settings, std::string("lines-") + view.name);
@@ -102,10 +118,10 @@ std::vector<Figure> measure(const MapView& view, const Settings& settings,
     char remark[200];
     std::snprintf(remark, sizeof remark,
                   "%zu places, put on the ground in %.2f s; frames of %.1f ms with lines, %.1f ms without",
-                  placed.places, placing, 1000.0 * median(with), 1000.0 * median(without));
+                  placed.places, placed.seconds, 1000.0 * median(with), 1000.0 * median(without));
     figure.remark = remark;
     figure.details = {{"places", placed.places},
-                      {"placingSeconds", placing},
+                      {"placingSeconds", placed.seconds},
                       {"withMilliseconds", 1000.0 * median(with)},
                       {"withoutMilliseconds", 1000.0 * median(without)}};
     return {figure};
@@ -115,11 +131,12 @@ std::vector<Figure> run(const Settings& settings)
 {
     const WorkFolder folder(settings.work);
     const std::filesystem::path terrain = terrainToDraw(settings, folder);
+    const PlacedLines placed(settings, terrain);
     std::vector<Figure> figures;
     for (const MapView& view : mapViews())
     {
         if (!settings.wants(view.name)) continue;
-        for (const Figure& figure : measure(view, settings, terrain))
+        for (const Figure& figure : measure(view, placed, settings, terrain))
             figures.push_back(figure);
     }
     return figures;

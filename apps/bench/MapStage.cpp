@@ -33,7 +33,7 @@ std::vector<MapView> mapViews()
             {"map", "a panorama map", place(-157.753, 21.22, 8000.0, 0.0, -40.0), map}};
 }
 
-MapStage::MapStage(const MapView& view, const Settings& settings, const std::filesystem::path& terrain)
+MapStage::MapStage(const MapView& view, const std::filesystem::path& terrain)
 {
     std::string error;
     std::optional<osgGeoFX::Scene> loaded = osgGeoFX::Scene::load(terrain.string(), error);
@@ -42,11 +42,16 @@ MapStage::MapStage(const MapView& view, const Settings& settings, const std::fil
     if (!scene.reference || !view.place.viewMatrix(*scene.reference, matrix))
         throw BenchError(terrain.string() +
                          ": it has no place for the views; name a database of Oahu with --terrain FILE.");
+    if (view.effect) scene.effects->addEffect(view.effect);
+}
+
+osgGeoFX::TerrainRelief MapStage::relief(const Settings& settings) const
+{
+    std::string error;
     std::optional<osgGeoFX::TerrainRelief> read =
         osgGeoFX::TerrainRelief::read(*scene.node, ellipsoid(), settings.smoke ? 256 : 1024, error);
-    if (!read) throw BenchError(terrain.string() + ": " + error);
-    relief = std::move(*read);
-    if (view.effect) scene.effects->addEffect(view.effect);
+    if (!read) throw BenchError(error);
+    return std::move(*read);
 }
 
 OffscreenView::Size MapStage::sizeFor(const Settings& settings)

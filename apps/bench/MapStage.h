@@ -35,7 +35,7 @@ std::vector<MapView> mapViews();
 /// The terrain of such a view, with its effect. Throws BenchError.
 struct MapStage
 {
-    MapStage(const MapView& view, const Settings& settings, const std::filesystem::path& terrain);
+    MapStage(const MapView& view, const std::filesystem::path& terrain);
 
     const osg::EllipsoidModel* ellipsoid() const { return scene.effects->ground().ellipsoid.get(); }
     /// A drawing of the scene in this view, whose tiles are there.
@@ -46,8 +46,10 @@ struct MapStage
     static constexpr double fieldOfView = 0.5235987755982988; ///< 30 degrees, in radians
     static OffscreenView::Size sizeFor(const Settings& settings);
 
+    /// The terrain's relief. Throws BenchError.
+    osgGeoFX::TerrainRelief relief(const Settings& settings) const;
+
     osgGeoFX::Scene scene;
-    osgGeoFX::TerrainRelief relief;
     osg::Matrixd matrix; ///< from world to eye coordinates
 };
 

@@ -100,7 +100,7 @@ private:
     void show(bool whole)
     {
         osg::Camera& camera = _view->camera();
-        camera.setLODScale(whole ? 1e-9f : _lodScale);
+        camera.setLODScale(!whole ? _lodScale : _settings.smoke ? 0.5f * _lodScale : 1e-9f);
         camera.setCullingMode(whole ? osg::CullSettings::NO_CULLING : osg::CullSettings::DEFAULT_CULLING);
         _view->settle();
     }

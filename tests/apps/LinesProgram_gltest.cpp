@@ -68,7 +68,7 @@ TEST_F(LinesProgram, LieWhereTheirPlacesArePicked)
 {
     const osg::Vec2d from = placeOf(150, 200), to = placeOf(300, 215);
     writeLine("trail", from, to);
-    const std::vector<std::string> usual = {"volcano.tif", "--lines", "lines.geojson", "--style",
+    const std::vector<std::string> usual = {"plain.json", "--lines", "lines.geojson", "--style",
                                             "style.json"};
     const auto with = [&](std::vector<std::string> more)
     {
@@ -126,7 +126,7 @@ TEST_F(LinesProgram, LieWhereTheirPlacesArePicked)
 TEST_F(LinesProgram, AreALayerOfTheirOwn)
 {
     writeLine("trail", placeOf(150, 200), placeOf(300, 215));
-    const ProgramResult result = panorama({"volcano.tif", "-o", "map.png", "--lines", "lines.geojson",
+    const ProgramResult result = panorama({"plain.json", "-o", "map.png", "--lines", "lines.geojson",
                                            "--style", "style.json", "--layers", "layers"});
     ASSERT_EQ(result.exitCode, 0) << result.standardError;
     const osg::ref_ptr<osg::Image> picture = osgDB::readRefImageFile(file("map.png"));
@@ -154,7 +154,7 @@ TEST_F(LinesProgram, AreALayerOfPrints)
     writeLine("trail", placeOf(150, 200), placeOf(300, 215));
     const auto print = [&](const std::string& output, std::vector<std::string> more)
     {
-        more.insert(more.begin(), {"volcano.tif", "-o", output, "--work", "work", "--size", "6.4x3.6in@75dpi",
+        more.insert(more.begin(), {"plain.json", "-o", output, "--work", "work", "--size", "6.4x3.6in@75dpi",
                                    "--quiet", "--lines", "lines.geojson", "--style", "style.json"});
         const ProgramResult result = run("osggeofx_panorama", more);
         EXPECT_EQ(result.exitCode, 0) << result.standardError;
@@ -173,13 +173,17 @@ TEST_F(LinesProgram, AreALayerOfPrints)
             const osg::Vec4 color = picture->getColor(column, row);
             const bool magenta = color.r() > 0.9f && color.g() < 0.2f && color.b() > 0.9f;
             drawn += magenta ? 1 : 0;
-            EXPECT_EQ(layer->getColor(column, row).a() > 0.8f, magenta) << x << ", " << y;
+            // Edges are anything between.
+            const float opacity = layer->getColor(column, row).a();
+            EXPECT_TRUE(opacity <= 0.97f || magenta) << x << ", " << y;
+            EXPECT_TRUE(opacity >= 0.5f || !magenta) << x << ", " << y;
         }
     EXPECT_GT(drawn, 150);
     // Without layers the scene draws the lines; they lie at the same pixels.
     const osg::ref_ptr<osg::Image> usual = print("usual.png", {});
     ASSERT_TRUE(usual);
-    EXPECT_NEAR(magentaIn(*usual), drawn, 0.4 * drawn);
+    EXPECT_GT(magentaIn(*usual), 0.6 * drawn);
+    EXPECT_LT(magentaIn(*usual), 3.0 * drawn);
 }
 
 // A web page has lines even where the picture has them as vectors.
@@ -188,7 +192,7 @@ TEST_F(LinesProgram, AreOnTheWebPageBesideVectors)
     writeLine("trail", placeOf(150, 200), placeOf(300, 215));
     const auto linesOf = [&](const std::string& output, std::vector<std::string> more)
     {
-        more.insert(more.begin(), {"volcano.tif", "-o", output, "--lines", "lines.geojson", "--style",
+        more.insert(more.begin(), {"plain.json", "-o", output, "--lines", "lines.geojson", "--style",
                                    "style.json", "--web", "page"});
         const ProgramResult result = panorama(more);
         EXPECT_EQ(result.exitCode, 0) << result.standardError;
@@ -200,8 +204,9 @@ TEST_F(LinesProgram, AreOnTheWebPageBesideVectors)
     };
     const int usual = linesOf("map.png", {});
     EXPECT_GT(usual, 150);
-    EXPECT_NEAR(linesOf("map.png", {"--svg", "map.svg"}), usual, 0.4 * usual);
-    EXPECT_NEAR(linesOf("map.pdf", {}), usual, 0.4 * usual);
+    // The GPU's lines have hard edges here, and those of vectors soft ones.
+    EXPECT_GT(linesOf("map.png", {"--svg", "map.svg"}), 0.5 * usual);
+    EXPECT_GT(linesOf("map.pdf", {}), 0.5 * usual);
 }
 
 // A PDF is the picture with its names and lines, which are letters and paths.
@@ -218,7 +223,7 @@ TEST_F(LinesProgram, APdfIsThePictureWithVectors)
     write("names.geojson", names);
     const auto make = [&](const std::string& output)
     {
-        return run("osggeofx_panorama", {"volcano.tif", "-o", output, "--lines", "lines.geojson", "--labels",
+        return run("osggeofx_panorama", {"plain.json", "-o", output, "--lines", "lines.geojson", "--labels",
                                          "names.geojson", "--style", "style.json", "--samples", "0",
                                          "--quiet", "--work", "work", "--size", "6.4x3.6in@75dpi"});
     };
@@ -286,10 +291,11 @@ TEST_F(LinesProgram, AreOnPicturesOfAnyScene)
 
 TEST_F(LinesProgram, FaultsAreSentences)
 {
+    makePlain();
     writeLine("trail", {100.0, -80.0}, {100.1, -80.0});
     const auto faultOf = [&](std::vector<std::string> more)
     {
-        more.insert(more.begin(), {"volcano.tif", "-o", "map.png"});
+        more.insert(more.begin(), {"plain.json", "-o", "map.png"});
         const ProgramResult result = panorama(more);
         EXPECT_EQ(result.exitCode, 2) << result.standardError;
         EXPECT_FALSE(fs::exists(file("map.png")));
@@ -301,7 +307,7 @@ TEST_F(LinesProgram, FaultsAreSentences)
     };
     has(faultOf({"--lines", "lines.geojson"}), "lie beside the terrain");
     has(faultOf({"--lines", "none.gpkg"}), "none.gpkg");
-    const ProgramResult bits = panorama({"volcano.tif", "-o", "map.jpg", "--bits", "16"});
+    const ProgramResult bits = panorama({"plain.json", "-o", "map.jpg", "--bits", "16"});
     EXPECT_EQ(bits.exitCode, 2);
     has(bits.standardError, "write png, tiff or exr");
     has(faultOf({"--geojson", "picture.geojson"}), "give some with --labels or --lines");

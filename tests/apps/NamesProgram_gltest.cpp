@@ -52,7 +52,7 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
     write(
         "style.json",
         R"({"names": {"hut": {"manner": "beside", "dot": 3, "color": "#ff00ff", "halo": "#ff00ff", "size": 20}}})");
-    const ProgramResult vectors = panorama({"volcano.tif", "-o", "map.png", "--labels", "names.geojson",
+    const ProgramResult vectors = panorama({"plain.json", "-o", "map.png", "--labels", "names.geojson",
                                             "--style", "style.json", "--svg", "names.svg"});
     ASSERT_EQ(vectors.exitCode, 0) << vectors.standardError;
     EXPECT_EQ(vectors.standardError, "");
@@ -66,7 +66,7 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
     EXPECT_NE(svg.find("xlink:href=\"map.png\""), std::string::npos);
 
     const ProgramResult raster =
-        panorama({"volcano.tif", "-o", "named.png", "--labels", "names.geojson", "--style", "style.json"});
+        panorama({"plain.json", "-o", "named.png", "--labels", "names.geojson", "--style", "style.json"});
     ASSERT_EQ(raster.exitCode, 0) << raster.standardError;
     const osg::ref_ptr<osg::Image> plain = osgDB::readRefImageFile(file("plain.png"));
     const osg::ref_ptr<osg::Image> named = osgDB::readRefImageFile(file("named.png"));
@@ -130,10 +130,11 @@ TEST_F(NamesProgram, IsOnPicturesOfAnyScene)
 
 TEST_F(NamesProgram, FaultsAreSentences)
 {
+    makePlain();
     writeNames(feature("Elsewhere", "", {100.0, -80.0}));
     const auto faultOf = [&](std::vector<std::string> more)
     {
-        more.insert(more.begin(), {"volcano.tif", "-o", "map.png"});
+        more.insert(more.begin(), {"plain.json", "-o", "map.png"});
         const ProgramResult result = panorama(more);
         EXPECT_EQ(result.exitCode, 2) << result.standardError;
         EXPECT_FALSE(fs::exists(file("map.png")));

@@ -198,6 +198,8 @@ TEST_P(EverythingAtOnce, IsThePictureWithoutCulling)
             if (HasFatalFailure()) return;
             if (!harness) harness = std::make_unique<CullHarness>(context(), _scene, WIDTH, HEIGHT);
             harness->setScene(_scene);
+            // Fewer tiles, for the time that each change has.
+            harness->camera().setLODScale(fullTest() ? 1.0f : 4.0f);
         }
         addEffects(random);
         if (HasFatalFailure()) return;

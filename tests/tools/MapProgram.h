@@ -63,11 +63,19 @@ protected:
         std::ifstream stream(file(name), std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     }
+    /// The map without names and lines: plain.png, and the recipe plain.json, which spares choosing the view again.
+    void makePlain()
+    {
+        if (std::filesystem::exists(file("plain.json"))) return;
+        const ProgramResult result = panorama({"volcano.tif", "-o", "plain.png"});
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+    }
     /// The place that a pixel of the plain map shows, degrees.
     osg::Vec2d placeOf(int x, int y)
     {
-        const ProgramResult result = panorama(
-            {"volcano.tif", "-o", "plain.png", "--pick", std::to_string(x) + "," + std::to_string(y)});
+        makePlain();
+        const ProgramResult result =
+            panorama({"plain.json", "-o", "pick.png", "--pick", std::to_string(x) + "," + std::to_string(y)});
         EXPECT_EQ(result.exitCode, 0) << result.standardError;
         osg::Vec2d place;
         EXPECT_EQ(std::sscanf(result.standardOutput.c_str(), "%*[^:]: longitude %lf, latitude %lf",
