@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include "names/SceneLines.h"
 #include "names/SceneNames.h"
 
 #include <osgGeoFX/labels/LabelPicture.h>
@@ -37,6 +36,9 @@ public:
         return _layered && _placedLines ? &*_placedLines : nullptr;
     }
 
+    /// A text that differs where other names, lines or styles do.
+    std::string digest() const { return _map.digest(); }
+
     /// What people should know of names and lines, as sentences.
     const std::vector<std::string>& notices() const { return _notices; }
 
@@ -60,7 +62,7 @@ private:
     bool onPicture() const { return _options.svg.empty() && !isPdf(_output); }
     bool wantsLineVectors() const
     {
-        return _lines && (_layered || !onPicture() || !_options.geoJson.empty());
+        return !_map.lines.empty() && (_layered || !onPicture() || !_options.geoJson.empty());
     }
     void readDepths();
     void takeLines(const osg::Camera& camera, double scale);
@@ -73,7 +75,7 @@ private:
     const bool _layered;
     std::vector<std::string> _notices;
     osg::ref_ptr<osgGeoFX::NameSet> _names;
-    std::optional<SceneLines> _lines;
+    osgGeoFX::MapContents _map;
     osg::ref_ptr<osgGeoFX::DepthReader> _reader;
     std::optional<osgGeoFX::LabelPicture> _placedNames;
     std::optional<osgGeoFX::LinePicture> _placedLines;
