@@ -153,8 +153,8 @@ private:
                 pathIfAny(node, "style"),
                 pathIfAny(node, "fontFile"),
                 attributeOf(node, "font"),
-                vectors(node, "names"),
-                vectors(node, "lines")};
+                vectors(node, "mapNames"),
+                vectors(node, "mapLines")};
     }
 
     std::vector<SceneMap::Vectors> vectors(xmlNode* parent, const char* name) const
