@@ -167,7 +167,8 @@ int main(int argc, char** argv)
         scene->effects->addEffect(effect);
     scene->effects->listenTo(*scene->guard);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
-    if (const std::string fault = geofx::names::faultOf(nameOptions, arguments[1]); !fault.empty()) return refuse(fault);
+    if (const std::string fault = geofx::names::faultOf(nameOptions, arguments[1]); !fault.empty())
+        return refuse(fault);
     try
     {
         std::vector<std::string> notices;

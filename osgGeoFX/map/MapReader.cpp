@@ -95,8 +95,7 @@ bool MapReader::placeNames(MapContents& contents, const TerrainRelief& relief,
         placement.place(_names, *_scene.getTerrain(), _ellipsoid.get(), relief);
     if (_names.empty())
     {
-        error = "All " + all +
-                " names lie beside the terrain; check the file's coordinate reference system.";
+        error = "All " + all + " names lie beside the terrain; check the file's coordinate reference system.";
         return false;
     }
     if (result.outside > 0)

@@ -15,7 +15,8 @@ osg::ref_ptr<osg::Node> loadMap(const SceneMap& map, EffectScene& scene)
     if (!answer)
         fail(map.place,
              "names and lines are put onto scenes by the OSG plugin osgdb_geofxmaps, which was not found or "
-             "lacks its libraries (osgGeoFXMaps, Pango); put its folder on OSG_LIBRARY_PATH, or leave the <map> "
+             "lacks its libraries (osgGeoFXMaps, Pango); put its folder on OSG_LIBRARY_PATH, or leave the "
+             "<map> "
              "out.");
     if (!request.done) fail(request.fault, *answer);
     for (const std::string& notice : request.notices)

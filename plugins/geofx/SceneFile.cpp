@@ -149,12 +149,8 @@ private:
 
     SceneMap mapOf(xmlNode* node) const
     {
-        return {_xml.place(node),
-                pathIfAny(node, "style"),
-                pathIfAny(node, "fontFile"),
-                attributeOf(node, "font"),
-                vectors(node, "mapNames"),
-                vectors(node, "mapLines")};
+        return {_xml.place(node),          pathIfAny(node, "style"),  pathIfAny(node, "fontFile"),
+                attributeOf(node, "font"), vectors(node, "mapNames"), vectors(node, "mapLines")};
     }
 
     std::vector<SceneMap::Vectors> vectors(xmlNode* parent, const char* name) const
@@ -259,9 +255,9 @@ SceneResult parseEngineScene(const std::string& text, const std::string& file, c
         result.errors.push_back(scene.backgroundPlace.message(
             "the background is the program's; expected: no <background> in an .earth file."));
     if (scene.map)
-        result.errors.push_back(scene.map->place.message(
-            "names and lines are put on terrains that the scene itself names; expected: layers of the osgEarth map "
-            "with annotations or features instead."));
+        result.errors.push_back(scene.map->place.message("names and lines are put on terrains that the scene "
+                                                         "itself names; expected: layers of the osgEarth map "
+                                                         "with annotations or features instead."));
     if (!result.errors.empty()) result.scene.reset();
     return result;
 }

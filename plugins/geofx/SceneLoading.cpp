@@ -219,7 +219,7 @@ std::string SceneTerrain::ask(const ScenePlace& place, const std::string& servic
 }
 
 std::optional<std::string> SceneTerrain::askIfAny(const std::string& service, void* request,
-                                                 const std::string& plugin)
+                                                  const std::string& plugin)
 {
     osgDB::ReaderWriter* data = osgDB::Registry::instance()->getReaderWriterForExtension(plugin);
     if (!data) return std::nullopt;

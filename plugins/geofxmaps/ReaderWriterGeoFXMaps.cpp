@@ -29,8 +29,9 @@ public:
         if (name != "map" || !options) return ReadResult::FILE_NOT_HANDLED;
         // Requests are C++ objects, which both plugins must lay out alike.
         if (options->getPluginStringData("version") != GEOFX_VERSION)
-            return std::string("The OSG plugins osgdb_geofx and osgdb_geofxmaps are of different versions; put the "
-                               "folder of one osgGeoFX on OSG_LIBRARY_PATH.");
+            return std::string(
+                "The OSG plugins osgdb_geofx and osgdb_geofxmaps are of different versions; put the "
+                "folder of one osgGeoFX on OSG_LIBRARY_PATH.");
         auto* const request = static_cast<MapRequest*>(const_cast<void*>(options->getPluginData("request")));
         if (!request) return ReadResult::FILE_NOT_HANDLED;
         std::string error;
@@ -56,7 +57,8 @@ private:
         for (const SceneMap::Vectors& lines : map.lines)
         {
             request.fault = lines.file.place;
-            if (!reader.readLines(lines.file.path, lines.layer, contents.styles.lineField, error)) return false;
+            if (!reader.readLines(lines.file.path, lines.layer, contents.styles.lineField, error))
+                return false;
         }
         request.fault = map.place;
         if (!reader.place(contents, request.notices, error)) return false;

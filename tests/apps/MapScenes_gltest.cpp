@@ -33,7 +33,8 @@ protected:
         MapProgram::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
         osgDB::Registry::instance()->getLibraryFilePathList().push_front(GEOFX_BUILD_DIR "/lib");
-        const osg::Vec2d hut = placeOf(240, 150), from = placeOf(150, 200), to = placeOf(300, 215);
+        const osg::Vec2d from = placeOf(200, 200), to = from + osg::Vec2d(0.02, 0.0),
+                         hut = from + osg::Vec2d(0.005, 0.01);
         char text[400];
         std::snprintf(
             text, sizeof(text),
@@ -56,8 +57,8 @@ protected:
         ASSERT_FALSE(_terrain.empty());
         // From above, so that all is in sight.
         std::snprintf(text, sizeof(text),
-                      "<homeView longitude='%.6f' latitude='%.6f' height='30000' heading='20' pitch='-70'/>",
-                      0.5 * (from.x() + to.x()), 0.5 * (from.y() + to.y()));
+                      "<homeView longitude='%.6f' latitude='%.6f' height='30000' heading='20' pitch='-90'/>",
+                      hut.x(), hut.y());
         _view = text;
         write("plain.geofx", sceneWith(""));
         write("map.geofx", sceneWith("<map style='style.json'><mapNames file='names.geojson'/><mapLines "
@@ -95,8 +96,8 @@ protected:
         return image ? magentaIn(*image) : 0;
     }
 
-    const std::vector<std::string> _options = {"--labels", "names.geojson", "--lines",
-                                               "lines.geojson", "--style", "style.json"};
+    const std::vector<std::string> _options = {"--labels",      "names.geojson", "--lines",
+                                               "lines.geojson", "--style",       "style.json"};
     std::string _terrain, _view;
 };
 
@@ -121,8 +122,8 @@ TEST_F(MapScenes, PicturesAreThoseOfTheOptions)
     EXPECT_TRUE(bytes("map.svg") == bytes("options.svg"));
     const std::string print = rendered("map.geofx", "print.tif", {}, "6.4x3.6in@75dpi");
     EXPECT_GT(magentaIn("print.tif"), 400);
-    EXPECT_EQ(magentaIn("print.tif"), (rendered("plain.geofx", "other.tif", _options, "6.4x3.6in@75dpi"),
-                                       magentaIn("other.tif")));
+    EXPECT_EQ(magentaIn("print.tif"),
+              (rendered("plain.geofx", "other.tif", _options, "6.4x3.6in@75dpi"), magentaIn("other.tif")));
 
     // The styles of the option are for the scene's, too.
     write("small.json", R"({"names": {"hut": {"size": 12}}, "lines": {"trail": {"width": 3, "least": 3}}})");
@@ -156,8 +157,7 @@ TEST_F(MapScenes, PicturesAreThoseOfTheOptions)
 // A panorama map of a scene file has the scene's names and lines.
 TEST_F(MapScenes, PanoramasHaveThemToo)
 {
-    const auto made = [&](const std::string& scene, const std::string& output,
-                          std::vector<std::string> more)
+    const auto made = [&](const std::string& scene, const std::string& output, std::vector<std::string> more)
     {
         more.insert(more.begin(), {scene, "-o", output});
         const ProgramResult result = panorama(more);

@@ -70,8 +70,8 @@ protected:
             new osg::CoordinateSystemNode("WKT", geofx::test::wktOf(32604));
         root->addChild(ground.mesh(80));
         ASSERT_TRUE(osgDB::writeNodeFile(*root, (_folder / "terrain.osgb").string()));
-        _folder.write("names.geojson", collection(point("Hut", "hut", 1200, 2300) + "," +
-                                                  point("Town", "town", -3000, 1700)));
+        _folder.write("names.geojson",
+                      collection(point("Hut", "hut", 1200, 2300) + "," + point("Town", "town", -3000, 1700)));
         _folder.write("lines.geojson", collection(line("river", 2000)));
     }
 
@@ -124,8 +124,9 @@ const std::string both = "<mapNames file='names.geojson'/><mapLines file='lines.
 TEST_F(SceneMap, SaysWhichFilesAndHowTheyLook)
 {
     const SceneResult result = parseScene(
-        textOf("style='s.json' font='Noto Sans, DejaVu Sans' fontFile='f.ttf'",
-               "<mapNames file='a.gpkg' layer='peaks'/><mapLines file='r.geojson'/><mapNames file='/b.gpkg'/>"),
+        textOf(
+            "style='s.json' font='Noto Sans, DejaVu Sans' fontFile='f.ttf'",
+            "<mapNames file='a.gpkg' layer='peaks'/><mapLines file='r.geojson'/><mapNames file='/b.gpkg'/>"),
         "a.geofx", "/scenes");
     ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
     ASSERT_TRUE(result.scene->map);
@@ -140,15 +141,15 @@ TEST_F(SceneMap, SaysWhichFilesAndHowTheyLook)
     EXPECT_EQ(map.lines[0].file.path, "/scenes/r.geojson");
     EXPECT_EQ(map.lines[0].file.place.line, 4);
 
-    for (const char* wrong :
-         {"<map/>", "<map><mapNames/></map>", "<map><mapNames file=''/></map>", "<map><peaks file='a'/></map>",
-          "<map><mapNames file='a' size='2'/></map>", "<map color='red'><mapNames file='a'/></map>",
-          "<map><mapNames file='a'/></map><map><mapNames file='a'/></map>"})
+    for (const char* wrong : {"<map/>", "<map><mapNames/></map>", "<map><mapNames file=''/></map>",
+                              "<map><peaks file='a'/></map>", "<map><mapNames file='a' size='2'/></map>",
+                              "<map color='red'><mapNames file='a'/></map>",
+                              "<map><mapNames file='a'/></map><map><mapNames file='a'/></map>"})
     {
-        const SceneResult refused = parseScene(
-            "<geofx version='1'><terrain><database file='terrain.osgb'/></terrain>\n" + std::string(wrong) +
-                "</geofx>",
-            "a.geofx", "/scenes");
+        const SceneResult refused =
+            parseScene("<geofx version='1'><terrain><database file='terrain.osgb'/></terrain>\n" +
+                           std::string(wrong) + "</geofx>",
+                       "a.geofx", "/scenes");
         EXPECT_FALSE(refused.scene) << wrong;
         ASSERT_FALSE(refused.errors.empty()) << wrong;
         EXPECT_EQ(refused.errors[0].rfind("a.geofx:2: <", 0), 0u) << refused.errors[0];
@@ -185,8 +186,7 @@ TEST_F(SceneMap, NamesStandBesideTheSceneAndLinesBelowIt)
             const osg::Vec2d place =
                 name.text == "Hut" ? osg::Vec2d(1200.0, 2300.0) : osg::Vec2d(-3000.0, 1700.0);
             ASSERT_EQ(name.places.size(), 1u);
-            EXPECT_LT(
-                (name.places[0] - osg::Vec3d(place, heightAt(place.x(), place.y()))).length(), 1.0)
+            EXPECT_LT((name.places[0] - osg::Vec3d(place, heightAt(place.x(), place.y()))).length(), 1.0)
                 << name.text;
         }
         ASSERT_EQ(lines->lines().size(), 1u);
@@ -302,10 +302,10 @@ TEST_F(SceneMap, FaultsAreSentencesWithTheirPlace)
     expectFault(scene("fontFile='none.ttf'", both), "3: <map>: ", "attribute \"fontFile\"");
     _folder.write("bare.geojson",
                   collection(R"({"type":"Feature","properties":{"name":"Nowhere"},"geometry":null})"));
-    expectFault(scene("", "\n<mapNames file='bare.geojson'/>"), "5: <mapNames>: ",
-                "bare.geojson: it has no feature with a name and a place");
-    expectFault(scene("", both + "\n<mapLines file='bare.geojson'/>"), "5: <mapLines>: ",
-                "bare.geojson: it has no lines");
+    expectFault(scene("", "\n<mapNames file='bare.geojson'/>"),
+                "5: <mapNames>: ", "bare.geojson: it has no feature with a name and a place");
+    expectFault(scene("", both + "\n<mapLines file='bare.geojson'/>"),
+                "5: <mapLines>: ", "bare.geojson: it has no lines");
     expectFault(scene("", "<mapNames file='names.geojson' layer='none'/>"), "4: <mapNames>: ", "none");
     _folder.write("text.geojson", "no vectors");
     expectFault(scene("", "<mapNames file='text.geojson'/>"), "4: <mapNames>: ", "text.geojson");
@@ -316,9 +316,11 @@ TEST_F(SceneMap, FaultsAreSentencesWithTheirPlace)
     _folder.write("font.ttf", "no font");
     expectFault(scene("fontFile='font.ttf'", both), "3: <map>: ", "is not a font");
     _folder.write("away.geojson", collection(point("Away", "", 400000, 400000)));
-    expectFault(scene("", "<mapNames file='away.geojson'/>"), "3: <map>: ", "All 1 names lie beside the terrain");
+    expectFault(scene("", "<mapNames file='away.geojson'/>"),
+                "3: <map>: ", "All 1 names lie beside the terrain");
     _folder.write("away.geojson", collection(line("river", 400000)));
-    expectFault(scene("", "<mapLines file='away.geojson'/>"), "3: <map>: ", "All 1 lines lie beside the terrain");
+    expectFault(scene("", "<mapLines file='away.geojson'/>"),
+                "3: <map>: ", "All 1 lines lie beside the terrain");
 }
 
 TEST_F(SceneMap, WhatLiesBesideTheTerrainIsSaidAndLeftOut)
@@ -366,16 +368,18 @@ TEST_F(SceneMap, WithoutThePluginASentenceSaysWhatToDo)
     const auto alone =
         geofx::test::runProgram({geofx::test::builtProgram("read_scene"), scene.string()}, options);
     EXPECT_EQ(alone.exitCode, 1);
-    EXPECT_NE(alone.standardError.find("a.geofx:3: <map>: names and lines are put onto scenes by the OSG plugin "
-                                       "osgdb_geofxmaps, which was not found"),
-              std::string::npos)
+    EXPECT_NE(
+        alone.standardError.find("a.geofx:3: <map>: names and lines are put onto scenes by the OSG plugin "
+                                 "osgdb_geofxmaps, which was not found"),
+        std::string::npos)
         << alone.standardError;
     // The same with it, but without the one that reads vector data.
     fs::create_symlink(found.parent_path() / "osgdb_geofxmaps.so", plugins / "osgdb_geofxmaps.so");
     const auto without =
         geofx::test::runProgram({geofx::test::builtProgram("read_scene"), scene.string()}, options);
     EXPECT_EQ(without.exitCode, 1);
-    EXPECT_NE(without.standardError.find("a.geofx:4: <mapNames>: "), std::string::npos) << without.standardError;
+    EXPECT_NE(without.standardError.find("a.geofx:4: <mapNames>: "), std::string::npos)
+        << without.standardError;
     EXPECT_NE(without.standardError.find("osgdb_geofxdata, which reads vector data, was not found"),
               std::string::npos)
         << without.standardError;
@@ -403,7 +407,8 @@ TEST_F(SceneMap, FilesOfOsgKeepTheRest)
                 EXPECT_TRUE(osgDB::writeNodeFile(*node, saved));
                 again = osgDB::readRefNodeFile(saved);
             });
-        EXPECT_TRUE(std::any_of(messages.begin(), messages.end(), [](const std::string& message)
+        EXPECT_TRUE(std::any_of(messages.begin(), messages.end(),
+                                [](const std::string& message)
                                 { return message.find("osgGeoFX::MapLabels") != std::string::npos; }))
             << testing::PrintToString(messages);
         ASSERT_TRUE(again);

@@ -106,8 +106,7 @@ TEST(SceneReach, EveryAttributeThatNamesAFileIsLookedAt)
         {scene(database, "", "<map><mapNames file='a'/><mapLines file" + out + "/></map>"),
          "3: <mapLines>: file"},
         {scene(database, "", "<map style" + out + "><mapNames file='a'/></map>"), "3: <map>: style"},
-        {scene(database, "", "<map fontFile" + out + "><mapNames file='a'/></map>"),
-         "3: <map>: fontFile"},
+        {scene(database, "", "<map fontFile" + out + "><mapNames file='a'/></map>"), "3: <map>: fontFile"},
     };
     for (const auto& [text, begins] : cases)
     {
