@@ -113,8 +113,6 @@ public:
         geometry->setInitialBound(box);
         const osg::ref_ptr<osg::MatrixTransform> place =
             new osg::MatrixTransform(osg::Matrixd::translate(_origin));
-        // OSG's optimizer would put it into the vertices, which are floats.
-        place->setDataVariance(osg::Object::DYNAMIC);
         place->addChild(geometry);
         return place;
     }
