@@ -318,7 +318,7 @@ void takeOptions(const Arguments& arguments, Recipe& recipe)
     take(arguments.names.font, recipe.font);
     if (!arguments.names.files.empty()) recipe.labels = arguments.names.files;
     if (!arguments.names.lines.empty()) recipe.lines = arguments.names.lines;
-    const std::string fault = geofx::names::faultOf(mapOptions(arguments, recipe));
+    const std::string fault = geofx::names::faultOf(mapOptions(arguments, recipe), recipe.terrain);
     if (!fault.empty()) throw Failure(fault);
     for (const std::string& file : {arguments.names.svg, arguments.names.geoJson})
     {
@@ -464,7 +464,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
     map.prepare(options, view);
     options.work = fs::path(arguments.output).replace_extension().string() + ".tiles";
     options.recipe = recipe.text() + geofx::names::ageOf(ground) +
-                     geofx::names::agesOf(mapOptions(arguments, recipe)) +
+                     geofx::names::agesOf(mapOptions(arguments, recipe)) + map.digest() +
                      geofx::names::PictureMap::rasterOf(arguments.output);
     options.metadata = {{"Software", "osgGeoFX osggeofx_panorama"}, {"ImageDescription", recipe.text()}};
     if (page) options.plain = page->plain();

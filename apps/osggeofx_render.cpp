@@ -360,7 +360,7 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
     map.prepare(options, view);
     options.work = std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
     options.recipe = arguments.scene + geofx::names::ageOf(arguments.scene) +
-                     geofx::names::agesOf(arguments.names) +
+                     geofx::names::agesOf(arguments.names) + map.digest() +
                      geofx::names::PictureMap::rasterOf(arguments.output);
     for (const std::string& effect : arguments.effects)
         options.recipe += "; " + effect;
@@ -396,7 +396,7 @@ void run(Arguments& arguments)
 
     const osg::ref_ptr<osgDB::Options> reading =
         new osgDB::Options(arguments.allowOutside ? "allowOutside" : "");
-    const std::string mapFault = geofx::names::faultOf(arguments.names);
+    const std::string mapFault = geofx::names::faultOf(arguments.names, arguments.scene);
     if (!mapFault.empty()) throw Failure(badInput, mapFault);
     for (const std::string& file : {arguments.names.svg, arguments.names.geoJson})
     {

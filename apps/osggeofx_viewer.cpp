@@ -2,10 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_viewer: osgviewer, made for terrain.
-#include "names/SceneLines.h"
+#include "names/SceneNames.h"
 #include "viewer/ViewerSetup.h"
 
-#include <osgGeoFX/labels/MapLabels.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -17,6 +16,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <stdexcept>
+#include <vector>
 
 namespace
 {
@@ -41,7 +41,7 @@ void describe(osg::ApplicationUsage& usage)
         "says when), Shift and the left button drag "
         "it. F11 makes a panorama map of any terrain, F12 saves it as a scene file and as a recipe of "
         "osggeofx_panorama. k takes a painter's liberty with the ground below the pointer. A panorama map "
-        "has a manipulator of its own, key 0.");
+        "has a manipulator of its own, key 0. n hides and shows names, r lines.");
     usage.setCommandLineUsage("osggeofx_viewer [options] FILE ...");
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
@@ -167,25 +167,14 @@ int main(int argc, char** argv)
         scene->effects->addEffect(effect);
     scene->effects->listenTo(*scene->guard);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
-    if (const std::string fault = geofx::names::faultOf(nameOptions); !fault.empty()) return refuse(fault);
+    if (const std::string fault = geofx::names::faultOf(nameOptions, arguments[1]); !fault.empty())
+        return refuse(fault);
     try
     {
-        std::string notice;
-        if (!nameOptions.lines.empty())
-        {
-            geofx::names::SceneLines::read(nameOptions, *scene, notice)
-                .addTo(*scene, geofx::names::usualHeight);
-            if (!notice.empty()) std::cerr << "osggeofx_viewer: " << notice << std::endl;
-        }
-        if (!nameOptions.files.empty())
-        {
-            const osg::ref_ptr<osgGeoFX::NameSet> names = geofx::names::read(nameOptions, *scene, notice);
-            if (!notice.empty()) std::cerr << "osggeofx_viewer: " << notice << std::endl;
-            const osg::ref_ptr<osg::Group> both = new osg::Group;
-            both->addChild(scene->node);
-            both->addChild(new osgGeoFX::MapLabels(*scene->effects, names));
-            scene->node = both;
-        }
+        std::vector<std::string> notices;
+        geofx::names::showMap(nameOptions, *scene, notices);
+        for (const std::string& notice : notices)
+            std::cerr << "osggeofx_viewer: " << notice << std::endl;
     }
     catch (const std::runtime_error& fault)
     {

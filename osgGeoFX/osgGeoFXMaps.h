@@ -22,6 +22,11 @@
 #include <osgGeoFX/lines/MapLine.h>
 #include <osgGeoFX/lines/MapLines.h>
 
+#include <osgGeoFX/map/MapContents.h>
+#include <osgGeoFX/map/MapKeys.h>
+#include <osgGeoFX/map/MapReader.h>
+#include <osgGeoFX/map/MapStyles.h>
+
 #include <osgGeoFX/print/PictureLayers.h>
 #include <osgGeoFX/print/PictureMesh.h>
 #include <osgGeoFX/print/PicturePrint.h>

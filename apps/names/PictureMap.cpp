@@ -28,19 +28,10 @@ PictureMap::PictureMap(const Options& options, const std::string& output, const 
                        osgGeoFX::Scene& scene, bool layered)
     : _options(options), _output(output), _size(size), _scene(scene), _layered(layered)
 {
-    std::string notice;
-    if (!options.files.empty())
-    {
-        _names = read(options, scene, notice);
-        if (!notice.empty()) _notices.push_back(notice);
-        _names->setScale(size.height / usualHeight);
-    }
-    if (!options.lines.empty())
-    {
-        _lines = SceneLines::read(options, scene, notice);
-        if (!notice.empty()) _notices.push_back(notice);
-        if (onPicture() && !layered) _lines->addTo(scene, size.height);
-    }
+    _map = takeMap(options, scene, _notices);
+    _names = _map.makeNames();
+    if (_names) _names->setScale(size.height / usualHeight);
+    if (onPicture() && !layered) _map.addLinesTo(*scene.effects, size.height / usualHeight);
 }
 
 bool PictureMap::isPdf(const std::string& output)
@@ -64,7 +55,7 @@ void PictureMap::prepare()
 
 void PictureMap::takeLines(const osg::Camera& camera, const osgGeoFX::DepthReader& reader, double scale)
 {
-    _placedLines.emplace(_lines->lines, _lines->styles, *_scene.effects, camera, reader.pictures(), scale);
+    _placedLines.emplace(_map.lines, _map.styles.lines, *_scene.effects, camera, reader.pictures(), scale);
 }
 
 /// Lines of a print, by the depths of a smaller picture.

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include "names/SceneLines.h"
 #include "names/SceneNames.h"
 
 #include <osgGeoFX/labels/LabelPicture.h>
@@ -18,7 +17,7 @@
 namespace geofx::names
 {
 
-/** The names and lines of a program's pictures: on the picture itself, or as vectors in files beside it, as the options say.
+/** The names and lines of a program's pictures, of its options and of its scene: on the picture itself, or as vectors in files beside it, as the options say.
 
     Make it before the pictures' renderer, since it adds to the scene. All of it throws std::runtime_error with a sentence. */
 class PictureMap
@@ -36,6 +35,9 @@ public:
     {
         return _layered && _placedLines ? &*_placedLines : nullptr;
     }
+
+    /// A text that differs where other names, lines or styles do.
+    std::string digest() const { return _map.digest(); }
 
     /// What people should know of names and lines, as sentences.
     const std::vector<std::string>& notices() const { return _notices; }
@@ -61,7 +63,7 @@ private:
     bool onPicture() const { return _options.svg.empty() && !isPdf(_output); }
     bool wantsLineVectors() const
     {
-        return _lines && (_layered || !onPicture() || !_options.geoJson.empty());
+        return !_map.lines.empty() && (_layered || !onPicture() || !_options.geoJson.empty());
     }
     void takeLines(const osg::Camera& camera, const osgGeoFX::DepthReader& reader, double scale);
     void takeLines(const osgGeoFX::SceneRenderer::Options& options, const osg::Matrixd& view);
@@ -76,7 +78,7 @@ private:
     const bool _layered;
     std::vector<std::string> _notices;
     osg::ref_ptr<osgGeoFX::NameSet> _names;
-    std::optional<SceneLines> _lines;
+    osgGeoFX::MapContents _map;
     osg::ref_ptr<osgGeoFX::DepthReader> _reader;
     std::optional<osgGeoFX::LabelPicture> _placedNames;
     std::optional<osgGeoFX::LinePicture> _placedLines;

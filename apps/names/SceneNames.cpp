@@ -2,21 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "names/SceneNames.h"
 
-#include "names/StyleFile.h"
-
-#include <osgGeoFX/labels/NameFile.h>
-#include <osgGeoFX/panorama/TerrainRelief.h>
+#include <osgGeoFX/map/MapReader.h>
 
 #include <CLI/CLI.hpp>
-#include <osg/Group>
+#include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 
-#include <algorithm>
 #include <filesystem>
-#include <iterator>
-#include <map>
 #include <stdexcept>
-#include <tuple>
 
 namespace geofx::names
 {
@@ -24,10 +17,17 @@ namespace geofx::names
 namespace
 {
 
-/// Cells of the relief in which summits are looked for, along the longer side.
-constexpr int reliefCells = 2048;
-
 using Fault = std::runtime_error;
+
+std::string faultOf(const Options& options, bool names, bool lines)
+{
+    if (!names && !lines && !(options.svg + options.geoJson).empty())
+        return "--svg and --geojson are for names and lines; give some with --labels or --lines.";
+    if (!names && !options.font.empty()) return "--font is for names; give some with --labels.";
+    if (!names && !lines && !options.style.empty())
+        return "--style is for names and lines; give some with --labels or --lines.";
+    return {};
+}
 
 } // namespace
 
@@ -39,28 +39,15 @@ std::pair<std::string, std::string> fileAndLayer(const std::string& text)
     return {text, {}};
 }
 
-std::string wktOf(osg::Node& node)
+std::string faultOf(const Options& options, const std::string& scene)
 {
-    struct Finder : public osg::NodeVisitor
-    {
-        Finder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
-        void apply(osg::CoordinateSystemNode& found) override { wkt = found.getCoordinateSystem(); }
-        void apply(osg::LOD&) override {}
-        std::string wkt;
-    } finder;
-    node.accept(finder);
-    return finder.wkt;
-}
-
-std::string faultOf(const Options& options)
-{
-    if (options.files.empty() && options.lines.empty() && !(options.svg + options.geoJson).empty())
-        return "--svg and --geojson are for names and lines; give some with --labels or --lines.";
-    if (options.files.empty() && !options.font.empty())
-        return "--font is for names; give some with --labels.";
-    if (options.files.empty() && options.lines.empty() && !options.style.empty())
-        return "--style is for names and lines; give some with --labels or --lines.";
-    return {};
+    // Terrain may take minutes to build, so a slip in the style file is told before.
+    osgGeoFX::MapStyles styles;
+    std::string error;
+    if (!options.style.empty() && !styles.read(options.style, error)) return error;
+    // Such a file may have names and lines.
+    if (osgDB::getLowerCaseFileExtension(scene) == "geofx") return {};
+    return faultOf(options, !options.files.empty(), !options.lines.empty());
 }
 
 void addOptions(CLI::App& app, Options& options)
@@ -114,47 +101,39 @@ std::string agesOf(const Options& options)
     return ages + "; " + options.style + ageOf(options.style) + (options.svg.empty() ? "" : "; as vectors");
 }
 
-osg::ref_ptr<osgGeoFX::NameSet> read(const Options& options, const osgGeoFX::Scene& scene,
-                                     std::string& notice)
+osgGeoFX::MapContents takeMap(const Options& options, const osgGeoFX::Scene& scene,
+                              std::vector<std::string>& notices)
 {
-    std::map<std::string, osgGeoFX::NameStyle> styles = readStyles(options.style).names;
+    osgGeoFX::MapContents map = osgGeoFX::MapContents::take(*scene.node);
+    const std::string fault = faultOf(options, !(options.files.empty() && map.names.empty()),
+                                      !(options.lines.empty() && map.lines.empty()));
+    if (!fault.empty()) throw Fault(fault);
     std::string error;
-    if (!options.font.empty())
+    if (!options.style.empty() && !map.styles.read(options.style, error)) throw Fault(error);
+    if (osgDB::fileExists(options.font))
     {
-        const bool isFile = osgDB::fileExists(options.font);
-        std::string families = options.font;
-        if (isFile && !osgGeoFX::addFontFile(options.font, families, error)) throw Fault("--font: " + error);
-        for (auto& [name, style] : styles)
-            style.text.font = families + "," + style.text.font;
+        if (!map.styles.preferFontFile(options.font, error)) throw Fault("--font: " + error);
     }
-    const osg::ref_ptr<const osg::EllipsoidModel> ellipsoid = scene.effects->ground().ellipsoid;
-    std::vector<osgGeoFX::MapName> names;
+    else if (!options.font.empty())
+        map.styles.preferFont(options.font);
+    osgGeoFX::MapReader reader(*scene.node, *scene.effects);
     for (const std::string& each : options.files)
     {
-        osgGeoFX::NameFile file;
-        std::tie(file.file, file.layer) = fileAndLayer(each);
-        file.globe = ellipsoid.valid();
-        if (!file.globe) file.wkt = wktOf(*scene.node);
-        if (!file.read(error)) throw Fault(error);
-        std::move(file.names.begin(), file.names.end(), std::back_inserter(names));
+        const auto [file, layer] = fileAndLayer(each);
+        if (!reader.readNames(file, layer, error)) throw Fault(error);
     }
-    const auto relief = osgGeoFX::TerrainRelief::read(*scene.node, ellipsoid.get(), reliefCells, error);
-    if (!relief) throw Fault("--labels: " + error);
-    const std::size_t all = names.size();
-    const osgGeoFX::NamePlacement placement;
-    const osgGeoFX::NamePlacement::Result result =
-        placement.place(names, *scene.effects->getTerrain(), ellipsoid.get(), *relief);
-    notice.clear();
-    if (names.empty())
-        throw Fault("--labels: all " + std::to_string(all) +
-                    " names lie beside the terrain; check the file's coordinate reference system.");
-    if (result.outside > 0)
-        notice = std::to_string(result.outside) + " of " + std::to_string(all) +
-                 " names lie beside the terrain and are left out.";
-    const osg::ref_ptr<osgGeoFX::NameSet> set = new osgGeoFX::NameSet(std::move(names));
-    for (const auto& [name, style] : styles)
-        set->setStyle(name, style);
-    return set;
+    for (const std::string& each : options.lines)
+    {
+        const auto [file, layer] = fileAndLayer(each);
+        if (!reader.readLines(file, layer, map.styles.lineField, error)) throw Fault(error);
+    }
+    if (!reader.place(map, notices, error)) throw Fault(error);
+    return map;
+}
+
+void showMap(const Options& options, osgGeoFX::Scene& scene, std::vector<std::string>& notices)
+{
+    scene.node = takeMap(options, scene, notices).addTo(*scene.effects, *scene.node);
 }
 
 } // namespace geofx::names

@@ -2,8 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/labels/NamePlacement.h>
-#include <osgGeoFX/labels/NameSet.h>
+#include <osgGeoFX/map/MapContents.h>
 #include <osgGeoFX/viewer/Scene.h>
 
 #include <string>
@@ -34,22 +33,23 @@ struct Options
 
 /// Adds --labels, --lines, --style, --font, --svg and --geojson to a program.
 void addOptions(CLI::App& app, Options& options);
-/// A sentence if one of them is given for nothing, or a file cannot be written there; else empty.
-std::string faultOf(const Options& options);
+/// A sentence if one of them is given for nothing; else empty. `scene`: the file that is shown; where it may have names and lines itself, takeMap()
+/// tells.
+std::string faultOf(const Options& options, const std::string& scene);
 
 /// FILE, or FILE:LAYER where there is no file of the whole name: the file, and the layer or nothing.
 std::pair<std::string, std::string> fileAndLayer(const std::string& text);
-/// The coordinate system of a projected scene, as WKT; empty if it states none.
-std::string wktOf(osg::Node& node);
 
 /// When a file was changed last, as a text: what was drawn of a former one must not be used again. Empty if there is none.
 std::string ageOf(const std::string& file);
 /// The same of all files of names, lines and styles.
 std::string agesOf(const Options& options);
 
-/** The names of all files on a scene's ground, with their styles. Throws std::runtime_error with a sentence. `notice`: what people should know
-    of the names, in a sentence; empty where all are well. */
-osg::ref_ptr<osgGeoFX::NameSet> read(const Options& options, const osgGeoFX::Scene& scene,
-                                     std::string& notice);
+/** Takes the names and lines out of a scene (a .geofx file may have some), and adds those of the options, whose styles and font are for all of
+    them. Throws std::runtime_error with a sentence. `notices`: gets sentences that people should know. */
+osgGeoFX::MapContents takeMap(const Options& options, const osgGeoFX::Scene& scene,
+                              std::vector<std::string>& notices);
+/// Shows the scene's and the options' names and lines live in the scene. Else as takeMap().
+void showMap(const Options& options, osgGeoFX::Scene& scene, std::vector<std::string>& notices);
 
 } // namespace geofx::names

@@ -5,6 +5,7 @@
 #include "MapSaver.h"
 
 #include <osgGeoFX/closeup/CloseUpHandler.h>
+#include <osgGeoFX/map/MapKeys.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
@@ -170,6 +171,8 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
         if (closeUps) add("Close-ups", new osgGeoFX::CloseUpHandler(*scene.effects, *closeUps));
     }
     add("Effects", new osgGeoFX::LibertyHandler(*scene.effects));
+    const osg::ref_ptr<osgGeoFX::MapKeys> map = new osgGeoFX::MapKeys(*scene.node);
+    if (map->hasNames() || map->hasLines()) add("Names and lines", map);
     add("Panorama map", automatic);
     add("Panorama map", new osgGeoFX::CurvePanel(*scene.effects));
     if (!file.empty()) add("Panorama map", new MapSaver(scene, file));

@@ -58,6 +58,8 @@ public:
     /// The style of the names that ask for it; the one of the empty name is for all others.
     void setStyle(const std::string& name, const NameStyle& style);
     const NameStyle& styleOf(const MapName& name) const;
+    /// The styles that were set, by name.
+    const std::map<std::string, NameStyle>& styles() const { return _styles; }
     /// The factor of all sizes, such as that of a print's resolution; > 0.
     void setScale(double scale);
     double getScale() const { return _scale; }

@@ -169,8 +169,8 @@ struct MapLines::Drawing
     osg::Vec2d size; ///< of the viewport of the last camera, pixels
 };
 
-MapLines::MapLines(const std::vector<MapLine>& lines, const std::map<std::string, LineStyle>& styles)
-    : _drawing(std::make_unique<Drawing>())
+MapLines::MapLines(std::vector<MapLine> lines, std::map<std::string, LineStyle> styles)
+    : _lines(std::move(lines)), _styles(std::move(styles)), _drawing(std::make_unique<Drawing>())
 {
     constexpr auto on = osg::StateAttribute::ON | osg::StateAttribute::PROTECTED;
     osg::StateSet& state = *getOrCreateStateSet();
@@ -180,17 +180,17 @@ MapLines::MapLines(const std::vector<MapLine>& lines, const std::map<std::string
     // Maps' lines are no ground, which panorama maps would paint.
     state.setDefine("GEOFX_PAINTED", osg::StateAttribute::OFF);
 
-    auto cells = cellsOf(lines);
+    auto cells = cellsOf(_lines);
     std::vector<std::string> order;
     for (const auto& [name, all] : cells)
         order.push_back(name);
     std::stable_sort(order.begin(), order.end(),
                      [&](const std::string& a, const std::string& b)
-                     { return lineStyleOf(styles, a).rank < lineStyleOf(styles, b).rank; });
+                     { return lineStyleOf(_styles, a).rank < lineStyleOf(_styles, b).rank; });
     for (const std::string& name : order)
     {
         Drawing::Kind kind;
-        kind.style = lineStyleOf(styles, name);
+        kind.style = lineStyleOf(_styles, name);
         if (!kind.style.shown) continue;
         for (const auto& [place, cell] : cells[name])
             kind.lines->addChild(cell.make());
@@ -261,6 +261,7 @@ void MapLines::traverse(osg::NodeVisitor& visitor)
         osg::Group::traverse(visitor);
         return;
     }
+    if (!_shown) return;
     // The kit's passes cull before they have a viewport; they show the same picture.
     osg::Vec2d size;
     {

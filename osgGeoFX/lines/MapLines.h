@@ -33,9 +33,17 @@ class OSGGEOFXMAPS_EXPORT MapLines : public osg::Group
 {
 public:
     /// `lines`: placed ones (LinePlacement); world coordinates of the scene's children, metres.
-    MapLines(const std::vector<MapLine>& lines, const std::map<std::string, LineStyle>& styles);
+    MapLines(std::vector<MapLine> lines, std::map<std::string, LineStyle> styles);
     const char* libraryName() const override { return "osgGeoFX"; }
     const char* className() const override { return "MapLines"; }
+
+    /// What it was made of.
+    const std::vector<MapLine>& lines() const { return _lines; }
+    const std::map<std::string, LineStyle>& styles() const { return _styles; }
+
+    /// Whether lines are drawn. True by default.
+    void setShown(bool shown) { _shown = shown; }
+    bool isShown() const { return _shown; }
 
     /// The factor of all widths, such as that of a print's resolution; > 0. 1 is for pictures 900 pixels high.
     void setScale(double scale);
@@ -55,6 +63,9 @@ private:
     struct Drawing;
     void describe();
 
+    const std::vector<MapLine> _lines;
+    const std::map<std::string, LineStyle> _styles;
+    bool _shown = true;
     double _scale = 1.0;
     double _nearer = 0.006;
     std::unique_ptr<Drawing> _drawing;

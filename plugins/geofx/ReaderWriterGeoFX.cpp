@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// The osgDB plugin of the scene file. It needs no GDAL: where a scene names rasters, it asks osgdb_geofxdata.
+// The osgDB plugin of the scene file. It needs no GDAL: where a scene names rasters, it asks osgdb_geofxdata, and where it has names
+// and lines, osgdb_geofxmaps.
 #include "SceneFile.h"
 #include "SceneNode.h"
 #include "SceneReach.h"
@@ -58,6 +59,10 @@ public:
             return failure({result.scene->place.message("scenes are read within each other without end, or "
                                                         "more than 16 deep; name a database or rasters in "
                                                         "<terrain>.")});
+        if (result.scene->map && nesting.isWithin())
+            return failure({result.scene->map->place.message(
+                "this scene is the terrain of another one, and names stand over the whole picture; move the "
+                "<map> into the outer scene.")});
         ScenePath database;
         if (result.scene->database)
             database = *result.scene->database;
@@ -86,6 +91,8 @@ private:
         Nesting(const Nesting&) = delete;
         Nesting& operator=(const Nesting&) = delete;
 
+        /// Whether another scene is being read.
+        bool isWithin() const { return open().size() > 1; }
         bool tooDeep() const { return _twice || open().size() > 16; }
 
     private:

@@ -61,6 +61,7 @@ public:
             result.backgroundPlace = _xml.place(background);
         }
         if (xmlNode* effectsNode = child(root, "effects")) effects(effectsNode, result);
+        if (xmlNode* map = child(root, "map")) result.map = mapOf(map);
         return result;
     }
 
@@ -144,6 +145,20 @@ private:
                 scene.panoramas.push_back(
                     {map, pathIfAny(node, "palette"), pathIfAny(node, "skyImage"), strokeLines(node)});
         }
+    }
+
+    SceneMap mapOf(xmlNode* node) const
+    {
+        return {_xml.place(node),          pathIfAny(node, "style"),  pathIfAny(node, "fontFile"),
+                attributeOf(node, "font"), vectors(node, "mapNames"), vectors(node, "mapLines")};
+    }
+
+    std::vector<SceneMap::Vectors> vectors(xmlNode* parent, const char* name) const
+    {
+        std::vector<SceneMap::Vectors> result;
+        for (xmlNode* node = child(parent, name); node; node = SceneXml::next(node->next, name))
+            result.push_back({_xml.path(node, "file"), attributeOf(node, "layer")});
+        return result;
     }
 
     std::optional<ScenePath> pathIfAny(xmlNode* node, const char* attribute) const
@@ -239,6 +254,10 @@ SceneResult parseEngineScene(const std::string& text, const std::string& file, c
     if (scene.background)
         result.errors.push_back(scene.backgroundPlace.message(
             "the background is the program's; expected: no <background> in an .earth file."));
+    if (scene.map)
+        result.errors.push_back(scene.map->place.message("names and lines are put on terrains that the scene "
+                                                         "itself names; expected: layers of the osgEarth map "
+                                                         "with annotations or features instead."));
     if (!result.errors.empty()) result.scene.reset();
     return result;
 }
@@ -287,6 +306,14 @@ std::vector<ScenePath> filesOf(const SceneFile& scene)
         if (panorama.skyImage) paths.push_back(*panorama.skyImage);
         for (const ScenePanorama::Lines& lines : panorama.lines)
             paths.push_back(lines.file);
+    }
+    if (scene.map)
+    {
+        for (const std::optional<ScenePath>& path : {scene.map->style, scene.map->fontFile})
+            if (path) paths.push_back(*path);
+        for (const auto* const files : {&scene.map->names, &scene.map->lines})
+            for (const SceneMap::Vectors& vectors : *files)
+                paths.push_back(vectors.file);
     }
     return paths;
 }

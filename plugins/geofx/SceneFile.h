@@ -204,6 +204,21 @@ struct ScenePanorama
     std::vector<Lines> lines;
 };
 
+/// The names and lines of a map.
+struct SceneMap
+{
+    struct Vectors
+    {
+        ScenePath file;
+        std::string layer; ///< empty: all
+    };
+
+    ScenePlace place;
+    std::optional<ScenePath> style, fontFile;
+    std::string font; ///< families; empty: the styles' own
+    std::vector<Vectors> names, lines;
+};
+
 /// The terrain of the engine whose file the scene is a part of.
 struct SceneEngine
 {
@@ -230,6 +245,7 @@ struct SceneFile
     std::vector<SceneMappings> mappings;       ///< of the effects among them that have mappings
     std::vector<SceneCloseUps> closeUps;       ///< of the effects among them that have close-ups
     std::vector<ScenePanorama> panoramas;      ///< of the effects among them that are panorama maps
+    std::optional<SceneMap> map;
 };
 
 /// A scene, or else at least one sentence of the form `FILE:LINE: <element>: what was expected`.

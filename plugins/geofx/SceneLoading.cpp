@@ -218,9 +218,10 @@ std::string SceneTerrain::ask(const ScenePlace& place, const std::string& servic
              instead + ".");
 }
 
-std::optional<std::string> SceneTerrain::askIfAny(const std::string& service, void* request)
+std::optional<std::string> SceneTerrain::askIfAny(const std::string& service, void* request,
+                                                  const std::string& plugin)
 {
-    osgDB::ReaderWriter* data = osgDB::Registry::instance()->getReaderWriterForExtension("geofxdata");
+    osgDB::ReaderWriter* data = osgDB::Registry::instance()->getReaderWriterForExtension(plugin);
     if (!data) return std::nullopt;
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
     options->setPluginStringData("version", GEOFX_VERSION);

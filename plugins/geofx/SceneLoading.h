@@ -72,8 +72,9 @@ public:
     /// rule.
     static std::string ask(const ScenePlace& place, const std::string& service, void* request,
                            const std::string& instead);
-    /// The same; nothing where there is no osgdb_geofxdata.
-    static std::optional<std::string> askIfAny(const std::string& service, void* request);
+    /// The same; nothing where there is no such plugin.
+    static std::optional<std::string> askIfAny(const std::string& service, void* request,
+                                               const std::string& plugin = "geofxdata");
 
 private:
     const osg::Node& _terrain;

@@ -3,6 +3,7 @@
 #include "SceneNode.h"
 
 #include "CloseUpsLoader.h"
+#include "MapLoader.h"
 #include "MappingsLoader.h"
 #include "PanoramasLoader.h"
 
@@ -137,11 +138,50 @@ bool addEffects(const SceneFile& scene, EffectScene& node, const osg::Node& terr
     }
 }
 
+namespace
+{
+
+void tellPrograms(const SceneFile& scene, osg::Group& group)
+{
+    group.setName("osgGeoFX scene");
+    if (scene.homeView)
+    {
+        const SceneView& view = *scene.homeView;
+        group.setUserValue("geofx.homeView",
+                           joined(std::array<double, 6>{view.longitude, view.latitude, view.height,
+                                                        view.heading, view.pitch, view.roll}));
+        if (view.verticalFieldOfView) group.setUserValue("geofx.homeFov", *view.verticalFieldOfView);
+    }
+    if (scene.background) group.setUserValue("geofx.background", joined(*scene.background));
+    if (scene.sun) group.setUserValue("geofx.hasLight", true);
+}
+
+/// A group of the scene and its names, or the scene if it has none. Null, with a sentence in `error`, where something is missing.
+osg::ref_ptr<osg::Group> withMap(const SceneMap& map, EffectScene& scene, std::string& error)
+{
+    try
+    {
+        const osg::ref_ptr<osg::Node> names = loadMap(map, scene);
+        if (!names) return &scene;
+        osg::ref_ptr<osg::Group> both = new osg::Group;
+        both->addChild(&scene);
+        both->addChild(names);
+        return both;
+    }
+    catch (const SceneFailure& failure)
+    {
+        error = failure.sentence;
+        return nullptr;
+    }
+}
+
+} // namespace
+
 osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terrain, std::string& error)
 {
     osg::ref_ptr<osg::Group> group;
     osg::ref_ptr<EffectScene> effects;
-    if (scene.effects.empty())
+    if (scene.effects.empty() && !scene.map)
     {
         group = new osg::Group;
     }
@@ -150,18 +190,8 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
         effects = new EffectScene;
         group = effects;
     }
-    group->setName("osgGeoFX scene");
     group->addChild(terrain);
     if (effects && !addEffects(scene, *effects, *terrain, error)) return nullptr;
-    if (scene.homeView)
-    {
-        const SceneView& view = *scene.homeView;
-        group->setUserValue("geofx.homeView",
-                            joined(std::array<double, 6>{view.longitude, view.latitude, view.height,
-                                                         view.heading, view.pitch, view.roll}));
-        if (view.verticalFieldOfView) group->setUserValue("geofx.homeFov", *view.verticalFieldOfView);
-    }
-    if (scene.background) group->setUserValue("geofx.background", joined(*scene.background));
     if (scene.sun)
     {
         const std::optional<osg::Vec3d> direction = sunDirection(scene, *terrain, error);
@@ -171,8 +201,9 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
             return nullptr;
         }
         addSun(*group, *scene.sun, *direction);
-        group->setUserValue("geofx.hasLight", true);
     }
+    if (scene.map) group = withMap(*scene.map, *effects, error);
+    if (group) tellPrograms(scene, *group);
     return group;
 }
 

@@ -3,6 +3,7 @@
 // What osggeofx_viewer puts into its viewer: the keys, the page that tells them, the manipulators and their home.
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/map/MapContents.h>
 #include <osgGeoFX/panorama/PanoramaComposer.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
@@ -184,6 +185,19 @@ protected:
         frame();
     }
 
+    /// Names and lines, of the other side of the Earth, so that no picture has them.
+    void addMap()
+    {
+        MapContents contents;
+        MapName name;
+        name.text = "Nowhere";
+        name.places = {{-6378137.0, 0.0, 0.0}};
+        contents.names = {name};
+        contents.lines = {{"river", "", {{-6378137.0, 0.0, 0.0}, {-6378137.0, 100.0, 0.0}}}};
+        _scene->node = contents.addTo(*_scene->effects, *_scene->node);
+        viewer().setSceneData(_scene->node);
+    }
+
     void press(int key)
     {
         viewer().getEventQueue()->keyPress(key);
@@ -312,6 +326,7 @@ protected:
 
 TEST_F(ViewerKeys, HelpPagesCanBeRead)
 {
+    addMap();
     ASSERT_NO_FATAL_FAILURE(setUpViewer());
     EXPECT_TRUE(shownTexts().empty());
     press('h');
@@ -644,8 +659,41 @@ TEST_F(ViewerKeys, HelpPagesFollowTheWindow)
     expectReadable(1280.0, 720.0);
 }
 
+TEST_F(ViewerKeys, NamesAndLinesAreHiddenAndShown)
+{
+    ASSERT_NO_FATAL_FAILURE(setUpViewer());
+    const auto has = [&](const std::string& key)
+    {
+        const std::vector<std::string> keys = bindings('h');
+        return std::count(keys.begin(), keys.end(), key) == 1;
+    };
+    EXPECT_FALSE(has("n") || has("r")) << "there is nothing to show";
+    viewer().getEventHandlers().clear();
+    addMap();
+    ASSERT_NO_FATAL_FAILURE(setUpViewer());
+    EXPECT_TRUE(has("n") && has("r"));
+    MapLabels* names = nullptr;
+    for (unsigned int i = 0; i < _scene->node->asGroup()->getNumChildren(); ++i)
+        if (auto* each = dynamic_cast<MapLabels*>(_scene->node->asGroup()->getChild(i))) names = each;
+    MapLines* lines = nullptr;
+    for (unsigned int i = 0; i < _scene->effects->getNumChildren(); ++i)
+        if (auto* each = dynamic_cast<MapLines*>(_scene->effects->getChild(i))) lines = each;
+    ASSERT_TRUE(names && lines);
+    press('n');
+    EXPECT_FALSE(names->isShown());
+    EXPECT_TRUE(lines->isShown());
+    press('r');
+    EXPECT_FALSE(lines->isShown());
+    press('n');
+    EXPECT_TRUE(names->isShown());
+    EXPECT_FALSE(lines->isShown());
+    press('r');
+    EXPECT_TRUE(names->isShown() && lines->isShown());
+}
+
 TEST_F(ViewerKeys, EachKeyThatAHandlerKnowsStandsOnAPage)
 {
+    addMap();
     ASSERT_NO_FATAL_FAILURE(setUpViewer());
     const std::vector<std::string> own = bindings('h');
     const std::vector<std::string> others = bindings('H');
@@ -714,6 +762,7 @@ TEST_F(ViewerKeys, EachKeyThatAHandlerKnowsStandsOnAPage)
 
 TEST_F(ViewerKeys, NoKeyHasTwoMeanings)
 {
+    addMap();
     ASSERT_NO_FATAL_FAILURE(setUpViewer());
     std::map<std::string, std::string> owners;
     const auto add = [&](const std::string& key, const std::string& owner)

@@ -325,7 +325,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:2: <rasters>: ", "expected: only one of <database>, <rasters>, <engine>."},
         Mistake{"UnknownElement", sceneWith("<panorama/>"),
                 "x.geofx:2: <panorama>: this element is not known in <geofx>",
-                "expected: <terrain>, <homeView>, <sun>, <background>, <effects>."},
+                "expected: <terrain>, <homeView>, <sun>, <background>, <effects>, <map>."},
         Mistake{"UnknownElementBelow", rastersWith("", "<dem file='a'/><bathymetry/>"),
                 "x.geofx:3: <bathymetry>: this element is not known in <rasters>",
                 "expected: <dem> or <imagery> or <landCover> or <treeCover>."},
@@ -504,13 +504,16 @@ TEST(SceneFile, JudgesTheFuzzersCorpusAsItsNamesSay)
     EXPECT_GE(invalid, 8);
 }
 
-TEST(SceneFile, TheSceneOfOahuIsOne)
+TEST(SceneFile, TheScenesOfOahuAreSome)
 {
-    std::ifstream stream(GEOFX_SOURCE_DIR "/data/oahu/oahu.geofx");
-    const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    const SceneResult result = parseScene(text, "oahu.geofx", GEOFX_SOURCE_DIR "/data/oahu");
-    ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
-    EXPECT_EQ(osgGeoFX::missingFiles(*result.scene), std::vector<std::string>());
+    for (const char* const name : {"oahu.geofx", "map.geofx"})
+    {
+        std::ifstream stream(GEOFX_SOURCE_DIR "/data/oahu/" + std::string(name));
+        const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+        const SceneResult result = parseScene(text, name, GEOFX_SOURCE_DIR "/data/oahu");
+        ASSERT_TRUE(result.scene) << testing::PrintToString(result.errors);
+        EXPECT_EQ(osgGeoFX::missingFiles(*result.scene), std::vector<std::string>());
+    }
 }
 
 } // namespace

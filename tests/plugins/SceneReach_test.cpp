@@ -62,10 +62,10 @@ TEST(SceneReach, EveryAttributeThatNamesAFileIsLookedAt)
     const TempDir place;
     const std::string folder = (place / "scene").string();
     fs::create_directory(folder);
-    const auto scene = [](const std::string& terrain, const std::string& effects)
+    const auto scene = [](const std::string& terrain, const std::string& effects, const std::string& map = "")
     {
-        return "<geofx version='1'><terrain>\n" + terrain + "</terrain>\n<effects>" + effects +
-               "</effects></geofx>";
+        return "<geofx version='1'><terrain>\n" + terrain + "</terrain>\n<effects>" + effects + "</effects>" +
+               map + "</geofx>";
     };
     const std::string database = "<database file='terrain.osgb'/>";
     const std::string out = "='../x'";
@@ -102,6 +102,11 @@ TEST(SceneReach, EveryAttributeThatNamesAFileIsLookedAt)
         {scene(database, "<panoramaMap skyImage" + out + "/>"), "3: <panoramaMap>: skyImage"},
         {scene(database, "<panoramaMap><lines kind='road' file" + out + "/></panoramaMap>"),
          "3: <lines>: file"},
+        {scene(database, "", "<map><mapNames file" + out + "/></map>"), "3: <mapNames>: file"},
+        {scene(database, "", "<map><mapNames file='a'/><mapLines file" + out + "/></map>"),
+         "3: <mapLines>: file"},
+        {scene(database, "", "<map style" + out + "><mapNames file='a'/></map>"), "3: <map>: style"},
+        {scene(database, "", "<map fontFile" + out + "><mapNames file='a'/></map>"), "3: <map>: fontFile"},
     };
     for (const auto& [text, begins] : cases)
     {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include "names/StyleFile.h"
+#include <osgGeoFX/map/MapStyles.h>
 
 #include <nlohmann/json.hpp>
 
@@ -8,18 +8,16 @@
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
-namespace geofx::names
+namespace osgGeoFX
 {
 
 namespace
 {
 
 using nlohmann::json;
-using osgGeoFX::LabelCandidate;
-using osgGeoFX::LineStyle;
-using osgGeoFX::NameStyle;
 using Fault = std::runtime_error;
 
 osg::Vec4 colorOf(const std::string& text, const std::string& where)
@@ -154,12 +152,9 @@ void readAll(const json& whole, const std::string& file, const char* key,
     }
 }
 
-} // namespace
-
-Styles readStyles(const std::string& file)
+/// Throws Fault.
+void readFile(const std::string& file, MapStyles& styles)
 {
-    Styles styles;
-    if (file.empty()) return styles;
     std::ifstream stream(file);
     if (!stream) throw Fault("The style file \"" + file + "\" cannot be read; check its name.");
     const json whole = json::parse(stream, nullptr, false, true);
@@ -188,7 +183,38 @@ Styles readStyles(const std::string& file)
             throw Fault("\"" + file + "\": \"lineField\" must be a text.");
         styles.lineField = whole.at("lineField").get<std::string>();
     }
-    return styles;
 }
 
-} // namespace geofx::names
+} // namespace
+
+bool MapStyles::read(const std::string& file, std::string& error)
+{
+    MapStyles changed = *this;
+    try
+    {
+        readFile(file, changed);
+    }
+    catch (const std::exception& fault)
+    {
+        error = fault.what();
+        return false;
+    }
+    *this = std::move(changed);
+    return true;
+}
+
+void MapStyles::preferFont(const std::string& families)
+{
+    for (auto& [name, style] : names)
+        style.text.font = families + "," + style.text.font;
+}
+
+bool MapStyles::preferFontFile(const std::string& file, std::string& error)
+{
+    std::string family;
+    if (!addFontFile(file, family, error)) return false;
+    preferFont(family);
+    return true;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Scene files with names and lines: in the pictures of programs, which are those of the options --labels and --lines, and live.
+#include <osgGeoFX/map/MapKeys.h>
+#include <osgGeoFX/viewer/Scene.h>
+#include <tools/MapProgram.h>
+
+#include <OpenThreads/Thread>
+#include <osg/Image>
+#include <osg/Math>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+using geofx::test::ProgramResult;
+
+namespace fs = std::filesystem;
+
+namespace
+{
+
+constexpr int WIDTH = 480, HEIGHT = 270;
+
+class MapScenes : public geofx::test::MapProgram
+{
+protected:
+    MapScenes() : MapProgram(201, WIDTH, HEIGHT) {}
+
+    void SetUp() override
+    {
+        MapProgram::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        osgDB::Registry::instance()->getLibraryFilePathList().push_front(GEOFX_BUILD_DIR "/lib");
+        _from = placeOf(200, 200);
+        const osg::Vec2d to = _from + osg::Vec2d(0.02, 0.0), hut = _from + osg::Vec2d(0.005, 0.01);
+        write("names.geojson", namesAt("Zirbenhütte", hut));
+        char text[400];
+        std::snprintf(
+            text, sizeof(text),
+            R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"highway":"trail"},)"
+            R"("geometry":{"type":"LineString","coordinates":[[%.8f,%.8f],[%.8f,%.8f]]}}]})",
+            _from.x(), _from.y(), to.x(), to.y());
+        write("lines.geojson", text);
+        write("style.json",
+              R"({"lines": {"trail": {"color": "#ff00ff", "width": 14, "least": 14, "hand": 0}},
+                 "names": {"hut": {"manner": "beside", "color": "#ff00ff", "halo": "#ff00ff", "size": 40}}})");
+        for (const auto& entry : fs::recursive_directory_iterator(file("work")))
+            if (entry.path().filename() == "terrain.osgb")
+                _terrain = entry.path().lexically_relative(_folder.path()).string();
+        ASSERT_FALSE(_terrain.empty());
+        // From above, so that all is in sight.
+        std::snprintf(text, sizeof(text),
+                      "<homeView longitude='%.6f' latitude='%.6f' height='30000' heading='20' pitch='-90'/>",
+                      hut.x(), hut.y());
+        _view = text;
+        write("plain.geofx", sceneWith(""));
+        write("map.geofx", sceneWith("<map style='style.json'><mapNames file='names.geojson'/><mapLines "
+                                     "file='lines.geojson'/></map>"));
+    }
+
+    static std::string namesAt(const std::string& name, const osg::Vec2d& place)
+    {
+        char text[400];
+        std::snprintf(
+            text, sizeof(text),
+            R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"%s",)"
+            R"("style":"hut"},"geometry":{"type":"Point","coordinates":[%.8f,%.8f]}}]})",
+            name.c_str(), place.x(), place.y());
+        return text;
+    }
+
+    std::string sceneWith(const std::string& map) const
+    {
+        return "<geofx version='1'><terrain><database file='" + _terrain + "'/></terrain>\n" + _view +
+               "<effects><verticalExaggeration factor='1.5'/></effects>\n" + map + "</geofx>";
+    }
+
+    /// What osggeofx_render writes for a scene, and the warnings.
+    std::string rendered(const std::string& scene, const std::string& output,
+                         std::vector<std::string> more = {}, const std::string& size = "480x270")
+    {
+        more.insert(more.begin(), {scene, "-o", output, "--size", size});
+        const ProgramResult result = run("osggeofx_render", more);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        EXPECT_EQ(result.standardError, "");
+        return bytes(output);
+    }
+    static int magentaIn(const osg::Image& image)
+    {
+        int count = 0;
+        for (int y = 0; y < image.t(); ++y)
+            for (int x = 0; x < image.s(); ++x)
+                count += isMagenta(image, x, y) ? 1 : 0;
+        return count;
+    }
+    int magentaIn(const std::string& name) const
+    {
+        const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(file(name));
+        EXPECT_TRUE(image) << name;
+        return image ? magentaIn(*image) : 0;
+    }
+
+    const std::vector<std::string> _options = {"--labels",      "names.geojson", "--lines",
+                                               "lines.geojson", "--style",       "style.json"};
+    std::string _terrain, _view;
+    osg::Vec2d _from;
+};
+
+} // namespace
+
+TEST_F(MapScenes, PicturesAreThoseOfTheOptions)
+{
+    const std::string plain = rendered("plain.geofx", "plain.png");
+    const std::string scene = rendered("map.geofx", "map.png");
+    EXPECT_TRUE(scene == rendered("plain.geofx", "options.png", _options));
+    EXPECT_FALSE(scene == plain);
+    EXPECT_EQ(magentaIn("plain.png"), 0);
+    EXPECT_GT(magentaIn("map.png"), 400);
+
+    // As vectors, and as a print in tiles.
+    std::vector<std::string> vectors = _options;
+    vectors.insert(vectors.end(), {"--svg", "options.svg"});
+    EXPECT_TRUE(rendered("map.geofx", "map.png", {"--svg", "map.svg"}) == plain);
+    rendered("plain.geofx", "map.png", vectors);
+    EXPECT_NE(bytes("map.svg").find("Zirbenhütte</text>"), std::string::npos);
+    EXPECT_NE(bytes("map.svg").find("class=\"line trail\""), std::string::npos);
+    EXPECT_TRUE(bytes("map.svg") == bytes("options.svg"));
+    rendered("map.geofx", "print.tif", {}, "6.4x3.6in@75dpi");
+    rendered("plain.geofx", "other.tif", _options, "6.4x3.6in@75dpi");
+    EXPECT_GT(magentaIn("print.tif"), 400);
+    const osg::ref_ptr<osg::Image> print = osgDB::readRefImageFile(file("print.tif"));
+    const osg::ref_ptr<osg::Image> other = osgDB::readRefImageFile(file("other.tif"));
+    ASSERT_TRUE(print && other && print->getTotalSizeInBytes() == other->getTotalSizeInBytes());
+    EXPECT_EQ(std::memcmp(print->data(), other->data(), print->getTotalSizeInBytes()), 0);
+
+    // The styles of the option are for the scene's, too.
+    write("small.json", R"({"names": {"hut": {"size": 12}}, "lines": {"trail": {"width": 3, "least": 3}}})");
+    rendered("map.geofx", "small.png", {"--style", "small.json"});
+    EXPECT_LT(magentaIn("small.png"), magentaIn("options.png") / 2);
+    EXPECT_GT(magentaIn("small.png"), 10);
+
+    // Names of both.
+    write("more.geojson", namesAt("Adlerhorst", _from - osg::Vec2d(0.01, 0.01)));
+    rendered("map.geofx", "both.png", {"--labels", "more.geojson", "--svg", "both.svg"}, "960x540");
+    const std::string both = bytes("both.svg");
+    for (const char* const part : {"Zirbenhütte</text>", "Adlerhorst</text>", "class=\"line trail\""})
+        EXPECT_NE(both.find(part), std::string::npos) << part;
+
+    // Nothing to style and nothing to write.
+    for (const std::vector<std::string>& given :
+         {std::vector<std::string>{"--svg", "x.svg"}, {"--style", "style.json"}, {"--font", "Noto Sans"}})
+    {
+        std::vector<std::string> arguments = {"plain.geofx", "-o", "refused.png"};
+        arguments.insert(arguments.end(), given.begin(), given.end());
+        const ProgramResult refused = run("osggeofx_render", arguments);
+        EXPECT_EQ(refused.exitCode, 2);
+        EXPECT_NE(refused.standardError.find("give some with --labels"), std::string::npos)
+            << refused.standardError;
+        EXPECT_FALSE(fs::exists(file("refused.png")));
+    }
+}
+
+// A panorama map of a scene file has the scene's names and lines.
+TEST_F(MapScenes, PanoramasHaveThemToo)
+{
+    const auto made = [&](const std::string& scene, const std::string& output, std::vector<std::string> more)
+    {
+        more.insert(more.begin(), {scene, "-o", output});
+        const ProgramResult result = panorama(more);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        return bytes(output);
+    };
+    EXPECT_TRUE(made("map.geofx", "map.png", {}) == made("plain.geofx", "options.png", _options));
+    EXPECT_GT(magentaIn("map.png"), 100);
+}
+
+TEST_F(MapScenes, PrintsAreDrawnAnewWhenTheMapChanges)
+{
+    const std::string size = "6.4x3.6in@75dpi";
+    // A folder in the place of the file that becomes the print: all tiles are drawn, and stay.
+    fs::create_directory(file("print.unfinished.tif"));
+    const ProgramResult stopped = run("osggeofx_render", {"map.geofx", "-o", "print.tif", "--size", size});
+    EXPECT_EQ(stopped.exitCode, 2);
+    EXPECT_NE(stopped.standardError.find("cannot be written"), std::string::npos) << stopped.standardError;
+    EXPECT_FALSE(fs::is_empty(file("print.tiles")));
+    fs::remove_all(file("print.unfinished.tif"));
+    write("style.json", R"({"lines": {"trail": {"color": "#00ff00", "width": 14, "least": 14}},
+                           "names": {"hut": {"color": "#000000"}}})");
+    rendered("map.geofx", "print.tif", {}, size);
+    EXPECT_EQ(magentaIn("print.tif"), 0);
+}
+
+// As osgviewer shows it: names come when the depths of some frames are known, and fade away.
+TEST_F(MapScenes, LiveScenesShowThemAndKeysHideThem)
+{
+    std::string error;
+    const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(file("map.geofx"), error);
+    ASSERT_TRUE(scene) << error;
+    viewer().setLightingMode(osg::View::HEADLIGHT);
+    viewer().getCamera()->setViewMatrix(
+        scene->homeViewMatrix(osg::DegreesToRadians(30.0), static_cast<double>(WIDTH) / HEIGHT));
+    viewer().getCamera()->setProjectionMatrixAsPerspective(30.0, static_cast<double>(WIDTH) / HEIGHT, 100.0,
+                                                           1e6);
+    osg::ref_ptr<osg::Image> picture;
+    const auto frames = [&]
+    {
+        // The pager needs some time, and so does fading.
+        for (int i = 0; i < 40; ++i)
+        {
+            picture = render(scene->node);
+            OpenThreads::Thread::microSleep(25000);
+        }
+        return magentaIn(*picture);
+    };
+    const int both = frames();
+    const osg::ref_ptr<osgGeoFX::MapKeys> keys = new osgGeoFX::MapKeys(*scene->node);
+    ASSERT_TRUE(keys->hasNames() && keys->hasLines());
+    const auto press = [&](int key)
+    {
+        const osg::ref_ptr<osgGA::GUIEventAdapter> event = new osgGA::GUIEventAdapter;
+        event->setEventType(osgGA::GUIEventAdapter::KEYDOWN);
+        event->setKey(key);
+        EXPECT_TRUE(keys->handle(*event, viewer()));
+    };
+    press('n');
+    const int lines = frames();
+    press('r');
+    const int nothing = frames();
+    press('n');
+    const int names = frames();
+    press('r');
+    EXPECT_EQ(nothing, 0);
+    EXPECT_GT(lines, 100);
+    EXPECT_GT(names, 100);
+    EXPECT_GT(both, std::max(lines, names));
+    EXPECT_LE(both, lines + names);
+    EXPECT_EQ(frames(), both);
+}
