@@ -6,6 +6,7 @@
 #include "lib/painting.glsl"
 #include "stages/panorama.edge.glsl"
 
+uniform vec4 SLOT_stroke;     // as in panorama.strokes.vert
 uniform vec4 SLOT_strokeView; // without the projection: the pixels of a metre at a distance of one, else 0; the picture's width and height in pixels
 uniform vec4 SLOT_slopes;
 uniform vec4 SLOT_hand;
@@ -65,7 +66,8 @@ vec2 SLOT_handWay(vec2 at, float detail)
 // `land`: metres from the shore. `scale`: pixels for each metre.
 vec3 SLOT_strokeShift(vec3 position, vec3 normal, float land, float scale)
 {
-    float share = geofx_handShare(-land, SLOT_strokeSteepness(position, normal), SLOT_clock.w);
+    float steepness = SLOT_strokeSteepness(position, normal);
+    float share = geofx_handShare(-land, steepness, SLOT_clock.w);
     vec2 at = vec2(dot(position, SLOT_brushX.xyz) + SLOT_brushX.w, dot(position, SLOT_brushY.xyz) + SLOT_brushY.w);
     float texels = float(textureSize(SLOT_brush, 0).x) * length(SLOT_brushX.xyz) / max(scale, 1e-9);
     float detail = log2(max(texels, 1.0));
@@ -77,7 +79,11 @@ vec3 SLOT_strokeShift(vec3 position, vec3 normal, float land, float scale)
     vec3 vertical = normalize(geofx_exaggerationGradient(SLOT_view().globe, position));
     vec3 level = way.x * normalize(SLOT_brushX.xyz) + way.y * normalize(SLOT_brushY.xyz);
     vec3 along = level - dot(level, normal) / max(dot(normal, vertical), 0.1) * vertical; // on the slope
-    return -SLOT_clock.w * share * along;
+    vec3 shift = -SLOT_clock.w * share * along;
+    // A slope ends at its crest, and no stroke may float above the ground. So on steep ground strokes stay near their places.
+    float perMetre = SLOT_strokeView.x > 0.0 ? scale : 0.5 * SLOT_strokeView.z * geofx_panoramaLift(SLOT_view(), SLOT_placeOf(position).y);
+    float rise = length(shift) * steepness * perMetre; // pixels
+    return shift * min(1.0, 0.25 * SLOT_stroke.x / max(rise, 1e-6));
 }
 
 float SLOT_strokeFar(vec3 position)

@@ -27,7 +27,9 @@ osg::ref_ptr<osg::Texture2D> texture(const StrokeTiles& tiles, double west, doub
             image->setColor(osg::Vec4d(texel.x, texel.y, texel.z, texel.w), column, row);
         }
     }
-    return new osg::Texture2D(image);
+    osg::ref_ptr<osg::Texture2D> result = new osg::Texture2D(image);
+    result->setResizeNonPowerOfTwoHint(false);
+    return result;
 }
 
 } // namespace
