@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <tools/compare/Compare.h>
+
 #include <gtest/gtest.h>
 #include <osg/Image>
 
@@ -10,15 +12,6 @@
 
 namespace geofx::test
 {
-
-/** How different two images may be, after OpenImageIO's idiff. Values are channel values, 0…1 for 8 bits. By
-    default not at all. Say in a comment at the test why a tolerance is what it is. */
-struct ImageTolerance
-{
-    float fail = 0.0f;     ///< a pixel with a channel further off than this has failed
-    double share = 0.0;    ///< the share 0…1 of the pixels that may fail
-    float hardFail = 0.0f; ///< no channel of any pixel may be further off than this
-};
 
 /** Compares two images. Where they differ by more than the tolerance the result is a failure whose
     message tells the worst pixel (counted from the upper left) and where actual, expected and difference
