@@ -167,6 +167,54 @@ TEST_F(DistributedBuild, PlanTellsOptionsAndStages)
     EXPECT_EQ(refusal({"heights:0"}), "no error");
 }
 
+/// A worker compares what its options say with what the plan was made from, so it would refuse if one were lost.
+TEST_F(DistributedBuild, PlanKeepsEveryOption)
+{
+    _options.imagery = {TestRaster(100, 100, 3, GDT_Byte)
+                            .placed(600000.0, 2400000.0, 50.0, 50.0)
+                            .crs("EPSG:32604")
+                            .write(_folder / "imagery.tif")};
+    const auto bytes = [&](const char* name)
+    {
+        return TestRaster(100, 100, 1, GDT_Byte)
+            .placed(600000.0, 2400000.0, 50.0, 50.0)
+            .crs("EPSG:32604")
+            .fill([](int column, int, int) { return 1 + column % 2; })
+            .write(_folder / name);
+    };
+    _options.landCover = bytes("landcover.tif");
+    _options.landCoverTable =
+        _folder.write("table.csv", "value,class,name,red,green,blue\n1,a,A,40,90,20\n2,b,B,160,150,90\n")
+            .string();
+    _options.treeCover = bytes("trees.tif");
+    _options.epsg = 32604;
+    _options.vertical = VerticalDatum::Ellipsoid;
+    _options.voids = Voids::KEEP;
+    _options.treeLine = 0.1 + 0.2; // no short decimal
+    _options.lakeArea = 1.0 / 3.0;
+    _options.tileSize = 16;
+    _options.textureSize = 64;
+    _options.pixelError = 1.5;
+    _options.texelError = 2.5;
+    _options.anisotropy = 3.0;
+    _options.compressTextures = true;
+    _options.pixelsPerRadian = 1234.5;
+    planBuild(_options);
+    EXPECT_EQ(refusal({"heights:0"}), "no error");
+    for (const auto& [name, count] : stages())
+        EXPECT_EQ(name.find("void"), std::string::npos)
+            << name << " has " << count << " units, but voids are kept";
+    const auto options = json().at("options");
+    EXPECT_EQ(options.at("threads"), 1);
+    EXPECT_EQ(options.at("memoryMiB"), 1024);
+    // Filled voids have two more options.
+    _options.voids = Voids::FILL;
+    _options.voidReach = 33;
+    _options.voidSmoothing = 7;
+    planBuild(_options);
+    EXPECT_EQ(refusal({"heights:0"}), "no error");
+}
+
 TEST_F(DistributedBuild, RefusesWhatThePlanDoesNotHold)
 {
     EXPECT_NE(refusal({"heights:0"}).find("no build is planned here"), std::string::npos);
