@@ -3,6 +3,7 @@
 //
 // osggeofx_build: rasters to a paged terrain database.
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <osgGeoFX/terrain/DistributedBuild.h>
 #include <osgGeoFX/terrain/ProgressLine.h>
 
 #include <CLI/CLI.hpp>
@@ -11,10 +12,31 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+/// Does units of a planned build.
+void work(const std::string& folder, const std::vector<std::string>& units, int threads, int memoryMiB,
+          bool quiet)
+{
+    const osgGeoFX::BuiltUnits built = osgGeoFX::buildUnits(folder, units, threads, memoryMiB);
+    if (quiet) return;
+    std::printf("%s: %llu units are built, %llu were done or had nothing to do.\n", folder.c_str(),
+                static_cast<unsigned long long>(built.built),
+                static_cast<unsigned long long>(built.takenOver));
+    if (built.finished) std::printf("%s/terrain.osgb: the database is finished.\n", folder.c_str());
+}
+
+} // namespace
 
 int main(int argc, char** argv)
 {
     osgGeoFX::BuildOptions options;
+    std::string plan, workFolder;
+    std::vector<std::string> units;
     bool geocentric = false, quiet = false, estimate = false;
     std::string srs;
 
@@ -25,7 +47,6 @@ int main(int argc, char** argv)
                    "Elevation rasters; where several overlap, the later one wins, so name coarse ones first. "
                    "Tiles are as "
                    "deep as the densest raster that touches them. Voids of a later one show those before it")
-        ->required()
         ->type_name("FILE…");
     app.add_option("--imagery", options.imagery, "Color rasters for the surface; the later one wins")
         ->type_name("FILE…");
@@ -91,16 +112,35 @@ int main(int argc, char** argv)
     app.add_option("--pixels-per-radian", options.pixelsPerRadian,
                    "The screen for which the errors hold; the default is osgviewer's view on 1080 lines")
         ->capture_default_str();
-    app.add_option("--memory", options.memoryMiB, "Memory for the data, MiB")->capture_default_str();
+    auto* memory =
+        app.add_option("--memory", options.memoryMiB, "Memory for the data, MiB")->capture_default_str();
     app.add_option("--threads", options.threads, "Worker threads; 0 for one for each core")
         ->capture_default_str();
     app.add_flag("--resume", options.resume, "Continue a build that was interrupted");
     app.add_flag("--estimate", estimate, "Say what the build would take, and build nothing");
     app.add_flag("--quiet", quiet, "No progress and no summary");
-    app.add_option("-o,--output", options.output, "Folder of the database")->required()->type_name("DIR");
+    auto* output = app.add_option("-o,--output", options.output, "Folder of the database")->type_name("DIR");
+    auto* planOption =
+        app.add_option("--plan", plan,
+                       "Build nothing yet: plan the database in DIR, for many processes with --work")
+            ->excludes(output)
+            ->type_name("DIR");
+    auto* workOption = app.add_option("--work", workFolder, "Do units of the plan in DIR; needs --unit")
+                           ->excludes(output)
+                           ->excludes(planOption)
+                           ->type_name("DIR");
+    app.add_option("--unit", units,
+                   "With --work: units A to B of a stage of the plan, or the part I, from 0, of N parts")
+        ->needs(workOption)
+        ->type_name("STAGE:A-B|STAGE:I/N…");
     try
     {
         app.parse(argc, argv);
+        if (workFolder.empty() && options.dems.empty()) throw CLI::RequiredError("--dem");
+        if (workFolder.empty() && plan.empty() && options.output.empty())
+            throw CLI::RequiredError("--output");
+        if (!workFolder.empty() && units.empty()) throw CLI::RequiredError("--unit");
+        if (!workFolder.empty() && !options.dems.empty()) throw CLI::ExcludesError("--work", "--dem");
     }
     catch (const CLI::ParseError& error)
     {
@@ -117,6 +157,18 @@ int main(int argc, char** argv)
                 throw osgGeoFX::BuildError("--srs " + srs +
                                            ": write it as EPSG: and a number, such as EPSG:32604.");
             options.epsg = std::stoi(number);
+        }
+        if (!workFolder.empty())
+        {
+            work(workFolder, units, options.threads, memory->count() > 0 ? options.memoryMiB : 0, quiet);
+            return 0;
+        }
+        if (!plan.empty())
+        {
+            options.output = plan;
+            const auto planned = osgGeoFX::planBuild(options);
+            if (!quiet) std::printf("%s: planned: %s.\n", plan.c_str(), planned.text().c_str());
+            return 0;
         }
         if (!quiet || estimate)
         {

@@ -18,5 +18,6 @@
 
 #include <osgGeoFX/terrain/BuilderCode.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
+#include <osgGeoFX/terrain/DistributedBuild.h>
 #include <osgGeoFX/terrain/ProgressLine.h>
 #include <osgGeoFX/terrain/ThinnedRaster.h>

@@ -4,6 +4,9 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 
+#include <unistd.h>
+
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -22,14 +25,26 @@ void failToWrite(const std::string& path, int error)
     throw BuildError(path + ": cannot be written (" + std::strerror(error) + "); " + remedy);
 }
 
+std::string temporaryName(const std::string& path)
+{
+    static std::atomic<unsigned int> next{0};
+    static const std::string host = []
+    {
+        char name[256] = {};
+        gethostname(name, sizeof(name) - 1);
+        return std::string(name);
+    }();
+    return path + "." + host + "-" + std::to_string(getpid()) + "-" + std::to_string(next++) +
+           TEMPORARY_ENDING;
+}
+
 void writeFileAtomically(const std::string& path, const char* data, std::size_t size)
 {
     std::error_code code;
     std::filesystem::create_directories(std::filesystem::path(path).parent_path(), code);
     if (code) failToWrite(path, code.value());
 
-    // One thread of one process writes each path, so the temporary name need not be unique.
-    const std::string temporary = path + ".tmp";
+    const std::string temporary = temporaryName(path);
     std::FILE* file = std::fopen(temporary.c_str(), "wb");
     if (!file) failToWrite(path, errno);
     errno = 0;

@@ -24,7 +24,7 @@ constexpr double SECONDS_PER_POST = 4e-7, SECONDS_PER_TEXEL = 2.5e-7;
 // Even a plain takes this share of the estimate. With less room the disk would be full before the end.
 constexpr double LEAST_SHARE = 0.25;
 // Work files, bytes. Posts: heights, and what units hand on. Ground cells: heights, covers and distances.
-constexpr double WORK_PER_POST = 8.0, WORK_PER_GROUND_CELL = 10.0;
+constexpr double WORK_PER_POST = 8.0, WORK_PER_GROUND_CELL = 15.0;
 
 /// The nearest folder above that exists and whose free space is known.
 fs::path standingFolder(fs::path folder)
@@ -100,6 +100,8 @@ void BuildPlan::chooseEstimate()
     // Files in the folder are replaced, or are a part of this build already.
     const double room = code ? 1e300 : static_cast<double>(space.available) + bytesBelow(options.output);
     const double least = bytes * LEAST_SHARE + workBytes;
+    // A plan may be made on a machine that does not build.
+    if (workers == Workers::MANY_PROCESSES) return;
     if (least > room)
         throw BuildError(options.output + ": the terrain would have " + inWords(posts) + " samples in " +
                          inWords(tiles) + " tiles and take about " + sizeInWords(bytes + workBytes) +

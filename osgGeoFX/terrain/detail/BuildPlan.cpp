@@ -28,6 +28,8 @@ constexpr double SAME_DENSITY = 1.5;
 constexpr double BLEND_CELLS = 3.0;
 // What the account of a tile takes, with its place in a table.
 constexpr double BYTES_PER_TILE = sizeof(TileFacts) + 40.0;
+// What a unit takes of a plan whose facts stay in files.
+constexpr double BYTES_PER_UNIT = 160.0;
 // How far a CRS may be used beyond its area of use, degrees: a neighbouring zone and some more.
 constexpr double CRS_MARGIN = 10.0;
 
@@ -114,7 +116,7 @@ std::string outside(const std::string& file)
 
 } // namespace
 
-BuildPlan::BuildPlan(const BuildOptions& o) : options(o)
+BuildPlan::BuildPlan(const BuildOptions& o, Workers w) : options(o), workers(w)
 {
     initialiseGdal();
     require(!options.dems.empty(), "No elevation raster is named; give at least one with --dem FILE.");
@@ -456,21 +458,18 @@ void BuildPlan::chooseUnits()
     while (depthLimit > 1 && (scheme.texels << depthLimit) > 2048)
         --depthLimit;
     int latticeLevel = scheme.finestLevel;
-    std::vector<int> roots, lattices;
     for (;;)
     {
         const int depth = std::min(depthLimit, latticeLevel);
         const int rootLevel = latticeLevel - depth;
-        roots.push_back(rootLevel);
-        lattices.push_back(rootLevel + depth);
+        _roots.push_back(rootLevel);
+        _lattices.push_back(rootLevel + depth);
         if (rootLevel == 0) break;
         latticeLevel = rootLevel;
     }
-    tiers.resize(roots.size());
-    _facts.resize(static_cast<std::size_t>(scheme.finestLevel) + 1);
-    addUnits({0, 0, 0}, roots.size() - 1, lattices);
-    for (const auto& units : tiers)
-        unitsTotal += 2 * units.size();
+    tiers.resize(_roots.size());
+    _blocks.resize(_roots.size());
+    addUnits({0, 0, 0}, _roots.size() - 1);
     if (uniform())
         voidUnits = tiers.front();
     else
@@ -481,7 +480,6 @@ void BuildPlan::chooseUnits()
                 if (scheme.exists({voidLevel - depth, x, y}))
                     voidUnits.push_back({{voidLevel - depth, x, y}, depth, true});
     }
-    unitsTotal += static_cast<std::uint64_t>(GroundRaster::steps(*this));
 
     double texels = 0.0, posts = 0.0;
     for (const auto& units : tiers)
@@ -498,37 +496,45 @@ void BuildPlan::chooseUnits()
 }
 
 /// Adds a unit and all below it. `ladder` counts the tiers from the deepest one.
-void BuildPlan::addUnits(const TileKey& root, std::size_t ladder, const std::vector<int>& lattices)
+void BuildPlan::addUnits(const TileKey& root, std::size_t ladder)
 {
     if (!scheme.exists(root)) return;
-    const int wanted = demand(root), lattice = lattices[ladder];
+    const int wanted = demand(root), lattice = _lattices[ladder];
     const bool sampled = wanted <= lattice;
     const int depth = std::clamp(wanted, root.level, lattice) - root.level;
+    _blocks[ladder][placeNumber(root.x, root.y)].unit = tiers[ladder].size();
     tiers[ladder].push_back({root, depth, sampled});
-    addTiles(root, root.level + depth);
+    countTiles(tiers[ladder].back());
     if (sampled) return;
     const int span = 1 << depth;
     for (int y = 0; y < span; ++y)
         for (int x = 0; x < span; ++x)
-            addUnits({lattice, root.x * span + x, root.y * span + y}, ladder - 1, lattices);
+            addUnits({lattice, root.x * span + x, root.y * span + y}, ladder - 1);
 }
 
-void BuildPlan::addTiles(const TileKey& key, int toLevel)
+/// The tiles whose facts a unit settles. Those of the lattice of an upper tier are the roots of other units.
+void BuildPlan::countTiles(const Unit& unit)
 {
-    if (!scheme.exists(key)) return;
-    auto& level = _facts[static_cast<std::size_t>(key.level)];
-    const std::uint64_t place = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.y)) << 32) |
-                                static_cast<std::uint32_t>(key.x);
-    if (level.try_emplace(place).second &&
-        static_cast<double>(++_tiles) * BYTES_PER_TILE > options.memoryMiB * 1024.0 * 1024.0)
+    for (int level = unit.root.level; level <= unit.latticeLevel() - (unit.sampled ? 0 : 1); ++level)
+    {
+        const int span = 1 << (level - unit.root.level), width = scheme.intervals * scheme.step(level);
+        const auto there = [&](int root, int last)
+        {
+            return static_cast<std::uint64_t>(std::min(span, (last + width - 1) / width - root * span));
+        };
+        _tiles += there(unit.root.x, scheme.lastColumn) * there(unit.root.y, scheme.lastRow);
+    }
+    ++_units;
+    const bool one = workers == Workers::ONE_PROCESS;
+    const std::uint64_t count = one ? _tiles : _units;
+    if (static_cast<double>(count) * (one ? BYTES_PER_TILE : BYTES_PER_UNIT) >
+        options.memoryMiB * 1024.0 * 1024.0)
         throw BuildError(options.dems.front() + ": the terrain would have more than " +
-                         std::to_string(_tiles) + " tiles, of which the builder cannot keep account in " +
+                         std::to_string(count) + (one ? " tiles" : " units of tiles") +
+                         ", of which the builder cannot keep account in " +
                          std::to_string(options.memoryMiB) +
                          " MiB of memory; give it more with --memory, or give a smaller region or coarser "
                          "rasters (gdal_translate -projwin, gdalwarp -tr).");
-    if (key.level < toLevel)
-        for (int c = 0; c < 4; ++c)
-            addTiles(key.child(c & 1, c >> 1), toLevel);
 }
 
 void BuildPlan::chooseFingerprint()
@@ -540,6 +546,16 @@ void BuildPlan::chooseFingerprint()
     const auto source = [&](const char* kind, const std::string& file)
     {
         std::error_code code;
+        // GDAL's own file systems: archives, and what lies on servers.
+        if (file.rfind("/vsi", 0) == 0)
+        {
+            VSIStatBufL remote{};
+            text << kind << " " << file;
+            if (VSIStatL(file.c_str(), &remote) == 0)
+                text << ", " << remote.st_size << " bytes, changed " << remote.st_mtime;
+            text << "\n";
+            return;
+        }
         const auto size = std::filesystem::file_size(file, code);
         text << kind << " " << std::filesystem::absolute(file).lexically_normal().string();
         if (!code)
@@ -581,29 +597,6 @@ void BuildPlan::chooseFingerprint()
 int coreCount()
 {
     return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
-TileFacts& BuildPlan::fact(const TileKey& key)
-{
-    return const_cast<TileFacts&>(static_cast<const BuildPlan*>(this)->fact(key));
-}
-
-const TileFacts& BuildPlan::fact(const TileKey& key) const
-{
-    static const TileFacts none;
-    if (key.level > scheme.finestLevel || key.x < 0 || key.y < 0) return none;
-    const auto& level = _facts[static_cast<std::size_t>(key.level)];
-    const auto found = level.find((static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.y)) << 32) |
-                                  static_cast<std::uint32_t>(key.x));
-    return found == level.end() ? none : found->second;
-}
-
-bool BuildPlan::has(const TileKey& key) const
-{
-    if (key.level > scheme.finestLevel) return false;
-    return _facts[static_cast<std::size_t>(key.level)].count(
-               (static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.y)) << 32) |
-               static_cast<std::uint32_t>(key.x)) > 0;
 }
 
 bool BuildPlan::isLeaf(const TileKey& key) const

@@ -63,9 +63,16 @@ struct Unit
 class BuildPlan
 {
 public:
-    explicit BuildPlan(const BuildOptions& options);
+    /// Who builds: one process that knows all facts, or any number of them that read what they need from work files.
+    enum class Workers
+    {
+        ONE_PROCESS,
+        MANY_PROCESSES
+    };
+    explicit BuildPlan(const BuildOptions& options, Workers workers = Workers::ONE_PROCESS);
 
     BuildOptions options;
+    const Workers workers;
     TilingScheme scheme;
     /// The units of the deepest root level first. Those of a tier may use the roots of the tier before.
     std::vector<std::vector<Unit>> tiers;
@@ -95,21 +102,24 @@ public:
     int threads = 1;
     BuildEstimate estimate;
 
-    /// The facts of a tile. Those of a tile that the quadtree lacks are empty, and must not be changed.
+    /// The facts of a tile. Those of a tile that the quadtree lacks are empty, and must not be changed. If many
+    /// processes build, they come from the work file of the tile's unit. Throws BuildError if it is missing.
     TileFacts& fact(const TileKey& key);
     const TileFacts& fact(const TileKey& key) const;
     bool has(const TileKey& key) const;
     /// Whether a tile has no finer ones below it. The sources that touch it have no more to show.
     bool isLeaf(const TileKey& key) const;
     const TileFacts& whole() const { return fact({0, 0, 0}); }
-    /// Calls for all tiles of a level, in an order of its own.
-    template<typename Visit>
-    void forLevel(int level, Visit visit) const
-    {
-        for (const auto& entry : _facts[static_cast<std::size_t>(level)])
-            visit(TileKey{level, static_cast<int>(entry.first & 0xffffffffu),
-                          static_cast<int>(entry.first >> 32)});
-    }
+    /// Empty facts for a unit whose heights come next. Facts count as a unit's from here on.
+    void startFacts(const Unit& unit);
+    /// Takes a unit's facts from its work file. Returns false if there is none, or a damaged one.
+    bool loadFacts(const Unit& unit) const;
+    /// Writes the work file of a unit's facts.
+    void writeFacts(const Unit& unit) const;
+    /// Drops facts that can be read again. No other thread may use the plan. It does nothing for one process.
+    void forgetFacts();
+    /// The work file of a unit's heights, roots or facts: that of the filled ones if its voids are filled.
+    std::string heightFile(const char* pass, const Unit& unit) const;
     /// How far the walls on a tile's side (0 south, 1 east, 2 north, 3 west) reach at least below a mesh's own error,
     /// metres. They reach the finest meshes of all tiles that can stand there while finer ones are loaded. 0 if no
     /// tile can.
@@ -159,8 +169,22 @@ private:
     int levelFor(double stepX, double stepY) const; ///< the coarsest whose posts are at least as dense
     int demand(const TileKey& key) const;           ///< the deepest level that any source asks for there
     bool uniform() const;                           ///< whether all tiles reach the finest level
-    void addUnits(const TileKey& root, std::size_t ladder, const std::vector<int>& lattices);
-    void addTiles(const TileKey& key, int toLevel);
+    void addUnits(const TileKey& root, std::size_t ladder);
+    void countTiles(const Unit& unit);
+    /// The facts of a unit's tiles, level after level from its root on. Empty if they are not known.
+    struct Block
+    {
+        std::size_t unit = 0; ///< its number in its tier
+        mutable std::vector<TileFacts> facts;
+    };
+    /// Where a tile's facts are.
+    struct Place
+    {
+        const Block* block = nullptr; ///< null if the quadtree lacks the tile
+        const Unit* unit = nullptr;
+        std::size_t index = 0;
+    };
+    Place placeOf(const TileKey& key) const;
     std::vector<std::string> colorFiles() const; ///< the files that the texels' spacing follows from
     Spacing checkColors();                       ///< sets the ground's spacing; the colors' finest spacing
     void chooseLevels(const Spacing& posts);
@@ -169,13 +193,21 @@ private:
     void chooseUnits();
     void chooseFingerprint();
     std::array<const LandCoverClass*, 256> _classByValue{};
-    std::vector<std::unordered_map<std::uint64_t, TileFacts>> _facts; ///< by level
+    std::vector<int> _roots, _lattices; ///< the levels of roots and lattices, by tier
+    std::vector<std::unordered_map<std::uint64_t, Block>> _blocks; ///< by tier and the root's place
+    mutable std::mutex _factsMutex;
     std::vector<Footprint> _dems;
     std::vector<Demand> _demands;
     Footprint _landCover;
-    std::uint64_t _tiles = 0;
+    std::uint64_t _tiles = 0, _units = 0;
     std::mutex _progressMutex;
 };
+
+/// The place of a tile on its level, as one number.
+inline std::uint64_t placeNumber(int x, int y)
+{
+    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x);
+}
 
 /// The number of the machine's cores, at least 1.
 int coreCount();
@@ -223,10 +255,7 @@ private:
     TransformationPtr _geoid;
 };
 
-/// Pass 1: samples all heights into work files, and fills the plan's facts.
-void runHeightPass(BuildPlan& plan);
-
-/// The lattice of an upper tier's unit, made of the roots of the units below it. Pass 1 has left these.
+/// The lattice of an upper tier's unit, made of the roots of the units below it. The stages of heights left these.
 HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit);
 
 } // namespace osgGeoFX

@@ -41,11 +41,9 @@ class GroundRaster
 public:
     /// The most points along a side. It limits the time to some minutes and the work files to two gigabytes.
     static constexpr int LARGEST_SIDE = 16385;
-    /// The steps of progress of making it.
-    static int steps(const BuildPlan& plan);
     static std::string file(const BuildPlan& plan, std::size_t patch);
 
-    /// Reads the raster that runGroundPass() has written. Throws BuildError.
+    /// Reads the rasters that the stages of the ground have written. Throws BuildError.
     explicit GroundRaster(const BuildPlan& plan);
 
     /// Texels from a finest post on. `texels` of them go to `posts` finest posts.
@@ -64,9 +62,5 @@ private:
 /// The height up to which trees grow at a latitude in degrees, metres above the sea: 3,800 up to 25°, then evenly
 /// down to 0 at 70°.
 double likelyTreeLine(double latitude);
-
-/// Samples classes and heights, finds water, and measures the distances from its shores. Sets the plan's `ground`.
-/// Takes over the raster of an interrupted build.
-void runGroundPass(BuildPlan& plan);
 
 } // namespace osgGeoFX

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
+#include <osgGeoFX/terrain/detail/BuildStage.h>
 #include <osgGeoFX/terrain/detail/HeightGrid.h>
-#include <osgGeoFX/terrain/detail/WorkQueue.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
 
@@ -149,35 +149,11 @@ void settleFacts(BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
                          meshDeviation(grid, unit.span(), static_cast<float>(cell));
 }
 
-bool loadFacts(BuildPlan& plan, const Unit& unit)
-{
-    ByteReader reader(plan.workFile("facts", unit));
-    if (!reader.good()) return false;
-    const auto facts = reader.getVector<TileFacts>();
-    std::size_t next = 0;
-    forTiles(unit,
-             [&](const TileKey& key)
-             {
-                 if (next < facts.size() && plan.has(key)) plan.fact(key) = facts[next];
-                 ++next;
-             });
-    return next == facts.size();
-}
-
-void writeFacts(const BuildPlan& plan, const Unit& unit)
-{
-    std::vector<TileFacts> facts;
-    forTiles(unit, [&](const TileKey& key) { facts.push_back(plan.fact(key)); });
-    ByteWriter writer;
-    writer.put(facts);
-    writeFileAtomically(plan.workFile("facts", unit), writer.bytes().data(), writer.bytes().size());
-}
-
 void writeGrid(const BuildPlan& plan, const char* name, const Unit& unit, const HeightGrid& grid)
 {
     ByteWriter writer;
     writer.put(grid.values);
-    writeFileAtomically(plan.workFile(name, unit), writer.bytes().data(), writer.bytes().size());
+    writeFileAtomically(plan.heightFile(name, unit), writer.bytes().data(), writer.bytes().size());
 }
 
 /// Whether any post has no height although a raster covers it.
@@ -197,39 +173,102 @@ bool lacksHeights(RasterStack& rasters, const Lattice& lattice, const HeightGrid
 void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
 {
     const TilingScheme& scheme = plan.scheme;
+    plan.startFacts(unit);
     HeightGrid grid(unit.span() * scheme.intervals + 1, unit.span() * scheme.intervals + 1);
+    const int validColumns = plan.validColumns(unit), validRows = plan.validRows(unit);
+    HeightGrid withApron(validColumns + 2, validRows + 2);
+    const Lattice lattice = plan.postsWithApron(unit);
+    withApron.values = rasters.heights(lattice);
     TileFacts::VoidState voids = TileFacts::NO_VOIDS;
-    if (plan.has(unit.root))
-    {
-        const int validColumns = plan.validColumns(unit), validRows = plan.validRows(unit);
-        HeightGrid withApron(validColumns + 2, validRows + 2);
-        const Lattice lattice = plan.postsWithApron(unit);
-        withApron.values = rasters.heights(lattice);
-        if (plan.voids)
-            voids = TileFacts::FILLED_VOIDS;
-        else if (plan.options.voids == Voids::FILL && lacksHeights(rasters, lattice, withApron))
-            voids = TileFacts::HAS_VOIDS;
-        writeGrid(plan, "heights", unit, withApron);
-        for (int j = 0; j < validRows; ++j)
-            for (int i = 0; i < validColumns; ++i)
-                grid.at(i, j) = withApron.at(i + 1, j + 1);
-        extendBeyond(grid.values, grid.columns, grid.rows, 1, validColumns, validRows);
-    }
+    if (plan.voids)
+        voids = TileFacts::FILLED_VOIDS;
+    else if (plan.options.voids == Voids::FILL && lacksHeights(rasters, lattice, withApron))
+        voids = TileFacts::HAS_VOIDS;
+    for (int j = 0; j < validRows; ++j)
+        for (int i = 0; i < validColumns; ++i)
+            grid.at(i, j) = withApron.at(i + 1, j + 1);
+    extendBeyond(grid.values, grid.columns, grid.rows, 1, validColumns, validRows);
     settleFacts(plan, unit, grid);
-    if (!plan.has(unit.root)) return;
-    plan.fact(unit.root).voids = voids;
-    if (plan.fact(unit.root).any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
+    TileFacts& root = plan.fact(unit.root);
+    root.voids = voids;
+    writeGrid(plan, "heights", unit, withApron);
+    if (root.any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
+    if (voids == TileFacts::HAS_VOIDS) writeFileAtomically(VoidRaster::neededFile(plan), "", 0);
+    // Facts are written last, so a unit with facts is done.
+    plan.writeFacts(unit);
 }
 
-void gatherUnit(BuildPlan& plan, const Unit& unit)
+/// All units that sample go first, since voids are filled from all of them. Those with voids sample again once these
+/// are filled.
+class SampledHeights : public BuildStage
 {
-    if (plan.has(unit.root))
+public:
+    SampledHeights(BuildPlan& plan, bool again)
+        : BuildStage(again ? "filled-heights" : "heights", again ? "voids" : "heights"), _plan(plan),
+          _again(again), _rasters(static_cast<std::size_t>(plan.threads))
     {
-        const HeightGrid grid = gatherRoots(plan, unit);
-        settleFacts(plan, unit, grid);
-        if (plan.fact(unit.root).any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
+        for (const auto& units : plan.tiers)
+            for (const Unit& unit : units)
+                if (unit.sampled) _units.push_back(&unit);
     }
-}
+    std::size_t units() const override { return _units.size(); }
+    bool isNeeded() const override { return !_again || VoidRaster::isNeeded(_plan); }
+    void begin() override
+    {
+        if (_again) _plan.voids = std::make_shared<VoidRaster>(_plan);
+    }
+    bool takeOver(std::size_t index) override
+    {
+        const Unit& unit = *_units[index];
+        // One process knows the facts from the first time already.
+        if (!_again || _plan.workers == BuildPlan::Workers::MANY_PROCESSES)
+            if (!_plan.loadFacts(unit)) return false;
+        return !_again || _plan.fact(unit.root).voids != TileFacts::HAS_VOIDS;
+    }
+    bool hasWork(std::size_t index) const override
+    {
+        return !_again || _plan.fact(_units[index]->root).voids == TileFacts::HAS_VOIDS;
+    }
+    void run(int worker, std::size_t index) override
+    {
+        auto& stack = _rasters[static_cast<std::size_t>(worker)];
+        if (!stack) stack = std::make_unique<RasterStack>(_plan);
+        sampleUnit(_plan, *_units[index], *stack);
+    }
+
+private:
+    BuildPlan& _plan;
+    const bool _again;
+    std::vector<const Unit*> _units;
+    std::vector<std::unique_ptr<RasterStack>> _rasters;
+};
+
+/// The units of an upper tier, from the roots of those below.
+class GatheredHeights : public BuildStage
+{
+public:
+    GatheredHeights(BuildPlan& plan, std::size_t tier)
+        : BuildStage("heights-" + std::to_string(tier), "heights"), _plan(plan)
+    {
+        for (const Unit& unit : plan.tiers[tier])
+            if (!unit.sampled) _units.push_back(&unit);
+    }
+    std::size_t units() const override { return _units.size(); }
+    bool takeOver(std::size_t index) override { return _plan.loadFacts(*_units[index]); }
+    void run(int, std::size_t index) override
+    {
+        const Unit& unit = *_units[index];
+        _plan.startFacts(unit);
+        const HeightGrid grid = gatherRoots(_plan, unit);
+        settleFacts(_plan, unit, grid);
+        if (_plan.fact(unit.root).any) writeGrid(_plan, "roots", unit, decimated(grid, unit.span()));
+        _plan.writeFacts(unit);
+    }
+
+private:
+    BuildPlan& _plan;
+    std::vector<const Unit*> _units;
+};
 
 } // namespace
 
@@ -245,13 +284,13 @@ HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit)
             Unit below;
             below.root = {unit.latticeLevel(), unit.root.x * unit.span() + x, unit.root.y * unit.span() + y};
             if (!plan.fact(below.root).any) continue;
-            ByteReader reader(plan.workFile("roots", below));
+            const std::string file = plan.heightFile("roots", below);
+            ByteReader reader(file);
             HeightGrid part(n + 1, n + 1);
             const std::size_t expected = part.values.size();
             part.values = reader.getVector<float>();
             if (!reader.good() || part.values.size() != expected)
-                throw BuildError(plan.workFile("roots", below) +
-                                 ": this work file is damaged; build again without --resume.");
+                throw BuildError(file + ": this work file is damaged; build again without --resume.");
             for (int j = 0; j <= n; ++j)
                 for (int i = 0; i <= n; ++i)
                     // A neighbour without data must not delete the border that this unit has.
@@ -261,90 +300,19 @@ HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit)
     return grid;
 }
 
-void runHeightPass(BuildPlan& plan)
+void addHeightStages(BuildPlan& plan, BuildStages& stages)
 {
-    std::vector<std::unique_ptr<RasterStack>> rasters(static_cast<std::size_t>(plan.threads));
-    const auto sample = [&](int worker, const Unit& unit)
+    stages.push_back(std::make_unique<SampledHeights>(plan, false));
+    if (plan.options.voids == Voids::FILL)
     {
-        auto& stack = rasters[static_cast<std::size_t>(worker)];
-        if (!stack) stack = std::make_unique<RasterStack>(plan);
-        sampleUnit(plan, unit, *stack);
-    };
-    const auto settle = [&](const std::vector<const Unit*>& units)
-    {
-        runOnWorkers(plan.threads, units.size(),
-                     [&](int worker, std::size_t index)
-                     {
-                         const Unit& unit = *units[index];
-                         if (!plan.options.resume || !loadFacts(plan, unit))
-                         {
-                             if (unit.sampled)
-                                 sample(worker, unit);
-                             else
-                                 gatherUnit(plan, unit);
-                             // Facts are written last, so a unit with facts is done.
-                             writeFacts(plan, unit);
-                         }
-                         plan.advance("heights");
-                     });
-    };
-    // All units that sample go first, since voids are filled from all of them.
-    std::vector<const Unit*> sampled;
-    for (const auto& units : plan.tiers)
-        for (const Unit& unit : units)
-            if (unit.sampled) sampled.push_back(&unit);
-    settle(sampled);
-    const auto lacks = [&](const Unit* unit)
-    {
-        return plan.fact(unit->root).voids != TileFacts::NO_VOIDS;
-    };
-    const auto lacking = static_cast<std::uint64_t>(std::count_if(sampled.begin(), sampled.end(), lacks));
-    if (lacking > 0)
-    {
-        plan.unitsTotal += voidSteps(plan) + lacking;
-        fillVoids(plan);
-        runOnWorkers(plan.threads, sampled.size(),
-                     [&](int worker, std::size_t index)
-                     {
-                         const Unit& unit = *sampled[index];
-                         if (!lacks(&unit)) return;
-                         if (plan.fact(unit.root).voids == TileFacts::HAS_VOIDS)
-                         {
-                             sample(worker, unit);
-                             writeFacts(plan, unit);
-                         }
-                         plan.advance("voids");
-                     });
+        addVoidStages(plan, stages);
+        stages.push_back(std::make_unique<SampledHeights>(plan, true));
     }
-    for (const auto& units : plan.tiers)
+    for (std::size_t tier = 1; tier < plan.tiers.size(); ++tier)
     {
-        std::vector<const Unit*> gathered;
-        for (const Unit& unit : units)
-            if (!unit.sampled) gathered.push_back(&unit);
-        settle(gathered);
+        auto stage = std::make_unique<GatheredHeights>(plan, tier);
+        if (stage->units() > 0) stages.push_back(std::move(stage));
     }
-    if (!plan.whole().any)
-        throw BuildError(plan.options.dems.front() +
-                         ": the elevation has no data at all; check its no-data value with gdalinfo -stats.");
-
-    for (int level = plan.scheme.finestLevel; level >= 0; --level)
-        plan.forLevel(level,
-                      [&](const TileKey& key)
-                      {
-                          TileFacts& facts = plan.fact(key);
-                          if (!facts.any) return;
-                          // The depth that the walls of its coarsest meshes reach.
-                          facts.skirtBelow =
-                              static_cast<float>(2.0 * plan.largestError(level) + plan.leastSkirt(level)) +
-                              facts.latticeError;
-                          for (int side = 0; side < 4; ++side)
-                              facts.skirtBelow =
-                                  std::max(facts.skirtBelow, static_cast<float>(plan.largestError(level) +
-                                                                                plan.skirt(key, side)));
-                          for (int c = 0; c < 4; ++c)
-                              facts.skirtBelow =
-                                  std::max(facts.skirtBelow, plan.fact(key.child(c & 1, c >> 1)).skirtBelow);
-                      });
 }
 
 } // namespace osgGeoFX

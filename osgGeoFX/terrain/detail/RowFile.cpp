@@ -17,21 +17,29 @@ namespace osgGeoFX
 {
 
 RowFile::RowFile(std::string path, std::size_t rowBytes, Mode mode)
-    : _path(std::move(path)), _rowBytes(rowBytes)
+    : _path(mode == Mode::TEMPORARY ? temporaryName(path) : std::move(path)), _rowBytes(rowBytes),
+      _temporary(mode == Mode::TEMPORARY)
 {
     std::error_code code;
-    if (mode == Mode::CREATE)
-        std::filesystem::create_directories(std::filesystem::path(_path).parent_path(), code);
-    const int flags = mode == Mode::CREATE ? O_RDWR | O_CREAT | O_TRUNC : O_RDONLY;
+    const bool writes = mode != Mode::READ;
+    if (writes) std::filesystem::create_directories(std::filesystem::path(_path).parent_path(), code);
+    const int flags = writes ? O_RDWR | O_CREAT | (mode == Mode::SHARE ? 0 : O_TRUNC) : O_RDONLY;
     _descriptor = open(_path.c_str(), flags | O_CLOEXEC, 0666);
     if (_descriptor >= 0) return;
-    if (mode == Mode::CREATE) failToWrite(_path, errno);
+    if (writes) failToWrite(_path, errno);
     throw BuildError(_path + ": this work file cannot be read; build again without --resume.");
+}
+
+RowFile::RowFile(RowFile&& other) noexcept
+    : _path(std::move(other._path)), _rowBytes(other._rowBytes),
+      _descriptor(std::exchange(other._descriptor, -1)), _temporary(std::exchange(other._temporary, false))
+{
 }
 
 RowFile::~RowFile()
 {
     if (_descriptor >= 0) close(_descriptor);
+    if (_temporary) std::remove(_path.c_str());
 }
 
 void RowFile::write(int row, const void* data)
@@ -82,6 +90,7 @@ void RowFile::finish(const std::string& path)
 {
     const int closed = close(std::exchange(_descriptor, -1));
     if (closed != 0 || std::rename(_path.c_str(), path.c_str()) != 0) failToWrite(path, errno);
+    _temporary = false;
 }
 
 } // namespace osgGeoFX

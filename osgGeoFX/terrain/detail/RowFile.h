@@ -15,11 +15,14 @@ class RowFile
 public:
     enum class Mode
     {
-        CREATE, ///< empty; makes the folder, too
+        CREATE,    ///< empty; makes the folder, too
+        SHARE,     ///< the same, but what other processes have written stays
+        TEMPORARY, ///< CREATE under a name of its own beside the path; removed at the end unless it is finished
         READ
     };
     RowFile(std::string path, std::size_t rowBytes, Mode mode);
     ~RowFile();
+    RowFile(RowFile&& other) noexcept;
     RowFile(const RowFile&) = delete;
     RowFile& operator=(const RowFile&) = delete;
 
@@ -41,6 +44,7 @@ private:
     std::string _path;
     std::size_t _rowBytes;
     int _descriptor = -1;
+    bool _temporary = false;
 };
 
 } // namespace osgGeoFX

@@ -91,7 +91,7 @@ void findShoreDistances(const CellMask& water, const CellMetres& metres, const s
                         const std::function<void(int row, const std::vector<float>& distances)>& visit)
 {
     const auto columns = static_cast<std::size_t>(water.columns);
-    RowFile below(workFile, columns * sizeof(std::uint16_t), RowFile::Mode::CREATE);
+    RowFile below(workFile, columns * sizeof(std::uint16_t), RowFile::Mode::TEMPORARY);
     std::vector<std::uint16_t> others(columns);
     LastSeen northwards(water.columns), southwards(water.columns);
     for (int row = 0; row < water.rows; ++row)

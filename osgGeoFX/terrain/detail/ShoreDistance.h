@@ -23,7 +23,8 @@ struct CellMetres
 
     They are exact between the centers of cells, on a plane with the metres of each row (Felzenszwalb and
     Huttenlocher: Distance transforms of sampled functions, 2012), less half a cell, since the shore lies between
-    centers. `visit` gets all rows, the northernmost first. `workFile` takes two bytes for each cell. At most 65,535
+    centers. `visit` gets all rows, the northernmost first. A temporary file beside
+    `workFile` takes two bytes for each cell. At most 65,535
     rows. Throws BuildError. */
 void findShoreDistances(const CellMask& water, const CellMetres& metres, const std::string& workFile,
                         const std::function<void(int row, const std::vector<float>& distances)>& visit);

@@ -3,9 +3,9 @@
 #include <osgGeoFX/terrain/detail/TilePass.h>
 
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
+#include <osgGeoFX/terrain/detail/BuildStage.h>
 #include <osgGeoFX/terrain/detail/TileFile.h>
 #include <osgGeoFX/terrain/detail/TileNode.h>
-#include <osgGeoFX/terrain/detail/WorkQueue.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
 
@@ -153,9 +153,17 @@ bool losesDetail(const LevelArrays& fine, const LevelArrays& coarse, int x, int 
 /// What a unit's last work file starts with.
 struct UnitFigures
 {
-    std::uint64_t tiles = 0;
-    TextureFigures textures;
+    std::uint64_t ownTiles = 0, tiles = 0; ///< of the unit, and with all units below it
+    TextureFigures textures;               ///< with all units below it
+    float skirtBelow = 0.0f;               ///< of the unit's root (TileFacts)
 };
+
+/// The figures of a unit that is done; false if it is not.
+bool readFigures(const BuildPlan& plan, const Unit& unit, UnitFigures& figures)
+{
+    std::ifstream stream(plan.workFile("tiles", unit), std::ios::binary);
+    return static_cast<bool>(stream.read(reinterpret_cast<char*>(&figures), sizeof(figures)));
+}
 
 class UnitBuilder
 {
@@ -163,11 +171,12 @@ public:
     explicit UnitBuilder(BuildPlan& plan) : _plan(plan), _factory(plan) {}
 
     /// Writes the files of all groups of four tiles in the unit. Writes the unit's root for the next tier.
-    UnitFigures build(const Unit& unit);
+    void build(const Unit& unit);
 
 private:
     LevelArrays sampled(const Unit& unit);
-    LevelArrays gathered(const Unit& unit);
+    LevelArrays gathered(const Unit& unit, UnitFigures& figures);
+    void chooseSkirts(const Unit& unit);
     /// Makes the next coarser level. It may take over texels and slopes of the finer one, which is not used
     /// afterwards.
     LevelArrays coarser(LevelArrays& fine) const;
@@ -227,12 +236,12 @@ LevelArrays UnitBuilder::sampled(const Unit& unit)
     arrays.span = span;
 
     HeightGrid withApron(_plan.validColumns(unit) + 2, _plan.validRows(unit) + 2);
-    ByteReader reader(_plan.workFile("heights", unit));
+    const std::string file = _plan.heightFile("heights", unit);
+    ByteReader reader(file);
     const std::size_t expected = withApron.values.size();
     withApron.values = reader.getVector<float>();
     if (!reader.good() || withApron.values.size() != expected)
-        throw BuildError(_plan.workFile("heights", unit) +
-                         ": this work file is damaged; build again without --resume.");
+        throw BuildError(file + ": this work file is damaged; build again without --resume.");
     arrays.heights = HeightGrid(posts, posts);
     for (int j = 0; j < withApron.rows - 2; ++j)
         for (int i = 0; i < withApron.columns - 2; ++i)
@@ -267,7 +276,7 @@ LevelArrays UnitBuilder::sampled(const Unit& unit)
     return arrays;
 }
 
-LevelArrays UnitBuilder::gathered(const Unit& unit)
+LevelArrays UnitBuilder::gathered(const Unit& unit, UnitFigures& figures)
 {
     const TilingScheme& scheme = _plan.scheme;
     const int n = scheme.intervals, span = unit.span(), posts = span * n + 1;
@@ -296,7 +305,10 @@ LevelArrays UnitBuilder::gathered(const Unit& unit)
             below.root = {arrays.level, unit.root.x * span + x, unit.root.y * span + y};
             if (!_plan.fact(below.root).any) continue;
             ByteReader reader(_plan.workFile("tiles", below));
-            reader.get<UnitFigures>();
+            const auto part = reader.get<UnitFigures>();
+            figures.tiles += part.tiles;
+            figures.textures.add(part.textures);
+            _plan.fact(below.root).skirtBelow = part.skirtBelow;
             const auto slopeX = reader.getVector<float>();
             const auto slopeY = reader.getVector<float>();
             const auto texelSlopeX = reader.getVector<float>();
@@ -405,18 +417,49 @@ std::uint64_t UnitBuilder::writeGroups(const Unit& unit, const LevelArrays& arra
     return tiles;
 }
 
-UnitFigures UnitBuilder::build(const Unit& unit)
+/// The depths that the walls of the tiles and of all tiles below them reach.
+void UnitBuilder::chooseSkirts(const Unit& unit)
+{
+    for (int level = unit.latticeLevel() - (unit.sampled ? 0 : 1); level >= unit.root.level; --level)
+    {
+        const int span = 1 << (level - unit.root.level);
+        for (int y = 0; y < span; ++y)
+            for (int x = 0; x < span; ++x)
+            {
+                const TileKey key{level, unit.root.x * span + x, unit.root.y * span + y};
+                if (!_plan.fact(key).any) continue;
+                TileFacts& facts = _plan.fact(key);
+                // The depth that the walls of its coarsest meshes reach.
+                facts.skirtBelow =
+                    static_cast<float>(2.0 * _plan.largestError(level) + _plan.leastSkirt(level)) +
+                    facts.latticeError;
+                for (int side = 0; side < 4; ++side)
+                    facts.skirtBelow =
+                        std::max(facts.skirtBelow,
+                                 static_cast<float>(_plan.largestError(level) + _plan.skirt(key, side)));
+                for (int c = 0; c < 4; ++c)
+                    facts.skirtBelow =
+                        std::max(facts.skirtBelow, _plan.fact(key.child(c & 1, c >> 1)).skirtBelow);
+            }
+    }
+}
+
+void UnitBuilder::build(const Unit& unit)
 {
     _factory.textures().forget();
-    LevelArrays arrays = unit.sampled ? sampled(unit) : gathered(unit);
-    std::uint64_t tiles = 0;
+    UnitFigures figures;
+    LevelArrays arrays = unit.sampled ? sampled(unit) : gathered(unit, figures);
+    chooseSkirts(unit);
     for (int level = unit.latticeLevel(); level > unit.root.level; --level)
     {
-        tiles += writeGroups(unit, arrays);
+        figures.ownTiles += writeGroups(unit, arrays);
         arrays = coarser(arrays);
     }
     writeNodeAtomically(*_factory.create(unit.root, arrays, 0, 0), rootTileFile(_plan, unit.root));
-    const UnitFigures figures{tiles + 1, _factory.textures().figures()};
+    ++figures.ownTiles;
+    figures.tiles += figures.ownTiles;
+    figures.textures.add(_factory.textures().figures());
+    figures.skirtBelow = _plan.fact(unit.root).skirtBelow;
     ByteWriter writer;
     writer.put(figures);
     writer.put(arrays.slopeX);
@@ -428,47 +471,66 @@ UnitFigures UnitBuilder::build(const Unit& unit)
     writer.put(arrays.cover);
     writer.put(arrays.textureError.front());
     writeFileAtomically(_plan.workFile("tiles", unit), writer.bytes().data(), writer.bytes().size());
-    return figures;
 }
+
+/// The units of a tier. They use the roots of the tiers below.
+class Tiles : public BuildStage
+{
+public:
+    Tiles(BuildPlan& plan, std::size_t tier, TilePassResult& result)
+        : BuildStage("tiles-" + std::to_string(tier), "tiles"), _plan(plan), _units(plan.tiers[tier]),
+          _builders(static_cast<std::size_t>(plan.threads)), _result(result)
+    {
+    }
+    std::size_t units() const override { return _units.size(); }
+    void begin() override
+    {
+        if (VoidRaster::isNeeded(_plan) && !_plan.voids) _plan.voids = std::make_shared<VoidRaster>(_plan);
+        if (!_plan.ground) _plan.ground = std::make_shared<GroundRaster>(_plan);
+    }
+    bool takeOver(std::size_t index) override
+    {
+        UnitFigures figures;
+        if (!hasWork(index)) return true;
+        if (!readFigures(_plan, _units[index], figures)) return false;
+        const std::lock_guard<std::mutex> lock(_mutex);
+        _result.tilesReused += figures.ownTiles;
+        return true;
+    }
+    bool hasWork(std::size_t index) const override { return _plan.fact(_units[index].root).any; }
+    void run(int worker, std::size_t index) override
+    {
+        auto& builder = _builders[static_cast<std::size_t>(worker)];
+        if (!builder) builder = std::make_unique<UnitBuilder>(_plan);
+        builder->build(_units[index]);
+    }
+
+private:
+    BuildPlan& _plan;
+    const std::vector<Unit>& _units;
+    std::vector<std::unique_ptr<UnitBuilder>> _builders;
+    TilePassResult& _result;
+    std::mutex _mutex;
+};
 
 } // namespace
 
-TilePassResult runTilePass(BuildPlan& plan)
+void addTileStages(BuildPlan& plan, BuildStages& stages, TilePassResult& result)
 {
-    std::vector<std::unique_ptr<UnitBuilder>> builders(static_cast<std::size_t>(plan.threads));
-    std::mutex mutex;
-    TilePassResult result;
-    const auto count = [&](const UnitFigures& figures, bool reused)
-    {
-        const std::lock_guard<std::mutex> lock(mutex);
-        result.tiles += figures.tiles;
-        result.tilesReused += reused ? figures.tiles : 0;
-        result.textures.add(figures.textures);
-    };
-    for (const auto& units : plan.tiers)
-        runOnWorkers(plan.threads, units.size(),
-                     [&](int worker, std::size_t index)
-                     {
-                         const Unit& unit = units[index];
-                         if (plan.fact(unit.root).any)
-                         {
-                             ByteReader reader(plan.options.resume ? plan.workFile("tiles", unit)
-                                                                   : std::string());
-                             if (reader.good())
-                             {
-                                 count(reader.get<UnitFigures>(), true);
-                             }
-                             else
-                             {
-                                 auto& builder = builders[static_cast<std::size_t>(worker)];
-                                 if (!builder) builder = std::make_unique<UnitBuilder>(plan);
-                                 count(builder->build(unit), false);
-                             }
-                         }
-                         plan.advance("tiles");
-                     });
-    result.root = readRootTile(plan, {0, 0, 0});
-    return result;
+    for (std::size_t tier = 0; tier < plan.tiers.size(); ++tier)
+        if (!plan.tiers[tier].empty()) stages.push_back(std::make_unique<Tiles>(plan, tier, result));
+}
+
+void readTilePassResult(const BuildPlan& plan, TilePassResult& result)
+{
+    const Unit& whole = plan.tiers.back().front();
+    UnitFigures figures;
+    if (!readFigures(plan, whole, figures))
+        throw BuildError(plan.workFile("tiles", whole) +
+                         ": this work file is damaged; build again without --resume.");
+    result.tiles = figures.tiles;
+    result.textures = figures.textures;
+    result.root = readRootTile(plan, whole.root);
 }
 
 } // namespace osgGeoFX

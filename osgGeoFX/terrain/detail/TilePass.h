@@ -12,6 +12,7 @@
 namespace osgGeoFX
 {
 
+/// What the stages of tiles leave for the root's file.
 struct TilePassResult
 {
     std::uint64_t tiles = 0;
@@ -20,7 +21,7 @@ struct TilePassResult
     osg::ref_ptr<osg::Node> root; ///< the root tile, for terrain.osgb
 };
 
-/// Pass 2: writes the tiles' files. It needs the results of pass 1.
-TilePassResult runTilePass(BuildPlan& plan);
+/// Takes the result from the work files of the last unit. `tilesReused` stays. Throws BuildError.
+void readTilePassResult(const BuildPlan& plan, TilePassResult& result);
 
 } // namespace osgGeoFX

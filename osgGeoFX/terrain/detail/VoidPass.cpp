@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
+#include <osgGeoFX/terrain/detail/BuildStage.h>
 #include <osgGeoFX/terrain/detail/VoidRaster.h>
-#include <osgGeoFX/terrain/detail/WorkQueue.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
 
@@ -28,15 +28,20 @@ constexpr float UNFILLED = -1048576.0f;
 // The memory of a post in a window: heights, mask, and GDAL's own.
 constexpr double BYTES_PER_POST = 24.0;
 
+/// What the stages of voids share.
 class VoidPass
 {
 public:
     explicit VoidPass(BuildPlan& plan);
-    void run();
 
-private:
     void sample(RasterStack& rasters, const Unit& unit);
     void find();
+    void fill(const Unit& unit);
+    void count();
+    /// The memory of filling a unit, MiB.
+    double windowMiB() const;
+
+private:
     /// The part of the grid that GDAL gets for a unit: the unit and a margin.
     struct Window
     {
@@ -44,12 +49,11 @@ private:
         std::vector<float> heights;
         std::vector<Post> posts;
     };
-    bool hasVoids(const Unit& unit);
-    Window windowOf(const Unit& unit);
+    RowFile open(const char* name, std::size_t bytesPerPost, RowFile::Mode mode) const;
+    bool hasVoids(const RowFile& posts, const Unit& unit) const;
+    Window windowOf(const RowFile& posts, const Unit& unit) const;
     /// Gives all posts without a height one. It is UNFILLED if there is no data near enough.
     void interpolate(Window& window) const;
-    void fill(const Unit& unit);
-    void finish();
     /// In posts of the lattice of voids.
     int firstColumn(const Unit& unit) const { return _scheme.firstColumn(unit.root) / _step; }
     int firstRow(const Unit& unit) const { return _scheme.firstRow(unit.root) / _step; }
@@ -57,7 +61,6 @@ private:
     /// if there is one.
     int ownColumns(const Unit& unit) const;
     int ownRows(const Unit& unit) const;
-    void flushPosts(int row, int column, std::size_t count, Post post);
 
     BuildPlan& _plan;
     const TilingScheme& _scheme;
@@ -66,7 +69,6 @@ private:
     /// How far GDAL looks for data: across the largest void, and to the middle of a void that the data's edge cuts.
     const int _search;
     const int _margin; ///< makes a window's middle come out as it would in the whole grid
-    RowFile _heights, _posts, _filled;
 };
 
 DatasetPtr wrap(void* values, int columns, int rows, GDALDataType type)
@@ -84,16 +86,22 @@ DatasetPtr wrap(void* values, int columns, int rows, GDALDataType type)
 VoidPass::VoidPass(BuildPlan& plan)
     : _plan(plan), _scheme(plan.scheme), _step(_scheme.step(plan.voidLevel)),
       _columns(_scheme.lastColumn / _step + 1), _rows(_scheme.lastRow / _step + 1),
-      _search(plan.options.voidReach * 9 / 4 + 2), _margin(_search + plan.options.voidSmoothing),
-      _heights(VoidRaster::file(plan, "heights"), static_cast<std::size_t>(_columns) * sizeof(float),
-               RowFile::Mode::CREATE),
-      _posts(VoidRaster::file(plan, "posts"), static_cast<std::size_t>(_columns), RowFile::Mode::CREATE),
-      _filled(VoidRaster::file(plan, "filled"), static_cast<std::size_t>(_columns) * sizeof(float),
-              RowFile::Mode::CREATE)
+      _search(plan.options.voidReach * 9 / 4 + 2), _margin(_search + plan.options.voidSmoothing)
 {
-    _heights.extend(_rows);
-    _posts.extend(_rows);
-    _filled.extend(_rows);
+}
+
+RowFile VoidPass::open(const char* name, std::size_t bytesPerPost, RowFile::Mode mode) const
+{
+    RowFile file(VoidRaster::file(_plan, name), static_cast<std::size_t>(_columns) * bytesPerPost, mode);
+    // Rows that no unit writes are 0.
+    if (mode == RowFile::Mode::SHARE) file.extend(_rows);
+    return file;
+}
+
+double VoidPass::windowMiB() const
+{
+    const double side = _plan.voidUnits.front().span() * _scheme.intervals + 2.0 * _margin;
+    return side * side * BYTES_PER_POST / (1024.0 * 1024.0);
 }
 
 int VoidPass::ownColumns(const Unit& unit) const
@@ -116,6 +124,8 @@ void VoidPass::sample(RasterStack& rasters, const Unit& unit)
     const std::vector<unsigned char> covered = rasters.covered(lattice, heights);
     const int columns = ownColumns(unit), rows = ownRows(unit);
     std::vector<Post> posts(static_cast<std::size_t>(columns));
+    RowFile postFile = open("sampled", 1, RowFile::Mode::SHARE),
+            heightFile = open("heights", sizeof(float), RowFile::Mode::SHARE);
     for (int j = 0; j < rows; ++j)
     {
         const std::size_t start =
@@ -126,8 +136,8 @@ void VoidPass::sample(RasterStack& rasters, const Unit& unit)
                                                        : Post::OUTSIDE;
         const int row = firstRow(unit) + j;
         const auto column = static_cast<std::size_t>(firstColumn(unit));
-        _posts.write(row, column, posts.size(), posts.data());
-        _heights.write(row, column * sizeof(float), posts.size() * sizeof(float), heights.data() + start);
+        postFile.write(row, column, posts.size(), posts.data());
+        heightFile.write(row, column * sizeof(float), posts.size() * sizeof(float), heights.data() + start);
     }
 }
 
@@ -136,33 +146,38 @@ void VoidPass::find()
     VoidFinder finder(_columns, _rows, _plan.options.voidReach, _scheme.wholeCircle());
     std::vector<Post> posts(static_cast<std::size_t>(_columns));
     std::vector<float> heights(posts.size());
+    const RowFile sampled = open("sampled", 1, RowFile::Mode::READ),
+                  heightFile = open("heights", sizeof(float), RowFile::Mode::READ);
     for (int row = 0; row < _rows; ++row)
     {
-        _posts.read(row, posts.data());
-        _heights.read(row, heights.data());
+        sampled.read(row, posts.data());
+        heightFile.read(row, heights.data());
         finder.add(posts, heights);
     }
+    RowFile marked(VoidRaster::file(_plan, "posts"), posts.size(), RowFile::Mode::TEMPORARY);
     for (int row = _rows - 1; row >= 0; --row)
     {
-        _posts.read(row, posts.data());
-        if (finder.mark(posts)) _posts.write(row, posts.data());
+        sampled.read(row, posts.data());
+        finder.mark(posts);
+        marked.write(row, posts.data());
     }
+    marked.finish(VoidRaster::file(_plan, "posts"));
 }
 
-bool VoidPass::hasVoids(const Unit& unit)
+bool VoidPass::hasVoids(const RowFile& posts, const Unit& unit) const
 {
     std::vector<Post> line(static_cast<std::size_t>(ownColumns(unit)));
     for (int j = 0; j < ownRows(unit); ++j)
     {
-        _posts.read(firstRow(unit) + j, static_cast<std::size_t>(firstColumn(unit)), line.size(),
-                    line.data());
+        posts.read(firstRow(unit) + j, static_cast<std::size_t>(firstColumn(unit)), line.size(), line.data());
         if (std::find(line.begin(), line.end(), Post::FILLED) != line.end()) return true;
     }
     return false;
 }
 
-VoidPass::Window VoidPass::windowOf(const Unit& unit)
+VoidPass::Window VoidPass::windowOf(const RowFile& posts, const Unit& unit) const
 {
+    const RowFile heightFile = open("heights", sizeof(float), RowFile::Mode::READ);
     // On a whole circle a window goes on beyond the seam. The last column is the first one again.
     const bool circle = _scheme.wholeCircle();
     const int column = firstColumn(unit), row = firstRow(unit);
@@ -185,9 +200,9 @@ VoidPass::Window VoidPass::windowOf(const Unit& unit)
             const int run = std::min(window.width - i, (circle ? lap : _columns) - from);
             const auto first = static_cast<std::size_t>(from), size = static_cast<std::size_t>(run);
             const std::size_t target = start + static_cast<std::size_t>(i);
-            _posts.read(window.south + j, first, size, window.posts.data() + target);
-            _heights.read(window.south + j, first * sizeof(float), size * sizeof(float),
-                          window.heights.data() + target);
+            posts.read(window.south + j, first, size, window.posts.data() + target);
+            heightFile.read(window.south + j, first * sizeof(float), size * sizeof(float),
+                            window.heights.data() + target);
             i += run;
         }
     }
@@ -215,8 +230,10 @@ void VoidPass::interpolate(Window& window) const
 
 void VoidPass::fill(const Unit& unit)
 {
-    if (!hasVoids(unit)) return;
-    Window window = windowOf(unit);
+    const RowFile posts = open("posts", 1, RowFile::Mode::READ);
+    RowFile filled = open("filled", sizeof(float), RowFile::Mode::SHARE);
+    if (!hasVoids(posts, unit)) return;
+    Window window = windowOf(posts, unit);
     interpolate(window);
     const int column = firstColumn(unit), row = firstRow(unit), columns = ownColumns(unit);
     for (int j = 0; j < ownRows(unit); ++j)
@@ -224,37 +241,31 @@ void VoidPass::fill(const Unit& unit)
         const std::size_t start =
             static_cast<std::size_t>(row + j - window.south) * static_cast<std::size_t>(window.width) +
             static_cast<std::size_t>(column - window.west);
-        const auto is = [&](int k, bool filled)
+        const auto isFilled = [&](int k)
         {
-            const std::size_t at = start + static_cast<std::size_t>(k);
-            return window.posts[at] == Post::FILLED && (window.heights[at] != UNFILLED) == filled;
+            return window.posts[start + static_cast<std::size_t>(k)] == Post::FILLED;
         };
         for (int i = 0; i < columns;)
         {
             int end = i;
-            while (end < columns && is(end, true))
-                ++end;
+            for (; end < columns && isFilled(end); ++end)
+            {
+                // GDAL found no data near enough, so the post stays a void.
+                float& height = window.heights[start + static_cast<std::size_t>(end)];
+                if (height == UNFILLED) height = std::numeric_limits<float>::quiet_NaN();
+            }
             if (end > i)
-                _filled.write(row + j, static_cast<std::size_t>(column + i) * sizeof(float),
-                              static_cast<std::size_t>(end - i) * sizeof(float),
-                              window.heights.data() + start + static_cast<std::size_t>(i));
-            // GDAL found no data near enough, so the post stays a void.
-            for (i = end; i < columns && is(i, false); ++i)
-                flushPosts(row + j, column + i, 1, Post::VOID);
-            while (i < columns && !is(i, true) && !is(i, false))
-                ++i;
+                filled.write(row + j, static_cast<std::size_t>(column + i) * sizeof(float),
+                             static_cast<std::size_t>(end - i) * sizeof(float),
+                             window.heights.data() + start + static_cast<std::size_t>(i));
+            for (i = end; i < columns && !isFilled(i); ++i)
+                ;
         }
     }
 }
 
-void VoidPass::flushPosts(int row, int column, std::size_t count, Post post)
-{
-    const std::vector<Post> posts(count, post);
-    _posts.write(row, static_cast<std::size_t>(column), count, posts.data());
-}
-
 /// Counts posts, and writes the file that VoidRaster reads first.
-void VoidPass::finish()
+void VoidPass::count()
 {
     const double scale = std::min(1.0, static_cast<double>(MASK_SIDE) / std::max(_columns, _rows));
     const int maskColumns = std::max(1, static_cast<int>(std::ceil(_columns * scale)));
@@ -264,13 +275,22 @@ void VoidPass::finish()
         all(filled);
     std::uint64_t filledPosts = 0, openPosts = 0, dataPosts = 0;
     std::vector<Post> posts(static_cast<std::size_t>(_columns));
+    std::vector<float> heights(posts.size());
+    const RowFile postFile = open("posts", 1, RowFile::Mode::READ),
+                  filledFile = open("filled", sizeof(float), RowFile::Mode::READ);
     const auto cellOf = [](int post, int count, int cells)
     {
         return static_cast<std::size_t>(static_cast<std::int64_t>(post) * cells / count);
     };
     for (int row = 0; row < _rows; ++row)
     {
-        _posts.read(row, posts.data());
+        postFile.read(row, posts.data());
+        if (std::find(posts.begin(), posts.end(), Post::FILLED) != posts.end())
+        {
+            filledFile.read(row, heights.data());
+            for (std::size_t i = 0; i < posts.size(); ++i)
+                if (posts[i] == Post::FILLED && std::isnan(heights[i])) posts[i] = Post::VOID;
+        }
         const std::size_t start = cellOf(row, _rows, maskRows) * static_cast<std::size_t>(maskColumns);
         for (int column = 0; column < _columns; ++column)
         {
@@ -297,48 +317,86 @@ void VoidPass::finish()
     writeFileAtomically(VoidRaster::file(_plan, "done"), writer.bytes().data(), writer.bytes().size());
 }
 
-void VoidPass::run()
+bool exists(const BuildPlan& plan, const char* name)
 {
-    const auto& units = _plan.voidUnits;
-    std::vector<std::unique_ptr<RasterStack>> rasters(static_cast<std::size_t>(_plan.threads));
-    runOnWorkers(_plan.threads, units.size(),
-                 [&](int worker, std::size_t index)
-                 {
-                     auto& stack = rasters[static_cast<std::size_t>(worker)];
-                     if (!stack) stack = std::make_unique<RasterStack>(_plan);
-                     if (_scheme.exists(units[index].root)) sample(*stack, units[index]);
-                     _plan.advance("voids");
-                 });
-    find();
-    _plan.advance("voids");
-    const double side = units.front().span() * _scheme.intervals + 2.0 * _margin;
-    const double windowMiB = side * side * BYTES_PER_POST / (1024.0 * 1024.0);
-    const int threads =
-        std::clamp(static_cast<int>(0.75 * _plan.options.memoryMiB / windowMiB), 1, _plan.threads);
-    runOnWorkers(threads, units.size(),
-                 [&](int, std::size_t index)
-                 {
-                     if (_scheme.exists(units[index].root)) fill(units[index]);
-                     _plan.advance("voids");
-                 });
-    finish();
+    return std::filesystem::exists(VoidRaster::file(plan, name));
 }
+
+/// One of four stages. A stage that has made its file is done, and so are those before.
+class VoidStage : public BuildStage
+{
+public:
+    VoidStage(BuildPlan& plan, const char* name, const char* result)
+        : BuildStage(name, "voids"), _plan(plan), _pass(plan), _result(result)
+    {
+    }
+    std::size_t units() const override { return 1; }
+    bool isNeeded() const override { return VoidRaster::isNeeded(_plan); }
+    bool takeOver(std::size_t) override { return exists(_plan, _result); }
+
+protected:
+    BuildPlan& _plan;
+    VoidPass _pass;
+
+private:
+    const char* _result;
+};
+
+/// Samples the posts of the lattice of voids.
+class VoidPosts : public VoidStage
+{
+public:
+    explicit VoidPosts(BuildPlan& plan)
+        : VoidStage(plan, "void-posts", "posts"), _rasters(static_cast<std::size_t>(plan.threads))
+    {
+    }
+    std::size_t units() const override { return _plan.voidUnits.size(); }
+    void run(int worker, std::size_t unit) override
+    {
+        auto& stack = _rasters[static_cast<std::size_t>(worker)];
+        if (!stack) stack = std::make_unique<RasterStack>(_plan);
+        _pass.sample(*stack, _plan.voidUnits[unit]);
+    }
+
+private:
+    std::vector<std::unique_ptr<RasterStack>> _rasters;
+};
+
+/// Finds out which voids are small enough to be filled.
+class VoidAreas : public VoidStage
+{
+public:
+    explicit VoidAreas(BuildPlan& plan) : VoidStage(plan, "void-areas", "posts") {}
+    void run(int, std::size_t) override { _pass.find(); }
+};
+
+class VoidHeights : public VoidStage
+{
+public:
+    explicit VoidHeights(BuildPlan& plan) : VoidStage(plan, "void-heights", "done") {}
+    std::size_t units() const override { return _plan.voidUnits.size(); }
+    int threads(int wanted) const override
+    {
+        return std::clamp(static_cast<int>(0.75 * _plan.options.memoryMiB / _pass.windowMiB()), 1, wanted);
+    }
+    void run(int, std::size_t unit) override { _pass.fill(_plan.voidUnits[unit]); }
+};
+
+class VoidCounts : public VoidStage
+{
+public:
+    explicit VoidCounts(BuildPlan& plan) : VoidStage(plan, "void-counts", "done") {}
+    void run(int, std::size_t) override { _pass.count(); }
+};
 
 } // namespace
 
-std::uint64_t voidSteps(const BuildPlan& plan)
+void addVoidStages(BuildPlan& plan, BuildStages& stages)
 {
-    return 2 * plan.voidUnits.size() + 1;
-}
-
-void fillVoids(BuildPlan& plan)
-{
-    if (plan.options.resume && std::filesystem::exists(VoidRaster::file(plan, "done")))
-        for (std::uint64_t step = voidSteps(plan); step > 0; --step)
-            plan.advance("voids");
-    else
-        VoidPass(plan).run();
-    plan.voids = std::make_shared<VoidRaster>(plan);
+    stages.push_back(std::make_unique<VoidPosts>(plan));
+    stages.push_back(std::make_unique<VoidAreas>(plan));
+    stages.push_back(std::make_unique<VoidHeights>(plan));
+    stages.push_back(std::make_unique<VoidCounts>(plan));
 }
 
 } // namespace osgGeoFX

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 namespace osgGeoFX
@@ -71,7 +72,7 @@ public:
     float height(std::size_t side, int column, bool& any) const
     {
         const auto c = static_cast<std::size_t>(column - _first);
-        any = any || posts[side][c] == Post::FILLED;
+        any = any || (posts[side][c] == Post::FILLED && !std::isnan(filled[side][c]));
         return posts[side][c] == Post::FILLED ? filled[side][c]
                : posts[side][c] == Post::DATA ? heights[side][c]
                                               : std::numeric_limits<float>::quiet_NaN();
@@ -87,6 +88,11 @@ private:
 std::string VoidRaster::file(const BuildPlan& plan, const char* name)
 {
     return plan.workFolder() + "/voids/" + name;
+}
+
+bool VoidRaster::isNeeded(const BuildPlan& plan)
+{
+    return std::filesystem::exists(neededFile(plan));
 }
 
 VoidRaster::VoidRaster(const BuildPlan& plan)

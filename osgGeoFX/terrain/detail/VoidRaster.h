@@ -18,11 +18,11 @@ namespace osgGeoFX
 class BuildPlan;
 
 /** The posts of an elevation with voids, on the level of its coarsest files: heights above the sea, the kind of each post, and the heights
-    of filled voids. They are three work files, which fillVoids() writes. Sampling is thread-safe. */
+    of filled voids (NaN if GDAL found no data near enough). They are three work files, which the stages of voids write. Sampling is thread-safe. */
 class VoidRaster
 {
 public:
-    /// Reads what fillVoids() has written. Throws BuildError.
+    /// Reads what the stages of voids have written. Throws BuildError.
     explicit VoidRaster(const BuildPlan& plan);
 
     /// Gives heights to points without one (NaN) that lie in filled voids, metres above the sea, bilinear between
@@ -46,6 +46,9 @@ public:
     int maskColumns() const { return _maskColumns; }
 
     static std::string file(const BuildPlan& plan, const char* name);
+    /// A file that is there if any post lacks a height. The sampling of heights makes it.
+    static std::string neededFile(const BuildPlan& plan) { return file(plan, "needed"); }
+    static bool isNeeded(const BuildPlan& plan);
 
 private:
     class Rows;
@@ -57,12 +60,5 @@ private:
     int _maskColumns = 0;
     std::vector<unsigned char> _mask;
 };
-
-/// Finds the voids of the elevation on the finest level's posts and fills them. Sets the plan's `voids`. Takes over
-/// those of an interrupted build. Throws BuildError.
-void fillVoids(BuildPlan& plan);
-
-/// The steps of progress of fillVoids().
-std::uint64_t voidSteps(const BuildPlan& plan);
 
 } // namespace osgGeoFX
