@@ -46,8 +46,6 @@ public:
     }
 };
 
-const osgDB::RegisterReaderWriterProxy<ByteReader> byteReader;
-
 /// An address without what follows the path.
 std::string pathOf(const std::string& url)
 {
@@ -69,7 +67,7 @@ osg::ref_ptr<osgDB::Options> fetchOptions(const osgDB::Options* options)
         result->setAuthenticationMap(const_cast<osgDB::AuthenticationMap*>(options->getAuthenticationMap()));
     std::string words = options ? options->getOptionString() : std::string();
     addTimeout(words, "OSG_CURL_CONNECTTIMEOUT", "10");
-    addTimeout(words, "OSG_CURL_TIMEOUT", "60");
+    addTimeout(words, "OSG_CURL_TIMEOUT", "30");
     result->setOptionString(words);
     return result;
 }
@@ -104,6 +102,8 @@ Content fetch(const std::string& url, const osgDB::Options* options)
         content.reason = "the server has not answered several times";
         return content;
     }
+    // Not when the library is loaded: OSG's registry reads the environment when it is first used, and programs may set that.
+    static const osgDB::RegisterReaderWriterProxy<ByteReader> byteReader;
     const osgDB::ReaderWriter* const plugin =
         osgDB::Registry::instance()->getReaderWriterForProtocolAndExtension(osgDB::getServerProtocol(url),
                                                                             "geofxbytes");

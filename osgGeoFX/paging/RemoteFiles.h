@@ -17,7 +17,7 @@ namespace osgGeoFX
 /** Files on web servers (`http://`, `https://`). OSG's plugin osgdb_curl fetches them, so its option strings hold, such as
     `OSG_CURL_PROXY`, and so does OSG's AuthenticationMap.
 
-    A server may take 10 seconds to accept a connection and 60 seconds for a file. The option strings
+    A server may take 10 seconds to accept a connection and 30 seconds for a file. The option strings
     `OSG_CURL_CONNECTTIMEOUT=SECONDS` and `OSG_CURL_TIMEOUT=SECONDS` change this, and so do environment variables with
     these names. After three requests in a row without an answer, a server is not asked for 2 seconds.
 
