@@ -5,6 +5,7 @@
 #include "names/SceneNames.h"
 #include "viewer/ViewerSetup.h"
 
+#include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -180,6 +181,7 @@ int main(int argc, char** argv)
     {
         return refuse(fault.what());
     }
+    osgGeoFX::RemoteFiles::setUpThreads(*viewer.getDatabasePager(), 1);
     viewer.setSceneData(scene->node);
     const osg::Vec4 color = viewer.getCamera()->getClearColor();
     const double nearFarRatio = viewer.getCamera()->getNearFarRatio();

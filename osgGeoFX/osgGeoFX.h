@@ -7,6 +7,7 @@
 
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
+#include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/paging/TilePosts.h>

@@ -7,6 +7,7 @@
 #include <osgGeoFX/offscreen/detail/DeepFrame.h>
 #include <osgGeoFX/offscreen/detail/DrawnLeaves.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
+#include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/viewer/Overlay.h>
 #include <osgGeoFX/viewer/PictureParts.h>
@@ -206,7 +207,7 @@ void SceneRenderer::Parts::setUpScene(const Scene& scene)
     root->getOrCreateStateSet()->setRenderBinDetails(0, "TraversalOrderBin");
     root->addChild(scene.node.get());
     viewer->setSceneData(root);
-    viewer->getDatabasePager()->setUpThreads(std::max(2u, std::thread::hardware_concurrency()), 0);
+    RemoteFiles::setUpThreads(*viewer->getDatabasePager(), std::max(2u, std::thread::hardware_concurrency()));
     monitor = std::make_unique<PagerMonitor>(viewer->getDatabasePager(), scene.guard.get(), 1);
 }
 

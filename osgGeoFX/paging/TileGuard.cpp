@@ -2,6 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/paging/TileGuard.h>
 
+#include <osgGeoFX/paging/RemoteFiles.h>
+#include <osgGeoFX/paging/detail/BinaryHeader.h>
+#include <osgGeoFX/paging/detail/PagerCache.h>
+#include <osgGeoFX/paging/detail/StandIn.h>
+
 #include <osg/Group>
 #include <osg/NodeVisitor>
 #include <osg/Notify>
@@ -13,6 +18,8 @@
 #include <osgDB/fstream>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
@@ -26,96 +33,27 @@ namespace
 
 using ReadResult = osgDB::ReaderWriter::ReadResult;
 
-/// Draws what the parent of a tile that cannot be read draws. The parent's own child is not added as a child: that
-/// would change its list of parents in the pager's thread.
-class StandIn : public osg::Group
-{
-public:
-    explicit StandIn(osg::Node* shown) : _shown(shown) {}
+using Clock = StandIn::Clock;
 
-    osg::BoundingSphere computeBound() const override { return _shown->getBound(); }
+/// When a file on a disk is tried again.
+constexpr Clock::time_point never = Clock::time_point::max();
 
-    // Visitors of all children (compiling, optimising, writing) reach the parent's child through the parent.
-    void traverse(osg::NodeVisitor& visitor) override
-    {
-        if (visitor.getTraversalMode() == osg::NodeVisitor::TRAVERSE_ACTIVE_CHILDREN) _shown->accept(visitor);
-    }
-
-protected:
-    ~StandIn() override = default;
-
-private:
-    const osg::ref_ptr<osg::Node> _shown;
-};
-
-osg::ref_ptr<osg::Node> makeStandIn(const osgDB::Options* options)
+ReadResult makeStandIn(const std::string& file, const osgDB::Options* options, Clock::time_point again)
 {
     osg::ref_ptr<osg::Group> parent;
-    if (options && options->getParentGroup().lock(parent) && parent->getNumChildren() > 0)
+    if (options) options->getParentGroup().lock(parent);
+    if (auto* const before = dynamic_cast<StandIn*>(parent.get()))
     {
-        return new StandIn(parent->getChild(parent->getNumChildren() - 1));
+        before->askLater(again);
+        // Nothing, and no reason for the pager to say so.
+        return ReadResult::FILE_LOADED;
     }
-    return new osg::Group;
+    const bool hasCoarser = parent && parent->getNumChildren() > 0;
+    const osg::ref_ptr<StandIn> result =
+        new StandIn(hasCoarser ? parent->getChild(parent->getNumChildren() - 1) : nullptr);
+    if (again != never) result->askAgain(file, options, again);
+    return result.get();
 }
-
-/// A file's header, as far as OSG would trust its sizes. Everything after it is checked by zlib.
-class BinaryHeader
-{
-public:
-    explicit BinaryHeader(const std::string& file) : _stream(file.c_str(), std::ios::in | std::ios::binary) {}
-
-    /// What is wrong with it; empty if nothing is, or if it is not for us to judge.
-    std::string fault()
-    {
-        constexpr std::uint32_t low = 0x6C910EA1;
-        constexpr std::uint32_t high = 0x1AFB4545;
-        if (!_stream) return "it cannot be opened";
-        const std::uint32_t first = number();
-        const std::uint32_t second = number();
-        if (!_stream) return "it is empty or cut off";
-        if (first == swapped(low) && second == swapped(high)) return {};
-        if (first != low || second != high) return "it is not an OpenSceneGraph binary file";
-        const std::uint32_t type = number();
-        number(); // version
-        const std::uint32_t attributes = number();
-        if (!_stream) return "it is cut off";
-        if (type > 3 || (attributes & ~7u) != 0) return _damaged;
-        if (attributes & 1u)
-        {
-            const std::uint32_t domains = number();
-            if (domains > 1000) return _damaged;
-            for (std::uint32_t i = 0; i < domains; ++i)
-            {
-                if (!skipString()) return _damaged;
-                number();
-            }
-        }
-        return skipString() ? std::string() : _damaged;
-    }
-
-private:
-    std::uint32_t number()
-    {
-        std::uint32_t value = 0;
-        _stream.read(reinterpret_cast<char*>(&value), sizeof value);
-        return value;
-    }
-
-    bool skipString()
-    {
-        const std::uint32_t length = number();
-        return _stream && length <= 4096 && _stream.ignore(length) &&
-               _stream.gcount() == static_cast<std::streamsize>(length);
-    }
-
-    static std::uint32_t swapped(std::uint32_t value)
-    {
-        return (value >> 24) | ((value >> 8) & 0xff00u) | ((value << 8) & 0xff0000u) | (value << 24);
-    }
-
-    const std::string _damaged = "its header is damaged";
-    osgDB::ifstream _stream;
-};
 
 } // namespace
 
@@ -132,8 +70,13 @@ public:
 
     const osg::ref_ptr<TileGuard> guard;
     const osg::ref_ptr<osgDB::ReadFileCallback> previous;
+    struct Failure
+    {
+        Clock::time_point again; ///< when the file is tried again
+        double delay = 0.0;      ///< before that, seconds; 0: it is not tried again
+    };
     /// Files that failed with these options. Under the guard's lock.
-    std::set<std::string> failed;
+    std::map<std::string, Failure> failed;
 };
 
 /// Finds PagedLODs and, given a guard, puts it into those that have none.
@@ -188,7 +131,14 @@ std::string TileGuard::faultOf(const std::string& path)
 {
     if (path.empty()) return "it is missing";
     if (osgDB::getLowerCaseFileExtension(path) != "osgb") return {};
-    return BinaryHeader(path).fault();
+    osgDB::ifstream stream(path.c_str(), std::ios::in | std::ios::binary);
+    return faultOfBinaryHeader(stream);
+}
+
+void TileGuard::setRetryDelay(double seconds)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _retryDelay = std::isfinite(seconds) ? std::clamp(seconds, 0.01, 3600.0) : 10.0;
 }
 
 void TileGuard::addListener(TileListener* listener)
@@ -273,6 +223,12 @@ osg::ref_ptr<osgDB::Options> TileGuard::guardedOptions(osgDB::Options* original)
         _purgeSize = std::max<std::size_t>(64, 2 * _options.size());
     }
     guarded = original ? original->cloneOptions() : new osgDB::Options;
+    // A callback that was there decides where files come from, and with it OSG's own ways.
+    if (!guarded->getReadFileCallback())
+    {
+        const osgDB::FileCache* const cache = guarded->getFileCache();
+        guarded->setFileCache(new PagerCache(cache ? cache->getFileCachePath() : std::string()));
+    }
     guarded->setReadFileCallback(new Callback(this, guarded->getReadFileCallback()));
     _options[original] = {original, guarded.get()};
     return guarded;
@@ -282,14 +238,16 @@ ReadResult TileGuard::read(const std::string& file, const osgDB::Options* option
 {
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        if (callback.failed.count(file)) return makeStandIn(options).get();
+        const auto known = callback.failed.find(file);
+        if (known != callback.failed.end() && Clock::now() < known->second.again)
+            return makeStandIn(file, options, known->second.again);
     }
     const osg::ref_ptr<osgDB::ReadFileCallback> previous =
         callback.previous ? callback.previous.get() : osgDB::Registry::instance()->getReadFileCallback();
-    const bool local = !previous && !osgDB::containsServerAddress(file);
-    const std::string path = local ? osgDB::findDataFile(file, options) : std::string();
+    if (!previous && RemoteFiles::isRemote(file)) return readRemote(file, options, callback);
+    const std::string path = previous ? std::string() : osgDB::findDataFile(file, options);
     // A name without a file may mean something to the plugin of its extension.
-    if (local && osgDB::getLowerCaseFileExtension(file) == "osgb")
+    if (!previous && osgDB::getLowerCaseFileExtension(file) == "osgb")
     {
         const std::string fault = faultOf(path);
         if (!fault.empty()) return fail(file, fault, options, callback);
@@ -328,18 +286,63 @@ ReadResult TileGuard::read(const std::string& file, const osgDB::Options* option
     return result;
 }
 
+ReadResult TileGuard::readRemote(const std::string& file, const osgDB::Options* options, Callback& callback)
+{
+    const RemoteFiles::Node read = RemoteFiles::readNode(file, options, RemoteFiles::Order::CacheFirst);
+    const std::string url = RemoteFiles::normalOf(file), server = osgDB::getServerAddress(file);
+    if (!read.node)
+    {
+        // A server that does not answer is one fault, however many tiles want something of it.
+        const bool isServers =
+            read.fault == RemoteFiles::Fault::NoAnswer || read.fault == RemoteFiles::Fault::NoPlugin;
+        warnOnce(isServers ? server : url,
+                 "osgGeoFX: the tile \"" + url + "\" cannot be read (" + read.reason +
+                     "); the coarser one stays in its place, and the tile is asked for again later; " +
+                     RemoteFiles::remedyOf(read.fault));
+        return failRemote(file, options, callback);
+    }
+    Installer installer(this);
+    read.node->accept(installer);
+    tell(*read.node, url);
+    const std::lock_guard<std::mutex> lock(_mutex);
+    ++_counts.tilesRead;
+    _counts.bytesRead += read.bytes;
+    callback.failed.erase(file);
+    _failed.erase(url);
+    if (!read.fromCache)
+    {
+        _warned.erase(url);
+        _warned.erase(server);
+    }
+    return read.node.get();
+}
+
 ReadResult TileGuard::fail(const std::string& file, const std::string& reason, const osgDB::Options* options,
                            Callback& callback)
 {
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        if (callback.failed.insert(file).second) ++_counts.tilesFailed;
+        if (callback.failed.emplace(file, Callback::Failure{never}).second) ++_counts.tilesFailed;
         _failed.insert(file);
     }
     warnOnce(file,
              "osgGeoFX: the tile \"" + file + "\" cannot be read (" + reason +
                  "); the coarser one stays in its place. Restore the file or build the database again.");
-    return makeStandIn(options).get();
+    return makeStandIn(file, options, never);
+}
+
+ReadResult TileGuard::failRemote(const std::string& file, const osgDB::Options* options, Callback& callback)
+{
+    constexpr double mostDelays = 32.0;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    Callback::Failure& failure = callback.failed[file];
+    if (failure.delay == 0.0) ++_counts.tilesFailed;
+    failure.delay =
+        failure.delay == 0.0 ? _retryDelay : std::min(2.0 * failure.delay, mostDelays * _retryDelay);
+    failure.again = Clock::now() +
+                    std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(failure.delay));
+    _failed.insert(file);
+    return makeStandIn(file, options, failure.again);
 }
 
 void TileGuard::warnOnce(const std::string& file, const std::string& sentence)

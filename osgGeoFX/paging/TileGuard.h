@@ -43,8 +43,12 @@ protected:
     checksum of zlib protects the content of a tile that was written with `Compressor=zlib`, as those of
     osggeofx_build are. The guard passes other formats to OSG as they are and only catches exceptions.
 
-    A file that failed is not tried again with the same options, as long as these exist. PagedLODs with options of
-    their own may use one file name for different tiles. Some loaders do so and find in the options what to read.
+    Tiles of web servers are read through RemoteFiles, so they come from OSG's file cache where it has them. A tile that
+    a server did not send is tried again when it is in sight and some time has passed (setRetryDelay()). If a server
+    does not answer, there is one warning for all its tiles, and one more if that happens again later.
+
+    A file on a disk that failed is not tried again with the same options, as long as these exist. PagedLODs with options
+    of their own may use one file name for different tiles. Some loaders do so and find in the options what to read.
     Thread-safe, in all of OSG's threading models and for any number of pager threads.
 
     @ingroup paging */
@@ -69,6 +73,10 @@ public:
 
     TileGuard();
 
+    /// How long a tile of a server that failed is left alone, 0.01…3,600 seconds; at first 10. Each further failure
+    /// doubles it, up to 32 times. It holds for the next failures.
+    void setRetryDelay(double seconds);
+
     /// Tells a listener of each tile that is read from now on. If the listener throws, there is one warning for each
     /// tile's file, and the tile is drawn nonetheless. The guard does not keep the listener alive; the caller must.
     /// Null, and a listener that was added before, are ignored. Listeners are not told of tiles that OSG takes from its
@@ -79,7 +87,7 @@ public:
 
     /// Totals since the guard was made.
     Counts counts() const;
-    /// The names of all files that failed.
+    /// The names of all files that failed, without tiles of servers that came later.
     std::set<std::string> failedFiles() const;
 
 protected:
@@ -97,8 +105,14 @@ private:
     osgDB::ReaderWriter::ReadResult fail(const std::string& file, const std::string& reason,
                                          const osgDB::Options* options, Callback& callback);
 
+    osgDB::ReaderWriter::ReadResult readRemote(const std::string& file, const osgDB::Options* options,
+                                               Callback& callback);
+    osgDB::ReaderWriter::ReadResult failRemote(const std::string& file, const osgDB::Options* options,
+                                               Callback& callback);
+
     mutable std::mutex _mutex;
-    std::set<std::string> _failed, _warned; ///< file names
+    std::set<std::string> _failed, _warned; ///< file names; warned of: servers, too
+    double _retryDelay = 10.0;              ///< seconds
     Counts _counts;
     std::vector<osg::observer_ptr<TileListener>> _listeners;
     struct Guarded

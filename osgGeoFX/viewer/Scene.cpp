@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/viewer/Scene.h>
 
+#include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/detail/HorizonClamp.h>
 
@@ -121,12 +122,27 @@ EffectScene* findEffects(osg::Node* node, int depth)
 std::optional<Scene> Scene::load(const std::string& file, std::string& error, const osgDB::Options* options)
 {
     addPluginFolder();
+    const bool isRemote = RemoteFiles::isRemote(file),
+               isScene = osgDB::getLowerCaseFileExtension(file) == "geofx";
+    // The plugin of scene files fetches them, and what they name, by itself. OSG would ask others, too, when it fails.
+    osgDB::ReaderWriter* const plugin =
+        isRemote && isScene ? osgDB::Registry::instance()->getReaderWriterForExtension("geofx") : nullptr;
+    if (isRemote && !isScene)
+    {
+        const RemoteFiles::Node read = RemoteFiles::readNode(file, options, RemoteFiles::Order::ServerFirst);
+        if (read.node) return adopt(read.node, error);
+        error = "The scene \"" + file + "\" cannot be read (" + read.reason + "); " +
+                RemoteFiles::remedyOf(read.fault);
+        return std::nullopt;
+    }
     // Names such as "cow.osgt.10.scale" are no files, and yet OSG reads them.
     std::string reason = osgDB::fileExists(file) ? TileGuard::faultOf(file) : std::string();
     osgDB::ReaderWriter::ReadResult result;
     try
     {
-        if (reason.empty()) result = osgDB::Registry::instance()->readNode(file, options);
+        if (reason.empty())
+            result = plugin ? plugin->readNode(file, options)
+                            : osgDB::Registry::instance()->readNode(file, options);
     }
     catch (const std::exception& exception)
     {
@@ -134,7 +150,7 @@ std::optional<Scene> Scene::load(const std::string& file, std::string& error, co
     }
     if (!result.validNode())
     {
-        if (!osgDB::fileExists(file)) reason = "it does not exist";
+        if (!isRemote && !osgDB::fileExists(file)) reason = "it does not exist";
         if (reason.empty()) reason = result.statusMessage();
         error = "The scene \"" + file + "\" cannot be read (" + reason +
                 "); name a file that OpenSceneGraph or one of its plugins reads.";

@@ -7,6 +7,7 @@
 #include "SceneNode.h"
 #include "SceneReach.h"
 
+#include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/paging/TileGuard.h>
 
 #include <osg/ValueObject>
@@ -16,6 +17,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <istream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -42,12 +45,33 @@ public:
     ReadResult readNode(const std::string& file, const Options* options) const override
     {
         if (!acceptsExtension(osgDB::getLowerCaseFileExtension(file))) return ReadResult::FILE_NOT_HANDLED;
+        if (RemoteFiles::isRemote(file))
+        {
+            const RemoteFiles::Content content = RemoteFiles::readContent(file, options);
+            if (content.fault == RemoteFiles::Fault::None)
+                return readText(content.bytes, file, file, options);
+            return failure({content.reason + "; " + RemoteFiles::remedyOf(content.fault)});
+        }
         const std::string path = osgDB::findDataFile(file, options);
         if (path.empty()) return ReadResult::FILE_NOT_FOUND;
-
-        const std::string text = readSceneText(path);
         // Absolute, so that what is paged later is found from any current folder.
-        const std::string real = osgDB::getRealPath(path);
+        return readText(readSceneText(path), path, osgDB::getRealPath(path), options);
+    }
+
+    /// What osgdb_curl has fetched, when OSG asks that plugin first.
+    ReadResult readNode(std::istream& stream, const Options* options) const override
+    {
+        const std::string url = options ? options->getPluginStringData("filename") : std::string();
+        if (!RemoteFiles::isRemote(url)) return ReadResult::FILE_NOT_HANDLED;
+        const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+        return readText(text, url, url, options);
+    }
+
+private:
+    /// `path`: for messages; `real`: the complete path or address.
+    static ReadResult readText(const std::string& text, const std::string& path, const std::string& real,
+                               const Options* options)
+    {
         const std::string folder = osgDB::getFilePath(real);
         SceneResult result = parseScene(text, path, folder);
         if (result.scene) result.errors = faultsOfFiles(*result.scene, folder, options);
@@ -77,7 +101,6 @@ public:
         return node.get();
     }
 
-private:
     /// A scene's terrain may be a scene; which ones are being read by this thread.
     class Nesting
     {
@@ -141,6 +164,15 @@ private:
                                                std::string& error)
     {
         std::string reason;
+        if (RemoteFiles::isRemote(file.path) && osgDB::getLowerCaseFileExtension(file.path) != "geofx")
+        {
+            const RemoteFiles::Node read =
+                RemoteFiles::readNode(file.path, options, RemoteFiles::Order::ServerFirst);
+            if (read.node) return read.node;
+            error = file.place.message("the terrain \"" + file.path + "\" cannot be read (" + read.reason +
+                                       "); " + RemoteFiles::remedyOf(read.fault));
+            return nullptr;
+        }
         try
         {
             ReadResult result = osgDB::Registry::instance()->readNode(file.path, options);

@@ -18,10 +18,14 @@ namespace osgGeoFX
 extern const char* const allowOutside;
 
 /// Whether a path lies in a folder or below it, links followed. An address does not, nor does what GDAL reads without a file.
+/// If the folder is an address, addresses below it do, and nothing else.
 bool isWithin(const std::string& path, const std::string& folder);
 
 /// One sentence for each path that leads out of the scene's folder, the cache among them.
 std::vector<std::string> outsidePaths(const SceneFile& scene, const std::string& folder);
+
+/// One sentence for each file of a scene on a web server that is not fetched from there: all but the database.
+std::vector<std::string> unfetchedPaths(const SceneFile& scene);
 
 /// What osgdb_geofxdata is asked for under the name "sources", and its answer: where a file takes its data from.
 struct SourcesRequest

@@ -3,6 +3,8 @@
 #include "SceneLoading.h"
 #include "SceneReach.h"
 
+#include <osgGeoFX/paging/RemoteFiles.h>
+
 #include <osgDB/fstream>
 
 #include <set>
@@ -78,6 +80,7 @@ std::vector<std::string> faultsOfFiles(const SceneFile& scene, const std::string
         anywhere = anywhere || word == allowOutside;
     std::vector<std::string> errors;
     if (!anywhere) errors = outsidePaths(scene, folder);
+    if (errors.empty() && RemoteFiles::isRemote(folder)) return unfetchedPaths(scene);
     if (errors.empty()) errors = missingFiles(scene);
     if (errors.empty() && !anywhere) errors = outsideSources(scene, folder);
     return errors;

@@ -75,7 +75,12 @@ ScenePlace SceneXml::place(xmlNode* node) const
 
 std::string SceneXml::joined(const std::string& path) const
 {
-    return (fs::path(_folder) / path).lexically_normal().string();
+    // The path of an address is made normal without the address, whose slashes are two.
+    const std::size_t scheme = _folder.find("://");
+    if (scheme == std::string::npos) return (fs::path(_folder) / path).lexically_normal().string();
+    const std::size_t start = std::min(_folder.find('/', scheme + 3), _folder.size());
+    const fs::path folder = start < _folder.size() ? fs::path(_folder.substr(start)) : fs::path("/");
+    return _folder.substr(0, start) + (folder / path).lexically_normal().string();
 }
 
 ScenePath SceneXml::path(xmlNode* node, const char* attribute) const

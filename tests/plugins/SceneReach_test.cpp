@@ -57,6 +57,25 @@ TEST(SceneReach, IsTheFolderAndWhatLiesBelow)
         EXPECT_FALSE(isWithin(outside, folder)) << outside;
 }
 
+TEST(SceneReach, OfASceneOnAServerIsWhatLiesBelowItsAddress)
+{
+    const std::string folder = "http://example.org/maps/oahu";
+    for (const char* inside :
+         {"http://example.org/maps/oahu/terrain.osgb", "http://example.org/maps/oahu/a/../b.osgb",
+          "http://example.org/maps/../maps/oahu/b.osgb"})
+        EXPECT_TRUE(isWithin(inside, folder)) << inside;
+    for (const char* outside :
+         {"http://example.org/maps/oahu-2/terrain.osgb", "http://example.org/maps/oahu/../terrain.osgb",
+          "http://example.org/maps/oahu/%2e%2e/terrain.osgb", "https://example.org/maps/oahu/terrain.osgb",
+          "http://example.org.evil.org/maps/oahu/terrain.osgb",
+          "http://me@example.org/maps/oahu/terrain.osgb", "http://example.org:81/maps/oahu/terrain.osgb",
+          "http://example.org", "maps/oahu/terrain.osgb", "/etc/passwd",
+          "/vsicurl/http://example.org/maps/oahu/a.tif"})
+        EXPECT_FALSE(isWithin(outside, folder)) << outside;
+    EXPECT_FALSE(isWithin("http://example.org.evil.org/a.osgb", "http://example.org"));
+    EXPECT_TRUE(isWithin("http://example.org/a.osgb", "http://example.org"));
+}
+
 TEST(SceneReach, EveryAttributeThatNamesAFileIsLookedAt)
 {
     const TempDir place;
