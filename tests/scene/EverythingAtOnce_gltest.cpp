@@ -199,7 +199,7 @@ TEST_P(EverythingAtOnce, IsThePictureWithoutCulling)
             if (!harness) harness = std::make_unique<CullHarness>(context(), _scene, WIDTH, HEIGHT);
             harness->setScene(_scene);
             // Fewer tiles, for the time that each change has.
-            harness->camera().setLODScale(fullTest() ? 1.0f : 4.0f);
+            harness->camera().setLODScale(fullTest() ? 1.0f : 2.5f);
         }
         addEffects(random);
         if (HasFatalFailure()) return;
