@@ -96,9 +96,10 @@ std::string builderLine(const Options& options, const JobArray& array, const std
     return line;
 }
 
-std::string jobsFile(const std::string& folder)
+/// The numbers of the jobs that were submitted for a build.
+std::string jobsFile(const BuildStatus& build)
 {
-    return folder + "/work/log/slurm-jobs";
+    return (fs::path(build.logFolder) / "slurm-jobs").string();
 }
 
 /// Runs one of Slurm's programs.
@@ -139,22 +140,22 @@ void submit(const Options& options)
         return;
     }
     std::string before, jobs;
-    if (!options.dryRun) fs::create_directories(fs::path(jobsFile(options.folder)).parent_path());
+    if (!options.dryRun) fs::create_directories(build.logFolder);
     for (const JobArray& array : arraysOf(options, build))
     {
         std::string name = "geofx";
         for (const std::string& stage : array.stages)
             name += (&stage == &array.stages.front() ? "-" : "+") + stage;
-        std::vector<std::string> command = {"sbatch",
-                                            "--parsable",
-                                            "--job-name=" + name,
-                                            "--requeue",
-                                            "--open-mode=append",
-                                            "--ntasks=1",
-                                            "--cpus-per-task=1",
-                                            "--output=" + options.folder + "/work/log/slurm-%A_%a.txt",
-                                            "--array=0-" + std::to_string(array.jobs - 1) + "%" +
-                                                std::to_string(options.maxWorkers)};
+        std::vector<std::string> command = {
+            "sbatch",
+            "--parsable",
+            "--job-name=" + name,
+            "--requeue",
+            "--open-mode=append",
+            "--ntasks=1",
+            "--cpus-per-task=1",
+            "--output=" + (fs::path(build.logFolder) / "slurm-%A_%a.txt").string(),
+            "--array=0-" + std::to_string(array.jobs - 1) + "%" + std::to_string(options.maxWorkers)};
         if (!options.partition.empty()) command.push_back("--partition=" + options.partition);
         if (!before.empty()) command.push_back("--dependency=afterok:" + before);
         command.push_back("--wrap=" + scriptOf(options, array));
@@ -178,24 +179,24 @@ void submit(const Options& options)
         jobs += " " + before;
         std::printf("%s: job %s, %llu %s\n", name.c_str(), before.c_str(),
                     static_cast<unsigned long long>(array.jobs), array.jobs == 1 ? "part" : "parts");
-        std::ofstream(jobsFile(options.folder), std::ios::app) << before << "\n";
+        std::ofstream(jobsFile(build), std::ios::app) << before << "\n";
     }
 }
 
-/// The last jobs that were submitted for a folder, with commas between them.
-std::string submittedJobs(const std::string& folder)
+/// The last jobs that were submitted for a build, with commas between them.
+std::string submittedJobs(const BuildStatus& build)
 {
     std::string jobs;
-    std::ifstream stream(jobsFile(folder));
+    std::ifstream stream(jobsFile(build));
     for (std::string job; stream >> job;)
         jobs += (jobs.empty() ? "" : ",") + job;
     return jobs;
 }
 
 /// What Slurm says of the jobs: a line for each state.
-void printSlurm(const std::string& folder)
+void printSlurm(const BuildStatus& build)
 {
-    const std::string jobs = submittedJobs(folder);
+    const std::string jobs = submittedJobs(build);
     if (jobs.empty()) return;
     const auto count = [](const std::vector<std::string>& command, const char* title)
     {
@@ -264,7 +265,7 @@ void printStatus(const Options& options)
             std::printf("failed: unit %llu of %s: %s\n", static_cast<unsigned long long>(each.unit),
                         stage.name.c_str(), each.sentence.c_str());
     }
-    printSlurm(options.folder);
+    printSlurm(build);
 }
 
 /// Writes a makefile to the standard output. Each part is a target; make does as many at once as -j says.

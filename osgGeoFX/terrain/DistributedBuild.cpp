@@ -187,7 +187,7 @@ BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>&
     if (fs::exists(root) && !fs::exists(PlanFile::file(folder)))
     {
         std::error_code code;
-        fs::remove_all(fs::path(folder) / "work", code);
+        fs::remove_all(workFolderOf(folder), code);
         result.finished = true;
         return result;
     }
@@ -226,6 +226,7 @@ BuildStatus readBuildStatus(const std::string& folder)
         fs::exists(fs::path(folder) / "terrain.osgb") && fs::exists(fs::path(folder) / ORIGIN_FILE);
     if (status.finished) return status;
     const PlanFile plan = PlanFile::read(folder);
+    status.logFolder = (workFolderOf(folder) / LOG_FOLDER).string();
     status.estimatedSeconds = plan.estimatedSeconds;
     for (const auto& [name, units] : plan.stages)
         status.stages.push_back(readUnitLogs(folder, name, units));

@@ -13,8 +13,8 @@ namespace osgGeoFX
 
 /** Plans a build that any number of processes do, on one machine or on many with a shared folder.
 
-    The plan is in the folder of the database, `OUTPUT/work/plan.json`: options, sources, the grid, and the build's stages
-    with their numbers of units. buildUnits() does the units. The stages follow each other. The units of a stage do
+    The plan is among the work files in the folder of the database, as `plan.json`: options, sources, the grid, and the build's
+    stages with their numbers of units. buildUnits() does the units. The stages follow each other. The units of a stage do
     not need each other. The last stage, "finish", writes `terrain.osgb` and removes the work files. The database then has
     the same bytes as that of buildDatabase().
 
@@ -86,6 +86,7 @@ struct BuildStatus
     bool finished = false;           ///< terrain.osgb is there
     std::vector<StageStatus> stages; ///< empty if finished
     double estimatedSeconds = 0.0;   ///< of the whole build, as planned
+    std::string logFolder;           ///< where processes keep their accounts, until the build is finished
 };
 
 /// Reads the plan and the accounts that processes leave in the folder. Throws BuildError if there is no plan. Any thread

@@ -63,15 +63,14 @@ protected:
             result.emplace_back(stage.at("name"), stage.at("units"));
         return result;
     }
+    /// Where the build keeps its files while it goes on.
+    fs::path work() const { return fs::path(planned()) / "work"; }
     nlohmann::json json() const
     {
-        std::ifstream stream(planned() + "/work/plan.json");
+        std::ifstream stream(work() / "plan.json");
         return nlohmann::json::parse(stream);
     }
-    void write(const nlohmann::json& document) const
-    {
-        std::ofstream(planned() + "/work/plan.json") << document;
-    }
+    void write(const nlohmann::json& document) const { std::ofstream(work() / "plan.json") << document; }
     /// The sentence of the error that units end with.
     std::string refusal(const std::vector<std::string>& ranges) const
     {
@@ -132,7 +131,7 @@ TEST_F(DistributedBuild, PartsAreTheWhole)
     const auto [name, count] = stages().front();
     for (const std::uint64_t parts : {std::uint64_t{3}, count + 4})
     {
-        fs::remove_all(planned() + "/work/log");
+        fs::remove_all(work() / "log");
         std::uint64_t all = 0;
         for (std::uint64_t part = 0; part < parts; ++part)
         {
@@ -244,7 +243,7 @@ TEST_F(DistributedBuild, RefusesWhatThePlanDoesNotHold)
     other.at("format") = "a recipe";
     write(other);
     EXPECT_NE(refusal({"heights:0"}).find("no plan of a build"), std::string::npos);
-    std::ofstream(planned() + "/work/plan.json") << "{";
+    std::ofstream(work() / "plan.json") << "{";
     EXPECT_NE(refusal({"heights:0"}).find("the plan is damaged"), std::string::npos);
     write(document);
     // A source that has changed since is another source.
@@ -278,8 +277,8 @@ TEST_F(DistributedBuild, StatusTellsWhatIsDoneAndWhatFailed)
     EXPECT_EQ(readBuildStatus(planned()).stages.front().done, 0u);
     buildUnits(planned(), {units(name, 0, 2)});
     // A process that was killed within a line, and one whose disk was full.
-    std::ofstream(planned() + "/work/log/heights/far:1.log") << "begin 3 1000.0\nbegin 4 1000.0\ndone 4 10";
-    std::ofstream(planned() + "/work/log/heights/near:2.log")
+    std::ofstream(work() / "log" / "heights" / "far:1.log") << "begin 3 1000.0\nbegin 4 1000.0\ndone 4 10";
+    std::ofstream(work() / "log" / "heights" / "near:2.log")
         << "begin 5 1000.0\nfail 5 1001.0 The disk is full.\nbegin 0 1000.0\nfail 0 1001.0 But done by "
            "another.\n";
     const StageStatus status = readBuildStatus(planned()).stages.front();

@@ -40,6 +40,11 @@ std::uint64_t bytesBelow(const std::string& folder)
     return bytes;
 }
 
+fs::path workFolderOf(const fs::path& database)
+{
+    return database / "work";
+}
+
 bool prepareFolder(const BuildPlan& plan)
 {
     const fs::path folder = plan.options.output;
@@ -71,7 +76,7 @@ bool prepareFolder(const BuildPlan& plan)
     }
     // The root first: without it, what is left of an old database does not look whole. Then the work files: with
     // them, tiles that are removed already would count as done when a kill here is followed by --resume.
-    for (const fs::path& old : {root, folder / "work", folder / "tiles"})
+    for (const fs::path& old : {root, workFolderOf(folder), folder / "tiles"})
     {
         fs::remove_all(old, code);
         if (code)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace osgGeoFX
@@ -12,6 +13,9 @@ class BuildPlan;
 
 /// The file of a database's folder that says what it was built from.
 constexpr const char* ORIGIN_FILE = "built-from.txt";
+
+/// Where a build keeps its files while it goes on, in the database's folder.
+std::filesystem::path workFolderOf(const std::filesystem::path& database);
 
 /// Empties or adopts the output folder. Returns true if a finished database of the same build lies there. Throws
 /// BuildError.

@@ -3,6 +3,7 @@
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 
 #include <osgGeoFX/terrain/BuilderCode.h>
+#include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/TileTextures.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
@@ -685,6 +686,11 @@ Lattice BuildPlan::postsWithApron(const Unit& unit) const
 std::string BuildPlan::tileFile(const TileKey& parent) const
 {
     return options.output + "/tiles/" + parent.path() + ".osgb";
+}
+
+std::string BuildPlan::workFolder() const
+{
+    return workFolderOf(options.output).string();
 }
 
 std::string BuildPlan::workFile(const char* pass, const Unit& unit) const

@@ -142,7 +142,7 @@ public:
 
     std::string tileFile(const TileKey& parent) const; ///< the file with the children of `parent`
     std::string workFile(const char* pass, const Unit& unit) const;
-    std::string workFolder() const { return options.output + "/work"; }
+    std::string workFolder() const;
 
     /// Counts a finished unit. Throws BuildError if the caller's progress function says stop.
     void advance(const std::string& phase);

@@ -3,6 +3,7 @@
 #include <osgGeoFX/terrain/detail/PlanFile.h>
 
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
+#include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
@@ -128,6 +129,11 @@ void PlanFile::write(const BuildPlan& plan, const BuildStages& stages)
         document["stages"].push_back({{"name", stage->name()}, {"units", stage->units()}});
     const std::string text = document.dump(2) + "\n";
     writeFileAtomically(file(plan.options.output), text.data(), text.size());
+}
+
+std::string PlanFile::file(const std::string& folder)
+{
+    return (workFolderOf(folder) / "plan.json").string();
 }
 
 PlanFile PlanFile::read(const std::string& folder)

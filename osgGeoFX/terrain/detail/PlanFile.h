@@ -18,7 +18,8 @@ struct PlanFile
 {
     /// The version that this code writes and reads.
     static constexpr int VERSION = 1;
-    static std::string file(const std::string& folder) { return folder + "/work/plan.json"; }
+    /// Where the plan of a database lies.
+    static std::string file(const std::string& folder);
 
     BuildOptions options; ///< `output` is the folder that the plan was read from
     std::string fingerprint;

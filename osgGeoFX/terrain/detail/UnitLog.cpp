@@ -3,6 +3,7 @@
 #include <osgGeoFX/terrain/detail/UnitLog.h>
 
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
+#include <osgGeoFX/terrain/detail/BuildFolder.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -31,7 +32,7 @@ double now()
 
 fs::path logFolder(const std::string& folder, const std::string& stage)
 {
-    return fs::path(folder) / "work" / "log" / stage;
+    return workFolderOf(folder) / LOG_FOLDER / stage;
 }
 
 } // namespace

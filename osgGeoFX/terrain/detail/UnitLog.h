@@ -11,6 +11,9 @@
 namespace osgGeoFX
 {
 
+/// The folder of all accounts, among the work files.
+constexpr const char* LOG_FOLDER = "log";
+
 /** The account that a process keeps of the units of a stage: a file of its own, a line for each event, each written at once. A
     unit that it calls done has left all of its results before. Thread-safe. */
 class UnitLog
