@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -43,21 +42,7 @@ protected:
 
     void writeLine(const std::string& style, const osg::Vec2d& from, const osg::Vec2d& to) const
     {
-        char text[400];
-        std::snprintf(
-            text, sizeof(text),
-            R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"highway":"%s",)"
-            R"("name":"Way & <way>"},"geometry":{"type":"LineString","coordinates":[[%.8f,%.8f],[%.8f,%.8f]]}}]})",
-            style.c_str(), from.x(), from.y(), to.x(), to.y());
-        write("lines.geojson", text);
-    }
-    static int magentaIn(const osg::Image& image)
-    {
-        int count = 0;
-        for (int y = 0; y < image.t(); ++y)
-            for (int x = 0; x < image.s(); ++x)
-                count += isMagenta(image, x, y) ? 1 : 0;
-        return count;
+        write("lines.geojson", collection(lineFeature(style, from, to)));
     }
 };
 
@@ -214,13 +199,7 @@ TEST_F(LinesProgram, APdfIsThePictureWithVectors)
 {
     const osg::Vec2d from = placeOf(150, 200), to = placeOf(300, 215), hut = placeOf(220, 240);
     writeLine("trail", from, to);
-    char names[300];
-    std::snprintf(
-        names, sizeof(names),
-        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"Zirbenhütte",)"
-        R"("style":"hut"},"geometry":{"type":"Point","coordinates":[%.8f,%.8f]}}]})",
-        hut.x(), hut.y());
-    write("names.geojson", names);
+    write("names.geojson", collection(pointFeature("Zirbenhütte", "hut", hut)));
     const auto make = [&](const std::string& output)
     {
         return run("osggeofx_panorama", {"plain.json", "-o", output, "--lines", "lines.geojson", "--labels",

@@ -40,13 +40,7 @@ protected:
         _from = placeOf(200, 200);
         const osg::Vec2d to = _from + osg::Vec2d(0.02, 0.0), hut = _from + osg::Vec2d(0.005, 0.01);
         write("names.geojson", namesAt("Zirbenhütte", hut));
-        char text[400];
-        std::snprintf(
-            text, sizeof(text),
-            R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"highway":"trail"},)"
-            R"("geometry":{"type":"LineString","coordinates":[[%.8f,%.8f],[%.8f,%.8f]]}}]})",
-            _from.x(), _from.y(), to.x(), to.y());
-        write("lines.geojson", text);
+        write("lines.geojson", collection(lineFeature("trail", _from, to)));
         write("style.json",
               R"({"lines": {"trail": {"color": "#ff00ff", "width": 14, "least": 14, "hand": 0}},
                  "names": {"hut": {"manner": "beside", "color": "#ff00ff", "halo": "#ff00ff", "size": 40}}})");
@@ -55,6 +49,7 @@ protected:
                 _terrain = entry.path().lexically_relative(_folder.path()).string();
         ASSERT_FALSE(_terrain.empty());
         // From above, so that all is in sight.
+        char text[200];
         std::snprintf(text, sizeof(text),
                       "<homeView longitude='%.6f' latitude='%.6f' height='30000' heading='20' pitch='-90'/>",
                       hut.x(), hut.y());
@@ -66,13 +61,7 @@ protected:
 
     static std::string namesAt(const std::string& name, const osg::Vec2d& place)
     {
-        char text[400];
-        std::snprintf(
-            text, sizeof(text),
-            R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{"name":"%s",)"
-            R"("style":"hut"},"geometry":{"type":"Point","coordinates":[%.8f,%.8f]}}]})",
-            name.c_str(), place.x(), place.y());
-        return text;
+        return collection(pointFeature(name, "hut", place));
     }
 
     std::string sceneWith(const std::string& map) const
@@ -91,14 +80,7 @@ protected:
         EXPECT_EQ(result.standardError, "");
         return bytes(output);
     }
-    static int magentaIn(const osg::Image& image)
-    {
-        int count = 0;
-        for (int y = 0; y < image.t(); ++y)
-            for (int x = 0; x < image.s(); ++x)
-                count += isMagenta(image, x, y) ? 1 : 0;
-        return count;
-    }
+    using MapProgram::magentaIn;
     int magentaIn(const std::string& name) const
     {
         const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(file(name));

@@ -27,19 +27,7 @@ class NamesProgram : public geofx::test::MapProgram
 protected:
     NamesProgram() : MapProgram(301, 640, 360) {}
 
-    static std::string feature(const std::string& name, const std::string& style, const osg::Vec2d& place)
-    {
-        char text[300];
-        std::snprintf(text, sizeof(text),
-                      R"({"type":"Feature","properties":{"name":"%s","style":"%s"},)"
-                      R"("geometry":{"type":"Point","coordinates":[%.8f,%.8f]}})",
-                      name.c_str(), style.c_str(), place.x(), place.y());
-        return text;
-    }
-    void writeNames(const std::string& features) const
-    {
-        write("names.geojson", R"({"type":"FeatureCollection","features":[)" + features + "]}");
-    }
+    void writeNames(const std::string& features) const { write("names.geojson", collection(features)); }
 };
 
 } // namespace
@@ -48,7 +36,7 @@ protected:
 TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
 {
     const osg::Vec2d place = placeOf(300, 250);
-    writeNames(feature("Hütte <&>", "hut", place));
+    writeNames(pointFeature("Hütte <&>", "hut", place));
     write(
         "style.json",
         R"({"names": {"hut": {"manner": "beside", "dot": 3, "color": "#ff00ff", "halo": "#ff00ff", "size": 20}}})");
@@ -96,7 +84,7 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
 TEST_F(NamesProgram, IsOnPicturesOfAnyScene)
 {
     const osg::Vec2d place = placeOf(320, 240);
-    writeNames(feature("Middle", "hut", place));
+    writeNames(pointFeature("Middle", "hut", place));
     char view[120];
     std::snprintf(view, sizeof(view), "%.6f,%.6f,60000,0,-90", place.x(), place.y());
     std::string terrain;
@@ -131,7 +119,7 @@ TEST_F(NamesProgram, IsOnPicturesOfAnyScene)
 TEST_F(NamesProgram, FaultsAreSentences)
 {
     makePlain();
-    writeNames(feature("Elsewhere", "", {100.0, -80.0}));
+    writeNames(pointFeature("Elsewhere", "", {100.0, -80.0}));
     const auto faultOf = [&](std::vector<std::string> more)
     {
         more.insert(more.begin(), {"plain.json", "-o", "map.png"});

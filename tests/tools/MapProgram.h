@@ -63,6 +63,31 @@ protected:
         std::ifstream stream(file(name), std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     }
+    /// Vector data as GeoJSON has them: a place with a name, a straight line, and a file of such features.
+    static std::string pointFeature(const std::string& name, const std::string& style,
+                                    const osg::Vec2d& place)
+    {
+        char text[400];
+        std::snprintf(text, sizeof(text),
+                      R"({"type":"Feature","properties":{"name":"%s","style":"%s"},)"
+                      R"("geometry":{"type":"Point","coordinates":[%.8f,%.8f]}})",
+                      name.c_str(), style.c_str(), place.x(), place.y());
+        return text;
+    }
+    static std::string lineFeature(const std::string& style, const osg::Vec2d& from, const osg::Vec2d& to)
+    {
+        char text[400];
+        std::snprintf(text, sizeof(text),
+                      R"({"type":"Feature","properties":{"highway":"%s","name":"Way & <way>"},)"
+                      R"("geometry":{"type":"LineString","coordinates":[[%.8f,%.8f],[%.8f,%.8f]]}})",
+                      style.c_str(), from.x(), from.y(), to.x(), to.y());
+        return text;
+    }
+    static std::string collection(const std::string& features)
+    {
+        return R"({"type":"FeatureCollection","features":[)" + features + "]}";
+    }
+
     /// The map without names and lines: plain.png, and the recipe plain.json, which spares choosing the view again.
     void makePlain()
     {
@@ -90,6 +115,15 @@ protected:
         const unsigned char* const pixel =
             image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(image.t() - 1 - y));
         return pixel[0] > 180 && pixel[1] < 90 && pixel[2] > 180;
+    }
+
+    static int magentaIn(const osg::Image& image)
+    {
+        int count = 0;
+        for (int y = 0; y < image.t(); ++y)
+            for (int x = 0; x < image.s(); ++x)
+                count += isMagenta(image, x, y) ? 1 : 0;
+        return count;
     }
 
     TempDir _folder;
