@@ -222,13 +222,13 @@ HelpPage::Items HelpPage::otherItems(osgViewer::View& view) const
     return items;
 }
 
-HelpPage::Layout HelpPage::layout() const
+HelpPage::Layout HelpPage::layout(double spacing) const
 {
     const double width = _overlay->getViewport()->width();
     const double height = _overlay->getViewport()->height();
     Layout page;
     page.text = std::round(std::clamp(std::min(height / 45.0, width / 60.0), 9.0, 40.0));
-    page.line = std::round(page.text * 1.25);
+    page.line = std::round(page.text * spacing);
     page.margin = std::round(page.text);
     page.gap = 2.0 * page.text;
     page.left = page.margin;
@@ -368,8 +368,19 @@ void HelpPage::update(osgViewer::View& view)
     // Over the lists of effects and mappings.
     if (showOverlay(view, _overlay, 11)) _drawn = false;
     if (_drawn) return;
-    const Layout page = layout();
+    // Some fonts are wide: lines nearer to each other are better than a second page.
+    constexpr double wide = 1.25, narrow = 1.13; // from line to line, in sizes of letters
+    Layout page = layout(wide);
     arrange(page);
+    if (_pages.size() > 1)
+    {
+        const Layout denser = layout(narrow);
+        arrange(denser);
+        if (_pages.size() == 1)
+            page = denser;
+        else
+            arrange(page);
+    }
     draw(page);
     _drawn = true;
 }

@@ -82,7 +82,7 @@ private:
     void update(osgViewer::View& view);
     Items ownItems() const;
     Items otherItems(osgViewer::View& view) const;
-    Layout layout() const;
+    Layout layout(double spacing) const; ///< from line to line, in sizes of letters
     void arrange(const Layout& page);
     void draw(const Layout& page);
 
