@@ -19,6 +19,7 @@
 #include <osgViewer/Renderer>
 #include <osgViewer/Viewer>
 
+#include <ctime>
 #include <unistd.h>
 
 #include <algorithm>
@@ -110,17 +111,27 @@ struct Conditions
 
 struct Flown
 {
-    std::vector<Tiles> tiles;    ///< that each frame has drawn
-    std::vector<double> seconds; ///< that each frame took, without waiting for the next one
-    double duration = 0.0;       ///< of the whole flight, seconds
+    std::vector<Tiles> tiles;      ///< that each frame has drawn
+    std::vector<double> seconds;   ///< that each frame took, without waiting for the next one
+    std::vector<double> processor; ///< processor time that its thread took
+    double duration = 0.0;         ///< of the whole flight, seconds
     double aheadMilliseconds = 0.0;
-    double mostMiB = 0.0;     ///< of OpenGL's objects of tiles, at any time
+    double firstMiB = 0.0;    ///< of OpenGL's objects of tiles, when the first picture is there
+    double mostMiB = 0.0;     ///< of them, at any time
     double residentMiB = 0.0; ///< that the process has got more during the flight
     std::uint64_t read = 0, asked = 0;
 
     double median() const { return bench::median(seconds); }
     double longest() const { return *std::max_element(seconds.begin(), seconds.end()); }
 };
+
+/// Of this thread: what other programs take does not count, and OpenGL's own threads do not, either.
+double processorSeconds()
+{
+    timespec time = {};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 double residentMiB()
 {
@@ -174,6 +185,7 @@ Flown fly(const Conditions& conditions, const FlightPath& path)
     }
     Flown flown;
     const std::uint64_t before = scene->guard->counts().tilesRead;
+    flown.firstMiB = static_cast<double>(budget->counts().gpuBytes) / MIB;
     const double residentBefore = residentMiB();
     std::vector<double> aheadTimes;
     const auto start = Clock::now();
@@ -184,8 +196,10 @@ Flown fly(const Conditions& conditions, const FlightPath& path)
         std::this_thread::sleep_until(
             start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time)));
         camera.setViewMatrix(path.view(time));
+        const double processor = processorSeconds();
         const auto begin = Clock::now();
         viewer.frame(time);
+        flown.processor.push_back(processorSeconds() - processor - drawn->seconds);
         flown.seconds.push_back(secondsSince(begin) - drawn->seconds);
         flown.tiles.push_back(drawn->tiles);
         aheadTimes.push_back(ahead->counts().milliseconds);
@@ -242,6 +256,9 @@ nlohmann::ordered_json detailsOf(const Flown& flown)
             {"longestMilliseconds", 1000.0 * flown.longest()},
             {"above3Medians", std::count_if(flown.seconds.begin(), flown.seconds.end(),
                                             [&](double each) { return each > 3.0 * flown.median(); })},
+            {"processorMedianMilliseconds", 1000.0 * bench::median(flown.processor)},
+            {"processorLongestMilliseconds",
+             1000.0 * *std::max_element(flown.processor.begin(), flown.processor.end())},
             {"tilesRead", flown.read},
             {"askedAhead", flown.asked},
             {"aheadMilliseconds", flown.aheadMilliseconds},
@@ -272,7 +289,7 @@ std::vector<Figure> run(const Settings& settings)
     if (!relief) throw BenchError(error);
     if (!relief->geocentric) throw BenchError(terrain.string() + ": a globe's database is needed.");
     const FlightPath path(*relief, *scene->reference);
-    const double seconds = settings.smoke ? 1.5 : settings.quick ? 30.0 : 120.0;
+    const double seconds = settings.smoke ? 1.5 : settings.quick ? 20.0 : 90.0;
 
     Conditions conditions;
     conditions.frames = static_cast<int>(seconds * RATE);
@@ -289,7 +306,8 @@ std::vector<Figure> run(const Settings& settings)
     conditions.looksAhead = true;
     const Flown with = fly(conditions, path);
     announce("the same with little memory");
-    conditions.memory = 0.6 * with.mostMiB;
+    // Enough for what is in sight, and not for the whole way.
+    conditions.memory = 1.4 * with.firstMiB;
     const Flown little = fly(conditions, path);
 
     const std::string where = "over HTTP at 50 ms, 500 m above Oahu at 200 m/s: ";
@@ -306,8 +324,8 @@ std::vector<Figure> run(const Settings& settings)
     figures.push_back(figureOf("ahead", "what looking ahead takes of a frame", "", Bound::None, 0.0,
                                0.001 * with.aheadMilliseconds / with.median(), with));
     figures.push_back(figureOf("memory-limit",
-                               "what tiles take at most over a limit of 0.6 of what they took", "",
-                               Bound::AtMost, 1.0, little.mostMiB / conditions.memory, little));
+                               "what tiles take at most over a limit of 1.4 times those of the first picture",
+                               "", Bound::AtMost, 1.0, little.mostMiB / conditions.memory, little));
     figures.push_back(figureOf("level-limit", where + "frames as fine as from a disk, with this limit", "",
                                Bound::None, 0.0, shareAsFine(little, disk), little));
     figures.erase(std::remove_if(figures.begin(), figures.end(),

@@ -43,10 +43,9 @@ public:
     }
     void apply(osg::Geometry& mesh) override
     {
-        for (const osg::Array* array :
-             {static_cast<const osg::Array*>(mesh.getVertexArray()),
-              static_cast<const osg::Array*>(mesh.getNormalArray()),
-              static_cast<const osg::Array*>(mesh.getColorArray()), mesh.getTexCoordArray(0)})
+        const osg::Array* const arrays[] = {mesh.getVertexArray(), mesh.getNormalArray(),
+                                            mesh.getColorArray(), mesh.getTexCoordArray(0)};
+        for (const osg::Array* array : arrays)
             if (array && known.insert(array).second) bytes += array->getTotalDataSize();
         for (const auto& primitives : mesh.getPrimitiveSetList())
             if (known.insert(primitives.get()).second) bytes += primitives->getTotalDataSize();
@@ -56,8 +55,12 @@ public:
             const auto* texture = dynamic_cast<const osg::Texture2D*>(
                 state->getTextureAttribute(unit, osg::StateAttribute::TEXTURE));
             const osg::Image* image = texture ? texture->getImage() : nullptr;
-            if (image && known.insert(image).second)
-                bytes += static_cast<double>(image->getTotalSizeInBytesIncludingMipmaps());
+            if (!image || !known.insert(image).second) continue;
+            // OpenGL has all levels, down to a single texel.
+            const bool levels = texture->getFilter(osg::Texture::MIN_FILTER) != osg::Texture::LINEAR;
+            const double texel = image->getPixelSizeInBits() / 8.0;
+            for (int side = image->s(); side > 0; side = levels ? side / 2 : 0)
+                bytes += texel * side * side;
         }
     }
 
@@ -177,10 +180,10 @@ TEST_F(Budgets, KeepALongFlightWithinTheLimit)
     if (!open()) return;
     look(-158.25);
     settle();
-    const double limit = 2.0 * inGraph();
+    const double limit = 1.5 * inGraph();
     budget->setLimits(0.0, limit / MIB);
-    double most = 0.0, loaded = 0.0;
-    constexpr int steps = 60;
+    double most = 0.0;
+    constexpr int steps = 24;
     for (int i = 0; i < steps; ++i)
     {
         look(-158.25 + 0.55 * i / steps);
@@ -191,12 +194,10 @@ TEST_F(Budgets, KeepALongFlightWithinTheLimit)
     }
     rest();
     const MemoryBudget::Counts counts = budget->counts();
-    for (const auto& each : {oahu->guard->counts()})
-        loaded = static_cast<double>(each.tilesRead);
     std::cout << "limit " << limit / MIB << " MiB, at most " << most / MIB << " MiB; " << counts.removed
-              << " of " << loaded << " tiles went\n";
+              << " of " << oahu->guard->counts().tilesRead << " tiles went\n";
     EXPECT_LE(most, 1.05 * limit);
-    EXPECT_GT(counts.removed, 10u);
+    EXPECT_GT(counts.removed, 5u);
     EXPECT_EQ(counts.removedAhead, 0u);
     EXPECT_NEAR(static_cast<double>(counts.gpuBytes) / inGraph(), 1.0, 0.02)
         << "what has gone is still in memory";
@@ -208,6 +209,7 @@ TEST_F(Budgets, TheLeastRecentlySeenGoFirst)
     if (!open()) return;
     // Without a limit that is reached nothing goes, however many nodes there are.
     budget->setLimits(10000.0, 10000.0);
+    viewer().getCamera()->setLODScale(6.0f);
     const double places[] = {-158.2, -158.0, -157.8};
     double bytes[3];
     for (int i = 0; i < 3; ++i)
@@ -229,10 +231,13 @@ TEST_F(Budgets, TheLeastRecentlySeenGoFirst)
 
     // Now something has to go: of the place in the middle, where it has not been for the longest time.
     const double all = inGraph();
-    budget->setLimits(0.0, (all - 0.5 * bytes[1]) / 0.8 / MIB);
+    budget->setLimits(0.0, all / 0.88 / MIB);
     rest();
     EXPECT_EQ(budget->counts().removed, 0u) << "less than nine tenths are taken";
-    budget->setLimits(0.0, (all - 0.3 * bytes[1]) / 0.9 / MIB);
+    // From nine tenths to eight: less than what that place has.
+    const double limit = all / 0.92;
+    ASSERT_GT(bytes[1], all - 0.8 * limit) << "of " << bytes[0] << ", " << bytes[1] << ", " << bytes[2];
+    budget->setLimits(0.0, limit / MIB);
     rest();
     EXPECT_GT(budget->counts().removed, 0u);
     EXPECT_LT(inGraph(), all);
@@ -247,7 +252,7 @@ TEST_F(Budgets, TheLeastRecentlySeenGoFirst)
 TEST_F(Budgets, WhatIsInSightStaysAndIsToldOnce)
 {
     if (!open()) return;
-    budget->setLimits(0.05, 0.0);
+    budget->setLimits(0.5, 0.0);
     const std::vector<std::string> heard = watch().messagesOf(
         [&]
         {
@@ -259,7 +264,7 @@ TEST_F(Budgets, WhatIsInSightStaysAndIsToldOnce)
         });
     ASSERT_EQ(heard.size(), 1u) << ::testing::PrintToString(heard);
     EXPECT_NE(heard[0].find("The tiles in sight take"), std::string::npos) << heard[0];
-    EXPECT_NE(heard[0].find("0.1 MiB"), std::string::npos) << heard[0];
+    EXPECT_NE(heard[0].find("0.5 MiB"), std::string::npos) << heard[0];
     const std::uint64_t read = oahu->guard->counts().tilesRead;
     settle();
     rest();
@@ -281,7 +286,7 @@ TEST_F(Budgets, ALookAheadKeepsToTheLimit)
     double most = 0.0;
     bool shorter = false;
     const auto start = std::chrono::steady_clock::now();
-    constexpr double duration = 8.0;
+    constexpr double duration = 5.0;
     for (double time = 0.0; time < duration;)
     {
         time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
