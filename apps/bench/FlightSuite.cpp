@@ -3,10 +3,12 @@
 #include "FlightSuite.h"
 
 #include "BenchError.h"
+#include "ChildProcess.h"
 #include "DistantServer.h"
 #include "FlightPath.h"
 #include "Interruption.h"
-#include "OahuTerrain.h"
+#include "TerrainSuite.h"
+#include "WorkFolder.h"
 
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
 #include <osgGeoFX/paging/MemoryBudget.h>
@@ -276,10 +278,26 @@ Figure figureOf(const std::string& name, const std::string& what, const std::str
     return figure;
 }
 
+/// Oahu for pictures of this size, within a pixel's error, in small tiles.
+std::filesystem::path terrainFor(const Settings& settings, const WorkFolder& folder)
+{
+    if (!settings.terrain.empty()) return settings.terrain;
+    const std::filesystem::path oahu = settings.data / "oahu";
+    const double pixels = osgGeoFX::pixelsPerRadian(HEIGHT, osg::DegreesToRadians(FIELD_OF_VIEW));
+    std::vector<std::string> command =
+        builderCommand(settings, oahu / "elevation.tif", folder.path() / "oahu", 2);
+    command.insert(command.end(), {"--landcover", (oahu / "landcover.tif").string(), "--landcover-table",
+                                   (oahu / "landcover.csv").string(), "--pixels-per-radian",
+                                   std::to_string(pixels), "--tile-size", "32"});
+    announce("building the terrain to fly over");
+    runChild(command);
+    return folder.path() / "oahu" / "terrain.osgb";
+}
+
 std::vector<Figure> run(const Settings& settings)
 {
     const WorkFolder folder(settings.work);
-    const std::filesystem::path terrain = terrainToDraw(settings, folder);
+    const std::filesystem::path terrain = terrainFor(settings, folder);
     std::string error;
     const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(terrain.string(), error);
     if (!scene) throw BenchError(error);
