@@ -335,6 +335,7 @@ TEST_P(TilePrefetching, ThePresentComesFirst)
     if (!open(GetParam())) return;
     // Nothing but the root is there, so there is much to ask for, now and ahead.
     double last = 0.0;
+    Groups lacking; // in the frame before
     int both = 0, steps = 0;
     Random random(5);
     for (int frame = 0; frame < 60; ++frame)
@@ -345,10 +346,12 @@ TEST_P(TilePrefetching, ThePresentComesFirst)
         for (const auto& each : requests)
         {
             EXPECT_LT(each.time, last);
+            EXPECT_FALSE(lacking.count(each.group)) << "what the camera lacks now gets a lower priority";
             EXPECT_EQ(each.frame, harness->stamp().getFrameNumber()) << "the pager would take it for old";
         }
         const Requests present = cull(time);
         last = 1000.0 + time;
+        lacking = groupsOf(present);
         both += !requests.empty() && !present.empty() ? 1 : 0;
         // What will be needed sooner has the greater priority.
         std::map<const osg::PagedLOD*, int> stepOf;
