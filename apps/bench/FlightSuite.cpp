@@ -307,7 +307,7 @@ std::vector<Figure> run(const Settings& settings)
     if (!relief) throw BenchError(error);
     if (!relief->geocentric) throw BenchError(terrain.string() + ": a globe's database is needed.");
     const FlightPath path(*relief, *scene->reference);
-    const double seconds = settings.smoke ? 1.5 : settings.quick ? 20.0 : 90.0;
+    const double seconds = settings.smoke ? 0.5 : settings.quick ? 20.0 : 90.0;
 
     Conditions conditions;
     conditions.frames = static_cast<int>(seconds * RATE);
