@@ -55,6 +55,11 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--style <file.json>", "How names and lines look, as in osggeofx_render.");
     usage.addCommandLineOption("--font <name or file>",
                                "The names' font: installed families, or a font's file.");
+    usage.addCommandLineOption("--prefetch <seconds>",
+                               "Ask for the tiles that the camera will need in so many seconds, 0.1 to 60.");
+    usage.addCommandLineOption("--memory <MiB>",
+                               "Keep tiles within so much main memory; those seen longest ago go first.");
+    usage.addCommandLineOption("--gpu-memory <MiB>", "The same of OpenGL's objects.");
     usage.addCommandLineOption("--help-effects", "List the effects with all their properties.");
     usage.addCommandLineOption("--allow-outside",
                                "Let a .geofx scene name files outside its own folder, and addresses.");
@@ -122,6 +127,10 @@ int main(int argc, char** argv)
     arguments.read("--font", nameOptions.font);
     double fieldOfView = 0.0;
     const bool fieldOfViewGiven = arguments.read("--fov", fieldOfView);
+    geofx::viewer::Paging paging;
+    const bool prefetchGiven = arguments.read("--prefetch", paging.lead);
+    const bool memoryGiven = arguments.read("--memory", paging.memory),
+               gpuMemoryGiven = arguments.read("--gpu-memory", paging.gpuMemory);
     const osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> manipulators =
         geofx::viewer::makeManipulators(arguments);
     arguments.reportRemainingOptionsAsUnrecognized();
@@ -136,6 +145,14 @@ int main(int argc, char** argv)
     if (fieldOfViewGiven && !(fieldOfView > 0.0 && fieldOfView < 180.0))
     {
         return refuse("--fov must lie between 0 and 180 degrees.");
+    }
+    if (prefetchGiven && !(paging.lead >= 0.1 && paging.lead <= 60.0))
+    {
+        return refuse("--prefetch must lie between 0.1 and 60 seconds.");
+    }
+    if ((memoryGiven && !(paging.memory >= 1.0)) || (gpuMemoryGiven && !(paging.gpuMemory >= 1.0)))
+    {
+        return refuse("--memory and --gpu-memory must be 1 MiB at least.");
     }
     if (!hasDisplay())
     {
@@ -182,6 +199,7 @@ int main(int argc, char** argv)
         return refuse(fault.what());
     }
     osgGeoFX::RemoteFiles::setUpThreads(*viewer.getDatabasePager(), 1);
+    geofx::viewer::setUpPaging(paging, *viewer.getDatabasePager(), *scene);
     viewer.setSceneData(scene->node);
     const osg::Vec4 color = viewer.getCamera()->getClearColor();
     const double nearFarRatio = viewer.getCamera()->getNearFarRatio();

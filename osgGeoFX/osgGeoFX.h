@@ -6,6 +6,7 @@
 #pragma once
 
 #include <osgGeoFX/paging/Georeference.h>
+#include <osgGeoFX/paging/MemoryBudget.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
@@ -48,6 +49,7 @@
 #include <osgGeoFX/scene/ProgramAdapter.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/ShaderHost.h>
+#include <osgGeoFX/scene/TilePrefetch.h>
 
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/BlendedView.h>

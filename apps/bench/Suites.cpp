@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "CloseUpSuite.h"
 #include "DeformationSuite.h"
+#include "FlightSuite.h"
 #include "LabelsSuite.h"
 #include "LinesSuite.h"
 #include "MappingSuite.h"
@@ -20,7 +21,7 @@ const std::vector<Suite>& suites()
 {
     static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite(),
                                            closeUpSuite(), panoramaSuite(),    labelsSuite(),
-                                           linesSuite(),   osgEarthSuite()};
+                                           linesSuite(),   osgEarthSuite(),    flightSuite()};
     return all;
 }
 

@@ -6,7 +6,9 @@
 
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/map/MapKeys.h>
+#include <osgGeoFX/paging/MemoryBudget.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
+#include <osgGeoFX/scene/TilePrefetch.h>
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
@@ -104,6 +106,22 @@ void selectPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::E
 }
 
 } // namespace
+
+void setUpPaging(const Paging& paging, osgDB::DatabasePager& pager, const osgGeoFX::Scene& scene)
+{
+    osg::ref_ptr<osgGeoFX::MemoryBudget> budget;
+    if (paging.memory > 0.0 || paging.gpuMemory > 0.0)
+    {
+        budget = new osgGeoFX::MemoryBudget(pager);
+        budget->setLimits(paging.memory, paging.gpuMemory);
+        budget->watch(*scene.node, *scene.guard);
+    }
+    if (!(paging.lead > 0.0)) return;
+    const osg::ref_ptr<osgGeoFX::TilePrefetch> prefetch = new osgGeoFX::TilePrefetch;
+    prefetch->setLead(paging.lead);
+    prefetch->setBudget(budget);
+    scene.effects->setPrefetch(prefetch);
+}
 
 void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Scene& scene,
              double fieldOfView, double aspect)

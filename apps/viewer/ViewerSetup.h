@@ -5,6 +5,7 @@
 #include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/ArgumentParser>
+#include <osgDB/DatabasePager>
 #include <osgGA/KeySwitchMatrixManipulator>
 #include <osgViewer/Viewer>
 
@@ -20,6 +21,17 @@ osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> makeManipulators(osg::ArgumentPa
 
 /// Panorama maps begin with the manipulator that is made for them, unless a path is played.
 void addPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::EffectScene& scene);
+
+/// What the command line says of tiles that are not in memory.
+struct Paging
+{
+    double lead = 0.0;      ///< how far a TilePrefetch looks ahead, seconds; 0: there is none
+    double memory = 0.0;    ///< MiB of main memory for tiles; 0: no limit
+    double gpuMemory = 0.0; ///< MiB of OpenGL's objects; 0: no limit
+};
+
+/// Before the scene is shown.
+void setUpPaging(const Paging& paging, osgDB::DatabasePager& pager, const osgGeoFX::Scene& scene);
 
 /// Home is the scene's home view, for every manipulator but those that play a path. `fieldOfView` is the vertical one in degrees.
 void setHome(osgGA::KeySwitchMatrixManipulator& manipulators, const osgGeoFX::Scene& scene,

@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/paging/TileGuard.h>
+#include <osgGeoFX/scene/TilePrefetch.h>
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 #include <osgGeoFX/scene/detail/SceneDrawing.h>
 
@@ -235,6 +236,14 @@ void EffectScene::listenTo(TileGuard& guard)
     }
 }
 
+void EffectScene::setPrefetch(TilePrefetch* prefetch)
+{
+    const unsigned int updates = getNumChildrenRequiringUpdateTraversal();
+    if (prefetch && !_prefetch) setNumChildrenRequiringUpdateTraversal(updates + 1);
+    if (!prefetch && _prefetch) setNumChildrenRequiringUpdateTraversal(updates - 1);
+    _prefetch = prefetch;
+}
+
 void EffectScene::traverse(osg::NodeVisitor& visitor)
 {
     osgUtil::CullVisitor* culling = visitor.asCullVisitor();
@@ -243,6 +252,8 @@ void EffectScene::traverse(osg::NodeVisitor& visitor)
     if (culling && cull(*culling, *this, [this](osg::NodeVisitor& inner) { osg::Group::traverse(inner); }))
         return;
     osg::Group::traverse(visitor);
+    if (_prefetch && visitor.getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR && visitor.getFrameStamp())
+        _prefetch->update(*visitor.getFrameStamp());
 }
 
 void EffectScene::resizeGLObjectBuffers(unsigned int size)

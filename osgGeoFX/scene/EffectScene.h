@@ -28,6 +28,7 @@ namespace osgGeoFX
 
 class SceneDrawing;
 class TileGuard;
+class TilePrefetch;
 
 /** The group that a program puts above its terrain to use the kit's effects.
 
@@ -183,6 +184,11 @@ public:
         are known, from the kit's database or from setGround(); state heights that include what stands on the ground. */
     void setEngineCulling(EngineCulling culling) { _engineCulling = culling; }
     EngineCulling getEngineCulling() const { return _engineCulling; }
+    /// Asks for the tiles of where the cameras will be; null, the default, for not looking ahead. Files do not keep it, and
+    /// copies have none. Call it between frames.
+    void setPrefetch(TilePrefetch* prefetch);
+    TilePrefetch* getPrefetch() { return _prefetch.get(); }
+    const TilePrefetch* getPrefetch() const { return _prefetch.get(); }
     /// AUTOMATIC by default.
     void setTerrainFrame(TerrainFrame frame) { _groundDescription.frame = frame; }
     TerrainFrame getTerrainFrame() const { return _groundDescription.frame; }
@@ -278,6 +284,7 @@ private:
     osg::ref_ptr<const CameraRoleCallback> _roleCallback;
     GroundDescription _groundDescription;
     EngineCulling _engineCulling = AS_IT_IS;
+    osg::ref_ptr<TilePrefetch> _prefetch;
     std::unique_ptr<SceneDrawing> _drawing;
     mutable std::mutex _terrainMutex;
     osg::observer_ptr<osg::Group> _terrain; ///< of an EffectCullCallback

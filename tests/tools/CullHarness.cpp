@@ -102,10 +102,11 @@ bool inSight(const Culled::Leaf& leaf, const osg::Matrixd& projection,
 } // namespace
 
 void RequestRecorder::requestNodeFile(const std::string& file, osg::NodePath& path, float priority,
-                                      const osg::FrameStamp*, osg::ref_ptr<osg::Referenced>&,
+                                      const osg::FrameStamp* stamp, osg::ref_ptr<osg::Referenced>&,
                                       const osg::Referenced*)
 {
-    requests.push_back({file, dynamic_cast<osg::PagedLOD*>(path.back()), priority});
+    requests.push_back({file, dynamic_cast<osg::PagedLOD*>(path.back()), priority,
+                        stamp ? stamp->getReferenceTime() : 0.0, stamp ? stamp->getFrameNumber() : 0});
 }
 
 std::set<const osg::Drawable*> Culled::drawables() const

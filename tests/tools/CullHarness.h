@@ -27,6 +27,8 @@ public:
         std::string file;
         osg::PagedLOD* group;
         float priority;
+        double time;        ///< reference time of the frame that asks, seconds
+        unsigned int frame; ///< its number
     };
 
     void requestNodeFile(const std::string& file, osg::NodePath& path, float priority, const osg::FrameStamp*,
@@ -81,6 +83,11 @@ public:
     CullHarness(osg::GraphicsContext& context, osg::Node* scene, int width, int height);
 
     osg::Camera& camera() { return *_view->getCamera(); }
+    /// Of the frame that setCamera() began.
+    osg::FrameStamp& stamp() { return *_stamp; }
+    /// What has been asked for since the last frame was begun.
+    const std::vector<RequestRecorder::Request>& requests() const { return _recorder->requests; }
+    void forgetRequests() { _recorder->requests.clear(); }
     void setScene(osg::Node* scene);
     void setCamera(const osg::Matrixd& view, const osg::Matrixd& projection);
     /// Culls, and draws where `draw` is set.

@@ -273,8 +273,6 @@ private:
     osg::Vec3d viewPoint() const;
     /// Whether parts of a node that is out of sight, deformed, are in sight since they are not.
     bool partsInSight(const osg::Node& node, const Ball& undeformed);
-    /// Whether a paged tile of the kit's databases, with all that is finer, is out of sight.
-    bool tileOutOfSight(const osg::LOD& node);
     /// A transform with nothing but geometry below it.
     void applyTile(osg::Transform& node);
     /// A block of a tile, and what is below it.

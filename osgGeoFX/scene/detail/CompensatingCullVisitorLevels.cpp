@@ -5,6 +5,7 @@
 #include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
 
 #include <osgGeoFX/scene/detail/ProxyFrustum.h>
+#include <osgGeoFX/scene/detail/TileSight.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
 
@@ -124,7 +125,9 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
     }
     meetLevels(node);
     // The mesh and its box lie elsewhere in memory; where the middle shows they have nothing to tell.
-    if (_mode.planes && !_sight.holds(_middle, _mode.planes) && tileOutOfSight(node)) return;
+    if (_mode.planes && !_sight.holds(_middle, _mode.planes) &&
+        tileOutOfSight(_sight, *_mode.chain, node, viewMatrix(), _task.tileError, _mode.planes))
+        return;
     _mode.lodRadius = static_cast<double>(node.getBound().radius()) * _scale;
     _mode.lodLimit = _mode.chain->lodLimit(node, eyeBall(node.getBound()));
     if (node.getRangeMode() != osg::LOD::PIXEL_SIZE_ON_SCREEN)
@@ -145,25 +148,6 @@ void CompensatingCullVisitor::apply(osg::LOD& node)
     }
     CullVisitor::apply(node);
     setLODScale(former);
-}
-
-bool CompensatingCullVisitor::tileOutOfSight(const osg::LOD& node)
-{
-    // Its sphere is wide for a flat tile, which has a box.
-    const osg::Transform* tile = _task.tileError > 0.0 ? TileInfo::coarseOf(node) : nullptr;
-    osg::BoundingBoxd tileBox;
-    if (!tile || !TileInfo::readBox(*tile, tileBox)) return false;
-    osg::Matrixd matrix = *getModelViewMatrix();
-    tile->computeLocalToWorldMatrix(matrix, this);
-    matrix = inView(matrix);
-    const double range = static_cast<double>(node.getMaxRange(1));
-    const auto radius = static_cast<double>(node.getBound().radius());
-    const double error = std::max(0.0, range - radius) * _task.tileError;
-    osg::BoundingBox bounds(osg::Vec3(tileBox._min), osg::Vec3(tileBox._max));
-    const osg::Vec3 more(osg::Vec3d(error, error, error));
-    bounds._min -= more;
-    bounds._max += more;
-    return _sight.outOfSight(*_mode.chain, EyeBox::of(bounds, matrix), _mode.planes);
 }
 
 osg::Vec3 CompensatingCullVisitor::raisedViewPoint() const

@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/SurfaceEffect.h>
 #include <osgGeoFX/scene/CameraEffects.h>
+#include <osgGeoFX/scene/TilePrefetch.h>
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 #include <osgGeoFX/scene/detail/CameraRoles.h>
 #include <osgGeoFX/scene/detail/TargetFormat.h>
@@ -357,9 +358,16 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
     const bool wanted = depth.logarithmic() || std::any_of(shown.begin(), shown.end(),
                                                            [](const auto& each) { return each->isActive(); });
     const std::optional<CameraRole> role = wanted ? roleOf(scene, outer, special) : std::nullopt;
-    if (!role) return false;
+    TilePrefetch* const prefetch = scene.getPrefetch();
+    if (!role)
+    {
+        const ViewGeometry plain(*outer.getModelViewMatrix(), *outer.getProjectionMatrix(), Ground());
+        if (prefetch) prefetch->note(outer, top, plain, {}, false);
+        return false;
+    }
     if (scene.getCompensation()) completeBounds(scene, top, outer.getFrameStamp());
     const ViewGeometry view = viewOf(outer, *role, ground.find(scene, top, outer.getNodePath()));
+    if (prefetch) prefetch->note(outer, top, view, shown, scene.getCompensation() && deforms(shown));
     return Traversal(*this, scene, effects, shown, outer, view, depth, boundOfChildren(top), traverse).run();
 }
 
