@@ -15,8 +15,8 @@ namespace osgGeoFX
 /// @ingroup work
 struct UnitTime
 {
-    double wall = 0.0;
-    double cpu = 0.0; ///< of the thread that did it, or of the whole process where that had one thread
+    double wall = 0.0; ///< but for the time in which others had its core
+    double cpu = 0.0;  ///< of the thread that did it, or of the whole process where that had one thread
 };
 
 /// A process that has done units of a stage. Times are in seconds, points in time since 1970.
@@ -24,9 +24,10 @@ struct UnitTime
 struct ProcessTime
 {
     std::string host;
-    double start = 0.0;              ///< when it was started
-    double end = 0.0;                ///< its last sign of life
-    double startWall = 0.0;          ///< from its start to its first unit; 0 if it did other units before
+    double start = 0.0; ///< when it was started
+    double end = 0.0;   ///< its last sign of life
+    /// From its start to its first unit, but for the time in which others had its core; 0 if it did other units before.
+    double startWall = 0.0;
     double startCpu = 0.0;           ///< the same in CPU time
     std::vector<std::uint64_t> open; ///< units that it has begun and neither done nor failed
 };

@@ -162,13 +162,19 @@ TEST_F(PlannedWork, KilledProcessesLeaveOpenUnits)
 {
     doUnits(folder(), stages(), {"first:0"}, {});
     const fs::path log = fs::path(WorkPlan::workFolder(folder())) / "log" / "first";
-    std::ofstream(log / "far:7.1-0.log") << "start 0 1000.5 0.5 0.25\nbegin 0 1001.0\nbegin 3 1002.0\n";
+    std::ofstream(log / "far:7.1-0.log") << "start 0 1000.5 0.75 0.25 0.25\nbegin 0 1001.0\nbegin 3 1002.0\n";
+    // One that shared its core: of four seconds, others had it for one.
+    std::ofstream(log / "near:8.1-0.log") << "begin 1 1000.0\ndone 1 1004.0 2.5 1.0\n";
     const StageTimes times = readWorkTimes(folder())[0];
+    const auto shared = std::find_if(times.units.begin(), times.units.end(),
+                                     [](const UnitTime& each) { return each.cpu == 2.5; });
+    ASSERT_NE(shared, times.units.end());
+    EXPECT_EQ(shared->wall, 3.0);
     const auto killed = std::find_if(times.processes.begin(), times.processes.end(),
                                      [](const ProcessTime& each) { return each.host == "far"; });
     ASSERT_NE(killed, times.processes.end());
     EXPECT_EQ(killed->open, (std::vector<std::uint64_t>{0, 3}));
-    EXPECT_EQ(killed->start, 1000.0);
+    EXPECT_EQ(killed->start, 999.75);
     EXPECT_EQ(killed->startWall, 0.5);
     EXPECT_EQ(killed->startCpu, 0.25);
     EXPECT_EQ(killed->end, 1002.0);

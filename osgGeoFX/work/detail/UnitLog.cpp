@@ -56,6 +56,15 @@ double age()
     return start > 0.0 ? std::max(secondsOf(CLOCK_BOOTTIME) - start, 0.0) : 0.0;
 }
 
+/// How long this thread could have run, but others had its core, seconds; 0 where the kernel does not say.
+double delay()
+{
+    std::ifstream stream("/proc/thread-self/schedstat");
+    double running = 0.0, waiting = 0.0;
+    stream >> running >> waiting;
+    return 1e-9 * waiting;
+}
+
 fs::path logFolder(const std::string& folder, const std::string& stage)
 {
     return fs::path(WorkPlan::workFolder(folder)) / LOG_FOLDER / stage;
@@ -67,8 +76,8 @@ fs::path logFolder(const std::string& folder, const std::string& stage)
                     "); free some space, or make the folder writable, and do the units again.");
 }
 
-/// The CPU time at which the thread has begun its unit.
-thread_local double cpuAtBegin = 0.0;
+/// The CPU time and the delay at which the thread has begun its unit.
+thread_local double cpuAtBegin = 0.0, delayAtBegin = 0.0;
 
 } // namespace
 
@@ -99,10 +108,10 @@ UnitLog::UnitLog(const std::string& folder, const std::string& stage, int thread
     static std::atomic<bool> first{true};
     char line[120];
     if (first.exchange(false))
-        std::snprintf(line, sizeof(line), "start 0 %.3f %.3f %.3f\n", now(), age(),
-                      secondsOf(CLOCK_PROCESS_CPUTIME_ID));
+        std::snprintf(line, sizeof(line), "start 0 %.3f %.3f %.3f %.3f\n", now(), age(),
+                      secondsOf(CLOCK_PROCESS_CPUTIME_ID), delay());
     else
-        std::snprintf(line, sizeof(line), "start 0 %.3f 0 0\n", now());
+        std::snprintf(line, sizeof(line), "start 0 %.3f 0 0 0\n", now());
     write(line);
 }
 
@@ -128,14 +137,15 @@ void UnitLog::begin(std::uint64_t unit)
     char line[80];
     std::snprintf(line, sizeof(line), "begin %llu %.4f\n", static_cast<unsigned long long>(unit), now());
     write(line);
+    delayAtBegin = delay();
     cpuAtBegin = cpuTime();
 }
 
 void UnitLog::done(std::uint64_t unit)
 {
     char line[120];
-    std::snprintf(line, sizeof(line), "done %llu %.4f %.4f\n", static_cast<unsigned long long>(unit), now(),
-                  cpuTime() - cpuAtBegin);
+    std::snprintf(line, sizeof(line), "done %llu %.4f %.4f %.4f\n", static_cast<unsigned long long>(unit),
+                  now(), cpuTime() - cpuAtBegin, delay() - delayAtBegin);
     write(line);
 }
 
@@ -183,7 +193,12 @@ StageAccount readUnitLogs(const std::string& folder, const WorkPlan::Stage& stag
             process.end = std::max(process.end, time);
             if (event == "start")
             {
-                if (words >> process.startWall >> process.startCpu) process.start = time - process.startWall;
+                double startDelay = 0.0;
+                if (words >> process.startWall >> process.startCpu >> startDelay)
+                {
+                    process.start = time - process.startWall;
+                    process.startWall = std::max(process.startWall - startDelay, 0.0);
+                }
                 continue;
             }
             if (event == "begin")
@@ -197,10 +212,11 @@ StageAccount readUnitLogs(const std::string& folder, const WorkPlan::Stage& stag
             {
                 done[unit] = true;
                 UnitTime taken;
-                words >> taken.cpu;
+                double others = 0.0;
+                words >> taken.cpu >> others;
                 if (start != open.end())
                 {
-                    taken.wall = time - start->second;
+                    taken.wall = std::max(time - start->second - others, 0.0);
                     account.times.units.push_back(taken);
                 }
                 else
