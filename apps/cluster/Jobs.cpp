@@ -14,10 +14,10 @@ using osgGeoFX::WorkStatus;
 namespace
 {
 
-// A job should take about so long, seconds, and no less than that if workers would stand idle otherwise: its start takes
-// a tenth of a second.
-constexpr double JOB_SECONDS = 30.0, LEAST_JOB_SECONDS = 1.0;
-// So many are worth their starts where a stage takes days, and let all workers end at about the same time.
+// A job should take about so long, seconds: its start takes a tenth of a second. It may be shorter so that all workers end
+// at about the same time, and no less than a second if workers would stand idle otherwise.
+constexpr double JOB_SECONDS = 30.0, EVEN_JOB_SECONDS = 5.0, LEAST_JOB_SECONDS = 1.0;
+// So many are worth their starts where a stage takes days.
 constexpr std::uint64_t USUAL_MOST_JOBS = 1000, JOBS_PER_WORKER = 4;
 
 /// Of one core.
@@ -45,7 +45,8 @@ std::uint64_t jobsOf(const JobOptions& options, const WorkStatus& work, const St
         return static_cast<std::uint64_t>(std::min(std::ceil(seconds / each), 1e15));
     };
     const std::uint64_t busy = std::min(options.maxWorkers, jobs(LEAST_JOB_SECONDS));
-    return std::clamp<std::uint64_t>(std::max(busy, jobs(JOB_SECONDS)), 1, most);
+    const std::uint64_t even = std::min(JOBS_PER_WORKER * options.maxWorkers, jobs(EVEN_JOB_SECONDS));
+    return std::clamp<std::uint64_t>(std::max({busy, even, jobs(JOB_SECONDS)}), 1, most);
 }
 
 } // namespace

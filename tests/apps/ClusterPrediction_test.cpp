@@ -60,7 +60,9 @@ TEST(ClusterJobs, AreWorthTheirStart)
     };
     EXPECT_EQ(jobs(0.5, 100, {8, 0}), 1u) << "nothing to divide";
     EXPECT_EQ(jobs(3.5, 100, {8, 0}), 4u) << "a second each";
-    EXPECT_EQ(jobs(100.0, 100, {8, 0}), 8u) << "no worker stands idle";
+    EXPECT_EQ(jobs(20.0, 100, {8, 0}), 8u) << "no worker stands idle";
+    EXPECT_EQ(jobs(100.0, 100, {8, 0}), 20u) << "five seconds each, so that workers end together";
+    EXPECT_EQ(jobs(100.0, 100, {2, 0}), 8u) << "but not more than four for each";
     EXPECT_EQ(jobs(3000.0, 200, {8, 0}), 100u) << "half a minute each";
     EXPECT_EQ(jobs(1e9, 1000000, {8, 0}), 1000u);
     EXPECT_EQ(jobs(1e9, 1000000, {4096, 0}), 16384u) << "several for each worker";
@@ -77,7 +79,7 @@ TEST(ClusterJobs, StagesOfOnePartShareAJob)
     ASSERT_EQ(arrays.size(), 3u);
     EXPECT_EQ(arrays[0].stages, (std::vector<std::string>{"a", "b"}));
     EXPECT_EQ(arrays[1].stages, (std::vector<std::string>{"c"}));
-    EXPECT_EQ(arrays[1].jobs, 8u);
+    EXPECT_EQ(arrays[1].jobs, 20u);
     EXPECT_EQ(arrays[2].stages, (std::vector<std::string>{"d"}));
     // Without estimates of their own, units count as alike.
     WorkStatus alike = work({stage("a", 10, 0.0), stage("b", 30, 0.0)});
