@@ -234,7 +234,10 @@ BuiltUnits doUnits(const std::string& folder, const WorkStages& stages,
             if (stages[before]->isNeeded())
                 requireDone(folder, stages[before]->name(), stages[before]->units());
         doRange(folder, *stages[range.stage], range, options, result);
-        if (range.stage + 1 == stages.size())
+        // A part may have no unit: then somebody else does the last one.
+        const WorkStage& stage = *stages[range.stage];
+        if (range.stage + 1 == stages.size() &&
+            readUnitLogs(folder, {stage.name(), stage.units()}).status.done == stage.units())
         {
             result.finished = true;
             break;

@@ -102,9 +102,12 @@ TEST_F(PlannedWork, UnitsAreDoneOnceAndInTheOrderOfStages)
     EXPECT_FALSE(done.finished);
     EXPECT_TRUE(fs::exists(_folder / "first-2") && fs::exists(_folder / "first-3"));
     EXPECT_FALSE(fs::exists(_folder / "first-1") || fs::exists(_folder / "first-4"));
+    doUnits(folder(), stages(), {"first"}, {});
+    EXPECT_FALSE(doUnits(folder(), stages(), {"last:0/2"}, {}).finished) << "this part has no unit";
+    fs::remove(_folder / "first-0");
     done = doUnits(folder(), stages(), {"first", "last"}, {});
-    EXPECT_EQ(done.built, 4u);
-    EXPECT_EQ(done.takenOver, 3u);
+    EXPECT_EQ(done.built, 2u);
+    EXPECT_EQ(done.takenOver, 5u);
     EXPECT_TRUE(done.finished);
     WorkPlan::finish(folder());
     EXPECT_TRUE(fs::exists(WorkPlan::finishedFile(folder())));
