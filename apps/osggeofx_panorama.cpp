@@ -8,6 +8,7 @@
 #include "panorama/GroundBuilder.h"
 #include "panorama/Recipe.h"
 #include "panorama/RecipeLiberties.h"
+#include "plan/PicturePlan.h"
 #include "print/PrintOptions.h"
 #include "web/ScenePage.h"
 
@@ -55,7 +56,7 @@ using geofx::panorama::colorBlind;
 struct Arguments
 {
     std::vector<std::string> sources;
-    std::string output, size, viewFrom, focus, place, palette, recipe, work, vertical, pick;
+    std::string output, size, viewFrom, focus, place, palette, recipe, work, vertical, pick, plan;
     std::string landCover, landCoverTable, treeCover;
     std::optional<double> around, width, exaggeration, horizonLine, horizonDistance;
     std::optional<unsigned int> samples;
@@ -139,11 +140,13 @@ void addOptions(CLI::App& app, Arguments& arguments)
     app.add_option("--recipe", arguments.recipe,
                    "Where to write all choices (beside the picture: its name with .json); none for nowhere")
         ->type_name("FILE.json|none");
-    app.add_option("--work", arguments.work,
-                   "Keep the terrain that is built here, for the next map of it; otherwise it is removed "
-                   "when the picture "
-                   "is there, and an interrupted run goes on with it")
-        ->type_name("DIR");
+    auto* work =
+        app.add_option("--work", arguments.work,
+                       "Keep the terrain that is built here, for the next map of it; otherwise it is removed "
+                       "when the picture "
+                       "is there, and an interrupted run goes on with it")
+            ->type_name("DIR");
+    geofx::plan::addOption(app, arguments.plan)->excludes(work);
     app.add_option("--pick", arguments.pick,
                    "Print the place that a pixel shows: longitude, latitude and height; pixels count from "
                    "the upper left")
@@ -453,32 +456,57 @@ osgGeoFX::PrintSize sizeOf(const Recipe& recipe)
     return {recipe.width, recipe.height, recipe.dpi};
 }
 
+/// The files that a print is made of.
+std::string madeOf(const Arguments& arguments, const Recipe& recipe, const std::string& ground)
+{
+    return ground + geofx::names::ageOf(ground) + geofx::names::agesOf(mapOptions(arguments, recipe));
+}
+
 void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::SceneRenderer::Options& renderer,
            geofx::names::PictureMap& map, osgGeoFX::Scene& scene, const osg::Matrixd& view,
-           const std::string& ground, const geofx::web::ScenePage* page)
+           const std::string& ground, const geofx::web::ScenePage* page,
+           const geofx::plan::Division& division)
 {
+    const std::string raster = geofx::names::PictureMap::rasterOf(arguments.output);
     osgGeoFX::PicturePrint::Options options;
     options.size = sizeOf(recipe);
     options.bits = arguments.print.bits;
     options.renderer = renderer;
-    map.prepare(options, view);
-    options.work = fs::path(arguments.output).replace_extension().string() + ".tiles";
+    options.names = map.names();
+    options.work = division.any() ? division.tileFolder()
+                                  : fs::path(arguments.output).replace_extension().string() + ".tiles";
     options.recipe = recipe.text() + geofx::names::ageOf(ground) +
                      geofx::names::agesOf(mapOptions(arguments, recipe)) + map.digest() +
-                     geofx::names::PictureMap::rasterOf(arguments.output);
+                     fs::path(raster).filename().string();
     options.metadata = {{"Software", "osgGeoFX osggeofx_panorama"}, {"ImageDescription", recipe.text()}};
     if (page) options.plain = page->plain();
     osgGeoFX::ProgressLine line("osggeofx_panorama");
-    if (!arguments.quiet)
+    if (!arguments.quiet && !division.any())
         options.progress = [&](int done, int all)
         {
             line(static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(all), "drawing");
         };
-    std::string error;
-    if (!osgGeoFX::PicturePrint::write(scene, options, view,
-                                       geofx::names::PictureMap::rasterOf(arguments.output), error))
-        throw Failure(error);
-    map.finish();
+    const auto putTogether = [&]
+    {
+        osgGeoFX::PicturePrint::Options whole = options;
+        map.prepare(whole, view);
+        std::string error;
+        if (!osgGeoFX::PicturePrint::write(scene, whole, view, raster, error)) throw Failure(error);
+        map.finish();
+    };
+    if (division.any())
+    {
+        std::string error;
+        auto tiles = osgGeoFX::PicturePrint::create(scene, options, view, raster, error);
+        if (!tiles) throw Failure(error);
+        // About what it takes without a GPU.
+        const double seconds = 1e-6 * recipe.width * recipe.height * (1.0 + 0.2 * recipe.samples);
+        division.run(geofx::plan::printStages(std::move(tiles), osgGeoFX::PicturePrint::countTiles(options),
+                                              putTogether),
+                     madeOf(arguments, recipe, ground), {seconds, 0.2 * seconds});
+        return;
+    }
+    putTogether();
     if (page) page->write(scene, renderer, view, map.names());
     if (arguments.pick.empty()) return;
     const double aspect = static_cast<double>(recipe.width) / recipe.height;
@@ -490,7 +518,7 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
 }
 
 void paint(const Arguments& arguments, const std::string& ground, const Recipe& recipe,
-           PictureFiles& pictures, const geofx::web::ScenePage* page)
+           PictureFiles& pictures, const geofx::web::ScenePage* page, const geofx::plan::Division& division)
 {
     osgGeoFX::Scene scene = load(ground);
     // A scene of one's own may have a projection already.
@@ -514,8 +542,9 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     const osg::Matrixd view = recipe.view.viewMatrix(frame);
     if (geofx::print::isPrint(arguments.print, arguments.output, sizeOf(recipe)))
     {
-        print(arguments, recipe, options, map, scene, view, ground, page);
-        geofx::layers::write(arguments.layers, scene, sizeOf(recipe), options, map, view);
+        print(arguments, recipe, options, map, scene, view, ground, page, division);
+        if (!division.any())
+            geofx::layers::write(arguments.layers, scene, sizeOf(recipe), options, map, view);
         return;
     }
     map.prepare();
@@ -536,8 +565,43 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
     geofx::layers::write(arguments.layers, scene, sizeOf(recipe), options, map, view);
 }
 
-void run(const Arguments& arguments)
+/// What a plan's workers are called with: the recipe, and what is not in it.
+std::vector<std::string> workersArguments(const Arguments& arguments, const Recipe& recipe,
+                                          const geofx::plan::Division& division)
 {
+    const std::string file = division.workFile("recipe.json");
+    std::error_code ignored;
+    fs::create_directories(fs::path(file).parent_path(), ignored);
+    recipe.write(file);
+    std::vector<std::string> result = {file,
+                                       "-o",
+                                       fs::path(arguments.output).filename().string(),
+                                       "--bits",
+                                       std::to_string(arguments.print.bits),
+                                       "--quiet",
+                                       "--recipe",
+                                       "none"};
+    for (const auto& [option, value] :
+         {std::pair("--svg", arguments.names.svg), std::pair("--geojson", arguments.names.geoJson)})
+        if (!value.empty()) result.insert(result.end(), {option, value});
+    return result;
+}
+
+void checkPlan(const Arguments& arguments, const Recipe& recipe)
+{
+    if (!geofx::print::isPrint(arguments.print, arguments.output, sizeOf(recipe)))
+        throw Failure(
+            "--plan is for what has parts: a print, whose --size is large or has a resolution; leave "
+            "it out, or take another --size.");
+    if (arguments.layers.any() || arguments.web.wanted() || !arguments.pick.empty())
+        throw Failure(
+            "--layers, --mesh, --web and --pick are for pictures that one process draws; leave them "
+            "out, or --plan.");
+}
+
+void run(Arguments& arguments, geofx::plan::Division& division)
+{
+    arguments.output = division.outputOf(arguments.output);
     PictureFiles pictures(geofx::names::PictureMap::rasterOf(arguments.output), false);
     if (!pictures.error().empty()) throw Failure(pictures.error());
     const std::string bitsFault = geofx::print::faultOf(arguments.print, arguments.output);
@@ -577,6 +641,7 @@ void run(const Arguments& arguments)
         growStrokes(static_cast<double>(recipe.height) / formerHeight, recipe);
     }
     takeOptions(arguments, recipe);
+    if (division.any()) checkPlan(arguments, recipe);
     const PanoramaWishes wishes = wishesOf(arguments, recipe);
     if (!arguments.pick.empty()) pairOf("--pick", arguments.pick);
     geofx::panorama::checkLiberties(arguments.liberties, arguments.liberty);
@@ -586,24 +651,29 @@ void run(const Arguments& arguments)
                       "liberties of your own with --liberty.");
 
     const fs::path beside = fs::path(arguments.output).replace_extension();
-    const std::string work = arguments.work.empty() ? beside.string() + ".work" : arguments.work;
+    std::string work = arguments.work.empty() ? beside.string() + ".work" : arguments.work;
+    if (division.any()) work = division.workFile("terrain");
     std::optional<GroundBuilder> builder;
     if (recipe.terrain.empty()) builder.emplace(recipe, work, arguments.quiet);
     if (!again) chooseView(arguments, wishes, builder ? builder->overview() : recipe.terrain, recipe);
-    const std::string ground = builder ? builder->ground(recipe.view) : recipe.terrain;
+    // For workers it is there.
+    const std::string ground = !builder                              ? recipe.terrain
+                               : division.any() && !division.plans() ? GroundBuilder::groundIn(work)
+                                                                     : builder->ground(recipe.view);
     if (!again && builder)
         recipe.reasons.insert(recipe.reasons.end(), builder->notes().begin(), builder->notes().end());
+    if (division.plans()) division.setArguments(workersArguments(arguments, recipe, division));
     if (arguments.explain)
     {
         for (const std::string& reason : recipe.reasons)
             std::printf("%s\n", reason.c_str());
         std::fflush(stdout);
     }
-    paint(arguments, ground, recipe, pictures, page ? &*page : nullptr);
+    paint(arguments, ground, recipe, pictures, page ? &*page : nullptr, division);
     if (arguments.recipe != "none")
         recipe.write(arguments.recipe.empty() ? beside.string() + ".json" : arguments.recipe);
     std::error_code ignored;
-    if (arguments.work.empty() && builder) fs::remove_all(work, ignored);
+    if (arguments.work.empty() && builder && !division.any()) fs::remove_all(work, ignored);
 }
 
 } // namespace
@@ -616,15 +686,20 @@ int main(int argc, char** argv)
     addOptions(app, arguments);
     try
     {
-        app.parse(argc, argv);
+        int exitCode = 0;
+        std::optional<geofx::plan::Call> call =
+            geofx::plan::callOf("osggeofx_panorama", argc, argv, exitCode);
+        if (!call) return exitCode;
+        // CLI11 takes them from the last one on.
+        app.parse(std::vector<std::string>(call->arguments.rbegin(), call->arguments.rend()));
+        geofx::plan::Division division =
+            call->units ? *call->units
+                        : geofx::plan::Division("osggeofx_panorama", call->arguments, arguments.plan);
+        run(arguments, division);
     }
     catch (const CLI::ParseError& error)
     {
         return app.exit(error) == 0 ? 0 : badInput;
-    }
-    try
-    {
-        run(arguments);
     }
     catch (const std::exception& error)
     {

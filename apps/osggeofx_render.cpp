@@ -5,12 +5,13 @@
 #include "layers/SceneLayers.h"
 #include "names/PictureMap.h"
 #include "osggeofx_render_output.h"
+#include "plan/PicturePlan.h"
 #include "print/PrintOptions.h"
+#include "render/Camera.h"
 #include "web/ScenePage.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/print/PicturePrint.h>
-#include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
 
@@ -42,14 +43,10 @@ struct Arguments
     std::string scene;
     std::string output;
     std::string size = "1600x900";
-    std::string view;
-    std::string eye;
-    std::string look;
-    std::string up;
-    std::string path;
+    geofx::render::CameraOptions camera;
     std::string stats;
+    std::string plan;
     double fieldOfView = 0.0;
-    unsigned int frames = 0;
     std::vector<std::string> effects;
     geofx::names::Options names;
     geofx::layers::Options layers;
@@ -87,32 +84,38 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->type_name("DEG");
 
     auto* view =
-        app.add_option("--view", arguments.view,
+        app.add_option("--view", arguments.camera.view,
                        "Camera on the ground's terms: degrees; metres above the database's zero height; "
                        "heading clockwise from north; pitch negative downwards; roll positive with the "
                        "right wing down")
             ->type_name("LON,LAT,HEIGHT,HEADING,PITCH[,ROLL]");
-    auto* eye = app.add_option("--eye", arguments.eye, "Camera in world coordinates: where it is")
+    auto* eye = app.add_option("--eye", arguments.camera.eye, "Camera in world coordinates: where it is")
                     ->type_name("X,Y,Z")
                     ->excludes(view);
-    auto* look = app.add_option("--look", arguments.look, "… the point that it looks at")
+    auto* look = app.add_option("--look", arguments.camera.look, "… the point that it looks at")
                      ->type_name("X,Y,Z")
                      ->needs(eye);
     eye->needs(look);
-    app.add_option("--up", arguments.up, "… its upward direction (default: away from the ground)")
+    app.add_option("--up", arguments.camera.up, "… its upward direction (default: away from the ground)")
         ->type_name("X,Y,Z")
         ->needs(eye);
     auto* path =
-        app.add_option("--path", arguments.path,
-                       "Camera along a way: CSV with the header time,lon,lat,alt,heading,pitch[,roll]")
-            ->type_name("FILE.csv")
+        app.add_option("--path", arguments.camera.path,
+                       "Camera along a way: CSV with the header time,lon,lat,alt,heading,pitch[,roll], or a "
+                       "path that a viewer has recorded (osgviewer: z)")
+            ->type_name("FILE.csv|FILE.path")
             ->excludes(view)
             ->excludes(eye);
-    auto* frames = app.add_option("--frames", arguments.frames, "… the number of pictures, evenly in time")
-                       ->type_name("N")
-                       ->check(CLI::Range(1u, 1000000u))
-                       ->needs(path);
-    path->needs(frames);
+    app.add_option("--frames", arguments.camera.frames,
+                   "… the number of pictures, evenly in time; or with --fps, those from A to B alone, "
+                   "counted from 0")
+        ->type_name("N|A-B")
+        ->needs(path);
+    app.add_option("--fps", arguments.camera.framesASecond, "… pictures for each second of the path")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber)
+        ->needs(path);
+    geofx::plan::addOption(app, arguments.plan);
 
     app.add_option(
            "--effect", arguments.effects,
@@ -173,17 +176,9 @@ void addOptions(CLI::App& app, Arguments& arguments)
         "  osggeofx_render terrain.osgb -o ridge.jpg --size 1920x1080 --view -157.86,21.27,900,45,-8\n"
         "  osggeofx_render oahu.geofx -o bird.png --view -157.95,21.2,5000,20,-45 --effect 'birdsEyeView "
         "focusLine=0.4 horizonLine=0.85'\n"
-        "  osggeofx_render oahu.geofx -o f%04d.png --path flight.csv --frames 240 --stats flight.json");
-}
-
-osg::Vec3d vectorOf(const std::string& option, const std::string& text)
-{
-    const auto numbers = osgGeoFX::parseNumbers(text);
-    if (!numbers || numbers->size() != 3)
-    {
-        throw Failure(badInput, option + " " + text + ": write three numbers, X,Y,Z.");
-    }
-    return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+        "  osggeofx_render oahu.geofx -o f%04d.png --path flight.csv --frames 240 --stats flight.json\n"
+        "  osggeofx_render oahu.geofx -o f%05d.png --path saved_animation.path --fps 25 --plan film\n"
+        "  osggeofx_cluster make film | make -j 8 -f -");
 }
 
 osgGeoFX::PrintSize readSize(Arguments& arguments)
@@ -195,86 +190,6 @@ osgGeoFX::PrintSize readSize(Arguments& arguments)
     arguments.renderer.height = size->height;
     return *size;
 }
-
-/// One view matrix for each picture, and its time.
-class Camera
-{
-public:
-    Camera(const Arguments& arguments, const osgGeoFX::Scene& scene) : _scene(scene)
-    {
-        std::string error;
-        if (!arguments.path.empty())
-        {
-            _path = osgGeoFX::CameraPath::read(arguments.path, error);
-            if (!_path) throw Failure(badInput, error);
-            _count = arguments.frames;
-            requireReference("--path");
-        }
-        else if (!arguments.view.empty())
-        {
-            const auto point = osgGeoFX::ViewPoint::parse(arguments.view, error);
-            if (!point) throw Failure(badInput, "--view: " + error);
-            requireReference("--view");
-            _single = matrixOf(*point);
-        }
-        else if (!arguments.eye.empty())
-        {
-            lookAt(arguments);
-        }
-        else
-        {
-            if (scene.settings.homeView) requireReference("The scene's home view");
-            const double aspect = static_cast<double>(arguments.renderer.width) /
-                                  static_cast<double>(arguments.renderer.height);
-            _single = scene.homeViewMatrix(osg::DegreesToRadians(arguments.renderer.fieldOfView), aspect);
-        }
-    }
-
-    unsigned int count() const { return _count; }
-    double time(unsigned int frame) const { return _path ? _path->timeOfFrame(frame, _count) : 0.0; }
-    osg::Matrixd view(unsigned int frame) const { return _path ? matrixOf(_path->at(time(frame))) : _single; }
-
-private:
-    void requireReference(const std::string& what) const
-    {
-        if (!_scene.reference) throw Failure(badInput, what + " cannot be used: " + _scene.referenceError);
-    }
-
-    osg::Matrixd matrixOf(const osgGeoFX::ViewPoint& point) const
-    {
-        osg::Matrixd view;
-        if (!point.viewMatrix(*_scene.reference, view))
-        {
-            throw Failure(badInput,
-                          "The camera's longitude and latitude lie outside the scene's projection; move "
-                          "it nearer to the terrain.");
-        }
-        return view;
-    }
-
-    void lookAt(const Arguments& arguments)
-    {
-        const osg::Vec3d eye = vectorOf("--eye", arguments.eye);
-        const osg::Vec3d look = vectorOf("--look", arguments.look);
-        osg::Vec3d up = arguments.up.empty() ? osg::Vec3d(0.0, 0.0, 1.0) : vectorOf("--up", arguments.up);
-        if (arguments.up.empty() && _scene.reference && _scene.reference->isGeocentric())
-        {
-            up = eye;
-        }
-        if (((look - eye) ^ up).length2() == 0.0)
-        {
-            throw Failure(badInput,
-                          "--eye, --look and --up do not make a camera: it must not look along its upward "
-                          "direction; give another --up.");
-        }
-        _single = osg::Matrixd::lookAt(eye, look, up);
-    }
-
-    const osgGeoFX::Scene& _scene;
-    std::optional<osgGeoFX::CameraPath> _path;
-    osg::Matrixd _single;
-    unsigned int _count = 1;
-};
 
 void addEffects(const Arguments& arguments, osgGeoFX::EffectScene& scene)
 {
@@ -290,8 +205,8 @@ void addEffects(const Arguments& arguments, osgGeoFX::EffectScene& scene)
 }
 
 /// The picture of a camera without effects, small, in the corner of the one with them.
-void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const Camera& camera, unsigned int frame,
-              osgGeoFX::EffectScene& scene)
+void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const geofx::render::Camera& camera,
+              unsigned int frame, osgGeoFX::EffectScene& scene)
 {
     std::vector<bool> enabled;
     for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
@@ -343,59 +258,95 @@ std::string describe(const Arguments& arguments, const osgGeoFX::Scene& scene, c
     return json.dump();
 }
 
+/// The files that pictures are made of.
+std::string madeOf(const Arguments& arguments)
+{
+    return arguments.scene + geofx::names::ageOf(arguments.scene) + "; " + arguments.camera.path +
+           geofx::names::ageOf(arguments.camera.path) + geofx::names::agesOf(arguments.names);
+}
+
+/// About how long a picture takes on one core without a GPU, seconds.
+double secondsOf(const osgGeoFX::SceneRenderer::Options& options)
+{
+    const double pixels = static_cast<double>(options.width) * options.height;
+    return 0.3 + 1e-6 * pixels * (0.3 + 0.1 * options.samples);
+}
+
 /// A picture that is larger than the GPU draws at once, or has a resolution.
 void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::names::PictureMap& map,
-           const osg::Matrixd& view, osgGeoFX::Scene& scene, const geofx::web::ScenePage* page)
+           const osg::Matrixd& view, osgGeoFX::Scene& scene, const geofx::web::ScenePage* page,
+           const geofx::plan::Division& division)
 {
-    if (!arguments.path.empty() || arguments.inset || !arguments.stats.empty())
+    if (!arguments.camera.path.empty() || arguments.inset || !arguments.stats.empty())
         throw Failure(
             badInput,
             "A picture with a resolution, of more than 4096 pixels or 8 bits, an exr or a pdf is drawn in "
             "tiles, "
             "without --path, --inset and --stats; leave them out, or take another --size, --bits or -o.");
+    const std::string raster = geofx::names::PictureMap::rasterOf(arguments.output);
     osgGeoFX::PicturePrint::Options options;
     options.size = size;
     options.bits = arguments.print.bits;
     options.renderer = arguments.renderer;
-    map.prepare(options, view);
-    options.work = std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
+    options.names = map.names();
+    options.work = division.any()
+                       ? division.tileFolder()
+                       : std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
     options.recipe = arguments.scene + geofx::names::ageOf(arguments.scene) +
                      geofx::names::agesOf(arguments.names) + map.digest() +
-                     geofx::names::PictureMap::rasterOf(arguments.output);
+                     std::filesystem::path(raster).filename().string();
     for (const std::string& effect : arguments.effects)
         options.recipe += "; " + effect;
     options.metadata = {{"Software", "osgGeoFX osggeofx_render"},
                         {"ImageDescription", describe(arguments, scene, view)}};
     if (page) options.plain = page->plain();
+    const auto putTogether = [&]
+    {
+        osgGeoFX::PicturePrint::Options whole = options;
+        map.prepare(whole, view);
+        std::string error;
+        if (!osgGeoFX::PicturePrint::write(scene, whole, view, raster, error)) throw Failure(badInput, error);
+        map.finish();
+        if (page) page->write(scene, arguments.renderer, view, map.names());
+        geofx::layers::write(arguments.layers, scene, size, arguments.renderer, map, view);
+    };
+    if (!division.any())
+    {
+        putTogether();
+        return;
+    }
     std::string error;
-    const std::string raster = geofx::names::PictureMap::rasterOf(arguments.output);
-    if (!osgGeoFX::PicturePrint::write(scene, options, view, raster, error)) throw Failure(badInput, error);
-    map.finish();
-    if (page) page->write(scene, arguments.renderer, view, map.names());
+    auto tiles = osgGeoFX::PicturePrint::create(scene, options, view, raster, error);
+    if (!tiles) throw Failure(badInput, error);
+    const double seconds = secondsOf(arguments.renderer);
+    division.run(
+        geofx::plan::printStages(std::move(tiles), osgGeoFX::PicturePrint::countTiles(options), putTogether),
+        madeOf(arguments), {seconds, 0.2 * seconds});
 }
 
-void run(Arguments& arguments)
+/// What is asked for together and cannot be had, or cannot be written.
+void check(const Arguments& arguments, const geofx::plan::Division& division, const osgGeoFX::PrintSize& size)
 {
-    std::string error;
-    const osgGeoFX::PrintSize size = readSize(arguments);
-    PictureFiles pictures(geofx::names::PictureMap::rasterOf(arguments.output), !arguments.path.empty());
-    if (!pictures.error().empty()) throw Failure(badInput, pictures.error());
     const std::string bitsFault = geofx::print::faultOf(arguments.print, arguments.output);
     if (!bitsFault.empty()) throw Failure(badInput, bitsFault);
     geofx::layers::check(arguments.layers);
-    if (arguments.layers.any() && (!arguments.path.empty() || arguments.inset))
+    const bool film = !arguments.camera.path.empty();
+    if (arguments.layers.any() && (film || arguments.inset))
         throw Failure(
             badInput,
             "--layers and --mesh are for one picture as it is drawn; leave --path and --inset out.");
-    if (arguments.web.wanted() && !arguments.path.empty())
+    if (arguments.web.wanted() && film)
         throw Failure(badInput, "--web shows one picture; leave --path out, or --web.");
-    std::optional<geofx::web::ScenePage> page;
-    if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
+    if (division.any() && !film && !geofx::print::isPrint(arguments.print, arguments.output, size))
+        throw Failure(badInput,
+                      "--plan is for what has parts: a film along a --path, or a print, whose --size "
+                      "is large or has a resolution; leave it out, or add one of these.");
+    if (division.any() && (!arguments.stats.empty() || arguments.layers.any() || arguments.web.wanted()))
+        throw Failure(badInput,
+                      "--stats, --layers, --mesh and --web are for pictures that one process draws; "
+                      "leave them out, or --plan.");
     const std::string statsFault = arguments.stats.empty() ? std::string() : faultOfOutput(arguments.stats);
     if (!statsFault.empty()) throw Failure(badInput, statsFault);
-
-    const osg::ref_ptr<osgDB::Options> reading =
-        new osgDB::Options(arguments.allowOutside ? "allowOutside" : "");
     const std::string mapFault = geofx::names::faultOf(arguments.names, arguments.scene);
     if (!mapFault.empty()) throw Failure(badInput, mapFault);
     for (const std::string& file : {arguments.names.svg, arguments.names.geoJson})
@@ -403,8 +354,110 @@ void run(Arguments& arguments)
         const std::string outputFault = file.empty() ? std::string() : faultOfOutput(file);
         if (!outputFault.empty()) throw Failure(badInput, outputFault);
     }
-    if (!arguments.path.empty() && !(arguments.names.svg + arguments.names.geoJson).empty())
+    if (film && !(arguments.names.svg + arguments.names.geoJson).empty())
         throw Failure(badInput, "--svg and --geojson are for one picture; leave --path out.");
+}
+
+/// One picture, or those of a film.
+class Pictures
+{
+public:
+    Pictures(const Arguments& arguments, osgGeoFX::Scene& scene, const geofx::render::Camera& camera,
+             geofx::names::PictureMap& map, PictureFiles& files, geofx::web::ScenePage* page)
+        : _arguments(arguments), _scene(scene), _camera(camera), _map(map), _files(files), _page(page)
+    {
+        _map.prepare();
+    }
+
+    void draw(unsigned int frame)
+    {
+        start();
+        osgGeoFX::FrameStatistics figures;
+        std::string error;
+        const auto image = _renderer->render(_camera.view(frame), _camera.time(frame), figures, error);
+        if (!image) throw Failure(tookTooLong, error);
+        _map.finish(_renderer->camera(), *image,
+                    [&](const osg::Image& plain)
+                    {
+                        if (_page) _page->setPicture(plain);
+                    });
+        if (_arguments.inset) addInset(*image, *_renderer, _camera, frame, *_scene.effects);
+        if (!_files.write(*image, frame)) throw Failure(badInput, _files.error());
+        _statistics->add(figures);
+    }
+    void writeStatistics()
+    {
+        if (_arguments.stats.empty() || _statistics->write(_arguments.stats)) return;
+        throw Failure(badInput, "The figures cannot be written to \"" + _arguments.stats +
+                                    "\"; check the folder, its permissions and the disk's space.");
+    }
+
+private:
+    void start()
+    {
+        if (_renderer) return;
+        std::string error;
+        _renderer = osgGeoFX::SceneRenderer::create(_scene, _arguments.renderer, error);
+        if (!_renderer) throw Failure(badInput, error);
+        _statistics.emplace(*_renderer, _arguments.renderer);
+    }
+
+    const Arguments& _arguments;
+    osgGeoFX::Scene& _scene;
+    const geofx::render::Camera& _camera;
+    geofx::names::PictureMap& _map;
+    PictureFiles& _files;
+    geofx::web::ScenePage* const _page;
+    std::unique_ptr<osgGeoFX::SceneRenderer> _renderer; ///< null until a picture must be drawn
+    std::optional<StatisticsFile> _statistics;
+};
+
+/// A film by many processes.
+void divide(const Arguments& arguments, const geofx::render::Camera& camera, Pictures& pictures,
+            const PictureFiles& files, const geofx::plan::Division& division)
+{
+    const std::size_t count = camera.last() - camera.first() + 1;
+    const auto frameOf = [&](std::size_t unit)
+    {
+        return camera.first() + static_cast<unsigned int>(unit);
+    };
+    osgGeoFX::WorkStages stages;
+    // The folder was empty when the film was planned, so a picture that is there is of this film.
+    stages.push_back(std::make_unique<geofx::plan::PictureStage>(
+        "frames", count,
+        [&](std::size_t unit) { return std::filesystem::exists(files.nameOf(frameOf(unit))); },
+        [&](std::size_t unit) { pictures.draw(frameOf(unit)); }));
+    stages.push_back(std::make_unique<geofx::plan::PictureStage>(
+        "film", 1, [](std::size_t) { return false; },
+        [&](std::size_t)
+        {
+            for (std::size_t unit = 0; unit < count; ++unit)
+                if (!std::filesystem::exists(files.nameOf(frameOf(unit))))
+                    throw Failure(badInput, files.nameOf(frameOf(unit)) +
+                                                ": this picture was drawn and is not there any more; draw it "
+                                                "again with --unit frames:" +
+                                                std::to_string(unit) + ".");
+        }));
+    division.run(stages, madeOf(arguments),
+                 {secondsOf(arguments.renderer) * static_cast<double>(count), 0.1});
+}
+
+void run(Arguments& arguments, const geofx::plan::Division& division)
+{
+    if (!arguments.camera.path.empty() && arguments.camera.frames.empty() &&
+        !(arguments.camera.framesASecond > 0.0))
+        throw Failure(badInput, "--path: say how many pictures there are, with --frames or --fps.");
+    std::string error;
+    arguments.output = division.outputOf(arguments.output);
+    const osgGeoFX::PrintSize size = readSize(arguments);
+    PictureFiles files(geofx::names::PictureMap::rasterOf(arguments.output), !arguments.camera.path.empty());
+    if (!files.error().empty()) throw Failure(badInput, files.error());
+    check(arguments, division, size);
+    std::optional<geofx::web::ScenePage> page;
+    if (arguments.web.wanted()) page.emplace(arguments.web, arguments.output);
+
+    const osg::ref_ptr<osgDB::Options> reading =
+        new osgDB::Options(arguments.allowOutside ? "allowOutside" : "");
     std::optional<osgGeoFX::Scene> scene =
         osgGeoFX::Scene::load(arguments.scene, error, arguments.allowOutside ? reading.get() : nullptr);
     if (!scene) throw Failure(badInput, error);
@@ -420,43 +473,29 @@ void run(Arguments& arguments)
     }
     options.cull = !arguments.noCull;
     options.countTriangles = !arguments.stats.empty();
-    const Camera camera(arguments, *scene);
+    const geofx::render::Camera camera(arguments.camera, *scene, options.fieldOfView,
+                                       static_cast<double>(options.width) / options.height);
     geofx::names::PictureMap map(arguments.names, arguments.output, size, *scene,
                                  !arguments.layers.folder.empty());
     for (const std::string& notice : map.notices())
         std::cerr << "osggeofx_render: " << notice << std::endl;
     if (geofx::print::isPrint(arguments.print, arguments.output, size))
     {
-        print(arguments, size, map, camera.view(0), *scene, page ? &*page : nullptr);
-        geofx::layers::write(arguments.layers, *scene, size, options, map, camera.view(0));
+        print(arguments, size, map, camera.view(0), *scene, page ? &*page : nullptr, division);
         return;
     }
-    map.prepare();
-
-    auto renderer = osgGeoFX::SceneRenderer::create(*scene, options, error);
-    if (!renderer) throw Failure(badInput, error);
-    StatisticsFile statistics(*renderer, options);
-    for (unsigned int frame = 0; frame < camera.count(); ++frame)
     {
-        osgGeoFX::FrameStatistics figures;
-        const auto image = renderer->render(camera.view(frame), camera.time(frame), figures, error);
-        if (!image) throw Failure(tookTooLong, error);
-        map.finish(renderer->camera(), *image,
-                   [&](const osg::Image& plain)
-                   {
-                       if (page) page->setPicture(plain);
-                   });
-        if (arguments.inset) addInset(*image, *renderer, camera, frame, *scene->effects);
-        if (!pictures.write(*image, frame)) throw Failure(badInput, pictures.error());
-        statistics.add(figures);
+        Pictures pictures(arguments, *scene, camera, map, files, page ? &*page : nullptr);
+        if (division.any())
+        {
+            divide(arguments, camera, pictures, files, division);
+            return;
+        }
+        for (unsigned int frame = camera.first(); frame <= camera.last(); ++frame)
+            pictures.draw(frame);
+        if (page) page->write(*scene, options, camera.view(0), map.names());
+        pictures.writeStatistics();
     }
-    if (page) page->write(*scene, options, camera.view(0), map.names());
-    if (!arguments.stats.empty() && !statistics.write(arguments.stats))
-    {
-        throw Failure(badInput, "The figures cannot be written to \"" + arguments.stats +
-                                    "\"; check the folder, its permissions and the disk's space.");
-    }
-    renderer.reset();
     geofx::layers::write(arguments.layers, *scene, size, options, map, camera.view(0));
 }
 
@@ -472,8 +511,14 @@ int main(int argc, char** argv)
     addOptions(app, arguments);
     try
     {
-        app.parse(argc, argv);
-        run(arguments);
+        int exitCode = 0;
+        std::optional<geofx::plan::Call> call = geofx::plan::callOf("osggeofx_render", argc, argv, exitCode);
+        if (!call) return exitCode;
+        // CLI11 takes them from the last one on.
+        app.parse(std::vector<std::string>(call->arguments.rbegin(), call->arguments.rend()));
+        run(arguments, call->units
+                           ? *call->units
+                           : geofx::plan::Division("osggeofx_render", call->arguments, arguments.plan));
     }
     catch (const CLI::Success& help)
     {

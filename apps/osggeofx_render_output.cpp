@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "osggeofx_render_output.h"
 
+#include <osgGeoFX/work/WholeFile.h>
+
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
@@ -92,17 +94,9 @@ bool PictureFiles::write(const osg::Image& image, unsigned int frame)
                  "use png, jpg or tiff.";
         return false;
     }
-    const std::string unfinished = name + ".part";
     const std::string content = bytes.str();
-    std::ofstream file(unfinished, std::ios::binary);
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.close();
-    std::error_code failure;
-    if (file) fs::rename(unfinished, name, failure);
-    if (!file || failure)
+    if (osgGeoFX::writeWholeFile(name, content.data(), content.size()) != 0)
     {
-        std::error_code ignored;
-        fs::remove(unfinished, ignored);
         _error = "The picture \"" + name +
                  "\" cannot be written; check the folder, its permissions and the disk's "
                  "space.";

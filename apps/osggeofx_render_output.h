@@ -19,15 +19,16 @@ class PictureFiles
 public:
     PictureFiles(const std::string& name, bool many);
 
-    /// Writes a whole file or none.
+    /// Writes a whole file or none. Several processes may write the same one at once.
     bool write(const osg::Image& image, unsigned int frame);
 
     /// What is wrong with the name or with the last write, as a sentence; empty if nothing is.
     const std::string& error() const { return _error; }
 
-private:
+    /// The file of a picture.
     std::string nameOf(unsigned int frame) const;
 
+private:
     const std::string _name;
     const bool _many;
     std::string _before;

@@ -13,6 +13,12 @@
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/paging/TilePosts.h>
 
+#include <osgGeoFX/work/PlannedWork.h>
+#include <osgGeoFX/work/WholeFile.h>
+#include <osgGeoFX/work/WorkError.h>
+#include <osgGeoFX/work/WorkStage.h>
+#include <osgGeoFX/work/WorkTimes.h>
+
 #include <osgGeoFX/effect/Deformation.h>
 #include <osgGeoFX/effect/DeformationChain.h>
 #include <osgGeoFX/effect/DepthConvention.h>

@@ -127,6 +127,11 @@ std::string GroundBuilder::ground(const osgGeoFX::PanoramaComposition& view)
     return build("ground", factor, placesOf(view));
 }
 
+std::string GroundBuilder::groundIn(const std::string& folder)
+{
+    return folder + "/ground/terrain.osgb";
+}
+
 std::string GroundBuilder::build(const std::string& name, int factor, const std::vector<osg::Vec2d>& places)
 {
     osgGeoFX::BuildOptions options;

@@ -24,6 +24,8 @@ public:
     std::string overview();
     /// The terrain for the picture of the recipe's view. Returns the database's file.
     std::string ground(const osgGeoFX::PanoramaComposition& view);
+    /// The database's file that ground() has left in a folder.
+    static std::string groundIn(const std::string& folder);
     /// What was made coarser, and why, as sentences.
     const std::vector<std::string>& notes() const { return _notes; }
 

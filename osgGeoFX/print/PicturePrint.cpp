@@ -5,6 +5,7 @@
 #include <osgGeoFX/labels/LabelPicture.h>
 #include <osgGeoFX/print/detail/TilePlan.h>
 #include <osgGeoFX/scene/DepthReader.h>
+#include <osgGeoFX/work/WholeFile.h>
 
 #include <OpenImageIO/imageio.h>
 #include <lcms2.h>
@@ -87,9 +88,9 @@ public:
         spec.attribute("ImageDescription", description.str());
         spec.attribute("compression", "zip");
         spec.attribute("tiff:zipquality", 1);
-        const fs::path unfinished = _folder / "unfinished.tif";
-        const auto output = OIIO::ImageOutput::create(unfinished.string());
-        bool good = output && output->open(unfinished.string(), spec);
+        const std::string unfinished = temporaryName(pathOf(tile).string());
+        const auto output = OIIO::ImageOutput::create("tiff");
+        bool good = output && output->open(unfinished, spec);
         // What a tile draws beyond the picture lies to the right and below.
         for (int row = 0; good && row < tile.height; ++row)
             good = output->write_scanline(row, 0, _type,
@@ -101,6 +102,8 @@ public:
             throw Fault("A tile cannot be written to \"" + _folder.string() +
                         "\"; check the folder, its permissions and the disk's space.");
     }
+
+    const fs::path& folder() const { return _folder; }
 
     void remove() const
     {
@@ -175,11 +178,12 @@ bool isLinear(const std::string& file)
 class PictureFile
 {
 public:
-    PictureFile(const TilePlan& plan, const PicturePrint::Options& options, int bits, const std::string& file)
+    /// `folder`: where the file is until then.
+    PictureFile(const TilePlan& plan, const PicturePrint::Options& options, int bits, const std::string& file,
+                const fs::path& folder)
         : _plan(plan), _whole(file),
-          _unfinished(_whole.parent_path() /
-                      (_whole.stem().string() + ".unfinished" + _whole.extension().string())),
-          _output(OIIO::ImageOutput::create(_unfinished.string()))
+          _unfinished(temporaryName((folder / _whole.filename()).string()) + _whole.extension().string()),
+          _output(OIIO::ImageOutput::create(file))
     {
         if (!_output)
             throw Fault("\"" + file +
@@ -234,6 +238,8 @@ private:
                            OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
                            profile.data());
         spec.attribute("compression", "zip");
+        // Else it would have the hour at which it is written. No number is a date, so it has none.
+        if (std::string(_output->format_name()) == "tiff") spec.attribute("DateTime", 0);
         if (static_cast<double>(spec.image_bytes()) > 3.9e9) spec.attribute("tiff:bigtiff", 1);
         if (options.size.dpi > 0.0)
         {
@@ -291,7 +297,7 @@ void readRow(const TilePlan& plan, const TileFiles& tiles, int row, OIIO::TypeDe
 void assemble(const TilePlan& plan, const TileFiles& tiles, const PicturePrint::Options& options, int bits,
               const std::string& file, const std::function<void(osg::Image&, int)>& drawOver)
 {
-    PictureFile picture(plan, options, bits, file);
+    PictureFile picture(plan, options, bits, file, tiles.folder());
     // Tiles are read in the file's type; those of 16 bits give one of 8, too.
     const OIIO::TypeDesc type = typeOf(bits);
     const osg::ref_ptr<osg::Image> strip = new osg::Image;
@@ -307,13 +313,44 @@ void assemble(const TilePlan& plan, const TileFiles& tiles, const PicturePrint::
     picture.finish();
 }
 
-void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrixd& view,
-           const std::string& file)
+} // namespace
+
+struct PicturePrint::Parts
 {
-    const TilePlan plan(options.size.width, options.size.height, options.tile);
-    const int bits = options.bits > 8 || isLinear(file) ? 16 : 8;
-    const TileFiles tiles(options.work, keyOf(options, plan, view), typeOf(bits));
-    const osg::ref_ptr<DepthReader> depths = options.names ? scene.readDepths() : nullptr;
+    Parts(Scene& itsScene, const Options& itsOptions, const osg::Matrixd& itsView, const std::string& file)
+        : scene(itsScene), options(itsOptions), view(itsView),
+          plan(options.size.width, options.size.height, options.tile),
+          bits(options.bits > 8 || isLinear(file) ? 16 : 8),
+          tiles(options.work, keyOf(options, plan, view), typeOf(bits)),
+          depths(options.names ? scene.readDepths() : nullptr)
+    {
+    }
+
+    PictureTile tile(int number) const { return plan.at(number % plan.columns, number / plan.columns); }
+    /// The places of each name that a tile shows. It is drawn if it is not there.
+    std::map<std::size_t, std::size_t> draw(const PictureTile& tile);
+    /// What all tiles show of the names.
+    std::optional<LabelPicture> place(const std::map<std::size_t, std::size_t>& seen);
+    void write(const std::string& file);
+
+    Scene& scene;
+    const Options options;
+    const osg::Matrixd view;
+    const TilePlan plan;
+    const int bits; ///< of the tiles and the file
+    const TileFiles tiles;
+    const osg::ref_ptr<DepthReader> depths;
+
+private:
+    void start();
+    osg::ref_ptr<osg::Image> render();
+    std::unique_ptr<SceneRenderer> _renderer; ///< null until a tile must be drawn
+    std::vector<NameSet::Seen> _names;        ///< in the picture, once something is drawn
+};
+
+void PicturePrint::Parts::start()
+{
+    if (_renderer) return;
     SceneRenderer::Options drawing = options.renderer;
     drawing.width = plan.tileWidth;
     drawing.height = plan.tileHeight;
@@ -321,63 +358,65 @@ void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrix
     drawing.pictureHeight = plan.height;
     drawing.format = bits > 8 ? ImageCapture::Format::Rgb16 : ImageCapture::Format::Rgb;
     std::string error;
-    std::unique_ptr<SceneRenderer> renderer;
-    std::vector<NameSet::Seen> names;
-    std::map<std::size_t, std::size_t> seen; ///< places of each name, in all tiles
-    const auto start = [&]
+    _renderer = SceneRenderer::create(scene, drawing, error);
+    if (!_renderer) throw Fault(error);
+}
+
+osg::ref_ptr<osg::Image> PicturePrint::Parts::render()
+{
+    std::string error;
+    FrameStatistics unused;
+    osg::ref_ptr<osg::Image> image = _renderer->render(view, 0.0, unused, error);
+    if (!image) throw Fault(error);
+    if (options.names && _names.empty())
+        _names = options.names->inPicture(DeformedView(*scene.effects, _renderer->camera()), plan.width,
+                                          plan.height, LabelPicture::usualMost);
+    return image;
+}
+
+std::map<std::size_t, std::size_t> PicturePrint::Parts::draw(const PictureTile& tile)
+{
+    if (const auto shown = tiles.seenIn(tile)) return *shown;
+    start();
+    _renderer->setTile(tile.left, plan.height - tile.top - plan.tileHeight);
+    const osg::ref_ptr<osg::Image> image = render();
+    std::map<std::size_t, std::size_t> shown;
+    for (const NameSet::Seen& name : _names)
+        if (const std::size_t count = NameSet::placesShown(name, depths->pictures()))
+            shown[name.name] = count;
+    tiles.write(tile, *image, plan.tileHeight, shown);
+    return shown;
+}
+
+std::optional<LabelPicture> PicturePrint::Parts::place(const std::map<std::size_t, std::size_t>& seen)
+{
+    if (!options.names) return std::nullopt;
+    if (!_renderer)
     {
-        if (renderer) return;
-        renderer = SceneRenderer::create(scene, drawing, error);
-        if (!renderer) throw Fault(error);
-    };
-    const auto find = [&](const osg::Camera& camera)
-    {
-        if (options.names && names.empty())
-            names = options.names->inPicture(DeformedView(*scene.effects, camera), plan.width, plan.height,
-                                             LabelPicture::usualMost);
-    };
-    int done = 0;
-    for (int row = 0; row < plan.rows; ++row)
-    {
-        for (int column = 0; column < plan.columns; ++column)
-        {
-            const PictureTile tile = plan.at(column, row);
-            std::optional<std::map<std::size_t, std::size_t>> shown = tiles.seenIn(tile);
-            if (!shown)
-            {
-                start();
-                renderer->setTile(tile.left, plan.height - tile.top - plan.tileHeight);
-                FrameStatistics unused;
-                const osg::ref_ptr<osg::Image> image = renderer->render(view, 0.0, unused, error);
-                if (!image) throw Fault(error);
-                find(renderer->camera());
-                shown.emplace();
-                for (const NameSet::Seen& name : names)
-                    if (const std::size_t count = NameSet::placesShown(name, depths->pictures()))
-                        (*shown)[name.name] = count;
-                tiles.write(tile, *image, plan.tileHeight, *shown);
-            }
-            for (const auto& [name, count] : *shown)
-                seen[name] += count;
-            if (options.progress) options.progress(++done, plan.columns * plan.rows);
-        }
+        // All tiles were there. A small one tells the camera.
+        start();
+        render();
     }
-    std::optional<LabelPicture> labels;
-    if (options.names)
+    std::vector<bool> visible;
+    for (const NameSet::Seen& name : _names)
     {
-        if (!renderer)
-        {
-            // All tiles were there. A small one tells the camera.
-            start();
-            FrameStatistics unused;
-            renderer->render(view, 0.0, unused, error);
-            find(renderer->camera());
-        }
-        std::vector<bool> visible;
-        for (const NameSet::Seen& name : names)
-            visible.push_back(NameSet::isShown(name, seen[name.name]));
-        labels.emplace(*options.names, names, visible, plan.width, plan.height);
+        const auto found = seen.find(name.name);
+        visible.push_back(NameSet::isShown(name, found == seen.end() ? 0 : found->second));
     }
+    return LabelPicture(*options.names, _names, visible, plan.width, plan.height);
+}
+
+void PicturePrint::Parts::write(const std::string& file)
+{
+    std::map<std::size_t, std::size_t> seen; // places of each name, in all tiles
+    const int count = plan.columns * plan.rows;
+    for (int number = 0; number < count; ++number)
+    {
+        for (const auto& [name, places] : draw(tile(number)))
+            seen[name] += places;
+        if (options.progress) options.progress(number + 1, count);
+    }
+    const std::optional<LabelPicture> labels = place(seen);
     if (labels && options.placed) options.placed(*labels);
     const auto drawOverlay = [&](osg::Image& rows, int top)
     {
@@ -393,8 +432,6 @@ void print(Scene& scene, const PicturePrint::Options& options, const osg::Matrix
              });
     tiles.remove();
 }
-
-} // namespace
 
 std::optional<PrintSize> PrintSize::parse(const std::string& text, std::string& error)
 {
@@ -478,12 +515,57 @@ std::optional<PrintSize> PrintSize::parse(const std::string& text, std::string& 
     return size;
 }
 
+PicturePrint::PicturePrint(std::unique_ptr<Parts> parts) : _parts(std::move(parts)) {}
+
+PicturePrint::~PicturePrint() = default;
+
+std::unique_ptr<PicturePrint> PicturePrint::create(Scene& scene, const Options& options,
+                                                   const osg::Matrixd& view, const std::string& file,
+                                                   std::string& error)
+{
+    try
+    {
+        return std::unique_ptr<PicturePrint>(
+            new PicturePrint(std::make_unique<Parts>(scene, options, view, file)));
+    }
+    catch (const std::runtime_error& fault)
+    {
+        error = fault.what();
+        return nullptr;
+    }
+}
+
+int PicturePrint::countTiles(const Options& options)
+{
+    const TilePlan plan(options.size.width, options.size.height, options.tile);
+    return plan.columns * plan.rows;
+}
+
+bool PicturePrint::isDrawn(int tile) const
+{
+    return _parts->tiles.seenIn(_parts->tile(tile)).has_value();
+}
+
+bool PicturePrint::draw(int tile, std::string& error)
+{
+    try
+    {
+        _parts->draw(_parts->tile(tile));
+        return true;
+    }
+    catch (const std::runtime_error& fault)
+    {
+        error = fault.what();
+        return false;
+    }
+}
+
 bool PicturePrint::write(Scene& scene, const Options& options, const osg::Matrixd& view,
                          const std::string& file, std::string& error)
 {
     try
     {
-        print(scene, options, view, file);
+        Parts(scene, options, view, file).write(file);
         return true;
     }
     catch (const std::runtime_error& fault)

@@ -12,6 +12,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -67,6 +68,23 @@ public:
         std::function<void(int done, int all)> progress; ///< called after each tile; empty for nobody
     };
 
+    /** A print whose tiles are drawn one by one, by any number of processes that have the same options and a shared folder for tiles.
+        write() then puts them together. The tiles have the same bytes whoever draws them. Null, with a sentence in `error`, if the folder cannot be
+        made. `scene` must outlive it. */
+    static std::unique_ptr<PicturePrint> create(Scene& scene, const Options& options,
+                                                const osg::Matrixd& view, const std::string& file,
+                                                std::string& error);
+    ~PicturePrint();
+    PicturePrint(const PicturePrint&) = delete;
+    PicturePrint& operator=(const PicturePrint&) = delete;
+
+    /// The number of tiles of a print of this size.
+    static int countTiles(const Options& options);
+    /// Whether a tile, from 0, row by row, is in the folder.
+    bool isDrawn(int tile) const;
+    /// Draws a tile unless it is in the folder. False, with a sentence in `error`, if it cannot.
+    bool draw(int tile, std::string& error);
+
     /// Whether a picture should be printed in tiles: whether it is larger than what any GPU draws at once.
     static bool isLarge(const PrintSize& size) { return size.width > 4096 || size.height > 4096; }
 
@@ -75,6 +93,11 @@ public:
         tiles stay. `scene`: its node gets a child that reads depths. */
     static bool write(Scene& scene, const Options& options, const osg::Matrixd& view, const std::string& file,
                       std::string& error);
+
+private:
+    struct Parts;
+    explicit PicturePrint(std::unique_ptr<Parts> parts);
+    std::unique_ptr<Parts> _parts;
 };
 
 } // namespace osgGeoFX

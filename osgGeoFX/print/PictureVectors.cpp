@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/print/PictureVectors.h>
 
+#include <osgGeoFX/work/WholeFile.h>
+
 #include <cairo-pdf.h>
 #include <libxml/xmlwriter.h>
 #include <nlohmann/json.hpp>
@@ -93,11 +95,7 @@ private:
 class Unfinished
 {
 public:
-    explicit Unfinished(const std::string& file)
-        : _file(file), _path(fs::path(file).parent_path() / (fs::path(file).stem().string() + ".unfinished" +
-                                                             fs::path(file).extension().string()))
-    {
-    }
+    explicit Unfinished(const std::string& file) : _file(file), _path(temporaryName(file)) {}
     ~Unfinished()
     {
         std::error_code ignored;
@@ -352,6 +350,8 @@ bool PictureVectors::writePdf(const std::string& file, const std::string& pictur
         cairo_pdf_surface_create(unfinished.path().c_str(), width * points, height * points);
     cairo_pdf_surface_set_metadata(page, CAIRO_PDF_METADATA_TITLE, title.c_str());
     cairo_pdf_surface_set_metadata(page, CAIRO_PDF_METADATA_CREATOR, "osgGeoFX");
+    // No date; else it would have the hour at which it is written.
+    cairo_pdf_surface_set_metadata(page, CAIRO_PDF_METADATA_CREATE_DATE, "");
     cairo_t* const target = cairo_create(page);
     cairo_scale(target, points, points);
     // Its pixels are not used, since the JPEG stands for them; so they are single bits.

@@ -6,7 +6,7 @@
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/BuildStage.h>
 #include <osgGeoFX/terrain/detail/DatabaseRoot.h>
-#include <osgGeoFX/terrain/detail/WorkQueue.h>
+#include <osgGeoFX/work/detail/WorkQueue.h>
 
 #include <osg/ValueObject>
 #include <osgDB/ReadFile>

@@ -2,16 +2,13 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/DistributedBuild.h>
 
-#include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/PlanFile.h>
 #include <osgGeoFX/terrain/detail/TilePass.h>
-#include <osgGeoFX/terrain/detail/UnitLog.h>
-#include <osgGeoFX/terrain/detail/WorkQueue.h>
+#include <osgGeoFX/work/WorkError.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 
 namespace osgGeoFX
@@ -22,133 +19,18 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Facts that are kept in memory are dropped after so many units.
-constexpr std::uint64_t BATCH = 500;
-/// A sentence names so many gaps at most.
-constexpr std::size_t NAMED_GAPS = 5;
-
-struct Range
+/// The result of a call. What it says of a work, it says of a build.
+template<typename Call>
+auto sayAsBuildError(Call call)
 {
-    std::size_t stage = 0;
-    std::uint64_t first = 0, end = 0;
-};
-
-/// A whole number below 10¹⁸; empty if the text is something else.
-std::optional<std::uint64_t> numberOf(const std::string& text)
-{
-    if (text.empty() || text.size() > 18 || text.find_first_not_of("0123456789") != std::string::npos)
-        return {};
-    return std::stoull(text);
-}
-
-std::size_t stageOf(const PlanFile& plan, const std::string& name)
-{
-    std::string names;
-    for (std::size_t i = 0; i < plan.stages.size(); ++i)
+    try
     {
-        if (plan.stages[i].first == name) return i;
-        names += (i > 0 ? ", " : "") + plan.stages[i].first;
+        return call();
     }
-    if (const auto number = numberOf(name); number && *number < plan.stages.size())
-        return static_cast<std::size_t>(*number);
-    throw BuildError(PlanFile::file(plan.options.output) + ": the plan has no stage \"" + name +
-                     "\"; it has " + names + ".");
-}
-
-Range parseRange(const PlanFile& plan, const std::string& text)
-{
-    const std::size_t colon = text.find(':');
-    Range range;
-    range.stage = stageOf(plan, text.substr(0, colon));
-    const auto& [name, units] = plan.stages[range.stage];
-    if (colon == std::string::npos) return {range.stage, 0, units};
-    const std::string rest = text.substr(colon + 1);
-    const std::size_t sign = rest.find_first_of("-/");
-    const auto first = numberOf(rest.substr(0, sign));
-    const auto second = sign == std::string::npos ? first : numberOf(rest.substr(sign + 1));
-    if (!first || !second)
-        throw BuildError("--unit " + text +
-                         ": write it as STAGE:A-B, the units A to B, or as STAGE:I/N, the part I of N.");
-    if (sign != std::string::npos && rest[sign] == '/')
+    catch (const WorkError& error)
     {
-        if (*first >= *second || *second > 1000000000)
-            throw BuildError("--unit " + text + ": parts are counted from 0, so of " +
-                             std::to_string(*second) + " parts the last is " +
-                             std::to_string(std::max<std::uint64_t>(*second, 1) - 1) + ".");
-        range.first = units * *first / *second;
-        range.end = units * (*first + 1) / *second;
-        return range;
+        throw BuildError(error.what());
     }
-    if (*first > *second || *second >= units)
-        throw BuildError("--unit " + text + ": the stage " + name + " has the units 0 to " +
-                         std::to_string(units - 1) + "; name the lower one first.");
-    range.first = *first;
-    range.end = *second + 1;
-    return range;
-}
-
-/// Throws BuildError unless all units of a stage are done.
-void requireDone(const std::string& folder, const std::string& stage, std::uint64_t units)
-{
-    if (fs::exists(stageDoneFile(folder, stage))) return;
-    std::vector<bool> done;
-    const StageStatus status = readUnitLogs(folder, stage, units, &done);
-    if (status.done == units)
-    {
-        writeFileAtomically(stageDoneFile(folder, stage), "", 0);
-        return;
-    }
-    std::string gaps;
-    std::size_t count = 0;
-    for (std::uint64_t unit = 0; unit < units;)
-    {
-        std::uint64_t end = unit;
-        while (end < units && !done[end])
-            ++end;
-        if (end > unit && ++count <= NAMED_GAPS)
-            gaps += " " + stage + ":" + std::to_string(unit) + "-" + std::to_string(end - 1);
-        unit = end + 1;
-    }
-    throw BuildError(folder + ": of the stage " + stage + ", " + std::to_string(units - status.done) +
-                     " of " + std::to_string(units) + " units are missing; build them first, with --unit" +
-                     gaps + (count > NAMED_GAPS ? " and more." : "."));
-}
-
-void buildRange(BuildPlan& plan, BuildStage& stage, const Range& range, BuiltUnits& result)
-{
-    UnitLog log(plan.options.output, stage.name());
-    std::atomic<std::uint64_t> built{0}, takenOver{0};
-    const bool needed = stage.isNeeded();
-    if (needed) stage.begin();
-    for (std::uint64_t first = range.first; first < range.end; first += BATCH)
-    {
-        const std::uint64_t count = std::min(BATCH, range.end - first);
-        runOnWorkers(stage.threads(plan.threads), count,
-                     [&](int worker, std::size_t index)
-                     {
-                         const std::uint64_t unit = first + index;
-                         try
-                         {
-                             if (needed && !stage.takeOver(unit) && stage.hasWork(unit))
-                             {
-                                 log.begin(unit);
-                                 stage.run(worker, unit);
-                                 ++built;
-                             }
-                             else
-                                 ++takenOver;
-                         }
-                         catch (const std::exception& error)
-                         {
-                             log.fail(unit, error.what());
-                             throw;
-                         }
-                         log.done(unit);
-                     });
-        plan.forgetFacts();
-    }
-    result.built += built;
-    result.takenOver += takenOver;
 }
 
 /// The same file, whatever the folder that a process runs in.
@@ -192,9 +74,6 @@ BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>&
         return result;
     }
     PlanFile file = PlanFile::read(folder);
-    std::vector<Range> parsed;
-    for (const std::string& range : ranges)
-        parsed.push_back(parseRange(file, range));
     if (threads > 0) file.options.threads = threads;
     if (memoryMiB > 0) file.options.memoryMiB = memoryMiB;
     BuildPlan plan(file.options, BuildPlan::Workers::MANY_PROCESSES);
@@ -202,20 +81,15 @@ BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>&
     const GdalCacheLimit cache(static_cast<GIntBig>(file.options.memoryMiB) * 1024 * 1024 / 4);
     TilePassResult tiles;
     const BuildStages stages = createStages(plan, tiles);
-    for (const Range& range : parsed)
+    UnitOptions how;
+    how.threads = plan.threads;
+    // Facts that are kept in memory.
+    how.pause = [&]
     {
-        // Whether a stage is needed is known once those before it are done.
-        for (std::size_t before = 0; before < range.stage; ++before)
-            if (stages[before]->isNeeded())
-                requireDone(folder, file.stages[before].first, file.stages[before].second);
-        buildRange(plan, *stages[range.stage], range, result);
-        if (range.stage + 1 == stages.size())
-        {
-            removeLeftovers(plan);
-            result.finished = true;
-            break;
-        }
-    }
+        plan.forgetFacts();
+    };
+    result = sayAsBuildError([&] { return doUnits(folder, stages, ranges, how); });
+    if (result.finished) removeLeftovers(plan);
     return result;
 }
 
@@ -225,12 +99,7 @@ BuildStatus readBuildStatus(const std::string& folder)
     status.finished =
         fs::exists(fs::path(folder) / "terrain.osgb") && fs::exists(fs::path(folder) / ORIGIN_FILE);
     if (status.finished) return status;
-    const PlanFile plan = PlanFile::read(folder);
-    status.logFolder = (workFolderOf(folder) / LOG_FOLDER).string();
-    status.estimatedSeconds = plan.estimatedSeconds;
-    for (const auto& [name, units] : plan.stages)
-        status.stages.push_back(readUnitLogs(folder, name, units));
-    return status;
+    return sayAsBuildError([&] { return readWorkStatus(folder); });
 }
 
 } // namespace osgGeoFX

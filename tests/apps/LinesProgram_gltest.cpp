@@ -209,7 +209,7 @@ TEST_F(LinesProgram, APdfIsThePictureWithVectors)
     const ProgramResult pdf = make("map.pdf");
     ASSERT_EQ(pdf.exitCode, 0) << pdf.standardError;
     EXPECT_EQ(pdf.standardError, "");
-    EXPECT_FALSE(fs::exists(file("map.unfinished.jpg")));
+    EXPECT_FALSE(fs::exists(file("map.tiles")) || fs::exists(file("map.unfinished.jpg")));
     EXPECT_FALSE(fs::exists(file("map.unfinished.pdf")));
     ASSERT_EQ(make("map.png").exitCode, 0);
 

@@ -165,13 +165,27 @@ TEST_F(MapScenes, PanoramasHaveThemToo)
 TEST_F(MapScenes, PrintsAreDrawnAnewWhenTheMapChanges)
 {
     const std::string size = "6.4x3.6in@75dpi";
-    // A folder in the place of the file that becomes the print: all tiles are drawn, and stay.
-    fs::create_directory(file("print.unfinished.tif"));
-    const ProgramResult stopped = run("osggeofx_render", {"map.geofx", "-o", "print.tif", "--size", size});
-    EXPECT_EQ(stopped.exitCode, 2);
-    EXPECT_NE(stopped.standardError.find("cannot be written"), std::string::npos) << stopped.standardError;
-    EXPECT_FALSE(fs::is_empty(file("print.tiles")));
-    fs::remove_all(file("print.unfinished.tif"));
+    // Tiles of a print that was begun: those of a plan.
+    for (const std::vector<std::string>& call :
+         {std::vector<std::string>{"map.geofx", "-o", "print.tif", "--size", size, "--plan", "plan"},
+          {"--work", "plan", "--quiet", "--unit", "tiles"}})
+    {
+        const ProgramResult result = run("osggeofx_render", call);
+        ASSERT_EQ(result.exitCode, 0) << result.standardError;
+    }
+    const std::string tile = "plan/work/tiles/tile-0-0.tif";
+    ASSERT_GT(magentaIn(tile), 0);
+    // They are used again: the print has what somebody has painted onto them.
+    geofx::test::ProgramOptions here;
+    here.folder = file("");
+    ASSERT_EQ(
+        geofx::test::runProgram({"oiiotool", tile, "--fill:color=1,0,1", "20x20", "-o", tile}, here).exitCode,
+        0);
+    fs::copy(file("plan/work/tiles"), file("print.tiles"));
+    rendered("map.geofx", "print.tif", {}, size);
+    EXPECT_GE(magentaIn("print.tif"), 400);
+    EXPECT_FALSE(fs::exists(file("print.tiles")));
+    fs::copy(file("plan/work/tiles"), file("print.tiles"));
     write("style.json", R"({"lines": {"trail": {"color": "#00ff00", "width": 14, "least": 14}},
                            "names": {"hut": {"color": "#000000"}}})");
     rendered("map.geofx", "print.tif", {}, size);

@@ -9,6 +9,7 @@ import argparse
 import functools
 import http.server
 import os
+import re
 import time
 
 
@@ -18,7 +19,32 @@ class Handler(http.server.SimpleHTTPRequestHandler):
 
     def do_GET(self):
         time.sleep(self.delay)
-        super().do_GET()
+        wanted = re.fullmatch(r"bytes=(\d+)-(\d*)", self.headers.get("Range", ""))
+        path = self.translate_path(self.path)
+        if wanted and os.path.isfile(path):
+            self.send_part(path, int(wanted[1]), int(wanted[2]) if wanted[2] else None)
+        else:
+            super().do_GET()
+
+    def send_part(self, path, first, last):
+        """The bytes `first` to `last` of a file, as GDAL asks for them."""
+        size = os.path.getsize(path)
+        last = size - 1 if last is None else min(last, size - 1)
+        if first > last:
+            self.send_response(416)
+            self.send_header("Content-Range", f"bytes */{size}")
+            self.send_header("Content-Length", "0")
+            self.end_headers()
+            return
+        self.send_response(206)
+        self.send_header("Content-Type", self.guess_type(path))
+        self.send_header("Content-Range", f"bytes {first}-{last}/{size}")
+        self.send_header("Content-Length", str(last - first + 1))
+        self.send_header("Last-Modified", self.date_time_string(os.path.getmtime(path)))
+        self.end_headers()
+        with open(path, "rb") as file:
+            file.seek(first)
+            self.wfile.write(file.read(last - first + 1))
 
     def log_message(self, *arguments):
         pass

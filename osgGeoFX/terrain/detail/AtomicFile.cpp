@@ -4,15 +4,9 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 
-#include <unistd.h>
-
-#include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <memory>
 
 namespace osgGeoFX
 {
@@ -25,38 +19,9 @@ void failToWrite(const std::string& path, int error)
     throw BuildError(path + ": cannot be written (" + std::strerror(error) + "); " + remedy);
 }
 
-std::string temporaryName(const std::string& path)
-{
-    static std::atomic<unsigned int> next{0};
-    static const std::string host = []
-    {
-        char name[256] = {};
-        gethostname(name, sizeof(name) - 1);
-        return std::string(name);
-    }();
-    return path + "." + host + "-" + std::to_string(getpid()) + "-" + std::to_string(next++) +
-           TEMPORARY_ENDING;
-}
-
 void writeFileAtomically(const std::string& path, const char* data, std::size_t size)
 {
-    std::error_code code;
-    std::filesystem::create_directories(std::filesystem::path(path).parent_path(), code);
-    if (code) failToWrite(path, code.value());
-
-    const std::string temporary = temporaryName(path);
-    std::FILE* file = std::fopen(temporary.c_str(), "wb");
-    if (!file) failToWrite(path, errno);
-    errno = 0;
-    const bool written = std::fwrite(data, 1, size, file) == size;
-    int error = written ? 0 : errno;
-    if (std::fclose(file) != 0 && error == 0) error = errno;
-    if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
-    if (error != 0)
-    {
-        std::remove(temporary.c_str());
-        failToWrite(path, error);
-    }
+    if (const int error = writeWholeFile(path, data, size)) failToWrite(path, error);
 }
 
 ByteReader::ByteReader(const std::string& path)

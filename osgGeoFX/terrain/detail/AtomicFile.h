@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/work/WholeFile.h>
+
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -12,12 +14,7 @@ namespace osgGeoFX
 /// Throws a BuildError for a file that cannot be written. The remedy in it suits the error number.
 [[noreturn]] void failToWrite(const std::string& path, int error);
 
-/// A name beside `path` that no other thread, process or machine uses. It ends with TEMPORARY_ENDING.
-std::string temporaryName(const std::string& path);
-constexpr const char* TEMPORARY_ENDING = ".tmp";
-
-/// Writes a file under a temporary name and renames it, so that a reader finds all of it or nothing. Makes the
-/// folder. If the disk is full or the folder read-only, it throws a BuildError and leaves nothing behind.
+/// As writeWholeFile(); throws a BuildError if the file cannot be written.
 void writeFileAtomically(const std::string& path, const char* data, std::size_t size);
 
 /// The bytes of a work file: plain values and arrays, read in the order in which they were written.

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
+#include <osgGeoFX/work/PlannedWork.h>
 
 #include <filesystem>
 #include <fstream>
@@ -42,7 +43,7 @@ std::uint64_t bytesBelow(const std::string& folder)
 
 fs::path workFolderOf(const fs::path& database)
 {
-    return database / "work";
+    return WorkPlan::workFolder(database.string());
 }
 
 bool prepareFolder(const BuildPlan& plan)

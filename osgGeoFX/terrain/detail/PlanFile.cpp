@@ -3,10 +3,10 @@
 #include <osgGeoFX/terrain/detail/PlanFile.h>
 
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
-#include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/work/PlannedWork.h>
 
 #include <nlohmann/json.hpp>
 
@@ -100,6 +100,16 @@ json gridOf(const TilingScheme& scheme)
             {"textureIntervals", scheme.texels}};
 }
 
+/// What the units of stages take, in those of the finest tiles, by the beginnings of the stages' names; measured on Oahu.
+double shareOf(const std::string& stage)
+{
+    const std::pair<const char*, double> shares[] = {{"tiles-0", 1.0},  {"tiles-", 0.4},  {"heights-", 0.005},
+                                                     {"ground", 0.007}, {"shores", 0.35}, {"", 0.02}};
+    for (const auto& [beginning, share] : shares)
+        if (stage.rfind(beginning, 0) == 0) return share;
+    return 0.0;
+}
+
 std::vector<std::string> linesOf(const std::string& text)
 {
     std::vector<std::string> lines;
@@ -115,6 +125,7 @@ void PlanFile::write(const BuildPlan& plan, const BuildStages& stages)
 {
     json document = {{"format", FORMAT},
                      {"version", VERSION},
+                     {"program", "osggeofx_build"},
                      {"options", optionsOf(plan.options)},
                      {"builtFrom", linesOf(plan.fingerprint)},
                      {"grid", gridOf(plan.scheme)},
@@ -125,15 +136,24 @@ void PlanFile::write(const BuildPlan& plan, const BuildStages& stages)
                        {"workBytes", plan.estimate.workBytes},
                        {"seconds", plan.estimate.seconds}}},
                      {"stages", json::array()}};
+    double shares = 0.0;
     for (const auto& stage : stages)
-        document["stages"].push_back({{"name", stage->name()}, {"units", stage->units()}});
+        shares += shareOf(stage->name()) * static_cast<double>(stage->units());
+    // The estimate is for all cores of a machine.
+    const double share =
+        plan.estimate.seconds * (plan.options.threads > 0 ? plan.options.threads : coreCount()) / shares;
+    for (const auto& stage : stages)
+        document["stages"].push_back(
+            {{"name", stage->name()},
+             {"units", stage->units()},
+             {"seconds", share * shareOf(stage->name()) * static_cast<double>(stage->units())}});
     const std::string text = document.dump(2) + "\n";
     writeFileAtomically(file(plan.options.output), text.data(), text.size());
 }
 
 std::string PlanFile::file(const std::string& folder)
 {
-    return (workFolderOf(folder) / "plan.json").string();
+    return WorkPlan::file(folder);
 }
 
 PlanFile PlanFile::read(const std::string& folder)

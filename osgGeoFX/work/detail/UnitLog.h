@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/terrain/DistributedBuild.h>
+#include <osgGeoFX/work/PlannedWork.h>
+#include <osgGeoFX/work/WorkTimes.h>
 
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -15,12 +15,12 @@ namespace osgGeoFX
 constexpr const char* LOG_FOLDER = "log";
 
 /** The account that a process keeps of the units of a stage: a file of its own, a line for each event, each written at once. A
-    unit that it calls done has left all of its results before. Thread-safe. */
+    unit that it calls done has left all of its results before. Each thread does one unit at a time. Thread-safe. */
 class UnitLog
 {
 public:
-    /// Throws BuildError if the file cannot be made.
-    UnitLog(const std::string& folder, const std::string& stage);
+    /// `threads`: how many do units. Throws WorkError if the file cannot be made.
+    UnitLog(const std::string& folder, const std::string& stage, int threads);
     ~UnitLog();
     UnitLog(const UnitLog&) = delete;
     UnitLog& operator=(const UnitLog&) = delete;
@@ -30,15 +30,22 @@ public:
     void fail(std::uint64_t unit, const std::string& sentence);
 
 private:
+    double cpuTime() const;
     void write(const std::string& line);
 
     std::string _path;
     int _descriptor = -1;
+    const bool _wholeProcess; ///< whether the CPU time of all its threads counts
 };
 
-/// What all processes say of a stage. If `isDone` is given, it tells which of the units are done.
-StageStatus readUnitLogs(const std::string& folder, const std::string& stage, std::uint64_t units,
-                         std::vector<bool>* isDone = nullptr);
+/// What all processes say of a stage.
+struct StageAccount
+{
+    StageStatus status;
+    StageTimes times;
+    std::vector<bool> done; ///< by unit
+};
+StageAccount readUnitLogs(const std::string& folder, const WorkPlan::Stage& stage);
 
 /// A mark that a stage is done, so that nobody needs to read its logs again.
 std::string stageDoneFile(const std::string& folder, const std::string& stage);

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/work/WorkStage.h>
+
+namespace osgGeoFX
+{
+
+WorkStage::~WorkStage() = default;
+
+} // namespace osgGeoFX
