@@ -117,7 +117,7 @@ void requireDone(const std::string& folder, const std::string& stage, std::uint6
 void buildRange(BuildPlan& plan, BuildStage& stage, const Range& range, BuiltUnits& result)
 {
     UnitLog log(plan.options.output, stage.name());
-    std::atomic<std::uint64_t> built{0}, takenOver{0};
+    std::atomic<std::uint64_t> built{0}, takenOver{0}, kept{0};
     const bool needed = stage.isNeeded();
     if (needed) stage.begin();
     for (std::uint64_t first = range.first; first < range.end; first += BATCH)
@@ -129,14 +129,16 @@ void buildRange(BuildPlan& plan, BuildStage& stage, const Range& range, BuiltUni
                          const std::uint64_t unit = first + index;
                          try
                          {
-                             if (needed && !stage.takeOver(unit) && stage.hasWork(unit))
+                             if (!needed || stage.takeOver(unit) || !stage.hasWork(unit))
+                                 ++takenOver;
+                             else if (stage.keep(unit))
+                                 ++kept;
+                             else
                              {
                                  log.begin(unit);
                                  stage.run(worker, unit);
                                  ++built;
                              }
-                             else
-                                 ++takenOver;
                          }
                          catch (const std::exception& error)
                          {
@@ -149,6 +151,7 @@ void buildRange(BuildPlan& plan, BuildStage& stage, const Range& range, BuiltUni
     }
     result.built += built;
     result.takenOver += takenOver;
+    result.kept += kept;
 }
 
 /// The same file, whatever the folder that a process runs in.
@@ -174,7 +177,7 @@ BuildEstimate planBuild(const BuildOptions& options)
     BuildPlan plan(absolute, BuildPlan::Workers::MANY_PROCESSES);
     TilePassResult result;
     const BuildStages stages = createStages(plan, result);
-    if (!prepareFolder(plan)) PlanFile::write(plan, stages);
+    if (!prepareFolder(plan).finished) PlanFile::write(plan, stages);
     return plan.estimate;
 }
 
@@ -183,8 +186,10 @@ BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>&
 {
     BuiltUnits result;
     const fs::path root = fs::path(folder) / "terrain.osgb";
-    // A process that was killed while it removed the work files, or one that comes too late.
-    if (fs::exists(root) && !fs::exists(PlanFile::file(folder)))
+    // A process that was killed while it put files into their places, or one that comes too late.
+    completeFolder(folder);
+    if (fs::exists(root) && !fs::exists(PlanFile::file(folder)) &&
+        !fs::exists(workFolderOf(folder) / ORIGIN_FILE))
     {
         std::error_code code;
         fs::remove_all(workFolderOf(folder), code);
@@ -199,6 +204,7 @@ BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>&
     if (memoryMiB > 0) file.options.memoryMiB = memoryMiB;
     BuildPlan plan(file.options, BuildPlan::Workers::MANY_PROCESSES);
     file.compare(plan);
+    joinBuild(plan);
     const GdalCacheLimit cache(static_cast<GIntBig>(file.options.memoryMiB) * 1024 * 1024 / 4);
     TilePassResult tiles;
     const BuildStages stages = createStages(plan, tiles);
@@ -216,14 +222,15 @@ BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>&
             break;
         }
     }
+    result.tilesKept = tiles.tilesKept;
     return result;
 }
 
 BuildStatus readBuildStatus(const std::string& folder)
 {
     BuildStatus status;
-    status.finished =
-        fs::exists(fs::path(folder) / "terrain.osgb") && fs::exists(fs::path(folder) / ORIGIN_FILE);
+    status.finished = fs::exists(fs::path(folder) / "terrain.osgb") &&
+                      fs::exists(fs::path(folder) / ORIGIN_FILE) && !fs::exists(PlanFile::file(folder));
     if (status.finished) return status;
     const PlanFile plan = PlanFile::read(folder);
     status.logFolder = (workFolderOf(folder) / LOG_FOLDER).string();

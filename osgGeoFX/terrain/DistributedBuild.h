@@ -18,6 +18,9 @@ namespace osgGeoFX
     not need each other. The last stage, "finish", writes `terrain.osgb` and removes the work files. The database then has
     the same bytes as that of buildDatabase().
 
+    If the folder has a finished database and `update` is set, the plan is for an update (buildDatabase()). The former
+    database then stays until "finish".
+
     It reads the headers of the rasters only. The plan holds for these rasters: if one changes, no unit is built any
     more. The options `threads` and `memoryMiB` are those of each process. Unless `resume` is set, it empties a folder
     that an earlier build has begun. Throws BuildError. Any thread may call it.
@@ -30,6 +33,8 @@ struct BuiltUnits
 {
     std::uint64_t built = 0;     ///< by this call
     std::uint64_t takenOver = 0; ///< done before
+    std::uint64_t kept = 0;      ///< an update had nothing to do for them
+    std::uint64_t tilesKept = 0; ///< tiles of the former database that stay, of units that were built or kept
     bool finished = false;       ///< terrain.osgb is there
 };
 
