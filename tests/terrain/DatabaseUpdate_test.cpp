@@ -396,7 +396,8 @@ TEST_P(DatabaseUpdate, InterruptedWhileFilesTakeTheirPlaces)
     const Files whole = fromNothing();
     planBuild(_options);
     std::ifstream stream(database() / "work" / "plan.json");
-    for (const auto& stage : nlohmann::json::parse(stream).at("stages"))
+    const nlohmann::json plan = nlohmann::json::parse(stream);
+    for (const auto& stage : plan.at("stages"))
         if (stage.at("name") != "finish") buildUnits(_options.output, {stage.at("name")});
     EXPECT_EQ(published(database()), before);
 
@@ -532,8 +533,9 @@ TEST_P(DatabaseUpdate, ByManyProcesses)
     planBuild(_options);
     EXPECT_FALSE(readBuildStatus(database()).finished);
     std::ifstream stream(database() / "work" / "plan.json");
+    const nlohmann::json plan = nlohmann::json::parse(stream);
     std::uint64_t kept = 0, built = 0, tiles = 0;
-    for (const auto& stage : nlohmann::json::parse(stream).at("stages"))
+    for (const auto& stage : plan.at("stages"))
     {
         EXPECT_EQ(published(database()), before) << "before " << stage.at("name");
         for (std::uint64_t unit = stage.at("units"); unit-- > 0;)
