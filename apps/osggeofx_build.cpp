@@ -22,12 +22,36 @@ namespace
 void work(const std::string& folder, const std::vector<std::string>& units, int threads, int memoryMiB,
           bool quiet)
 {
-    const osgGeoFX::BuiltUnits built = osgGeoFX::buildUnits(folder, units, threads, memoryMiB);
+    const osgGeoFX::BuiltDatabaseUnits built = osgGeoFX::buildUnits(folder, units, threads, memoryMiB);
     if (quiet) return;
     std::printf("%s: %llu units are built, %llu were done or had nothing to do.\n", folder.c_str(),
                 static_cast<unsigned long long>(built.built),
-                static_cast<unsigned long long>(built.takenOver));
+                static_cast<unsigned long long>(built.takenOver + built.kept));
+    if (built.kept > 0 || built.tilesKept > 0)
+        std::printf("Update: %llu units and %llu tiles stay as they were.\n",
+                    static_cast<unsigned long long>(built.kept),
+                    static_cast<unsigned long long>(built.tilesKept));
     if (built.finished) std::printf("%s/terrain.osgb: the database is finished.\n", folder.c_str());
+}
+
+/// What an update has done, and what the next one will find.
+void tellUpdate(const osgGeoFX::BuildSummary& summary, const std::string& folder)
+{
+    const auto count = [](std::uint64_t value)
+    {
+        return static_cast<unsigned long long>(value);
+    };
+    if (!summary.allBecause.empty())
+        std::printf("Update: all tiles were built, since %s.\n", summary.allBecause.c_str());
+    else if (summary.updated)
+        std::printf("Update: %llu tiles were built and %llu kept; %llu of %llu units had nothing to do.\n",
+                    count(summary.tiles - summary.tilesKept - summary.tilesReused), count(summary.tilesKept),
+                    count(summary.unitsKept), count(summary.units));
+    else if (summary.tilesKept > 0)
+        std::printf("Nothing has changed since this database was built.\n");
+    if (summary.keptBytes > 0)
+        std::printf("Kept for updates: %.1f MB in %s/kept.\n", static_cast<double>(summary.keptBytes) * 1e-6,
+                    folder.c_str());
 }
 
 } // namespace
@@ -37,7 +61,7 @@ int main(int argc, char** argv)
     osgGeoFX::BuildOptions options;
     std::string plan, workFolder;
     std::vector<std::string> units;
-    bool geocentric = false, quiet = false, estimate = false;
+    bool geocentric = false, quiet = false, estimate = false, anew = false, keepNothing = false;
     std::string srs;
 
     CLI::App app{"Builds a paged terrain database from rasters. Plain osgviewer reads the result: osgviewer "
@@ -116,7 +140,15 @@ int main(int argc, char** argv)
         app.add_option("--memory", options.memoryMiB, "Memory for the data, MiB")->capture_default_str();
     app.add_option("--threads", options.threads, "Worker threads; 0 for one for each core")
         ->capture_default_str();
-    app.add_flag("--resume", options.resume, "Continue a build that was interrupted");
+    auto* resume =
+        app.add_flag("--resume", options.resume, "Continue a build or an update that was interrupted");
+    app.add_flag(
+           "--anew", anew,
+           "Remove the database that is in the folder first. Without it, it is updated: only tiles that "
+           "other sources or options change are built, with the same result")
+        ->excludes(resume);
+    app.add_flag("--keep-nothing", keepNothing,
+                 "Save disk space: leave nothing for later updates, which will have to build everything");
     app.add_flag("--estimate", estimate, "Say what the build would take, and build nothing");
     app.add_flag("--quiet", quiet, "No progress and no summary");
     auto* output = app.add_option("-o,--output", options.output, "Folder of the database")->type_name("DIR");
@@ -163,6 +195,8 @@ int main(int argc, char** argv)
             work(workFolder, units, options.threads, memory->count() > 0 ? options.memoryMiB : 0, quiet);
             return 0;
         }
+        options.update = !anew;
+        options.keep = !keepNothing;
         if (!plan.empty())
         {
             options.output = plan;
@@ -188,6 +222,7 @@ int main(int argc, char** argv)
                 static_cast<unsigned long long>(summary.tilesReused), summary.levels,
                 static_cast<double>(summary.samples) * 1e-6, static_cast<double>(summary.bytes) * 1e-6,
                 summary.seconds, static_cast<double>(summary.peakMemoryBytes) / (1024.0 * 1024.0));
+            tellUpdate(summary, options.output);
             if (options.compressTextures) std::printf("%s", summary.textures.text().c_str());
             if (summary.filledShare > 0.0)
                 std::printf("Voids: %.3g %% of the heights are filled from those around them.\n",

@@ -45,7 +45,8 @@ void runStages(BuildPlan& plan, const BuildStages& stages)
         runOnWorkers(stage.threads(plan.threads), stage.units(),
                      [&](int worker, std::size_t unit)
                      {
-                         if (!(plan.options.resume && stage.takeOver(unit)) && stage.hasWork(unit))
+                         if (!(plan.options.resume && stage.takeOver(unit)) && stage.hasWork(unit) &&
+                             !stage.keep(unit))
                              stage.run(worker, unit);
                          plan.advance(stage.phase());
                      });
@@ -65,24 +66,37 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
     summary.file = options.output + "/terrain.osgb";
     summary.levels = plan.scheme.finestLevel + 1;
     summary.samples = plan.estimate.samples;
-    if (prepareFolder(plan))
+    const FolderState state = prepareFolder(plan);
+    summary.updated = state.update;
+    summary.allBecause = state.allBecause;
+    if (state.finished)
     {
         const osg::ref_ptr<osg::Node> root = osgDB::readRefNodeFile(summary.file);
         double tiles = 0.0;
         if (!root || !root->getUserValue("geofx.tiles", tiles))
             throw BuildError(summary.file +
                              ": the finished database cannot be read; build again without --resume.");
-        summary.tiles = summary.tilesReused = static_cast<std::uint64_t>(tiles);
+        summary.tiles = static_cast<std::uint64_t>(tiles);
+        (options.resume ? summary.tilesReused : summary.tilesKept) = summary.tiles;
         root->getUserValue("geofx.filledShare", summary.filledShare);
         root->getUserValue("geofx.openShare", summary.openShare);
         summary.textures = readTextures(*root);
     }
     else
     {
+        const std::string range = readText(keptFolderOf(options.output) / RANGE_FILE);
         TilePassResult result;
         runStages(plan, createStages(plan, result));
+        completeFolder(options.output);
+        if (state.update && result.tilesKept == 0 && state.allBecause.empty() && !plan.landCoverSource &&
+            heightRange(plan) != range)
+            summary.allBecause = "the range of heights has changed, from " + range + " to " +
+                                 heightRange(plan) + ", and colors follow it";
         summary.tiles = result.tiles;
         summary.tilesReused = result.tilesReused;
+        summary.tilesKept = result.tilesKept;
+        summary.units = result.units;
+        summary.unitsKept = result.unitsKept;
         summary.textures = result.textures.summary();
         summary.filledShare = filledShare(plan);
         summary.openShare = openShare(plan);
@@ -92,7 +106,8 @@ BuildSummary buildDatabase(const BuildOptions& options, const BuildProgress& pro
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     summary.peakMemoryBytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-    summary.bytes = bytesBelow(options.output);
+    summary.keptBytes = bytesBelow(keptFolderOf(options.output));
+    summary.bytes = bytesBelow(options.output) - summary.keptBytes;
     summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return summary;
 }

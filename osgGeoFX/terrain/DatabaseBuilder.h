@@ -83,6 +83,11 @@ struct BuildOptions
     int threads = 0;      ///< worker threads; 0 for one per core
     int memoryMiB = 1024; ///< memory limit for the builder's data, MiB, at least 128
     bool resume = false;  ///< continue an interrupted build of the same options
+    /// If the folder has a finished database, build only what other sources or options change. The result has the
+    /// bytes of a build from nothing. Until all is ready, the former database stays as it is.
+    bool update = false;
+    /// Leave what later updates need, in `OUTPUT/kept`. Without it the next update builds everything.
+    bool keep = false;
 };
 
 /** An estimate of a build before it begins. Samples and levels are exact, and tiles are an upper bound. The other
@@ -129,12 +134,18 @@ struct BuildSummary
 {
     std::uint64_t tiles = 0;       ///< tiles with geometry, all levels
     std::uint64_t tilesReused = 0; ///< tiles taken over from an interrupted build
+    std::uint64_t tilesKept = 0;   ///< tiles of the former database that an update has left as they were
+    std::uint64_t units = 0;       ///< blocks of up to 8 × 8 finest tiles, with those above them
+    std::uint64_t unitsKept = 0;   ///< those of them that an update had nothing to do for
+    bool updated = false;          ///< the folder had a database that this one was made from
+    std::string allBecause;        ///< why an update has built everything, as a clause; else empty
     int levels = 0;                ///< levels of detail
     std::uint64_t samples = 0;     ///< grid posts of the finest level
     double filledShare = 0.0;      ///< of the posts with a height, the share in filled voids, 0…1
     double openShare = 0.0;        ///< of all posts, the share in voids too large to be filled, 0…1
     TextureSummary textures;
     std::uint64_t bytes = 0;           ///< size of the database on disk
+    std::uint64_t keptBytes = 0;       ///< size of what is kept for updates, besides
     double seconds = 0.0;              ///< wall-clock time
     std::uint64_t peakMemoryBytes = 0; ///< largest resident size of the process
     std::string file;                  ///< the file to open: OUTPUT/terrain.osgb
@@ -153,8 +164,15 @@ OSGGEOFXDATA_EXPORT BuildEstimate estimateBuild(const BuildOptions& options);
 
     The result is `OUTPUT/terrain.osgb` and, below `OUTPUT/tiles`, one `.osgb` file for each group of four tiles. Plain
     OpenSceneGraph reads it. `terrain.osgb` is written last, so a folder without it is not a database. The same options
-    give the same bytes, for any number of threads and through any interruptions. Throws BuildError. Any thread may
-    call it, but only one build at a time may use an output folder. */
+    give the same bytes, for any number of threads, through any interruptions and by any updates.
+
+    An update writes new tiles into work files first. When all are ready, it puts them into their places, the deepest
+    first, then the root, and removes tiles that no longer belong. If it is interrupted before, the former database
+    is as it was. If it is interrupted while it puts files into their places, the next call of any build in the folder
+    ends this first. All files are whole at any moment. A program that has the former database open may see tiles of
+    both.
+
+    Throws BuildError. Any thread may call it, but only one build at a time may use an output folder. */
 OSGGEOFXDATA_EXPORT BuildSummary buildDatabase(const BuildOptions& options,
                                                const BuildProgress& progress = {});
 

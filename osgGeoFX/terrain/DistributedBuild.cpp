@@ -56,17 +56,19 @@ BuildEstimate planBuild(const BuildOptions& options)
     BuildPlan plan(absolute, BuildPlan::Workers::MANY_PROCESSES);
     TilePassResult result;
     const BuildStages stages = createStages(plan, result);
-    if (!prepareFolder(plan)) PlanFile::write(plan, stages);
+    if (!prepareFolder(plan).finished) PlanFile::write(plan, stages);
     return plan.estimate;
 }
 
-BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>& ranges, int threads,
-                      int memoryMiB)
+BuiltDatabaseUnits buildUnits(const std::string& folder, const std::vector<std::string>& ranges, int threads,
+                              int memoryMiB)
 {
-    BuiltUnits result;
+    BuiltDatabaseUnits result;
     const fs::path root = fs::path(folder) / "terrain.osgb";
-    // A process that was killed while it removed the work files, or one that comes too late.
-    if (fs::exists(root) && !fs::exists(PlanFile::file(folder)))
+    // A process that was killed while it put files into their places, or one that comes too late.
+    completeFolder(folder);
+    if (fs::exists(root) && !fs::exists(PlanFile::file(folder)) &&
+        !fs::exists(workFolderOf(folder) / ORIGIN_FILE))
     {
         std::error_code code;
         fs::remove_all(workFolderOf(folder), code);
@@ -78,6 +80,7 @@ BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>&
     if (memoryMiB > 0) file.options.memoryMiB = memoryMiB;
     BuildPlan plan(file.options, BuildPlan::Workers::MANY_PROCESSES);
     file.compare(plan);
+    joinBuild(plan);
     const GdalCacheLimit cache(static_cast<GIntBig>(file.options.memoryMiB) * 1024 * 1024 / 4);
     TilePassResult tiles;
     const BuildStages stages = createStages(plan, tiles);
@@ -88,16 +91,22 @@ BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>&
     {
         plan.forgetFacts();
     };
-    result = sayAsBuildError([&] { return doUnits(folder, stages, ranges, how); });
-    if (result.finished) removeLeftovers(plan);
+    static_cast<BuiltUnits&>(result) = sayAsBuildError([&] { return doUnits(folder, stages, ranges, how); });
+    if (result.finished)
+    {
+        // Not before, since the accounts of units are work files.
+        completeFolder(folder);
+        removeLeftovers(plan);
+    }
+    result.tilesKept = tiles.tilesKept;
     return result;
 }
 
 BuildStatus readBuildStatus(const std::string& folder)
 {
     BuildStatus status;
-    status.finished =
-        fs::exists(fs::path(folder) / "terrain.osgb") && fs::exists(fs::path(folder) / ORIGIN_FILE);
+    status.finished = fs::exists(fs::path(folder) / "terrain.osgb") &&
+                      fs::exists(fs::path(folder) / ORIGIN_FILE) && !fs::exists(PlanFile::file(folder));
     if (status.finished) return status;
     return sayAsBuildError([&] { return readWorkStatus(folder); });
 }

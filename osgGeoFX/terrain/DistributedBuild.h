@@ -18,11 +18,21 @@ namespace osgGeoFX
     not need each other. The last stage, "finish", writes `terrain.osgb` and removes the work files. The database then has
     the same bytes as that of buildDatabase().
 
+    If the folder has a finished database and `update` is set, the plan is for an update (buildDatabase()). The former
+    database then stays until "finish".
+
     It reads the headers of the rasters only. The plan holds for these rasters: if one changes, no unit is built any
     more. The options `threads` and `memoryMiB` are those of each process. Unless `resume` is set, it empties a folder
     that an earlier build has begun. Throws BuildError. Any thread may call it.
     @ingroup terrain */
 OSGGEOFXDATA_EXPORT BuildEstimate planBuild(const BuildOptions& options);
+
+/// What buildUnits() has done.
+/// @ingroup terrain
+struct BuiltDatabaseUnits : BuiltUnits
+{
+    std::uint64_t tilesKept = 0; ///< tiles of the former database that stay, of units that were built or kept
+};
 
 /** Does units of a planned build.
 
@@ -31,8 +41,9 @@ OSGGEOFXDATA_EXPORT BuildEstimate planBuild(const BuildOptions& options);
 
     `threads` and `memoryMiB` replace those of the plan if they are greater than 0.
     @ingroup terrain */
-OSGGEOFXDATA_EXPORT BuiltUnits buildUnits(const std::string& folder, const std::vector<std::string>& ranges,
-                                          int threads = 0, int memoryMiB = 0);
+OSGGEOFXDATA_EXPORT BuiltDatabaseUnits buildUnits(const std::string& folder,
+                                                  const std::vector<std::string>& ranges, int threads = 0,
+                                                  int memoryMiB = 0);
 
 /// How far a planned build is.
 /// @ingroup terrain

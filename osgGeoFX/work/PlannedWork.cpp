@@ -122,7 +122,7 @@ void doRange(const std::string& folder, WorkStage& stage, const Range& range, co
 {
     const int threads = stage.threads(options.threads);
     UnitLog log(folder, stage.name(), threads);
-    std::atomic<std::uint64_t> built{0}, takenOver{0};
+    std::atomic<std::uint64_t> built{0}, takenOver{0}, kept{0};
     const bool needed = stage.isNeeded();
     if (needed) stage.begin();
     for (std::uint64_t first = range.first; first < range.end; first += BATCH)
@@ -134,14 +134,16 @@ void doRange(const std::string& folder, WorkStage& stage, const Range& range, co
                          const std::uint64_t unit = first + index;
                          try
                          {
-                             if (needed && !stage.takeOver(unit) && stage.hasWork(unit))
+                             if (!needed || stage.takeOver(unit) || !stage.hasWork(unit))
+                                 ++takenOver;
+                             else if (stage.keep(unit))
+                                 ++kept;
+                             else
                              {
                                  log.begin(unit);
                                  stage.run(worker, unit);
                                  ++built;
                              }
-                             else
-                                 ++takenOver;
                          }
                          catch (const std::exception& error)
                          {
@@ -154,6 +156,7 @@ void doRange(const std::string& folder, WorkStage& stage, const Range& range, co
     }
     result.built += built;
     result.takenOver += takenOver;
+    result.kept += kept;
 }
 
 } // namespace

@@ -51,6 +51,7 @@ struct BuiltUnits
 {
     std::uint64_t built = 0;     ///< by this call
     std::uint64_t takenOver = 0; ///< done before
+    std::uint64_t kept = 0;      ///< an update had nothing to do for them
     bool finished = false;       ///< the last stage is done
 };
 

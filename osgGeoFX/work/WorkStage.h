@@ -42,6 +42,9 @@ public:
     virtual bool takeOver(std::size_t unit) = 0;
     /// Whether a unit that is not taken over has anything to do.
     virtual bool hasWork(std::size_t) const { return true; }
+    /// Takes a unit over from a former result if nothing that it is made from has changed. Returns false if it must be
+    /// done.
+    virtual bool keep(std::size_t) { return false; }
     /// Does a unit. `worker` counts the threads from 0. Throws what is derived from std::runtime_error, with a sentence.
     virtual void run(int worker, std::size_t unit) = 0;
 

@@ -282,7 +282,11 @@ TEST_F(BuilderInput, AFailedBuildLeavesNothingThatLooksWhole)
     // The old database is whole; the new one stops in the middle.
     ASSERT_EQ(run({"--dem", goodDem(), "-o", output()}).exitCode, 0);
     const std::string file = writeRelief(_folder / "large.tif", 300, 300, 10.0, 50.0, 0.002);
-    expectDemRefusal(cut(file, "half.tif", 0.5), {"cut short"});
+    const std::string half = cut(file, "half.tif", 0.5);
+    // An update leaves the old one as it is, and --anew has removed it before.
+    expectRefusalLine(run({"--dem", half, "-o", output()}), {"cut short"});
+    EXPECT_TRUE(fs::exists(output() + "/terrain.osgb"));
+    expectRefusal({"--dem", half, "--anew"}, {"cut short"});
 }
 
 } // namespace

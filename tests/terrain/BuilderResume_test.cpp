@@ -81,6 +81,8 @@ protected:
                                            "-o",
                                            (_folder / output)};
         arguments.insert(arguments.end(), more.begin(), more.end());
+        // Updates have tests of their own (DatabaseUpdate).
+        if (std::find(more.begin(), more.end(), "--resume") == more.end()) arguments.push_back("--anew");
         return arguments;
     }
 

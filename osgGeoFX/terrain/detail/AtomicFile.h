@@ -51,6 +51,8 @@ public:
     explicit ByteReader(const std::string& path);
 
     bool good() const { return _good; }
+    /// All of them.
+    const std::vector<char>& bytes() const { return _bytes; }
 
     template<typename T>
     void get(T* values, std::size_t count)

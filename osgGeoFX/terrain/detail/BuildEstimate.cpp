@@ -59,7 +59,8 @@ void BuildPlan::chooseEstimate()
             for (const Unit& unit : units)
                 if (unit.sampled) posts += static_cast<double>(validColumns(unit)) * validRows(unit);
     }
-    const double perPost = static_cast<double>(scheme.texels) / scheme.intervals;
+    const double perPost =
+        static_cast<double>(scheme.textureIntervals(scheme.finestLevel)) / scheme.intervals;
     // Levels that keep the finest texels have all of them again. Each level above has a quarter of the one before.
     const double texels = posts * perPost * perPost * (scheme.textureDepth + 4.0 / 3.0);
     double groundCells = 0.0;

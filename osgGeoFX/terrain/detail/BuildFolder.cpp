@@ -4,9 +4,11 @@
 
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
+#include <osgGeoFX/terrain/detail/KeptFiles.h>
+#include <osgGeoFX/terrain/detail/PlanFile.h>
 #include <osgGeoFX/work/PlannedWork.h>
 
-#include <filesystem>
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -18,6 +20,95 @@ namespace
 
 namespace fs = std::filesystem;
 
+/// The file that says that all files are ready, and what else is to be done.
+constexpr const char* COMMIT_FILE = "commit";
+constexpr const char *KEEP = "keep", *KEEP_NOTHING = "keep nothing";
+/// The folders of work files that updates need.
+constexpr const char* KEPT_WORK[] = {"facts", "facts-filled", "roots", "roots-filled", "tiles", UNIT_RECORDS};
+
+bool isLeftover(const fs::path& path)
+{
+    return path.extension() == TEMPORARY_ENDING;
+}
+
+[[noreturn]] void failToRemove(const fs::path& path, const std::error_code& code)
+{
+    throw BuildError(path.string() + ": the old database cannot be removed (" + code.message() +
+                     "); make the folder writable, or choose another with -o.");
+}
+
+void removeAll(const fs::path& path)
+{
+    std::error_code code;
+    fs::remove_all(path, code);
+    if (code) failToRemove(path, code);
+}
+
+/// Moves a file or a folder. Another process may have done so already.
+void move(const fs::path& from, const fs::path& to)
+{
+    std::error_code code;
+    fs::create_directories(to.parent_path(), code);
+    if (code) failToWrite(to.string(), code.value());
+    fs::rename(from, to, code);
+    if (code && fs::exists(from)) failToWrite(to.string(), code.value());
+}
+
+/// The files below a folder. Those of deeper levels come first, whose folders have the level's number as their name.
+std::vector<fs::path> deepestFirst(const fs::path& folder)
+{
+    std::vector<std::pair<int, fs::path>> found;
+    std::error_code code;
+    for (fs::recursive_directory_iterator entry(folder, code), end; !code && entry != end;
+         entry.increment(code))
+        if (entry->is_regular_file(code) && !isLeftover(entry->path()))
+        {
+            const fs::path name = fs::relative(entry->path(), folder);
+            found.emplace_back(std::atoi(name.begin()->c_str()), name);
+        }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<fs::path> result;
+    for (auto& [level, name] : found)
+        result.push_back(std::move(name));
+    return result;
+}
+
+/// What updates need becomes `kept`, in the place of what the former build has left.
+void replaceKept(const fs::path& database)
+{
+    const fs::path work = workFolderOf(database), next = work / "kept", former = work / "former-kept",
+                   kept = keptFolderOf(database);
+    for (const char* name : KEPT_WORK)
+        if (fs::exists(work / name)) move(work / name, next / name);
+    if (!fs::exists(next)) return; // it was done before the interruption
+    std::error_code code;
+    fs::remove_all(former, code);
+    fs::rename(kept, former, code);
+    fs::rename(next, kept, code);
+    // Another process was as far.
+    if (code && !fs::exists(kept)) fs::rename(former, kept, code);
+}
+
+} // namespace
+
+std::uint64_t bytesBelow(const fs::path& folder)
+{
+    std::uint64_t bytes = 0;
+    std::error_code code;
+    for (fs::recursive_directory_iterator entry(folder, code), end; !code && entry != end;
+         entry.increment(code))
+        if (entry->is_regular_file(code)) bytes += entry->file_size();
+    return bytes;
+}
+
+std::string heightRange(const BuildPlan& plan)
+{
+    const TileFacts& whole = plan.whole();
+    return CPLSPrintf("%.9g to %.9g m", static_cast<double>(whole.minHeight),
+                      static_cast<double>(whole.maxHeight));
+}
+
 std::string readText(const fs::path& path)
 {
     std::ifstream stream(path, std::ios::binary);
@@ -26,36 +117,40 @@ std::string readText(const fs::path& path)
     return text.str();
 }
 
-bool isLeftover(const fs::path& path)
-{
-    return path.extension() == TEMPORARY_ENDING;
-}
-
-} // namespace
-
-std::uint64_t bytesBelow(const std::string& folder)
-{
-    std::uint64_t bytes = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_regular_file()) bytes += entry.file_size();
-    return bytes;
-}
-
 fs::path workFolderOf(const fs::path& database)
 {
     return WorkPlan::workFolder(database.string());
 }
 
-bool prepareFolder(const BuildPlan& plan)
+fs::path keptFolderOf(const fs::path& database)
 {
-    const fs::path folder = plan.options.output;
-    const fs::path origin = folder / ORIGIN_FILE, root = folder / "terrain.osgb";
+    return database / "kept";
+}
+
+fs::path stagedFolderOf(const fs::path& database)
+{
+    return workFolderOf(database) / "new";
+}
+
+void joinBuild(BuildPlan& plan)
+{
+    plan.staged = fs::exists(workFolderOf(plan.options.output) / ORIGIN_FILE);
+    plan.kept =
+        plan.staged && KeptFiles::obstacle(plan).empty() ? std::make_shared<KeptFiles>(plan) : nullptr;
+}
+
+FolderState prepareFolder(BuildPlan& plan)
+{
+    const fs::path folder = plan.options.output, work = workFolderOf(folder);
+    const fs::path origin = folder / ORIGIN_FILE, root = folder / "terrain.osgb",
+                   pending = work / ORIGIN_FILE;
     std::error_code code;
     fs::create_directories(folder, code);
     if (code || !fs::is_directory(folder))
         throw BuildError(folder.string() + ": the folder cannot be made (" +
                          (code ? code.message() : std::string("a file has this name")) +
                          "); choose another with -o.");
+    completeFolder(folder);
     // A kill in its very first moments leaves only the origin's temporary file.
     for (const auto& entry : fs::directory_iterator(folder, code))
         if (isLeftover(entry.path()) && entry.path().filename().string().rfind(ORIGIN_FILE, 0) == 0)
@@ -66,26 +161,94 @@ bool prepareFolder(const BuildPlan& plan)
             folder.string() +
             ": the folder holds other files, which a build would mix with its own; choose an empty one "
             "with -o.");
-    if (ours && plan.options.resume)
+    const bool hasRoot = ours && fs::exists(root), same = ours && readText(origin) == plan.fingerprint;
+    FolderState state;
+    if (same && (plan.options.resume || (plan.options.update && hasRoot)))
     {
-        if (readText(origin) != plan.fingerprint)
-            throw BuildError(
-                folder.string() +
-                ": the build that was begun here has other sources or options; repeat it with those, or "
-                "leave out --resume to begin anew.");
-        return fs::exists(root);
+        // Another update may have been begun, or its work files left.
+        if (hasRoot) removeAll(work);
+        state.finished = hasRoot;
+        return state;
+    }
+    state.update = hasRoot && plan.options.resume && readText(pending) == plan.fingerprint;
+    if (ours && plan.options.resume && !state.update)
+        throw BuildError(
+            folder.string() +
+            ": the build that was begun here has other sources or options; repeat it with those, or "
+            "leave out --resume.");
+    if (!state.update && hasRoot && plan.options.update)
+    {
+        removeAll(work);
+        writeFileAtomically(pending.string(), plan.fingerprint.data(), plan.fingerprint.size());
+        state.update = true;
+    }
+    if (state.update)
+    {
+        state.allBecause = KeptFiles::obstacle(plan);
+        joinBuild(plan);
+        return state;
     }
     // The root first: without it, what is left of an old database does not look whole. Then the work files: with
     // them, tiles that are removed already would count as done when a kill here is followed by --resume.
-    for (const fs::path& old : {root, workFolderOf(folder), folder / "tiles"})
-    {
-        fs::remove_all(old, code);
-        if (code)
-            throw BuildError(old.string() + ": the old database cannot be removed (" + code.message() +
-                             "); make the folder writable, or choose another with -o.");
-    }
+    for (const fs::path& old : {root, work, keptFolderOf(folder), folder / "tiles"})
+        removeAll(old);
     writeFileAtomically(origin.string(), plan.fingerprint.data(), plan.fingerprint.size());
-    return false;
+    return state;
+}
+
+void finishFolder(const BuildPlan& plan, const std::vector<std::string>& obsolete)
+{
+    const fs::path work = plan.workFolder(), staged = stagedFolderOf(plan.options.output);
+    const auto write = [](const fs::path& path, const std::string& text)
+    {
+        writeFileAtomically(path.string(), text.data(), text.size());
+    };
+    if (plan.staged) write(staged / ORIGIN_FILE, plan.fingerprint);
+    if (plan.options.keep)
+    {
+        write(work / "kept" / COMMON_FILE, plan.common);
+        write(work / "kept" / ORIGIN_FILE, plan.fingerprint);
+        write(work / "kept" / RANGE_FILE, heightRange(plan));
+    }
+    std::string commit = std::string(plan.options.keep ? KEEP : KEEP_NOTHING) + "\n";
+    for (const std::string& name : obsolete)
+        commit += name + "\n";
+    write(work / COMMIT_FILE, commit);
+}
+
+void completeFolder(const fs::path& database)
+{
+    const fs::path work = workFolderOf(database), staged = stagedFolderOf(database);
+    std::ifstream commit(work / COMMIT_FILE);
+    std::string keep;
+    if (!std::getline(commit, keep)) return;
+    // A tile is in its place before one that refers to it. What nothing refers to any more goes last.
+    for (const fs::path& name : deepestFirst(staged / "tiles"))
+        move(staged / "tiles" / name, database / "tiles" / name);
+    for (const char* name : {"terrain.osgb", ORIGIN_FILE})
+        if (fs::exists(staged / name)) move(staged / name, database / name);
+    std::error_code code;
+    for (std::string name; std::getline(commit, name);)
+    {
+        const fs::path file = database / name;
+        fs::remove(file, code);
+        // Folders that are empty now; others refuse.
+        fs::remove(file.parent_path(), code);
+        fs::remove(file.parent_path().parent_path(), code);
+    }
+    if (keep == KEEP)
+        replaceKept(database);
+    else
+        fs::remove_all(keptFolderOf(database), code);
+    fs::remove(PlanFile::file(database.string()), code);
+    fs::remove(work / ORIGIN_FILE, code);
+    // As long as the commit's file is there, all of this is done again.
+    std::vector<fs::path> rest;
+    for (fs::directory_iterator entry(work, code), end; !code && entry != end; entry.increment(code))
+        if (entry->path().filename() != COMMIT_FILE) rest.push_back(entry->path());
+    for (const fs::path& path : rest)
+        fs::remove_all(path, code);
+    fs::remove_all(work, code);
 }
 
 void removeLeftovers(const BuildPlan& plan)
@@ -97,7 +260,6 @@ void removeLeftovers(const BuildPlan& plan)
         if (isLeftover(entry->path())) leftovers.push_back(entry->path());
     for (const fs::path& path : leftovers)
         fs::remove(path, code);
-    fs::remove_all(plan.workFolder(), code);
 }
 
 } // namespace osgGeoFX

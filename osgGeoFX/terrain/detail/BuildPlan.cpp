@@ -2,18 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 
-#include <osgGeoFX/terrain/BuilderCode.h>
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/TileTextures.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
-#include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <sstream>
 #include <thread>
 
 namespace osgGeoFX
@@ -25,6 +21,16 @@ namespace
 constexpr int MAX_LEVEL = 20;
 // Elevation files whose spacings differ by less than this factor count as equally dense.
 constexpr double SAME_DENSITY = 1.5;
+// Posts may be so much wider apart than those of a source, as a logarithm of 2: by 5 %. Reprojected tiles of one mosaic
+// differ by less, so a tile more or less does not change the grid.
+constexpr double DENSITY_MARGIN = 0.07;
+// A land cover over this share of the extent sets the density of the raster of shores over the whole.
+constexpr double MOST_OF_ALL = 0.5;
+// Walls' depths are rounded up to so many steps for each doubling.
+constexpr double SKIRT_STEPS = 4.0;
+// Texture intervals are a multiple of this if there are many of them, so that tiles of denser levels can have a half, a
+// quarter or an eighth of them.
+constexpr int TEXEL_STEP = 8;
 // Heights of a denser layer blend into those below over so many cells of the coarser one.
 constexpr double BLEND_CELLS = 3.0;
 // What the account of a tile takes, with its place in a table.
@@ -171,13 +177,13 @@ BuildPlan::BuildPlan(const BuildOptions& o, Workers w) : options(o), workers(w)
 
 void BuildPlan::chooseGrid()
 {
-    const Spacing posts = chooseExtent();
-    const Spacing colors = checkColors();
-    chooseLevels(posts);
-    chooseTexels(colors);
+    chooseExtent();
+    checkColors();
+    chooseLevels();
+    chooseTexels();
 }
 
-BuildPlan::Spacing BuildPlan::chooseExtent()
+void BuildPlan::chooseExtent()
 {
     for (const auto& file : options.dems)
         if (!scheme.crs.geographic) requireWithin(scheme.crs, file);
@@ -185,15 +191,17 @@ BuildPlan::Spacing BuildPlan::chooseExtent()
     if (scheme.crs.geographic) gatherLongitudes(dems);
     scheme.west = scheme.south = std::numeric_limits<double>::max();
     scheme.east = scheme.north = std::numeric_limits<double>::lowest();
-    Spacing finest{scheme.west, scheme.west};
     bool wholeCircle = false;
     for (const auto& print : dems)
     {
-        scheme.west = std::min(scheme.west, print.west);
-        scheme.east = std::max(scheme.east, print.east);
-        scheme.south = std::min(scheme.south, print.south);
-        scheme.north = std::max(scheme.north, print.north);
-        finest = {std::min(finest.x, print.stepX), std::min(finest.y, print.stepY)};
+        // What lies beyond the border by less than a cell of the first file does not move it: the outermost pixels of a
+        // denser file, or of one on another grid, over the same area.
+        const bool first = &print == &dems.front();
+        const double x = first ? 0.0 : dems.front().stepX, y = first ? 0.0 : dems.front().stepY;
+        if (print.west < scheme.west - x) scheme.west = print.west;
+        if (print.east > scheme.east + x) scheme.east = print.east;
+        if (print.south < scheme.south - y) scheme.south = print.south;
+        if (print.north > scheme.north + y) scheme.north = print.north;
         wholeCircle = wholeCircle || print.wholeCircle;
     }
     if (scheme.crs.geographic && (wholeCircle || scheme.east - scheme.west > 360.0))
@@ -203,7 +211,6 @@ BuildPlan::Spacing BuildPlan::chooseExtent()
                 ": the elevation is a single row, column or pixel; a terrain needs at least 2 × 2.");
     chooseLayers(dems);
     _dems = std::move(dems);
-    return finest;
 }
 
 void BuildPlan::chooseLayers(const std::vector<Footprint>& dems)
@@ -245,7 +252,7 @@ int BuildPlan::levelFor(double stepX, double stepY) const
 {
     const double ratio = std::min(stepX / ((scheme.east - scheme.west) / scheme.lastColumn),
                                   stepY / ((scheme.north - scheme.south) / scheme.lastRow));
-    return std::clamp(scheme.finestLevel - static_cast<int>(std::floor(std::log2(ratio) + 1e-3)), 0,
+    return std::clamp(scheme.finestLevel - static_cast<int>(std::floor(std::log2(ratio) + DENSITY_MARGIN)), 0,
                       scheme.finestLevel);
 }
 
@@ -269,22 +276,17 @@ void BuildPlan::chooseDemands()
             demandOf(_dems[i], level);
     }
     // If colors are denser than the texels of any post, they ask for levels below those of the elevation.
-    const std::vector<std::string> files = colorFiles();
-    for (const auto& file : files)
+    for (const Footprint* print : colorPrints())
     {
-        const bool imagery = &file != &files.back() || options.landCover.empty();
-        if (imagery == options.imagery.empty()) continue;
-        const Footprint print =
-            RasterSource(file, imagery ? RasterKind::Imagery : RasterKind::LandCover).footprint(scheme.crs);
         int level = 0;
         for (; level < scheme.finestLevel; ++level)
         {
             const double posts =
                 static_cast<double>(scheme.intervals) * scheme.step(level) / scheme.textureIntervals(level);
             const Lattice texels = scheme.lattice(0.0, 0.0, posts, 1, 1);
-            if (texels.dx <= print.stepX * 1.001 && texels.dy <= print.stepY * 1.001) break;
+            if (texels.dx <= print->stepX * 1.001 && texels.dy <= print->stepY * 1.001) break;
         }
-        demandOf(print, level);
+        demandOf(*print, level);
         deepest = std::max(deepest, level);
     }
     // The densest source of all has the finest level, however its density was rounded.
@@ -331,123 +333,188 @@ void BuildPlan::chooseGround()
     {
         const double postsX = scheme.lastColumn / (scheme.east - scheme.west),
                      postsY = scheme.lastRow / (scheme.north - scheme.south);
+        // Whole cells of the source's own level, so that a source's patch does not change with finer ones elsewhere.
+        const int cell = scheme.step(levelFor(stepX, stepY));
+        const auto first = [&](double posts, int last)
+        {
+            return static_cast<int>(std::clamp(std::floor(posts / cell) * cell, 0.0, last - 1.0));
+        };
+        const auto end = [&](double posts, int start, int last)
+        {
+            return static_cast<int>(std::clamp(std::ceil(posts / cell) * cell, start + 1.0, last * 1.0));
+        };
         GroundPatch patch;
-        patch.firstColumn = static_cast<int>(
-            std::clamp(std::floor((west - scheme.west) * postsX), 0.0, scheme.lastColumn - 1.0));
-        patch.firstRow = static_cast<int>(
-            std::clamp(std::floor((south - scheme.south) * postsY), 0.0, scheme.lastRow - 1.0));
-        patch.lastColumn = static_cast<int>(std::clamp(std::ceil((east - scheme.west) * postsX),
-                                                       patch.firstColumn + 1.0, scheme.lastColumn * 1.0));
-        patch.lastRow = static_cast<int>(std::clamp(std::ceil((north - scheme.south) * postsY),
-                                                    patch.firstRow + 1.0, scheme.lastRow * 1.0));
+        patch.firstColumn = first((west - scheme.west) * postsX, scheme.lastColumn);
+        patch.firstRow = first((south - scheme.south) * postsY, scheme.lastRow);
+        patch.lastColumn = end((east - scheme.west) * postsX, patch.firstColumn, scheme.lastColumn);
+        patch.lastRow = end((north - scheme.south) * postsY, patch.firstRow, scheme.lastRow);
         patch.columns = points((patch.lastColumn - patch.firstColumn) / postsX, stepX);
         patch.rows = points((patch.lastRow - patch.firstRow) / postsY, stepY);
         groundPatches.push_back(patch);
     };
-    const bool classed = !options.landCover.empty();
-    const Layer* coarsest = &layers.front();
-    for (const Layer& layer : layers)
-        if (layer.stepX > coarsest->stepX) coarsest = &layer;
-    if (layers.size() == 1)
-    {
-        add(scheme.west, scheme.south, scheme.east, scheme.north,
-            classed ? _landCover.stepX : coarsest->stepX, classed ? _landCover.stepY : coarsest->stepY);
-        return;
-    }
     // The coarsest over the whole, then one for each denser source: its rectangle and an eighth around it.
     struct Part
     {
         double west, south, east, north, stepX, stepY;
     };
+    const Layer* coarsest = &layers.front();
+    for (const Layer& layer : layers)
+        if (layer.stepX > coarsest->stepX) coarsest = &layer;
+    Part whole{scheme.west, scheme.south, scheme.east, scheme.north, coarsest->stepX, coarsest->stepY};
     std::vector<Part> parts;
     for (const Layer& layer : layers)
         parts.push_back({layer.west, layer.south, layer.east, layer.north, layer.stepX, layer.stepY});
-    if (classed)
-        parts.push_back({_landCover.west, _landCover.south, _landCover.east, _landCover.north,
-                         _landCover.stepX, _landCover.stepY});
+    if (landCoverSource)
+    {
+        const Footprint& print = landCoverSource->print;
+        double width = 0.0;
+        for (const double turn : {-360.0, 0.0, 360.0})
+            if (turn == 0.0 || scheme.crs.geographic)
+                width = std::max(width, std::min(print.east + turn, scheme.east) -
+                                            std::max(print.west + turn, scheme.west));
+        const double height = std::min(print.north, scheme.north) - std::max(print.south, scheme.south);
+        if (width * height >= MOST_OF_ALL * (scheme.east - scheme.west) * (scheme.north - scheme.south))
+        {
+            whole.stepX = print.stepX;
+            whole.stepY = print.stepY;
+        }
+        else
+            parts.push_back({print.west, print.south, print.east, print.north, print.stepX, print.stepY});
+    }
     std::stable_sort(parts.begin(), parts.end(),
                      [](const Part& a, const Part& b) { return a.stepX > b.stepX; });
-    add(scheme.west, scheme.south, scheme.east, scheme.north, coarsest->stepX, coarsest->stepY);
+    add(whole.west, whole.south, whole.east, whole.north, whole.stepX, whole.stepY);
     for (const Part& part : parts)
     {
-        if (part.stepX * SAME_DENSITY > coarsest->stepX) continue;
+        if (part.stepX * SAME_DENSITY > whole.stepX) continue;
         const double x = 0.125 * (part.east - part.west), y = 0.125 * (part.north - part.south);
         add(part.west - x, part.south - y, part.east + x, part.north + y, part.stepX, part.stepY);
     }
 }
 
-std::vector<std::string> BuildPlan::colorFiles() const
+std::vector<const Footprint*> BuildPlan::colorPrints() const
 {
-    std::vector<std::string> files = options.imagery;
-    if (!options.landCover.empty()) files.push_back(options.landCover);
-    return files;
+    std::vector<const Footprint*> prints;
+    for (const Source& image : imagerySources)
+        prints.push_back(&image.print);
+    if (prints.empty() && landCoverSource) prints.push_back(&landCoverSource->print);
+    return prints;
 }
 
-BuildPlan::Spacing BuildPlan::checkColors()
+void BuildPlan::checkColors()
 {
-    const bool fromImagery = !options.imagery.empty();
-    const std::vector<std::string> files = colorFiles();
-    Spacing finest{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-    for (const auto& file : files)
+    const auto sourceOf = [&](const std::string& file, RasterKind kind)
     {
-        const bool imagery = &file != &files.back() || options.landCover.empty();
-        const Footprint print =
-            RasterSource(file, imagery ? RasterKind::Imagery : RasterKind::LandCover).footprint(scheme.crs);
-        require(overlaps(print, scheme), outside(file));
-        if (!imagery) _landCover = print;
-        if (imagery == fromImagery)
-            finest = {std::min(finest.x, print.stepX), std::min(finest.y, print.stepY)};
-    }
-    if (!options.treeCover.empty())
-        require(
-            overlaps(RasterSource(options.treeCover, RasterKind::TreeCover).footprint(scheme.crs), scheme),
-            outside(options.treeCover));
-    return finest;
+        Source source{"", RasterSource(file, kind).footprint(scheme.crs)};
+        require(overlaps(source.print, scheme), outside(file));
+        return source;
+    };
+    for (const auto& file : options.imagery)
+        imagerySources.push_back(sourceOf(file, RasterKind::Imagery));
+    if (!options.landCover.empty()) landCoverSource = sourceOf(options.landCover, RasterKind::LandCover);
+    if (!options.treeCover.empty()) treeCoverSource = sourceOf(options.treeCover, RasterKind::TreeCover);
 }
 
-void BuildPlan::chooseLevels(const Spacing& posts)
+/// The grid is that of the first elevation. Denser ones halve its intervals, as often as they need it. So what they add
+/// leaves the posts, the tiles and the levels that were there.
+void BuildPlan::chooseLevels()
 {
+    Spacing base{_dems.front().stepX, _dems.front().stepY};
+    const auto halvings = [&](const Footprint& print)
+    {
+        return std::log2(std::max(base.x / print.stepX, base.y / print.stepY)) - DENSITY_MARGIN;
+    };
+    // Files that are about as dense as the first one share its grid: that of the densest, if this makes a difference.
+    const Layer& first = layers.front();
+    if (std::any_of(_dems.begin(), _dems.begin() + static_cast<std::ptrdiff_t>(first.last),
+                    [&](const Footprint& print) { return halvings(print) > 0.0; }))
+        base = {first.stepX, first.stepY};
     const auto count = [](double extent, double step)
     {
-        return std::ceil(extent / step - 1e-4);
+        return std::max(1.0, std::ceil(extent / step - 1e-4));
     };
-    const double columns = count(scheme.east - scheme.west, posts.x),
-                 rows = count(scheme.north - scheme.south, posts.y);
+    double columns = count(scheme.east - scheme.west, base.x),
+           rows = count(scheme.north - scheme.south, base.y);
+    double deepest = 0.0;
+    for (const Footprint& print : _dems)
+        deepest = std::max(deepest, std::ceil(halvings(print)));
     scheme.intervals = options.tileSize;
     if (options.compressTextures) scheme.texelBlock = TileTextures::BLOCK;
-    require(std::max(columns, rows) <= static_cast<double>(scheme.intervals << MAX_LEVEL),
+    require(std::max(columns, rows) * std::exp2(deepest) <=
+                static_cast<double>(scheme.intervals) * std::exp2(MAX_LEVEL),
             options.dems.front() + ": at its resolution the terrain would need more than " +
                 std::to_string(MAX_LEVEL) + " levels; give coarser rasters or a smaller region.");
-    scheme.lastColumn = std::max(1, static_cast<int>(columns));
-    scheme.lastRow = std::max(1, static_cast<int>(rows));
+    scheme.lastColumn = static_cast<int>(columns);
+    scheme.lastRow = static_cast<int>(rows);
     scheme.finestLevel = 0;
     while ((scheme.intervals << scheme.finestLevel) < std::max(scheme.lastColumn, scheme.lastRow))
         ++scheme.finestLevel;
+    scheme.anchorLevel = scheme.finestLevel;
+    for (; deepest > 0.0; --deepest)
+        deepen();
 }
 
-void BuildPlan::chooseTexels(const Spacing& colors)
+void BuildPlan::deepen()
 {
-    // Finest tiles have as many texels as the colors' source has pixels, by default up to four for each interval.
+    ++scheme.finestLevel;
+    scheme.lastColumn *= 2;
+    scheme.lastRow *= 2;
+}
+
+void BuildPlan::chooseTexels()
+{
+    // The anchor's tiles have as many texels as the first colors have pixels, by default up to four for each interval.
     // Tiles above them keep these texels up to two for each interval, by default. Thus texels are as fine as the
     // relief asks for.
     const int limit = options.textureSize > 0 ? options.textureSize : 4 * options.tileSize;
-    const std::vector<std::string> files = colorFiles();
-    for (;; ++scheme.finestLevel, scheme.lastColumn *= 2, scheme.lastRow *= 2)
+    const std::vector<const Footprint*> colors = colorPrints();
+    const std::string& named = !options.imagery.empty() ? options.imagery.front()
+                               : colors.empty()         ? options.dems.front()
+                                                        : options.landCover;
+    const auto deepenTo = [&](int level)
     {
-        require(scheme.finestLevel <= MAX_LEVEL,
-                (files.empty() ? options.dems.front() : files.front()) +
-                    ": at its resolution the terrain would need more than " + std::to_string(MAX_LEVEL) +
+        require(level <= MAX_LEVEL,
+                named + ": at its resolution the terrain would need more than " + std::to_string(MAX_LEVEL) +
                     " levels; give coarser rasters, a smaller region, or a larger --texture-size.");
-        double texels = std::min(scheme.intervals, limit);
-        if (!files.empty())
-            texels = scheme.intervals * std::max((scheme.east - scheme.west) / colors.x / scheme.lastColumn,
-                                                 (scheme.north - scheme.south) / colors.y / scheme.lastRow);
-        scheme.texels = std::max(2, static_cast<int>(std::ceil(texels - 1e-3)));
-        if (scheme.texels <= limit) break;
+        while (scheme.finestLevel < level)
+            deepen();
+    };
+    // The intervals that a raster's pixels ask for on a level.
+    const auto wanted = [&](const Footprint& print, int level)
+    {
+        const double posts = scheme.step(level);
+        return scheme.intervals * posts *
+               std::max((scheme.east - scheme.west) / print.stepX / scheme.lastColumn,
+                        (scheme.north - scheme.south) / print.stepY / scheme.lastRow);
+    };
+    const auto whole = [](double value)
+    {
+        return std::max(2, static_cast<int>(std::ceil(value - 1e-3)));
+    };
+    scheme.texels = std::max(2, std::min(scheme.intervals, limit));
+    if (!colors.empty())
+    {
+        while (whole(wanted(*colors.front(), scheme.anchorLevel)) > limit)
+            deepenTo(++scheme.anchorLevel);
+        scheme.texels = whole(wanted(*colors.front(), scheme.anchorLevel));
+        const int rounded = (scheme.texels + TEXEL_STEP - 1) / TEXEL_STEP * TEXEL_STEP;
+        if (scheme.texels > 4 * TEXEL_STEP && rounded <= limit) scheme.texels = rounded;
+        // Below the anchor, tiles have no more texels than they need. If other colors are denser, they need all.
+        bool denser = false;
+        for (const Footprint* print : colors)
+            for (; whole(wanted(*print, scheme.finestLevel)) > scheme.texels; denser = true)
+                deepenTo(scheme.finestLevel + 1);
+        for (const Footprint* print : colors)
+            denser = denser || std::log2(std::max(colors.front()->stepX / print->stepX,
+                                                  colors.front()->stepY / print->stepY)) > DENSITY_MARGIN;
+        if (!denser)
+            while (scheme.texels % (2 << scheme.textureHalvings) == 0 &&
+                   (scheme.texels >> scheme.textureHalvings) > 2)
+                ++scheme.textureHalvings;
     }
-    const int kept = options.textureSize > 0 ? options.textureSize : 2 * options.tileSize;
+    const int most = options.textureSize > 0 ? options.textureSize : 2 * options.tileSize;
     scheme.textureDepth = 0;
-    while (scheme.textureDepth < scheme.finestLevel && (scheme.texels << (scheme.textureDepth + 1)) <= kept)
+    while (scheme.textureDepth < scheme.anchorLevel && (scheme.texels << (scheme.textureDepth + 1)) <= most)
         ++scheme.textureDepth;
 }
 
@@ -458,7 +525,15 @@ void BuildPlan::chooseUnits()
     int depthLimit = 3;
     while (depthLimit > 1 && (scheme.texels << depthLimit) > 2048)
         --depthLimit;
-    int latticeLevel = scheme.finestLevel;
+    // Levels below the anchor get tiers of their own, so that those above have the same units without them.
+    for (int root = scheme.anchorLevel; root < scheme.finestLevel;)
+    {
+        const int lattice = std::min(root + depthLimit, scheme.finestLevel);
+        _roots.insert(_roots.begin(), root);
+        _lattices.insert(_lattices.begin(), lattice);
+        root = lattice;
+    }
+    int latticeLevel = scheme.anchorLevel;
     for (;;)
     {
         const int depth = std::min(depthLimit, latticeLevel);
@@ -538,63 +613,6 @@ void BuildPlan::countTiles(const Unit& unit)
                          "rasters (gdal_translate -projwin, gdalwarp -tr).");
 }
 
-void BuildPlan::chooseFingerprint()
-{
-    std::ostringstream text;
-    text.precision(17);
-    text << "osgGeoFX terrain database, format " << TerrainInfo::newestFormat << ", content "
-         << DATABASE_CONTENT << "\nbuilder " << builderCode() << "\n";
-    const auto source = [&](const char* kind, const std::string& file)
-    {
-        std::error_code code;
-        // GDAL's own file systems: archives, and what lies on servers.
-        if (file.rfind("/vsi", 0) == 0)
-        {
-            VSIStatBufL remote{};
-            text << kind << " " << file;
-            if (VSIStatL(file.c_str(), &remote) == 0)
-                text << ", " << remote.st_size << " bytes, changed " << remote.st_mtime;
-            text << "\n";
-            return;
-        }
-        const auto size = std::filesystem::file_size(file, code);
-        text << kind << " " << std::filesystem::absolute(file).lexically_normal().string();
-        if (!code)
-            text << ", " << size << " bytes, changed "
-                 << std::filesystem::last_write_time(file, code).time_since_epoch().count();
-        text << "\n";
-    };
-    for (const auto& file : options.dems)
-        source("elevation", file);
-    for (const auto& file : options.imagery)
-        source("imagery", file);
-    if (!options.landCover.empty())
-    {
-        source("land cover", options.landCover);
-        const auto legends = readyLegends();
-        if (std::find(legends.begin(), legends.end(), options.landCoverTable) != legends.end())
-            text << "legend " << options.landCoverTable << "\n";
-        else
-            source("land-cover table", options.landCoverTable);
-    }
-    if (!options.treeCover.empty()) source("tree cover", options.treeCover);
-    if (options.treeLine) text << "tree line " << *options.treeLine << "\n";
-    text << "lake area " << options.lakeArea << "\n";
-    if (options.voids == Voids::FILL)
-        text << "voids filled up to " << options.voidReach << " samples, smoothed " << options.voidSmoothing
-             << " times\n";
-    else
-        text << "voids kept\n";
-    text << "CRS "
-         << (options.epsg ? "EPSG:" + std::to_string(options.epsg) : std::string("geocentric WGS 84"))
-         << "\nvertical datum " << static_cast<int>(options.vertical) << "\ntile size " << options.tileSize
-         << "\ntexture size " << options.textureSize << "\npixel error " << options.pixelError
-         << "\ntexel error " << options.texelError << "\nanisotropy " << options.anisotropy
-         << "\npixels per radian " << options.pixelsPerRadian << "\n"
-         << (options.compressTextures ? "textures compressed\n" : "");
-    fingerprint = text.str();
-}
-
 int coreCount()
 {
     return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -603,6 +621,43 @@ int coreCount()
 bool BuildPlan::isLeaf(const TileKey& key) const
 {
     return !has(key.child(0, 0)); // the child that lies on the extent if any does
+}
+
+std::optional<Unit> BuildPlan::unitAbove(const Unit& unit) const
+{
+    for (std::size_t tier = 0; tier < _roots.size(); ++tier)
+    {
+        if (_lattices[tier] != unit.root.level || _roots[tier] == unit.root.level) continue;
+        const int levels = _lattices[tier] - _roots[tier];
+        const auto found = _blocks[tier].find(placeNumber(unit.root.x >> levels, unit.root.y >> levels));
+        if (found != _blocks[tier].end()) return tiers[tier][found->second.unit];
+    }
+    return {};
+}
+
+Unit BuildPlan::sampledSquare(const Unit& unit) const
+{
+    const auto above = unit.depth == 0 ? unitAbove(unit) : std::nullopt;
+    return above ? Unit{above->root, unit.root.level - above->root.level, true} : unit;
+}
+
+bool BuildPlan::isBesideDenser(const TileKey& key) const
+{
+    const int width = scheme.intervals * scheme.step(key.level);
+    const int last = (scheme.lastColumn + width - 1) / width - 1;
+    for (int side = 0; side < 4; ++side)
+    {
+        TileKey beside{key.level,
+                       key.x + (side == 1   ? 1
+                                : side == 3 ? -1
+                                            : 0),
+                       key.y + (side == 2   ? 1
+                                : side == 0 ? -1
+                                            : 0)};
+        if (scheme.wholeCircle()) beside.x = beside.x < 0 ? last : beside.x > last ? 0 : beside.x;
+        if (has(beside) && !isLeaf(beside)) return true;
+    }
+    return false;
 }
 
 double BuildPlan::tolerance(int level) const
@@ -638,20 +693,29 @@ double BuildPlan::skirt(const TileKey& key, int side) const
     // coarsest one on which this line divides two tiles. (On coarser levels both sides lie in one tile.)
     const int dx = side == 1 ? 1 : side == 3 ? -1 : 0, dy = side == 0 ? -1 : side == 2 ? 1 : 0;
     double other = 0.0;
+    bool alike = false;
     for (TileKey self = key;; self = {self.level - 1, self.x / 2, self.y / 2})
     {
         const TileKey neighbour{self.level, self.x + dx, self.y + dy};
         const int across = scheme.tilesAcross(self.level);
-        if (neighbour.x >= 0 && neighbour.y >= 0 && neighbour.x < across && neighbour.y < across)
-            other = std::max(other, static_cast<double>(fact(neighbour).error));
-        other = std::max(other, static_cast<double>(fact(self).error));
+        const bool there =
+            neighbour.x >= 0 && neighbour.y >= 0 && neighbour.x < across && neighbour.y < across;
+        // Two leaves side by side have the same posts. What they join by straight lines counts beside denser tiles.
+        if (self == key) alike = there && has(neighbour) && isLeaf(key) && isLeaf(neighbour);
+        if (!alike || !(self == key))
+        {
+            if (there) other = std::max(other, static_cast<double>(fact(neighbour).error));
+            other = std::max(other, static_cast<double>(fact(self).error));
+        }
         const int place = dx != 0 ? self.x : self.y;
         const bool towardsEnd = dx + dy > 0;
         if (self.level == 0 || (!seam && (place % 2 == 1) != towardsEnd)) break;
     }
     // Posts of a coarse leaf may be joined beside what a denser neighbour has between them.
-    if (isLeaf(key)) other += static_cast<double>(fact(key).error);
-    return other + leastSkirt(key.level);
+    if (isLeaf(key) && !alike) other += static_cast<double>(fact(key).error);
+    // In steps, since the errors of large tiles count along their whole border. A little more of an error somewhere must
+    // not change all these tiles.
+    return std::exp2(std::ceil(SKIRT_STEPS * std::log2(other + leastSkirt(key.level))) / SKIRT_STEPS);
 }
 
 double BuildPlan::leastSkirt(int level) const
@@ -686,6 +750,12 @@ Lattice BuildPlan::postsWithApron(const Unit& unit) const
 std::string BuildPlan::tileFile(const TileKey& parent) const
 {
     return options.output + "/tiles/" + parent.path() + ".osgb";
+}
+
+std::string BuildPlan::newTileFile(const TileKey& parent) const
+{
+    return staged ? (stagedFolderOf(options.output) / "tiles" / (parent.path() + ".osgb")).string()
+                  : tileFile(parent);
 }
 
 std::string BuildPlan::workFolder() const

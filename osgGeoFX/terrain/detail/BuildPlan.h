@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <osgGeoFX/terrain/detail/BlendMask.h>
+#include <osgGeoFX/terrain/detail/ContentHash.h>
 #include <osgGeoFX/terrain/detail/GroundRaster.h>
 #include <osgGeoFX/terrain/detail/HeightGrid.h>
 #include <osgGeoFX/terrain/detail/TilingScheme.h>
@@ -14,6 +15,7 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -55,6 +57,8 @@ struct Unit
     int latticeLevel() const { return root.level + depth; }
     int span() const { return 1 << depth; }
 };
+
+class KeptFiles;
 
 /** Everything that follows from the options and the rasters' headers, and everything that the passes hand on.
 
@@ -99,6 +103,22 @@ public:
     std::shared_ptr<const GroundRaster> ground; ///< from the ground pass on
     std::shared_ptr<const VoidRaster> voids;    ///< null until the voids are filled, and if there are none
     std::string fingerprint;                    ///< what the database's bytes depend on, in words
+    /// What all units depend on, in words: the fingerprint without the sources of a part, and the grid.
+    std::string common;
+
+    /// A raster: what tells its content from that of another one, in words, and where it is.
+    struct Source
+    {
+        std::string identity;
+        Footprint print;
+    };
+    std::vector<Source> demSources, imagerySources;
+    std::optional<Source> landCoverSource, treeCoverSource;
+
+    /// What former units are known by, if this is an update and they can be used; else null.
+    std::shared_ptr<const KeptFiles> kept;
+    /// Whether new tiles wait among the work files until all are ready, since the folder has a finished database.
+    bool staged = false;
     int threads = 1;
     BuildEstimate estimate;
 
@@ -109,13 +129,24 @@ public:
     bool has(const TileKey& key) const;
     /// Whether a tile has no finer ones below it. The sources that touch it have no more to show.
     bool isLeaf(const TileKey& key) const;
+    /// The unit whose lattice has a unit's root; empty for that of the whole.
+    std::optional<Unit> unitAbove(const Unit& unit) const;
+    /// The square that a sampled unit is cut out of: the unit itself, or, for a single tile that only stands alone since a
+    /// neighbour goes deeper, the unit that it would be a part of otherwise. The last bits of GDAL's samples depend on
+    /// the points beside them. Thus tiles do not change when others go deeper.
+    Unit sampledSquare(const Unit& unit) const;
+    /// Whether any of the four tiles beside a tile, on its level, has finer ones below it.
+    bool isBesideDenser(const TileKey& key) const;
     const TileFacts& whole() const { return fact({0, 0, 0}); }
     /// Empty facts for a unit whose heights come next. Facts count as a unit's from here on.
     void startFacts(const Unit& unit);
     /// Takes a unit's facts from its work file. Returns false if there is none, or a damaged one.
     bool loadFacts(const Unit& unit) const;
-    /// Writes the work file of a unit's facts.
-    void writeFacts(const Unit& unit) const;
+    /// Writes the work file of a unit's facts. `key` stands for what they were made from.
+    void writeFacts(const Unit& unit, const Digest& key) const;
+    /// The facts of a unit's tiles, what their walls must reach, and which are leaves. For this the facts of all units must
+    /// be known.
+    Digest factsDigest(const Unit& unit) const;
     /// Drops facts that can be read again. No other thread may use the plan. It does nothing for one process.
     void forgetFacts();
     /// The work file of a unit's heights, roots or facts: that of the filled ones if its voids are filled.
@@ -140,7 +171,10 @@ public:
     /// The posts of a unit's lattice on the extent, with one more on each side.
     Lattice postsWithApron(const Unit& unit) const;
 
-    std::string tileFile(const TileKey& parent) const; ///< the file with the children of `parent`
+    /// The file with the children of `parent`, of the finished database.
+    std::string tileFile(const TileKey& parent) const;
+    /// Where this build writes it.
+    std::string newTileFile(const TileKey& parent) const;
     std::string workFile(const char* pass, const Unit& unit) const;
     std::string workFolder() const;
 
@@ -162,13 +196,14 @@ private:
         int level;
     };
     void chooseGrid();
-    Spacing chooseExtent(); ///< sets the extent; the elevation's finest spacing
+    void chooseExtent();
     void chooseLayers(const std::vector<Footprint>& dems);
     void chooseDemands();
     void chooseGround();
-    int levelFor(double stepX, double stepY) const; ///< the coarsest whose posts are at least as dense
-    int demand(const TileKey& key) const;           ///< the deepest level that any source asks for there
-    bool uniform() const;                           ///< whether all tiles reach the finest level
+    /// The coarsest level whose posts are about as dense, or denser.
+    int levelFor(double stepX, double stepY) const;
+    int demand(const TileKey& key) const; ///< the deepest level that any source asks for there
+    bool uniform() const;                 ///< whether all tiles reach the finest level
     void addUnits(const TileKey& root, std::size_t ladder);
     void countTiles(const Unit& unit);
     /// The facts of a unit's tiles, level after level from its root on. Empty if they are not known.
@@ -185,10 +220,13 @@ private:
         std::size_t index = 0;
     };
     Place placeOf(const TileKey& key) const;
-    std::vector<std::string> colorFiles() const; ///< the files that the texels' spacing follows from
-    Spacing checkColors();                       ///< sets the ground's spacing; the colors' finest spacing
-    void chooseLevels(const Spacing& posts);
-    void chooseTexels(const Spacing& colors);
+    /// The sources that the texels' spacing follows from: the imagery, or else the land cover.
+    std::vector<const Footprint*> colorPrints() const;
+    void checkColors();
+    void chooseLevels();
+    void chooseTexels();
+    /// Adds a level below all.
+    void deepen();
     void chooseEstimate();
     void chooseUnits();
     void chooseFingerprint();
@@ -198,7 +236,6 @@ private:
     mutable std::mutex _factsMutex;
     std::vector<Footprint> _dems;
     std::vector<Demand> _demands;
-    Footprint _landCover;
     std::uint64_t _tiles = 0, _units = 0;
     std::mutex _progressMutex;
 };
@@ -223,6 +260,8 @@ public:
 
     /// Heights on a lattice, metres; NaN for none.
     std::vector<float> heights(const Lattice& lattice);
+    /// Those of a unit's posts with an apron (BuildPlan::postsWithApron), from those of its square.
+    std::vector<float> unitHeights(const Unit& unit);
 
     /// The heights of the files, not moved to the ellipsoid: level water is level, and the sea is at 0. Voids are
     /// filled once the plan knows their heights. `filled` then gets a byte for each point, 1 for a filled one.
@@ -253,6 +292,9 @@ private:
     std::vector<RasterSource> _dems, _imagery, _landCover, _landCoverColors, _landCoverShares, _treeCover;
     std::vector<std::unique_ptr<BlendMask>> _blends; ///< by layer; null until it is needed, and for the first
     TransformationPtr _geoid;
+    std::optional<TileKey> _square; ///< the root of the square whose heights come next
+    std::vector<float> _squareHeights;
+    bool _squareFilled = false; ///< whether the plan knew filled voids
 };
 
 /// The lattice of an upper tier's unit, made of the roots of the units below it. The stages of heights left these.

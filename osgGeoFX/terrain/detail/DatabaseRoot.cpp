@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/detail/DatabaseRoot.h>
 
-#include <osgGeoFX/terrain/detail/AtomicFile.h>
+#include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/BuildStage.h>
 #include <osgGeoFX/terrain/detail/NormalMap.h>
@@ -13,6 +13,10 @@
 
 #include <osg/Material>
 #include <osg/ValueObject>
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
 
 namespace osgGeoFX
 {
@@ -34,7 +38,42 @@ void writeTextures(osg::Object& root, const TextureSummary& textures)
     root.setUserValue("geofx.normalErrorLargest", osg::Vec2d(x.largest, y.largest));
 }
 
-/// Writes terrain.osgb.
+/// The tile whose children a file of the folder `tiles` has; empty if the name is no tile's.
+std::optional<TileKey> parentOf(const std::filesystem::path& file)
+{
+    TileKey key;
+    char rest = 0;
+    if (std::sscanf(file.generic_string().c_str(), "%d/%d/%d.osg%c", &key.level, &key.x, &key.y, &rest) !=
+            4 ||
+        rest != 'b' || file.generic_string() != key.path() + ".osgb")
+        return {};
+    return key;
+}
+
+/// The files of the former database that do not belong to this one any more.
+std::vector<std::string> obsoleteFiles(BuildPlan& plan)
+{
+    // The facts of so many units at most, if they are read from files.
+    constexpr std::size_t BATCH = 10000;
+    namespace fs = std::filesystem;
+    std::vector<std::string> result;
+    const fs::path tiles = fs::path(plan.options.output) / "tiles";
+    std::error_code code;
+    std::size_t count = 0;
+    for (fs::recursive_directory_iterator entry(tiles, code), end; !code && entry != end;
+         entry.increment(code))
+    {
+        if (!entry->is_regular_file(code)) continue;
+        const fs::path name = fs::relative(entry->path(), tiles);
+        const auto parent = parentOf(name);
+        if (!parent || !plan.has(*parent) || plan.isLeaf(*parent) || !plan.fact(*parent).any)
+            result.push_back("tiles/" + name.generic_string());
+        if (++count % BATCH == 0) plan.forgetFacts();
+    }
+    return result;
+}
+
+/// Writes terrain.osgb, and makes the folder a finished database.
 class Finish : public BuildStage
 {
 public:
@@ -51,7 +90,9 @@ public:
     void run(int, std::size_t) override
     {
         readTilePassResult(_plan, _result);
-        writeNodeAtomically(*createRoot(_plan, _result), _plan.options.output + "/terrain.osgb");
+        writeNodeAtomically(*createRoot(_plan, _result),
+                            (stagedFolderOf(_plan.options.output) / "terrain.osgb").string());
+        finishFolder(_plan, _plan.staged ? obsoleteFiles(_plan) : std::vector<std::string>());
     }
 
 private:

@@ -124,4 +124,41 @@ std::vector<GroundCell> GroundRaster::sample(const Texels& texels, int columns, 
     return result;
 }
 
+Digest GroundRaster::digest(int firstColumn, int firstRow, int lastColumn, int lastRow) const
+{
+    // Levels below the finest of before change the numbers of posts, but not the places.
+    const double root = std::ldexp(1.0, -_plan.scheme.finestLevel);
+    const auto range = [](int first, int last, int start, int end, int points)
+    {
+        const auto point = [&](int post)
+        {
+            return static_cast<double>(post - start) / (end - start) * (points - 1);
+        };
+        return std::pair(std::max(static_cast<int>(std::floor(point(first))) - 1, 0),
+                         std::min(static_cast<int>(std::ceil(point(last))) + 1, points - 1));
+    };
+    ContentHash hash;
+    for (std::size_t number = 0; number < _files.size(); ++number)
+    {
+        const GroundPatch& patch = _plan.groundPatches[number];
+        if (patch.firstColumn > lastColumn || patch.lastColumn < firstColumn || patch.firstRow > lastRow ||
+            patch.lastRow < firstRow)
+            continue;
+        for (const int post : {patch.firstColumn, patch.firstRow, patch.lastColumn, patch.lastRow})
+            hash.add(post * root);
+        hash.add(patch.columns).add(patch.rows).add(number == 0);
+        const auto [west, east] =
+            range(firstColumn, lastColumn, patch.firstColumn, patch.lastColumn, patch.columns);
+        const auto [south, north] = range(firstRow, lastRow, patch.firstRow, patch.lastRow, patch.rows);
+        std::vector<GroundCell> cells(static_cast<std::size_t>(east - west + 1));
+        for (int row = south; row <= north; ++row)
+        {
+            _files[number]->read(row, static_cast<std::size_t>(west) * sizeof(GroundCell),
+                                 cells.size() * sizeof(GroundCell), cells.data());
+            hash.add(cells);
+        }
+    }
+    return hash.digest();
+}
+
 } // namespace osgGeoFX

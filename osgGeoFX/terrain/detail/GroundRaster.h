@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/terrain/detail/CellMask.h>
+#include <osgGeoFX/terrain/detail/ContentHash.h>
 #include <osgGeoFX/terrain/detail/RowFile.h>
 
 #include <atomic>
@@ -53,6 +54,9 @@ public:
     };
     /// Bilinear samples at texels.
     std::vector<GroundCell> sample(const Texels& first, int columns, int rows) const;
+
+    /// Of all that sample() reads in a rectangle of finest posts.
+    Digest digest(int firstColumn, int firstRow, int lastColumn, int lastRow) const;
 
 private:
     const BuildPlan& _plan;

@@ -4,6 +4,9 @@
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/BuildStage.h>
 #include <osgGeoFX/terrain/detail/HeightGrid.h>
+#include <osgGeoFX/terrain/detail/KeptFiles.h>
+#include <osgGeoFX/terrain/detail/PackedArray.h>
+#include <osgGeoFX/terrain/detail/UnitSources.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
 
@@ -105,7 +108,7 @@ TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& ke
             facts.maxHeight = facts.any ? std::max(facts.maxHeight, height) : height;
             facts.any = 1;
         }
-    if (key.level < plan.scheme.finestLevel) facts.error = leafError(plan, key, grid, column, row);
+    if (plan.isBesideDenser(key)) facts.error = leafError(plan, key, grid, column, row);
     return facts;
 }
 
@@ -149,11 +152,19 @@ void settleFacts(BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
                          meshDeviation(grid, unit.span(), static_cast<float>(cell));
 }
 
-void writeGrid(const BuildPlan& plan, const char* name, const Unit& unit, const HeightGrid& grid)
+void writeHeights(const BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
 {
     ByteWriter writer;
     writer.put(grid.values);
-    writeFileAtomically(plan.heightFile(name, unit), writer.bytes().data(), writer.bytes().size());
+    writeFileAtomically(plan.heightFile("heights", unit), writer.bytes().data(), writer.bytes().size());
+}
+
+/// These are kept for updates, so they are packed.
+void writeRoots(const BuildPlan& plan, const Unit& unit, const HeightGrid& grid)
+{
+    ByteWriter writer;
+    writer.put(packedArray(grid.values));
+    writeFileAtomically(plan.heightFile("roots", unit), writer.bytes().data(), writer.bytes().size());
 }
 
 /// Whether any post has no height although a raster covers it.
@@ -178,7 +189,7 @@ void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
     const int validColumns = plan.validColumns(unit), validRows = plan.validRows(unit);
     HeightGrid withApron(validColumns + 2, validRows + 2);
     const Lattice lattice = plan.postsWithApron(unit);
-    withApron.values = rasters.heights(lattice);
+    withApron.values = rasters.unitHeights(unit);
     TileFacts::VoidState voids = TileFacts::NO_VOIDS;
     if (plan.voids)
         voids = TileFacts::FILLED_VOIDS;
@@ -191,11 +202,11 @@ void sampleUnit(BuildPlan& plan, const Unit& unit, RasterStack& rasters)
     settleFacts(plan, unit, grid);
     TileFacts& root = plan.fact(unit.root);
     root.voids = voids;
-    writeGrid(plan, "heights", unit, withApron);
-    if (root.any) writeGrid(plan, "roots", unit, decimated(grid, unit.span()));
+    writeHeights(plan, unit, withApron);
+    if (root.any) writeRoots(plan, unit, decimated(grid, unit.span()));
     if (voids == TileFacts::HAS_VOIDS) writeFileAtomically(VoidRaster::neededFile(plan), "", 0);
     // Facts are written last, so a unit with facts is done.
-    plan.writeFacts(unit);
+    plan.writeFacts(unit, heightsKey(plan, unit));
 }
 
 /// All units that sample go first, since voids are filled from all of them. Those with voids sample again once these
@@ -229,6 +240,22 @@ public:
     {
         return !_again || _plan.fact(_units[index]->root).voids == TileFacts::HAS_VOIDS;
     }
+    /// Keeps what upper tiers gather. The heights themselves are sampled again if a tile needs them.
+    bool keep(std::size_t index) override
+    {
+        const Unit& unit = *_units[index];
+        const std::string ending = _again ? "-filled/" : "/", place = unit.root.path();
+        if (!_plan.kept ||
+            !_plan.kept->haveFacts(_again ? "facts-filled" : "facts", unit, heightsKey(_plan, unit)))
+            return false;
+        // Units without data have no roots. Facts come last, since a unit with facts is done.
+        const bool roots = _plan.kept->take("roots" + ending + place);
+        if (!_plan.kept->take("facts" + ending + place) || !_plan.loadFacts(unit)) return false;
+        const TileFacts& root = _plan.fact(unit.root);
+        if (root.any && !roots) return false;
+        if (root.voids == TileFacts::HAS_VOIDS) writeFileAtomically(VoidRaster::neededFile(_plan), "", 0);
+        return true;
+    }
     void run(int worker, std::size_t index) override
     {
         auto& stack = _rasters[static_cast<std::size_t>(worker)];
@@ -261,8 +288,8 @@ public:
         _plan.startFacts(unit);
         const HeightGrid grid = gatherRoots(_plan, unit);
         settleFacts(_plan, unit, grid);
-        if (_plan.fact(unit.root).any) writeGrid(_plan, "roots", unit, decimated(grid, unit.span()));
-        _plan.writeFacts(unit);
+        if (_plan.fact(unit.root).any) writeRoots(_plan, unit, decimated(grid, unit.span()));
+        _plan.writeFacts(unit, {});
     }
 
 private:
@@ -287,9 +314,9 @@ HeightGrid gatherRoots(const BuildPlan& plan, const Unit& unit)
             const std::string file = plan.heightFile("roots", below);
             ByteReader reader(file);
             HeightGrid part(n + 1, n + 1);
-            const std::size_t expected = part.values.size();
-            part.values = reader.getVector<float>();
-            if (!reader.good() || part.values.size() != expected)
+            const auto packed = reader.getVector<char>();
+            if (!reader.good() ||
+                !unpackBytes(packed, part.values.data(), part.values.size() * sizeof(float), sizeof(float)))
                 throw BuildError(file + ": this work file is damaged; build again without --resume.");
             for (int j = 0; j <= n; ++j)
                 for (int i = 0; i <= n; ++i)

@@ -47,7 +47,8 @@ json optionsOf(const BuildOptions& o)
                    {"compressTextures", o.compressTextures},
                    {"pixelsPerRadian", o.pixelsPerRadian},
                    {"threads", o.threads},
-                   {"memoryMiB", o.memoryMiB}};
+                   {"memoryMiB", o.memoryMiB},
+                   {"keep", o.keep}};
     if (o.treeLine) result["treeLine"] = *o.treeLine;
     return result;
 }
@@ -84,6 +85,7 @@ BuildOptions readOptions(const json& object)
     take("pixelsPerRadian", o.pixelsPerRadian);
     take("threads", o.threads);
     take("memoryMiB", o.memoryMiB);
+    take("keep", o.keep);
     return o;
 }
 
@@ -97,7 +99,7 @@ json gridOf(const TilingScheme& scheme)
             {"rows", scheme.lastRow},
             {"levels", scheme.finestLevel + 1},
             {"tileIntervals", scheme.intervals},
-            {"textureIntervals", scheme.texels}};
+            {"textureIntervals", scheme.textureIntervals(scheme.finestLevel)}};
 }
 
 /// What the units of stages take, in those of the finest tiles, by the beginnings of the stages' names; measured on Oahu.

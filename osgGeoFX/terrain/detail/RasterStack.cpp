@@ -110,6 +110,30 @@ std::vector<float> RasterStack::heights(const Lattice& lattice)
     return result;
 }
 
+std::vector<float> RasterStack::unitHeights(const Unit& unit)
+{
+    const Unit square = _plan.sampledSquare(unit);
+    const Lattice own = _plan.postsWithApron(unit), all = _plan.postsWithApron(square);
+    if (square.root == unit.root) return heights(own);
+    if (!_square || !(*_square == square.root) || _squareFilled != (_plan.voids != nullptr))
+    {
+        _squareHeights = heights(all);
+        _square = square.root;
+        _squareFilled = _plan.voids != nullptr;
+    }
+    const int n = _plan.scheme.intervals;
+    const int column = (unit.root.x - square.root.x * square.span()) * n,
+              row = (unit.root.y - square.root.y * square.span()) * n;
+    std::vector<float> result;
+    for (int j = 0; j < own.rows; ++j)
+    {
+        const auto start =
+            _squareHeights.begin() + static_cast<std::ptrdiff_t>(row + j) * all.columns + column;
+        result.insert(result.end(), start, start + own.columns);
+    }
+    return result;
+}
+
 std::vector<float> RasterStack::heightsAboveSea(const Lattice& lattice, std::vector<unsigned char>* filled)
 {
     std::vector<float> result = measuredHeights(lattice);

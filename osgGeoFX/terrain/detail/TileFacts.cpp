@@ -93,11 +93,36 @@ bool BuildPlan::loadFacts(const Unit& unit) const
     return false;
 }
 
-void BuildPlan::writeFacts(const Unit& unit) const
+void BuildPlan::writeFacts(const Unit& unit, const Digest& key) const
 {
     ByteWriter writer;
     writer.put(placeOf(unit.root).block->facts);
+    writer.put(key);
     writeFileAtomically(heightFile("facts", unit), writer.bytes().data(), writer.bytes().size());
+}
+
+Digest BuildPlan::factsDigest(const Unit& unit) const
+{
+    ContentHash hash;
+    for (int level = unit.root.level; level <= unit.latticeLevel(); ++level)
+    {
+        const int span = 1 << (level - unit.root.level);
+        for (int y = 0; y < span; ++y)
+            for (int x = 0; x < span; ++x)
+            {
+                const TileKey key{level, unit.root.x * span + x, unit.root.y * span + y};
+                const TileFacts& facts = fact(key);
+                hash.add(facts.any);
+                if (!facts.any) continue;
+                for (const float each :
+                     {facts.minHeight, facts.maxHeight, facts.latticeError, facts.rootError, facts.error})
+                    hash.add(each);
+                hash.add(isLeaf(key));
+                for (int side = 0; side < 4; ++side)
+                    hash.add(skirt(key, side));
+            }
+    }
+    return hash.digest();
 }
 
 void BuildPlan::forgetFacts()

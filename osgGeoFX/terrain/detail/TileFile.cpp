@@ -57,7 +57,7 @@ std::string compressed(const std::string& plain)
 
 } // namespace
 
-void writeNodeAtomically(const osg::Node& node, const std::string& path)
+std::uint64_t writeNodeAtomically(const osg::Node& node, const std::string& path)
 {
     osgDB::ReaderWriter* writer = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
     if (!writer)
@@ -71,6 +71,7 @@ void writeNodeAtomically(const osg::Node& node, const std::string& path)
         throw BuildError(path + ": OpenSceneGraph cannot write the tile (" + result.statusMessage() + ").");
     const std::string bytes = compressed(stream.str());
     writeFileAtomically(path, bytes.data(), bytes.size());
+    return bytes.size();
 }
 
 } // namespace osgGeoFX

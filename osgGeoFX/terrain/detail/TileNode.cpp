@@ -141,17 +141,22 @@ private:
     const osg::ref_ptr<osg::StateSet> _state;
 };
 
+/// The color of a tile's vertices. Each tile has its own, so the bytes of a file do not tell which unit has made its tiles.
+osg::ref_ptr<osg::Vec4Array> createWhite()
+{
+    osg::ref_ptr<osg::Vec4Array> white = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1);
+    white->front().set(1.0f, 1.0f, 1.0f, UNLIT_ALPHA);
+    // Shared arrays have a buffer object of their own. Otherwise they would join that of the first geometry that
+    // takes them, and a file's bytes would depend on the order of the work.
+    white->setVertexBufferObject(new osg::VertexBufferObject);
+    return white;
+}
+
 } // namespace
 
 TileNodeFactory::TileNodeFactory(const BuildPlan& plan)
     : _plan(plan), _textures(plan.options.compressTextures)
 {
-    // Shared arrays have a buffer object of their own. Otherwise they would join that of the first geometry that
-    // takes them, and a file's bytes would depend on the order of the work.
-    _sharedBuffer = new osg::VertexBufferObject;
-    _white = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1);
-    _white->front().set(1.0f, 1.0f, 1.0f, UNLIT_ALPHA);
-    _white->setVertexBufferObject(_sharedBuffer);
 }
 
 TileLattice TileNodeFactory::createLattice(const TileKey& key, const LevelArrays& arrays, int x, int y) const
@@ -252,7 +257,7 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     double radius = 0.0;
     if (!blocks.empty())
     {
-        transform->addChild(BlockNodes(blocks, _white, createState(key, arrays, x, y)).all());
+        transform->addChild(BlockNodes(blocks, createWhite(), createState(key, arrays, x, y)).all());
         for (const auto& vertices : blocks.vertices())
             for (const auto& vertex : *vertices->vertices)
                 box.expandBy(osg::Vec3d(vertex));

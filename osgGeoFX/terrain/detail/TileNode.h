@@ -58,8 +58,6 @@ private:
 
     const BuildPlan& _plan;
     TileTextures _textures;
-    osg::ref_ptr<osg::VertexBufferObject> _sharedBuffer;
-    osg::ref_ptr<osg::Vec4Array> _white;
 };
 
 } // namespace osgGeoFX

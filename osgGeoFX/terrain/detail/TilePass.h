@@ -17,11 +17,13 @@ struct TilePassResult
 {
     std::uint64_t tiles = 0;
     std::uint64_t tilesReused = 0; ///< taken over from an interrupted build
+    std::uint64_t tilesKept = 0;   ///< of the former database, by the units that were done or kept
+    std::uint64_t units = 0, unitsKept = 0;
     TextureFigures textures;
     osg::ref_ptr<osg::Node> root; ///< the root tile, for terrain.osgb
 };
 
-/// Takes the result from the work files of the last unit. `tilesReused` stays. Throws BuildError.
+/// Takes the result from the work files of the last unit. What counts units and tiles by their origin stays. Throws BuildError.
 void readTilePassResult(const BuildPlan& plan, TilePassResult& result);
 
 } // namespace osgGeoFX

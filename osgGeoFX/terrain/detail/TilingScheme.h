@@ -30,10 +30,15 @@ struct TilingScheme
     double west = 0.0, south = 0.0, east = 0.0, north = 0.0; ///< extent, in the grid's CRS
     int lastColumn = 0, lastRow = 0; ///< intervals of the finest level over the extent
     int finestLevel = 0;
-    int intervals = 0;    ///< cells along a tile's edges
-    int texels = 0;       ///< texture intervals along a finest tile's edges; texels lie on both ends
-    int textureDepth = 0; ///< levels above the finest that keep the finest texels
-    int texelBlock = 1;   ///< the number of texels along a texture's edge is a multiple of it
+    /// The finest level of a build with the first elevation and the first colors alone. Denser sources add levels below
+    /// it, and leave all above as they are.
+    int anchorLevel = 0;
+    int intervals = 0; ///< cells along a tile's edges
+    int texels = 0;    ///< texture intervals along the edges of the anchor's tiles; texels lie on both ends
+    int textureDepth = 0; ///< levels above the anchor that keep its texels
+    int textureHalvings =
+        0;              ///< levels below the anchor whose tiles have half the intervals of those above them
+    int texelBlock = 1; ///< the number of texels along a texture's edge is a multiple of it
 
     /// Whether the grid goes around the globe: the last column of posts lies on the first.
     bool wholeCircle() const { return crs.geographic && east - west > 360.0 - 1e-9; }
@@ -44,10 +49,13 @@ struct TilingScheme
         return 1 << (finestLevel - level);
     } ///< finest posts from post to post of a level
 
-    /// Whether the texels of a level are as dense as those of finest tiles. Above, textures would grow beyond their
-    /// limit.
-    bool keepsTexels(int level) const { return level >= finestLevel - textureDepth; }
-    int textureIntervals(int level) const { return texels << std::min(finestLevel - level, textureDepth); }
+    int textureIntervals(int level) const
+    {
+        return level > anchorLevel ? texels >> std::min(level - anchorLevel, textureHalvings)
+                                   : texels << std::min(anchorLevel - level, textureDepth);
+    }
+    /// Whether the texels of a level are as dense as those of the level below it.
+    bool keepsTexels(int level) const { return textureIntervals(level) == 2 * textureIntervals(level + 1); }
 
     /// The texels along an edge of a texture: one more than its intervals, rounded up to whole blocks.
     int textureSize(int textureIntervals) const
@@ -55,9 +63,8 @@ struct TilingScheme
         return (textureIntervals + texelBlock) / texelBlock * texelBlock;
     }
 
-    /// The intervals of normals along an edge: as dense as the posts of finest tiles, up to four for each cell.
-    int normalIntervals(int level) const { return intervals << std::min(finestLevel - level, normalDepth); }
-    static constexpr int normalDepth = 2; ///< levels above the finest that keep the finest normals
+    /// Levels above a unit's lattice that keep the normals of its posts: a tile has up to four for each cell.
+    static constexpr int normalDepth = 2;
 
     /// The finest post at a tile's south-western corner.
     int firstColumn(const TileKey& key) const { return key.x * intervals * step(key.level); }

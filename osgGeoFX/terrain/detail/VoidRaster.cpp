@@ -166,4 +166,45 @@ void VoidRaster::fill(const Lattice& lattice, std::vector<float>& heights,
     }
 }
 
+std::optional<Digest> VoidRaster::digest(const Lattice& lattice) const
+{
+    const TilingScheme& scheme = _plan.scheme;
+    const auto range = [](double first, double last, double start, double extent, int posts)
+    {
+        const auto post = [&](double value)
+        {
+            return (value - start) / extent * (posts - 1);
+        };
+        return std::pair(std::clamp(static_cast<int>(std::floor(post(first))) - 1, 0, posts - 1),
+                         std::clamp(static_cast<int>(std::ceil(post(last))) + 1, 0, posts - 1));
+    };
+    auto [west, east] = range(lattice.x0, lattice.x0 + lattice.dx * (lattice.columns - 1), scheme.west,
+                              scheme.east - scheme.west, _columns);
+    const auto [south, north] = range(lattice.y0, lattice.y0 + lattice.dy * (lattice.rows - 1), scheme.south,
+                                      scheme.north - scheme.south, _rows);
+    // Beside the seam a lattice goes on at the other end.
+    if (scheme.wholeCircle() && (west == 0 || east == _columns - 1))
+    {
+        west = 0;
+        east = _columns - 1;
+    }
+    const auto first = static_cast<std::size_t>(west), count = static_cast<std::size_t>(east - west + 1);
+    std::vector<Post> posts(count);
+    std::vector<float> heights(count), filled(count);
+    ContentHash hash;
+    bool any = false;
+    for (int row = south; row <= north; ++row)
+    {
+        _posts.read(row, first, count, posts.data());
+        if (std::none_of(posts.begin(), posts.end(), [](Post each) { return each == Post::FILLED; }))
+            continue;
+        any = true;
+        _heights.read(row, first * sizeof(float), count * sizeof(float), heights.data());
+        _filled.read(row, first * sizeof(float), count * sizeof(float), filled.data());
+        hash.add(row - south).add(posts).add(heights).add(filled);
+    }
+    if (!any) return {};
+    return hash.digest();
+}
+
 } // namespace osgGeoFX

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/terrain/detail/ContentHash.h>
 #include <osgGeoFX/terrain/detail/RowFile.h>
 #include <osgGeoFX/terrain/detail/VoidFinder.h>
 
@@ -9,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,9 @@ public:
     /// Gives heights to points without one (NaN) that lie in filled voids, metres above the sea, bilinear between
     /// posts. `filled` is null, or has a byte for each point, which becomes 1 there.
     void fill(const Lattice& lattice, std::vector<float>& heights, std::vector<unsigned char>* filled) const;
+
+    /// Of the filled posts that fill() reads for a lattice. Empty if there are none.
+    std::optional<Digest> digest(const Lattice& lattice) const;
 
     /// The posts of the lattice of voids.
     int columns() const { return _columns; }
