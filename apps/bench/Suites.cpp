@@ -7,6 +7,7 @@
 #include "MappingSuite.h"
 #include "OsgEarthSuite.h"
 #include "PanoramaSuite.h"
+#include "SoakSuite.h"
 #include "Suite.h"
 #include "TerrainSuite.h"
 
@@ -20,7 +21,7 @@ const std::vector<Suite>& suites()
 {
     static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite(),
                                            closeUpSuite(), panoramaSuite(),    labelsSuite(),
-                                           linesSuite(),   osgEarthSuite()};
+                                           linesSuite(),   osgEarthSuite(),    soakSuite()};
     return all;
 }
 
