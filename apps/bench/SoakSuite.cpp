@@ -249,21 +249,22 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
             view.look(matrix);
         };
         const int counted = std::max(frames / 40 / FRAMES_A_FLIGHT, 1) * FRAMES_A_FLIGHT;
+        const auto countObjects = [&](int frame)
+        {
+            while (scene->effects->getNumEffects())
+                scene->effects->removeEffect(scene->effects->getEffect(0));
+            look(home);
+            for (int i = 0; i < 30; ++i)
+                view.frame(frame / FRAMES_A_SECOND);
+            log.objects.add(frame, view.objects().all());
+            announce(std::to_string(frame) + " frames of " + std::to_string(frames) + ": " +
+                     std::to_string(static_cast<int>(residentMiB())) + " MiB, " +
+                     std::to_string(view.objects().all()) + " objects of OpenGL");
+        };
         for (int frame = 0; frame < frames; ++frame)
         {
             const double time = frame / FRAMES_A_SECOND;
-            if (frame % counted == 0)
-            {
-                while (scene->effects->getNumEffects())
-                    scene->effects->removeEffect(scene->effects->getEffect(0));
-                look(home);
-                for (int i = 0; i < 30; ++i)
-                    view.frame(time);
-                log.objects.add(frame, view.objects().all());
-                announce(std::to_string(frame) + " frames of " + std::to_string(frames) + ": " +
-                         std::to_string(static_cast<int>(residentMiB())) + " MiB, " +
-                         std::to_string(view.objects().all()) + " objects of OpenGL");
-            }
+            if (frame % counted == 0) countObjects(frame);
             if (frame % FRAMES_A_FLIGHT == 0)
             {
                 flight = randomFlight(dice);
@@ -273,6 +274,7 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
             log.seconds.push_back(view.frame(time));
             if (frame % sampled == 0) log.memory.add(frame, residentMiB());
         }
+        countObjects(frames);
     }
     messages->release();
     log.messages = messages->count();
@@ -326,8 +328,8 @@ std::vector<Figure> run(const Settings& settings)
 
     Figure objects{"objects", "OpenGL's objects in the last third of the frames over those in the first", "",
                    Bound::AtMost, 1.05};
-    const double first = log.objects.medianWithin(0.0, settled + third);
-    const double last = log.objects.medianWithin(settled + 2.0 * third, extent.frames);
+    const double first = log.objects.medianWithin(settled, settled + third);
+    const double last = log.objects.medianWithin(settled + 2.0 * third, extent.frames + 1.0);
     objects.measured = first > 0.0 ? last / first : 1.0;
     std::snprintf(remark, sizeof remark, "%.0f and %.0f, in one place with no effect", first, last);
     objects.remark = remark;
