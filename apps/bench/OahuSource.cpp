@@ -4,8 +4,10 @@
 
 #include "BenchError.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iomanip>
+#include <random>
 #include <sstream>
 #include <string>
 
@@ -18,6 +20,7 @@ namespace
 // data/oahu/README.md.
 constexpr int COLUMNS = 3240, ROWS = 2700;
 constexpr double WEST = -158.4, NORTH = 21.85, STEP = 1.0 / 3600.0;
+constexpr int NOISE_SIDE = 2048;
 constexpr int WINDOW_COLUMN = 1519, WINDOW_ROW = 900, WINDOW_SIZE = 1621;
 
 struct Window
@@ -48,11 +51,17 @@ std::string escaped(const std::string& text)
     return result;
 }
 
-void write(const std::filesystem::path& elevation, const Window& window, int samples, const char* resampling,
-           const std::filesystem::path& vrt)
+void save(const std::filesystem::path& path, const std::string& text)
 {
-    if (!std::filesystem::exists(elevation))
-        throw BenchError(elevation.string() + ": it does not exist; name the data folder with --data DIR.");
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw BenchError(path.string() + ": it cannot be written; is the disk full?");
+}
+
+/// The beginning of a VRT that shows a window of the raster.
+std::string header(const Window& window, int samples)
+{
     std::ostringstream text;
     text.imbue(std::locale::classic());
     text << std::setprecision(17) << "<VRTDataset rasterXSize=\"" << samples << "\" rasterYSize=\"" << samples
@@ -60,8 +69,18 @@ void write(const std::filesystem::path& elevation, const Window& window, int sam
          << "  <SRS dataAxisToSRSAxisMapping=\"2,1\">EPSG:4326</SRS>\n"
          << "  <GeoTransform>" << WEST + window.column * STEP << ", " << window.columns * STEP / samples
          << ", 0, " << NORTH - window.row * STEP << ", 0, " << -window.rows * STEP / samples
-         << "</GeoTransform>\n"
-         << "  <VRTRasterBand dataType=\"Float32\" band=\"1\">\n"
+         << "</GeoTransform>\n";
+    return text.str();
+}
+
+void write(const std::filesystem::path& elevation, const Window& window, int samples, const char* resampling,
+           const std::filesystem::path& vrt)
+{
+    if (!std::filesystem::exists(elevation))
+        throw BenchError(elevation.string() + ": it does not exist; name the data folder with --data DIR.");
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << header(window, samples) << "  <VRTRasterBand dataType=\"Float32\" band=\"1\">\n"
          << "    <NoDataValue>-32768</NoDataValue>\n"
          << "    <SimpleSource" << resampling << ">\n"
          << "      <SourceFilename relativeToVRT=\"0\">" << escaped(elevation.string())
@@ -73,10 +92,48 @@ void write(const std::filesystem::path& elevation, const Window& window, int sam
          << "    </SimpleSource>\n"
          << "  </VRTRasterBand>\n"
          << "</VRTDataset>\n";
-    std::ofstream file(vrt);
-    file << text.str();
-    file.close();
-    if (!file) throw BenchError(vrt.string() + ": it cannot be written; is the disk full?");
+    save(vrt, text.str());
+}
+
+/// A raster of noise in ENVI's format.
+void writeNoise(const std::filesystem::path& raster)
+{
+    std::mt19937 random(21);
+    std::string bytes(static_cast<std::size_t>(NOISE_SIDE) * NOISE_SIDE, '\0');
+    for (char& byte : bytes)
+        byte = static_cast<char>(random() % 41u);
+    save(raster, bytes);
+    const std::string side = std::to_string(NOISE_SIDE);
+    save(raster.string() + ".hdr", "ENVI\nsamples = " + side + "\nlines = " + side +
+                                       "\nbands = 1\nheader offset = 0\nfile type = ENVI Standard\n"
+                                       "data type = 1\ninterleave = bsq\nbyte order = 0\n");
+}
+
+/// One raster beside the other, until samples × samples are covered.
+void writeNoiseEverywhere(int samples, const std::filesystem::path& vrt)
+{
+    std::ostringstream text;
+    text << header({0, 0, COLUMNS, ROWS}, samples) << "  <VRTRasterBand dataType=\"Float32\" band=\"1\">\n";
+    for (int row = 0; row < samples; row += NOISE_SIDE)
+    {
+        for (int column = 0; column < samples; column += NOISE_SIDE)
+        {
+            const int columns = std::min(NOISE_SIDE, samples - column);
+            const int rows = std::min(NOISE_SIDE, samples - row);
+            text << "    <ComplexSource>\n"
+                 << "      <SourceFilename relativeToVRT=\"1\">noise</SourceFilename>\n"
+                 << "      <SourceBand>1</SourceBand>\n"
+                 << "      <SrcRect xOff=\"0\" yOff=\"0\" xSize=\"" << columns << "\" ySize=\"" << rows
+                 << "\"/>\n"
+                 << "      <DstRect xOff=\"" << column << "\" yOff=\"" << row << "\" xSize=\"" << columns
+                 << "\" ySize=\"" << rows << "\"/>\n"
+                 << "      <ScaleOffset>-20</ScaleOffset>\n"
+                 << "      <ScaleRatio>1</ScaleRatio>\n"
+                 << "    </ComplexSource>\n";
+        }
+    }
+    text << "  </VRTRasterBand>\n</VRTDataset>\n";
+    save(vrt, text.str());
 }
 
 } // namespace
@@ -90,6 +147,26 @@ void writeWindowOfOahu(const std::filesystem::path& elevation, int samples, cons
 {
     const int margin = (WINDOW_SIZE - samples) / 2;
     write(elevation, {WINDOW_COLUMN + margin, WINDOW_ROW + margin, samples, samples}, samples, "", vrt);
+}
+
+void writeNoisyOahu(const std::filesystem::path& elevation, int samples, const std::filesystem::path& vrt)
+{
+    const std::filesystem::path folder = vrt.parent_path();
+    writeResampledOahu(elevation, samples, folder / "smooth.vrt");
+    writeNoise(folder / "noise");
+    writeNoiseEverywhere(samples, folder / "noise.vrt");
+    std::string text = header({0, 0, COLUMNS, ROWS}, samples) +
+                       "  <VRTRasterBand dataType=\"Float32\" band=\"1\" subClass=\"VRTDerivedRasterBand\">\n"
+                       "    <PixelFunctionType>sum</PixelFunctionType>\n";
+    for (const char* each : {"smooth.vrt", "noise.vrt"})
+    {
+        const std::string rectangle = R"( xOff="0" yOff="0" xSize=")" + std::to_string(samples) +
+                                      R"(" ySize=")" + std::to_string(samples) + R"("/>)";
+        text += std::string("    <SimpleSource>\n      <SourceFilename relativeToVRT=\"1\">") + each +
+                "</SourceFilename>\n      <SourceBand>1</SourceBand>\n      <SrcRect" + rectangle +
+                "\n      <DstRect" + rectangle + "\n    </SimpleSource>\n";
+    }
+    save(vrt, text + "  </VRTRasterBand>\n</VRTDataset>\n");
 }
 
 } // namespace geofx::bench

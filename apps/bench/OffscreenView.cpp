@@ -68,11 +68,11 @@ OffscreenView::OffscreenView(Size size, double fieldOfView, osg::Node* scene) : 
 
 OffscreenView::~OffscreenView() = default;
 
-double OffscreenView::frame()
+double OffscreenView::frame(double time)
 {
     Interruption::throwIfInterrupted();
     const auto start = Clock::now();
-    _viewer->frame(0.0);
+    _viewer->frame(time);
     return secondsSince(start);
 }
 
@@ -100,6 +100,15 @@ OffscreenView::Drawn OffscreenView::count()
     stats.getAttribute(number, "Visible number of GL_TRIANGLES", triangles);
     stats.getAttribute(number, "Visible number of drawables", drawables);
     return {static_cast<std::uint64_t>(triangles), static_cast<std::uint64_t>(drawables)};
+}
+
+GlObjectCount OffscreenView::objects()
+{
+    osg::GraphicsContext& context = *camera().getGraphicsContext();
+    if (!context.makeCurrent()) throw BenchError("OpenGL's objects could not be counted.");
+    const GlObjectCount count = GlObjectCount::of(*context.getState());
+    context.releaseContext();
+    return count;
 }
 
 osg::ref_ptr<osg::Image> OffscreenView::capture()

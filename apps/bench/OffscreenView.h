@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include "GlObjectCount.h"
+
 #include <osg/Image>
 #include <osg/Matrixd>
 #include <osg/Node>
@@ -19,7 +21,8 @@ namespace geofx::bench
 /** A viewer without a window, for timing: single-threaded, a head light, each frame finished before it
    counts.
 
-    Its clock stands still between frames, so that tiles of a scene that is switched off do not expire. */
+    Its clock stands still unless frame() is told the time, so that tiles of a scene that is switched off do not
+   expire. */
 class OffscreenView
 {
 public:
@@ -46,11 +49,14 @@ public:
     /// Draws until the pager has nothing more to bring; throws BenchError if that takes ten minutes.
     void settle();
 
-    /// Draws a frame and waits for the end of it; seconds.
-    double frame();
+    /// Draws the frame of a time, in seconds, and waits for the end of it; the seconds that it took.
+    double frame(double time = 0.0);
 
     /// What a frame draws.
     Drawn count();
+
+    /// What OpenGL holds for this view.
+    GlObjectCount objects();
 
     osg::ref_ptr<osg::Image> capture();
 

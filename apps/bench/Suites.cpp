@@ -8,6 +8,7 @@
 #include "MappingSuite.h"
 #include "OsgEarthSuite.h"
 #include "PanoramaSuite.h"
+#include "SoakSuite.h"
 #include "Suite.h"
 #include "TerrainSuite.h"
 
@@ -19,9 +20,9 @@ namespace geofx::bench
 
 const std::vector<Suite>& suites()
 {
-    static const std::vector<Suite> all = {terrainSuite(), deformationSuite(), mappingSuite(),
-                                           closeUpSuite(), panoramaSuite(),    labelsSuite(),
-                                           linesSuite(),   osgEarthSuite(),    flightSuite()};
+    static const std::vector<Suite> all = {
+        terrainSuite(), deformationSuite(), mappingSuite(),  closeUpSuite(), panoramaSuite(),
+        labelsSuite(),  linesSuite(),       osgEarthSuite(), flightSuite(),  soakSuite()};
     return all;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // What mappings hold while cameras, contexts, scenes and other sets of mappings come and go.
-#include <tools/GlObjectCount.h>
+#include <bench/GlObjectCount.h>
 #include <tools/MappingStage.h>
 #include <tools/ThreadedViews.h>
 
@@ -9,6 +9,7 @@
 #include <osg/MatrixTransform>
 
 using namespace geofx::test;
+using geofx::bench::GlObjectCount;
 using namespace osgGeoFX;
 
 namespace

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // What effects have on the GPU: how much of it there is, that it goes when it is released, and what becomes of it when
 // contexts close and open.
+#include <bench/GlObjectCount.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <tools/CloseUpStage.h>
-#include <tools/GlObjectCount.h>
 
 #include <osg/Texture2D>
 
@@ -12,6 +12,7 @@
 
 using namespace osgGeoFX;
 using namespace geofx::test;
+using geofx::bench::GlObjectCount;
 
 namespace
 {

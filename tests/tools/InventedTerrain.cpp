@@ -232,6 +232,7 @@ struct Terrain
     double turned = 0.0;            ///< of the grid, degrees
     double unit = 1.0;              ///< metres
     int samples = 1201;
+    double share = 1.0; ///< of `size`, from north to south
 };
 
 /// The floor of the alps' main valley: how far to its side a place lies.
@@ -363,6 +364,28 @@ double longRange(double x, double y)
     return 150.0 + 5600.0 * rivers(x, y) + 160.0 * ridges(60.0 * x, 60.0 * y, 181, 6);
 }
 
+/// A planet's continents in a sea at 0, as DEMs of the whole Earth have them; none where Oahu is.
+double earth(double x, double y)
+{
+    const double longitude = 2.0 * M_PI * (x - 0.5), latitude = M_PI * (y - 0.5);
+    const double p[] = {std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
+                        std::sin(latitude)};
+    // Of three planes, so that no place on the sphere is a seam.
+    const auto around = [&](double scale, unsigned int seed, int octaves)
+    {
+        return hills(scale * p[0] + 3.1, scale * p[1] + 7.7, seed, octaves) +
+               hills(scale * p[1] + 1.9, scale * p[2] + 4.3, seed + 20, octaves) +
+               hills(scale * p[2] + 8.5, scale * p[0] + 2.2, seed + 40, octaves);
+    };
+    const double oahu[] = {std::cos(0.375) * std::cos(-2.757), std::cos(0.375) * std::sin(-2.757),
+                           std::sin(0.375)};
+    const double near = p[0] * oahu[0] + p[1] * oahu[1] + p[2] * oahu[2];
+    const double land = around(1.7, 201, 9) - 0.06 - step(0.85, 0.97, near);
+    if (land <= 0.0) return 0.0;
+    const double chain = 1.0 - std::abs(around(2.6, 301, 8));
+    return 5.0 + 700.0 * land + 5200.0 * step(0.03, 0.5, land) * std::pow(std::max(chain, 0.0), 4.0);
+}
+
 const std::map<std::string, Terrain>& terrains()
 {
     static const std::map<std::string, Terrain> all = [&]
@@ -378,6 +401,7 @@ const std::map<std::string, Terrain>& terrains()
         made["feet"] = {range, 2285, 1500000.0, 300000.0, 160000.0, 0.0, 1200.0 / 3937.0};
         made["rotated"] = {massif, 32719, 300000.0, 6400000.0, 40000.0, 27.0};
         made["huge"] = {longRange, 4326, 78.0, 31.0, 3.0, 0.0, 1.0, 30000};
+        made["earth"] = {earth, 4326, -180.0, 90.0, 360.0, 0.0, 1.0, 5400, 0.5};
         made["flat"] = {[](double, double) { return 12.0; }, 4326, 5.0, 52.5, 0.5};
         made["cliff"] = {[](double x, double) { return x < 0.5 ? 20.0 : 320.0; }, 4326, -9.5, 53.0, 0.2};
         made["sea"] = {[](double, double) { return -30.0; }, 4326, -30.0, 40.0, 0.5};
@@ -435,8 +459,9 @@ void inventTerrain(const std::string& name, const std::string& file, int samples
         srs.importFromEPSG(terrain.epsg);
         dataset->SetSpatialRef(&srs);
         const double pixel = terrain.size / side, angle = terrain.turned * M_PI / 180.0;
-        std::array<double, 6> transform = {terrain.west,  pixel * std::cos(angle), pixel * std::sin(angle),
-                                           terrain.north, pixel * std::sin(angle), -pixel * std::cos(angle)};
+        const double tall = terrain.share * pixel;
+        std::array<double, 6> transform = {terrain.west,  pixel * std::cos(angle), tall * std::sin(angle),
+                                           terrain.north, pixel * std::sin(angle), -tall * std::cos(angle)};
         dataset->SetGeoTransform(transform.data());
     }
     GDALRasterBand& band = *dataset->GetRasterBand(1);

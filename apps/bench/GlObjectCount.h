@@ -8,7 +8,7 @@
 
 #include <ostream>
 
-namespace geofx::test
+namespace geofx::bench
 {
 
 /// How many objects a context has, asked name by name. What OSG has put aside to be deleted is deleted first.
@@ -46,6 +46,8 @@ struct GlObjectCount
         return gl.glIsProgram(name) && !deleted;
     }
 
+    int all() const { return textures + buffers + frameBuffers + programs + vertexArrays; }
+
     bool operator==(const GlObjectCount& other) const
     {
         return textures == other.textures && buffers == other.buffers && frameBuffers == other.frameBuffers &&
@@ -60,4 +62,4 @@ struct GlObjectCount
     }
 };
 
-} // namespace geofx::test
+} // namespace geofx::bench

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "SoakSuite.h"
+
+#include "BenchError.h"
+#include "ChildProcess.h"
+#include "Growth.h"
+#include "OahuSource.h"
+#include "OffscreenView.h"
+#include "TerrainSuite.h"
+#include "WorkFolder.h"
+
+#include <osgGeoFX/closeup/CloseUps.h>
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/viewer/Scene.h>
+
+#include <osg/Math>
+#include <osg/Notify>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <mutex>
+#include <random>
+
+namespace geofx::bench
+{
+
+namespace
+{
+
+using osgGeoFX::ViewPoint;
+
+constexpr OffscreenView::Size SIZE = {192, 120};
+const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
+constexpr double FRAMES_A_SECOND = 30.0; ///< of the flights' own clock
+constexpr int FRAMES_A_FLIGHT = 400;     ///< then another one begins elsewhere, with other effects
+constexpr int FRAMES_A_SAMPLE = 100;     ///< of memory
+constexpr double WEST = -158.35, EAST = -157.55, SOUTH = 21.15, NORTH = 21.8; ///< where they fly, degrees
+constexpr double METRES_PER_RADIAN = 6371000.0;
+
+// A noisy build's work files and database together, and the database alone; measured, with a margin.
+constexpr double DISK_BYTES_PER_SAMPLE = 30.0, DATABASE_BYTES_PER_SAMPLE = 8.0;
+
+struct Extent
+{
+    int frames;
+    double gigabytes; ///< of the database that is built for it
+};
+
+Extent extentFor(const Settings& settings)
+{
+    if (settings.smoke) return {3 * FRAMES_A_FLIGHT, 0.002};
+    if (settings.quick) return {10000, 1.0};
+    return {100000, 20.0};
+}
+
+/// Counts OSG's warnings and errors, of all threads, and shows them.
+class MessageCount : public osg::NotifyHandler
+{
+public:
+    MessageCount() : _former(osg::getNotifyHandler()) { osg::setNotifyHandler(this); }
+    void release() { osg::setNotifyHandler(_former); }
+    int count() const { return _count; }
+
+    void notify(osg::NotifySeverity severity, const char* message) override
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        if (severity <= osg::WARN) ++_count;
+        std::fputs(message, stderr);
+    }
+
+private:
+    osg::ref_ptr<osg::NotifyHandler> _former;
+    std::mutex _mutex;
+    int _count = 0;
+};
+
+double residentMiB()
+{
+    std::ifstream file("/proc/self/statm");
+    double pages = 0.0, resident = 0.0;
+    file >> pages >> resident;
+    return resident * 4096.0 / 1048576.0;
+}
+
+/// The same numbers with every standard library.
+class Dice
+{
+public:
+    double within(double low, double high)
+    {
+        return low + (high - low) * (static_cast<double>(_random()) / 4294967296.0);
+    }
+    int below(int count) { return static_cast<int>(_random() % static_cast<std::uint32_t>(count)); }
+
+private:
+    std::mt19937 _random{100000u};
+};
+
+struct Flight
+{
+    ViewPoint begin;
+    double speed;    ///< m/s
+    double turnRate; ///< radians for each second
+
+    ViewPoint at(int frame) const
+    {
+        const double seconds = frame / FRAMES_A_SECOND;
+        ViewPoint place = begin;
+        place.heading += turnRate * seconds;
+        // Along the arc of a circle, on ground that is as good as flat for that.
+        const double mean = begin.heading + 0.5 * turnRate * seconds;
+        const double chord =
+            turnRate == 0.0 ? speed * seconds : 2.0 * speed / turnRate * std::sin(0.5 * turnRate * seconds);
+        place.latitude += chord * std::cos(mean) / METRES_PER_RADIAN;
+        place.longitude += chord * std::sin(mean) / (METRES_PER_RADIAN * std::cos(begin.latitude));
+        return place;
+    }
+};
+
+Flight randomFlight(Dice& dice)
+{
+    const double height = 600.0 * std::pow(20.0, dice.within(0.0, 1.0));
+    return {{osg::DegreesToRadians(dice.within(WEST, EAST)), osg::DegreesToRadians(dice.within(SOUTH, NORTH)),
+             height, dice.within(0.0, 2.0 * osg::PI), osg::DegreesToRadians(dice.within(-50.0, -5.0)), 0.0},
+            dice.within(50.0, 800.0),
+            dice.below(2) ? 0.0 : dice.within(-0.1, 0.1)};
+}
+
+osg::ref_ptr<osg::Image> randomImage(Dice& dice)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    const int side = 16 << dice.below(4);
+    image->allocateImage(side, side, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    for (unsigned int i = 0; i < image->getTotalSizeInBytes(); ++i)
+        image->data()[i] = static_cast<unsigned char>(dice.below(256));
+    return image;
+}
+
+osg::ref_ptr<osgGeoFX::ProjectiveMappings> randomMappings(Dice& dice, const ViewPoint& place)
+{
+    const osg::ref_ptr<osgGeoFX::ProjectiveMappings> mappings = new osgGeoFX::ProjectiveMappings;
+    mappings->setGeodeticOrigin(place.longitude, place.latitude);
+    for (int i = dice.below(20); i >= 0; --i)
+    {
+        const osg::ref_ptr<osgGeoFX::ProjectiveMapping> mapping = new osgGeoFX::ProjectiveMapping;
+        mapping->setRectangle({dice.within(-8000.0, 8000.0), dice.within(-8000.0, 8000.0)},
+                              dice.within(200.0, 3000.0), dice.within(200.0, 3000.0), dice.within(-3.0, 3.0));
+        mapping->setLayer(new osgGeoFX::DataLayer(randomImage(dice)));
+        mapping->setOpacity(dice.within(0.2, 1.0));
+        mappings->addMapping(mapping);
+    }
+    return mappings;
+}
+
+osg::ref_ptr<osgGeoFX::CloseUps> randomCloseUps(Dice& dice, const ViewPoint& place)
+{
+    const osg::ref_ptr<osgGeoFX::CloseUps> closeUps = new osgGeoFX::CloseUps;
+    for (int i = dice.below(4); i >= 0; --i)
+    {
+        const osg::ref_ptr<osgGeoFX::CloseUp> closeUp = new osgGeoFX::CloseUp;
+        const double away = dice.within(1000.0, 9000.0) / METRES_PER_RADIAN;
+        const double heading = place.heading + dice.within(-0.4, 0.4);
+        closeUp->getRegion()->setGeodeticCenter(place.longitude +
+                                                    away * std::sin(heading) / std::cos(place.latitude),
+                                                place.latitude + away * std::cos(heading));
+        closeUp->getRegion()->setSize(dice.within(800.0, 3000.0), dice.within(800.0, 3000.0));
+        closeUp->setOffset({0.0, 0.0, dice.within(300.0, 1500.0)});
+        closeUp->setScale(1.5, 1.5, 2.0);
+        closeUps->addCloseUp(closeUp);
+    }
+    return closeUps;
+}
+
+/// Other effects in the scene than before, most of them new objects.
+void changeEffects(osgGeoFX::EffectScene& scene, Dice& dice, const ViewPoint& place)
+{
+    while (scene.getNumEffects())
+        scene.removeEffect(scene.getEffect(0));
+    const int kind = dice.below(5);
+    if (kind != 1 && dice.below(3) == 0)
+    {
+        const osg::ref_ptr<osgGeoFX::VerticalExaggeration> exaggeration = new osgGeoFX::VerticalExaggeration;
+        exaggeration->setFactor(dice.within(1.0, 3.0));
+        scene.addEffect(exaggeration);
+    }
+    switch (kind)
+    {
+    case 0:
+        scene.addEffect(new osgGeoFX::BirdsEyeView);
+        break;
+    case 1:
+        scene.addEffect(new osgGeoFX::PanoramaMap);
+        break;
+    case 2:
+        scene.addEffect(new osgGeoFX::PedestrianView);
+        break;
+    default:
+        break;
+    }
+    if (dice.below(2)) scene.addEffect(randomMappings(dice, place));
+    if (dice.below(2)) scene.addEffect(randomCloseUps(dice, place));
+}
+
+/// What was seen while it flew.
+struct Log
+{
+    Growth memory;  ///< MiB
+    Growth objects; ///< of OpenGL, in the same place with no effect, between two flights
+    std::vector<double> seconds;
+    int messages = 0;
+};
+
+Log fly(const std::filesystem::path& terrain, const Settings& settings, int frames)
+{
+    std::string error;
+    const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(terrain.string(), error);
+    if (!scene) throw BenchError(error);
+    if (!scene->reference || !scene->reference->isGeocentric())
+        throw BenchError(terrain.string() + ": it is no globe; name a database of Oahu with --terrain FILE.");
+    const osg::ref_ptr<MessageCount> messages = new MessageCount;
+    Log log;
+    {
+        OffscreenView view(SIZE, FIELD_OF_VIEW, scene->node);
+        view.camera().setLODScale(scene->lodScale(SIZE.height, FIELD_OF_VIEW));
+        Dice dice;
+        Flight flight{};
+        const int sampled = settings.smoke ? FRAMES_A_SAMPLE / 5 : FRAMES_A_SAMPLE;
+        // An effect's first frames compile shaders, so objects are counted where there is none.
+        const ViewPoint home{osg::DegreesToRadians(-157.9),
+                             osg::DegreesToRadians(21.25),
+                             9000.0,
+                             0.0,
+                             osg::DegreesToRadians(-30.0),
+                             0.0};
+        osg::Matrixd matrix;
+        const auto look = [&](const ViewPoint& place)
+        {
+            if (!place.viewMatrix(*scene->reference, matrix))
+                throw BenchError(terrain.string() +
+                                 ": it has no place for the flights; take one that covers Oahu.");
+            view.look(matrix);
+        };
+        const int counted = std::max(frames / 40 / FRAMES_A_FLIGHT, 1) * FRAMES_A_FLIGHT;
+        const auto countObjects = [&](int frame)
+        {
+            while (scene->effects->getNumEffects())
+                scene->effects->removeEffect(scene->effects->getEffect(0));
+            look(home);
+            for (int i = 0; i < 30; ++i)
+                view.frame(frame / FRAMES_A_SECOND);
+            log.objects.add(frame, view.objects().all());
+            announce(std::to_string(frame) + " frames of " + std::to_string(frames) + ": " +
+                     std::to_string(static_cast<int>(residentMiB())) + " MiB, " +
+                     std::to_string(view.objects().all()) + " objects of OpenGL");
+        };
+        for (int frame = 0; frame < frames; ++frame)
+        {
+            const double time = frame / FRAMES_A_SECOND;
+            if (frame % counted == 0) countObjects(frame);
+            if (frame % FRAMES_A_FLIGHT == 0)
+            {
+                flight = randomFlight(dice);
+                changeEffects(*scene->effects, dice, flight.begin);
+            }
+            look(flight.at(frame % FRAMES_A_FLIGHT));
+            log.seconds.push_back(view.frame(time));
+            if (frame % sampled == 0) log.memory.add(frame, residentMiB());
+        }
+        countObjects(frames);
+    }
+    messages->release();
+    log.messages = messages->count();
+    return log;
+}
+
+std::filesystem::path build(const Settings& settings, const std::filesystem::path& folder, double& gigabytes)
+{
+    const double room = static_cast<double>(std::filesystem::space(folder).available);
+    // The rest of the disk is not ours alone.
+    const double samples =
+        std::min(gigabytes * 1e9 / DATABASE_BYTES_PER_SAMPLE, 0.8 * room / DISK_BYTES_PER_SAMPLE);
+    const int side = static_cast<int>(std::sqrt(samples));
+    const std::filesystem::path source = folder / "noisy.vrt", database = folder / "database";
+    writeNoisyOahu(settings.data / "oahu" / "elevation.tif", side, source);
+    announce("building " + std::to_string(side) + " x " + std::to_string(side) +
+             " samples of noise over Oahu");
+    runChild(builderCommand(settings, source, database, 2));
+    gigabytes = static_cast<double>(bytesBelow(database)) * 1e-9;
+    return database / "terrain.osgb";
+}
+
+std::vector<Figure> run(const Settings& settings)
+{
+    const WorkFolder folder(settings.work);
+    const Extent extent = extentFor(settings);
+    double gigabytes = extent.gigabytes;
+    std::filesystem::path terrain = settings.terrain;
+    if (terrain.empty())
+        terrain = build(settings, folder.path(), gigabytes);
+    else
+        gigabytes = static_cast<double>(bytesBelow(terrain.parent_path())) * 1e-9;
+    const Log log = fly(terrain, settings, extent.frames);
+
+    const double settled = 0.1 * extent.frames;
+    char remark[300];
+    Figure memory{"memory",
+                  "how much resident memory grows in 10,000 frames, after the first tenth of " +
+                      std::to_string(extent.frames),
+                  "MiB", Bound::Below, 1.0};
+    memory.measured = log.memory.slopeFrom(settled);
+    const double third = (extent.frames - settled) / 3.0;
+    std::snprintf(
+        remark, sizeof remark,
+        "a database of %.2f GB; median of memory in the first, second and last third: %.0f, %.0f, %.0f MiB",
+        gigabytes, log.memory.medianWithin(settled, settled + third),
+        log.memory.medianWithin(settled + third, settled + 2.0 * third),
+        log.memory.medianWithin(settled + 2.0 * third, extent.frames));
+    memory.remark = remark;
+    memory.details = {{"gigabytes", gigabytes}, {"samples", log.memory.samples()}};
+
+    Figure objects{"objects", "OpenGL's objects in the last third of the frames over those in the first", "",
+                   Bound::AtMost, 1.05};
+    const double first = log.objects.medianWithin(settled, settled + third);
+    const double last = log.objects.medianWithin(settled + 2.0 * third, extent.frames + 1.0);
+    objects.measured = first > 0.0 ? last / first : 1.0;
+    std::snprintf(remark, sizeof remark, "%.0f and %.0f, in one place with no effect", first, last);
+    objects.remark = remark;
+    objects.details = {{"samples", log.objects.samples()}};
+
+    Figure messages{"messages", "warnings and errors of OSG and the kit", "", Bound::AtMost, 0.0};
+    messages.measured = log.messages;
+    Figure frames{"frames", "longest frame over the median one", "", Bound::None};
+    const double middle = median(log.seconds);
+    frames.measured = *std::max_element(log.seconds.begin(), log.seconds.end()) / middle;
+    std::snprintf(remark, sizeof remark,
+                  "median %.1f ms, at %d x %d; shaders of new effects compile within frames", 1000.0 * middle,
+                  SIZE.width, SIZE.height);
+    frames.remark = remark;
+    return {memory, objects, messages, frames};
+}
+
+} // namespace
+
+Suite soakSuite()
+{
+    return {
+        "soak",
+        "Flies 100,000 frames over 20 GB of noise on Oahu while effects, views and layers change, and tells "
+        "whether memory and OpenGL's objects grow",
+        {"soak"},
+        run};
+}
+
+} // namespace geofx::bench
