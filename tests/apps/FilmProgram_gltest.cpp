@@ -265,7 +265,8 @@ TEST_F(FilmProgram, ManyProcessesDrawThePrintOfOne)
         ASSERT_EQ(whole.exitCode, 0) << whole.standardError;
         const std::string plan = "plan-" + name;
         expectDone("osggeofx_panorama", with(how, {"-o", name, "--plan", plan}));
-        const auto json = nlohmann::json::parse(bytes(plan + "/work/plan.json"));
+        const auto json =
+            nlohmann::json::parse(bytes((std::filesystem::path(plan) / "work" / "plan.json").string()));
         EXPECT_EQ(json.at("program"), "osggeofx_panorama");
         const int tiles = json.at("stages").at(0).at("units");
         EXPECT_GE(tiles, tiled ? 3 : 1);
