@@ -152,6 +152,30 @@ TEST(DatabaseGlobe, IsDeepWhereItsDataAreDense)
     EXPECT_LT(summary.tiles, 2000u);
 }
 
+TEST(DatabaseGlobe, MayBeginWithLessThanATile)
+{
+    const TempDir folder;
+    TestRaster raster(12, 6);
+    const std::string few =
+        raster.placed(-180.0, 90.0, 30.0, 30.0)
+            .crs("EPSG:4326")
+            .fill([](int column, int row, int) { return coarse(-165.0 + 30.0 * column, 75.0 - 30.0 * row); })
+            .write(folder / "few.tif");
+    const BuildSummary summary = buildDatabase(options({few, patch(folder / "patch.tif")}, folder / "db"));
+    EXPECT_LT(summary.tiles, 2000u);
+    int inside = 0;
+    for (const osg::Vec3d& post : leafPosts(folder / "db"))
+    {
+        const double border = 0.21 * (EAST - WEST);
+        if (post.x() < WEST + border || post.x() > EAST - border || post.y() < SOUTH + border ||
+            post.y() > NORTH - border)
+            continue;
+        ++inside;
+        ASSERT_NEAR(post.z(), fine(post.x(), post.y()), 3.0) << post.x() << " " << post.y();
+    }
+    EXPECT_GT(inside, 2000);
+}
+
 TEST(DatabaseGlobe, HasTheHeightsOfItsFiles)
 {
     const TempDir folder;

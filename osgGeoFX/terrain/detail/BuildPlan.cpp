@@ -533,15 +533,13 @@ void BuildPlan::chooseUnits()
         _lattices.insert(_lattices.begin(), lattice);
         root = lattice;
     }
-    int latticeLevel = scheme.anchorLevel;
-    for (;;)
+    // If the anchor is the root, the tiers below have it.
+    for (int lattice = scheme.anchorLevel; lattice > 0 || _roots.empty();)
     {
-        const int depth = std::min(depthLimit, latticeLevel);
-        const int rootLevel = latticeLevel - depth;
-        _roots.push_back(rootLevel);
-        _lattices.push_back(rootLevel + depth);
-        if (rootLevel == 0) break;
-        latticeLevel = rootLevel;
+        const int root = std::max(lattice - depthLimit, 0);
+        _roots.push_back(root);
+        _lattices.push_back(lattice);
+        lattice = root;
     }
     tiers.resize(_roots.size());
     _blocks.resize(_roots.size());
