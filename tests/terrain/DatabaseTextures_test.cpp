@@ -270,7 +270,8 @@ TEST_F(DatabaseTextures, SizesAndErrorsAreThoseOfTheFiles)
     EXPECT_EQ(plainSummary.bytes, summary.uncompressedBytes);
     EXPECT_EQ(plainSummary.uncompressedBytes, summary.uncompressedBytes);
     EXPECT_EQ(plainSummary.colors[0].largest, 0);
-    EXPECT_LT(bytes, 0.75 * before);
+    // Blocks at borders, and what stays as it is, weigh more in textures as small as these.
+    EXPECT_LT(bytes, 0.8 * before);
     for (std::size_t i = 0; i < 3; ++i)
     {
         EXPECT_NEAR(summary.colors[i].rootMeanSquare, color[i].rootMeanSquare(), 1e-9);
