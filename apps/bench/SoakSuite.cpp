@@ -28,6 +28,7 @@
 #include <fstream>
 #include <mutex>
 #include <random>
+#include <sstream>
 
 namespace geofx::bench
 {
@@ -256,10 +257,12 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
             look(home);
             for (int i = 0; i < 30; ++i)
                 view.frame(frame / FRAMES_A_SECOND);
-            log.objects.add(frame, view.objects().all());
-            announce(std::to_string(frame) + " frames of " + std::to_string(frames) + ": " +
-                     std::to_string(static_cast<int>(residentMiB())) + " MiB, " +
-                     std::to_string(view.objects().all()) + " objects of OpenGL");
+            const GlObjectCount objects = view.objects();
+            log.objects.add(frame, objects.all());
+            std::ostringstream text;
+            text << frame << " frames of " << frames << ": " << static_cast<int>(residentMiB()) << " MiB, "
+                 << objects;
+            announce(text.str());
         };
         for (int frame = 0; frame < frames; ++frame)
         {
