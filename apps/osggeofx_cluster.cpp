@@ -6,8 +6,8 @@
 #include "cluster/Jobs.h"
 #include "cluster/Prediction.h"
 
+#include <osgGeoFX/batch/WorkError.h>
 #include <osgGeoFX/terrain/DistributedBuild.h>
-#include <osgGeoFX/work/WorkError.h>
 #include <process/RunProgram.h>
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "osggeofx_render_output.h"
 
-#include <osgGeoFX/work/WholeFile.h>
+#include <osgGeoFX/batch/WholeFile.h>
 
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>

@@ -13,11 +13,11 @@
 #include <osgGeoFX/paging/TileGuard.h>
 #include <osgGeoFX/paging/TilePosts.h>
 
-#include <osgGeoFX/work/PlannedWork.h>
-#include <osgGeoFX/work/WholeFile.h>
-#include <osgGeoFX/work/WorkError.h>
-#include <osgGeoFX/work/WorkStage.h>
-#include <osgGeoFX/work/WorkTimes.h>
+#include <osgGeoFX/batch/PlannedWork.h>
+#include <osgGeoFX/batch/WholeFile.h>
+#include <osgGeoFX/batch/WorkError.h>
+#include <osgGeoFX/batch/WorkStage.h>
+#include <osgGeoFX/batch/WorkTimes.h>
 
 #include <osgGeoFX/effect/Deformation.h>
 #include <osgGeoFX/effect/DeformationChain.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/work/PlannedWork.h>
+#include <osgGeoFX/batch/PlannedWork.h>
 
 #include <cstdint>
 #include <string>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "cluster/Prediction.h"
 
-#include <osgGeoFX/work/WholeFile.h>
+#include <osgGeoFX/batch/WholeFile.h>
 
 #include <nlohmann/json.hpp>
 

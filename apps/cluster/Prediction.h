@@ -4,7 +4,7 @@
 
 #include "cluster/Jobs.h"
 
-#include <osgGeoFX/work/WorkTimes.h>
+#include <osgGeoFX/batch/WorkTimes.h>
 
 #include <cstdint>
 #include <string>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "plan/PicturePlan.h"
 
-#include <osgGeoFX/work/WholeFile.h>
-#include <osgGeoFX/work/WorkError.h>
+#include <osgGeoFX/batch/WholeFile.h>
+#include <osgGeoFX/batch/WorkError.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/PlannedWork.h>
 #include <osgGeoFX/print/PicturePrint.h>
-#include <osgGeoFX/work/PlannedWork.h>
 
 #include <functional>
 #include <memory>

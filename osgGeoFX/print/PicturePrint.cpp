@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/print/PicturePrint.h>
 
+#include <osgGeoFX/batch/WholeFile.h>
 #include <osgGeoFX/labels/LabelPicture.h>
 #include <osgGeoFX/print/detail/TilePlan.h>
 #include <osgGeoFX/scene/DepthReader.h>
-#include <osgGeoFX/work/WholeFile.h>
 
 #include <OpenImageIO/imageio.h>
 #include <lcms2.h>

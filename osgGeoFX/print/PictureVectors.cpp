@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/print/PictureVectors.h>
 
-#include <osgGeoFX/work/WholeFile.h>
+#include <osgGeoFX/batch/WholeFile.h>
 
 #include <cairo-pdf.h>
 #include <libxml/xmlwriter.h>

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 
+#include <osgGeoFX/batch/detail/WorkQueue.h>
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/BuildStage.h>
 #include <osgGeoFX/terrain/detail/DatabaseRoot.h>
-#include <osgGeoFX/work/detail/WorkQueue.h>
 
 #include <osg/ValueObject>
 #include <osgDB/ReadFile>

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/DistributedBuild.h>
 
+#include <osgGeoFX/batch/WorkError.h>
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/PlanFile.h>
 #include <osgGeoFX/terrain/detail/TilePass.h>
-#include <osgGeoFX/work/WorkError.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -213,7 +213,8 @@ TEST_F(FilmProgram, ManyProcessesDrawTheFilmOfOne)
     const ProgramResult whole = run("osggeofx_render", call("one/f%03d.png", {}));
     ASSERT_EQ(whole.exitCode, 0) << whole.standardError;
     expectDone("osggeofx_render", call("f%03d.png", {"--plan", "many"}));
-    const auto plan = nlohmann::json::parse(bytes("many/work/plan.json"));
+    const auto plan =
+        nlohmann::json::parse(bytes((std::filesystem::path("many") / "work" / "plan.json").string()));
     EXPECT_EQ(plan.at("program"), "osggeofx_render");
     EXPECT_EQ(plan.at("stages").at(0).at("name"), "frames");
     EXPECT_EQ(plan.at("stages").at(0).at("units"), 5);

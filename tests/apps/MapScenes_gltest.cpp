@@ -173,7 +173,8 @@ TEST_F(MapScenes, PrintsAreDrawnAnewWhenTheMapChanges)
         const ProgramResult result = run("osggeofx_render", call);
         ASSERT_EQ(result.exitCode, 0) << result.standardError;
     }
-    const std::string tile = "plan/work/tiles/tile-0-0.tif";
+    const fs::path tiles = fs::path("plan") / "work" / "tiles";
+    const std::string tile = (tiles / "tile-0-0.tif").string();
     ASSERT_GT(magentaIn(tile), 0);
     // They are used again: the print has what somebody has painted onto them.
     geofx::test::ProgramOptions here;
@@ -181,11 +182,11 @@ TEST_F(MapScenes, PrintsAreDrawnAnewWhenTheMapChanges)
     ASSERT_EQ(
         geofx::test::runProgram({"oiiotool", tile, "--fill:color=1,0,1", "20x20", "-o", tile}, here).exitCode,
         0);
-    fs::copy(file("plan/work/tiles"), file("print.tiles"));
+    fs::copy(file(tiles.string()), file("print.tiles"));
     rendered("map.geofx", "print.tif", {}, size);
     EXPECT_GE(magentaIn("print.tif"), 400);
     EXPECT_FALSE(fs::exists(file("print.tiles")));
-    fs::copy(file("plan/work/tiles"), file("print.tiles"));
+    fs::copy(file(tiles.string()), file("print.tiles"));
     write("style.json", R"({"lines": {"trail": {"color": "#00ff00", "width": 14, "least": 14}},
                            "names": {"hut": {"color": "#000000"}}})");
     rendered("map.geofx", "print.tif", {}, size);

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/work/WholeFile.h>
+#include <osgGeoFX/batch/WholeFile.h>
 
 #include <cstddef>
 #include <string>

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 
+#include <osgGeoFX/batch/PlannedWork.h>
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 #include <osgGeoFX/terrain/detail/KeptFiles.h>
 #include <osgGeoFX/terrain/detail/PlanFile.h>
-#include <osgGeoFX/work/PlannedWork.h>
 
 #include <algorithm>
 #include <fstream>

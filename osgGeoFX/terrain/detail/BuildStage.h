@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/work/WorkStage.h>
+#include <osgGeoFX/batch/WorkStage.h>
 
 namespace osgGeoFX
 {

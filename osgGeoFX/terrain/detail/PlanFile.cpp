@@ -5,8 +5,8 @@
 #include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildPlan.h>
 
+#include <osgGeoFX/batch/PlannedWork.h>
 #include <osgGeoFX/geodata/BuildError.h>
-#include <osgGeoFX/work/PlannedWork.h>
 
 #include <nlohmann/json.hpp>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/work/PlannedWork.h>
+#include <osgGeoFX/batch/PlannedWork.h>
 
-#include <osgGeoFX/work/WholeFile.h>
-#include <osgGeoFX/work/WorkError.h>
-#include <osgGeoFX/work/detail/UnitLog.h>
-#include <osgGeoFX/work/detail/WorkQueue.h>
+#include <osgGeoFX/batch/WholeFile.h>
+#include <osgGeoFX/batch/WorkError.h>
+#include <osgGeoFX/batch/detail/UnitLog.h>
+#include <osgGeoFX/batch/detail/WorkQueue.h>
 
 #include <nlohmann/json.hpp>
 

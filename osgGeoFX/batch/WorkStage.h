@@ -19,7 +19,7 @@ namespace osgGeoFX
 
     begin() comes first, once in each process. Then takeOver() and run() may be called from several threads, for
     different units.
-    @ingroup work */
+    @ingroup batch */
 class OSGGEOFX_EXPORT WorkStage
 {
 public:

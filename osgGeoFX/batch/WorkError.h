@@ -11,7 +11,7 @@ namespace osgGeoFX
 
 /// Thrown for plans that cannot be used and files that cannot be written. The message is a sentence that names the
 /// file, if there is one, and the remedy.
-/// @ingroup work
+/// @ingroup batch
 class OSGGEOFX_EXPORT WorkError : public std::runtime_error
 {
 public:

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
-#include <osgGeoFX/work/WorkStage.h>
+#include <osgGeoFX/batch/WorkStage.h>
 
 #include <cstdint>
 #include <functional>
@@ -17,7 +17,7 @@ namespace osgGeoFX
 /** The plan of a work that any number of processes do, on one machine or on many with a shared folder: `work/plan.json`
     in the folder of the result. Here is what all plans have; the program that has made one adds what it needs itself.
     Beside the plan, processes keep accounts of their units, which tell what is done.
-    @ingroup work */
+    @ingroup batch */
 struct OSGGEOFX_EXPORT WorkPlan
 {
     std::string program = "osggeofx_build"; ///< that does the units, with --work and --unit
@@ -46,7 +46,7 @@ struct OSGGEOFX_EXPORT WorkPlan
 };
 
 /// What doUnits() has done.
-/// @ingroup work
+/// @ingroup batch
 struct BuiltUnits
 {
     std::uint64_t built = 0;     ///< by this call
@@ -70,12 +70,12 @@ struct UnitOptions
     Any number of processes may do any units at once, even the same ones. A process may be killed at any time. Its
     units are then done again by the same call. Throws WorkError for ranges that the stages do not have, and if a stage
     before is not done; and what units throw.
-    @ingroup work */
+    @ingroup batch */
 OSGGEOFX_EXPORT BuiltUnits doUnits(const std::string& folder, const WorkStages& stages,
                                    const std::vector<std::string>& ranges, const UnitOptions& options);
 
 /// How far a stage of a planned work is.
-/// @ingroup work
+/// @ingroup batch
 struct StageStatus
 {
     std::string name;
@@ -108,7 +108,7 @@ struct StageStatus
 };
 
 /// How far a planned work is.
-/// @ingroup work
+/// @ingroup batch
 struct WorkStatus
 {
     bool finished = false;           ///< the last stage is done
@@ -120,7 +120,7 @@ struct WorkStatus
 
 /// Reads the plan and the accounts that processes leave in the folder. Throws WorkError if there is no plan. Any thread
 /// may call it, while processes work.
-/// @ingroup work
+/// @ingroup batch
 OSGGEOFX_EXPORT WorkStatus readWorkStatus(const std::string& folder);
 
 } // namespace osgGeoFX

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/work/WorkError.h>
+#include <osgGeoFX/batch/WorkError.h>
 
 namespace osgGeoFX
 {

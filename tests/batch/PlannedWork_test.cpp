@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Works in units by any number of processes: what is done, what is measured, and how a work ends.
-#include <osgGeoFX/work/PlannedWork.h>
-#include <osgGeoFX/work/WorkError.h>
-#include <osgGeoFX/work/WorkTimes.h>
+#include <osgGeoFX/batch/PlannedWork.h>
+#include <osgGeoFX/batch/WorkError.h>
+#include <osgGeoFX/batch/WorkTimes.h>
 #include <tools/TempDir.h>
 
 #include <gtest/gtest.h>

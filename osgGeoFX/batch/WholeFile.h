@@ -15,13 +15,13 @@ constexpr const char* TEMPORARY_ENDING = ".tmp";
 
 /// A name beside `path` that no other thread, process or machine uses. It ends with TEMPORARY_ENDING. Any thread may
 /// call it.
-/// @ingroup work
+/// @ingroup batch
 OSGGEOFX_EXPORT std::string temporaryName(const std::string& path);
 
 /** Writes a file under a temporary name and renames it, so that a reader finds all of it or nothing. It makes the
     folder. Returns 0. If the disk is full or the folder read-only, it leaves nothing behind and returns the error
     number. Any thread may call it.
-    @ingroup work */
+    @ingroup batch */
 OSGGEOFX_EXPORT int writeWholeFile(const std::string& path, const char* data, std::size_t size);
 
 } // namespace osgGeoFX

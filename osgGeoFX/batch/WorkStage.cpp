@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/work/WorkStage.h>
+#include <osgGeoFX/batch/WorkStage.h>
 
 namespace osgGeoFX
 {

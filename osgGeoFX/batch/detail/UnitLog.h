@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/work/PlannedWork.h>
-#include <osgGeoFX/work/WorkTimes.h>
+#include <osgGeoFX/batch/PlannedWork.h>
+#include <osgGeoFX/batch/WorkTimes.h>
 
 #include <string>
 #include <vector>

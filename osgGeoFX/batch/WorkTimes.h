@@ -12,7 +12,7 @@ namespace osgGeoFX
 {
 
 /// What a unit of a planned work took, seconds.
-/// @ingroup work
+/// @ingroup batch
 struct UnitTime
 {
     double wall = 0.0; ///< but for the time in which others had its core
@@ -20,7 +20,7 @@ struct UnitTime
 };
 
 /// A process that has done units of a stage. Times are in seconds, points in time since 1970.
-/// @ingroup work
+/// @ingroup batch
 struct ProcessTime
 {
     std::string host;
@@ -33,7 +33,7 @@ struct ProcessTime
 };
 
 /// The times that were measured of a stage.
-/// @ingroup work
+/// @ingroup batch
 struct StageTimes
 {
     std::string name;
@@ -44,7 +44,7 @@ struct StageTimes
 
 /// Reads the times of all stages that a work's plan has from the accounts of its processes. Accounts are there until
 /// the last stage is done. Throws WorkError if there is no plan. Any thread may call it, while processes work.
-/// @ingroup work
+/// @ingroup batch
 OSGGEOFX_EXPORT std::vector<StageTimes> readWorkTimes(const std::string& folder);
 
 } // namespace osgGeoFX

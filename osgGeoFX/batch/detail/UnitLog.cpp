@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/work/detail/UnitLog.h>
+#include <osgGeoFX/batch/detail/UnitLog.h>
 
-#include <osgGeoFX/work/WorkError.h>
+#include <osgGeoFX/batch/WorkError.h>
 
 #include <algorithm>
 #include <atomic>
