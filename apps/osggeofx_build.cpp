@@ -201,7 +201,12 @@ int main(int argc, char** argv)
         {
             options.output = plan;
             const auto planned = osgGeoFX::planBuild(options);
-            if (!quiet) std::printf("%s: planned: %s.\n", plan.c_str(), planned.text().c_str());
+            if (!quiet && osgGeoFX::readBuildStatus(plan).finished)
+                std::printf("%s/terrain.osgb: nothing has changed since this database was built; nothing is "
+                            "planned.\n",
+                            plan.c_str());
+            else if (!quiet)
+                std::printf("%s: planned: %s.\n", plan.c_str(), planned.text().c_str());
             return 0;
         }
         if (!quiet || estimate)

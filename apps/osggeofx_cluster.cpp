@@ -103,6 +103,8 @@ std::string programOf(const Options& options, const WorkStatus& work)
 std::string workerLine(const Options& options, const WorkStatus& work, const JobArray& array,
                        const std::string& part)
 {
+    if (options.memoryMiB > 0 && work.program != "osggeofx_build")
+        throw WorkError("--memory: " + work.program + " has no such limit; leave it out.");
     std::string line = quoted(programOf(options, work)) + " --quiet --threads 1";
     if (options.memoryMiB > 0) line += " --memory " + std::to_string(options.memoryMiB);
     line += " --work " + quoted(options.folder) + " --unit";
@@ -241,7 +243,13 @@ bool printSlurm(const WorkStatus& work)
             std::printf("%s: %s is not here.\n", title, command.front().c_str());
             return false;
         }
-        if (result.exitCode != 0) return true; // no accounting, or all jobs are forgotten already
+        if (result.exitCode != 0)
+        {
+            // Jobs that ended long ago are forgotten.
+            if (result.standardError.find("Invalid job id") != std::string::npos) return true;
+            std::printf("%s does not answer: %s\n", title, result.standardError.c_str());
+            return false;
+        }
         std::map<std::string, int> states;
         std::istringstream lines(result.standardOutput);
         for (std::string line; std::getline(lines, line);)
@@ -353,10 +361,13 @@ void printMakefile(const Options& options)
 void predict(Options options)
 {
     WorkStatus work = statusOf(options);
-    const MeasuredTimes times = MeasuredTimes::read(options.times.empty() ? options.folder : options.times);
-    if (!options.save.empty()) times.write(options.save);
+    if (work.finished)
+        throw WorkError(options.folder + ": the work is finished; plan it in another folder to predict it.");
+    const std::string source = options.times.empty() ? options.folder : options.times;
+    const MeasuredTimes times = MeasuredTimes::read(source);
     if (times.stages.empty())
-        throw WorkError(options.folder + ": no times were measured; do some units first, or give --times.");
+        throw WorkError(source + ": no times were measured; do some units first, or give --times.");
+    if (!options.save.empty()) times.write(options.save);
     std::string missing;
     for (StageStatus& stage : work.stages)
     {

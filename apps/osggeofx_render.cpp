@@ -534,7 +534,7 @@ int main(int argc, char** argv)
         std::cerr << "osggeofx_render: " << failure.what() << std::endl;
         return failure.exitCode;
     }
-    catch (const std::runtime_error& fault)
+    catch (const std::exception& fault)
     {
         std::cerr << "osggeofx_render: " << fault.what() << std::endl;
         return badInput;

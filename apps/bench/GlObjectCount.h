@@ -24,16 +24,19 @@ struct GlObjectCount
         // OSG has no use for this one.
         GLboolean(GL_APIENTRY * isFrameBuffer)(GLuint) = nullptr;
         osg::setGLExtensionFuncPtr(isFrameBuffer, "glIsFramebuffer");
-        // Names are handed out from the lowest on.
-        constexpr GLuint mostNames = 20000;
+        // Names are handed out from the lowest on, so a long run without any is the end.
+        constexpr GLuint longest = 20000;
         GlObjectCount count;
-        for (GLuint name = 1; name < mostNames; ++name)
+        int before = 0;
+        for (GLuint name = 1, last = 0; name < last + longest; ++name)
         {
             count.textures += glIsTexture(name) ? 1 : 0;
             count.buffers += gl.glIsBuffer(name) ? 1 : 0;
             count.frameBuffers += isFrameBuffer && isFrameBuffer(name) ? 1 : 0;
             count.programs += isProgram(gl, name) ? 1 : 0;
             count.vertexArrays += gl.glIsVertexArray(name) ? 1 : 0;
+            if (count.all() > before) last = name;
+            before = count.all();
         }
         return count;
     }

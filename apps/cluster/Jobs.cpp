@@ -56,7 +56,8 @@ std::vector<JobArray> arraysOf(const JobOptions& options, const WorkStatus& work
     std::vector<JobArray> arrays;
     for (const StageStatus& stage : work.stages)
     {
-        if (stage.done == stage.units) continue;
+        // If all of the last one is done but the work is not finished, its process was lost on the way.
+        if (stage.done == stage.units && &stage != &work.stages.back()) continue;
         const std::uint64_t jobs = jobsOf(options, work, stage);
         if (jobs == 1 && !arrays.empty() && arrays.back().jobs == 1)
             arrays.back().stages.push_back(stage.name);

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "panorama/Recipe.h"
 
+#include <osgGeoFX/batch/WholeFile.h>
+
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -192,14 +194,8 @@ std::string Recipe::text() const
 
 void Recipe::write(const std::string& file) const
 {
-    const Json json = jsonOf(*this, folderOf(file));
-    const std::string unfinished = file + ".part";
-    std::ofstream stream(unfinished, std::ios::binary);
-    stream << json.dump(2) << '\n';
-    stream.close();
-    std::error_code fault;
-    if (stream) fs::rename(unfinished, file, fault);
-    if (!stream || fault)
+    const std::string text = jsonOf(*this, folderOf(file)).dump(2) + "\n";
+    if (osgGeoFX::writeWholeFile(file, text.data(), text.size()) != 0)
         throw Failure(file + ": cannot be written; check the folder, its permissions and the disk's space.");
 }
 

@@ -109,8 +109,17 @@ void PicturePlan::write(const std::string& folder) const
                                              {"madeOf", madeOf},
                                              {"estimate", {{"seconds", seconds}}},
                                              {"stages", list}};
-    const std::string text = document.dump(2) + "\n";
     const std::string file = WorkPlan::file(folder);
+    std::string text;
+    try
+    {
+        text = document.dump(2) + "\n";
+    }
+    catch (const nlohmann::json::exception&)
+    {
+        throw WorkError(file +
+                        ": a name on the command line is not UTF-8; rename the file, or write it in UTF-8.");
+    }
     if (const int error = osgGeoFX::writeWholeFile(file, text.data(), text.size()))
         throw WorkError(file + ": cannot be written (" + std::generic_category().message(error) +
                         "); make the folder writable, or choose another with --plan.");
@@ -118,7 +127,12 @@ void PicturePlan::write(const std::string& folder) const
 
 std::optional<PicturePlan> PicturePlan::read(const std::string& folder, const std::string& program)
 {
-    if (!WorkPlan::isIn(folder) && fs::exists(WorkPlan::finishedFile(folder))) return std::nullopt;
+    if (!WorkPlan::isIn(folder) && fs::exists(WorkPlan::finishedFile(folder)))
+    {
+        // Its last process may have been killed before the work files were gone.
+        WorkPlan::finish(folder);
+        return std::nullopt;
+    }
     const std::string path = WorkPlan::file(folder);
     PicturePlan plan;
     // It says what is wrong with a plan that is missing or damaged.
@@ -208,6 +222,13 @@ void Division::run(const osgGeoFX::WorkStages& stages, const std::string& madeOf
             WorkPlan::file(_worker->folder) +
             ": the pictures were planned of other files than there are now (planned: " + _plan.madeOf +
             "; now: " + madeOf + "); put back what was changed, or plan anew with --plan.");
+    for (std::size_t i = 0; i < std::max(stages.size(), _plan.stages.size()); ++i)
+        if (i >= stages.size() || i >= _plan.stages.size() || stages[i]->name() != _plan.stages[i].name ||
+            stages[i]->units() != _plan.stages[i].units)
+            throw WorkError(
+                WorkPlan::file(_worker->folder) +
+                ": this program divides the pictures otherwise than the one that planned them; use "
+                "that one, or plan anew with --plan.");
     const osgGeoFX::BuiltUnits result = osgGeoFX::doUnits(_worker->folder, stages, _worker->units, {});
     if (result.finished) WorkPlan::finish(_worker->folder);
     if (_worker->quiet) return;

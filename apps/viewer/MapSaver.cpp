@@ -5,6 +5,7 @@
 #include "panorama/Recipe.h"
 #include "panorama/RecipeLiberties.h"
 
+#include <osgGeoFX/batch/WholeFile.h>
 #include <osgGeoFX/panorama/PanoramaPose.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 
@@ -16,7 +17,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -265,14 +265,10 @@ void MapSaver::writeScene(const PanoramaMap& map, const Pose& pose, const std::s
     xmlChar* text = nullptr;
     int size = 0;
     xmlDocDumpFormatMemoryEnc(document.get(), &text, &size, "UTF-8", 1);
-    const std::string unfinished = file + ".part";
-    std::ofstream stream(unfinished, std::ios::binary);
-    if (text) stream.write(reinterpret_cast<const char*>(text), size);
+    const bool written = text && osgGeoFX::writeWholeFile(file, reinterpret_cast<const char*>(text),
+                                                          static_cast<std::size_t>(size)) == 0;
     xmlFree(text);
-    stream.close();
-    std::error_code fault;
-    if (stream) fs::rename(unfinished, file, fault);
-    if (!stream || fault)
+    if (!written)
         throw Failure(file + ": cannot be written; check the folder, its permissions and the disk's space.");
 }
 

@@ -32,8 +32,9 @@ struct OSGGEOFX_EXPORT WorkPlan
 
     /// Where a work keeps its files while it goes on.
     static std::string workFolder(const std::string& folder);
+    /// The plan's own: JSON with `program`, `estimate.seconds` and `stages`, a list of `name`, `units`, `seconds`.
     static std::string file(const std::string& folder);
-    /// Whether a folder has a plan whose last stage is not done.
+    /// Whether a folder has a plan that is not finished.
     static bool isIn(const std::string& folder);
     /// Throws WorkError if there is none, or a damaged one.
     static WorkPlan read(const std::string& folder);
@@ -41,7 +42,7 @@ struct OSGGEOFX_EXPORT WorkPlan
     /// Where finish() leaves the plan.
     static std::string finishedFile(const std::string& folder);
     /// Moves the plan out of the work files and removes these, and what killed processes have left beside the results: the
-    /// work is finished. Nothing is left to do where another process has done so. Throws WorkError.
+    /// work is finished. Nothing is left to do where another process has done so. Throws WorkError. Any thread may call it.
     static void finish(const std::string& folder);
 };
 
@@ -55,6 +56,8 @@ struct BuiltUnits
     bool finished = false;       ///< the last stage is done
 };
 
+/// How doUnits() does them.
+/// @ingroup batch
 struct UnitOptions
 {
     int threads = 1;
@@ -69,7 +72,7 @@ struct UnitOptions
 
     Any number of processes may do any units at once, even the same ones. A process may be killed at any time. Its
     units are then done again by the same call. Throws WorkError for ranges that the stages do not have, and if a stage
-    before is not done; and what units throw.
+    before is not done; and what units throw. Any thread may call it, with stages of its own.
     @ingroup batch */
 OSGGEOFX_EXPORT BuiltUnits doUnits(const std::string& folder, const WorkStages& stages,
                                    const std::vector<std::string>& ranges, const UnitOptions& options);

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
 
 namespace osgGeoFX
 {
@@ -27,10 +26,6 @@ std::string temporaryName(const std::string& path)
 
 int writeWholeFile(const std::string& path, const char* data, std::size_t size)
 {
-    std::error_code code;
-    std::filesystem::create_directories(std::filesystem::absolute(path).parent_path(), code);
-    if (code) return code.value();
-
     const std::string temporary = temporaryName(path);
     std::FILE* file = std::fopen(temporary.c_str(), "wb");
     if (!file) return errno;

@@ -18,9 +18,9 @@ constexpr const char* TEMPORARY_ENDING = ".tmp";
 /// @ingroup batch
 OSGGEOFX_EXPORT std::string temporaryName(const std::string& path);
 
-/** Writes a file under a temporary name and renames it, so that a reader finds all of it or nothing. It makes the
-    folder. Returns 0. If the disk is full or the folder read-only, it leaves nothing behind and returns the error
-    number. Any thread may call it.
+/** Writes a file under a temporary name and renames it, so that a reader finds all of it or nothing. Returns 0.
+    If the folder is missing or read-only, or the disk is full, it leaves nothing behind and returns the error number.
+    Any thread may call it.
     @ingroup batch */
 OSGGEOFX_EXPORT int writeWholeFile(const std::string& path, const char* data, std::size_t size);
 

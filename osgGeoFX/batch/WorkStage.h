@@ -17,8 +17,8 @@ namespace osgGeoFX
     unit needs the results of all stages before. It leaves its own in files that no other stage writes. Thus a unit may
     be done twice, even by two processes at once: they write the same bytes.
 
-    begin() comes first, once in each process. Then takeOver() and run() may be called from several threads, for
-    different units.
+    begin() comes first, before each range of units, on one thread. Then takeOver(), hasWork(), keep() and run() may be
+    called from several threads, for different units.
     @ingroup batch */
 class OSGGEOFX_EXPORT WorkStage
 {

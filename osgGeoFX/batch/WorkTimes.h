@@ -28,8 +28,7 @@ struct ProcessTime
     double end = 0.0;   ///< its last sign of life
     /// From its start to its first unit, but for the time in which others had its core; 0 if it did other units before.
     double startWall = 0.0;
-    double startCpu = 0.0;           ///< the same in CPU time
-    std::vector<std::uint64_t> open; ///< units that it has begun and neither done nor failed
+    double startCpu = 0.0; ///< the same in CPU time
 };
 
 /// The times that were measured of a stage.

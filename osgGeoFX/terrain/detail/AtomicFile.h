@@ -14,7 +14,7 @@ namespace osgGeoFX
 /// Throws a BuildError for a file that cannot be written. The remedy in it suits the error number.
 [[noreturn]] void failToWrite(const std::string& path, int error);
 
-/// As writeWholeFile(); throws a BuildError if the file cannot be written.
+/// As writeWholeFile(), and makes the folder; throws a BuildError if the file cannot be written.
 void writeFileAtomically(const std::string& path, const char* data, std::size_t size);
 
 /// The bytes of a work file: plain values and arrays, read in the order in which they were written.

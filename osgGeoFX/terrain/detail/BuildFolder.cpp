@@ -81,7 +81,8 @@ void replaceKept(const fs::path& database)
                    kept = keptFolderOf(database);
     for (const char* name : KEPT_WORK)
         if (fs::exists(work / name)) move(work / name, next / name);
-    if (!fs::exists(next)) return; // it was done before the interruption
+    // Another process was here, or it was done before the interruption.
+    if (!fs::exists(next / UNIT_RECORDS)) return;
     std::error_code code;
     fs::remove_all(former, code);
     fs::rename(kept, former, code);

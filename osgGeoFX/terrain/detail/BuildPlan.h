@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/detail/ContentHash.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <osgGeoFX/terrain/detail/BlendMask.h>
-#include <osgGeoFX/terrain/detail/ContentHash.h>
 #include <osgGeoFX/terrain/detail/GroundRaster.h>
 #include <osgGeoFX/terrain/detail/HeightGrid.h>
 #include <osgGeoFX/terrain/detail/TilingScheme.h>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/batch/detail/ContentHash.h>
 #include <osgGeoFX/terrain/detail/CellMask.h>
-#include <osgGeoFX/terrain/detail/ContentHash.h>
 #include <osgGeoFX/terrain/detail/RowFile.h>
 
 #include <atomic>

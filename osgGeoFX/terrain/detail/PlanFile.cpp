@@ -180,10 +180,6 @@ PlanFile PlanFile::read(const std::string& folder)
         result.options.output = folder;
         for (const json& line : document.at("builtFrom"))
             result.fingerprint += line.get<std::string>() + "\n";
-        for (const json& stage : document.at("stages"))
-            result.stages.emplace_back(stage.at("name").get<std::string>(),
-                                       stage.at("units").get<std::uint64_t>());
-        result.estimatedSeconds = document.at("estimate").at("seconds").get<double>();
         return result;
     }
     catch (const json::exception& error)

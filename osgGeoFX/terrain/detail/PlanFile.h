@@ -23,8 +23,6 @@ struct PlanFile
 
     BuildOptions options; ///< `output` is the folder that the plan was read from
     std::string fingerprint;
-    std::vector<std::pair<std::string, std::uint64_t>> stages; ///< names, and numbers of units
-    double estimatedSeconds = 0.0;
 
     /// Throws BuildError if there is no plan, or one that this version cannot read.
     static PlanFile read(const std::string& folder);

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-#include <osgGeoFX/terrain/detail/ContentHash.h>
+#include <osgGeoFX/batch/detail/ContentHash.h>
 #include <osgGeoFX/terrain/detail/TileTextures.h>
 
 #include <array>
