@@ -55,8 +55,8 @@ using geofx::panorama::colorBlind;
 
 struct Arguments
 {
-    std::vector<std::string> sources;
-    std::string output, size, viewFrom, focus, place, palette, recipe, work, vertical, pick, plan;
+    std::vector<std::string> sources, picks;
+    std::string output, size, viewFrom, focus, place, palette, recipe, work, vertical, plan;
     std::string landCover, landCoverTable, treeCover;
     std::optional<double> around, width, exaggeration, horizonLine, horizonDistance;
     std::optional<unsigned int> samples;
@@ -147,10 +147,12 @@ void addOptions(CLI::App& app, Arguments& arguments)
                        "is there, and an interrupted run goes on with it")
             ->type_name("DIR");
     geofx::plan::addOption(app, arguments.plan)->excludes(work);
-    app.add_option("--pick", arguments.pick,
+    app.add_option("--pick", arguments.picks,
                    "Print the place that a pixel shows: longitude, latitude and height; pixels count from "
-                   "the upper left")
-        ->type_name("X,Y");
+                   "the upper left. As often as wanted")
+        ->expected(1)
+        ->type_name("X,Y")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_flag(
         "--liberties{0.7}", arguments.liberties,
         "Take liberties as painters did: enlarge summits that look small, widen the main valley, turn a "
@@ -438,17 +440,20 @@ osg::ref_ptr<PanoramaMap> mapOf(const Recipe& recipe)
     return map;
 }
 
-void printPick(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Scene& scene,
-               const osgGeoFX::DeformedView& view)
+void printPicks(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Scene& scene,
+                const osgGeoFX::DeformedView& view)
 {
-    const osg::Vec2d pixel = pairOf("--pick", arguments.pick);
-    double longitude = 0.0, latitude = 0.0, height = 0.0;
-    if (scene.reference && view.unproject(pixel.x() + 0.5, recipe.height - pixel.y() - 0.5, *scene.reference,
-                                          longitude, latitude, height))
-        std::printf("%s: longitude %.6f, latitude %.6f, height %.1f m\n", arguments.pick.c_str(),
-                    osg::RadiansToDegrees(longitude), osg::RadiansToDegrees(latitude), height);
-    else
-        std::printf("%s: no ground\n", arguments.pick.c_str());
+    for (const std::string& pick : arguments.picks)
+    {
+        const osg::Vec2d pixel = pairOf("--pick", pick);
+        double longitude = 0.0, latitude = 0.0, height = 0.0;
+        if (scene.reference && view.unproject(pixel.x() + 0.5, recipe.height - pixel.y() - 0.5,
+                                              *scene.reference, longitude, latitude, height))
+            std::printf("%s: longitude %.6f, latitude %.6f, height %.1f m\n", pick.c_str(),
+                        osg::RadiansToDegrees(longitude), osg::RadiansToDegrees(latitude), height);
+        else
+            std::printf("%s: no ground\n", pick.c_str());
+    }
 }
 
 osgGeoFX::PrintSize sizeOf(const Recipe& recipe)
@@ -508,9 +513,9 @@ void print(const Arguments& arguments, const Recipe& recipe, const osgGeoFX::Sce
     }
     putTogether();
     if (page) page->write(scene, renderer, view, map.names());
-    if (arguments.pick.empty()) return;
+    if (arguments.picks.empty()) return;
     const double aspect = static_cast<double>(recipe.width) / recipe.height;
-    printPick(
+    printPicks(
         arguments, recipe, scene,
         {*scene.effects, view, osg::Matrixd::perspective(renderer.fieldOfView, aspect, 1.0, 1e6),
          static_cast<double>(recipe.width), static_cast<double>(recipe.height),
@@ -559,7 +564,7 @@ void paint(const Arguments& arguments, const std::string& ground, const Recipe& 
                    if (page) page->setPicture(plain);
                });
     if (!pictures.write(*image, 0)) throw Failure(pictures.error());
-    if (!arguments.pick.empty()) printPick(arguments, recipe, scene, {*scene.effects, renderer->camera()});
+    if (!arguments.picks.empty()) printPicks(arguments, recipe, scene, {*scene.effects, renderer->camera()});
     renderer.reset();
     if (page) page->write(scene, options, view, map.names());
     geofx::layers::write(arguments.layers, scene, sizeOf(recipe), options, map, view);
@@ -593,7 +598,7 @@ void checkPlan(const Arguments& arguments, const Recipe& recipe)
         throw Failure(
             "--plan is for what has parts: a print, whose --size is large or has a resolution; leave "
             "it out, or take another --size.");
-    if (arguments.layers.any() || arguments.web.wanted() || !arguments.pick.empty())
+    if (arguments.layers.any() || arguments.web.wanted() || !arguments.picks.empty())
         throw Failure(
             "--layers, --mesh, --web and --pick are for pictures that one process draws; leave them "
             "out, or --plan.");
@@ -643,7 +648,8 @@ void run(Arguments& arguments, geofx::plan::Division& division)
     takeOptions(arguments, recipe);
     if (division.any()) checkPlan(arguments, recipe);
     const PanoramaWishes wishes = wishesOf(arguments, recipe);
-    if (!arguments.pick.empty()) pairOf("--pick", arguments.pick);
+    for (const std::string& pick : arguments.picks)
+        pairOf("--pick", pick);
     geofx::panorama::checkLiberties(arguments.liberties, arguments.liberty);
     if (arguments.around && !arguments.liberties.empty())
         throw Failure("--liberties turns mountains to a viewer who stands before them; leave it out with "

@@ -7,6 +7,7 @@
 #include "DistantServer.h"
 #include "FlightPath.h"
 #include "Interruption.h"
+#include "Machine.h"
 #include "TerrainSuite.h"
 #include "WorkFolder.h"
 
@@ -27,7 +28,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -133,14 +133,6 @@ double processorSeconds()
     timespec time = {};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-double residentMiB()
-{
-    std::ifstream file("/proc/self/statm");
-    double size = 0.0, resident = 0.0;
-    file >> size >> resident;
-    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / MIB;
 }
 
 /// A flight in real time. Each frame has its place on the way and its time; a frame that is late is drawn at once.

@@ -55,4 +55,12 @@ Machine Machine::describe()
     return machine;
 }
 
+double residentMiB()
+{
+    std::ifstream file("/proc/self/statm");
+    double size = 0.0, resident = 0.0;
+    file >> size >> resident;
+    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
 } // namespace geofx::bench

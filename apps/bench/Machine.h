@@ -21,4 +21,7 @@ struct Machine
     static Machine describe();
 };
 
+/// Main memory that this process has now, MiB.
+double residentMiB();
+
 } // namespace geofx::bench

@@ -5,6 +5,7 @@
 #include "BenchError.h"
 #include "ChildProcess.h"
 #include "Growth.h"
+#include "Machine.h"
 #include "OahuSource.h"
 #include "OffscreenView.h"
 #include "TerrainSuite.h"
@@ -25,7 +26,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <mutex>
 #include <random>
 #include <sstream>
@@ -82,14 +82,6 @@ private:
     std::mutex _mutex;
     int _count = 0;
 };
-
-double residentMiB()
-{
-    std::ifstream file("/proc/self/statm");
-    double pages = 0.0, resident = 0.0;
-    file >> pages >> resident;
-    return resident * 4096.0 / 1048576.0;
-}
 
 /// The same numbers with every standard library.
 class Dice
@@ -152,8 +144,11 @@ osg::ref_ptr<osgGeoFX::ProjectiveMappings> randomMappings(Dice& dice, const View
     for (int i = dice.below(20); i >= 0; --i)
     {
         const osg::ref_ptr<osgGeoFX::ProjectiveMapping> mapping = new osgGeoFX::ProjectiveMapping;
-        mapping->setRectangle({dice.within(-8000.0, 8000.0), dice.within(-8000.0, 8000.0)},
-                              dice.within(200.0, 3000.0), dice.within(200.0, 3000.0), dice.within(-3.0, 3.0));
+        // Arguments have no order among themselves, so each number has a name.
+        const double x = dice.within(-8000.0, 8000.0), y = dice.within(-8000.0, 8000.0),
+                     width = dice.within(200.0, 3000.0), height = dice.within(200.0, 3000.0),
+                     turn = dice.within(-3.0, 3.0);
+        mapping->setRectangle({x, y}, width, height, turn);
         mapping->setLayer(new osgGeoFX::DataLayer(randomImage(dice)));
         mapping->setOpacity(dice.within(0.2, 1.0));
         mappings->addMapping(mapping);
@@ -172,7 +167,8 @@ osg::ref_ptr<osgGeoFX::CloseUps> randomCloseUps(Dice& dice, const ViewPoint& pla
         closeUp->getRegion()->setGeodeticCenter(place.longitude +
                                                     away * std::sin(heading) / std::cos(place.latitude),
                                                 place.latitude + away * std::cos(heading));
-        closeUp->getRegion()->setSize(dice.within(800.0, 3000.0), dice.within(800.0, 3000.0));
+        const double width = dice.within(800.0, 3000.0), depth = dice.within(800.0, 3000.0);
+        closeUp->getRegion()->setSize(width, depth);
         closeUp->setOffset({0.0, 0.0, dice.within(300.0, 1500.0)});
         closeUp->setScale(1.5, 1.5, 2.0);
         closeUps->addCloseUp(closeUp);
@@ -180,11 +176,16 @@ osg::ref_ptr<osgGeoFX::CloseUps> randomCloseUps(Dice& dice, const ViewPoint& pla
     return closeUps;
 }
 
-/// Other effects in the scene than before, most of them new objects.
-void changeEffects(osgGeoFX::EffectScene& scene, Dice& dice, const ViewPoint& place)
+void removeEffects(osgGeoFX::EffectScene& scene)
 {
     while (scene.getNumEffects())
         scene.removeEffect(scene.getEffect(0));
+}
+
+/// Other effects in the scene than before, most of them new objects.
+void changeEffects(osgGeoFX::EffectScene& scene, Dice& dice, const ViewPoint& place)
+{
+    removeEffects(scene);
     const int kind = dice.below(5);
     if (kind != 1 && dice.below(3) == 0)
     {
@@ -252,8 +253,7 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
         const int counted = std::max(frames / 40 / FRAMES_A_FLIGHT, 1) * FRAMES_A_FLIGHT;
         const auto countObjects = [&](int frame)
         {
-            while (scene->effects->getNumEffects())
-                scene->effects->removeEffect(scene->effects->getEffect(0));
+            removeEffects(*scene->effects);
             look(home);
             for (int i = 0; i < 30; ++i)
                 view.frame(frame / FRAMES_A_SECOND);

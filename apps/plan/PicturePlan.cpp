@@ -120,7 +120,10 @@ void PicturePlan::write(const std::string& folder) const
         throw WorkError(file +
                         ": a name on the command line is not UTF-8; rename the file, or write it in UTF-8.");
     }
-    if (const int error = osgGeoFX::writeWholeFile(file, text.data(), text.size()))
+    std::error_code code;
+    fs::create_directories(fs::path(file).parent_path(), code);
+    const int error = code ? code.value() : osgGeoFX::writeWholeFile(file, text.data(), text.size());
+    if (error != 0)
         throw WorkError(file + ": cannot be written (" + std::generic_category().message(error) +
                         "); make the folder writable, or choose another with --plan.");
 }

@@ -150,7 +150,24 @@ MemoryBudget::MemoryBudget(osgDB::DatabasePager& pager)
 {
 }
 
-MemoryBudget::~MemoryBudget() = default;
+MemoryBudget::~MemoryBudget()
+{
+    release();
+}
+
+/// The pager decides by itself again.
+void MemoryBudget::release()
+{
+    osg::ref_ptr<osgDB::DatabasePager> pager;
+    if (_formerTarget && _pager.lock(pager)) pager->setTargetMaximumNumberOfPageLOD(*_formerTarget);
+    _formerTarget.reset();
+    osg::ref_ptr<osg::Node> scene;
+    if (!_scene.lock(scene)) return;
+    TileAges ages(0);
+    scene->accept(ages);
+    for (const TileAges::Child& each : ages.sorted())
+        each.free();
+}
 
 void MemoryBudget::setLimits(double process, double gpu)
 {
@@ -165,6 +182,7 @@ void MemoryBudget::watch(osg::Node& scene, TileGuard& guard)
     osg::ref_ptr<osg::Node> former;
     osg::ref_ptr<osg::Callback> formerCallback;
     osg::ref_ptr<TileGuard> formerGuard;
+    release();
     if (_guard.lock(formerGuard)) formerGuard->removeListener(_ledger);
     if (_scene.lock(former) && _callback.lock(formerCallback)) former->removeUpdateCallback(formerCallback);
     const osg::ref_ptr<Callback> callback = new Callback(*this);
@@ -202,10 +220,15 @@ void MemoryBudget::update(osg::Node& scene, const osg::FrameStamp& stamp)
     if (limits.processBytes > 0 || limits.gpuBytes > 0)
     {
         // The pager has just removed what was chosen a frame ago.
+        if (!_formerTarget) _formerTarget = pager->getTargetMaximumNumberOfPageLOD();
         pager->setTargetMaximumNumberOfPageLOD(ALL_NODES);
         _prunes = false;
         if (frame >= _restsUntil && _ledger->taken() > HIGH) choose(scene, stamp);
         if (_prunes) pager->setTargetMaximumNumberOfPageLOD(0);
+    }
+    else if (_formerTarget)
+    {
+        release();
     }
     _lastTime = stamp.getReferenceTime();
 }

@@ -14,6 +14,7 @@
 #include <osgDB/DatabasePager>
 
 #include <cstdint>
+#include <optional>
 
 namespace osgGeoFX
 {
@@ -31,9 +32,11 @@ namespace osgGeoFX
     pager removes them as it removes all tiles, and deletes them on its threads; the budget only says which have expired. Tiles
     that a TilePrefetch wants to keep go last, and tiles in sight never. If these alone take more than a limit, one warning says so.
 
-    With a budget, nothing else expires. The pager's target number of PagedLODs and the minimum expiry times of PagedLODs below
-    the scene are the budget's to set. Memory that is not tiles' does not count: programs, frame buffers, what the scene's root
-    brings, and what OpenGL has not given back yet.
+    While it has a limit, nothing else expires. The pager's target number of PagedLODs and the minimum expiry times of PagedLODs
+    below the scene are the budget's to set. Without a limit the pager has its former target again, and the expiry times are 0, as
+    OSG has them. A scene with a budget should have a pager of its own: when tiles must go, the pager removes what it may
+    of other scenes, too. Memory that is not tiles' does not count: programs, frame buffers, strokes and whatever else listeners add to
+    tiles, what the scene's root brings, and what OpenGL has not given back yet.
 
     Threads: tiles are measured on the pager's threads. The rest happens in the update traversal of the watched node. Call all
     functions between frames, but counts() and hasRoom(), which any thread may call.
@@ -57,7 +60,7 @@ public:
         std::uint64_t tiles = 0;        ///< files that were read, and are still in memory
         std::uint64_t processBytes = 0; ///< what they take of main memory
         std::uint64_t gpuBytes = 0; ///< what they take of OpenGL's objects once all of them have been drawn
-        std::uint64_t removed = 0;  ///< files that had to go
+        std::uint64_t removed = 0;  ///< files that were given up; one that comes in sight at once may stay
         std::uint64_t removedAhead = 0; ///< of these, those that a TilePrefetch wanted to keep
     };
     Counts counts() const;
@@ -81,6 +84,7 @@ private:
     class Callback;
     void update(osg::Node& scene, const osg::FrameStamp& stamp);
     void choose(osg::Node& scene, const osg::FrameStamp& stamp);
+    void release();
 
     osg::observer_ptr<osgDB::DatabasePager> _pager;
     const osg::ref_ptr<Ledger> _ledger;
@@ -90,6 +94,7 @@ private:
     unsigned int _frame = 0;                    ///< of the last update
     unsigned int _restsUntil = 0;               ///< the frame before which nothing is chosen
     double _lastTime = 0.0;                     ///< reference time of the last update
+    std::optional<unsigned int> _formerTarget;  ///< of the pager, while the budget sets it
     bool _prunes = false;                       ///< whether the pager is about to remove what has been chosen
     bool _warned = false;
 };

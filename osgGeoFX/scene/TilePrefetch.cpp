@@ -46,10 +46,10 @@ struct Seen
     double lodScale = 1.0;
     bool sides = true;
     osg::Node::NodeMask mask = ~0u, override = 0;
-    osg::Matrixd above; ///< from the scene's children to the world
-    osg::observer_ptr<const osg::Camera>
-        viewsCamera;   ///< whose view is drawn; null for cameras that no path leads
-    double time = 0.0; ///< of the simulation
+    osg::Matrixd above;                          ///< from the scene's children to the world
+    osg::observer_ptr<const osg::Camera> leader; ///< the view's camera; null for cameras that no path leads
+    osg::Matrixd beside;                         ///< from the leader's eye space to this camera's
+    double time = 0.0;                           ///< of the simulation
     CameraMotion motion;
 
     AheadVisitor::Outlook outlook(const osg::Matrixd& modelView) const
@@ -206,7 +206,7 @@ void TilePrefetch::note(osgUtil::CullVisitor& outer, osg::Group& top, const View
     const osg::FrameStamp* stamp = outer.getFrameStamp();
     const osg::Camera* camera = outer.getCurrentCamera();
     if (!stamp || !camera || !outer.getDatabaseRequestHandler()) return;
-    const osg::View* owner = isNested(outer) ? nullptr : camera->getView();
+    const osg::Camera* const leader = leaderOf(outer);
     const std::lock_guard<std::mutex> lock(_parts->mutex);
     Watched& watched = _parts->cameras[camera];
     // Another camera may have got the address of one that is gone.
@@ -228,7 +228,10 @@ void TilePrefetch::note(osgUtil::CullVisitor& outer, osg::Group& top, const View
     seen.mask = outer.getTraversalMask();
     seen.override = outer.getNodeMaskOverride();
     seen.above = osg::computeLocalToWorld(outer.getNodePath());
-    seen.viewsCamera = isNested(outer) ? nullptr : owner ? owner->getCamera() : camera;
+    seen.leader = leader;
+    seen.beside = osg::Matrixd();
+    if (leader && leader != camera)
+        seen.beside = osg::Matrixd::inverse(seen.above * leader->getViewMatrix()) * view.modelView;
     seen.time = stamp->getSimulationTime();
     seen.motion.add(*stamp, view.modelView);
 }
@@ -236,7 +239,7 @@ void TilePrefetch::note(osgUtil::CullVisitor& outer, osg::Group& top, const View
 const TilePrefetch::Path* TilePrefetch::Parts::pathOf(const Seen& seen) const
 {
     osg::ref_ptr<const osg::Camera> camera;
-    if (!seen.viewsCamera.lock(camera)) return nullptr;
+    if (!seen.leader.lock(camera)) return nullptr;
     const Led* found = nullptr;
     for (const Led& each : paths)
         if (each.camera == camera.get() || (each.all && !found)) found = &each;
@@ -249,7 +252,7 @@ std::optional<osg::Matrixd> TilePrefetch::Parts::modelView(const Seen& seen, dou
     if (!path) return seen.motion.at(ahead);
     const std::optional<osg::Matrixd> view = (*path)(seen.time + ahead);
     if (!view) return std::nullopt;
-    return seen.above * *view;
+    return seen.above * *view * seen.beside;
 }
 
 std::vector<Seen*> TilePrefetch::Parts::current(unsigned int frameNumber)
@@ -297,6 +300,7 @@ std::vector<Request> TilePrefetch::Parts::look(const std::vector<Seen*>& seen, u
             top->traverse(*visitor);
         }
     }
+    visitor->found = nullptr;
     counts.cameras = static_cast<unsigned int>(moving.size());
     return result;
 }

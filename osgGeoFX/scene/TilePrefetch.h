@@ -65,8 +65,9 @@ public:
     void setLead(double seconds);
     double getLead() const;
 
-    /// Tells where a view's camera goes. `camera`: the view's own; null for those of all views. Slaves in the role LIKE follow
-    /// their view. Without a path, and with an empty one, motion tells.
+    /// Tells where a view's camera goes. `camera`: the view's own; null for those of all views. Slaves whose matrices are relative
+    /// to their view's follow it; of all other cameras, and without a path or with an empty one, motion tells. The path is asked in
+    /// the update traversal, and must not call this object.
     void setPath(Path path, const osg::Camera* camera = nullptr);
     /// The path of an osg::AnimationPath, which begins at a simulation time. One that does not loop ends with its last point.
     static Path along(const osg::AnimationPath& path, double start = 0.0);

@@ -23,13 +23,9 @@ namespace fs = std::filesystem;
 namespace
 {
 
-constexpr int WIDTH = 480, HEIGHT = 270;
-
 class LinesProgram : public geofx::test::MapProgram
 {
 protected:
-    LinesProgram() : MapProgram(201, WIDTH, HEIGHT) {}
-
     void SetUp() override
     {
         MapProgram::SetUp();
@@ -44,6 +40,12 @@ protected:
     {
         write("lines.geojson", collection(lineFeature(style, from, to)));
     }
+    /// From pixel 150, 200 to pixel 300, 215.
+    void writeTrail()
+    {
+        const std::vector<osg::Vec2d> ends = placesOf({{150, 200}, {300, 215}});
+        writeLine("trail", ends[0], ends[1]);
+    }
 };
 
 } // namespace
@@ -51,8 +53,7 @@ protected:
 // A line begins and ends where --pick says that its places are: in the picture, in the SVG and in the GeoJSON file.
 TEST_F(LinesProgram, LieWhereTheirPlacesArePicked)
 {
-    const osg::Vec2d from = placeOf(150, 200), to = placeOf(300, 215);
-    writeLine("trail", from, to);
+    writeTrail();
     const std::vector<std::string> usual = {"plain.json", "--lines", "lines.geojson", "--style",
                                             "style.json"};
     const auto with = [&](std::vector<std::string> more)
@@ -110,7 +111,7 @@ TEST_F(LinesProgram, LieWhereTheirPlacesArePicked)
 // With layers, lines are one of them: where the picture has them, and nowhere else.
 TEST_F(LinesProgram, AreALayerOfTheirOwn)
 {
-    writeLine("trail", placeOf(150, 200), placeOf(300, 215));
+    writeTrail();
     const ProgramResult result = panorama({"plain.json", "-o", "map.png", "--lines", "lines.geojson",
                                            "--style", "style.json", "--layers", "layers"});
     ASSERT_EQ(result.exitCode, 0) << result.standardError;
@@ -136,7 +137,7 @@ TEST_F(LinesProgram, AreALayerOfTheirOwn)
 // The same of a print, which is drawn in tiles: its lines are over the picture, and in the layer at the same pixels.
 TEST_F(LinesProgram, AreALayerOfPrints)
 {
-    writeLine("trail", placeOf(150, 200), placeOf(300, 215));
+    writeTrail();
     const auto print = [&](const std::string& output, std::vector<std::string> more)
     {
         more.insert(more.begin(), {"plain.json", "-o", output, "--work", "work", "--size", "6.4x3.6in@75dpi",
@@ -174,7 +175,7 @@ TEST_F(LinesProgram, AreALayerOfPrints)
 // A web page has lines even where the picture has them as vectors.
 TEST_F(LinesProgram, AreOnTheWebPageBesideVectors)
 {
-    writeLine("trail", placeOf(150, 200), placeOf(300, 215));
+    writeTrail();
     const auto linesOf = [&](const std::string& output, std::vector<std::string> more)
     {
         more.insert(more.begin(), {"plain.json", "-o", output, "--lines", "lines.geojson", "--style",
@@ -197,9 +198,9 @@ TEST_F(LinesProgram, AreOnTheWebPageBesideVectors)
 // A PDF is the picture with its names and lines, which are letters and paths.
 TEST_F(LinesProgram, APdfIsThePictureWithVectors)
 {
-    const osg::Vec2d from = placeOf(150, 200), to = placeOf(300, 215), hut = placeOf(220, 240);
-    writeLine("trail", from, to);
-    write("names.geojson", collection(pointFeature("Zirbenhütte", "hut", hut)));
+    const std::vector<osg::Vec2d> places = placesOf({{150, 200}, {300, 215}, {220, 240}});
+    writeLine("trail", places[0], places[1]);
+    write("names.geojson", collection(pointFeature("Zirbenhütte", "hut", places[2])));
     const auto make = [&](const std::string& output)
     {
         return run("osggeofx_panorama", {"plain.json", "-o", output, "--lines", "lines.geojson", "--labels",
@@ -253,11 +254,11 @@ TEST_F(LinesProgram, APdfIsThePictureWithVectors)
 // Scenes of any kind; a line that no style shows is not there.
 TEST_F(LinesProgram, AreOnPicturesOfAnyScene)
 {
-    const osg::Vec2d from = placeOf(150, 200), to = placeOf(300, 215);
+    const std::vector<osg::Vec2d> ends = placesOf({{150, 200}, {300, 215}});
     ASSERT_EQ(run("osggeofx_build", {"--dem", "volcano.tif", "-o", "db"}).exitCode, 0);
     const auto render = [&](const std::string& style)
     {
-        writeLine(style, from, to);
+        writeLine(style, ends[0], ends[1]);
         const ProgramResult result =
             run("osggeofx_render", {"db/terrain.osgb", "-o", "scene.png", "--size", "480x270", "--lines",
                                     "lines.geojson", "--style", "style.json", "--effect", "birdsEyeView"});
@@ -270,7 +271,6 @@ TEST_F(LinesProgram, AreOnPicturesOfAnyScene)
 
 TEST_F(LinesProgram, FaultsAreSentences)
 {
-    makePlain();
     writeLine("trail", {100.0, -80.0}, {100.1, -80.0});
     const auto faultOf = [&](std::vector<std::string> more)
     {

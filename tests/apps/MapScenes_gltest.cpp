@@ -25,13 +25,9 @@ namespace fs = std::filesystem;
 namespace
 {
 
-constexpr int WIDTH = 480, HEIGHT = 270;
-
 class MapScenes : public geofx::test::MapProgram
 {
 protected:
-    MapScenes() : MapProgram(201, WIDTH, HEIGHT) {}
-
     void SetUp() override
     {
         MapProgram::SetUp();

@@ -25,8 +25,6 @@ namespace
 class NamesProgram : public geofx::test::MapProgram
 {
 protected:
-    NamesProgram() : MapProgram(301, 640, 360) {}
-
     void writeNames(const std::string& features) const { write("names.geojson", collection(features)); }
 };
 
@@ -35,11 +33,11 @@ protected:
 // A name lies where --pick says that its place is: in the SVG file, and in the picture.
 TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
 {
-    const osg::Vec2d place = placeOf(300, 250);
+    const osg::Vec2d place = placeOf(225, 188);
     writeNames(pointFeature("Hütte <&>", "hut", place));
     write(
         "style.json",
-        R"({"names": {"hut": {"manner": "beside", "dot": 3, "color": "#ff00ff", "halo": "#ff00ff", "size": 20}}})");
+        R"({"names": {"hut": {"manner": "beside", "dot": 4, "color": "#ff00ff", "halo": "#ff00ff", "size": 26}}})");
     const ProgramResult vectors = panorama({"plain.json", "-o", "map.png", "--labels", "names.geojson",
                                             "--style", "style.json", "--svg", "names.svg"});
     ASSERT_EQ(vectors.exitCode, 0) << vectors.standardError;
@@ -48,8 +46,8 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
     const std::string svg = bytes("names.svg");
     std::smatch match;
     ASSERT_TRUE(std::regex_search(svg, match, std::regex("circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\""))) << svg;
-    EXPECT_NEAR(std::stod(match[1]), 300.5, 0.5);
-    EXPECT_NEAR(std::stod(match[2]), 250.5, 0.5);
+    EXPECT_NEAR(std::stod(match[1]), 225.5, 0.5);
+    EXPECT_NEAR(std::stod(match[2]), 188.5, 0.5);
     EXPECT_NE(svg.find("Hütte &lt;&amp;&gt;</text>"), std::string::npos);
     EXPECT_NE(svg.find("xlink:href=\"map.png\""), std::string::npos);
 
@@ -60,13 +58,13 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
     const osg::ref_ptr<osg::Image> named = osgDB::readRefImageFile(file("named.png"));
     ASSERT_TRUE(plain && named);
     int dot = 0, far = 0;
-    for (unsigned int y = 0; y < 360; ++y)
+    for (unsigned int y = 0; y < HEIGHT; ++y)
     {
-        for (unsigned int x = 0; x < 640; ++x)
+        for (unsigned int x = 0; x < WIDTH; ++x)
         {
             if (plain->getColor(x, y) == named->getColor(x, y)) continue;
-            const double dx = x + 0.5 - 300.5, dy = 359 - static_cast<int>(y) + 0.5 - 250.5;
-            // The dot is 3 pixels at a height of 900.
+            const double dx = x + 0.5 - 225.5, dy = HEIGHT - 1 - static_cast<int>(y) + 0.5 - 188.5;
+            // The dot is 4 pixels at a height of 900.
             dot += std::hypot(dx, dy) < 2.0 ? 1 : 0;
             far += dx < -60.0 || dx > 60.0 || std::abs(dy) > 12.0 ? 1 : 0;
         }
@@ -83,7 +81,7 @@ TEST_F(NamesProgram, LiesWhereThePlaceIsPicked)
 
 TEST_F(NamesProgram, IsOnPicturesOfAnyScene)
 {
-    const osg::Vec2d place = placeOf(320, 240);
+    const osg::Vec2d place = placeOf(240, 180);
     writeNames(pointFeature("Middle", "hut", place));
     char view[120];
     std::snprintf(view, sizeof(view), "%.6f,%.6f,60000,0,-90", place.x(), place.y());
@@ -118,7 +116,6 @@ TEST_F(NamesProgram, IsOnPicturesOfAnyScene)
 
 TEST_F(NamesProgram, FaultsAreSentences)
 {
-    makePlain();
     writeNames(pointFeature("Elsewhere", "", {100.0, -80.0}));
     const auto faultOf = [&](std::vector<std::string> more)
     {

@@ -109,7 +109,7 @@ TEST_F(CloseUpStates, WhatMakesNoSenseIsRefused)
 TEST_F(CloseUpStates, MayChangeFromFrameToFrame)
 {
     const CloseUpPlan plan;
-    for (int i = 0; i < (fullTest() ? 300 : 23); ++i)
+    for (int i = 0; i < (fullTest() ? 300 : 12); ++i)
     {
         Random random(static_cast<std::uint64_t>(i));
         if (_closeUps->getNumCloseUps() > 0 && random.integer(0, 1))

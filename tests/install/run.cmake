@@ -66,8 +66,12 @@ set(components Offscreen,Maps)
 if(DATA)
   string(APPEND components ",Data")
 endif()
+set(each OFF)
+if(DEFINED ENV{GEOFX_TEST_FULL})
+  set(each ON)
+endif()
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${root}/build -G ${GENERATOR}
-    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_FLAGS=${FLAGS} -DWANTED=${components}
+    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_FLAGS=${FLAGS} -DWANTED=${components} -DEACH=${each}
     -DHEADERS=${prefix}/include/osgGeoFX -DEXAMPLES=${CMAKE_CURRENT_LIST_DIR}/../../apps/examples)
 run(${CMAKE_COMMAND} --build ${root}/build)
 run(${root}/build/consumer)

@@ -211,6 +211,52 @@ TEST_F(Budgets, KeepALongFlightWithinTheLimit)
     EXPECT_GT(inGraph(), 0.5 * limit) << "more went than had to";
 }
 
+TEST_F(Budgets, WithoutALimitThePagerDecidesAgain)
+{
+    if (!open()) return;
+    osgDB::DatabasePager& pager = *viewer().getDatabasePager();
+    pager.setTargetMaximumNumberOfPageLOD(77);
+    look(-158.2);
+    settle();
+    const auto longest = [&]
+    {
+        struct Longest : osg::NodeVisitor
+        {
+            Longest() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+            void apply(osg::PagedLOD& node) override
+            {
+                for (unsigned int i = 0; i < node.getNumChildren(); ++i)
+                    time = std::max(time, node.getMinimumExpiryTime(i));
+                traverse(node);
+            }
+            double time = 0.0;
+        } visitor;
+        oahu->node->accept(visitor);
+        return visitor.time;
+    };
+    budget->setLimits(0.5, 0.0);
+    const std::vector<std::string> heard = watch().messagesOf([&] { rest(); });
+    EXPECT_LE(heard.size(), 1u);
+    EXPECT_NE(pager.getTargetMaximumNumberOfPageLOD(), 77u);
+    EXPECT_GT(longest(), 1e9);
+    budget->setLimits(0.0, 0.0);
+    frame();
+    EXPECT_EQ(pager.getTargetMaximumNumberOfPageLOD(), 77u);
+    EXPECT_EQ(longest(), 0.0);
+    // A target that the application sets now is left alone.
+    pager.setTargetMaximumNumberOfPageLOD(88);
+    frame();
+    EXPECT_EQ(pager.getTargetMaximumNumberOfPageLOD(), 88u);
+    // The scene's end is that of the budget.
+    budget->setLimits(1000.0, 0.0);
+    frame();
+    EXPECT_GT(pager.getTargetMaximumNumberOfPageLOD(), 100000u);
+    budget = nullptr;
+    oahu->node->setUpdateCallback(nullptr);
+    EXPECT_EQ(pager.getTargetMaximumNumberOfPageLOD(), 88u);
+    EXPECT_EQ(longest(), 0.0);
+}
+
 TEST_F(Budgets, TheLeastRecentlySeenGoFirst)
 {
     if (!open()) return;
@@ -292,12 +338,14 @@ TEST_F(Budgets, ALookAheadKeepsToTheLimit)
     // Half a degree in half a minute: some 1.7 km/s.
     double most = 0.0;
     bool shorter = false;
+    std::uint64_t removedBefore = 0;
     const auto start = std::chrono::steady_clock::now();
     constexpr double duration = 5.0;
     for (double time = 0.0; time < duration;)
     {
         time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         look(-158.25 + 0.3 * time / duration);
+        removedBefore = budget->counts().removedAhead;
         frame(time);
         most = std::max(most, inGraph());
         shorter = shorter || prefetch->counts().lead < 30.0;
@@ -310,4 +358,5 @@ TEST_F(Budgets, ALookAheadKeepsToTheLimit)
     EXPECT_LE(most, 1.1 * limit);
     EXPECT_GT(prefetch->counts().asked, 5u);
     EXPECT_LT(counts.removedAhead, oahu->guard->counts().tilesRead / 4) << "tiles go and come";
+    EXPECT_EQ(shorter, removedBefore > 0) << "it looks less far ahead after tiles had to go, and only then";
 }

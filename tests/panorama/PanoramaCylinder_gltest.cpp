@@ -129,7 +129,7 @@ TEST_P(PanoramaCylinder, CullsNothingThatShows)
 {
     osg::Camera& camera = *viewer().getCamera();
     const osg::CullSettings::CullingMode culling = camera.getCullingMode();
-    for (int sample = 0; sample < (fullTest() ? 50 : 6); ++sample)
+    for (int sample = 0; sample < (fullTest() ? 50 : 4); ++sample)
     {
         SCOPED_TRACE(sample);
         Random random(static_cast<std::uint64_t>(sample));

@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -696,6 +697,46 @@ TEST(StrokeMaker, StrokesGoWithTheirTile)
     EXPECT_TRUE(strokes.valid());
     tile = nullptr;
     EXPECT_FALSE(strokes.valid());
+}
+
+TEST(StrokeMaker, StrokesGoWithTheLastThatWantsThem)
+{
+    StrokeTiles tiles;
+    tiles.cover = everywhere(1.0, 0.0);
+    std::vector<osg::ref_ptr<osg::MatrixTransform>> row;
+    for (int i = 0; i < 3; ++i)
+        row.push_back(tiles.tile(1000.0 * i, 0.0, 1000.0 * i + 1000.0, 1000.0));
+    std::vector<osg::ref_ptr<StrokeMaker>> makers = {new StrokeMaker(nullptr), new StrokeMaker(nullptr)};
+    StrokeParameters parameters;
+    parameters.spacing = 77.0;
+    osg::ref_ptr<StrokeMaker> other = new StrokeMaker(nullptr);
+    other->setParameters(parameters);
+    const auto all = [&]
+    {
+        std::set<const osg::Geometry*> strokes;
+        for (const auto& tile : row)
+        {
+            const osg::UserDataContainer* data = StrokeTiles::geometryOf(*tile).getUserDataContainer();
+            for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
+                if (const auto* each = dynamic_cast<const TileStrokes*>(data->getUserObject(i)))
+                    strokes.insert(each->points());
+        }
+        return strokes.size();
+    };
+    for (const auto& tile : row)
+    {
+        for (const auto& maker : makers)
+            maker->strokes(StrokeTiles::geometryOf(*tile), tile->getMatrix());
+        other->strokes(StrokeTiles::geometryOf(*tile), tile->getMatrix());
+    }
+    EXPECT_EQ(all(), 6u) << "makers of one wish share theirs";
+    makers.pop_back();
+    EXPECT_EQ(all(), 6u);
+    makers.pop_back();
+    EXPECT_EQ(all(), 3u) << "the tiles keep what nobody wants";
+    row.pop_back();
+    other = nullptr;
+    EXPECT_EQ(all(), 0u);
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 
 #include <osg/AnimationPath>
 #include <osg/PagedLOD>
+#include <osg/View>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
@@ -144,16 +145,21 @@ struct Tile
     double radius, range;
     std::vector<osg::Vec3d> corners; ///< of its box
 
-    bool isDueAt(const osg::Matrixd& view) const { return (center * view).length() * LOD_SCALE < range; }
-    /// Whether a corner of the box is within the picture.
+    /// Places are foretold to a metre or so, hence `within`, a share of the range: of what is beyond it nobody can tell.
+    bool isDueAt(const osg::Matrixd& view, double within = 1.0) const
+    {
+        return (center * view).length() * LOD_SCALE < within * range;
+    }
+    /// Whether a corner of the box is within the picture, and not at its very border.
     bool showsAt(const osg::Matrixd& view, const osg::Matrixd& projection) const
     {
         return std::any_of(corners.begin(), corners.end(),
                            [&](const osg::Vec3d& corner)
                            {
                                const osg::Vec4d clip = osg::Vec4d(corner * view, 1.0) * projection;
-                               return clip.w() > 0.0 && std::abs(clip.x()) < clip.w() &&
-                                      std::abs(clip.y()) < clip.w();
+                               const double border = 0.99 * clip.w();
+                               return clip.w() > 0.0 && std::abs(clip.x()) < border &&
+                                      std::abs(clip.y()) < border;
                            });
     }
     /// Whether no plane through the eye and a side of the picture parts its sphere from the picture.
@@ -231,13 +237,13 @@ TEST_P(TilePrefetching, WhatIsAskedForAheadIsThatOfTheFuturePlace)
             for (int step = 1; step <= 4; ++step)
             {
                 const osg::Matrixd view = flight->at(time + step * LEAD / 4.0);
-                isDue = isDue || (tile.isDueAt(view) && tile.showsAt(view, projection));
+                isDue = isDue || (tile.isDueAt(view, 0.999) && tile.showsAt(view, projection));
             }
             if (!isDue) continue;
             ++due;
             // The camera asks for what it lacks now.
             const osg::Matrixd now = flight->at(time);
-            const bool isPresent = tile.isDueAt(now) && tile.maySeeAt(now, projection);
+            const bool isPresent = tile.isDueAt(now, 1.001) && tile.maySeeAt(now, projection);
             EXPECT_TRUE(isPresent || there.count(tile.group)) << frame << ": a tile is not asked for";
         }
         for (const auto& request : requests)
@@ -369,7 +375,7 @@ TEST_P(TilePrefetching, ThePresentComesFirst)
             for (int step = 1; step < entry->second; ++step)
             {
                 const osg::Matrixd view = flight->at(time - 1.0 / RATE + step * LEAD / 4.0);
-                EXPECT_FALSE(tile.isDueAt(view) && tile.showsAt(view, projection))
+                EXPECT_FALSE(tile.isDueAt(view, 0.999) && tile.showsAt(view, projection))
                     << "needed in step " << step << ", asked for as if in step " << entry->second;
             }
             ++steps;
@@ -547,6 +553,54 @@ TEST_P(TilePrefetching, ChannelsLookAheadWithTheirViewsDeformation)
         }
     }
     EXPECT_GT(wanted, 20);
+}
+
+TEST_P(TilePrefetching, APathLeadsAChannelWithItsView)
+{
+    if (!open(GetParam())) return;
+    settle(0.0);
+    // No effect is active, so the slave has its own matrices alone.
+    const osg::ref_ptr<osg::View> view = new osg::View;
+    // Slaves take their view's.
+    view->getCamera()->setLODScale(static_cast<float>(LOD_SCALE));
+    harness->camera().setReferenceFrame(osg::Transform::RELATIVE_RF);
+    view->addSlave(&harness->camera(), false);
+    const osg::Matrixd turn = osg::Matrixd::rotate(osg::DegreesToRadians(-40.0), osg::Vec3d(0.0, 1.0, 0.0));
+    constexpr double lead = 16.0;
+    prefetch->setLead(lead);
+    view->getCamera()->setViewMatrix(flight->at(0.0));
+    prefetch->setPath([&](double time) { return flight->at(time); });
+    cull(0.0, flight->at(0.0) * turn);
+    const Groups there = groupsOf(ahead(0.01));
+    int wanted = 0;
+    for (int step = 1; step <= 4; ++step)
+    {
+        for (const osg::PagedLOD* group : wantedAt(flight->at(step * lead / 4.0) * turn))
+        {
+            ++wanted;
+            EXPECT_TRUE(there.count(group)) << "step " << step;
+        }
+    }
+    EXPECT_GT(wanted, 3);
+}
+
+TEST_P(TilePrefetching, APathDoesNotLeadSlavesWithMatricesOfTheirOwn)
+{
+    if (!open(GetParam())) return;
+    settle(0.0);
+    const osg::ref_ptr<osg::View> view = new osg::View;
+    // Slaves take their view's.
+    view->getCamera()->setLODScale(static_cast<float>(LOD_SCALE));
+    harness->camera().setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+    view->addSlave(&harness->camera(), false);
+    view->getCamera()->setViewMatrix(flight->at(50.0));
+    prefetch->setPath([&](double time) { return flight->at(time); });
+    // It stands where it has always stood.
+    for (int frame = 0; frame < 10; ++frame)
+    {
+        cull(frame / RATE, flight->at(0.0));
+        EXPECT_TRUE(ahead((frame + 1) / RATE).empty()) << frame;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Oahu, TilePrefetching, ::testing::Values("oahu", "oahu_projected"),

@@ -3,35 +3,43 @@
 #pragma once
 
 #include <tools/GlFixture.h>
-#include <tools/InventedTerrain.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 
 #include <osg/Image>
 #include <osg/Vec2d>
 
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
 namespace geofx::test
 {
 
-/// The programs that make maps, run in a folder with an invented volcano, as a person runs them.
+/** The programs that make maps, run in a folder with an invented volcano, as a person runs them.
+
+    The folder begins as a copy of the one that the test volcano_map makes (tests/smoke/CMakeLists.txt): volcano.tif, of
+    201 posts along a side; work, the terrain that was built of it; plain.png, its map without names and lines; and the
+    recipe plain.json, which spares choosing the view again. */
 class MapProgram : public GlFixture
 {
 protected:
-    /// `posts`: of the volcano's DEM, along a side. `width`, `height`: of the pictures, pixels.
-    MapProgram(int posts, int width, int height) : _posts(posts), _width(width), _height(height) {}
+    /// The size of plain.png, pixels.
+    static constexpr int WIDTH = 480, HEIGHT = 270;
 
     void SetUp() override
     {
         GlFixture::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        inventTerrain("volcano", file("volcano.tif"), _posts);
+        const std::filesystem::path map = GEOFX_BUILD_DIR "/test-data/volcano";
+        ASSERT_TRUE(std::filesystem::exists(map / "plain.png"))
+            << map << " is not there; make it with ctest -R volcano_map";
+        std::filesystem::copy(map, _folder.path(), std::filesystem::copy_options::recursive);
     }
 
     ProgramResult run(const std::string& program, std::vector<std::string> arguments)
@@ -45,7 +53,7 @@ protected:
     /// With the terrain that was built before.
     ProgramResult panorama(std::vector<std::string> arguments)
     {
-        arguments.insert(arguments.end(), {"--size", std::to_string(_width) + "x" + std::to_string(_height),
+        arguments.insert(arguments.end(), {"--size", std::to_string(WIDTH) + "x" + std::to_string(HEIGHT),
                                            "--samples", "0", "--quiet", "--work", "work"});
         return run("osggeofx_panorama", arguments);
     }
@@ -88,27 +96,27 @@ protected:
         return R"({"type":"FeatureCollection","features":[)" + features + "]}";
     }
 
-    /// The map without names and lines: plain.png, and the recipe plain.json, which spares choosing the view again.
-    void makePlain()
+    /// The places that pixels of the plain map show, degrees.
+    std::vector<osg::Vec2d> placesOf(const std::vector<std::array<int, 2>>& pixels)
     {
-        if (std::filesystem::exists(file("plain.json"))) return;
-        const ProgramResult result = panorama({"volcano.tif", "-o", "plain.png"});
+        std::vector<std::string> arguments = {"plain.json", "-o", "pick.png"};
+        for (const auto& [x, y] : pixels)
+            arguments.insert(arguments.end(), {"--pick", std::to_string(x) + "," + std::to_string(y)});
+        const ProgramResult result = panorama(arguments);
         EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        std::vector<osg::Vec2d> places(pixels.size());
+        std::istringstream lines(result.standardOutput);
+        std::string line;
+        for (osg::Vec2d& place : places)
+        {
+            std::getline(lines, line);
+            EXPECT_EQ(
+                std::sscanf(line.c_str(), "%*[^:]: longitude %lf, latitude %lf", &place.x(), &place.y()), 2)
+                << result.standardOutput;
+        }
+        return places;
     }
-    /// The place that a pixel of the plain map shows, degrees.
-    osg::Vec2d placeOf(int x, int y)
-    {
-        makePlain();
-        const ProgramResult result =
-            panorama({"plain.json", "-o", "pick.png", "--pick", std::to_string(x) + "," + std::to_string(y)});
-        EXPECT_EQ(result.exitCode, 0) << result.standardError;
-        osg::Vec2d place;
-        EXPECT_EQ(std::sscanf(result.standardOutput.c_str(), "%*[^:]: longitude %lf, latitude %lf",
-                              &place.x(), &place.y()),
-                  2)
-            << result.standardOutput;
-        return place;
-    }
+    osg::Vec2d placeOf(int x, int y) { return placesOf({{x, y}})[0]; }
     /// Whether a pixel, from the upper left, has the color that tests give to names and lines.
     static bool isMagenta(const osg::Image& image, int x, int y)
     {
@@ -127,9 +135,6 @@ protected:
     }
 
     TempDir _folder;
-
-private:
-    const int _posts, _width, _height;
 };
 
 } // namespace geofx::test

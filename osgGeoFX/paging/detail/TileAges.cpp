@@ -3,6 +3,7 @@
 #include <osgGeoFX/paging/detail/TileAges.h>
 
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/paging/detail/StandIn.h>
 
 #include <algorithm>
 #include <tuple>
@@ -17,11 +18,23 @@ constexpr double FOREVER = 1e12; ///< seconds
 
 } // namespace
 
+osg::Node* TileAges::Child::node() const
+{
+    osg::Node* child = group->getChild(index);
+    auto* standIn = dynamic_cast<StandIn*>(child);
+    return standIn && standIn->getNumChildren() > 0 ? standIn->getChild(0) : child;
+}
+
 void TileAges::Child::expire() const
+{
+    free();
+    group->setFrameNumber(index, 0);
+}
+
+void TileAges::Child::free() const
 {
     group->setMinimumExpiryTime(index, 0.0);
     group->setMinimumExpiryFrames(index, 0);
-    group->setFrameNumber(index, 0);
 }
 
 TileAges::TileAges(unsigned int frame) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _frame(frame)

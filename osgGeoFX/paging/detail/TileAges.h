@@ -5,7 +5,6 @@
 #include <osg/NodeVisitor>
 #include <osg/PagedLOD>
 
-#include <functional>
 #include <vector>
 
 namespace osgGeoFX
@@ -26,9 +25,12 @@ public:
         bool ahead = false; ///< whether it, or something below it, is looked at by a TilePrefetch
         unsigned int depth = 0;
 
-        osg::Node* node() const { return group->getChild(index); }
+        /// The tile. What stands for one that came late is not it.
+        osg::Node* node() const;
         /// Lets the pager remove it, if nobody looks at it until then.
         void expire() const;
+        /// Lets the pager decide, as it does by itself.
+        void free() const;
     };
 
     /// `frame`: that of the update. What has been marked in it or in the one before is looked at.

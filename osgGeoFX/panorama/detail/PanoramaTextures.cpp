@@ -6,10 +6,12 @@
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/PanoramaPalette.h>
 #include <osgGeoFX/panorama/PanoramaSky.h>
+#include <osgGeoFX/panorama/detail/PaintedImages.h>
 
 #include <osg/Notify>
 
 #include <algorithm>
+#include <deque>
 
 namespace osgGeoFX
 {
@@ -17,7 +19,28 @@ namespace osgGeoFX
 namespace
 {
 
-constexpr int skyWidth = 4096, skyHeight = 256;
+/// The skies that were painted last, for maps that wish for the same one, and for seasons that come and go. Any thread may
+/// call it.
+osg::ref_ptr<osg::Image> skyOf(unsigned int seed, double season)
+{
+    struct Painted
+    {
+        unsigned int seed;
+        double season;
+        osg::ref_ptr<osg::Image> image;
+    };
+    constexpr std::size_t most = 3; // of 4 MiB each
+    static std::mutex mutex;
+    static std::deque<Painted> shelf;
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (const Painted& each : shelf)
+        if (each.seed == seed && each.season == season) return each.image;
+    const osg::ref_ptr<osg::Image> image =
+        makeSky(UsualPaintings::SKY_WIDTH, UsualPaintings::SKY_HEIGHT, seed, season);
+    shelf.push_front({seed, season, image});
+    if (shelf.size() > most) shelf.pop_back();
+    return image;
+}
 
 osg::ref_ptr<osg::Texture2D> textureOf(osg::Image* image, bool repeatsX, bool repeatsY, bool mipmaps)
 {
@@ -75,7 +98,7 @@ osg::ref_ptr<osg::Texture2D> PanoramaTextures::sky(const PanoramaMap& map)
     if (own)
         image = const_cast<osg::Image*>(map.getSkyImage());
     else
-        image = makeSky(skyWidth, skyHeight, static_cast<unsigned int>(_skySeed), _skySeason);
+        image = skyOf(static_cast<unsigned int>(_skySeed), _skySeason);
     _sky = textureOf(image, true, false, true);
     return _sky;
 }

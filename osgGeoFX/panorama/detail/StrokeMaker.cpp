@@ -74,7 +74,16 @@ private:
 
 StrokeMaker::StrokeMaker(const osg::EllipsoidModel* ellipsoid) : _ellipsoid(ellipsoid) {}
 
-StrokeMaker::~StrokeMaker() = default;
+StrokeMaker::~StrokeMaker()
+{
+    // Those of tiles that stay would stay with them.
+    const std::lock_guard<std::mutex> lock(userDataMutex());
+    for (const auto& each : _keepers)
+    {
+        osg::ref_ptr<osg::Object> keeper;
+        if (each.lock(keeper)) dropUnwanted(*keeper, [this](const TileStrokes&) { return true; });
+    }
+}
 
 bool StrokeMaker::isFor(const osg::EllipsoidModel* ellipsoid) const
 {
@@ -96,7 +105,7 @@ StrokeParameters StrokeMaker::getParameters() const
 
 /// The strokes of a place, if there are any. They belong to this maker, too, from now on. The caller holds the lock
 /// of the user data.
-TileStrokes* StrokeMaker::known(const osg::Object& keeper, const osg::Matrixd& toWorld,
+TileStrokes* StrokeMaker::known(osg::Object& keeper, const osg::Matrixd& toWorld,
                                 const StrokeParameters& parameters) const
 {
     const osg::UserDataContainer* data = keeper.getUserDataContainer();
@@ -109,36 +118,60 @@ TileStrokes* StrokeMaker::known(const osg::Object& keeper, const osg::Matrixd& t
         {
             return each.get() == this;
         };
-        if (std::none_of(strokes->_users.begin(), strokes->_users.end(), isThis))
-            strokes->_users.emplace_back(this);
+        if (std::none_of(strokes->_users.begin(), strokes->_users.end(), isThis)) take(keeper, *strokes);
         return strokes;
     }
     return nullptr;
 }
 
-/// Gives strokes to their keeper, and takes away those that no maker wants any more. The caller holds the lock of the
-/// user data.
-void StrokeMaker::keep(osg::Object& keeper, TileStrokes& strokes) const
+/// Strokes belong to this maker, too. The caller holds the lock of the user data.
+void StrokeMaker::take(osg::Object& keeper, TileStrokes& strokes) const
 {
-    osg::UserDataContainer* data = keeper.getOrCreateUserDataContainer();
-    int places = 1;
-    for (unsigned int i = data->getNumUserObjects(); i-- > 0;)
+    strokes._users.emplace_back(this);
+    if (_keepers.size() >= _tidyAt)
     {
-        auto* other = dynamic_cast<TileStrokes*>(data->getUserObject(i));
-        if (!other) continue;
-        // This maker's parameters have changed, or it has seen the tile in too many places.
-        const bool same = other->madeWith(strokes.parameters(), _ellipsoid.get());
-        const bool former = !same || ++places > mostPlaces;
+        const auto gone = [](const auto& each)
+        {
+            return !each.valid();
+        };
+        _keepers.erase(std::remove_if(_keepers.begin(), _keepers.end(), gone), _keepers.end());
+        _tidyAt = 2 * _keepers.size() + 64;
+    }
+    _keepers.emplace_back(&keeper);
+}
+
+/// Takes away the strokes that no maker wants any more. This one does not want those of which `isFormer` is true, and
+/// that is asked of the youngest first. The caller holds the lock of the user data.
+template<typename IsFormer>
+void StrokeMaker::dropUnwanted(osg::Object& keeper, const IsFormer& isFormer) const
+{
+    osg::UserDataContainer* data = keeper.getUserDataContainer();
+    for (unsigned int i = data ? data->getNumUserObjects() : 0; i-- > 0;)
+    {
+        auto* strokes = dynamic_cast<TileStrokes*>(data->getUserObject(i));
+        if (!strokes) continue;
+        const bool former = isFormer(*strokes);
         const auto gone = [&](const auto& each)
         {
             return !each.valid() || (former && each.get() == this);
         };
-        auto& users = other->_users;
+        auto& users = strokes->_users;
         users.erase(std::remove_if(users.begin(), users.end(), gone), users.end());
         if (users.empty()) data->removeUserObject(i);
     }
-    strokes._users.emplace_back(this);
-    data->addUserObject(&strokes);
+}
+
+/// Gives strokes to their keeper in the place of former ones. The caller holds the lock of the user data.
+void StrokeMaker::keep(osg::Object& keeper, TileStrokes& strokes) const
+{
+    int places = 1;
+    // This maker's parameters have changed, or it has seen the tile in too many places.
+    dropUnwanted(keeper,
+                 [&](const TileStrokes& other) {
+                     return !other.madeWith(strokes.parameters(), _ellipsoid.get()) || ++places > mostPlaces;
+                 });
+    take(keeper, strokes);
+    keeper.getOrCreateUserDataContainer()->addUserObject(&strokes);
 }
 
 /// If the pager's strokes were made for another place, there is a transform above its tiles. The caller holds the

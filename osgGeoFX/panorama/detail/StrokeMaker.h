@@ -9,8 +9,11 @@
 #include <osg/CoordinateSystemNode>
 #include <osg/Geometry>
 #include <osg/Matrixd>
+#include <osg/observer_ptr>
 
+#include <cstddef>
 #include <mutex>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -20,7 +23,7 @@ namespace osgGeoFX
     As a listener of a TileGuard it makes them on the pager's thread. Other tiles, and those from before a change of
     the parameters, get theirs when strokes() is called. The tile's geometry keeps them (TileStrokes), and they go
     with it. A geometry in several places has strokes for each. Any number of scenes with different parameters may
-    share a terrain. The strokes of a maker stay while it lives and keeps its parameters.
+    share a terrain. The strokes of a maker stay while it lives and keeps its parameters, and go when no maker wants them.
 
     A place has the same strokes in every tile and after every reload, as far as the tiles agree on its cover. Coarser
     tiles have those of coarser levels only. Thread-safe. */
@@ -53,9 +56,12 @@ protected:
 private:
     class Furnisher;
 
-    TileStrokes* known(const osg::Object& keeper, const osg::Matrixd& toWorld,
+    TileStrokes* known(osg::Object& keeper, const osg::Matrixd& toWorld,
                        const StrokeParameters& parameters) const;
+    template<typename IsFormer>
+    void dropUnwanted(osg::Object& keeper, const IsFormer& isFormer) const;
     void keep(osg::Object& keeper, TileStrokes& strokes) const;
+    void take(osg::Object& keeper, TileStrokes& strokes) const;
     void learn(const osg::Object& keeper, const osg::Matrixd& toWorld) const;
     void furnishBelow(osg::Node& tile, const osg::Matrixd& above, bool ofPager);
 
@@ -63,6 +69,9 @@ private:
     mutable std::mutex _mutex; ///< for the parameters
     StrokeParameters _parameters;
     mutable osg::Matrixd _above; ///< the matrix from a pager's tiles to the world
+    /// What keeps strokes of this maker, or did so; under the lock of the user data.
+    mutable std::vector<osg::observer_ptr<osg::Object>> _keepers;
+    mutable std::size_t _tidyAt = 64; ///< the number of keepers at which those that are gone are forgotten
 };
 
 } // namespace osgGeoFX

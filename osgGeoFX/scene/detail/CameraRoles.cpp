@@ -63,6 +63,14 @@ bool isNested(osgUtil::CullVisitor& visitor)
            std::any_of(path.begin(), path.end(), [](osg::Node* node) { return node->asCamera() != nullptr; });
 }
 
+const osg::Camera* leaderOf(osgUtil::CullVisitor& visitor)
+{
+    const osg::Camera* camera = visitor.getCurrentCamera();
+    if (!camera || isNested(visitor)) return nullptr;
+    const osg::View* view = camera->getView();
+    return !view || view->getCamera() == camera ? camera : masterOf(*camera);
+}
+
 CameraRole defaultRole(osgUtil::CullVisitor& visitor)
 {
     const osg::Camera* own = visitor.getRenderStage()->getCamera();

@@ -17,6 +17,10 @@ namespace osgGeoFX
     have some. */
 bool isNested(osgUtil::CullVisitor& visitor);
 
+/// The camera whose motion is that of the camera that a visitor culls for: the view's own, for itself and for slaves with
+/// relative matrices. Null for all others.
+const osg::Camera* leaderOf(osgUtil::CullVisitor& visitor);
+
 /// The role of the camera that a visitor culls for, by what is known of the camera alone.
 CameraRole defaultRole(osgUtil::CullVisitor& visitor);
 

@@ -256,9 +256,11 @@ void removeLeftovers(const BuildPlan& plan)
 {
     std::error_code code;
     std::vector<fs::path> leftovers;
-    for (fs::recursive_directory_iterator entry(fs::path(plan.options.output) / "tiles", code), end;
-         !code && entry != end; entry.increment(code))
-        if (isLeftover(entry->path())) leftovers.push_back(entry->path());
+    const fs::path output = plan.options.output;
+    for (const fs::path& folder : {output / "tiles", keptFolderOf(output)})
+        for (fs::recursive_directory_iterator entry(folder, code), end; !code && entry != end;
+             entry.increment(code))
+            if (isLeftover(entry->path())) leftovers.push_back(entry->path());
     for (const fs::path& path : leftovers)
         fs::remove(path, code);
 }

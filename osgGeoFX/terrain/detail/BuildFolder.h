@@ -63,7 +63,7 @@ void finishFolder(const BuildPlan& plan, const std::vector<std::string>& obsolet
 /// processes may.
 void completeFolder(const std::filesystem::path& database);
 
-/// Removes the temporary files of processes that were killed. What cannot be removed does no harm.
+/// Removes the temporary files of processes that were killed, when the build has ended. What cannot be removed does no harm.
 void removeLeftovers(const BuildPlan& plan);
 
 /// The size of all files in a folder; 0 without one.
