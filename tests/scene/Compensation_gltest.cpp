@@ -151,14 +151,14 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
 INSTANTIATE_TEST_SUITE_P(
     Oahu, Compensation,
     ::testing::Combine(
-        ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 16, 500},
-                          OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 16, 500},
-                          OahuCase{"liberties", "oahu", addRandomLiberties, 8, 200},
-                          OahuCase{"liberties_projected", "oahu_projected", addRandomLiberties, 8, 200},
-                          OahuCase{"panorama", "oahu", addRandomPanorama, 8, 100},
-                          OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 8, 100},
-                          OahuCase{"painting", "oahu", addRandomPainting, 4, 40},
-                          OahuCase{"painting_projected", "oahu_projected", addRandomPainting, 4, 40}),
+        ::testing::Values(OahuCase{"oahu", "oahu", addRandomEffects, 24, 500},
+                          OahuCase{"oahu_projected", "oahu_projected", addRandomEffects, 24, 500},
+                          OahuCase{"liberties", "oahu", addRandomLiberties, 12, 200},
+                          OahuCase{"liberties_projected", "oahu_projected", addRandomLiberties, 12, 200},
+                          OahuCase{"panorama", "oahu", addRandomPanorama, 12, 100},
+                          OahuCase{"panorama_projected", "oahu_projected", addRandomPanorama, 12, 100},
+                          OahuCase{"painting", "oahu", addRandomPainting, 8, 40},
+                          OahuCase{"painting_projected", "oahu_projected", addRandomPainting, 8, 40}),
         ::testing::Range(0, PARTS)),
     [](const auto& each)
     { return std::string(std::get<0>(each.param).name) + "_" + std::to_string(std::get<1>(each.param)); });
