@@ -62,9 +62,17 @@ std::vector<std::string> NotifyWatch::messagesOf(const std::function<void()>& ac
     return std::exchange(_collected, {});
 }
 
+void NotifyWatch::ignore(const std::string& text)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _ignored.push_back(text);
+}
+
 void NotifyWatch::report(const std::string& message)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
+    for (const std::string& text : _ignored)
+        if (message.find(text) != std::string::npos) return;
     if (_collecting)
     {
         _collected.push_back(message);

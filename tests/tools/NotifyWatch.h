@@ -28,12 +28,15 @@ public:
     /// The messages that an action makes; these do not fail the test.
     std::vector<std::string> messagesOf(const std::function<void()>& action);
 
+    /// From now on messages that have this text count as nothing. Say why where you call it.
+    void ignore(const std::string& text);
+
     void report(const std::string& message);
 
 private:
     std::mutex _mutex;
     bool _collecting = false;
-    std::vector<std::string> _collected;
+    std::vector<std::string> _collected, _ignored;
     osg::NotifySeverity _formerLevel;
     osg::ref_ptr<osg::NotifyHandler> _formerHandler;
 };
