@@ -196,7 +196,7 @@ private:
         const double dense = density(middle);
         if (kind == INDUSTRIAL)
             addRows(middle, along, across, {length, width, 18.0, 34.0, 1, 'h'}, dice);
-        else if (kind == URBAN || (kind == TOWN && dense > 0.05))
+        else if (kind == URBAN || (kind == TOWN && dense > 0.14))
             addRows(middle, along, across, {length, width, 15.0, 33.0, 2, 'u'}, dice);
         else
             addRows(middle, along, across, {length, width, 11.0, 16.5, 2, 't'}, dice);
