@@ -122,6 +122,9 @@ struct Center
     double width, share, tallest;
 };
 
+/// The most from a district's middle to one of its blocks, metres.
+constexpr double REACH = 1700.0;
+
 class Inventor
 {
 public:
@@ -160,13 +163,14 @@ public:
     }
 
 private:
-    std::size_t districtOf(const osg::Vec2d& at) const
+    /// Those that may be nearer to a block of a district than its own middle.
+    std::vector<osg::Vec2d> beside(std::size_t index) const
     {
-        std::size_t nearest = 0;
-        for (std::size_t i = 1; i < _districts.size(); ++i)
-            if ((_districts[i].middle - at).length2() < (_districts[nearest].middle - at).length2())
-                nearest = i;
-        return nearest;
+        std::vector<osg::Vec2d> result;
+        for (std::size_t i = 0; i < _districts.size(); ++i)
+            if (i != index && (_districts[i].middle - _districts[index].middle).length() < 2.0 * REACH)
+                result.push_back(_districts[i].middle);
+        return result;
     }
 
     void addDistrict(std::size_t index)
@@ -176,12 +180,17 @@ private:
             across(-along.y(), along.x());
         constexpr double length = 118.0, width = 76.0; // of a block with its streets, metres
         constexpr int reach = 24;
+        const std::vector<osg::Vec2d> others = beside(index);
         for (int row = -reach; row <= reach; ++row)
             for (int column = -reach; column <= reach; ++column)
             {
                 const osg::Vec2d middle =
                     district.middle + along * (column * length) + across * (row * width);
-                if ((middle - district.middle).length() > 1700.0 || districtOf(middle) != index) continue;
+                const double own = (middle - district.middle).length();
+                if (own > REACH ||
+                    std::any_of(others.begin(), others.end(),
+                                [&](const osg::Vec2d& other) { return (middle - other).length() < own; }))
+                    continue;
                 Dice dice(index, static_cast<std::uint64_t>(row + 1000),
                           static_cast<std::uint64_t>(column + 1000));
                 addBlock(middle, along, across, length, width, dice);
@@ -192,11 +201,10 @@ private:
                   double width, Dice& dice)
     {
         const int kind = _cover.at(middle);
-        // In most of Honolulu the land cover knows nothing but town. Its middle is a city.
         const double dense = density(middle);
-        if (kind == INDUSTRIAL)
-            addRows(middle, along, across, {length, width, 18.0, 34.0, 1, 'h'}, dice);
-        else if (kind == URBAN || (kind == TOWN && dense > 0.14))
+        if (kind == INDUSTRIAL) addRows(middle, along, across, {length, width, 18.0, 34.0, 1, 'h'}, dice);
+        // The land cover takes most of Honolulu for a city; its houses begin where high-rises end.
+        else if (dense > 0.1 || (kind == URBAN && dice.chance(0.3)))
             addRows(middle, along, across, {length, width, 15.0, 33.0, 2, 'u'}, dice);
         else
             addRows(middle, along, across, {length, width, 11.0, 16.5, 2, 't'}, dice);
@@ -384,7 +392,7 @@ int inventTown(const std::string& file, int count)
     if (!driver) throw std::runtime_error("GDAL has no driver for GeoPackages.");
     std::filesystem::remove(file);
     CPLSetConfigOption("OGR_CURRENT_DATE", "2026-01-01T00:00:00.000Z"); // else the file has the day's
-    const std::unique_ptr<GDALDataset> data(driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    std::unique_ptr<GDALDataset> data(driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
     OGRSpatialReference srs;
     srs.importFromEPSG(4326);
     srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -410,6 +418,7 @@ int inventTown(const std::string& file, int count)
             throw std::runtime_error(file + " cannot be written.");
     }
     data->CommitTransaction();
+    data.reset(); // which writes the date
     CPLSetConfigOption("OGR_CURRENT_DATE", nullptr);
     return static_cast<int>(houses.size());
 }
