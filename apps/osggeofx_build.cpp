@@ -287,10 +287,13 @@ int main(int argc, char** argv)
                             "data's edge.\n",
                             100.0 * summary.openShare);
         }
-        if (town.buildings.empty())
-            osgGeoFX::removeStrayTown(options.output);
-        else
+        if (!town.buildings.empty())
             buildTown(town, quiet);
+        else if (osgGeoFX::removeStrayTown(options.output) && !quiet)
+            std::printf(
+                "%s/buildings: the town was removed, since the terrain has changed; build it again with "
+                "--buildings.\n",
+                options.output.c_str());
         return 0;
     }
     catch (const std::exception& error)

@@ -5,6 +5,7 @@
 #include <osgGeoFX/batch/detail/WorkQueue.h>
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/terrain/detail/AtomicFile.h>
 #include <osgGeoFX/terrain/detail/BuildFolder.h>
 #include <osgGeoFX/terrain/detail/TileFile.h>
 #include <osgGeoFX/town/detail/BuildingReader.h>
@@ -23,6 +24,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <locale>
 #include <mutex>
 #include <sstream>
 
@@ -37,6 +39,50 @@ namespace fs = std::filesystem;
 /// The folder of a town's files, and those of one that is being made and of one that makes room.
 constexpr const char *FOLDER = "buildings", *NEXT = "buildings.new", *FORMER = "buildings.old";
 constexpr const char* COUNT = "geofx.buildings";
+/// The file in each of these folders that says that they are a town's.
+constexpr const char* MARK = "town.txt";
+constexpr const char* MARK_TEXT =
+    "A town of osggeofx_build. It is removed and made anew with the next one; keep nothing else here.\n";
+
+bool isOurs(const fs::path& folder)
+{
+    return fs::exists(folder / MARK);
+}
+
+void mark(const fs::path& folder)
+{
+    writeFileAtomically((folder / MARK).string(), MARK_TEXT, std::char_traits<char>::length(MARK_TEXT));
+}
+
+/// Throws if a folder that a town takes has other files.
+void refuseForeign(const fs::path& folder)
+{
+    if (fs::exists(folder) && !isOurs(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
+        throw BuildError(folder.string() +
+                         ": something else has the name that the town takes; move it elsewhere.");
+}
+
+/// Whether a file lies in a folder or below it.
+bool isBelow(const fs::path& file, const fs::path& folder)
+{
+    std::error_code code;
+    const fs::path inner = fs::weakly_canonical(file, code), outer = fs::weakly_canonical(folder, code);
+    return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+void removeOurs(const fs::path& folder)
+{
+    std::error_code code;
+    if (isOurs(folder)) fs::remove_all(folder, code);
+}
+
+/// Puts a town back whose exchange was interrupted.
+void putBack(const fs::path& folder)
+{
+    std::error_code code;
+    if (isOurs(folder / FORMER) && !fs::exists(folder / FOLDER))
+        fs::rename(folder / FORMER, folder / FOLDER, code);
+}
 
 /// Without a path in the options, OSG leaves file names as they were written.
 osg::ref_ptr<osg::CoordinateSystemNode> readRoot(const fs::path& file)
@@ -80,17 +126,15 @@ struct WorkFolder
     explicit WorkFolder(fs::path folder) : path(std::move(folder))
     {
         std::error_code code;
-        fs::remove_all(path, code);
+        removeOurs(path);
         fs::create_directories(path, code);
         if (!fs::is_directory(path))
             throw BuildError(path.string() + ": the folder cannot be made (" + code.message() +
                              "); make the database's folder writable.");
+        mark(path);
+        mark(path / FOLDER);
     }
-    ~WorkFolder()
-    {
-        std::error_code code;
-        fs::remove_all(path, code);
-    }
+    ~WorkFolder() { removeOurs(path); }
     WorkFolder(const WorkFolder&) = delete;
     WorkFolder& operator=(const WorkFolder&) = delete;
     const fs::path path;
@@ -101,7 +145,9 @@ struct WorkFolder
 std::string TownSummary::text() const
 {
     std::ostringstream out;
-    out.precision(3);
+    out.imbue(std::locale::classic());
+    out.setf(std::ios::fixed);
+    out.precision(1);
     out << buildings << " buildings, " << gabled << " of them with gabled roofs, in " << files << " files of "
         << static_cast<double>(bytes) * 1e-6 << " MB; read in " << readSeconds << " s, built in "
         << seconds - readSeconds << " s ("
@@ -126,6 +172,8 @@ TownSummary buildTown(const TownOptions& options, const TownProgress& progress)
     const auto start = std::chrono::steady_clock::now();
     TownSummary summary;
     const fs::path folder = options.database, file = folder / "terrain.osgb";
+    // An update of the terrain that is ready ends first.
+    if (fs::exists(folder)) completeFolder(folder);
     const osg::ref_ptr<osg::CoordinateSystemNode> root = readRoot(file);
     std::string error;
     const std::optional<TerrainInfo> terrain = TerrainInfo::read(root, error);
@@ -135,6 +183,14 @@ TownSummary buildTown(const TownOptions& options, const TownProgress& progress)
     removeTownOf(*root);
     const TownGrid grid(*terrain);
 
+    for (const char* name : {FOLDER, NEXT, FORMER})
+    {
+        if (isBelow(options.buildings, folder / name))
+            throw BuildError(options.buildings +
+                             ": it lies in a folder that the town takes; move it elsewhere.");
+        refuseForeign(folder / name);
+    }
+    putBack(folder);
     const WorkFolder next(folder / NEXT);
     TownCells cells(grid, *terrain, *root, folder.string(), next.path.string());
     {
@@ -164,6 +220,11 @@ TownSummary buildTown(const TownOptions& options, const TownProgress& progress)
     const osg::ref_ptr<osg::Group> town = cells.finish();
     summary.buildings = cells.buildings();
     summary.outside += cells.outside();
+    summary.gabled = cells.noted(Building::GABLED);
+    summary.byStoreys = cells.noted(Building::BY_STOREYS);
+    summary.byArea = cells.noted(Building::BY_AREA);
+    summary.badHeights = cells.noted(Building::BAD_HEIGHT);
+    summary.repaired = cells.noted(Building::REPAIRED);
     if (summary.buildings == 0)
         throw BuildError(options.buildings + ": none of its " +
                          std::to_string(summary.leftOut + summary.outside + summary.otherFeatures) +
@@ -175,11 +236,21 @@ TownSummary buildTown(const TownOptions& options, const TownProgress& progress)
     root->setUserValue(COUNT, static_cast<double>(summary.buildings));
 
     std::error_code code;
-    fs::remove_all(folder / FORMER, code);
+    removeOurs(folder / FORMER);
     if (fs::exists(folder / FOLDER)) moveFolder(folder / FOLDER, folder / FORMER);
-    moveFolder(next.path / FOLDER, folder / FOLDER);
-    writeNodeAtomically(*root, file.string());
-    fs::remove_all(folder / FORMER, code);
+    try
+    {
+        moveFolder(next.path / FOLDER, folder / FOLDER);
+        writeNodeAtomically(*root, file.string());
+    }
+    catch (...)
+    {
+        // The former town stays, or none.
+        removeOurs(folder / FOLDER);
+        putBack(folder);
+        throw;
+    }
+    removeOurs(folder / FORMER);
 
     for (fs::recursive_directory_iterator entry(folder / FOLDER, code), end; !code && entry != end;
          entry.increment(code))
@@ -192,18 +263,20 @@ TownSummary buildTown(const TownOptions& options, const TownProgress& progress)
     return summary;
 }
 
-void removeStrayTown(const std::string& database)
+bool removeStrayTown(const std::string& database)
 {
     const fs::path folder = database;
-    if (!fs::exists(folder / FOLDER) && !fs::exists(folder / FORMER) && !fs::exists(folder / NEXT)) return;
+    putBack(folder);
+    if (!isOurs(folder / FOLDER) && !isOurs(folder / FORMER) && !isOurs(folder / NEXT)) return false;
     const osg::ref_ptr<osg::CoordinateSystemNode> root = readRoot(folder / "terrain.osgb");
     bool used = false;
     for (unsigned int i = 0; i < root->getNumChildren(); ++i)
         used = used || root->getChild(i)->getName() == FOLDER;
-    std::error_code code;
-    if (!used) fs::remove_all(folder / FOLDER, code);
-    fs::remove_all(folder / FORMER, code);
-    fs::remove_all(folder / NEXT, code);
+    const bool stray = !used && isOurs(folder / FOLDER);
+    if (stray) removeOurs(folder / FOLDER);
+    removeOurs(folder / FORMER);
+    removeOurs(folder / NEXT);
+    return stray;
 }
 
 } // namespace osgGeoFX

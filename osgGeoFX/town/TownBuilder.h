@@ -30,7 +30,8 @@ struct TownOptions
     /// The field of heights, from the ground to the highest point of the roof. Empty: one of the usual names. Where it has
     /// nothing, the height follows from the number of storeys, or else from the area of the footprint.
     std::string heightField;
-    /// The field of the roof's shape: what contains "gable" or "pitch" is gabled, all else flat. Empty: one of the usual
+    /// The field of the roof's shape: what contains "gable", "pitch", "hip", "saddle" or "sattel" is gabled where the outline is a
+    /// rectangle, all else flat. Empty: one of the usual
     /// names. Where it has nothing, small houses on a rectangle are gabled.
     std::string roofField;
     /// The unit of heights that do not say theirs ("12 m", "40 ft").
@@ -72,14 +73,15 @@ using TownProgress = std::function<bool(std::uint64_t done, std::uint64_t total,
     that the database has is replaced, and stays until the new one is ready. The same sources and options give the same bytes,
     for any number of threads.
 
-    Memory does not grow with the number of buildings, but for 24 bytes each. Outlines wait in a work file meanwhile.
+    Memory does not grow with the number of buildings, but for 16 bytes each, and for the blocks that they are from afar. Outlines wait in a work file meanwhile.
 
     Throws BuildError. Any thread may call it, but only one build at a time may use a folder.
     @ingroup town */
 OSGGEOFXDATA_EXPORT TownSummary buildTown(const TownOptions& options, const TownProgress& progress = {});
 
-/// Removes what a town has left in a database's folder if `terrain.osgb` does not refer to it any more.
+/// Removes what a town has left in a database's folder if `terrain.osgb` does not refer to it any more. True if there was a
+/// town. Folders that no town has made stay.
 /// @ingroup town
-OSGGEOFXDATA_EXPORT void removeStrayTown(const std::string& database);
+OSGGEOFXDATA_EXPORT bool removeStrayTown(const std::string& database);
 
 } // namespace osgGeoFX

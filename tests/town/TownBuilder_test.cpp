@@ -383,7 +383,7 @@ TEST(TownBuilder, BadInput)
     EXPECT_EQ(summary.byStoreys, 2u);
     EXPECT_EQ(summary.byArea, 3u);
     EXPECT_EQ(summary.badHeights, 2u); // a GeoPackage has no NaN
-    EXPECT_EQ(summary.repaired, 1u);
+    EXPECT_EQ(summary.repaired, 2u);
     EXPECT_EQ(summary.leftOut, 2u);
     EXPECT_EQ(summary.outside, 1u);
     EXPECT_EQ(summary.otherFeatures, 1u);
@@ -462,6 +462,70 @@ TEST(TownBuilder, HeightsInWords)
     EXPECT_EQ(twelve, 4);
 }
 
+// Over the antimeridian, on the terrain's western edge, and in the outermost tiles.
+TEST(TownBuilder, AtTheEndsOfLongitudes)
+{
+    const TempDir folder;
+    BuildOptions terrain;
+    terrain.dems = {writeRelief(folder / "dem.tif", 128, 64, 179.968, 10.0, 0.0005)};
+    terrain.tileSize = 16;
+    terrain.output = (folder / "database").string();
+    buildDatabase(terrain);
+    const DatabaseRoot root(terrain.output);
+    const double y = 9.98, a = 2e-4;
+    std::vector<Feature> features = {
+        {rectangle(root.west() + 2e-4, y, 6e-4, a), {"9"}}, // partly beyond the edge
+        {rectangle(root.west() + 1e-3, y, a, a), {"9"}},
+        {rectangle(root.east() - 360.0 - 1e-3, y, a, a), {"9"}},
+        // One ring, with longitudes of both ends.
+        {CPLSPrintf("POLYGON((179.9999 %f,-179.9999 %f,-179.9999 %f,179.9999 %f,179.9999 %f))", y, y, y + a,
+                    y + a, y),
+         {"9"}}};
+    const TownSummary summary =
+        buildTown(optionsOf(terrain.output, writeFeatures(folder / "town.gpkg", {"height:real"}, features)));
+    EXPECT_EQ(summary.buildings, features.size());
+    const std::vector<Triangle> ground = groundOf(terrain.output);
+    for (const TownBuilding& each : buildingsOf(terrain.output, "detail"))
+    {
+        for (const osg::Vec3d& vertex : each.vertices)
+            EXPECT_LT((vertex - each.reference).length(), 120.0);
+        const osg::Vec3d middle = root.fromWorld(each.reference);
+        int found = 0;
+        for (const Triangle& triangle : ground)
+        {
+            double height = 0.0;
+            if (!triangle.finest || !triangle.heightAt(middle.x(), middle.y(), height)) continue;
+            ++found;
+            EXPECT_NEAR(height, middle.z(), 0.3);
+        }
+        EXPECT_GT(found, 0) << middle.x();
+    }
+}
+
+TEST(TownBuilder, FoldersOfOthersStay)
+{
+    const TempDir folder;
+    const std::string database = copyOfTerrain(folder);
+    const std::filesystem::path own = folder / "database" / "buildings";
+    std::filesystem::create_directories(own);
+    const std::string source = writeFeatures(own / "city.gpkg", {"height:real"}, oneBuilding());
+    const std::string elsewhere = writeFeatures(folder / "town.gpkg", {"height:real"}, oneBuilding());
+    const auto before = contents(database);
+    EXPECT_NE(refusalOf(optionsOf(database, source)).find("lies in a folder that the town takes"),
+              std::string::npos);
+    EXPECT_NE(refusalOf(optionsOf(database, elsewhere)).find("something else has the name"),
+              std::string::npos);
+    EXPECT_FALSE(removeStrayTown(database));
+    EXPECT_EQ(before, contents(database));
+    // A town that was being exchanged when the process was killed is put back.
+    std::filesystem::remove_all(own);
+    buildTown(optionsOf(database, elsewhere));
+    const auto town = contents(database);
+    std::filesystem::rename(own, folder / "database" / "buildings.old");
+    EXPECT_FALSE(removeStrayTown(database));
+    EXPECT_EQ(town, contents(database));
+}
+
 TEST(TownBuilder, RefusalsAreSentencesAndLeaveTheDatabase)
 {
     const TempDir folder;
@@ -514,7 +578,7 @@ TEST(TownBuilder, AnUpdatedTerrainLosesItsTownUntilItIsBuiltAgain)
     options.update = true;
     buildDatabase(options);
     EXPECT_TRUE(std::filesystem::exists(folder / "database/buildings"));
-    removeStrayTown(output);
+    EXPECT_TRUE(removeStrayTown(output));
     EXPECT_FALSE(std::filesystem::exists(folder / "database/buildings"));
     buildTown(optionsOf(output, file));
     EXPECT_EQ(buildingsOf(output, "detail").size(), 1u);

@@ -32,6 +32,16 @@ struct Building
     double height = 0.0;     ///< from the ground to the highest point of the roof, metres
     BuildingUse use = BuildingUse::HOUSE;
     bool gabled = false;
+    /// What the summary counts.
+    enum Note : std::uint8_t
+    {
+        GABLED = 1,
+        BY_STOREYS = 2,
+        BY_AREA = 4,
+        BAD_HEIGHT = 8,
+        REPAIRED = 16
+    };
+    std::uint8_t notes = 0;
 };
 
 /// A building where it stands, metres, in a local frame: x east, y north, z up.

@@ -284,19 +284,23 @@ void BuildingMesh::flatRoof(const std::vector<Ring>& rings, double z, const osg:
     const osg::Vec3d up(0.0, 0.0, 1.0);
     const osg::Vec2d plain = WindowPicture::plain();
     const std::vector<osg::Vec2d> triangles = triangulate(rings);
+    // The corners of a square serve both triangles.
+    std::vector<unsigned int> corners;
     if (rings.size() == 1 && triangles.size() == 6 && rings.front().size() == 4)
-    {
-        // The corners serve both triangles.
-        const auto first = static_cast<unsigned int>(_places.size());
-        for (const osg::Vec2d& place : rings.front())
-            vertex({place.x(), place.y(), z}, up, color, plain.x(), plain.y());
         for (const osg::Vec2d& place : triangles)
             for (unsigned int i = 0; i < 4; ++i)
                 if (rings.front()[i] == place)
                 {
-                    _triangles.push_back(first + i);
+                    corners.push_back(i);
                     break;
                 }
+    if (corners.size() == 6)
+    {
+        const auto first = static_cast<unsigned int>(_places.size());
+        for (const osg::Vec2d& place : rings.front())
+            vertex({place.x(), place.y(), z}, up, color, plain.x(), plain.y());
+        for (const unsigned int corner : corners)
+            _triangles.push_back(first + corner);
         return;
     }
     for (const osg::Vec2d& place : triangles)

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <initializer_list>
 #include <memory>
 
@@ -62,6 +62,18 @@ std::string tagOf(const std::string& tags, const std::string& key)
     return to == std::string::npos ? std::string() : tags.substr(from, to - from);
 }
 
+/// A number at the beginning of a text, whatever the locale; nothing if there is none. `rest` is what follows it.
+std::optional<double> numberAtStart(const std::string& text, std::string& rest)
+{
+    const std::size_t start = text.find_first_not_of(" \t+");
+    if (start == std::string::npos) return {};
+    double value = 0.0;
+    const auto [end, code] = std::from_chars(text.data() + start, text.data() + text.size(), value);
+    if (code != std::errc()) return {};
+    rest.assign(end, text.data() + text.size());
+    return value;
+}
+
 class Reader
 {
 public:
@@ -101,8 +113,10 @@ public:
         const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
         const bool polygons = type == wkbPolygon || OGR_GT_IsSubClassOf(type, wkbGeometryCollection);
         const std::string building = text(feature, fields.building);
-        // A layer that says what is a building says what is none, too.
-        if (!polygons || (fields.building >= 0 && (building.empty() || building == "no")))
+        // OpenStreetMap's polygons are of all kinds. In other data a field of this name may be a building's name.
+        const bool other =
+            fields.building >= 0 && (building == "no" || (building.empty() && fields.tags >= 0));
+        if (!polygons || other)
         {
             ++_summary.otherFeatures;
             return;
@@ -126,6 +140,7 @@ public:
                 continue;
             }
             each.rings = std::move(rings);
+            if (_repaired) each.notes |= Building::REPAIRED;
             describe(each, feature, fields, area);
             _take(std::move(each));
         }
@@ -160,7 +175,7 @@ private:
         }
         const std::size_t before = outlines.size();
         const bool good = collectValid(*used, toGrid, outlines);
-        if (valid && outlines.size() > before) ++_summary.repaired;
+        _repaired = valid && outlines.size() > before;
         return good;
     }
 
@@ -235,7 +250,9 @@ private:
             if (!_placed[i] || !std::isfinite(_x[i]) || !std::isfinite(_y[i])) return false;
             const osg::Vec2d place = osg::Vec2d(_x[i], _y[i]) * _metresPerUnit;
             if (_grid.geocentric() && std::abs(place.y()) > 90.0) return false;
-            whole.push_back(_grid.turned(place));
+            // Relative to the outline's first point, so that no outline goes around the globe.
+            if (outline && whole.empty()) _about = _grid.turned(place);
+            whole.push_back(_grid.turned(place, _about));
         }
         // The last point repeats the first.
         if (whole.size() > 1 && whole.front() == whole.back()) whole.pop_back();
@@ -268,7 +285,7 @@ private:
 
     void describe(Building& building, const OGRFeature& feature, const Fields& fields, double area)
     {
-        const std::optional<double> height = heightOf(feature, fields);
+        const std::optional<double> height = heightOf(feature, fields, building);
         const std::optional<double> storeys = storeysOf(feature, fields);
         const std::string use = text(feature, fields.use) + " " + text(feature, fields.building);
         const std::string roof = text(feature, fields.roof, fields.tags, "roof:shape");
@@ -277,13 +294,13 @@ private:
         else if (storeys)
         {
             building.height = 3.1 * *storeys + 1.0;
-            ++_summary.byStoreys;
+            building.notes |= Building::BY_STOREYS;
         }
         else
         {
             // Sheds, houses, blocks of flats, halls.
             building.height = area < 40.0 ? 3.0 : area < 300.0 ? 6.0 : area < 1200.0 ? 10.0 : 12.0;
-            ++_summary.byArea;
+            building.notes |= Building::BY_AREA;
         }
         building.use = useOf(use, building.height, area);
         const bool rectangle = building.rings.size() == 1 && building.rings.front().size() == 4;
@@ -291,10 +308,10 @@ private:
             building.gabled = rectangle && building.use == BuildingUse::HOUSE && building.height < 12.0;
         else
             building.gabled = contains(roof, {"gable", "pitch", "hip", "saddle", "sattel"});
-        if (building.gabled && rectangle) ++_summary.gabled;
+        if (building.gabled && rectangle) building.notes |= Building::GABLED;
     }
 
-    std::optional<double> heightOf(const OGRFeature& feature, const Fields& fields)
+    std::optional<double> heightOf(const OGRFeature& feature, const Fields& fields, Building& building) const
     {
         std::string words = text(feature, fields.height, fields.tags, "height");
         if (words.empty()) return {};
@@ -302,20 +319,22 @@ private:
         const OGRFieldType type =
             fields.height >= 0 ? feature.GetFieldDefnRef(fields.height)->GetType() : OFTString;
         std::optional<double> height;
-        if (type == OFTReal || type == OFTInteger || type == OFTInteger64)
+        if ((type == OFTReal || type == OFTInteger || type == OFTInteger64) &&
+            feature.IsFieldSetAndNotNull(fields.height))
             height = feature.GetFieldAsDouble(fields.height) *
                      (_options.unit == HeightUnit::FEET ? METRES_PER_FOOT : 1.0);
         else
             height = lengthInWords(words, _options.unit);
         if (height && std::isfinite(*height) && *height >= LEAST_HEIGHT && *height <= TALLEST) return height;
-        ++_summary.badHeights;
+        building.notes |= Building::BAD_HEIGHT;
         return {};
     }
 
     static std::optional<double> storeysOf(const OGRFeature& feature, const Fields& fields)
     {
         const std::string words = text(feature, fields.storeys, fields.tags, "building:levels");
-        const double storeys = words.empty() ? 0.0 : std::strtod(words.c_str(), nullptr);
+        std::string rest;
+        const double storeys = numberAtStart(words, rest).value_or(0.0);
         if (!(storeys >= 0.5 && storeys <= 250.0)) return {};
         return storeys;
     }
@@ -344,17 +363,41 @@ private:
     const std::function<void(Building&&)>& _take;
     std::vector<double> _x, _y;
     std::vector<int> _placed;
+    bool _repaired = false; ///< whether the outlines in work were mended
+    osg::Vec2d _about;      ///< the first point of the outline in work
 };
+
+/// As forEachFeature(), but without points in between: walls are short, and an outline that is wrong may be endless.
+void eachBuilding(
+    OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
+    const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take)
+{
+    const OGRSpatialReference* srs = layer.GetSpatialRef();
+    if (!srs || srs->IsEmpty() || srs->IsLocal())
+        throw BuildError(file + ": its layer " + std::string(layer.GetName()) +
+                         " has no coordinate reference system; name it with ogr2ogr -a_srs EPSG:N.");
+    const TransformationPtr toTarget = createTransformation(gisOrder(*srs), gisOrder(target), file);
+    const GdalErrorScope errors;
+    for (const auto& feature : layer)
+    {
+        if (!feature->GetGeometryRef()) continue;
+        const std::unique_ptr<OGRGeometry> geometry(feature->GetGeometryRef()->getLinearGeometry());
+        if (geometry) take(*feature, *geometry, *toTarget);
+    }
+    if (errors.failed())
+        throw BuildError(file + ": its features cannot be read (" + errors.message() +
+                         "); the file may be cut short: copy or export it again.");
+}
 
 } // namespace
 
 std::optional<double> lengthInWords(const std::string& text, HeightUnit unit)
 {
-    const char* start = text.c_str();
-    char* end = nullptr;
-    const double value = std::strtod(start, &end);
-    if (end == start) return {};
-    std::string rest = lower(end);
+    std::string rest;
+    const std::optional<double> found = numberAtStart(text, rest);
+    if (!found) return {};
+    const double value = *found;
+    rest = lower(rest);
     rest.erase(std::remove_if(rest.begin(), rest.end(), [](unsigned char c) { return std::isspace(c); }),
                rest.end());
     const bool feet = unit == HeightUnit::FEET;
@@ -365,7 +408,8 @@ std::optional<double> lengthInWords(const std::string& text, HeightUnit unit)
     if (rest.front() == '\'')
     {
         // 12'6": feet and inches.
-        const double inches = rest.size() > 1 ? std::strtod(rest.c_str() + 1, nullptr) : 0.0;
+        std::string last;
+        const double inches = numberAtStart(rest.substr(1), last).value_or(0.0);
         return (value + inches / 12.0) * METRES_PER_FOOT;
     }
     return {};
@@ -386,20 +430,20 @@ void readBuildings(const TownOptions& options, const TownGrid& grid, const std::
     Reader reader(options, grid, metresPerUnit, summary, take);
     bool any = false;
     std::uint64_t done = 0;
-    forEachLayer(*dataset, options.layer, options.buildings,
-                 [&](OGRLayer& layer)
-                 {
-                     const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
-                     const bool may = type == wkbUnknown || type == wkbPolygon || type == wkbMultiPolygon ||
-                                      type == wkbGeometryCollection || type == wkbCurvePolygon ||
-                                      type == wkbMultiSurface;
-                     if (!may && options.layer.empty()) return;
-                     any = true;
-                     const Fields fields = reader.fieldsOf(*layer.GetLayerDefn());
-                     const GIntBig known = layer.GetFeatureCount(FALSE);
-                     const auto total = static_cast<std::uint64_t>(std::max<GIntBig>(known, 0));
-                     forEachFeature(
-                         layer, target, options.buildings,
+    forEachLayer(
+        *dataset, options.layer, options.buildings,
+        [&](OGRLayer& layer)
+        {
+            const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
+            const bool may = type == wkbUnknown || type == wkbPolygon || type == wkbMultiPolygon ||
+                             type == wkbGeometryCollection || type == wkbCurvePolygon ||
+                             type == wkbMultiSurface;
+            if (!may && options.layer.empty()) return;
+            any = true;
+            const Fields fields = reader.fieldsOf(*layer.GetLayerDefn());
+            const GIntBig known = layer.GetFeatureCount(TRUE);
+            const std::uint64_t total = done + static_cast<std::uint64_t>(std::max<GIntBig>(known, 0));
+            eachBuilding(layer, target, options.buildings,
                          [&](const OGRFeature& feature, const OGRGeometry& geometry,
                              OGRCoordinateTransformation& toGrid)
                          {
@@ -407,11 +451,12 @@ void readBuildings(const TownOptions& options, const TownGrid& grid, const std::
                              const GdalErrorScope quiet;
                              reader.take(feature, geometry, toGrid, fields);
                              constexpr std::uint64_t step = 1000;
-                             if (++done % step == 0 && progress && !progress(done, total, "buildings"))
+                             if (++done % step == 0 && progress &&
+                                 !progress(std::min(done, total), total, "buildings"))
                                  throw BuildError(options.database +
                                                   ": the town was stopped; the database is as it was.");
                          });
-                 });
+        });
     if (!any)
         throw BuildError(options.buildings +
                          ": it has no layer of polygons; name another file, or check it with ogrinfo.");

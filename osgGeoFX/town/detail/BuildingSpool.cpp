@@ -25,7 +25,7 @@ struct Head
     double height = 0.0;
     std::uint32_t bytes = 0; ///< of all that follows
     std::uint16_t rings = 0;
-    std::uint8_t use = 0, gabled = 0;
+    std::uint8_t use = 0, notes = 0; ///< the highest bit of the notes: gabled
 };
 
 } // namespace
@@ -56,7 +56,7 @@ std::uint64_t BuildingSpool::add(const Building& building)
     head.bytes = static_cast<std::uint32_t>(body.bytes().size());
     head.rings = static_cast<std::uint16_t>(building.rings.size());
     head.use = static_cast<std::uint8_t>(building.use);
-    head.gabled = building.gabled ? 1 : 0;
+    head.notes = static_cast<std::uint8_t>(building.notes | (building.gabled ? 128 : 0));
     const auto* bytes = reinterpret_cast<const char*>(&head);
     _buffer.insert(_buffer.end(), bytes, bytes + sizeof(head));
     _buffer.insert(_buffer.end(), body.bytes().begin(), body.bytes().end());
@@ -107,7 +107,8 @@ Building BuildingSpool::read(std::uint64_t place) const
     Building building;
     building.height = head.height;
     building.use = static_cast<BuildingUse>(head.use);
-    building.gabled = head.gabled != 0;
+    building.gabled = (head.notes & 128) != 0;
+    building.notes = static_cast<std::uint8_t>(head.notes & 127);
     std::size_t at = 0;
     for (int i = 0; i < head.rings; ++i)
     {

@@ -22,6 +22,8 @@ namespace
 
 /// Surfaces of finest tiles that are kept: some 2 MB each.
 constexpr std::size_t MOST_SURFACES = 12;
+/// Files whose tiles are remembered.
+constexpr std::size_t MOST_FILES = 20000;
 
 double cross(const osg::Vec2d& a, const osg::Vec2d& b)
 {
@@ -55,7 +57,10 @@ public:
         for (const osg::Vec3& vertex : *vertices)
         {
             _places.push_back(grid.fromWorld(osg::Vec3d(vertex) * toWorld));
-            const osg::Vec2d place(_places.back().x(), _places.back().y());
+            // About the tile's first vertex, so that no triangle goes around the globe.
+            const osg::Vec2d place = grid.turned({_places.back().x(), _places.back().y()},
+                                                 {_places.front().x(), _places.front().y()});
+            _places.back().x() = place.x();
             _low.set(std::min(_low.x(), place.x()), std::min(_low.y(), place.y()));
             _high.set(std::max(_high.x(), place.x()), std::max(_high.y(), place.y()));
         }
@@ -81,8 +86,9 @@ public:
         }
     }
 
-    std::optional<double> at(const osg::Vec2d& place) const
+    std::optional<double> at(const osg::Vec2d& anywhere, const TownGrid& grid) const
     {
+        const osg::Vec2d place = grid.turned(anywhere, (_low + _high) * 0.5);
         const double tolerance = 1e-9 * (_high - _low).length();
         if (_cells.empty() || place.x() < _low.x() - tolerance || place.y() < _low.y() - tolerance ||
             place.x() > _high.x() + tolerance || place.y() > _high.y() + tolerance)
@@ -213,7 +219,7 @@ std::optional<double> DrawnGround::find(Tiles& tiles, const std::string& file, c
             height = find(tilesIn(finer), finer, place, low, up);
         }
         else
-            height = surfaceOf(tile, file, i).at(place);
+            height = surfaceOf(tile, file, i).at(place, _grid);
         if (height) return height;
     }
     return {};
@@ -221,7 +227,12 @@ std::optional<double> DrawnGround::find(Tiles& tiles, const std::string& file, c
 
 std::optional<double> DrawnGround::at(const osg::Vec2d& place)
 {
-    if (!_grid.contains(place)) return {};
+    if (!_grid.contains(_grid.turned(place))) return {};
+    if (_files.size() > MOST_FILES)
+    {
+        _files.clear();
+        _kept.clear();
+    }
     const osg::Vec3d low = _grid.toWorld(place, 0.0);
     osg::Vec3d up = _grid.toWorld(place, 1000.0) - low;
     up.normalize();

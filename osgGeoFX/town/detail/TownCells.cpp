@@ -264,6 +264,8 @@ void TownCells::build(int worker, std::size_t index)
                 continue;
             }
             ++_buildings;
+            for (std::size_t bit = 0; bit < _notes.size(); ++bit)
+                if (building.notes & (1u << bit)) ++_notes[bit];
             all.push_back(place(building, standing, toUnit));
             const PlacedBuilding placed = place(building, standing, toCell);
             detail.add(placed, BuildingLevel::DETAIL);
@@ -294,6 +296,14 @@ void TownCells::build(int worker, std::size_t index)
     const osg::ref_ptr<osg::Node> node =
         cellNode(frame, blocks, box, "../../" + fileOf("single", unit.x, unit.y), _single.range);
     _made[index] = node;
+}
+
+std::uint64_t TownCells::noted(Building::Note note) const
+{
+    std::size_t bit = 0;
+    while ((1u << bit) != static_cast<unsigned int>(note))
+        ++bit;
+    return _notes[bit];
 }
 
 osg::ref_ptr<osg::Group> TownCells::finish()

@@ -11,6 +11,7 @@
 #include <osg/Geometry>
 #include <osg/Group>
 
+#include <array>
 #include <atomic>
 #include <map>
 #include <memory>
@@ -47,6 +48,8 @@ public:
     osg::ref_ptr<osg::Group> finish();
 
     std::uint64_t buildings() const { return _buildings; }
+    /// How many of them have a note (Building::Note).
+    std::uint64_t noted(Building::Note note) const;
     std::uint64_t outside() const { return _outside; }
 
 private:
@@ -92,6 +95,7 @@ private:
     std::map<int, std::unique_ptr<DrawnGround>> _grounds; ///< by worker
     std::vector<osg::ref_ptr<osg::Node>> _made;           ///< by unit: its node in the file of its large cell
     std::atomic<std::uint64_t> _buildings{0}, _outside{0};
+    std::array<std::atomic<std::uint64_t>, 8> _notes{}; ///< by their bits
 };
 
 } // namespace osgGeoFX

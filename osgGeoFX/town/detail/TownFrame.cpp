@@ -19,13 +19,13 @@ TownGrid::TownGrid(const TerrainInfo& terrain)
 
 osg::Vec2d TownGrid::turned(const osg::Vec2d& place) const
 {
+    return turned(place, {0.5 * (_west + _east), 0.0});
+}
+
+osg::Vec2d TownGrid::turned(const osg::Vec2d& place, const osg::Vec2d& about) const
+{
     if (!_geocentric) return place;
-    osg::Vec2d result = place;
-    while (result.x() < _west)
-        result.x() += 360.0;
-    while (result.x() >= _west + 360.0)
-        result.x() -= 360.0;
-    return result;
+    return {about.x() + std::remainder(place.x() - about.x(), 360.0), place.y()};
 }
 
 osg::Vec3d TownGrid::toWorld(const osg::Vec2d& place, double height) const

@@ -26,8 +26,11 @@ public:
     {
         return place.x() >= _west && place.x() <= _east && place.y() >= _south && place.y() <= _north;
     }
-    /// Longitudes turned into the terrain's range.
+    /// A place with its longitude turned by whole circles to within 180 degrees of the terrain's middle, or of that of
+    /// another place. What belongs together must be turned about one place: on the other side of the globe, neighbours
+    /// would go to different ends.
     osg::Vec2d turned(const osg::Vec2d& place) const;
+    osg::Vec2d turned(const osg::Vec2d& place, const osg::Vec2d& about) const;
 
     /// The world position of a grid place at a height; and back, with the height as z.
     osg::Vec3d toWorld(const osg::Vec2d& place, double height) const;
