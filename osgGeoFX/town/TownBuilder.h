@@ -73,7 +73,7 @@ using TownProgress = std::function<bool(std::uint64_t done, std::uint64_t total,
     that the database has is replaced, and stays until the new one is ready. The same sources and options give the same bytes,
     for any number of threads.
 
-    Memory does not grow with the number of buildings, but for 16 bytes each, and for the blocks that they are from afar. Outlines wait in a work file meanwhile.
+    Memory does not grow with the number of buildings, but for 16 bytes each. Outlines wait in a work file meanwhile.
 
     Throws BuildError. Any thread may call it, but only one build at a time may use a folder.
     @ingroup town */

@@ -391,16 +391,34 @@ TEST(TownBuilder, BadInput)
     EXPECT_EQ(buildingsOf(database, "detail").size(), 9u);
     for (const char* words : {"9 buildings", "guessed", "mended", "left out", "no ground", "no numbers"})
         EXPECT_NE(summary.text().find(words), std::string::npos) << words;
-    // The courtyard's walls stand too: more corners than the outline's.
+    // The courtyard's walls stand too, and look into it.
     const DatabaseRoot root(database);
     int inner = 0;
-    for (const TownBuilding& each : buildingsOf(database, "detail"))
-        for (const osg::Vec3d& vertex : each.vertices)
-        {
-            const osg::Vec3d place = root.fromWorld(vertex);
-            if (std::abs(place.x() - (x + 0.01 + a)) < 1e-6 && std::abs(place.y() - (y + a)) < 1e-6) ++inner;
-        }
-    EXPECT_GE(inner, 4);
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(folder / "database" / "buildings" / "detail"))
+    {
+        if (!entry.is_regular_file()) continue;
+        forEachGeometry(
+            entry.path(),
+            [&](const osg::Geometry& geometry, const osg::Matrixd& toWorld)
+            {
+                const auto& vertices = static_cast<const osg::Vec3Array&>(*geometry.getVertexArray());
+                const auto& normals = static_cast<const osg::Vec3bArray&>(*geometry.getNormalArray());
+                for (std::size_t i = 0; i < vertices.size(); ++i)
+                {
+                    const osg::Vec3d world = osg::Vec3d(vertices[i]) * toWorld, here = root.fromWorld(world);
+                    if (normals[i].z() != 0 || std::abs(here.x() - (x + 0.01 + 1.5 * a)) > 0.6 * a ||
+                        std::abs(here.y() - (y + 1.5 * a)) > 0.6 * a)
+                        continue;
+                    ++inner;
+                    const osg::Vec3d middle = root.toWorld({x + 0.01 + 1.5 * a, y + 1.5 * a, here.z()});
+                    const osg::Vec3d normal = osg::Matrixd::transform3x3(
+                        osg::Vec3d(normals[i].x(), normals[i].y(), normals[i].z()), toWorld);
+                    EXPECT_GT(normal * (middle - world), 0.0);
+                }
+            });
+    }
+    EXPECT_GE(inner, 16);
 }
 
 TEST(TownBuilder, OtherSystemsAndFeet)

@@ -53,11 +53,6 @@ void expand(osg::BoundingBoxd& box, const osg::BoundingBox& other, const osg::Ma
         box.expandBy(osg::Vec3d(other.corner(i)) * matrix);
 }
 
-int floorDivided(int value, int by)
-{
-    return value >= 0 ? value / by : -((by - 1 - value) / by);
-}
-
 } // namespace
 
 /// How a building stands on the drawn ground, heights of the database.
@@ -130,6 +125,12 @@ void TownCells::finishReading()
         _units.back().last = i + 1;
     }
     _made.resize(_units.size());
+    for (std::size_t i = 0; i < _units.size(); ++i)
+    {
+        LargeCell& cell = _large[largeOf(_units[i])];
+        cell.units.push_back(i);
+        ++cell.left;
+    }
 }
 
 /// The middle of a cell that is `size` of the smallest grid's wide, in the grid's coordinates.
@@ -286,7 +287,11 @@ void TownCells::build(int worker, std::size_t index)
         singles->addChild(
             cellNode(cellFrame, coarse, cellBox, "../../" + fileOf("detail", x, y), _detail.range));
     }
-    if (singles->getNumChildren() == 0) return;
+    if (singles->getNumChildren() == 0)
+    {
+        finishUnit(index);
+        return;
+    }
     write(*singles, "single", unit.x, unit.y);
     BuildingMesh mesh(_blocks.depth);
     for (const PlacedBuilding& block : makeBlocks(all))
@@ -296,6 +301,43 @@ void TownCells::build(int worker, std::size_t index)
     const osg::ref_ptr<osg::Node> node =
         cellNode(frame, blocks, box, "../../" + fileOf("single", unit.x, unit.y), _single.range);
     _made[index] = node;
+    finishUnit(index);
+}
+
+TownCells::LargeKey TownCells::largeOf(const Unit& unit) const
+{
+    return {unit.y / FINER, unit.x / FINER};
+}
+
+void TownCells::finishUnit(std::size_t index)
+{
+    const LargeKey key = largeOf(_units[index]);
+    LargeCell* large = nullptr;
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        large = &_large[key];
+        if (--large->left > 0) return;
+    }
+    // No other unit looks at this cell any more.
+    const auto& [y, x] = key;
+    const osg::Matrixd frame = _grid.frameAt(middleOf(x, y, FINER * FINER)),
+                       toCell = osg::Matrixd::inverse(frame);
+    osg::ref_ptr<osg::Group> group = new osg::Group;
+    osg::BoundingBoxd box;
+    for (const std::size_t unit : large->units)
+    {
+        if (!_made[unit]) continue;
+        group->addChild(_made[unit]);
+        const osg::BoundingSphere ball = _made[unit]->getBound();
+        const osg::Vec3d middle = osg::Vec3d(ball.center()) * toCell;
+        const double radius = static_cast<double>(ball.radius());
+        box.expandBy(middle - osg::Vec3d(radius, radius, radius));
+        box.expandBy(middle + osg::Vec3d(radius, radius, radius));
+        _made[unit] = nullptr;
+    }
+    if (group->getNumChildren() == 0) return;
+    write(*group, "blocks", x, y);
+    large->node = cellNode(frame, nullptr, box, "buildings/" + fileOf("blocks", x, y), _blocks.range);
 }
 
 std::uint64_t TownCells::noted(Building::Note note) const
@@ -309,29 +351,8 @@ std::uint64_t TownCells::noted(Building::Note note) const
 osg::ref_ptr<osg::Group> TownCells::finish()
 {
     osg::ref_ptr<osg::Group> town = new osg::Group;
-    std::map<std::pair<int, int>, std::vector<std::size_t>> large;
-    for (std::size_t i = 0; i < _units.size(); ++i)
-        if (_made[i])
-            large[{floorDivided(_units[i].y, FINER), floorDivided(_units[i].x, FINER)}].push_back(i);
-    for (const auto& [cell, units] : large)
-    {
-        const auto& [y, x] = cell;
-        const osg::Matrixd frame = _grid.frameAt(middleOf(x, y, FINER * FINER)),
-                           toCell = osg::Matrixd::inverse(frame);
-        osg::ref_ptr<osg::Group> group = new osg::Group;
-        osg::BoundingBoxd box;
-        for (const std::size_t unit : units)
-        {
-            group->addChild(_made[unit]);
-            const osg::BoundingSphere ball = _made[unit]->getBound();
-            const osg::Vec3d middle = osg::Vec3d(ball.center()) * toCell;
-            const double radius = static_cast<double>(ball.radius());
-            box.expandBy(middle - osg::Vec3d(radius, radius, radius));
-            box.expandBy(middle + osg::Vec3d(radius, radius, radius));
-        }
-        write(*group, "blocks", x, y);
-        town->addChild(cellNode(frame, nullptr, box, "buildings/" + fileOf("blocks", x, y), _blocks.range));
-    }
+    for (const auto& [key, cell] : _large)
+        if (cell.node) town->addChild(cell.node);
     return town;
 }
 

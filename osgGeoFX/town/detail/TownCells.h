@@ -17,6 +17,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -44,7 +45,7 @@ public:
     void finishReading();
     std::size_t units() const { return _units.size(); }
     void build(int worker, std::size_t unit);
-    /// Writes the files of the large cells. The result refers to these.
+    /// The node of the whole town, which refers to the files of the large cells.
     osg::ref_ptr<osg::Group> finish();
 
     std::uint64_t buildings() const { return _buildings; }
@@ -73,6 +74,18 @@ private:
     };
     struct Standing;
 
+    /// A large cell, by its y and x.
+    using LargeKey = std::pair<int, int>;
+    struct LargeCell
+    {
+        std::vector<std::size_t> units;
+        std::size_t left = 0;         ///< units that are not done
+        osg::ref_ptr<osg::Node> node; ///< that refers to its file; null until then, and if it is empty
+    };
+
+    LargeKey largeOf(const Unit& unit) const;
+    /// Writes the file of a unit's large cell if it was the last one of it, and lets its blocks go.
+    void finishUnit(std::size_t index);
     osg::Vec2d middleOf(int x, int y, int size) const;
     bool stand(DrawnGround& ground, const Building& building, Standing& standing) const;
     PlacedBuilding place(const Building& building, const Standing& standing,
@@ -93,7 +106,9 @@ private:
     std::vector<Unit> _units;
     std::mutex _mutex;
     std::map<int, std::unique_ptr<DrawnGround>> _grounds; ///< by worker
-    std::vector<osg::ref_ptr<osg::Node>> _made;           ///< by unit: its node in the file of its large cell
+    std::vector<osg::ref_ptr<osg::Node>>
+        _made; ///< by unit: its node in the file of its large cell, until that is written
+    std::map<LargeKey, LargeCell> _large;
     std::atomic<std::uint64_t> _buildings{0}, _outside{0};
     std::array<std::atomic<std::uint64_t>, 8> _notes{}; ///< by their bits
 };
