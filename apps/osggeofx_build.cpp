@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// osggeofx_build: rasters to a paged terrain database.
+// osggeofx_build: rasters to a paged terrain database, and buildings into it.
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <osgGeoFX/terrain/DistributedBuild.h>
 #include <osgGeoFX/terrain/ProgressLine.h>
+#include <osgGeoFX/town/TownBuilder.h>
 
 #include <CLI/CLI.hpp>
 
@@ -34,6 +35,14 @@ void work(const std::string& folder, const std::vector<std::string>& units, int 
     if (built.finished) std::printf("%s/terrain.osgb: the database is finished.\n", folder.c_str());
 }
 
+/// Puts buildings into the finished database.
+void buildTown(const osgGeoFX::TownOptions& options, bool quiet)
+{
+    osgGeoFX::ProgressLine line("osggeofx_build");
+    const auto summary = osgGeoFX::buildTown(options, quiet ? osgGeoFX::TownProgress() : std::ref(line));
+    if (!quiet) std::printf("%s/buildings: %s", options.database.c_str(), summary.text().c_str());
+}
+
 /// What an update has done, and what the next one will find.
 void tellUpdate(const osgGeoFX::BuildSummary& summary, const std::string& folder)
 {
@@ -59,6 +68,7 @@ void tellUpdate(const osgGeoFX::BuildSummary& summary, const std::string& folder
 int main(int argc, char** argv)
 {
     osgGeoFX::BuildOptions options;
+    osgGeoFX::TownOptions town;
     std::string plan, workFolder;
     std::vector<std::string> units;
     bool geocentric = false, quiet = false, estimate = false, anew = false, keepNothing = false;
@@ -85,6 +95,30 @@ int main(int argc, char** argv)
     app.add_option("--tree-cover", options.treeCover,
                    "Raster of the ground's share under trees, percent; in place of the land cover's")
         ->type_name("FILE");
+    app.add_option("--buildings", town.buildings,
+                   "Polygons of buildings with heights, in any CRS: walls and roofs on the terrain, with "
+                   "levels of detail. "
+                   "Without --dem, for the database that is in the folder")
+        ->type_name("FILE");
+    auto* buildings = app.get_option("--buildings");
+    app.add_option("--buildings-layer", town.layer, "Its layer; all layers of polygons without it")
+        ->needs(buildings)
+        ->type_name("NAME");
+    app.add_option(
+           "--height-field", town.heightField,
+           "Its field of heights, from the ground to the top of the roof; without it one of the usual names, "
+           "or storeys, or a guess by area")
+        ->needs(buildings)
+        ->type_name("NAME");
+    app.add_option("--roof-field", town.roofField, "Its field of roofs' shapes: gabled, pitched, flat …")
+        ->needs(buildings)
+        ->type_name("NAME");
+    const std::map<std::string, osgGeoFX::HeightUnit> heightUnits{{"m", osgGeoFX::HeightUnit::METRES},
+                                                                  {"ft", osgGeoFX::HeightUnit::FEET}};
+    app.add_option("--height-unit", town.unit,
+                   "The unit of heights that do not say theirs: m (the default) or ft")
+        ->needs(buildings)
+        ->transform(CLI::CheckedTransformer(heightUnits).description("m|ft"));
     auto* globe =
         app.add_flag("--geocentric", geocentric, "Curved, in geocentric WGS 84 coordinates (the default)");
     app.add_option("--srs", srs, "Flat, in a projected CRS: EPSG:N")->excludes(globe)->type_name("EPSG:N");
@@ -168,7 +202,12 @@ int main(int argc, char** argv)
     try
     {
         app.parse(argc, argv);
-        if (workFolder.empty() && options.dems.empty()) throw CLI::RequiredError("--dem");
+        if (workFolder.empty() && options.dems.empty() && town.buildings.empty())
+            throw CLI::RequiredError("--dem");
+        if (!town.buildings.empty() && (!workFolder.empty() || !plan.empty()))
+            throw CLI::ValidationError(
+                "--buildings", "a town is not planned for many processes; build the terrain first, then "
+                               "call osggeofx_build --buildings FILE -o DIR.");
         if (workFolder.empty() && plan.empty() && options.output.empty())
             throw CLI::RequiredError("--output");
         if (!workFolder.empty() && units.empty()) throw CLI::RequiredError("--unit");
@@ -193,6 +232,16 @@ int main(int argc, char** argv)
         if (!workFolder.empty())
         {
             work(workFolder, units, options.threads, memory->count() > 0 ? options.memoryMiB : 0, quiet);
+            return 0;
+        }
+        town.database = options.output;
+        town.threads = options.threads;
+        if (options.dems.empty())
+        {
+            if (estimate)
+                throw osgGeoFX::BuildError(
+                    "--estimate: only a terrain is estimated; leave it out, or give --dem.");
+            buildTown(town, quiet);
             return 0;
         }
         options.update = !anew;
@@ -238,6 +287,13 @@ int main(int argc, char** argv)
                             "data's edge.\n",
                             100.0 * summary.openShare);
         }
+        if (!town.buildings.empty())
+            buildTown(town, quiet);
+        else if (osgGeoFX::removeStrayTown(options.output) && !quiet)
+            std::printf(
+                "%s/buildings: the town was removed, since the terrain has changed; build it again with "
+                "--buildings.\n",
+                options.output.c_str());
         return 0;
     }
     catch (const std::exception& error)

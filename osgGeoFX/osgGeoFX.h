@@ -32,6 +32,7 @@
 #include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/effect/Property.h>
 #include <osgGeoFX/effect/PropertyHolder.h>
+#include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/ScenePass.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/SurfaceEffect.h>

@@ -21,3 +21,5 @@
 #include <osgGeoFX/terrain/DistributedBuild.h>
 #include <osgGeoFX/terrain/ProgressLine.h>
 #include <osgGeoFX/terrain/ThinnedRaster.h>
+
+#include <osgGeoFX/town/TownBuilder.h>

@@ -103,6 +103,7 @@ public:
     double mostGrowth(const Ground& ground) const override;
     bool isProjection() const override { return true; }
     std::string vertexFile() const override { return "stages/bendview.glsl"; }
+    bool carriesThings() const override { return true; }
     /// Empty if the context has the same style as the focus.
     std::string fragmentFile() const override;
     std::string constants() const override;

@@ -148,15 +148,7 @@ osg::Vec3d LibertySnapshot::undeform(const osg::Vec3d& position) const
 osg::Matrixd LibertySnapshot::turn(const osg::Vec3d& position) const
 {
     if (reach({position, 0.0}) == Reach::Identity) return osg::Matrixd::identity();
-    const glm::dvec3 local = glsl::geofx_libertyLocal(_view, toGlm(position));
-    const double step = 0.0005 * std::min(_view.acrossRadius, _view.alongRadius);
-    const auto slope = [&](const glm::dvec3& way)
-    {
-        return (glsl::geofx_libertyWay(_view, local + way) - glsl::geofx_libertyWay(_view, local - way)) /
-               (2.0 * step);
-    };
-    const glm::dvec3 x = slope({step, 0.0, 0.0}), y = slope({0.0, step, 0.0});
-    return osg::Matrixd::rotate(std::atan2(x.y - y.x, 2.0 + x.x + y.y), toOsg(_view.up));
+    return osg::Matrixd::rotate(glsl::geofx_libertyTurn(_view, toGlm(position)), toOsg(_view.up));
 }
 
 /// The movements of a liberty, without a place.

@@ -83,6 +83,7 @@ public:
     double mostGrowth(const Ground& ground) const override;
     std::string vertexFile() const override { return "stages/liberty.glsl"; }
     std::string normalFile() const override { return vertexFile(); }
+    bool carriesThings() const override { return true; }
 
 protected:
     ~RegionalLiberty() override;

@@ -126,6 +126,11 @@ osg::Matrixd DeformationSnapshot::turn(const osg::Vec3d&) const
     return {};
 }
 
+osg::Vec3d DeformationSnapshot::carried(const osg::Vec3d& position, const osg::Vec3d& offset) const
+{
+    return osg::Matrixd::transform3x3(offset, turn(position));
+}
+
 Deformation::~Deformation() = default;
 
 } // namespace osgGeoFX

@@ -71,6 +71,9 @@ public:
     virtual osg::Vec3d deformNormal(const osg::Vec3d& position, const osg::Vec3d& normal) const = 0;
     /// The rotation of a rigid object that stands at a position: a pure rotation, by default the identity.
     virtual osg::Matrixd turn(const osg::Vec3d& position) const;
+    /// What becomes of a vector from a thing's reference point, at `position`, to one of its vertices (RigidParts). By default
+    /// it turns as turn() says. A projection that makes a picture of its own of all things deforms both ends.
+    virtual osg::Vec3d carried(const osg::Vec3d& position, const osg::Vec3d& offset) const;
     /// The style of a position: 0 in the focus, 1 in the context; 0 by default.
     virtual double style(const osg::Vec3d&) const { return 0.0; }
 
@@ -179,6 +182,9 @@ public:
 
     /// The vertex shader file. `SLOT_` in it stands for the prefix of its names.
     virtual std::string vertexFile() const = 0;
+    /// Whether this file also has `vec3 SLOT_carried(vec3 position, vec3 offset)`, as DeformationSnapshot::carried(). False, the
+    /// default, where that leaves the vector as it is.
+    virtual bool carriesThings() const { return false; }
     /// The fragment shader file with `vec4 SLOT_restyle(vec4 color, vec4 map, float style)`; empty, the default, for
     /// none.
     virtual std::string fragmentFile() const { return {}; }

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/labels/FinestGround.h>
 
+#include <osgGeoFX/effect/RigidParts.h>
+
 #include <osg/Math>
 #include <osgDB/ReadFile>
 #include <osgUtil/IntersectionVisitor>
@@ -47,6 +49,22 @@ private:
     std::map<std::string, std::pair<osg::ref_ptr<osg::Node>, std::list<std::string>::iterator>> _tiles;
 };
 
+namespace
+{
+
+/// Passes over towns: names and lines lie on the ground below them.
+class GroundVisitor : public osgUtil::IntersectionVisitor
+{
+public:
+    using osgUtil::IntersectionVisitor::IntersectionVisitor;
+    void apply(osg::Drawable& drawable) override
+    {
+        if (!RigidParts::of(drawable)) osgUtil::IntersectionVisitor::apply(drawable);
+    }
+};
+
+} // namespace
+
 FinestGround::FinestGround(const osg::Node& terrain, const osg::EllipsoidModel* ellipsoid,
                            const TerrainRelief& relief)
     : _terrain(const_cast<osg::Node&>(terrain)), _ellipsoid(ellipsoid), _relief(relief), _low(HUGE_VAL),
@@ -78,7 +96,7 @@ double FinestGround::finest(double x, double y) const
     const osg::ref_ptr<osgUtil::LineSegmentIntersector> line =
         new osgUtil::LineSegmentIntersector(world(x, y, _high + room), world(x, y, _low - room));
     line->setIntersectionLimit(osgUtil::Intersector::LIMIT_NEAREST);
-    osgUtil::IntersectionVisitor visitor(line, _tiles.get());
+    GroundVisitor visitor(line, _tiles.get());
     visitor.setLODSelectionMode(osgUtil::IntersectionVisitor::USE_HIGHEST_LEVEL_OF_DETAIL);
     _terrain.accept(visitor);
     if (!line->containsIntersections()) return std::numeric_limits<double>::quiet_NaN();

@@ -286,6 +286,7 @@ public:
     bool isProjection() const override { return getProjection(); }
     unsigned int leastParts() const override;
     std::string vertexFile() const override { return "stages/panorama.glsl"; }
+    bool carriesThings() const override { return true; }
 
     using Deformation::asPassEffect;
     using Deformation::asSurfaceEffect;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/DeformedIntersector.h>
 
+#include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/detail/DrawableTriangles.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/detail/UndeformedParts.h>
@@ -93,10 +94,12 @@ bool DeformedLineIntersector::meets(const Ball& ball) const
     return (toCenter - _direction * along).length2() <= radius * radius;
 }
 
-bool DeformedLineIntersector::missesBox(const osg::BoundingBox& box) const
+bool DeformedLineIntersector::missesBox(const osg::Drawable& drawable) const
 {
+    const EyeBox box = EyeBox::of(drawable.getBoundingBox(), _modelView);
     Hull hull;
-    _chain->bound(EyeBox::of(box, _modelView), hull);
+    _chain->bound(box, hull);
+    hull.margin += RigidParts::reach(drawable, *_chain, box.ball(), _scale);
     // Along the ray the hull is a flat figure, and the ray a point: has it a side with nothing of the figure?
     osg::Vec3d across = _direction ^ osg::Vec3d(0.0, 1.0, 0.0);
     if (across.length2() < 0.01) across = _direction ^ osg::Vec3d(1.0, 0.0, 0.0);
@@ -133,12 +136,24 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
     if (root()->reachedLimit()) return;
     const osg::BoundingBox& bounds = drawable->getBoundingBox();
     if (!bounds.valid() || !meets(_chain->bound(EyeBox::of(bounds, _modelView).ball()))) return;
-    if (missesBox(bounds)) return;
+    if (missesBox(*drawable)) return;
     const DrawableTriangles mesh(*drawable);
     std::vector<osg::Vec3d> deformed;
     deformed.reserve(mesh.positions().size());
+    // Many things in one drawable, each of which keeps its shape.
+    const osg::Vec4Array* references = RigidParts::of(*drawable);
+    if (references && references->size() != mesh.positions().size()) references = nullptr;
+    const auto reference = [&](std::size_t vertex)
+    {
+        const osg::Vec4& each = (*references)[vertex];
+        return osg::Vec3d(each.x(), each.y(), each.z()) * _modelView;
+    };
     for (const osg::Vec3d& position : mesh.positions())
-        deformed.push_back(_chain->deform(position * _modelView));
+    {
+        const osg::Vec3d eye = position * _modelView;
+        deformed.push_back(references ? RigidParts::place(*_chain, eye, reference(deformed.size()))
+                                      : _chain->deform(eye));
+    }
 
     for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
     {
@@ -162,7 +177,7 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         const osg::Vec3d a = first[corner[0]] * _modelView, ab = first[corner[1]] * _modelView - a,
                          ac = first[corner[2]] * _modelView - a;
         const osg::Vec3d flat = a + ab * met.u + ac * met.v;
-        osg::Vec3d eye = _chain->undeform(hit.deformed);
+        osg::Vec3d eye = references ? flat : _chain->undeform(hit.deformed);
         // Where a deformation gathers ground in one point, the flat triangle that is drawn may lie where no ground goes.
         if (!((eye - flat).length2() <= std::max(ab.length2(), ac.length2()))) eye = flat;
         hit.world = eye * toLocal * model;

@@ -59,8 +59,8 @@ protected:
 private:
     DeformedLineIntersector* root() { return _root ? _root : this; }
     bool meets(const Ball& ball) const;
-    /// Whether the ray certainly misses the deformed box.
-    bool missesBox(const osg::BoundingBox& box) const;
+    /// Whether the ray certainly misses what becomes of a drawable's box.
+    bool missesBox(const osg::Drawable& drawable) const;
 
     osg::Vec3d _origin;
     osg::Vec3d _direction;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/MeshRefiner.h>
 
+#include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/RigidReference.h>
@@ -54,7 +55,7 @@ public:
         DeformationSwitch state = _state;
         state.meet(geometry.getStateSet());
         if (!state.on || _programs.isStranger(state.program) || typeid(geometry) != typeid(osg::Geometry) ||
-            geometry.getDataVariance() == osg::Object::DYNAMIC)
+            geometry.getDataVariance() == osg::Object::DYNAMIC || RigidParts::of(geometry))
             return;
         const auto [entry, isNew] = found.try_emplace(&geometry, _matrix);
         if (!isNew && largestScale(_matrix) > largestScale(entry->second)) entry->second = _matrix;

@@ -63,6 +63,19 @@ GEOFX_INLINE Vector3 geofx_bendViewNormal(geofx_BendView view, Position position
     return normalize(normal + change.x * view.forward + change.y * view.normal);
 }
 
+// A vector of a thing that keeps its shape and stands at a position: turned with the ground there.
+GEOFX_INLINE Vector3 geofx_bendViewTurn(geofx_BendView view, Position position, Vector3 offset)
+{
+    Profile point = geofx_bendViewProfile(view, position);
+    if (!(point.x > 0))
+    {
+        return offset;
+    }
+    Vector2 inside = Vector2(dot(offset, view.forward), dot(offset, view.normal));
+    Vector2 change = geofx_bendTurn(geofx_bendFrame(view.bend, point.x), inside) - inside;
+    return offset + change.x * view.forward + change.y * view.normal;
+}
+
 // q, the paper's value for blending styles: 0 in the focus, 1 in the context.
 GEOFX_INLINE Number geofx_bendViewStyle(geofx_BendView view, Position position)
 {

@@ -65,6 +65,18 @@ GEOFX_INLINE Position geofx_liberty(geofx_Liberty view, Position position)
     return position + way.x * view.across + way.y * view.along + way.z * view.up;
 }
 
+// The angle by which a thing that keeps its shape turns about the vertical where it stands, counter-clockwise from above.
+GEOFX_INLINE Angle geofx_libertyTurn(geofx_Liberty view, Position position)
+{
+    Vector3 local = geofx_libertyLocal(view, position);
+    Length step = Number(0.0005) * min(view.acrossRadius, view.alongRadius);
+    Vector3 alongX = Vector3(step, 0, 0);
+    Vector3 alongY = Vector3(0, step, 0);
+    Vector3 x = (geofx_libertyWay(view, local + alongX) - geofx_libertyWay(view, local - alongX)) / (2 * step);
+    Vector3 y = (geofx_libertyWay(view, local + alongY) - geofx_libertyWay(view, local - alongY)) / (2 * step);
+    return atan(x.y - y.x, 2 + x.x + y.y);
+}
+
 // The deformed unit normal of a surface: that of the cofactors of the movement's derivatives.
 GEOFX_INLINE Vector3 geofx_libertyNormal(geofx_Liberty view, Position position, Vector3 normal)
 {

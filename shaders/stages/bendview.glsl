@@ -22,6 +22,11 @@ vec3 SLOT_deform(vec3 position)
     return geofx_bendViewDeform(SLOT_view(), position);
 }
 
+vec3 SLOT_carried(vec3 position, vec3 offset)
+{
+    return geofx_bendViewTurn(SLOT_view(), position, offset);
+}
+
 // The ground is lit as it lies, not as it is bent.
 vec3 SLOT_normal(vec3 position, vec3 normal)
 {

@@ -18,6 +18,7 @@
 #pragma import_defines(GEOFX_PLACED)
 #pragma import_defines(GEOFX_NEARER)
 #pragma import_defines(GEOFX_NORMAL_MAP)
+#pragma import_defines(GEOFX_RIGID)
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
 #ifdef GEOFX_HOST_NORMAL
@@ -25,11 +26,15 @@ GEOFX_IMPORTED_EFFECTS
 #endif
 #ifdef GEOFX_LATER_STAGE
 #undef GEOFX_NORMAL_MAP
+#undef GEOFX_RIGID
 vec4 geofx_textureCoordinates = vec4(0.0);
 void geofx_texture(vec4 coordinates)
 {
     geofx_textureCoordinates = coordinates;
 }
+#endif
+#ifdef GEOFX_RIGID
+layout(location = 13) in vec4 geofx_reference; // of the thing that the vertex belongs to: effect/RigidParts.h
 #endif
 out float geofx_styleBlend;
 #if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_NORMAL_MAP)
@@ -75,7 +80,17 @@ GEOFX_LOCATE_CALLS
     vec3 former = position;
 #endif
 #ifdef GEOFX_DEFORMATION
+#ifdef GEOFX_RIGID
+    // The reference moves, and the rest keeps its place about it.
+    vec3 undeformed = position;
+    vec3 reference = geofx_inView((gl_ModelViewMatrix * vec4(geofx_reference.xyz, 1.0)).xyz);
+    vec3 offset = position - reference;
+    position = reference;
+#endif
 GEOFX_DEFORM_CALLS
+#ifdef GEOFX_RIGID
+    position = position == reference ? undeformed : position + offset;
+#endif
 #endif
 GEOFX_MOVE_CALLS
 #if defined(GEOFX_IMAGE) && !defined(GEOFX_NEARER)
@@ -93,7 +108,7 @@ vec3 geofx_normal(vec4 cameraPosition, vec3 cameraNormal)
 {
     vec3 eyeNormal = geofx_directionInView(cameraNormal);
 GEOFX_FACE_CALLS
-#ifdef GEOFX_DEFORMATION
+#if defined(GEOFX_DEFORMATION) && !defined(GEOFX_RIGID)
     vec3 position = geofx_inView(cameraPosition.xyz / cameraPosition.w);
     vec3 normal = eyeNormal;
 GEOFX_NORMAL_CALLS

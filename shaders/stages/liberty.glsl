@@ -21,6 +21,15 @@ vec3 SLOT_deform(vec3 position)
     return geofx_liberty(SLOT_view(), position);
 }
 
+vec3 SLOT_carried(vec3 position, vec3 offset)
+{
+    geofx_Liberty view = SLOT_view();
+    float angle = geofx_libertyTurn(view, position);
+    float c = cos(angle);
+    float s = sin(angle);
+    return c * offset + s * cross(view.up, offset) + (1.0 - c) * dot(view.up, offset) * view.up;
+}
+
 vec3 SLOT_normal(vec3 position, vec3 normal)
 {
     return geofx_libertyNormal(SLOT_view(), position, normal);

@@ -62,6 +62,12 @@ vec3 SLOT_deform(vec3 position)
     return geofx_panoramaDraw(SLOT_view(), position, SLOT_placeOf(position));
 }
 
+// A map shows all things in its own projection.
+vec3 SLOT_carried(vec3 position, vec3 offset)
+{
+    return SLOT_deform(position + offset) - SLOT_deform(position);
+}
+
 // The ground is lit as it lies.
 vec3 SLOT_normal(vec3 position, vec3 normal)
 {

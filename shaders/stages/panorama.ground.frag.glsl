@@ -4,7 +4,7 @@
 // The painting of a panorama map's ground, after Sections 3.2, 3.4 and 3.5 of Brown and Samavati (2017). SLOT_ stands for the
 // effect's prefix.
 #pragma import_defines(GEOFX_PAINTED, GEOFX_MIRROR)
-#pragma import_defines(GEOFX_PART)
+#pragma import_defines(GEOFX_PART, GEOFX_RIGID)
 #include "stages/parts.glsl"
 #include "stages/panorama.water.glsl"
 #include "stages/panorama.edge.glsl"
@@ -193,6 +193,9 @@ vec4 SLOT_color(vec4 color)
     float wet = geofx_coverKnown(texel) ? clamp((texel.a - 128.0 / 255.0) / edge + 0.9, 0.0, 1.0)
                                         : step(0.0, cover.shore);
     wet *= SLOT_water.w;
+#ifdef GEOFX_RIGID
+    wet = 0.0; // a building
+#endif
 
 #if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_CORE)
     vec3 towards = SLOT_light.xyz; // the lights are those of an engine, or of a program of the application
@@ -217,6 +220,9 @@ vec4 SLOT_color(vec4 color)
 #else
     painted = SLOT_ground(SLOT_cleared(classes), light);
 #endif
+#elif defined(GEOFX_RIGID)
+    // Walls are no cliffs, and roofs no fields: a town's color with a share of their own.
+    painted = SLOT_shade(light, GEOFX_PALETTE_TOWN) * (0.35 + 0.8 * color.rgb);
 #else
     if (wet < 1.0)
         painted = SLOT_ground(geofx_classify(cover, SLOT_place.z, facing.w, brush.z, style), light);

@@ -40,6 +40,11 @@ public:
     osg::Vec3d undeform(const osg::Vec3d& position) const override;
     /// The ground is lit as it lies, undeformed.
     osg::Vec3d deformNormal(const osg::Vec3d&, const osg::Vec3d& normal) const override { return normal; }
+    /// A map shows all things in its own projection.
+    osg::Vec3d carried(const osg::Vec3d& position, const osg::Vec3d& offset) const override
+    {
+        return deform(position + offset) - deform(position);
+    }
     Reach reach(const Ball&) const override { return Reach::Curved; }
     double lipschitz(const Ball& ball) const override;
     Sag sag(const Ball& ball, const osg::Vec3d& edge) const override;

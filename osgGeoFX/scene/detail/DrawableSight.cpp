@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/DrawableSight.h>
 
+#include <osgGeoFX/effect/RigidParts.h>
+
 #include <cstddef>
 
 namespace osgGeoFX
@@ -40,14 +42,20 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     if (planes && _sight.outOfSight(deformed, planes, true)) return false;
     // The hull and the smaller boxes are tested only where no point is known to show: neither the box's middle nor
     // the small box that showed last time.
-    if (planes && !_sight.holds(deformed.center, planes) && !witnessInSight(drawable, place, planes) &&
-        (_sight.misses(place.chain, box, planes) || meshOutside(drawable, place, planes)))
+    const bool crosses = planes && !_sight.holds(deformed.center, planes);
+    // Things that keep their shape are not squeezed where the ground around them is, so they reach beyond what becomes of their box.
+    const double margin =
+        crosses || _wishes.depths ? RigidParts::reach(drawable, place.chain, box.ball(), place.scale) : 0.0;
+    if (crosses && !witnessInSight(drawable, place, planes) &&
+        (_sight.misses(place.chain, box, planes, margin) || meshOutside(drawable, place, planes)))
         return false;
+    // What keeps its shape does not fold.
+    const bool complains = !place.chain.empty() && !RigidParts::of(drawable);
     for (const auto& snapshot : place.chain.snapshots())
     {
-        if (_complaint.empty()) _complaint = snapshot->complaint(box);
+        if (complains && _complaint.empty()) _complaint = snapshot->complaint(box);
     }
-    if (_wishes.depths && place.depthCounts) _depths.add(box, deformed, place.chain);
+    if (_wishes.depths && place.depthCounts) _depths.add(box, deformed, place.chain, margin);
     if (_wishes.bounds) _bounds.add(box, place.chain);
     return true;
 }

@@ -98,6 +98,9 @@ void addDeformation(Parts& parts, const Deformation& deformation, const std::str
     const std::string move = "    position = " + prefix + "deform(position);\n";
     std::string deform = "    geofx_styleBlend = max(geofx_styleBlend, ";
     deform += prefix + "style(position));\n";
+    if (deformation.carriesThings())
+        deform +=
+            conditional("defined(GEOFX_RIGID)", "    offset = " + prefix + "carried(position, offset);\n");
     deform += move;
     parts.deform += conditional("defined(" + define + ")", deform);
     std::string normal = "    normal = ";

@@ -173,7 +173,7 @@ void DepthRange::include(const Ball& ball)
     include(depthOf(ball.center) - ball.radius, depthOf(ball.center) + ball.radius);
 }
 
-void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain)
+void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain, double margin)
 {
     const double depth = depthOf(deformed.center);
     if (!std::isfinite(depth) || !std::isfinite(deformed.radius)) return;
@@ -188,12 +188,13 @@ void DepthRange::add(const EyeBox& box, const Ball& deformed, const DeformationC
         include(depth - half, depth + half);
         return;
     }
-    _candidates.push_back({box, &chain, depth - deformed.radius, depth + deformed.radius});
+    _candidates.push_back({box, &chain, depth - deformed.radius, depth + deformed.radius, margin});
 }
 
 void DepthRange::measure(Candidate& candidate)
 {
     candidate.chain->bound(candidate.box, _hull, coarse);
+    _hull.margin += candidate.margin;
     double nearest = DBL_MAX;
     double farthest = -DBL_MAX;
     for (const osg::Vec3d& point : _hull.points)

@@ -63,8 +63,9 @@ public:
     /// Depths that are certain.
     void include(const Ball& ball);
     void include(double nearest, double farthest);
-    /// Adds a box whose deformed shape lies within a ball. The chain must live until settle().
-    void add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain);
+    /// Adds a box whose deformed shape lies within a ball. The chain must live until settle(). What the box holds may reach beyond
+    /// its image by `margin`, metres.
+    void add(const EyeBox& box, const Ball& deformed, const DeformationChain& chain, double margin = 0.0);
     /// Whether a ball lies between the depths that are certain so far. It need not be added then.
     bool covers(const Ball& ball) const
     {
@@ -82,6 +83,7 @@ private:
         EyeBox box;
         const DeformationChain* chain;
         double nearest, farthest; ///< of the ball
+        double margin;
     };
     void measure(Candidate& candidate);
 

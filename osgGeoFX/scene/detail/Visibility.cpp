@@ -61,9 +61,10 @@ bool Visibility::outOfSight(const Ball& deformed, Mask& planes, bool mayBeSmall)
            (!mayBeSmall && tooSmall(deformed));
 }
 
-bool Visibility::misses(const DeformationChain& chain, const EyeBox& box, Mask planes)
+bool Visibility::misses(const DeformationChain& chain, const EyeBox& box, Mask planes, double margin)
 {
     chain.bound(box, _hull);
+    _hull.margin += margin;
     return _frustum.misses(_hull, planes);
 }
 

@@ -58,8 +58,9 @@ public:
     }
     /// Whether a point is inside of the planes of a mask.
     bool holds(const osg::Vec3d& deformed, Mask planes) const { return _frustum.holds(deformed, planes); }
-    /// Whether the hull of a deformed box misses the picture. Slow.
-    bool misses(const DeformationChain& chain, const EyeBox& box, Mask planes);
+    /// Whether the hull of a deformed box misses the picture. Slow. What it holds may reach beyond the box' image by `margin`,
+    /// metres.
+    bool misses(const DeformationChain& chain, const EyeBox& box, Mask planes, double margin = 0.0);
     /// The same, with a test of a ball around the box first.
     bool outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes);
 

@@ -2,23 +2,34 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Writes one of the invented terrains: geofx_invent NAME FILE.tif [SAMPLES]
+// or a town for the terrain of data/oahu: geofx_invent town FILE.gpkg [BUILDINGS]
 #include <tools/InventedTerrain.h>
+#include <tools/InventedTown.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <string>
 
 int main(int argc, char** argv)
 {
     if (argc < 3)
     {
-        std::fputs("Usage: geofx_invent NAME FILE.tif [SAMPLES]; the names:\n", stderr);
+        std::fputs("Usage: geofx_invent town FILE.gpkg [BUILDINGS], or\n       geofx_invent NAME FILE.tif "
+                   "[SAMPLES]; the names:\n",
+                   stderr);
         for (const std::string& name : geofx::test::inventedTerrains())
             std::fprintf(stderr, "  %s\n", name.c_str());
         return 2;
     }
     try
     {
+        if (std::string(argv[1]) == "town")
+        {
+            const int count = geofx::test::inventTown(argv[2], argc > 3 ? std::atoi(argv[3]) : 16000);
+            std::printf("%s: %d buildings.\n", argv[2], count);
+            return 0;
+        }
         geofx::test::inventTerrain(argv[1], argv[2], argc > 3 ? std::atoi(argv[3]) : 0);
     }
     catch (const std::exception& error)

@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <tools/InventedTown.h>
+
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+#include <osg/Math>
+#include <osg/Vec2d>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace geofx::test
+{
+
+namespace
+{
+
+/// Metres about the middle of Honolulu: x east, y north.
+constexpr double LONGITUDE = -157.86, LATITUDE = 21.30, METRES_X = 103715.0, METRES_Y = 110730.0;
+
+osg::Vec2d place(double longitude, double latitude)
+{
+    return {(longitude - LONGITUDE) * METRES_X, (latitude - LATITUDE) * METRES_Y};
+}
+
+// Values of data/oahu/landcover.csv.
+enum Cover
+{
+    TOWN = 15,
+    URBAN = 16,
+    INDUSTRIAL = 17
+};
+
+/// Numbers that look random, the same for the same seed on any machine.
+class Dice
+{
+public:
+    Dice(std::uint64_t a, std::uint64_t b, std::uint64_t c)
+        : _state(a * 0x9e3779b97f4a7c15u ^ b * 0xbf58476d1ce4e5b9u ^ c)
+    {
+        next();
+        next();
+    }
+    std::uint64_t next()
+    {
+        std::uint64_t z = (_state += 0x9e3779b97f4a7c15u);
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return z ^ (z >> 31);
+    }
+    double uniform(double low, double high)
+    {
+        return low + (high - low) * static_cast<double>(next() >> 11) * 0x1.0p-53;
+    }
+    bool chance(double share) { return uniform(0.0, 1.0) < share; }
+
+private:
+    std::uint64_t _state;
+};
+
+/// A raster of data/oahu, all of it.
+template<typename T>
+class Raster
+{
+public:
+    Raster(const std::string& name, GDALDataType type)
+    {
+        GDALAllRegister();
+        const std::string file = std::string(GEOFX_SOURCE_DIR) + "/data/oahu/" + name;
+        const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str()));
+        if (!data || data->GetGeoTransform(_transform.data()) != CE_None)
+            throw std::runtime_error(file + " cannot be read.");
+        _columns = data->GetRasterXSize();
+        _rows = data->GetRasterYSize();
+        _values.resize(static_cast<std::size_t>(_columns) * static_cast<std::size_t>(_rows));
+        if (data->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, _columns, _rows, _values.data(), _columns, _rows,
+                                             type, 0, 0) != CE_None)
+            throw std::runtime_error(file + " cannot be read.");
+    }
+    T at(const osg::Vec2d& place) const
+    {
+        const double longitude = LONGITUDE + place.x() / METRES_X, latitude = LATITUDE + place.y() / METRES_Y;
+        const auto column = static_cast<int>(std::floor((longitude - _transform[0]) / _transform[1]));
+        const auto row = static_cast<int>(std::floor((latitude - _transform[3]) / _transform[5]));
+        if (column < 0 || row < 0 || column >= _columns || row >= _rows) return T(0);
+        return _values[static_cast<std::size_t>(row) * static_cast<std::size_t>(_columns) +
+                       static_cast<std::size_t>(column)];
+    }
+
+private:
+    std::array<double, 6> _transform{};
+    int _columns = 0, _rows = 0;
+    std::vector<T> _values;
+};
+
+struct House
+{
+    std::vector<osg::Vec2d> outline, courtyard;
+    double height = 0.0;
+    const char *roof = "flat", *use = "house";
+    double rank = 0.0;
+};
+
+/// Where streets have one direction.
+struct District
+{
+    osg::Vec2d middle;
+    double turn = 0.0; ///< of the streets from the east, counter-clockwise, radians
+};
+
+/// Where high-rises stand.
+struct Center
+{
+    osg::Vec2d middle;
+    double width, share, tallest;
+};
+
+/// The most from a district's middle to one of its blocks, metres.
+constexpr double REACH = 1700.0;
+
+class Inventor
+{
+public:
+    Inventor() : _cover("landcover.tif", GDT_Byte), _ground("elevation.tif", GDT_Float32)
+    {
+        // Those whose streets everyone knows.
+        const std::pair<osg::Vec2d, double> known[] = {
+            {place(-157.826, 21.280), -38.0}, {place(-157.835, 21.289), -40.0},
+            {place(-157.848, 21.296), -40.0}, {place(-157.861, 21.309), -47.0},
+            {place(-157.815, 21.283), -12.0}, {place(-157.840, 21.303), -35.0}};
+        for (const auto& [middle, degrees] : known)
+            _districts.push_back({middle, osg::DegreesToRadians(degrees)});
+        for (int row = -14; row <= 34; ++row)
+            for (int column = -32; column <= 24; ++column)
+            {
+                Dice dice(static_cast<std::uint64_t>(row + 100), static_cast<std::uint64_t>(column + 100), 1);
+                const osg::Vec2d middle((column + dice.uniform(-0.35, 0.35)) * 1700.0,
+                                        (row + dice.uniform(-0.35, 0.35)) * 1700.0);
+                const double turn = osg::DegreesToRadians(dice.uniform(-45.0, 45.0));
+                const bool near = std::any_of(_districts.begin(), _districts.begin() + std::size(known),
+                                              [&](const District& each)
+                                              { return (each.middle - middle).length() < 1100.0; });
+                if (!near) _districts.push_back({middle, turn});
+            }
+        _centers = {{place(-157.8265, 21.2795), 900.0, 0.62, 118.0},
+                    {place(-157.8605, 21.3085), 750.0, 0.60, 130.0},
+                    {place(-157.8470, 21.2945), 900.0, 0.45, 125.0},
+                    {place(-157.8370, 21.2900), 700.0, 0.30, 100.0}};
+    }
+
+    std::vector<House> houses()
+    {
+        for (std::size_t i = 0; i < _districts.size(); ++i)
+            addDistrict(i);
+        return std::move(_houses);
+    }
+
+private:
+    /// Those that may be nearer to a block of a district than its own middle.
+    std::vector<osg::Vec2d> beside(std::size_t index) const
+    {
+        std::vector<osg::Vec2d> result;
+        for (std::size_t i = 0; i < _districts.size(); ++i)
+            if (i != index && (_districts[i].middle - _districts[index].middle).length() < 2.0 * REACH)
+                result.push_back(_districts[i].middle);
+        return result;
+    }
+
+    void addDistrict(std::size_t index)
+    {
+        const District& district = _districts[index];
+        const osg::Vec2d along(std::cos(district.turn), std::sin(district.turn)),
+            across(-along.y(), along.x());
+        constexpr double length = 118.0, width = 76.0; // of a block with its streets, metres
+        constexpr int reach = 24;
+        const std::vector<osg::Vec2d> others = beside(index);
+        for (int row = -reach; row <= reach; ++row)
+            for (int column = -reach; column <= reach; ++column)
+            {
+                const osg::Vec2d middle =
+                    district.middle + along * (column * length) + across * (row * width);
+                const double own = (middle - district.middle).length();
+                if (own > REACH ||
+                    std::any_of(others.begin(), others.end(),
+                                [&](const osg::Vec2d& other) { return (middle - other).length() < own; }))
+                    continue;
+                Dice dice(index, static_cast<std::uint64_t>(row + 1000),
+                          static_cast<std::uint64_t>(column + 1000));
+                addBlock(middle, along, across, length, width, dice);
+            }
+    }
+
+    void addBlock(const osg::Vec2d& middle, const osg::Vec2d& along, const osg::Vec2d& across, double length,
+                  double width, Dice& dice)
+    {
+        const int kind = _cover.at(middle);
+        const double dense = density(middle);
+        if (kind == INDUSTRIAL) addRows(middle, along, across, {length, width, 18.0, 34.0, 1, 'h'}, dice);
+        // The land cover takes most of Honolulu for a city; its houses begin where high-rises end.
+        else if (dense > 0.1 || (kind == URBAN && dice.chance(0.3)))
+            addRows(middle, along, across, {length, width, 15.0, 33.0, 2, 'u'}, dice);
+        else
+            addRows(middle, along, across, {length, width, 11.0, 16.5, 2, 't'}, dice);
+    }
+
+    struct Lots
+    {
+        double length, width, street, lot;
+        int rows;
+        char kind;
+    };
+
+    void addRows(const osg::Vec2d& middle, const osg::Vec2d& along, const osg::Vec2d& across,
+                 const Lots& lots, Dice& dice)
+    {
+        const double inner = lots.length - lots.street, deep = (lots.width - lots.street) / lots.rows;
+        const int count = std::max(1, static_cast<int>(inner / lots.lot));
+        const double wide = inner / count;
+        for (int row = 0; row < lots.rows; ++row)
+            for (int lot = 0; lot < count; ++lot)
+            {
+                Dice own(dice.next(), 2, 3);
+                const osg::Vec2d at = middle + along * (-0.5 * inner + (lot + 0.5) * wide) +
+                                      across * (-0.5 * (lots.width - lots.street) + (row + 0.5) * deep);
+                if (own.chance(0.06)) continue; // a garden, a parking place
+                House house;
+                if (lots.kind == 'h')
+                    hall(house, at, along, across, wide, deep, own);
+                else if (lots.kind == 'u')
+                    flats(house, at, along, across, wide, deep, own);
+                else
+                    home(house, at, along, across, wide, deep, row == 0 ? -1.0 : 1.0, own);
+                keep(house, at);
+            }
+    }
+
+    /// The share of lots with a high-rise.
+    double density(const osg::Vec2d& at) const
+    {
+        double share = 0.0;
+        for (const Center& center : _centers)
+        {
+            const double d = (at - center.middle).length() / center.width;
+            share = std::max(share, center.share * std::exp(-d * d));
+        }
+        return share;
+    }
+
+    double tallest(const osg::Vec2d& at) const
+    {
+        double best = 60.0, nearest = 1e300;
+        for (const Center& center : _centers)
+            if (const double d = (at - center.middle).length() / center.width; d < nearest)
+            {
+                nearest = d;
+                best = std::max(45.0, center.tallest * std::exp(-0.25 * d * d));
+            }
+        return best;
+    }
+
+    static std::vector<osg::Vec2d> box(const osg::Vec2d& middle, const osg::Vec2d& along,
+                                       const osg::Vec2d& across, double length, double width)
+    {
+        const osg::Vec2d a = along * (0.5 * length), b = across * (0.5 * width);
+        return {middle - a - b, middle + a - b, middle + a + b, middle - a + b};
+    }
+
+    static void home(House& house, const osg::Vec2d& at, const osg::Vec2d& along, const osg::Vec2d& across,
+                     double wide, double deep, double front, Dice& dice)
+    {
+        const double length = dice.uniform(0.58, 0.80) * wide, width = dice.uniform(8.0, 12.5);
+        const osg::Vec2d middle = at +
+                                  across * (front * (0.5 * deep - 0.5 * width - dice.uniform(3.0, 6.5))) +
+                                  along * dice.uniform(-0.8, 0.8);
+        house.outline = box(middle, along, across, std::max(length, 7.0), width);
+        house.height = dice.chance(0.35) ? dice.uniform(6.4, 8.2) : dice.uniform(4.2, 5.6);
+        house.roof = dice.chance(0.85) ? "gabled" : "flat";
+    }
+
+    void flats(House& house, const osg::Vec2d& at, const osg::Vec2d& along, const osg::Vec2d& across,
+               double wide, double deep, Dice& dice) const
+    {
+        const double share = density(at);
+        const osg::Vec2d middle = at + along * dice.uniform(-1.5, 1.5) + across * dice.uniform(-1.0, 1.0);
+        house.use = "flats";
+        if (dice.chance(share))
+        {
+            const bool slab = dice.chance(0.5);
+            house.outline =
+                box(middle, along, across, slab ? dice.uniform(0.75, 0.92) * wide : dice.uniform(18.0, 24.0),
+                    slab ? dice.uniform(14.0, 18.0) : dice.uniform(18.0, std::min(24.0, 0.9 * deep)));
+            house.height = dice.uniform(0.38, 1.0) * tallest(at);
+            house.use = dice.chance(0.35) ? "office" : "flats";
+            return;
+        }
+        const double length = dice.uniform(0.62, 0.9) * wide, width = dice.uniform(0.55, 0.85) * deep;
+        house.outline = box(middle, along, across, length, width);
+        house.height = dice.chance(0.3 + share) ? dice.uniform(14.0, 34.0) : dice.uniform(6.5, 13.0);
+        if (dice.chance(0.3)) house.use = "office";
+        const osg::Vec2d a = along * (0.5 * length), b = across * (0.5 * width);
+        if (length > 24.0 && width > 22.0 && dice.chance(0.25))
+            house.courtyard = box(middle, along, across, length - 18.0, width - 18.0);
+        else if (dice.chance(0.25))
+            // An L.
+            house.outline = {middle - a - b,   middle + a - b,       middle + a,
+                             middle + a * 0.1, middle + a * 0.1 + b, middle - a + b};
+        else if (house.height < 9.0 && dice.chance(0.4))
+            house.roof = "gabled";
+    }
+
+    static void hall(House& house, const osg::Vec2d& at, const osg::Vec2d& along, const osg::Vec2d& across,
+                     double wide, double deep, Dice& dice)
+    {
+        house.outline = box(at + across * dice.uniform(-4.0, 4.0), along, across,
+                            dice.uniform(0.7, 0.92) * wide, dice.uniform(0.45, 0.85) * deep);
+        house.height = dice.uniform(5.5, 11.0);
+        house.use = "hall";
+        if (dice.chance(0.25)) house.roof = "gabled";
+    }
+
+    /// Keeps a house that stands on built land, on no road and not on a cliff.
+    void keep(House& house, const osg::Vec2d& at)
+    {
+        const auto built = [&](const osg::Vec2d& corner)
+        {
+            const int kind = _cover.at(corner);
+            return kind == TOWN || kind == URBAN || kind == INDUSTRIAL;
+        };
+        double low = 1e300, high = -1e300;
+        if (!built(at)) return;
+        for (const osg::Vec2d& corner : house.outline)
+        {
+            if (!built(corner)) return;
+            low = std::min(low, static_cast<double>(_ground.at(corner + (corner - at))));
+            high = std::max(high, static_cast<double>(_ground.at(corner + (corner - at))));
+        }
+        if (high - low > 14.0) return;
+        const osg::Vec2d line[] = {place(-157.8720, 21.3150), place(-157.8605, 21.3085),
+                                   place(-157.8470, 21.2945), place(-157.8265, 21.2795),
+                                   place(-157.8140, 21.2740)};
+        double nearest = 1e300;
+        for (std::size_t i = 0; i + 1 < std::size(line); ++i)
+        {
+            const osg::Vec2d side = line[i + 1] - line[i];
+            const double share = std::clamp(((at - line[i]) * side) / side.length2(), 0.0, 1.0);
+            nearest = std::min(nearest, (at - line[i] - side * share).length());
+        }
+        house.rank = nearest;
+        _houses.push_back(std::move(house));
+    }
+
+    const Raster<unsigned char> _cover;
+    const Raster<float> _ground;
+    std::vector<District> _districts;
+    std::vector<Center> _centers;
+    std::vector<House> _houses;
+};
+
+void addRing(OGRPolygon& polygon, const std::vector<osg::Vec2d>& places)
+{
+    auto* ring = new OGRLinearRing;
+    // Whole ten-millionths of a degree, a centimetre.
+    const auto rounded = [](double degrees)
+    {
+        return std::round(degrees * 1e7) * 1e-7;
+    };
+    for (const osg::Vec2d& each : places)
+        ring->addPoint(rounded(LONGITUDE + each.x() / METRES_X), rounded(LATITUDE + each.y() / METRES_Y));
+    ring->closeRings();
+    polygon.addRingDirectly(ring);
+}
+
+} // namespace
+
+int inventTown(const std::string& file, int count)
+{
+    std::vector<House> houses = Inventor().houses();
+    std::stable_sort(houses.begin(), houses.end(),
+                     [](const House& a, const House& b) { return a.rank < b.rank; });
+    if (count > 0 && static_cast<std::size_t>(count) < houses.size())
+        houses.resize(static_cast<std::size_t>(count));
+
+    GDALAllRegister();
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+    if (!driver) throw std::runtime_error("GDAL has no driver for GeoPackages.");
+    std::filesystem::remove(file);
+    CPLSetConfigOption("OGR_CURRENT_DATE", "2026-01-01T00:00:00.000Z"); // else the file has the day's
+    std::unique_ptr<GDALDataset> data(driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    OGRSpatialReference srs;
+    srs.importFromEPSG(4326);
+    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    OGRLayer* layer = data ? data->CreateLayer("buildings", &srs, wkbPolygon, nullptr) : nullptr;
+    if (!layer) throw std::runtime_error(file + " cannot be made.");
+    OGRFieldDefn height("height", OFTReal), storeys("storeys", OFTInteger), roof("roof", OFTString),
+        use("use", OFTString);
+    for (OGRFieldDefn* field : {&height, &storeys, &roof, &use})
+        layer->CreateField(field);
+    data->StartTransaction();
+    for (const House& house : houses)
+    {
+        OGRPolygon polygon;
+        addRing(polygon, house.outline);
+        if (!house.courtyard.empty()) addRing(polygon, house.courtyard);
+        const std::unique_ptr<OGRFeature> feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+        feature->SetGeometry(&polygon);
+        feature->SetField("height", std::round(house.height * 10.0) / 10.0);
+        feature->SetField("storeys", std::max(1, static_cast<int>(house.height / 3.1)));
+        feature->SetField("roof", house.roof);
+        feature->SetField("use", house.use);
+        if (layer->CreateFeature(feature.get()) != OGRERR_NONE)
+            throw std::runtime_error(file + " cannot be written.");
+    }
+    data->CommitTransaction();
+    data.reset(); // which writes the date
+    CPLSetConfigOption("OGR_CURRENT_DATE", nullptr);
+    return static_cast<int>(houses.size());
+}
+
+} // namespace geofx::test

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <string>
+
+namespace geofx::test
+{
+
+/** Writes a made-up town for Oahu as a GeoPackage: houses, blocks of flats, halls and high-rises, where the land cover in
+    data/oahu says town, city or industry, along streets that do not cross its roads. High-rises stand downtown, at Ala Moana
+    and at Waikiki. The layer "buildings" has the fields height (metres), storeys, roof (flat or gabled) and use. There are at
+    most `count`, those nearest to the line from downtown to Waikiki; 0 stands for all that find a place. The same count gives
+    the same bytes. Throws std::runtime_error. */
+int inventTown(const std::string& file, int count);
+
+} // namespace geofx::test
