@@ -26,6 +26,8 @@
 #include <osgGeoFX/map/MapKeys.h>
 #include <osgGeoFX/map/MapReader.h>
 #include <osgGeoFX/map/MapStyles.h>
+#include <osgGeoFX/map/OverlayFile.h>
+#include <osgGeoFX/map/SceneOverlays.h>
 
 #include <osgGeoFX/print/PictureLayers.h>
 #include <osgGeoFX/print/PictureMesh.h>

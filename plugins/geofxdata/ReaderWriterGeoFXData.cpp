@@ -14,14 +14,18 @@
 #include <osgGeoFX/geodata/FileSources.h>
 #include <osgGeoFX/geodata/LineVectors.h>
 #include <osgGeoFX/geodata/NameVectors.h>
+#include <osgGeoFX/geodata/OverlayReader.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 #include <osgGeoFX/labels/NameFile.h>
 #include <osgGeoFX/lines/LineFile.h>
+#include <osgGeoFX/map/OverlayFile.h>
 
 #include <osg/ValueObject>
 #include <osgDB/Registry>
+
+#include <iterator>
 
 namespace osgGeoFX
 {
@@ -35,7 +39,7 @@ public:
         supportsOption("wkt", "for the object \"georeference\": the projected coordinate system, as WKT");
         supportsOption("rasters", "for the object \"terrain\": the rasters of a .geofx scene (plugin data)");
         supportsOption("request", "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
-                                  "\"names\", \"lines\", \"picture\" and \"sources\": a raster "
+                                  "\"names\", \"lines\", \"overlays\", \"picture\" and \"sources\": a raster "
                                   "or vector data of a .geofx scene (plugin data)");
         supportsOption("version", "for the objects of scenes: the version of the plugin that asks");
     }
@@ -51,6 +55,7 @@ public:
         if (name == "strokeVectors" && options) return strokeVectors(*options);
         if (name == "names" && options) return names(*options);
         if (name == "lines" && options) return lines(*options);
+        if (name == "overlays" && options) return overlays(*options);
         if (name == "picture" && options) return picture(*options);
         if (name == "sources" && options) return sources(*options);
         return ReadResult::FILE_NOT_HANDLED;
@@ -160,6 +165,28 @@ private:
         frame.wkt = request->wkt;
         if (!LineVectors::read(request->file, {request->layer, request->style}, frame, request->lines, error))
             return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult overlays(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<OverlayFile*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        OverlayReader reader;
+        reader.globe = request->globe;
+        reader.wkt = request->wkt;
+        reader.frames = request->frames;
+        OverlayReader::Options how;
+        how.allowOutside = request->allowOutside;
+        how.colors = request->colors;
+        how.maxSide = request->maxSide;
+        if (!reader.read(request->file, how, error)) return error;
+        request->frames = reader.frames;
+        std::move(reader.overlays.begin(), reader.overlays.end(), std::back_inserter(request->overlays));
+        std::move(reader.notices.begin(), reader.notices.end(), std::back_inserter(request->notices));
         return ReadResult(ReadResult::FILE_LOADED);
     }
 
