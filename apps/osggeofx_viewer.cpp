@@ -53,6 +53,11 @@ void describe(osg::ApplicationUsage& usage)
                                "Put a raster onto the ground: KML, KMZ, or any raster with a georeference.");
     usage.addCommandLineOption("--colors <file>",
                                "The colors of values: a table of gdaldem color-relief, GMT or SLD.");
+    usage.addCommandLineOption(
+        "--route <file>",
+        "Put a way onto the ground: GPX, KML, KMZ or lines of any vector file; FILE or FILE:LAYER.");
+    usage.addCommandLineOption("--route-width <metres>",
+                               "Width of the ways' lines (default: by their extent).");
     usage.addCommandLineOption("--labels <file>",
                                "Show the names of a vector file, FILE or FILE:LAYER; as often as wanted.");
     usage.addCommandLineOption("--lines <file>",
@@ -128,6 +133,9 @@ int main(int argc, char** argv)
     while (arguments.read("--mapping", text))
         mappingOptions.files.push_back(text);
     arguments.read("--colors", mappingOptions.colors);
+    while (arguments.read("--route", text))
+        mappingOptions.routes.push_back(text);
+    const bool routeWidthGiven = arguments.read("--route-width", mappingOptions.routeWidth);
     geofx::names::Options nameOptions;
     while (arguments.read("--labels", text))
         nameOptions.files.push_back(text);
@@ -155,6 +163,10 @@ int main(int argc, char** argv)
     if (fieldOfViewGiven && !(fieldOfView > 0.0 && fieldOfView < 180.0))
     {
         return refuse("--fov must lie between 0 and 180 degrees.");
+    }
+    if (routeWidthGiven && !(mappingOptions.routeWidth > 0.0))
+    {
+        return refuse("--route-width must be more than 0 metres.");
     }
     if (prefetchGiven && !(paging.lead >= 0.1 && paging.lead <= 60.0))
     {

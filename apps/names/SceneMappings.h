@@ -12,19 +12,21 @@ namespace CLI
 class App;
 }
 
-/// The rasters that the programs' options put onto the ground: --mapping and --colors.
+/// The rasters and ways that the programs' options put onto the ground: --mapping, --colors, --route and --route-width.
 namespace geofx::mappings
 {
 
 struct Options
 {
-    std::vector<std::string> files; ///< KML, KMZ, or any raster with a georeference
-    std::string colors;             ///< a color table's file, for values; empty: greys
+    std::vector<std::string> files;  ///< KML, KMZ, or any raster with a georeference
+    std::vector<std::string> routes; ///< GPX, KML or other vector data with lines, or FILE:LAYER
+    double routeWidth = 0.0;         ///< metres; 0: by their extent
+    std::string colors;              ///< a color table's file, for values; empty: greys
 };
 
-/// Adds --mapping and --colors to a program.
+/// Adds them to a program.
 void addOptions(CLI::App& app, Options& options);
-/// Puts the files onto the scene, the later ones on top. Throws std::runtime_error with a sentence. `notices`: gets sentences that
+/// Puts the files onto the scene, the later ones on top, and ways over rasters. Throws std::runtime_error with a sentence. `notices`: gets sentences that
 /// people should know.
 void show(const Options& options, bool allowOutside, osgGeoFX::Scene& scene,
           std::vector<std::string>& notices);

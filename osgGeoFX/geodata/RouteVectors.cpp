@@ -8,6 +8,7 @@
 #include <osgGeoFX/geodata/detail/KmlFolder.h>
 #include <osgGeoFX/geodata/detail/KmlLineReader.h>
 
+#include <cpl_vsi.h>
 #include <ogr_featurestyle.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace osgGeoFX
@@ -23,6 +25,9 @@ namespace osgGeoFX
 
 namespace
 {
+
+/// A file and what it links.
+constexpr std::size_t mostDocuments = 1000;
 
 class Reader
 {
@@ -32,7 +37,7 @@ public:
     std::vector<RoutePath> read()
     {
         if (KmlOverlays::isKml(_file))
-            _found = readKmlLines(KmlFolder(_file, false).document());
+            readKml();
         else
             readByGdal();
         if (_found.empty())
@@ -43,6 +48,28 @@ public:
     }
 
 private:
+    /// With what its network links name within its folder; GDAL writes archives so.
+    void readKml()
+    {
+        const KmlFolder folder(_file, false);
+        std::vector<std::string> documents = {folder.document()};
+        for (std::size_t next = 0; next < documents.size(); ++next)
+        {
+            const std::string document = documents[next];
+            KmlLines content = readKmlLines(document);
+            std::move(content.routes.begin(), content.routes.end(), std::back_inserter(_found));
+            for (const std::string& href : content.links)
+            {
+                const std::optional<std::string> linked = folder.resolve(document, href);
+                VSIStatBufL status;
+                const bool isThere = linked && VSIStatL(linked->c_str(), &status) == 0;
+                const bool isNew =
+                    std::find(documents.begin(), documents.end(), linked.value_or("")) == documents.end();
+                if (isThere && isNew && documents.size() < mostDocuments) documents.push_back(*linked);
+            }
+        }
+    }
+
     void readByGdal()
     {
         const DatasetPtr dataset = openVectors(_file);

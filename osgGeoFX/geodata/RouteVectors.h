@@ -16,7 +16,7 @@ namespace osgGeoFX
     - **GPX** (by GDAL): routes, whose places are way points, and each segment of a track. If all points of one have `ele`, it is
       ABSOLUTE, else CLAMPED.
     - **KML and KMZ**: LineString and gx:Track of placemarks that are not switched off, with altitudeMode (`clampToGround`
-      without one), `extrude` and the color of their LineStyle. GDAL tells no altitudeMode of tracks, so the text is read
+      without one), `extrude` and the color of their LineStyle; also of files that it links within its folder, at most 1000. GDAL tells no altitudeMode of tracks, so the text is read
       as a stream, as KmlOverlays does.
     - **All else that GDAL opens**: lines. With a third coordinate they are ABSOLUTE, without CLAMPED. A field `name` is
       their name.

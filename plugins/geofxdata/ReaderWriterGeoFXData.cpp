@@ -16,11 +16,13 @@
 #include <osgGeoFX/geodata/NameVectors.h>
 #include <osgGeoFX/geodata/OverlayReader.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
+#include <osgGeoFX/geodata/RouteVectors.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 #include <osgGeoFX/labels/NameFile.h>
 #include <osgGeoFX/lines/LineFile.h>
 #include <osgGeoFX/map/OverlayFile.h>
+#include <osgGeoFX/map/RouteFile.h>
 
 #include <osg/ValueObject>
 #include <osgDB/Registry>
@@ -38,9 +40,11 @@ public:
         supportsExtension("geofxdata", "osgGeoFX's services that need GDAL; not a file format");
         supportsOption("wkt", "for the object \"georeference\": the projected coordinate system, as WKT");
         supportsOption("rasters", "for the object \"terrain\": the rasters of a .geofx scene (plugin data)");
-        supportsOption("request", "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
-                                  "\"names\", \"lines\", \"overlays\", \"picture\" and \"sources\": a raster "
-                                  "or vector data of a .geofx scene (plugin data)");
+        supportsOption(
+            "request",
+            "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
+            "\"names\", \"lines\", \"overlays\", \"picture\", \"routes\" and \"sources\": a raster "
+            "or vector data of a .geofx scene (plugin data)");
         supportsOption("version", "for the objects of scenes: the version of the plugin that asks");
     }
 
@@ -57,6 +61,7 @@ public:
         if (name == "lines" && options) return lines(*options);
         if (name == "overlays" && options) return overlays(*options);
         if (name == "picture" && options) return picture(*options);
+        if (name == "routes" && options) return routes(*options);
         if (name == "sources" && options) return sources(*options);
         return ReadResult::FILE_NOT_HANDLED;
     }
@@ -187,6 +192,17 @@ private:
         request->frames = reader.frames;
         std::move(reader.overlays.begin(), reader.overlays.end(), std::back_inserter(request->overlays));
         std::move(reader.notices.begin(), reader.notices.end(), std::back_inserter(request->notices));
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult routes(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<RouteFile*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        if (!RouteVectors::read(request->file, request->layer, request->routes, error)) return error;
         return ReadResult(ReadResult::FILE_LOADED);
     }
 

@@ -185,8 +185,37 @@ TEST_F(MappingProgram, RastersHaveColorsByTables)
     EXPECT_NEAR(redOf({"--mapping", "blue.kml", "--mapping", "red.kml"}).count, 43 * 62, 300);
 }
 
+// A line from west to east north of the middle, as a GPX track; KML lines have a color of their own.
+TEST_F(MappingProgram, WaysAreInThePicture)
+{
+    const std::string gpx =
+        R"(<gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>
+        <trkpt lat="45.003" lon="6.99"/><trkpt lat="45.003" lon="7.01"/></trkseg></trk></gpx>)";
+    _folder.write("way.gpx", gpx);
+    EXPECT_EQ(redOf({"--route", "way.gpx", "--route-width", "100"}).count, 0) << "blue";
+    _folder.write("way.kml",
+                  kml("<Placemark><Style><LineStyle><color>ff0000ff</color></LineStyle></Style><LineString>"
+                      "<coordinates>6.99,45.003,0 7.01,45.003,0</coordinates></LineString></Placemark>"));
+    const Red red = redOf({"--route", "way.kml", "--route-width", "100"});
+    // 0.003° of latitude are 333.4 m, and 0.02° of longitude 1577 m.
+    const double pixel = 2.0 * 5000.0 * std::tan(osg::DegreesToRadians(15.0)) / height;
+    EXPECT_NEAR((red.top + red.bottom) / 2.0, height / 2 - 0.5 - 333.4 / pixel, 1.0);
+    EXPECT_NEAR(red.bottom - red.top + 1.0, 100.0 / pixel, 1.1);
+    EXPECT_NEAR(red.middleX(), width / 2 - 0.5, 1.0);
+    EXPECT_NEAR(red.right - red.left + 1.0, (1577.0 + 100.0) / pixel, 3.0);
+    // A way lies over the rasters.
+    _folder.write("blue.kml",
+                  kml(groundOverlay("", latLonBox(6.98, 44.98, 7.02, 45.02), "<color>ffff0000</color>")));
+    EXPECT_NEAR(redOf({"--route", "way.kml", "--route-width", "100", "--mapping", "blue.kml"}).count,
+                red.count, 40);
+    // By default a 120th of its extent: less than a pixel.
+    EXPECT_LT(redOf({"--route", "way.kml"}).count, red.count / 5);
+}
+
 TEST_F(MappingProgram, WhatCannotBeShownIsToldInASentence)
 {
+    expectRefusal({"--route", "none.gpx"}, "none.gpx: ");
+    expectRefusal({"--route-width", "10"}, "--route-width is for ways");
     expectRefusal({"--mapping", "none.kmz"}, "none.kmz: the file does not exist");
     expectRefusal({"--mapping", "none.tif"}, "none.tif: ");
     expectRefusal({"--colors", "ramp.txt"}, "--colors is for values");

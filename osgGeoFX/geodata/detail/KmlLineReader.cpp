@@ -22,16 +22,17 @@ class Parser : public KmlStream
 public:
     explicit Parser(const std::string& document) : KmlStream(document) {}
 
-    std::vector<RoutePath> read()
+    KmlLines read()
     {
         parse();
-        std::vector<RoutePath> routes;
+        KmlLines result;
+        result.links = std::move(_networkLinks);
         for (Line& line : _lines)
         {
             if (!line.route.color) line.route.color = colorOf(line.style, 0);
-            routes.push_back(std::move(line.route));
+            result.routes.push_back(std::move(line.route));
         }
-        return routes;
+        return result;
     }
 
 private:
@@ -49,7 +50,7 @@ private:
 
     static bool isContainer(const std::string& name)
     {
-        return name == "Document" || name == "Folder" || name == "Placemark";
+        return name == "Document" || name == "Folder" || name == "Placemark" || name == "NetworkLink";
     }
 
     void begin() override
@@ -80,6 +81,8 @@ private:
         if (isAt({"LineStyle", "color"})) takeColor();
         if (isAt({"Pair", "key"})) _key = text();
         if (isAt({"StyleMap", "Pair", "styleUrl"}) && _key == "normal") _links["#" + _styleId] = text();
+        if (isAt({"NetworkLink", "Link", "href"}) || isAt({"NetworkLink", "Url", "href"}))
+            if (_visible.back()) _networkLinks.emplace_back(text());
         if (_route) takeGeometry();
         if (isAt({"MultiTrack", "altitudeMode"})) _tracksAltitude = altitude();
         if (element() == "Placemark") finishPlacemark();
@@ -183,12 +186,13 @@ private:
     std::string _name, _styleUrl, _styleId, _key;
     std::optional<osg::Vec4> _placemarkColor;
     std::map<std::string, osg::Vec4> _colors;
-    std::map<std::string, std::string> _links;
+    std::map<std::string, std::string> _links; ///< from a StyleMap's id to its style's
+    std::vector<std::string> _networkLinks;
 };
 
 } // namespace
 
-std::vector<RoutePath> readKmlLines(const std::string& document)
+KmlLines readKmlLines(const std::string& document)
 {
     return Parser(document).read();
 }

@@ -13,7 +13,13 @@ namespace osgGeoFX
 /// More of a file's places are no person's.
 constexpr std::size_t mostRoutePlaces = 10000000;
 
+struct KmlLines
+{
+    std::vector<RoutePath> routes;
+    std::vector<std::string> links; ///< what its network links name, as it stands in the text
+};
+
 /// The ways of a KML text, as GDAL opens it. Throws BuildError, with file and line, where the text is no KML or says what cannot be.
-std::vector<RoutePath> readKmlLines(const std::string& document);
+KmlLines readKmlLines(const std::string& document);
 
 } // namespace osgGeoFX
