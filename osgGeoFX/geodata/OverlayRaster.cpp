@@ -183,6 +183,43 @@ void copy(GDALDataset& dataset, osg::Image& image, GDALRWFlag direction)
         throw BuildError("The picture cannot be copied; free some memory.");
 }
 
+/// Gives the texels around the picture, which are transparent, its colors: a filter mixes them with those of its edge.
+void spread(osg::Image& image)
+{
+    const int width = image.s();
+    const int height = image.t();
+    for (int pass = 0; pass < 2; ++pass)
+    {
+        const std::vector<unsigned char> before(image.data(), image.data() + image.getTotalSizeInBytes());
+        const auto at = [&](int x, int y)
+        {
+            return before.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                        static_cast<std::size_t>(x));
+        };
+        const auto isEmpty = [](const unsigned char* texel)
+        {
+            return texel[0] == 0 && texel[1] == 0 && texel[2] == 0 && texel[3] == 0;
+        };
+        for (int y = 0; y < height; ++y)
+        {
+            for (int x = 0; x < width; ++x)
+            {
+                if (!isEmpty(at(x, y))) continue;
+                for (int i = 0; i < 9; ++i)
+                {
+                    const int column = std::clamp(x + i % 3 - 1, 0, width - 1);
+                    const int row = std::clamp(y + i / 3 - 1, 0, height - 1);
+                    const unsigned char* const neighbor = at(column, row);
+                    if (isEmpty(neighbor)) continue;
+                    std::copy(neighbor, neighbor + 3,
+                              image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y)));
+                    break;
+                }
+            }
+        }
+    }
+}
+
 class Reader
 {
 public:
@@ -204,20 +241,19 @@ public:
     OverlayRaster read(const MappingFrame& frame)
     {
         FrameTransformation transformation(crsOf(frame, _name), _name);
-        std::vector<osg::Vec2d> places;
-        for (int i = 0; i < lattice * lattice; ++i)
-            places.push_back(_quad.place(pictureAt(i)));
-        if (!transformation.toFrame(places))
-            throw BuildError(
-                _name + ": its place lies outside of the terrain's projection, or on the other side of the "
-                        "globe; correct the corners, or give the effect an origin near them.");
         osg::ref_ptr<osg::Image> image = picture();
         multiply(*image);
         OverlayRaster result;
-        result.corners = {places[0], places[lattice - 1], places[lattice * lattice - 1],
-                          places[lattice * (lattice - 1)]};
-        if (!isStraight(places, result.corners, *image))
-            image = warped(transformation, places, *image, result.corners);
+        if (_options.window)
+            image = warped(transformation, *_options.window, *image, result.corners);
+        else
+        {
+            const std::vector<osg::Vec2d> places = placesIn(transformation);
+            result.corners = {places[0], places[lattice - 1], places[lattice * lattice - 1],
+                              places[lattice * (lattice - 1)]};
+            if (!isStraight(places, result.corners, *image))
+                image = warped(transformation, windowOf(places, *image), *image, result.corners);
+        }
         image->setFileName(KmlFolder::plain(_overlay.image));
         result.layer = new DataLayer(image);
         return result;
@@ -272,13 +308,24 @@ private:
         return true;
     }
 
-    osg::ref_ptr<osg::Image> warped(FrameTransformation& transformation,
-                                    const std::vector<osg::Vec2d>& places, osg::Image& image,
-                                    Corners& corners) const
+    std::vector<osg::Vec2d> placesIn(const FrameTransformation& transformation) const
     {
-        osg::Vec2d low = corners[0];
-        osg::Vec2d high = corners[0];
-        double texel = 1e30;
+        std::vector<osg::Vec2d> places;
+        for (int i = 0; i < lattice * lattice; ++i)
+            places.push_back(_quad.place(pictureAt(i)));
+        if (!transformation.toFrame(places))
+            throw BuildError(
+                _name + ": its place lies outside of the terrain's projection, or on the other side of the "
+                        "globe; correct the corners, or give the effect an origin near them.");
+        return places;
+    }
+
+    /// The rectangle around the picture, and its texels.
+    static MappingRaster::Window windowOf(const std::vector<osg::Vec2d>& places, const osg::Image& image)
+    {
+        MappingRaster::Window window{places[0], places[0], 1e30};
+        osg::Vec2d& low = window.low;
+        osg::Vec2d& high = window.high;
         osg::Vec2d before;
         for (int i = 0; i < lattice * lattice; ++i)
         {
@@ -286,13 +333,23 @@ private:
             low.set(std::min(low.x(), place.x()), std::min(low.y(), place.y()));
             high.set(std::max(high.x(), place.x()), std::max(high.y(), place.y()));
             if (i % lattice > 0 && i / lattice == lattice / 2)
-                texel = std::min(texel, (place - before).length() * (lattice - 1.0) / image.s());
+                window.texel =
+                    std::min(window.texel, (place - before).length() * (lattice - 1.0) / image.s());
             before = place;
         }
+        return window;
+    }
+
+    osg::ref_ptr<osg::Image> warped(FrameTransformation& transformation, const MappingRaster::Window& window,
+                                    osg::Image& image, Corners& corners) const
+    {
+        const osg::Vec2d& low = window.low;
+        const osg::Vec2d& high = window.high;
         const osg::Vec2d size = high - low;
         const double longer = std::max(size.x(), size.y());
         // Its edges are as sharp as its texels.
-        texel = std::clamp(texel, longer / _options.maxSide, longer / std::min(plain, _options.maxSide));
+        const double texel =
+            std::clamp(window.texel, longer / _options.maxSide, longer / std::min(plain, _options.maxSide));
         const auto texels = [&](double length)
         {
             return std::clamp(static_cast<int>(std::ceil(length / texel)), 1, _options.maxSide);
@@ -314,6 +371,7 @@ private:
         copy(*source, image, GF_Write);
         run(*source, *target, warp);
         copy(*target, *result, GF_Read);
+        spread(*result);
         corners = {low, osg::Vec2d(high.x(), low.y()), high, osg::Vec2d(low.x(), high.y())};
         return result;
     }

@@ -37,6 +37,8 @@ struct OSGGEOFXDATA_EXPORT OverlayRaster
         int maxSide = 2048; ///< texels along the longer side at most, 1…16384
         /// Whether pictures may be of any format that GDAL knows, also those that name further files.
         bool anyFormat = false;
+        /// A part of the frame, to be resampled. Empty: all of the picture.
+        std::optional<MappingRaster::Window> window = std::nullopt;
     };
 
     osg::ref_ptr<DataLayer> layer;

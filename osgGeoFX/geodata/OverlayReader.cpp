@@ -7,14 +7,18 @@
 #include <osgGeoFX/geodata/MappingRaster.h>
 #include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/geodata/SldColors.h>
+#include <osgGeoFX/geodata/detail/CubeFace.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
 
+#include <osg/CoordinateSystemNode>
 #include <osg/Math>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <iterator>
+#include <optional>
 
 namespace osgGeoFX
 {
@@ -26,6 +30,7 @@ constexpr double earthRadius = 6371e3; // metres
 constexpr double farthest = 60.0;      // degrees of arc, from a frame's origin
 constexpr double farthestIfNeeded = 80.0;
 constexpr std::size_t mostFrames = 7;
+constexpr std::size_t mostFramesAround = 9; ///< of three texture units each; with six of one raster
 
 /// Of arc between two places, degrees each; radians.
 double arc(const osg::Vec2d& a, const osg::Vec2d& b)
@@ -75,7 +80,12 @@ private:
         return frame;
     }
 
-    /// Throws BuildError where the raster is too large for a frame.
+    bool isTooLarge(const GroundReach& reach) const
+    {
+        return _globe && reach.radius > osg::DegreesToRadians(farthest);
+    }
+
+    /// Throws BuildError where there are too many frames.
     std::size_t frameFor(const GroundReach& reach, const std::string& name)
     {
         std::string error;
@@ -88,11 +98,6 @@ private:
             return 0;
         }
         const double most = osg::DegreesToRadians(farthest);
-        if (reach.radius > most)
-            throw BuildError(
-                name + ": it reaches " + std::to_string(std::lround(osg::RadiansToDegrees(reach.radius))) +
-                " degrees of arc around its middle, and a mapping on a globe at most 60; cut it into parts "
-                "with gdal_translate -projwin.");
         // A quarter of a texel, of floats with 24 bits.
         const double sharp = reach.texel * 4194304.0 / earthRadius;
         std::size_t nearest = 0;
@@ -148,34 +153,79 @@ private:
             ++done;
             const std::optional<GroundReach> reach = OverlayRaster::reachOf(each, options, error);
             if (!reach) throw BuildError(error);
-            const std::string name = "The ground overlay \"" + each.name + "\" of " + _file;
             GroundOverlay overlay;
-            overlay.frame = frameFor(*reach, name);
-            const std::optional<OverlayRaster> raster =
-                OverlayRaster::read(each, frameOf(overlay.frame), options, error);
-            if (!raster) throw BuildError(error);
             overlay.name =
                 each.name.empty() ? std::filesystem::path(each.image).filename().string() : each.name;
-            overlay.layer = raster->layer;
-            overlay.corners = raster->corners;
             overlay.opacity = static_cast<double>(each.color.a());
             overlay.order = each.order;
             overlay.visible = each.visible;
             overlay.pixelsNone = each.pixelsNone;
             overlay.pixelsFull = each.pixelsFull;
-            add(std::move(overlay));
+            const auto take =
+                [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
+            {
+                OverlayRaster::Options how = options;
+                how.window = window;
+                const std::optional<OverlayRaster> raster = OverlayRaster::read(each, frame, how, error);
+                if (!raster) throw BuildError(error);
+                overlay.layer = raster->layer;
+                overlay.corners = raster->corners;
+            };
+            addParts(*reach, "The ground overlay \"" + each.name + "\" of " + _file, overlay, take);
         }
+    }
+
+    using Take = std::function<void(const MappingFrame&, const std::optional<MappingRaster::Window>&)>;
+
+    /// Adds the overlay, which `take` fills for a frame; or six parts of one that reaches around the globe.
+    void addParts(const GroundReach& reach, const std::string& name, GroundOverlay& overlay, const Take& take)
+    {
+        if (!isTooLarge(reach))
+        {
+            overlay.frame = frameFor(reach, name);
+            take(frameOf(overlay.frame), std::nullopt);
+            add(overlay);
+            return;
+        }
+        // As many texels as a face has room for.
+        const double coarsest =
+            2.0 * osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) / (_options.maxSide - 8);
+        const MappingRaster::Window window = CubeFace::window(std::max(reach.texel, coarsest));
+        for (const LocalOrigin& origin : CubeFace::origins())
+        {
+            MappingFrame frame = frameOf(frames.size());
+            frame.origin = origin;
+            take(frame, window);
+            if (!CubeFace::cut(*overlay.layer->getImage(), window, std::abs(origin.latitude) > 1.0)) continue;
+            overlay.frame = frameAt(origin, name);
+            add(overlay);
+        }
+    }
+
+    std::size_t frameAt(const LocalOrigin& origin, const std::string& name)
+    {
+        for (std::size_t i = 0; i < frames.size(); ++i)
+            if (frames[i].longitude == origin.longitude && frames[i].latitude == origin.latitude) return i;
+        if (frames.size() >= mostFramesAround)
+            throw BuildError(
+                name +
+                ": it reaches around the globe, and there are too many rasters elsewhere beside it; name "
+                "it first, or show fewer at once.");
+        frames.push_back(origin);
+        return frames.size() - 1;
     }
 
     void readRaster()
     {
         std::string error;
         GroundOverlay overlay;
+        overlay.name = std::filesystem::path(_file).filename().string();
+        GroundReach reach;
         if (_globe)
         {
-            const std::optional<GroundReach> reach = OverlayRaster::reachOf(_file, error);
-            if (!reach) throw BuildError(error);
-            overlay.frame = frameFor(*reach, _file);
+            const std::optional<GroundReach> found = OverlayRaster::reachOf(_file, error);
+            if (!found) throw BuildError(error);
+            reach = *found;
         }
         else if (frames.empty())
         {
@@ -183,27 +233,49 @@ private:
             if (!MappingRaster::moveToMiddle(_file, frame, error)) throw BuildError(error);
             frames.push_back(frame.origin);
         }
-        const MappingRaster::Options options{std::nullopt, _options.maxSide};
-        const std::optional<MappingRaster> raster =
-            MappingRaster::read(_file, frameOf(overlay.frame), options, error);
-        if (!raster) throw BuildError(error);
-        const osg::Vec2d& low = raster->low;
-        const osg::Vec2d& high = raster->high;
-        overlay.name = std::filesystem::path(_file).filename().string();
-        overlay.layer = raster->layer;
-        overlay.corners = {low, osg::Vec2d(high.x(), low.y()), high, osg::Vec2d(low.x(), high.y())};
-        overlay.lowest = raster->lowest;
-        overlay.highest = raster->highest;
-        if (!_options.colors.empty() && overlay.layer->getKind() != DataLayer::COLOR)
+        const std::size_t before = overlays.size();
+        const auto take = [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
         {
-            overlay.table =
-                SldColors::isSld(_options.colors)
-                    ? SldColors::read(_options.colors, error)
-                    : ColorRampFile::read(_options.colors,
-                                          ColorRampFile::Range(overlay.lowest, overlay.highest), error);
-            if (!overlay.table) throw BuildError(error);
+            const MappingRaster::Options options{std::nullopt, _options.maxSide, window};
+            const std::optional<MappingRaster> raster = MappingRaster::read(_file, frame, options, error);
+            if (!raster) throw BuildError(error);
+            const osg::Vec2d& low = raster->low;
+            const osg::Vec2d& high = raster->high;
+            overlay.layer = raster->layer;
+            overlay.corners = {low, osg::Vec2d(high.x(), low.y()), high, osg::Vec2d(low.x(), high.y())};
+            overlay.lowest = raster->lowest;
+            overlay.highest = raster->highest;
+        };
+        addParts(reach, _file, overlay, take);
+        giveColors(before);
+    }
+
+    /// The parts of a raster from an index on have one range and one table.
+    void giveColors(std::size_t first)
+    {
+        if (first == overlays.size() || overlays[first].layer->getKind() == DataLayer::COLOR) return;
+        double lowest = overlays[first].lowest;
+        double highest = overlays[first].highest;
+        for (std::size_t i = first; i < overlays.size(); ++i)
+        {
+            lowest = std::min(lowest, overlays[i].lowest);
+            highest = std::max(highest, overlays[i].highest);
         }
-        add(std::move(overlay));
+        osg::ref_ptr<ColorTable> table;
+        std::string error;
+        if (!_options.colors.empty())
+        {
+            table = SldColors::isSld(_options.colors)
+                        ? SldColors::read(_options.colors, error)
+                        : ColorRampFile::read(_options.colors, ColorRampFile::Range(lowest, highest), error);
+            if (!table) throw BuildError(error);
+        }
+        for (std::size_t i = first; i < overlays.size(); ++i)
+        {
+            overlays[i].lowest = lowest;
+            overlays[i].highest = highest;
+            overlays[i].table = table;
+        }
     }
 
     double _texels = 0.0;

@@ -17,7 +17,8 @@ namespace osgGeoFX
 
     On a globe, rasters near each other share a frame. A raster gets a frame of its own where its texels are too small for the
     distance (float has 24 bits) or where it lies more than 60° of arc away; there are at most seven frames. So corners lie
-    exactly anywhere on the globe, over the antimeridian and at the poles, too. A raster itself may reach 60° of arc around its middle.
+    exactly anywhere on the globe, over the antimeridian and at the poles, too. A raster that reaches farther than 60° of arc around its middle, up to all of the
+    globe, becomes six overlays, each in a frame of its own, which overlap by some texels.
 
     One thread at a time; several readers may read at once.
     @ingroup geodata */

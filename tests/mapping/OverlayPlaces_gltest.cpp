@@ -10,6 +10,7 @@
 #include <tools/MappingStage.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
+#include <tools/TestRasters.h>
 
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/UTMUPS.hpp>
@@ -348,4 +349,128 @@ TEST_F(OverlayPlaces, NothingShowsOnTheOtherSideOfTheGlobe)
         EXPECT_TRUE(alike(color, middle == here ? osg::Vec3d(1.0, 1.0, 0.0) : groundColor()))
             << middle.x() << ": " << color.x() << " " << color.y() << " " << color.z();
     }
+}
+
+namespace
+{
+
+/// A color that tells a place on the globe, without a jump anywhere: its direction from the Earth's center.
+std::array<int, 4> directionColor(double longitude, double latitude)
+{
+    const double x = osg::DegreesToRadians(longitude), y = osg::DegreesToRadians(latitude);
+    const auto part = [](double c)
+    {
+        return static_cast<int>(std::lround(127.5 + 110.0 * c));
+    };
+    return {part(std::cos(y) * std::cos(x)), part(std::cos(y) * std::sin(x)), part(std::sin(y)), 255};
+}
+
+class OverlayAround : public OverlayPlaces
+{
+protected:
+    /// Pictures of parts of the globe must have, pixel by pixel, the color of the place that they show.
+    void expectDirections(const std::string& file, double texel)
+    {
+        const GeographicLib::Geocentric& earth = GeographicLib::Geocentric::WGS84();
+        const World world = [&](const Place& place)
+        {
+            osg::Vec3d p;
+            earth.Forward(place.y(), place.x(), 0.0, p.x(), p.y(), p.z());
+            return p;
+        };
+        OverlayReader reader;
+        std::string error;
+        ASSERT_TRUE(reader.read(file, {}, error)) << error;
+        EXPECT_EQ(reader.frames.size(), 6u);
+        _scene->removeEffect(_mappings);
+        for (const LocalOrigin& origin : reader.frames)
+        {
+            _effects.push_back(new ProjectiveMappings);
+            _effects.back()->setLocalOrigin(origin);
+            _effects.back()->setPageSide(1024);
+            _scene->addEffect(_effects.back());
+        }
+        for (const GroundOverlay& overlay : reader.overlays)
+            _effects[overlay.frame]->addMapping(overlay.makeMapping());
+        // Middles, edges and corners of the six parts, the antimeridian, the poles.
+        for (const Place& middle :
+             {Place(0.0, 0.0), Place(45.0, 0.0), Place(45.0, 35.26), Place(180.0, 10.0), Place(-135.0, -35.0),
+              Place(20.0, 89.9), Place(-70.0, -89.9), Place(-90.0, 45.0)})
+        {
+            SCOPED_TRACE(::testing::Message() << middle.x() << ", " << middle.y());
+            osg::Matrixd frame;
+            osg::EllipsoidModel().computeLocalToWorldTransformFromLatLongHeight(
+                osg::DegreesToRadians(middle.y()), osg::DegreesToRadians(middle.x()), 0.0, frame);
+            const osg::Vec3d center = frame.getTrans();
+            const auto placeAt = [&](double x, double y)
+            {
+                const osg::Vec3d position = osg::Vec3d(x, y, 0.0) * frame;
+                Place place;
+                double height = 0.0;
+                earth.Reverse(position.x(), position.y(), position.z(), place.y(), place.x(), height);
+                return place;
+            };
+            // A cap around the place.
+            const osg::ref_ptr<osg::Geometry> ground = makeGround(2e6, 160);
+            for (osg::Vec3& vertex : static_cast<osg::Vec3Array&>(*ground->getVertexArray()))
+                vertex = osg::Vec3(
+                    world(placeAt(static_cast<double>(vertex.x()), static_cast<double>(vertex.y()))) -
+                    center);
+            ground->dirtyBound();
+            const osg::ref_ptr<osg::MatrixTransform> moved =
+                new osg::MatrixTransform(osg::Matrix::translate(center));
+            moved->addChild(ground);
+            const osg::ref_ptr<osg::CoordinateSystemNode> node = new osg::CoordinateSystemNode;
+            node->setEllipsoidModel(new osg::EllipsoidModel);
+            node->addChild(moved);
+            _scene->removeChildren(0, _scene->getNumChildren());
+            _scene->addChild(node);
+            osg::Vec3d up = center;
+            up.normalize();
+            lookAt(middle, up, osg::Matrixd::transform3x3(osg::Y_AXIS, frame), 1e6, world);
+            const osg::ref_ptr<osg::Image> image = draw();
+            const DeformedView view(*_scene, *viewer().getCamera());
+            int seen = 0, wrong = 0;
+            double most = 0.0;
+            for (int i = 0; i < 41 * 41; ++i)
+            {
+                const Place place = placeAt(-1e6 + 5e4 * (i % 41), -7e5 + 3.5e4 * (i / 41));
+                osg::Vec2d pixel;
+                if (!view.project(world(place), pixel) || !inside(pixel, 2.0)) continue;
+                ++seen;
+                const std::array<int, 4> expected = directionColor(place.x(), place.y());
+                const double off =
+                    difference(at(*image, pixel), osg::Vec3d(expected[0], expected[1], expected[2]) / 255.0);
+                most = std::max(most, off);
+                // A color's change over a texel, beside rounding.
+                wrong += off > 2.5 / 255.0 + 110.0 / 255.0 * texel ? 1 : 0;
+            }
+            EXPECT_GT(seen, 800);
+            EXPECT_EQ(wrong, 0) << "of " << seen << "; at most " << 255.0 * most << " of 255";
+        }
+    }
+};
+
+} // namespace
+
+// The whole world as an overlay of KML, and as a raster in degrees.
+TEST_F(OverlayAround, AMapOfTheWorldAsAGroundOverlay)
+{
+    writePicture((_folder / "world.png").string(), 1440, 720,
+                 [](int x, int y)
+                 { return directionColor(-180.0 + (x + 0.5) / 4.0, 90.0 - (y + 0.5) / 4.0); });
+    _folder.write("doc.kml", kml(groundOverlay("world.png", latLonBox(-180.0, -90.0, 180.0, 90.0))));
+    expectDirections((_folder / "doc.kml").string(), osg::DegreesToRadians(0.25));
+}
+
+TEST_F(OverlayAround, AMapOfTheWorldAsARaster)
+{
+    TestRaster raster(1440, 720, 3, GDT_Byte);
+    raster.placed(-180.0, 90.0, 0.25, 0.25).crs("EPSG:4326");
+    raster.fill(
+        [](int x, int y, int band) {
+            return directionColor(-180.0 + (x + 0.5) / 4.0,
+                                  90.0 - (y + 0.5) / 4.0)[static_cast<std::size_t>(band)];
+        });
+    expectDirections(raster.write(_folder / "world.tif"), osg::DegreesToRadians(0.25));
 }
