@@ -54,7 +54,7 @@ void showRoutes(const Options& options, osgGeoFX::Scene& scene)
     for (const std::string& each : options.routes)
     {
         osgGeoFX::SceneRoutes::Options how;
-        how.width = options.routeWidth;
+        how.look.width = options.routeWidth;
         std::string file;
         std::tie(file, how.layer) = names::fileAndLayer(each);
         if (!routes.add(file, how, error)) throw std::runtime_error("--route: " + error);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
-#include <osgGeoFX/mapping/RouteMapping.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/mapping/RoutePath.h>
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -36,15 +36,8 @@ public:
     struct Options
     {
         std::string layer; ///< one layer; empty: all
-        double width =
-            0.0; ///< of the line without its outline, metres; 0: a 120th of the way's extent, 8 m at least
-        /// The look, enlarged so that the line has the width. The file's own color goes before its color. By default the surroundings
-        /// keep their colors.
-        RouteMapping::Style style = plainStyle();
+        RoutePath::Look look;
     };
-    /// The look of RouteMapping without a darkened context.
-    static RouteMapping::Style plainStyle();
-
     /// Adds the ways of a file. False, with a sentence in `error`, if it cannot; the ways before the one at fault stay then.
     bool add(const std::string& file, const Options& options, std::string& error);
     /// Adds a way. False, with a sentence in `error`, if it cannot.

@@ -17,6 +17,7 @@
 #include <osgGeoFX/geodata/OverlayReader.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
 #include <osgGeoFX/geodata/RouteVectors.h>
+#include <osgGeoFX/geodata/SldColors.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 #include <osgGeoFX/labels/NameFile.h>
@@ -28,6 +29,7 @@
 #include <osgDB/Registry>
 
 #include <iterator>
+#include <type_traits>
 
 namespace osgGeoFX
 {
@@ -59,9 +61,12 @@ public:
         if (name == "strokeVectors" && options) return strokeVectors(*options);
         if (name == "names" && options) return names(*options);
         if (name == "lines" && options) return lines(*options);
-        if (name == "overlays" && options) return overlays(*options);
+        if (name == "overlays" && options) return overlays<OverlayFile>(*options);
         if (name == "picture" && options) return picture(*options);
-        if (name == "routes" && options) return routes(*options);
+        if (name == "routes" && options) return routes<RouteFile>(*options);
+        if (name == "sceneOverlays" && options) return overlays<SceneOverlaysRequest>(*options);
+        if (name == "sceneRoutes" && options) return routes<SceneRoutesRequest>(*options);
+        if (name == "colors" && options) return colors(*options);
         if (name == "sources" && options) return sources(*options);
         return ReadResult::FILE_NOT_HANDLED;
     }
@@ -174,18 +179,19 @@ private:
     }
 
     /// The answer is in the request.
+    template<typename Request>
     static ReadResult overlays(const Options& options)
     {
         std::string error = otherVersion(options);
         if (!error.empty()) return error;
-        auto* request = static_cast<OverlayFile*>(const_cast<void*>(options.getPluginData("request")));
+        auto* request = static_cast<Request*>(const_cast<void*>(options.getPluginData("request")));
         if (!request) return ReadResult::FILE_NOT_HANDLED;
         OverlayReader reader;
         reader.globe = request->globe;
         reader.wkt = request->wkt;
         reader.frames = request->frames;
         OverlayReader::Options how;
-        how.allowOutside = request->allowOutside;
+        if constexpr (std::is_same_v<Request, OverlayFile>) how.allowOutside = request->allowOutside;
         how.colors = request->colors;
         how.maxSide = request->maxSide;
         if (!reader.read(request->file, how, error)) return error;
@@ -196,13 +202,26 @@ private:
     }
 
     /// The answer is in the request.
+    template<typename Request>
     static ReadResult routes(const Options& options)
     {
         std::string error = otherVersion(options);
         if (!error.empty()) return error;
-        auto* request = static_cast<RouteFile*>(const_cast<void*>(options.getPluginData("request")));
+        auto* request = static_cast<Request*>(const_cast<void*>(options.getPluginData("request")));
         if (!request) return ReadResult::FILE_NOT_HANDLED;
         if (!RouteVectors::read(request->file, request->layer, request->routes, error)) return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult colors(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<ColorsRequest*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        request->table = SldColors::read(request->file, error);
+        if (!request->table) return error;
         return ReadResult(ReadResult::FILE_LOADED);
     }
 
