@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/map/SceneRoutes.h>
 
+#include <osgGeoFX/map/PathRibbon.h>
 #include <osgGeoFX/map/RouteFile.h>
 
 #include <osg/Math>
@@ -23,7 +24,7 @@ constexpr std::size_t mostEffects = 3;
 SceneRoutes::SceneRoutes(osg::Node& node, EffectScene& scene)
     : _scene(&scene), _ellipsoid(scene.ground().ellipsoid)
 {
-    if (!_ellipsoid) _reference = Georeference::create(&node, _referenceError);
+    _reference = Georeference::create(&node, _referenceError);
 }
 
 bool SceneRoutes::placeOf(const RoutePath& route, Way& way, std::string& error)
@@ -111,9 +112,29 @@ bool SceneRoutes::add(const RoutePath& route, const Options& options, std::strin
         const osg::Vec3d place = effect->placeOf(world, _ellipsoid);
         places.emplace_back(place.x(), place.y());
     }
-    if (route.showOn(*effect, places, options.look)) return true;
-    error = "the look of the way \"" + route.name + "\" is out of range; give another width.";
-    return false;
+    if (!route.showOn(*effect, places, options.look))
+    {
+        error = "the look of the way \"" + route.name + "\" is out of range; give another width.";
+        return false;
+    }
+    if (route.altitude != RoutePath::ABSOLUTE || !options.ribbons) return true;
+    if (!_reference)
+    {
+        error = _referenceError;
+        return false;
+    }
+    PathRibbon ribbon;
+    ribbon.color = options.look.style.color;
+    for (const PathRibbon::Shape shape : {PathRibbon::TUBE, PathRibbon::CURTAIN})
+    {
+        if (shape == PathRibbon::CURTAIN && !route.extruded) continue;
+        ribbon.shape = shape;
+        ribbon.width = options.look.width;
+        const osg::ref_ptr<osg::Node> node = ribbon.make(route, *_reference, error);
+        if (!node) return false;
+        _scene->addChild(node);
+    }
+    return true;
 }
 
 bool SceneRoutes::add(const std::string& file, const Options& options, std::string& error)

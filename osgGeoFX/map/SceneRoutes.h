@@ -23,7 +23,7 @@ namespace osgGeoFX
     if (!routes.add("hike.gpx", {}, error)) …
     @endcode
 
-    A way lies on the ground, whatever its altitude mode is; it follows great circles between its places. Way points get marks,
+    A way lies on the ground, whatever its altitude mode is, and one of absolute heights is in the air, too (`ribbons`). It follows great circles between its places. Way points get marks,
     the points of tracks none. The mappings stay in the scene when this object is gone: they are in effects named "routes", behind the scene's
     other effects, one for each part of the globe of 45° of arc. The plugin osgdb_geofxdata reads the files. One thread at a time, between frames.
     @ingroup map */
@@ -37,6 +37,8 @@ public:
     {
         std::string layer; ///< one layer; empty: all
         RoutePath::Look look;
+        bool ribbons =
+            true; ///< whether ways of absolute heights are also drawn in the air (PathRibbon): as tubes, extruded ones with a curtain
     };
     /// Adds the ways of a file. False, with a sentence in `error`, if it cannot; the ways before the one at fault stay then.
     bool add(const std::string& file, const Options& options, std::string& error);

@@ -66,7 +66,7 @@ std::vector<osg::Vec2d> RoutePath::alongGreatCircles(double longest) const
         earth.convertLatLongHeightToXYZ(osg::DegreesToRadians(place.y()), osg::DegreesToRadians(place.x()),
                                         0.0, here.x(), here.y(), here.z());
         const int parts =
-            result.empty() ? 1 : std::max(1, static_cast<int>((here - before).length() / longest));
+            result.empty() ? 1 : std::max(1, static_cast<int>(std::ceil((here - before).length() / longest)));
         for (int part = 1; part < parts; ++part)
         {
             const osg::Vec3d chord = before + (here - before) * (part / static_cast<double>(parts));
