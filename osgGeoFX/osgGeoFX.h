@@ -73,6 +73,7 @@
 #include <osgGeoFX/mapping/MappingPool.h>
 #include <osgGeoFX/mapping/MarkImages.h>
 #include <osgGeoFX/mapping/MaskPainter.h>
+#include <osgGeoFX/mapping/PathRibbon.h>
 #include <osgGeoFX/mapping/PointerPlace.h>
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>

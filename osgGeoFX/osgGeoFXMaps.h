@@ -27,7 +27,6 @@
 #include <osgGeoFX/map/MapReader.h>
 #include <osgGeoFX/map/MapStyles.h>
 #include <osgGeoFX/map/OverlayFile.h>
-#include <osgGeoFX/map/PathRibbon.h>
 #include <osgGeoFX/map/RouteFile.h>
 #include <osgGeoFX/map/SceneOverlays.h>
 #include <osgGeoFX/map/SceneRoutes.h>

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/map/SceneRoutes.h>
 
-#include <osgGeoFX/map/PathRibbon.h>
 #include <osgGeoFX/map/RouteFile.h>
+#include <osgGeoFX/mapping/PathRibbon.h>
 
 #include <osg/Math>
 
@@ -123,18 +123,11 @@ bool SceneRoutes::add(const RoutePath& route, const Options& options, std::strin
         error = _referenceError;
         return false;
     }
-    PathRibbon ribbon;
-    ribbon.color = options.look.style.color;
-    for (const PathRibbon::Shape shape : {PathRibbon::TUBE, PathRibbon::CURTAIN})
-    {
-        if (shape == PathRibbon::CURTAIN && !route.extruded) continue;
-        ribbon.shape = shape;
-        ribbon.width = options.look.width;
-        const osg::ref_ptr<osg::Node> node = ribbon.make(route, *_reference, error);
-        if (!node) return false;
+    const std::vector<osg::ref_ptr<osg::Node>> nodes =
+        PathRibbon::nodesOf(route, options.look, *_reference, error);
+    for (const osg::ref_ptr<osg::Node>& node : nodes)
         _scene->addChild(node);
-    }
-    return true;
+    return !nodes.empty();
 }
 
 bool SceneRoutes::add(const std::string& file, const Options& options, std::string& error)

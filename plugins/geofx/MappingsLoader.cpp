@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsLoader.h"
 
+#include <osgGeoFX/mapping/PathRibbon.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 
 #include <osg/Math>
@@ -36,9 +37,9 @@ void setTransfer(ProjectiveMapping& mapping, double lowest, double highest)
 class Loader
 {
 public:
-    Loader(const SceneMappings& mappings, SceneTerrain& terrain)
-        : _mappings(mappings), _effect(*mappings.effect), _terrain(terrain), _ellipsoid(terrain.ellipsoid()),
-          _hasOrigin(mappings.hasOrigin)
+    Loader(const SceneMappings& mappings, SceneTerrain& terrain, EffectScene& node)
+        : _mappings(mappings), _effect(*mappings.effect), _terrain(terrain), _node(node),
+          _ellipsoid(terrain.ellipsoid()), _hasOrigin(mappings.hasOrigin)
     {
     }
 
@@ -194,22 +195,31 @@ private:
             }
             if (!path.showOn(_effect, places, route.look))
                 fail(route.place, "the route cannot be drawn with this width and order; give others.");
+            if (path.altitude != RoutePath::ABSOLUTE || !route.inAir) continue;
+            std::string error;
+            const osg::ref_ptr<Georeference> reference = _terrain.reference(error);
+            if (!reference) fail(route.place, error);
+            for (const osg::ref_ptr<osg::Node>& ribbon :
+                 PathRibbon::nodesOf(path, route.look, *reference, error))
+                _node.addChild(ribbon);
+            if (!error.empty()) fail(route.place, error);
         }
     }
 
     const SceneMappings& _mappings;
     ProjectiveMappings& _effect;
     SceneTerrain& _terrain;
+    EffectScene& _node;
     const osg::EllipsoidModel* _ellipsoid;
     bool _hasOrigin;
 };
 
 } // namespace
 
-void loadMappings(const SceneFile& scene, SceneTerrain& terrain)
+void loadMappings(const SceneFile& scene, SceneTerrain& terrain, EffectScene& node)
 {
     for (const SceneMappings& mappings : scene.mappings)
-        Loader(mappings, terrain).load();
+        Loader(mappings, terrain, node).load();
 }
 
 } // namespace osgGeoFX

@@ -48,6 +48,7 @@ struct ColorsRequest
 };
 
 /// Gives the mappings of a scene what only files and the terrain know: pictures, tables, places. Throws SceneFailure.
-void loadMappings(const SceneFile& scene, SceneTerrain& terrain);
+/// `node` gets what is no mapping: ways in the air.
+void loadMappings(const SceneFile& scene, SceneTerrain& terrain, EffectScene& node);
 
 } // namespace osgGeoFX

@@ -79,6 +79,7 @@ private:
         route.look.order = SceneXml::integer(node, "order");
         route.look.style.context =
             attributeOf(node, "context") == "true" || attributeOf(node, "context") == "1";
+        route.inAir = attributeOf(node, "inAir") == "true" || attributeOf(node, "inAir") == "1";
         for (xmlNode* point = SceneXml::child(node, "wayPoint"); point;
              point = SceneXml::next(point->next, "wayPoint"))
             route.path.places.emplace_back(SceneXml::real(point, "longitude"),

@@ -139,6 +139,7 @@ struct SceneRoute
     RoutePath path;    ///< the way points; without a file
     RoutePath::Look look;
     std::optional<osg::Vec4> color;
+    bool inAir = true; ///< whether one with absolute heights is drawn there, too
 };
 
 /// An effect with mappings. The mappings are in the effect, with all that needs no file and no terrain.

@@ -214,6 +214,13 @@ LocalOrigin SceneTerrain::originAt(const osg::Vec2d& point) const
                : LocalOrigin::onPlane(point);
 }
 
+osg::ref_ptr<Georeference> SceneTerrain::reference(std::string& error)
+{
+    // The terrain itself may lie below a node that says so.
+    if (!_reference) _reference = Georeference::create(&_terrain, error);
+    return _reference;
+}
+
 MappingFrame SceneTerrain::frame() const
 {
     MappingFrame result;

@@ -3,7 +3,7 @@
 //
 // Ways in the air: where their vertices are, against GeographicLib; where bent pictures have them; through OSG's files.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
-#include <osgGeoFX/map/PathRibbon.h>
+#include <osgGeoFX/mapping/PathRibbon.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <tools/MappingStage.h>
 #include <tools/TempDir.h>

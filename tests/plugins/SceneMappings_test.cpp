@@ -8,11 +8,13 @@
 #include <tools/KmlFiles.h>
 #include <tools/TestRasters.h>
 
+#include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 #include <osg/CoordinateSystemNode>
 #include <osg/Group>
 #include <osg/Math>
+#include <osg/MatrixTransform>
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
 
@@ -622,6 +624,27 @@ TEST_F(SceneMappingsPlugin, OverlaysAndRoutesLieWhereTheirFilesSay)
     EXPECT_EQ(strips, 1);
     EXPECT_EQ(plans, 8) << "line and outline, two caps each, and two marks";
     EXPECT_TRUE(effect->mappingsAt({0.0, 500.0}).size() > 1) << "the way to the north";
+    EXPECT_EQ(_scene->asGroup()->getNumChildren(), 1u) << "these ways have no heights";
+    for (const bool inAir : {true, false})
+    {
+        _folder.write(
+            "flight.kml",
+            geofx::test::kml(
+                "<Placemark><name>flight</name><LineString><extrude>1</extrude><altitudeMode>absolute"
+                "</altitudeMode><coordinates>-158,21.3,900 -157.99,21.3,1000</coordinates>"
+                "</LineString></Placemark>"));
+        ASSERT_TRUE(effectOf<ProjectiveMappings>(
+            sceneWith(std::string("<route file='flight.kml' inAir='") + (inAir ? "true'/>" : "false'/>"))));
+        const osg::Group& group = *_scene->asGroup();
+        ASSERT_EQ(group.getNumChildren(), inAir ? 3u : 1u) << "the terrain, a tube and a curtain";
+        if (!inAir) continue;
+        const auto* const tube = dynamic_cast<const osg::MatrixTransform*>(group.getChild(1));
+        ASSERT_TRUE(tube);
+        EXPECT_EQ(tube->getName(), "flight");
+        osg::Vec3d foot;
+        GeographicLib::Geocentric::WGS84().Forward(21.3, -157.995, 950.0, foot.x(), foot.y(), foot.z());
+        EXPECT_LT((osg::Vec3d(tube->getBound().center()) - foot).length(), 10.0);
+    }
 }
 
 TEST_F(SceneMappingsPlugin, OverlaysAndRoutesAreRefusedInASentence)

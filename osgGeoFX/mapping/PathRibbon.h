@@ -9,6 +9,7 @@
 #include <osg/MatrixTransform>
 
 #include <string>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -26,8 +27,8 @@ namespace osgGeoFX
     goes down to `foot`, and the ground hides what is below.
 
     A plain value; make() may be called from any thread.
-    @ingroup map */
-struct OSGGEOFXMAPS_EXPORT PathRibbon
+    @ingroup mapping */
+struct OSGGEOFX_EXPORT PathRibbon
 {
     enum Shape
     {
@@ -47,6 +48,11 @@ struct OSGGEOFXMAPS_EXPORT PathRibbon
         projection. */
     osg::ref_ptr<osg::MatrixTransform> make(const RoutePath& path, const Georeference& reference,
                                             std::string& error) const;
+
+    /// How programs and scene files show a way: a tube of the look's width, and if it is extruded a curtain. Empty, with a sentence in `error`, if it
+    /// cannot.
+    static std::vector<osg::ref_ptr<osg::Node>> nodesOf(const RoutePath& path, const RoutePath::Look& look,
+                                                        const Georeference& reference, std::string& error);
 };
 
 } // namespace osgGeoFX

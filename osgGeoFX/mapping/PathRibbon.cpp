@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include <osgGeoFX/map/PathRibbon.h>
+#include <osgGeoFX/mapping/PathRibbon.h>
 
 #include <osg/BlendFunc>
 #include <osg/BoundingBox>
@@ -215,6 +215,24 @@ osg::ref_ptr<osg::MatrixTransform> PathRibbon::make(const RoutePath& path, const
 {
     Maker maker(*this, path, reference);
     return maker.place(error) ? maker.make() : nullptr;
+}
+
+std::vector<osg::ref_ptr<osg::Node>> PathRibbon::nodesOf(const RoutePath& path, const RoutePath::Look& look,
+                                                         const Georeference& reference, std::string& error)
+{
+    PathRibbon ribbon;
+    ribbon.color = look.style.color;
+    ribbon.width = look.width;
+    std::vector<osg::ref_ptr<osg::Node>> nodes;
+    for (const Shape each : {TUBE, CURTAIN})
+    {
+        if (each == CURTAIN && !path.extruded) continue;
+        ribbon.shape = each;
+        const osg::ref_ptr<osg::Node> node = ribbon.make(path, reference, error);
+        if (!node) return {};
+        nodes.push_back(node);
+    }
+    return nodes;
 }
 
 } // namespace osgGeoFX
