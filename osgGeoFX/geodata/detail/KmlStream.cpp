@@ -6,6 +6,7 @@
 #include <osgGeoFX/geodata/detail/KmlFolder.h>
 
 #include <cpl_vsi.h>
+#include <libxml/xmlreader.h>
 
 #include <algorithm>
 #include <charconv>
@@ -68,6 +69,18 @@ std::optional<double> numberOf(std::string_view text)
     return value;
 }
 
+/// What libxml2 calls with each of them; the first one counts.
+struct KmlStream::Faults
+{
+    static void note(void* context, xmlErrorPtr error)
+    {
+        auto& self = *static_cast<KmlStream*>(context);
+        if (!self._fault.empty() || !error || error->level < XML_ERR_ERROR) return;
+        self._fault = error->message ? std::string(trimmed(error->message)) : "unknown fault";
+        self._faultLine = error->line;
+    }
+};
+
 void KmlStream::parse()
 {
     const std::string name = KmlFolder::plain(_document);
@@ -79,7 +92,7 @@ void KmlStream::parse()
         &Source::read, &Source::close, &source, nullptr, nullptr, XML_PARSE_NONET | XML_PARSE_BIG_LINES));
     if (!reader) throw BuildError(name + ": there is no memory to read it; free some.");
     _reader = reader.get();
-    xmlTextReaderSetStructuredErrorHandler(_reader, &KmlStream::note, this);
+    xmlTextReaderSetStructuredErrorHandler(_reader, &Faults::note, this);
     int status = 0;
     while ((status = xmlTextReaderRead(_reader)) == 1)
         takeNode();
@@ -89,14 +102,6 @@ void KmlStream::parse()
                          ": it is not KML (" + (_fault.empty() ? "no element <kml>" : _fault) +
                          "); save or export it again.");
     _bytes = source.bytes;
-}
-
-void KmlStream::note(void* context, xmlErrorPtr error)
-{
-    auto& self = *static_cast<KmlStream*>(context);
-    if (!self._fault.empty() || !error || error->level < XML_ERR_ERROR) return;
-    self._fault = error->message ? std::string(trimmed(error->message)) : "unknown fault";
-    self._faultLine = error->line;
 }
 
 int KmlStream::line() const

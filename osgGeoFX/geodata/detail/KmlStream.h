@@ -2,16 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
-// Private to osgGeoFXData: consumers of the library do not need libxml2's headers.
-
-#include <libxml/xmlreader.h>
-
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+struct _xmlTextReader; // libxml2's
 
 namespace osgGeoFX
 {
@@ -57,11 +55,11 @@ protected:
     [[noreturn]] void fail(int line, const std::string& sentence) const;
 
 private:
-    static void note(void* context, xmlErrorPtr error);
+    struct Faults;
     void takeNode();
 
     const std::string& _document;
-    xmlTextReader* _reader = nullptr;
+    _xmlTextReader* _reader = nullptr;
     std::vector<std::string> _path;
     std::string _text;
     std::size_t _bytes = 0;
