@@ -4,6 +4,7 @@
 // osggeofx_render: an OSG file or .geofx scene to pictures, off-screen.
 #include "layers/SceneLayers.h"
 #include "names/PictureMap.h"
+#include "names/SceneMappings.h"
 #include "osggeofx_render_output.h"
 #include "plan/PicturePlan.h"
 #include "print/PrintOptions.h"
@@ -48,6 +49,7 @@ struct Arguments
     std::string plan;
     double fieldOfView = 0.0;
     std::vector<std::string> effects;
+    geofx::mappings::Options mappings;
     geofx::names::Options names;
     geofx::layers::Options layers;
     geofx::web::Options web;
@@ -127,6 +129,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
     // What CLI11 has for a version is a text that takes the place of everything else.
     app.set_version_flag("--help-effects", osgGeoFX::effectsHelp,
                          "List the effects with all their properties");
+    geofx::mappings::addOptions(app, arguments.mappings);
     geofx::names::addOptions(app, arguments.names);
     geofx::layers::addOptions(app, arguments.layers);
     geofx::web::addOptions(app, arguments.web);
@@ -140,7 +143,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
     app.add_flag("--debug-bounds", arguments.debugBounds, "Draw the deformed bounds that culling decides on");
     app.add_flag("--no-cull", arguments.noCull, "Switch frustum and small-feature culling off");
     app.add_flag("--allow-outside", arguments.allowOutside,
-                 "Let a .geofx scene name files outside its own folder, and addresses");
+                 "Let a .geofx scene or a KML file name files outside its own folder, and addresses");
     app.add_option("--samples", arguments.renderer.samples, "Samples per pixel (multisampling)")
         ->type_name("N")
         ->check(CLI::Range(0u, 64u))
@@ -178,6 +181,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
         "focusLine=0.4 horizonLine=0.85'\n"
         "  osggeofx_render oahu.geofx -o f%04d.png --path flight.csv --frames 240 --stats flight.json\n"
         "  osggeofx_render oahu.geofx -o f%05d.png --path saved_animation.path --fps 25 --plan film\n"
+        "  osggeofx_render oahu.geofx -o fire.png --mapping fire.kmz --mapping rain.tif --colors rain.sld\n"
         "  osggeofx_cluster make film | make -j 8 -f -");
 }
 
@@ -262,7 +266,8 @@ std::string describe(const Arguments& arguments, const osgGeoFX::Scene& scene, c
 std::string madeOf(const Arguments& arguments)
 {
     return arguments.scene + geofx::names::ageOf(arguments.scene) + "; " + arguments.camera.path +
-           geofx::names::ageOf(arguments.camera.path) + geofx::names::agesOf(arguments.names);
+           geofx::names::ageOf(arguments.camera.path) + geofx::mappings::agesOf(arguments.mappings) +
+           geofx::names::agesOf(arguments.names);
 }
 
 /// About how long a picture takes on one core without a GPU, seconds.
@@ -293,8 +298,8 @@ void print(const Arguments& arguments, const osgGeoFX::PrintSize& size, geofx::n
                        ? division.tileFolder()
                        : std::filesystem::path(arguments.output).replace_extension().string() + ".tiles";
     options.recipe = arguments.scene + geofx::names::ageOf(arguments.scene) +
-                     geofx::names::agesOf(arguments.names) + map.digest() +
-                     std::filesystem::path(raster).filename().string();
+                     geofx::mappings::agesOf(arguments.mappings) + geofx::names::agesOf(arguments.names) +
+                     map.digest() + std::filesystem::path(raster).filename().string();
     for (const std::string& effect : arguments.effects)
         options.recipe += "; " + effect;
     options.metadata = {{"Software", "osgGeoFX osggeofx_render"},
@@ -463,6 +468,10 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
     if (!scene) throw Failure(badInput, error);
     if (arguments.sky && !scene->addSky(error)) throw Failure(badInput, "--sky: " + error);
     addEffects(arguments, *scene->effects);
+    std::vector<std::string> notices;
+    geofx::mappings::show(arguments.mappings, arguments.allowOutside, *scene, notices);
+    for (const std::string& notice : notices)
+        std::cerr << "osggeofx_render: " << notice << std::endl;
     scene->effects->listenTo(*scene->guard);
     osgGeoFX::SceneRenderer::Options& options = arguments.renderer;
     options.fieldOfView =

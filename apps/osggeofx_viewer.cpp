@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // osggeofx_viewer: osgviewer, made for terrain.
+#include "names/SceneMappings.h"
 #include "names/SceneNames.h"
 #include "viewer/ViewerSetup.h"
 
@@ -48,6 +49,15 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
                                "Add an effect to the scene's, as in osggeofx_render; as often as wanted.");
     usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
+    usage.addCommandLineOption("--mapping <file>",
+                               "Put a raster onto the ground: KML, KMZ, or any raster with a georeference.");
+    usage.addCommandLineOption("--colors <file>",
+                               "The colors of values: a table of gdaldem color-relief, GMT or SLD.");
+    usage.addCommandLineOption(
+        "--route <file>",
+        "Put a way onto the ground: GPX, KML, KMZ or lines of any vector file; FILE or FILE:LAYER.");
+    usage.addCommandLineOption("--route-width <metres>",
+                               "Width of the ways' lines (default: by their extent).");
     usage.addCommandLineOption("--labels <file>",
                                "Show the names of a vector file, FILE or FILE:LAYER; as often as wanted.");
     usage.addCommandLineOption("--lines <file>",
@@ -61,8 +71,9 @@ void describe(osg::ApplicationUsage& usage)
                                "Keep tiles within so much main memory; those seen longest ago go first.");
     usage.addCommandLineOption("--gpu-memory <MiB>", "The same of OpenGL's objects.");
     usage.addCommandLineOption("--help-effects", "List the effects with all their properties.");
-    usage.addCommandLineOption("--allow-outside",
-                               "Let a .geofx scene name files outside its own folder, and addresses.");
+    usage.addCommandLineOption(
+        "--allow-outside",
+        "Let a .geofx scene or a KML file name files outside its own folder, and addresses.");
     usage.addCommandLineOption("-p <file>", "Play a camera path that was saved with the key z.");
     usage.addCommandLineOption("--speed <factor>", "How fast the path is played; 1 is as recorded.");
 }
@@ -118,6 +129,13 @@ int main(int argc, char** argv)
     const osg::ref_ptr<osgDB::Options> reading =
         arguments.read("--allow-outside") ? new osgDB::Options("allowOutside") : nullptr;
     const bool sky = arguments.read("--sky");
+    geofx::mappings::Options mappingOptions;
+    while (arguments.read("--mapping", text))
+        mappingOptions.files.push_back(text);
+    arguments.read("--colors", mappingOptions.colors);
+    while (arguments.read("--route", text))
+        mappingOptions.routes.push_back(text);
+    const bool routeWidthGiven = arguments.read("--route-width", mappingOptions.routeWidth);
     geofx::names::Options nameOptions;
     while (arguments.read("--labels", text))
         nameOptions.files.push_back(text);
@@ -145,6 +163,10 @@ int main(int argc, char** argv)
     if (fieldOfViewGiven && !(fieldOfView > 0.0 && fieldOfView < 180.0))
     {
         return refuse("--fov must lie between 0 and 180 degrees.");
+    }
+    if (routeWidthGiven && !(mappingOptions.routeWidth > 0.0))
+    {
+        return refuse("--route-width must be more than 0 metres.");
     }
     if (prefetchGiven && !(paging.lead >= 0.1 && paging.lead <= 60.0))
     {
@@ -190,6 +212,7 @@ int main(int argc, char** argv)
     try
     {
         std::vector<std::string> notices;
+        geofx::mappings::show(mappingOptions, reading.valid(), *scene, notices);
         geofx::names::showMap(nameOptions, *scene, notices);
         for (const std::string& notice : notices)
             std::cerr << "osggeofx_viewer: " << notice << std::endl;

@@ -69,14 +69,17 @@
 #include <osgGeoFX/mapping/DataLayer.h>
 #include <osgGeoFX/mapping/Footprint.h>
 #include <osgGeoFX/mapping/GeometrySwap.h>
+#include <osgGeoFX/mapping/GroundOverlay.h>
 #include <osgGeoFX/mapping/LensMapping.h>
 #include <osgGeoFX/mapping/MappingPool.h>
 #include <osgGeoFX/mapping/MarkImages.h>
 #include <osgGeoFX/mapping/MaskPainter.h>
+#include <osgGeoFX/mapping/PathRibbon.h>
 #include <osgGeoFX/mapping/PointerPlace.h>
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/mapping/RouteMapping.h>
+#include <osgGeoFX/mapping/RoutePath.h>
 #include <osgGeoFX/mapping/SymbolMapping.h>
 #include <osgGeoFX/mapping/ValueLegend.h>
 #include <osgGeoFX/mapping/ValueMap.h>

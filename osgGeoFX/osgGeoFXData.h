@@ -6,13 +6,18 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/FileSources.h>
+#include <osgGeoFX/geodata/KmlOverlays.h>
 #include <osgGeoFX/geodata/LandCoverTable.h>
 #include <osgGeoFX/geodata/LineVectors.h>
 #include <osgGeoFX/geodata/MappingRaster.h>
 #include <osgGeoFX/geodata/MaterialLegend.h>
 #include <osgGeoFX/geodata/NameVectors.h>
+#include <osgGeoFX/geodata/OverlayRaster.h>
+#include <osgGeoFX/geodata/OverlayReader.h>
 #include <osgGeoFX/geodata/PalettePoints.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
+#include <osgGeoFX/geodata/RouteVectors.h>
+#include <osgGeoFX/geodata/SldColors.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 

@@ -26,6 +26,10 @@
 #include <osgGeoFX/map/MapKeys.h>
 #include <osgGeoFX/map/MapReader.h>
 #include <osgGeoFX/map/MapStyles.h>
+#include <osgGeoFX/map/OverlayFile.h>
+#include <osgGeoFX/map/RouteFile.h>
+#include <osgGeoFX/map/SceneOverlays.h>
+#include <osgGeoFX/map/SceneRoutes.h>
 
 #include <osgGeoFX/print/PictureLayers.h>
 #include <osgGeoFX/print/PictureMesh.h>

@@ -45,7 +45,11 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
 {
     const FrameCrs crs = crsOf(frame, file);
     const FrameRaster raster(file, options.kind);
-    const FrameRaster::Extent extent = raster.extent(crs);
+    FrameRaster::Extent extent;
+    if (const std::optional<MappingRaster::Window>& window = options.window)
+        extent = {crs.fromFrame(window->low), crs.fromFrame(window->high), window->texel / crs.metresPerUnit};
+    else
+        extent = raster.extent(crs);
     const osg::Vec2d size = extent.high - extent.low;
     // With fewer texels than it has, GDAL reads from overviews.
     const double texel = std::max(extent.texel, std::max(size.x(), size.y()) / options.maxSide);

@@ -35,10 +35,18 @@ struct MappingFrame
     @ingroup geodata */
 struct OSGGEOFXDATA_EXPORT MappingRaster
 {
+    /// A part of the frame, metres.
+    struct Window
+    {
+        osg::Vec2d low;
+        osg::Vec2d high;
+        double texel = 0.0; ///< the size of texels that keeps the raster's resolution
+    };
     struct Options
     {
-        std::optional<DataLayer::Kind> kind; ///< empty: the file decides
-        int maxSide = 2048;                  ///< texels along the longer side at most, 1…16384
+        std::optional<DataLayer::Kind> kind;         ///< empty: the file decides
+        int maxSide = 2048;                          ///< texels along the longer side at most, 1…16384
+        std::optional<Window> window = std::nullopt; ///< empty: all of the raster
     };
 
     osg::ref_ptr<DataLayer> layer;

@@ -6,10 +6,7 @@
 #include <osgGeoFX/labels/NamePlacement.h>
 #include <osgGeoFX/lines/LineFile.h>
 #include <osgGeoFX/lines/LinePlacement.h>
-
-#include <osg/CoordinateSystemNode>
-#include <osg/LOD>
-#include <osg/NodeVisitor>
+#include <osgGeoFX/map/detail/SceneCrs.h>
 
 #include <iterator>
 
@@ -21,20 +18,6 @@ namespace
 
 /// Cells of the relief, along the longer side: where summits are looked for, and as long as the steps of lines on the ground.
 constexpr int reliefCells = 2048;
-
-/// The coordinate system of a projected scene, as WKT; empty if it states none.
-std::string wktOf(osg::Node& node)
-{
-    struct Finder : public osg::NodeVisitor
-    {
-        Finder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
-        void apply(osg::CoordinateSystemNode& found) override { wkt = found.getCoordinateSystem(); }
-        void apply(osg::LOD&) override {}
-        std::string wkt;
-    } finder;
-    node.accept(finder);
-    return finder.wkt;
-}
 
 template<class Thing>
 void append(std::vector<Thing>& from, std::vector<Thing>& to)
@@ -48,7 +31,7 @@ void append(std::vector<Thing>& from, std::vector<Thing>& to)
 MapReader::MapReader(osg::Node& node, EffectScene& scene)
     : _node(node), _scene(scene), _ellipsoid(scene.ground().ellipsoid)
 {
-    if (!_ellipsoid) _wkt = wktOf(node);
+    if (!_ellipsoid) _wkt = crsOfScene(node);
 }
 
 bool MapReader::readNames(const std::string& file, const std::string& layer, std::string& error)

@@ -40,6 +40,12 @@ public:
     void trim();
     /// Removes all mappings.
     void clear();
+    /// Forgets all mappings, which stay in the ProjectiveMappings.
+    void leave()
+    {
+        _mappings.clear();
+        _used = 0;
+    }
     /// Calls `prepare` for all mappings of the pool, and later for each new one in place of the former `prepare`.
     void prepareAll(Prepare prepare);
 

@@ -158,6 +158,17 @@ std::optional<std::size_t> RouteMapping::legAt(const osg::Vec2d& place) const
     return nearest;
 }
 
+void RouteMapping::leave(const std::string& name)
+{
+    for (MappingPool& each : _pools)
+    {
+        for (std::size_t i = 0; i < each.size(); ++i)
+            each.at(i).setName(name);
+        each.leave();
+    }
+    _points.clear();
+}
+
 void RouteMapping::makeColors()
 {
     _casingTransfer->setConstant(_style.casingColor);

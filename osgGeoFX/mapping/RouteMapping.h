@@ -8,6 +8,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 namespace osgGeoFX
 {
@@ -70,6 +71,10 @@ public:
     std::optional<std::size_t> highlighted() const { return _highlighted; }
     /// The leg whose line or outline contains a place. Programs use it for clicks.
     std::optional<std::size_t> legAt(const osg::Vec2d& place) const;
+
+    /// Leaves the route's mappings in the ProjectiveMappings for good, named after the route; so they are drawn, and written to files, as
+    /// mappings. This route has no way points afterwards.
+    void leave(const std::string& name);
 
     /// The role of a mapping. A program may change properties that the route does not set itself: fades, heights,
     /// channels.

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsLoader.h"
 
+#include <osgGeoFX/mapping/PathRibbon.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 
 #include <osg/Math>
@@ -36,9 +37,9 @@ void setTransfer(ProjectiveMapping& mapping, double lowest, double highest)
 class Loader
 {
 public:
-    Loader(const SceneMappings& mappings, SceneTerrain& terrain)
-        : _mappings(mappings), _effect(*mappings.effect), _terrain(terrain), _ellipsoid(terrain.ellipsoid()),
-          _hasOrigin(mappings.hasOrigin)
+    Loader(const SceneMappings& mappings, SceneTerrain& terrain, EffectScene& node)
+        : _mappings(mappings), _effect(*mappings.effect), _terrain(terrain), _node(node),
+          _ellipsoid(terrain.ellipsoid()), _hasOrigin(mappings.hasOrigin)
     {
     }
 
@@ -62,6 +63,10 @@ public:
             // The origin is the first mapping's, or nobody's.
             _hasOrigin = true;
         }
+        for (const SceneOverlay& overlay : _mappings.overlays)
+            add(overlay);
+        for (const SceneRoute& route : _mappings.routes)
+            add(route);
         const std::string fault = whyItDrawsNothing(_effect);
         if (!fault.empty()) warn(_mappings.place, fault);
     }
@@ -132,19 +137,89 @@ private:
             setTransfer(*mapping.mapping, request.raster.lowest, request.raster.highest);
     }
 
+    void add(const SceneOverlay& overlay)
+    {
+        SceneOverlaysRequest request;
+        request.file = overlay.file.path;
+        request.globe = _ellipsoid != nullptr;
+        request.wkt = _terrain.frame().wkt;
+        request.maxSide = overlay.maxSide;
+        if (_hasOrigin) request.frames.push_back(_effect.getLocalOrigin());
+        const std::string fault =
+            SceneTerrain::ask(overlay.place, "sceneOverlays", &request, "use a <layer> with a <mapping>");
+        if (request.overlays.empty()) fail(overlay.place, fault);
+        for (const std::string& notice : request.notices)
+            warn(overlay.place, notice);
+        if (request.frames.size() > 1)
+            fail(overlay.place,
+                 "its rasters lie too far from the effect's origin, or from each other; give them a "
+                 "<projectiveMappings> of their own, or split the file.");
+        _effect.setLocalOrigin(request.frames[0]);
+        _hasOrigin = true;
+        for (const GroundOverlay& each : request.overlays)
+        {
+            const osg::ref_ptr<ProjectiveMapping> mapping = each.makeMapping();
+            if (!mapping)
+                fail(overlay.place,
+                     "the overlay \"" + each.name + "\" covers no area on the ground; correct it.");
+            mapping->setOpacity(mapping->getOpacity() * overlay.opacity);
+            mapping->setOrder(overlay.order);
+            _effect.addMapping(mapping);
+        }
+    }
+
+    void add(const SceneRoute& route)
+    {
+        std::vector<RoutePath> paths = {route.path};
+        if (route.file)
+        {
+            SceneRoutesRequest request;
+            request.file = route.file->path;
+            request.layer = route.layer;
+            const std::string fault =
+                SceneTerrain::ask(route.place, "sceneRoutes", &request, "use <wayPoint> elements");
+            if (request.routes.empty()) fail(route.place, fault);
+            paths = request.routes;
+        }
+        for (RoutePath& path : paths)
+        {
+            if (route.color) path.color = route.color;
+            if (!route.path.name.empty()) path.name = route.path.name;
+            std::vector<osg::Vec2d> places;
+            for (const osg::Vec2d& degrees : path.alongGreatCircles())
+            {
+                const osg::Vec3d world = _terrain.worldOf(route.place, degrees.x(), degrees.y());
+                setOrigin(_ellipsoid ? degrees : osg::Vec2d(world.x(), world.y()));
+                _hasOrigin = true;
+                places.push_back(placeOf(route.place, world));
+            }
+            if (!path.showOn(_effect, places, route.look))
+                fail(route.place, "the route cannot be drawn with this width and order; give others.");
+            if (path.altitude != RoutePath::ABSOLUTE || !route.inAir) continue;
+            std::string error;
+            const osg::ref_ptr<Georeference> reference = _terrain.reference(error);
+            if (!reference) fail(route.place, error);
+            for (const osg::ref_ptr<osg::Node>& ribbon :
+                 PathRibbon::nodesOf(path, route.look, *reference, error))
+                _node.addChild(ribbon);
+            if (!error.empty()) fail(route.place, error);
+        }
+    }
+
     const SceneMappings& _mappings;
     ProjectiveMappings& _effect;
     SceneTerrain& _terrain;
+    EffectScene& _node;
     const osg::EllipsoidModel* _ellipsoid;
     bool _hasOrigin;
 };
 
 } // namespace
 
-void loadMappings(const SceneFile& scene, SceneTerrain& terrain)
+void loadMappings(const SceneFile& scene, SceneTerrain& terrain, EffectScene& node)
 {
     for (const SceneMappings& mappings : scene.mappings)
-        Loader(mappings, terrain).load();
+        Loader(mappings, terrain, node).load();
 }
 
 } // namespace osgGeoFX

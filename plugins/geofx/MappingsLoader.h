@@ -4,6 +4,8 @@
 
 #include "SceneLoading.h"
 
+#include <osgGeoFX/mapping/GroundOverlay.h>
+
 namespace osgGeoFX
 {
 
@@ -17,7 +19,36 @@ struct MappingRasterRequest
     MappingRaster raster;
 };
 
+/// What osgdb_geofxdata is asked for under the name "sceneOverlays", and its answer.
+struct SceneOverlaysRequest
+{
+    std::string file;
+    bool globe = true;
+    std::string wkt;
+    std::string colors;
+    int maxSide = 0;
+    std::vector<LocalOrigin> frames; ///< those that there are; grows
+    std::vector<GroundOverlay> overlays;
+    std::vector<std::string> notices;
+};
+
+/// What osgdb_geofxdata is asked for under the name "sceneRoutes", and its answer.
+struct SceneRoutesRequest
+{
+    std::string file;
+    std::string layer;
+    std::vector<RoutePath> routes;
+};
+
+/// What osgdb_geofxdata is asked for under the name "colors", and its answer: an SLD file's.
+struct ColorsRequest
+{
+    std::string file;
+    osg::ref_ptr<ColorTable> table;
+};
+
 /// Gives the mappings of a scene what only files and the terrain know: pictures, tables, places. Throws SceneFailure.
-void loadMappings(const SceneFile& scene, SceneTerrain& terrain);
+/// `node` gets what is no mapping: ways in the air.
+void loadMappings(const SceneFile& scene, SceneTerrain& terrain, EffectScene& node);
 
 } // namespace osgGeoFX

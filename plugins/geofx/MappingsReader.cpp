@@ -29,6 +29,10 @@ public:
                 readTable(_xml, node, _tables, _result.tables);
             else if (kind == "transfer")
                 readTransfer(node);
+            else if (kind == "overlays")
+                readOverlays(node);
+            else if (kind == "route")
+                readRoute(node);
             else
                 readMapping(node, kind == "raster");
         }
@@ -49,6 +53,40 @@ private:
         const osg::ref_ptr<ColorTransfer> transfer = new ColorTransfer;
         _xml.set(*transfer, node, {"name"});
         addNamed(_xml, node, _transfers, *transfer);
+    }
+
+    void readOverlays(xmlNode* node)
+    {
+        _result.overlays.push_back({_xml.place(node), _xml.path(node, "file"),
+                                    SceneXml::integer(node, "maxSide"), SceneXml::real(node, "opacity"),
+                                    SceneXml::integer(node, "order")});
+    }
+
+    void readRoute(xmlNode* node)
+    {
+        SceneRoute route;
+        route.place = _xml.place(node);
+        if (isGiven(node, "file")) route.file = _xml.path(node, "file");
+        route.layer = attributeOf(node, "layer");
+        route.path.name = attributeOf(node, "name");
+        route.path.wayPoints = true;
+        if (isGiven(node, "color"))
+        {
+            const std::array<double, 4> color = SceneXml::color(node, "color");
+            route.color = osg::Vec4(osg::Vec4d(color[0], color[1], color[2], color[3]));
+        }
+        if (isGiven(node, "width")) route.look.width = SceneXml::real(node, "width");
+        route.look.order = SceneXml::integer(node, "order");
+        route.look.style.context =
+            attributeOf(node, "context") == "true" || attributeOf(node, "context") == "1";
+        route.inAir = attributeOf(node, "inAir") == "true" || attributeOf(node, "inAir") == "1";
+        for (xmlNode* point = SceneXml::child(node, "wayPoint"); point;
+             point = SceneXml::next(point->next, "wayPoint"))
+            route.path.places.emplace_back(SceneXml::real(point, "longitude"),
+                                           SceneXml::real(point, "latitude"), 0.0);
+        if (route.file.has_value() == !route.path.places.empty())
+            return _xml.fail(node, "a route has either a file or <wayPoint> elements; give it one of them.");
+        _result.routes.push_back(route);
     }
 
     void readMapping(xmlNode* node, bool isRaster)

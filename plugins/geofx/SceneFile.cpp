@@ -285,6 +285,12 @@ std::vector<ScenePath> filesOf(const SceneFile& scene)
         {
             if (mapping.raster) paths.push_back(mapping.raster->file);
         }
+        for (const SceneOverlay& overlay : mappings.overlays)
+            paths.push_back(overlay.file);
+        for (const SceneRoute& route : mappings.routes)
+        {
+            if (route.file) paths.push_back(*route.file);
+        }
     }
     for (const SceneCloseUps& closeUps : scene.closeUps)
     {

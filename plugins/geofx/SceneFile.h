@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/mapping/RoutePath.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -119,6 +120,28 @@ struct SceneMapping
     std::optional<Raster> raster;
 };
 
+/// The rasters of a KML file, or any raster, as mappings of the effect.
+struct SceneOverlay
+{
+    ScenePlace place;
+    ScenePath file;
+    int maxSide = 0;
+    double opacity = 1.0;
+    int order = 0;
+};
+
+/// A way over the ground, of a file or of way points.
+struct SceneRoute
+{
+    ScenePlace place;
+    std::optional<ScenePath> file;
+    std::string layer; ///< empty: all
+    RoutePath path;    ///< the way points; without a file
+    RoutePath::Look look;
+    std::optional<osg::Vec4> color;
+    bool inAir = true; ///< whether one with absolute heights is drawn there, too
+};
+
 /// An effect with mappings. The mappings are in the effect, with all that needs no file and no terrain.
 struct SceneMappings
 {
@@ -133,6 +156,8 @@ struct SceneMappings
     std::vector<Layer> layers;
     std::vector<SceneTable> tables;
     std::vector<SceneMapping> mappings; ///< as many as the effect has, in the same order
+    std::vector<SceneOverlay> overlays; ///< over these
+    std::vector<SceneRoute> routes;     ///< over all
 };
 
 /// A picture of surface data, or with DEM several.

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "SceneLoading.h"
 
+#include "MappingsLoader.h"
+
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
 
@@ -113,7 +115,19 @@ osg::ref_ptr<osg::Image> pictureOf(const ScenePath& file, DataLayer::Kind kind, 
 void readTable(const SceneTable& table)
 {
     std::string reason;
-    const osg::ref_ptr<ColorTable> read = ColorRampFile::read(table.file.path, table.range, reason);
+    osg::ref_ptr<ColorTable> read;
+    if (osgDB::getLowerCaseFileExtension(table.file.path) == "sld")
+    {
+        ColorsRequest request;
+        request.file = table.file.path;
+        reason =
+            SceneTerrain::ask(table.file.place, "colors", &request, "write the colors as <stop> elements");
+        read = request.table;
+        // What the file says of them is part of their meaning.
+        if (read) table.table->setMode(read->getMode());
+    }
+    else
+        read = ColorRampFile::read(table.file.path, table.range, reason);
     if (!read) fail(table.file.place, reason);
     table.table->setStops(read->getStops());
     if (table.table->getNoDataColor() == osg::Vec4()) table.table->setNoDataColor(read->getNoDataColor());
@@ -198,6 +212,13 @@ LocalOrigin SceneTerrain::originAt(const osg::Vec2d& point) const
     return _ellipsoid
                ? LocalOrigin::onGlobe(osg::DegreesToRadians(point.x()), osg::DegreesToRadians(point.y()))
                : LocalOrigin::onPlane(point);
+}
+
+osg::ref_ptr<Georeference> SceneTerrain::reference(std::string& error)
+{
+    // The terrain itself may lie below a node that says so.
+    if (!_reference) _reference = Georeference::create(&_terrain, error);
+    return _reference;
 }
 
 MappingFrame SceneTerrain::frame() const

@@ -66,6 +66,8 @@ public:
     osg::Vec3d worldOfMap(const ScenePlace& place, const osg::Vec2d& point);
     /// The origin of a frame at a point of the map.
     LocalOrigin originAt(const osg::Vec2d& point) const;
+    /// Null, with the reason, where the terrain has none.
+    osg::ref_ptr<Georeference> reference(std::string& error);
     /// A frame without its origin.
     MappingFrame frame() const;
     /// Asks osgdb_geofxdata to answer a request; without it, `instead` is what a person may do. Its sentence, empty as a

@@ -126,7 +126,7 @@ bool addEffects(const SceneFile& scene, EffectScene& node, const osg::Node& terr
     try
     {
         SceneTerrain ground(node, terrain);
-        loadMappings(scene, ground);
+        loadMappings(scene, ground, node);
         loadCloseUps(scene, ground);
         loadPanoramas(scene, ground);
         return true;

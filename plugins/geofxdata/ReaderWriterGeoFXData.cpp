@@ -14,14 +14,22 @@
 #include <osgGeoFX/geodata/FileSources.h>
 #include <osgGeoFX/geodata/LineVectors.h>
 #include <osgGeoFX/geodata/NameVectors.h>
+#include <osgGeoFX/geodata/OverlayReader.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
+#include <osgGeoFX/geodata/RouteVectors.h>
+#include <osgGeoFX/geodata/SldColors.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 #include <osgGeoFX/labels/NameFile.h>
 #include <osgGeoFX/lines/LineFile.h>
+#include <osgGeoFX/map/OverlayFile.h>
+#include <osgGeoFX/map/RouteFile.h>
 
 #include <osg/ValueObject>
 #include <osgDB/Registry>
+
+#include <iterator>
+#include <type_traits>
 
 namespace osgGeoFX
 {
@@ -34,9 +42,11 @@ public:
         supportsExtension("geofxdata", "osgGeoFX's services that need GDAL; not a file format");
         supportsOption("wkt", "for the object \"georeference\": the projected coordinate system, as WKT");
         supportsOption("rasters", "for the object \"terrain\": the rasters of a .geofx scene (plugin data)");
-        supportsOption("request", "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
-                                  "\"names\", \"lines\", \"picture\" and \"sources\": a raster "
-                                  "or vector data of a .geofx scene (plugin data)");
+        supportsOption(
+            "request",
+            "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
+            "\"names\", \"lines\", \"overlays\", \"picture\", \"routes\" and \"sources\": a raster "
+            "or vector data of a .geofx scene (plugin data)");
         supportsOption("version", "for the objects of scenes: the version of the plugin that asks");
     }
 
@@ -51,7 +61,12 @@ public:
         if (name == "strokeVectors" && options) return strokeVectors(*options);
         if (name == "names" && options) return names(*options);
         if (name == "lines" && options) return lines(*options);
+        if (name == "overlays" && options) return overlays<OverlayFile>(*options);
         if (name == "picture" && options) return picture(*options);
+        if (name == "routes" && options) return routes<RouteFile>(*options);
+        if (name == "sceneOverlays" && options) return overlays<SceneOverlaysRequest>(*options);
+        if (name == "sceneRoutes" && options) return routes<SceneRoutesRequest>(*options);
+        if (name == "colors" && options) return colors(*options);
         if (name == "sources" && options) return sources(*options);
         return ReadResult::FILE_NOT_HANDLED;
     }
@@ -160,6 +175,53 @@ private:
         frame.wkt = request->wkt;
         if (!LineVectors::read(request->file, {request->layer, request->style}, frame, request->lines, error))
             return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    template<typename Request>
+    static ReadResult overlays(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<Request*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        OverlayReader reader;
+        reader.globe = request->globe;
+        reader.wkt = request->wkt;
+        reader.frames = request->frames;
+        OverlayReader::Options how;
+        if constexpr (std::is_same_v<Request, OverlayFile>) how.allowOutside = request->allowOutside;
+        how.colors = request->colors;
+        how.maxSide = request->maxSide;
+        if (!reader.read(request->file, how, error)) return error;
+        request->frames = reader.frames;
+        std::move(reader.overlays.begin(), reader.overlays.end(), std::back_inserter(request->overlays));
+        std::move(reader.notices.begin(), reader.notices.end(), std::back_inserter(request->notices));
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    template<typename Request>
+    static ReadResult routes(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<Request*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        if (!RouteVectors::read(request->file, request->layer, request->routes, error)) return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    static ReadResult colors(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<ColorsRequest*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        request->table = SldColors::read(request->file, error);
+        if (!request->table) return error;
         return ReadResult(ReadResult::FILE_LOADED);
     }
 

@@ -21,6 +21,7 @@ uniform usamplerBuffer SLOT_data;
 uniform sampler2DArray SLOT_layers;
 uniform sampler2D SLOT_tables;
 uniform mat4 SLOT_toFrame; // from eye space
+uniform vec4 SLOT_curve;   // the globe's curvature; 0 on a projected terrain
 uniform vec4 SLOT_root;    // the grid's origin and one over its size
 uniform vec4 SLOT_pixel;   // what a pixel spans, metres: at a metre from the eye, and at any distance beside that; opacity
 uniform ivec2 SLOT_start;  // the grid's first block; the list of all mappings, if fragments test them all
@@ -465,6 +466,8 @@ vec4 SLOT_color(vec4 color)
                                            dFdy(SLOT_position), SLOT_toFrame[3].xyz);
     uint list = SLOT_start.y != 0 ? uint(SLOT_start.y) : SLOT_find(SLOT_place.xy);
     if (list == 0u) return color;
+    // The other side of the globe has the same places once more.
+    if (SLOT_curve.x * SLOT_position.z < -1.0) return color;
     uint count = texelFetch(SLOT_data, int(list)).x;
     uint i = 0u;
     do

@@ -5,13 +5,16 @@
 #include <plugins/SceneFixture.h>
 
 #include <osgGeoFX/raster/LayerPixels.h>
+#include <tools/KmlFiles.h>
 #include <tools/TestRasters.h>
 
+#include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 #include <osg/CoordinateSystemNode>
 #include <osg/Group>
 #include <osg/Math>
+#include <osg/MatrixTransform>
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
 
@@ -188,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "<transfer>"},
         Mistake{"NoSuchMask", "<raster file='a' mask='c'/>", "3: <raster>: mask=\"c\" ", "<layer>"},
         Mistake{"Order", "<mapping/>\n<layer name='a' file='a'/>", "4: <layer>: this element is out of place",
-                "<raster>, in this order."},
+                "<raster>, <overlays>, <route>, in this order."},
         Mistake{"UnknownElement", "<decal/>", "3: <decal>: this element is not known in <projectiveMappings>",
                 "<mapping>"},
         Mistake{"UnknownAttribute", "<mapping centreX='2'/>",
@@ -576,6 +579,94 @@ TEST_F(SceneMappingsPlugin, MistakesAreNamedWithPlaceAndMend)
     expect(messageWith("<mapping longitude='1' latitude='2'/>"), "mapping", "no coordinate system");
     geofx::test::TestRaster(4, 4).placed(1.0, 2.0, 0.1, 0.1).crs("EPSG:4326").write(_folder / "r.tif");
     expect(messageWith("<raster file='r.tif'/>"), "raster", "the terrain has no coordinate system");
+}
+
+// Ground overlays and ways of files, and a way of way points, are mappings of the effect, where GeographicLib has their places.
+TEST_F(SceneMappingsPlugin, OverlaysAndRoutesLieWhereTheirFilesSay)
+{
+    setTerrain(0);
+    _folder.write("over.kml",
+                  geofx::test::kml(geofx::test::groundOverlay(
+                      "", geofx::test::latLonBox(-158.0, 21.3, -157.99, 21.31), "<color>80ff0000</color>")));
+    _folder.write("way.gpx",
+                  "<gpx version='1.1' creator='t' xmlns='http://www.topografix.com/GPX/1/1'><trk><trkseg>"
+                  "<trkpt lat='21.3' lon='-158'/><trkpt lat='21.31' lon='-158'/></trkseg></trk></gpx>");
+    _folder.write("two.sld",
+                  "<ColorMap type='values'><ColorMapEntry color='#ff0000' quantity='1'/></ColorMap>");
+    auto* const effect = effectOf<ProjectiveMappings>(sceneWith(
+        "<colorTable name='c' file='two.sld'/><overlays file='over.kml' opacity='.5' order='3'/>"
+        "<route file='way.gpx' width='10'/>"
+        "<route name='plan' color='#ff8000' width='20' order='7'><wayPoint longitude='-158' latitude='21.3'/>"
+        "<wayPoint longitude='-157.99' latitude='21.3'/></route>",
+        "longitude='-158' latitude='21.3'"));
+    ASSERT_TRUE(effect);
+    const ProjectiveMapping& overlay = *effect->getMapping(0);
+    EXPECT_NEAR(overlay.getOpacity(), 0.5 * 128.0 / 255.0, 1e-6);
+    EXPECT_EQ(overlay.getOrder(), 3);
+    const GeographicLib::LocalCartesian frame(21.3, -158.0, 0.0);
+    double x = 0.0, y = 0.0, z = 0.0;
+    frame.Forward(21.31, -157.99, 0.0, x, y, z);
+    EXPECT_NEAR(overlay.outline()->corners[2].x(), x, 0.1);
+    EXPECT_NEAR(overlay.outline()->corners[2].y(), y, 0.1);
+    int plans = 0, strips = 0;
+    for (unsigned int i = 1; i < effect->getNumMappings(); ++i)
+    {
+        const ProjectiveMapping& mapping = *effect->getMapping(i);
+        plans += mapping.getName() == "plan" ? 1 : 0;
+        // The line of the way points: from the origin to the east, 20 m wide.
+        if (mapping.getName() != "plan" || mapping.getOrder() != 9 || mapping.getLayer()) continue;
+        ++strips;
+        frame.Forward(21.3, -157.99, 0.0, x, y, z);
+        EXPECT_NEAR(mapping.getCenter().x(), x / 2.0, 0.1);
+        EXPECT_NEAR(mapping.getV().length(), x / 2.0, 0.1);
+        EXPECT_NEAR(mapping.getU().length(), 10.0, 1e-6);
+    }
+    EXPECT_EQ(strips, 1);
+    EXPECT_EQ(plans, 8) << "line and outline, two caps each, and two marks";
+    EXPECT_TRUE(effect->mappingsAt({0.0, 500.0}).size() > 1) << "the way to the north";
+    EXPECT_EQ(_scene->asGroup()->getNumChildren(), 1u) << "these ways have no heights";
+    for (const bool inAir : {true, false})
+    {
+        _folder.write(
+            "flight.kml",
+            geofx::test::kml(
+                "<Placemark><name>flight</name><LineString><extrude>1</extrude><altitudeMode>absolute"
+                "</altitudeMode><coordinates>-158,21.3,900 -157.99,21.3,1000</coordinates>"
+                "</LineString></Placemark>"));
+        ASSERT_TRUE(effectOf<ProjectiveMappings>(
+            sceneWith(std::string("<route file='flight.kml' inAir='") + (inAir ? "true'/>" : "false'/>"))));
+        const osg::Group& group = *_scene->asGroup();
+        ASSERT_EQ(group.getNumChildren(), inAir ? 3u : 1u) << "the terrain, a tube and a curtain";
+        if (!inAir) continue;
+        const auto* const tube = dynamic_cast<const osg::MatrixTransform*>(group.getChild(1));
+        ASSERT_TRUE(tube);
+        EXPECT_EQ(tube->getName(), "flight");
+        osg::Vec3d foot;
+        GeographicLib::Geocentric::WGS84().Forward(21.3, -157.995, 950.0, foot.x(), foot.y(), foot.z());
+        EXPECT_LT((osg::Vec3d(tube->getBound().center()) - foot).length(), 10.0);
+    }
+}
+
+TEST_F(SceneMappingsPlugin, OverlaysAndRoutesAreRefusedInASentence)
+{
+    setTerrain(0);
+    const auto expectFault = [&](const std::string& inside, const std::string& word)
+    {
+        const std::string message = messageOf(_folder.write("x.geofx", sceneWith(inside)));
+        EXPECT_NE(message.find(word), std::string::npos) << message;
+    };
+    _folder.write("far.kml",
+                  geofx::test::kml(geofx::test::groundOverlay("", geofx::test::latLonBox(0, 0, 1, 1)) +
+                                   geofx::test::groundOverlay("", geofx::test::latLonBox(170, 0, 171, 1))));
+    _folder.write("out.kml", geofx::test::kml(
+                                 geofx::test::groundOverlay("../x.png", geofx::test::latLonBox(0, 0, 1, 1))));
+    expectFault("<overlays file='far.kml'/>", "x.geofx:3: <overlays>: its rasters lie too far");
+    expectFault("<overlays file='out.kml'/>", "leads out of the folder");
+    expectFault("<overlays file='none.kml'/>", "none.kml");
+    expectFault("<overlays file='../far.kml'/>", "leads out of the scene's folder");
+    expectFault("<route file='../way.gpx'/>", "leads out of the scene's folder");
+    expectFault("<route/>", "either a file or <wayPoint> elements");
+    expectFault("<route file='far.kml'/>", "it has no way");
 }
 
 } // namespace

@@ -84,16 +84,24 @@ VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file)
     return target;
 }
 
-FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed)
+FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed,
+                         Formats formats)
     : _file(std::move(file))
 {
+    static const char* const plainPictures[] = {"PNG", "JPEG", "GIF",         "GTiff",
+                                                "BMP", "WEBP", "JP2OpenJPEG", nullptr};
     GdalErrorScope errors;
-    _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
+    _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
+                                          formats == PLAIN_PICTURES ? plainPictures : nullptr));
+    if (!_chain.back() && formats == PLAIN_PICTURES)
+        fail("it is not there, or no PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000 (" + errors.message() +
+             "); correct its name, or convert it to PNG");
     if (!_chain.back())
         fail("it is not a raster that GDAL can read (" + errors.message() +
              "); check it with gdalinfo, or convert it to GeoTIFF");
     if (top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
+    checkSize();
     if (placed) checkPlace();
     if (GDALDataTypeIsComplex(band().GetRasterDataType()))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
@@ -114,6 +122,21 @@ void FrameRaster::checkPlace() const
     const OGRSpatialReference* srs = placed ? top().GetSpatialRef() : top().GetGCPSpatialRef();
     if (!srs || srs->IsEmpty() || srs->IsLocal())
         fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
+}
+
+/// Formats without tiles are read from the first pixel on, whatever is wanted of them.
+void FrameRaster::checkSize() const
+{
+    constexpr double mostPixels = 32768.0 * 32768.0;
+    const std::string format = top().GetDriver() ? top().GetDriver()->GetDescription() : "";
+    const bool hasTiles = format != "PNG" && format != "GIF" && format != "BIGGIF" && format != "BMP" &&
+                          format != "WEBP" && format != "JPEG";
+    const double columns = top().GetRasterXSize();
+    const double rows = top().GetRasterYSize();
+    if (hasTiles || columns * rows <= mostPixels || band().GetOverviewCount() > 0) return;
+    fail("it says that it has " + std::to_string(top().GetRasterXSize()) + " × " +
+         std::to_string(top().GetRasterYSize()) + " pixels, which a " + format +
+         " cannot be read in parts of; convert it to a tiled GeoTIFF, or give it overviews with gdaladdo");
 }
 
 FrameRaster::~FrameRaster()
@@ -173,6 +196,23 @@ osg::Vec2d FrameRaster::middle(const FrameCrs& crs) const
     GDALGenImgProjTransform(transformer.get(), FALSE, 1, &x, &y, &z, &success);
     if (!success || !std::isfinite(x) || !std::isfinite(y)) failToPlace(errors);
     return {x, y};
+}
+
+std::function<osg::Vec2d(const osg::Vec2d&)> FrameRaster::placer(const FrameCrs& crs) const
+{
+    GdalErrorScope errors;
+    const std::shared_ptr<void> transformer = transformerTo(crs, errors);
+    return [this, transformer](const osg::Vec2d& uv)
+    {
+        double x = top().GetRasterXSize() * uv.x();
+        double y = top().GetRasterYSize() * (1.0 - uv.y());
+        double z = 0.0;
+        int success = FALSE;
+        const GdalErrorScope scope;
+        GDALGenImgProjTransform(transformer.get(), FALSE, 1, &x, &y, &z, &success);
+        if (!success || !std::isfinite(x) || !std::isfinite(y)) failToPlace(scope);
+        return osg::Vec2d(x, y);
+    };
 }
 
 DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const osg::Vec2d& high, int width,

@@ -10,6 +10,7 @@
 
 #include <osg/Vec2d>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,8 +48,15 @@ VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file);
 class FrameRaster
 {
 public:
+    /// Which files are opened.
+    enum Formats
+    {
+        ANY_FORMAT,
+        PLAIN_PICTURES ///< formats that hold all of a picture themselves: PNG, JPEG, GIF, TIFF, BMP, WebP, JPEG 2000
+    };
     /// `placed`: whether it needs a georeference, which all but picture() go by.
-    FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed = true);
+    FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed = true,
+                Formats formats = ANY_FORMAT);
     ~FrameRaster();
     FrameRaster(const FrameRaster&) = delete;
     FrameRaster& operator=(const FrameRaster&) = delete;
@@ -68,6 +76,8 @@ public:
     };
     Extent extent(const FrameCrs& crs) const;
     osg::Vec2d middle(const FrameCrs& crs) const;
+    /// From 0…1 of the raster's sides, from its lower left corner, to the CRS's unit. Not beyond the raster's own life.
+    std::function<osg::Vec2d(const osg::Vec2d&)> placer(const FrameCrs& crs) const;
 
     /// A rectangle in the CRS's unit, in so many texels: red, green, blue and alpha in bytes, or values in doubles with NaN
     /// where there is none, not yet scaled.
@@ -97,6 +107,7 @@ private:
     GDALRasterBand& band() const { return *top().GetRasterBand(1); }
     [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
     void checkPlace() const;
+    void checkSize() const;
     void readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const;
     void translate(Arguments arguments);
     void makeColors();

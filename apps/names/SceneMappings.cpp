@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "names/SceneMappings.h"
+
+#include "names/SceneNames.h"
+
+#include <osgGeoFX/map/SceneOverlays.h>
+#include <osgGeoFX/map/SceneRoutes.h>
+
+#include <CLI/CLI.hpp>
+
+#include <stdexcept>
+#include <tuple>
+
+namespace geofx::mappings
+{
+
+void addOptions(CLI::App& app, Options& options)
+{
+    app.add_option("--mapping", options.files,
+                   "A raster to put onto the ground: KML or KMZ with ground overlays, or any raster with a "
+                   "georeference that GDAL reads. As often as wanted, the later ones on top")
+        ->expected(1)
+        ->type_name("FILE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option(
+           "--route", options.routes,
+           "A way to put onto the ground: the routes and tracks of GPX, the lines and tracks of KML or KMZ, "
+           "the lines of any other vector data that GDAL reads; FILE or FILE:LAYER. As often as wanted")
+        ->expected(1)
+        ->type_name("FILE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--route-width", options.routeWidth,
+                   "Width of the ways' lines, metres (default: by their extent)")
+        ->type_name("M")
+        ->check(CLI::PositiveNumber);
+    app.add_option(
+           "--colors", options.colors,
+           "The colors of values that --mapping shows: a color table of gdaldem color-relief, GMT (.cpt) or "
+           "SLD (default: greys)")
+        ->type_name("FILE");
+}
+
+namespace
+{
+
+void showRoutes(const Options& options, osgGeoFX::Scene& scene)
+{
+    if (options.routes.empty() && options.routeWidth > 0.0)
+        throw std::runtime_error("--route-width is for ways; give some with --route.");
+    if (options.routes.empty()) return;
+    osgGeoFX::SceneRoutes routes(*scene.node, *scene.effects);
+    std::string error;
+    for (const std::string& each : options.routes)
+    {
+        osgGeoFX::SceneRoutes::Options how;
+        how.look.width = options.routeWidth;
+        std::string file;
+        std::tie(file, how.layer) = names::fileAndLayer(each);
+        if (!routes.add(file, how, error)) throw std::runtime_error("--route: " + error);
+    }
+}
+
+void showRasters(const Options& options, bool allowOutside, osgGeoFX::Scene& scene,
+                 std::vector<std::string>& notices)
+{
+    if (options.files.empty() && !options.colors.empty())
+        throw std::runtime_error("--colors is for values; give some with --mapping.");
+    if (options.files.empty()) return;
+    osgGeoFX::SceneOverlays overlays(*scene.node, *scene.effects);
+    osgGeoFX::SceneOverlays::Options how;
+    how.allowOutside = allowOutside;
+    how.colors = options.colors;
+    std::string error;
+    for (const std::string& file : options.files)
+        if (!overlays.add(file, how, notices, error)) throw std::runtime_error("--mapping: " + error);
+}
+
+} // namespace
+
+void show(const Options& options, bool allowOutside, osgGeoFX::Scene& scene,
+          std::vector<std::string>& notices)
+{
+    showRasters(options, allowOutside, scene, notices);
+    showRoutes(options, scene);
+}
+
+std::string agesOf(const Options& options)
+{
+    std::string ages;
+    for (const std::string& file : options.files)
+        ages += "; on the ground " + file + names::ageOf(file);
+    for (const std::string& file : options.routes)
+        ages += "; the way " + file + names::ageOf(names::fileAndLayer(file).first);
+    if (options.routeWidth > 0.0) ages += " " + std::to_string(options.routeWidth);
+    return ages + (options.colors.empty() ? "" : "; " + options.colors + names::ageOf(options.colors));
+}
+
+} // namespace geofx::mappings

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/viewer/Scene.h>
+
+#include <string>
+#include <vector>
+
+namespace CLI
+{
+class App;
+}
+
+/// The rasters and ways that the programs' options put onto the ground: --mapping, --colors, --route and --route-width.
+namespace geofx::mappings
+{
+
+struct Options
+{
+    std::vector<std::string> files;  ///< KML, KMZ, or any raster with a georeference
+    std::vector<std::string> routes; ///< GPX, KML or other vector data with lines, or FILE:LAYER
+    double routeWidth = 0.0;         ///< metres; 0: by their extent
+    std::string colors;              ///< a color table's file, for values; empty: greys
+};
+
+/// Adds them to a program.
+void addOptions(CLI::App& app, Options& options);
+/// Puts the files onto the scene, the later ones on top, and ways over rasters. Throws std::runtime_error with a sentence. `notices`: gets sentences that
+/// people should know.
+void show(const Options& options, bool allowOutside, osgGeoFX::Scene& scene,
+          std::vector<std::string>& notices);
+/// When the files were changed last, as a text: what was drawn of former ones must not be used again.
+std::string agesOf(const Options& options);
+
+} // namespace geofx::mappings

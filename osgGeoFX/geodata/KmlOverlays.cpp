@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/geodata/KmlOverlays.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/detail/GdalSupport.h>
+#include <osgGeoFX/geodata/detail/KmlFolder.h>
+#include <osgGeoFX/geodata/detail/KmlReader.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <iterator>
+#include <set>
+#include <utility>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr std::size_t mostOverlays = 10000;
+constexpr std::size_t mostFiles = 10000;
+constexpr std::size_t mostBytes = std::size_t{1} << 30;
+
+const char* const remedy =
+    "put it beside the KML file or below; or, if you trust the file, start the program with "
+    "--allow-outside.";
+
+/// A document and all that it links, the coarse ones first.
+class Collector
+{
+public:
+    Collector(const std::string& file, bool allowOutside, std::vector<std::string>& notices)
+        : _file(file), _folder(file, allowOutside), _notices(notices)
+    {
+        add(_folder.document(), {});
+    }
+
+    std::vector<KmlOverlay> collect()
+    {
+        for (std::size_t next = 0; next < _queue.size(); ++next)
+        {
+            const Link link = _queue[next];
+            take(link);
+            if (_found.size() > mostOverlays)
+                throw BuildError(_file + ": it has more than " + std::to_string(mostOverlays) +
+                                 " ground overlays; split it, or make one raster of them with gdalbuildvrt.");
+        }
+        if (_found.empty())
+            throw BuildError(_file +
+                             ": it has no ground overlays; its lines are read with --route or --lines, its "
+                             "points with --labels.");
+        std::stable_sort(_found.begin(), _found.end(),
+                         [](const KmlOverlay& a, const KmlOverlay& b) { return a.order < b.order; });
+        return std::move(_found);
+    }
+
+private:
+    struct Link
+    {
+        std::string document;
+        KmlReader::Inherited inherited;
+    };
+
+    void add(const std::string& document, const KmlReader::Inherited& inherited)
+    {
+        // Pyramids may link back.
+        if (!_seen.insert(document).second) return;
+        if (_seen.size() > mostFiles)
+            throw BuildError(_file + ": it links more than " + std::to_string(mostFiles) +
+                             " files; open one of its parts instead.");
+        _queue.push_back({document, inherited});
+    }
+
+    std::string resolved(const std::string& document, const std::string& href, int line) const
+    {
+        const std::optional<std::string> path = _folder.resolve(document, href);
+        if (!path)
+            throw BuildError(KmlFolder::plain(document) + ":" + std::to_string(line) + ": \"" + href +
+                             "\" leads out of the folder of " + _file + "; " + remedy);
+        return *path;
+    }
+
+    void take(const Link& link)
+    {
+        const KmlReader::Content content = KmlReader::read(link.document, link.inherited);
+        _bytes += content.bytes;
+        if (_bytes > mostBytes)
+            throw BuildError(_file +
+                             ": it and the files that it links have more than 1 GiB; open one of its parts "
+                             "instead.");
+        for (KmlReader::Overlay overlay : content.overlays)
+        {
+            if (!overlay.href.empty())
+                overlay.overlay.image = resolved(link.document, overlay.href, overlay.line);
+            _found.push_back(std::move(overlay.overlay));
+        }
+        for (const KmlReader::Link& next : content.links)
+        {
+            const std::string document = resolved(link.document, next.href, next.line);
+            VSIStatBufL status;
+            if (document.empty() || VSIStatL(document.c_str(), &status) != 0)
+            {
+                _notices.push_back(KmlFolder::plain(link.document) + ":" + std::to_string(next.line) +
+                                   ": the file \"" + next.href +
+                                   "\" that it links is not there, and is left out.");
+                continue;
+            }
+            add(document, next.inherited);
+        }
+    }
+
+    const std::string& _file;
+    const KmlFolder _folder;
+    std::vector<std::string>& _notices;
+    std::vector<Link> _queue;
+    std::set<std::string> _seen;
+    std::vector<KmlOverlay> _found;
+    std::size_t _bytes = 0;
+};
+
+} // namespace
+
+bool KmlOverlays::read(const std::string& file, bool allowOutside, std::vector<KmlOverlay>& overlays,
+                       std::vector<std::string>& notices, std::string& error)
+{
+    initialiseGdal();
+    try
+    {
+        std::vector<KmlOverlay> found = Collector(file, allowOutside, notices).collect();
+        overlays.insert(overlays.end(), std::make_move_iterator(found.begin()),
+                        std::make_move_iterator(found.end()));
+        return true;
+    }
+    catch (const BuildError& failure)
+    {
+        error = failure.what();
+        return false;
+    }
+}
+
+bool KmlOverlays::isKml(const std::string& file)
+{
+    std::string extension = std::filesystem::path(file).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == ".kml" || extension == ".kmz";
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/geodata/OverlayReader.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/KmlOverlays.h>
+#include <osgGeoFX/geodata/MappingRaster.h>
+#include <osgGeoFX/geodata/OverlayRaster.h>
+#include <osgGeoFX/geodata/SldColors.h>
+#include <osgGeoFX/geodata/detail/CubeFace.h>
+#include <osgGeoFX/raster/ColorRampFile.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/Math>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <optional>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr double earthRadius = 6371e3; // metres
+constexpr double farthest = 60.0;      // degrees of arc, from a frame's origin
+constexpr double farthestIfNeeded = 80.0;
+constexpr std::size_t mostFrames = 7;
+constexpr std::size_t mostFramesAround = 9; ///< of three texture units each; with six of one raster
+
+/// Of arc between two places, degrees each; radians.
+double arc(const osg::Vec2d& a, const osg::Vec2d& b)
+{
+    const double latitude = osg::DegreesToRadians(b.y() - a.y()) / 2.0;
+    const double longitude = osg::DegreesToRadians(b.x() - a.x()) / 2.0;
+    const double h = std::pow(std::sin(latitude), 2.0) + std::cos(osg::DegreesToRadians(a.y())) *
+                                                             std::cos(osg::DegreesToRadians(b.y())) *
+                                                             std::pow(std::sin(longitude), 2.0);
+    return 2.0 * std::asin(std::min(1.0, std::sqrt(h)));
+}
+
+class Work
+{
+public:
+    Work(const std::string& file, const OverlayReader::Options& options, const OverlayReader& reader)
+        : _file(file), _options(options), _globe(reader.globe), _wkt(reader.wkt), frames(reader.frames)
+    {
+    }
+
+    void read()
+    {
+        if (KmlOverlays::isKml(_file))
+            readKml();
+        else
+            readRaster();
+    }
+
+private:
+    const std::string& _file;
+    const OverlayReader::Options& _options;
+    const bool _globe;
+    const std::string& _wkt;
+
+public:
+    std::vector<LocalOrigin> frames;
+    std::vector<GroundOverlay> overlays;
+    std::vector<std::string> notices;
+
+private:
+    MappingFrame frameOf(std::size_t index) const
+    {
+        MappingFrame frame;
+        frame.globe = _globe;
+        frame.wkt = _wkt;
+        if (index < frames.size()) frame.origin = frames[index];
+        return frame;
+    }
+
+    bool isTooLarge(const GroundReach& reach) const
+    {
+        return _globe && reach.radius > osg::DegreesToRadians(farthest);
+    }
+
+    /// Throws BuildError where there are too many frames.
+    std::size_t frameFor(const GroundReach& reach, const std::string& name)
+    {
+        std::string error;
+        if (!_globe)
+        {
+            if (!frames.empty()) return 0;
+            MappingFrame frame = frameOf(0);
+            if (!OverlayRaster::moveToMiddle(reach, name, frame, error)) throw BuildError(error);
+            frames.push_back(frame.origin);
+            return 0;
+        }
+        const double most = osg::DegreesToRadians(farthest);
+        // A quarter of a texel, of floats with 24 bits.
+        const double sharp = reach.texel * 4194304.0 / earthRadius;
+        std::size_t nearest = 0;
+        double least = 1e30;
+        for (std::size_t i = 0; i < frames.size(); ++i)
+        {
+            const osg::Vec2d origin(osg::RadiansToDegrees(frames[i].longitude),
+                                    osg::RadiansToDegrees(frames[i].latitude));
+            const double distance = arc(origin, reach.middle) + reach.radius;
+            if (distance <= std::min(most, std::max(sharp, reach.radius))) return i;
+            if (distance >= least) continue;
+            least = distance;
+            nearest = i;
+        }
+        if (frames.size() < mostFrames)
+        {
+            MappingFrame frame = frameOf(frames.size());
+            OverlayRaster::moveToMiddle(reach, name, frame, error);
+            frames.push_back(frame.origin);
+            return frames.size() - 1;
+        }
+        if (least > osg::DegreesToRadians(farthestIfNeeded))
+            throw BuildError(name +
+                             ": it lies too far from all other rasters, which share seven frames; show "
+                             "fewer at once.");
+        return nearest;
+    }
+
+    void add(GroundOverlay overlay)
+    {
+        const osg::Image& image = *overlay.layer->getImage();
+        _texels += static_cast<double>(image.s()) * image.t();
+        overlays.push_back(std::move(overlay));
+    }
+
+    void readKml()
+    {
+        std::vector<KmlOverlay> found;
+        std::string error;
+        if (!KmlOverlays::read(_file, _options.allowOutside, found, notices, error)) throw BuildError(error);
+        const OverlayRaster::Options options{_options.maxSide, _options.allowOutside};
+        std::size_t done = 0;
+        for (const KmlOverlay& each : found)
+        {
+            if (_texels > _options.maxTexels)
+            {
+                notices.push_back(_file + ": " + std::to_string(found.size() - done) + " of its " +
+                                  std::to_string(found.size()) +
+                                  " ground overlays are left out, since the others have more than " +
+                                  std::to_string(static_cast<long>(_options.maxTexels)) + " texels.");
+                return;
+            }
+            ++done;
+            const std::optional<GroundReach> reach = OverlayRaster::reachOf(each, options, error);
+            if (!reach) throw BuildError(error);
+            GroundOverlay overlay;
+            overlay.name =
+                each.name.empty() ? std::filesystem::path(each.image).filename().string() : each.name;
+            overlay.opacity = static_cast<double>(each.color.a());
+            overlay.order = each.order;
+            overlay.visible = each.visible;
+            overlay.pixelsNone = each.pixelsNone;
+            overlay.pixelsFull = each.pixelsFull;
+            const auto take =
+                [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
+            {
+                OverlayRaster::Options how = options;
+                how.window = window;
+                const std::optional<OverlayRaster> raster = OverlayRaster::read(each, frame, how, error);
+                if (!raster) throw BuildError(error);
+                overlay.layer = raster->layer;
+                overlay.corners = raster->corners;
+            };
+            addParts(*reach, "The ground overlay \"" + each.name + "\" of " + _file, overlay, take);
+        }
+    }
+
+    using Take = std::function<void(const MappingFrame&, const std::optional<MappingRaster::Window>&)>;
+
+    /// Adds the overlay, which `take` fills for a frame; or six parts of one that reaches around the globe.
+    void addParts(const GroundReach& reach, const std::string& name, GroundOverlay& overlay, const Take& take)
+    {
+        if (!isTooLarge(reach))
+        {
+            overlay.frame = frameFor(reach, name);
+            take(frameOf(overlay.frame), std::nullopt);
+            add(overlay);
+            return;
+        }
+        // As many texels as a face has room for.
+        const double coarsest =
+            2.0 * osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) / (_options.maxSide - 8);
+        const MappingRaster::Window window = CubeFace::window(std::max(reach.texel, coarsest));
+        for (const LocalOrigin& origin : CubeFace::origins())
+        {
+            MappingFrame frame = frameOf(frames.size());
+            frame.origin = origin;
+            take(frame, window);
+            if (!CubeFace::cut(*overlay.layer->getImage(), window, std::abs(origin.latitude) > 1.0)) continue;
+            overlay.frame = frameAt(origin, name);
+            add(overlay);
+        }
+    }
+
+    std::size_t frameAt(const LocalOrigin& origin, const std::string& name)
+    {
+        for (std::size_t i = 0; i < frames.size(); ++i)
+            if (frames[i].longitude == origin.longitude && frames[i].latitude == origin.latitude) return i;
+        if (frames.size() >= mostFramesAround)
+            throw BuildError(
+                name +
+                ": it reaches around the globe, and there are too many rasters elsewhere beside it; name "
+                "it first, or show fewer at once.");
+        frames.push_back(origin);
+        return frames.size() - 1;
+    }
+
+    void readRaster()
+    {
+        std::string error;
+        GroundOverlay overlay;
+        overlay.name = std::filesystem::path(_file).filename().string();
+        GroundReach reach;
+        if (_globe)
+        {
+            const std::optional<GroundReach> found = OverlayRaster::reachOf(_file, error);
+            if (!found) throw BuildError(error);
+            reach = *found;
+        }
+        else if (frames.empty())
+        {
+            MappingFrame frame = frameOf(0);
+            if (!MappingRaster::moveToMiddle(_file, frame, error)) throw BuildError(error);
+            frames.push_back(frame.origin);
+        }
+        const std::size_t before = overlays.size();
+        const auto take = [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
+        {
+            const MappingRaster::Options options{std::nullopt, _options.maxSide, window};
+            const std::optional<MappingRaster> raster = MappingRaster::read(_file, frame, options, error);
+            if (!raster) throw BuildError(error);
+            const osg::Vec2d& low = raster->low;
+            const osg::Vec2d& high = raster->high;
+            overlay.layer = raster->layer;
+            overlay.corners = {low, osg::Vec2d(high.x(), low.y()), high, osg::Vec2d(low.x(), high.y())};
+            overlay.lowest = raster->lowest;
+            overlay.highest = raster->highest;
+        };
+        addParts(reach, _file, overlay, take);
+        giveColors(before);
+    }
+
+    /// The parts of a raster from an index on have one range and one table.
+    void giveColors(std::size_t first)
+    {
+        if (first == overlays.size() || overlays[first].layer->getKind() == DataLayer::COLOR) return;
+        double lowest = overlays[first].lowest;
+        double highest = overlays[first].highest;
+        for (std::size_t i = first; i < overlays.size(); ++i)
+        {
+            lowest = std::min(lowest, overlays[i].lowest);
+            highest = std::max(highest, overlays[i].highest);
+        }
+        osg::ref_ptr<ColorTable> table;
+        std::string error;
+        if (!_options.colors.empty())
+        {
+            table = SldColors::isSld(_options.colors)
+                        ? SldColors::read(_options.colors, error)
+                        : ColorRampFile::read(_options.colors, ColorRampFile::Range(lowest, highest), error);
+            if (!table) throw BuildError(error);
+        }
+        for (std::size_t i = first; i < overlays.size(); ++i)
+        {
+            overlays[i].lowest = lowest;
+            overlays[i].highest = highest;
+            overlays[i].table = table;
+        }
+    }
+
+    double _texels = 0.0;
+};
+
+} // namespace
+
+bool OverlayReader::read(const std::string& file, const Options& options, std::string& error)
+{
+    try
+    {
+        Work work(file, options, *this);
+        work.read();
+        frames = work.frames;
+        std::move(work.overlays.begin(), work.overlays.end(), std::back_inserter(overlays));
+        std::move(work.notices.begin(), work.notices.end(), std::back_inserter(notices));
+        return true;
+    }
+    catch (const BuildError& failure)
+    {
+        error = failure.what();
+        return false;
+    }
+}
+
+} // namespace osgGeoFX

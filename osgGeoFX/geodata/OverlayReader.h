@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/effect/LocalOrigin.h>
+#include <osgGeoFX/mapping/GroundOverlay.h>
+
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** Reads whatever lies on the ground as a raster: the ground overlays of a KML or KMZ file (KmlOverlays), or any raster with
+    a georeference that GDAL opens (MappingRaster), also MBTiles files and descriptions of WMTS and XYZ services.
+
+    On a globe, rasters near each other share a frame. A raster gets a frame of its own where its texels are too small for the
+    distance (float has 24 bits) or where it lies more than 60° of arc away; there are at most seven frames. So corners lie
+    exactly anywhere on the globe, over the antimeridian and at the poles, too. A raster that reaches farther than 60° of arc around its middle, up to all of the
+    globe, becomes six overlays, each in a frame of its own, which overlap by some texels.
+
+    One thread at a time; several readers may read at once.
+    @ingroup geodata */
+class OSGGEOFXDATA_EXPORT OverlayReader
+{
+public:
+    struct Options
+    {
+        bool allowOutside = false; ///< KmlOverlays' reach
+        /// Colors of values: an SLD file (SldColors), or one that ColorRampFile reads. Empty: none.
+        std::string colors;
+        int maxSide = 2048; ///< texels along the longer side of a raster, 1…16384
+        /// Of a file's overlays together; those that come later are left out, with a notice. 2^27 texels have 512 MiB.
+        double maxTexels = 134217728.0;
+    };
+
+    /// Of the terrain: a globe, or a plane with a coordinate system.
+    bool globe = true;
+    std::string wkt;
+    std::vector<LocalOrigin> frames; ///< those that there are; grows
+    std::vector<GroundOverlay> overlays;
+    std::vector<std::string> notices; ///< sentences that people should know
+
+    /// Appends the overlays of a file, the lowest first. Returns false, with a sentence in `error` that names file and remedy,
+    /// if the file cannot be used; nothing else changes then.
+    bool read(const std::string& file, const Options& options, std::string& error);
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/geodata/RouteVectors.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/KmlOverlays.h>
+#include <osgGeoFX/geodata/detail/GdalSupport.h>
+#include <osgGeoFX/geodata/detail/KmlFolder.h>
+#include <osgGeoFX/geodata/detail/KmlLineReader.h>
+
+#include <cpl_vsi.h>
+#include <ogr_featurestyle.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// A file and what it links.
+constexpr std::size_t mostDocuments = 1000;
+
+class Reader
+{
+public:
+    Reader(const std::string& file, const std::string& layer) : _file(file), _layer(layer) {}
+
+    std::vector<RoutePath> read()
+    {
+        if (KmlOverlays::isKml(_file))
+            readKml();
+        else
+            readByGdal();
+        if (_found.empty())
+            throw BuildError(
+                _file + ": it has no way of two places or more; name another layer, or check the file with "
+                        "ogrinfo -al.");
+        return std::move(_found);
+    }
+
+private:
+    /// With what its network links name within its folder; GDAL writes archives so.
+    void readKml()
+    {
+        const KmlFolder folder(_file, false);
+        std::vector<std::string> documents = {folder.document()};
+        for (std::size_t next = 0; next < documents.size(); ++next)
+        {
+            const std::string document = documents[next];
+            KmlLines content = readKmlLines(document);
+            std::move(content.routes.begin(), content.routes.end(), std::back_inserter(_found));
+            for (const std::string& href : content.links)
+            {
+                const std::optional<std::string> linked = folder.resolve(document, href);
+                VSIStatBufL status;
+                const bool isThere = linked && VSIStatL(linked->c_str(), &status) == 0;
+                const bool isNew =
+                    std::find(documents.begin(), documents.end(), linked.value_or("")) == documents.end();
+                if (isThere && isNew && documents.size() < mostDocuments) documents.push_back(*linked);
+            }
+        }
+    }
+
+    void readByGdal()
+    {
+        const DatasetPtr dataset = openVectors(_file);
+        const bool isGpx = std::strcmp(dataset->GetDriver()->GetDescription(), "GPX") == 0;
+        if (!isGpx) return forEachLayer(*dataset, _layer, _file, [&](OGRLayer& layer) { readLines(layer); });
+        // GPX's lines have no heights, or 0 where there is none; its points tell.
+        if (_layer.empty() || _layer == "routes")
+            readPoints(*dataset, "routes", "route_points", "route_fid", nullptr);
+        if (_layer.empty() || _layer == "tracks")
+            readPoints(*dataset, "tracks", "track_points", "track_fid", "track_seg_id");
+        if (!_layer.empty() && _layer != "routes" && _layer != "tracks")
+            throw BuildError(_file + ": it has no layer \"" + _layer + "\" of ways; name routes or tracks.");
+    }
+
+    void readPoints(GDALDataset& dataset, const char* ways, const char* points, const char* number,
+                    const char* segment)
+    {
+        OGRLayer* const wayLayer = dataset.GetLayerByName(ways);
+        OGRLayer* const pointLayer = dataset.GetLayerByName(points);
+        if (!wayLayer || !pointLayer) return;
+        const GdalErrorScope errors;
+        std::map<GIntBig, std::string> names;
+        const int name = wayLayer->GetLayerDefn()->GetFieldIndex("name");
+        for (const auto& way : *wayLayer)
+            names[way->GetFID()] = name >= 0 ? way->GetFieldAsString(name) : "";
+        const OGRFeatureDefn& fields = *pointLayer->GetLayerDefn();
+        const int way = fields.GetFieldIndex(number);
+        const int part = segment ? fields.GetFieldIndex(segment) : -1;
+        const int height = fields.GetFieldIndex("ele");
+        std::pair<GIntBig, int> present{-1, -1};
+        bool haveHeights = true;
+        const auto finish = [&]
+        {
+            if (!haveHeights && !_found.empty() && present.first >= 0)
+                for (osg::Vec3d& place : _found.back().places)
+                    place.z() = 0.0;
+            if (!_found.empty() && present.first >= 0 && haveHeights)
+                _found.back().altitude = RoutePath::ABSOLUTE;
+            if (!_found.empty() && present.first >= 0 && _found.back().places.size() < 2) _found.pop_back();
+        };
+        for (const auto& point : *pointLayer)
+        {
+            const OGRGeometry* const geometry = point->GetGeometryRef();
+            if (!geometry || wkbFlatten(geometry->getGeometryType()) != wkbPoint) continue;
+            const std::pair<GIntBig, int> here{point->GetFieldAsInteger64(way),
+                                               part < 0 ? 0 : point->GetFieldAsInteger(part)};
+            if (here != present)
+            {
+                finish();
+                present = here;
+                haveHeights = true;
+                RoutePath route;
+                route.name = names[here.first];
+                route.wayPoints = !segment;
+                _found.push_back(route);
+            }
+            const bool hasHeight = height >= 0 && point->IsFieldSetAndNotNull(height);
+            haveHeights = haveHeights && hasHeight;
+            take({geometry->toPoint()->getX(), geometry->toPoint()->getY(),
+                  hasHeight ? point->GetFieldAsDouble(height) : 0.0},
+                 _found.back());
+        }
+        finish();
+        checkReading(errors);
+    }
+
+    void readLines(OGRLayer& layer)
+    {
+        const OGRSpatialReference* srs = layer.GetSpatialRef();
+        if (!srs || srs->IsEmpty() || srs->IsLocal())
+            throw BuildError(_file + ": its layer " + std::string(layer.GetName()) +
+                             " has no coordinate reference system; name it with ogr2ogr -a_srs EPSG:N.");
+        OGRSpatialReference degrees;
+        degrees.importFromEPSG(4326);
+        const TransformationPtr toDegrees = createTransformation(gisOrder(*srs), gisOrder(degrees), _file);
+        const int name = layer.GetLayerDefn()->GetFieldIndex("name");
+        const GdalErrorScope errors;
+        for (const auto& feature : layer)
+        {
+            if (!feature->GetGeometryRef()) continue;
+            RoutePath route;
+            if (name >= 0 && feature->IsFieldSetAndNotNull(name))
+                route.name = feature->GetFieldAsString(name);
+            route.color = colorOf(*feature);
+            const std::unique_ptr<OGRGeometry> lines(feature->GetGeometryRef()->getLinearGeometry());
+            takeLines(*lines, route, *toDegrees);
+        }
+        checkReading(errors);
+    }
+
+    static std::optional<osg::Vec4> colorOf(OGRFeature& feature)
+    {
+        OGRStyleMgr style;
+        if (!style.InitFromFeature(&feature)) return std::nullopt;
+        for (int i = 0; i < style.GetPartCount(); ++i)
+        {
+            const std::unique_ptr<OGRStyleTool> tool(style.GetPart(i));
+            if (!tool || tool->GetType() != OGRSTCPen) continue;
+            GBool isNone = FALSE;
+            const char* const text = static_cast<OGRStylePen&>(*tool).Color(isNone);
+            int red = 0, green = 0, blue = 0, alpha = 255;
+            if (isNone || !text || !tool->GetRGBFromString(text, red, green, blue, alpha)) continue;
+            return osg::Vec4(osg::Vec4d(red, green, blue, alpha) / 255.0);
+        }
+        return std::nullopt;
+    }
+
+    void takeLines(const OGRGeometry& geometry, const RoutePath& like, OGRCoordinateTransformation& toDegrees)
+    {
+        const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+        if (type == wkbLineString)
+        {
+            RoutePath route = like;
+            const OGRLineString& line = *geometry.toLineString();
+            const bool hasHeights = OGR_GT_HasZ(geometry.getGeometryType());
+            if (hasHeights) route.altitude = RoutePath::ABSOLUTE;
+            for (int i = 0; i < line.getNumPoints(); ++i)
+            {
+                double x = line.getX(i);
+                double y = line.getY(i);
+                if (toDegrees.Transform(1, &x, &y) && std::isfinite(x) && std::isfinite(y) &&
+                    std::abs(y) <= 90.0)
+                    take({x, y, hasHeights ? line.getZ(i) : 0.0}, route);
+            }
+            if (route.places.size() > 1) _found.push_back(std::move(route));
+        }
+        else if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection))
+        {
+            for (const OGRGeometry* const part : *geometry.toGeometryCollection())
+                takeLines(*part, like, toDegrees);
+        }
+    }
+
+    void take(const osg::Vec3d& place, RoutePath& route)
+    {
+        if (++_places > mostRoutePlaces)
+            throw BuildError(
+                _file + ": it has more than ten million places; simplify its lines with ogr2ogr -simplify.");
+        route.places.push_back(place);
+    }
+
+    void checkReading(const GdalErrorScope& errors) const
+    {
+        if (errors.failed())
+            throw BuildError(_file + ": its features cannot be read (" + errors.message() +
+                             "); the file may be cut short: copy or export it again.");
+    }
+
+    const std::string& _file;
+    const std::string& _layer;
+    std::vector<RoutePath> _found;
+    std::size_t _places = 0;
+};
+
+} // namespace
+
+bool RouteVectors::read(const std::string& file, const std::string& layer, std::vector<RoutePath>& routes,
+                        std::string& error)
+{
+    initialiseGdal();
+    try
+    {
+        std::vector<RoutePath> found = Reader(file, layer).read();
+        routes.insert(routes.end(), std::make_move_iterator(found.begin()),
+                      std::make_move_iterator(found.end()));
+        return true;
+    }
+    catch (const BuildError& failure)
+    {
+        error = failure.what();
+        return false;
+    }
+}
+
+} // namespace osgGeoFX

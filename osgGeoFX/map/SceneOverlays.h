@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/scene/EffectScene.h>
+
+#include <osg/Node>
+
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** Puts the rasters of files onto a scene: KML and KMZ ground overlays, and any raster with a georeference.
+
+    @code
+    osgGeoFX::SceneOverlays overlays(*scene.node, *scene.effects);
+    if (!overlays.add("fire.kmz", error)) …
+    @endcode
+
+    Each file lies on top of those before. Its mappings are in effects of this object's own, one for each frame that OverlayReader
+    needs (as a rule one), behind the scene's other effects; a mapping has the overlay's name. The plugin osgdb_geofxdata reads the
+    files. One thread at a time, between frames.
+    @ingroup map */
+class OSGGEOFXMAPS_EXPORT SceneOverlays
+{
+public:
+    /// `node`: the scene's outermost node, with all that tells its place on the Earth. Both must outlive this.
+    SceneOverlays(osg::Node& node, EffectScene& scene);
+
+    struct Options
+    {
+        /// Whether a KML file may name files outside of its folder, and addresses.
+        bool allowOutside = false;
+        /// Colors of values: an SLD file, or one that ColorRampFile reads. Empty: greys from the lowest to the highest value.
+        std::string colors;
+        int maxSide = 2048; ///< texels along the longer side of a raster, 1…16384
+    };
+    /// Adds a file. False, with a sentence in `error`, if it cannot; the scene stays as it is then. `notices` gets sentences that
+    /// people should know.
+    bool add(const std::string& file, const Options& options, std::vector<std::string>& notices,
+             std::string& error);
+
+    /// The effects with the mappings.
+    const std::vector<osg::ref_ptr<ProjectiveMappings>>& effects() const { return _effects; }
+
+private:
+    osg::ref_ptr<EffectScene> _scene;
+    std::string _wkt; ///< of a projected scene
+    std::vector<osg::ref_ptr<ProjectiveMappings>> _effects;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/map/SceneRoutes.h>
+
+#include <osgGeoFX/map/RouteFile.h>
+#include <osgGeoFX/mapping/PathRibbon.h>
+
+#include <osg/Math>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr double farthest = 0.79; // radians of arc, from an effect's origin
+constexpr std::size_t mostEffects = 3;
+
+} // namespace
+
+SceneRoutes::SceneRoutes(osg::Node& node, EffectScene& scene)
+    : _scene(&scene), _ellipsoid(scene.ground().ellipsoid)
+{
+    _reference = Georeference::create(&node, _referenceError);
+}
+
+bool SceneRoutes::placeOf(const RoutePath& route, Way& way, std::string& error)
+{
+    const auto worldOf = [&](double longitude, double latitude, osg::Vec3d& world)
+    {
+        const double x = osg::DegreesToRadians(longitude);
+        const double y = osg::DegreesToRadians(latitude);
+        if (!_ellipsoid) return _reference->toWorld(x, y, 0.0, world);
+        _ellipsoid->convertLatLongHeightToXYZ(y, x, 0.0, world.x(), world.y(), world.z());
+        return true;
+    };
+    if (!_ellipsoid && !_reference)
+    {
+        error = _referenceError;
+        return false;
+    }
+    for (const osg::Vec2d& place : route.alongGreatCircles())
+    {
+        osg::Vec3d world;
+        if (!worldOf(place.x(), place.y(), world))
+        {
+            error = "The way \"" + route.name + "\" leaves the terrain's projection; cut it.";
+            return false;
+        }
+        way.world.push_back(world);
+    }
+    osg::BoundingBoxd box;
+    for (const osg::Vec3d& world : way.world)
+        box.expandBy(world);
+    way.middle = box.center();
+    for (const osg::Vec3d& world : way.world)
+        way.radius = std::max(way.radius, (world - way.middle).length());
+    return true;
+}
+
+ProjectiveMappings* SceneRoutes::effectFor(const Way& way, std::string& error)
+{
+    const auto angle = [](const osg::Vec3d& a, const osg::Vec3d& b)
+    {
+        return std::acos(std::clamp(a * b / (a.length() * b.length()), -1.0, 1.0));
+    };
+    double own = 0.0;
+    for (const osg::ref_ptr<ProjectiveMappings>& effect : _effects)
+    {
+        if (!_ellipsoid) return effect;
+        const osg::Vec3d origin = effect->frameToWorld(_ellipsoid).getTrans();
+        double most = 0.0;
+        for (const osg::Vec3d& world : way.world)
+            most = std::max(most, angle(world, origin));
+        if (most < farthest) return effect;
+    }
+    for (const osg::Vec3d& world : way.world)
+        own = std::max(own, _ellipsoid ? angle(world, way.middle) : 0.0);
+    if (own > 1.2 || _effects.size() >= mostEffects)
+    {
+        error = "its ways reach around too much of the globe; show a part of them.";
+        return nullptr;
+    }
+    osg::ref_ptr<ProjectiveMappings> effect = new ProjectiveMappings;
+    effect->setName("routes");
+    if (_ellipsoid)
+    {
+        double longitude = 0.0, latitude = 0.0, height = 0.0;
+        _ellipsoid->convertXYZToLatLongHeight(way.middle.x(), way.middle.y(), way.middle.z(), latitude,
+                                              longitude, height);
+        effect->setLocalOrigin(LocalOrigin::onGlobe(longitude, latitude));
+    }
+    else
+        effect->setLocalOrigin(LocalOrigin::onPlane({way.middle.x(), way.middle.y()}));
+    _scene->addEffect(effect);
+    _effects.push_back(effect);
+    return effect;
+}
+
+bool SceneRoutes::add(const RoutePath& route, const Options& options, std::string& error)
+{
+    Way way;
+    if (!placeOf(route, way, error)) return false;
+    ProjectiveMappings* const effect = effectFor(way, error);
+    if (!effect) return false;
+    std::vector<osg::Vec2d> places;
+    for (const osg::Vec3d& world : way.world)
+    {
+        const osg::Vec3d place = effect->placeOf(world, _ellipsoid);
+        places.emplace_back(place.x(), place.y());
+    }
+    if (!route.showOn(*effect, places, options.look))
+    {
+        error = "the look of the way \"" + route.name + "\" is out of range; give another width.";
+        return false;
+    }
+    if (route.altitude != RoutePath::ABSOLUTE || !options.ribbons) return true;
+    if (!_reference)
+    {
+        error = _referenceError;
+        return false;
+    }
+    const std::vector<osg::ref_ptr<osg::Node>> nodes =
+        PathRibbon::nodesOf(route, options.look, *_reference, error);
+    for (const osg::ref_ptr<osg::Node>& node : nodes)
+        _scene->addChild(node);
+    return !nodes.empty();
+}
+
+bool SceneRoutes::add(const std::string& file, const Options& options, std::string& error)
+{
+    RouteFile request;
+    request.file = file;
+    request.layer = options.layer;
+    if (!request.read(error)) return false;
+    for (const RoutePath& route : request.routes)
+    {
+        if (add(route, options, error)) continue;
+        error = file + ": " + error;
+        return false;
+    }
+    return true;
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/mapping/RoutePath.h>
+#include <osgGeoFX/paging/Georeference.h>
+#include <osgGeoFX/scene/EffectScene.h>
+
+#include <osg/Node>
+
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** Shows ways of files on the ground of a scene: GPX, KML and any vector data with lines (RouteVectors), as RouteMapping draws them.
+
+    @code
+    osgGeoFX::SceneRoutes routes(*scene.node, *scene.effects);
+    if (!routes.add("hike.gpx", {}, error)) …
+    @endcode
+
+    A way lies on the ground, whatever its altitude mode is, and one of absolute heights is in the air, too (`ribbons`). It follows great circles between its places. Way points get marks,
+    the points of tracks none. The mappings stay in the scene when this object is gone: they are in effects named "routes", behind the scene's
+    other effects, one for each part of the globe of 45° of arc. The plugin osgdb_geofxdata reads the files. One thread at a time, between frames.
+    @ingroup map */
+class OSGGEOFXMAPS_EXPORT SceneRoutes
+{
+public:
+    /// `node`: the scene's outermost node, with all that tells its place on the Earth. Both must outlive this.
+    SceneRoutes(osg::Node& node, EffectScene& scene);
+
+    struct Options
+    {
+        std::string layer; ///< one layer; empty: all
+        RoutePath::Look look;
+        bool ribbons =
+            true; ///< whether ways of absolute heights are also drawn in the air (PathRibbon): as tubes, extruded ones with a curtain
+    };
+    /// Adds the ways of a file. False, with a sentence in `error`, if it cannot; the ways before the one at fault stay then.
+    bool add(const std::string& file, const Options& options, std::string& error);
+    /// Adds a way. False, with a sentence in `error`, if it cannot.
+    bool add(const RoutePath& route, const Options& options, std::string& error);
+
+private:
+    struct Way
+    {
+        std::vector<osg::Vec3d> world;
+        osg::Vec3d middle;
+        double radius = 0.0; ///< metres
+    };
+    bool placeOf(const RoutePath& route, Way& way, std::string& error);
+    ProjectiveMappings* effectFor(const Way& way, std::string& error);
+
+    osg::ref_ptr<EffectScene> _scene;
+    osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
+    osg::ref_ptr<Georeference> _reference;
+    std::string _referenceError;
+    std::vector<osg::ref_ptr<ProjectiveMappings>> _effects;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/mapping/ProjectiveMapping.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace osgGeoFX
+{
+
+/// A raster of a file, ready to be put on the ground by a mapping. A plain value.
+/// @ingroup mapping
+struct OSGGEOFX_EXPORT GroundOverlay
+{
+    std::string name;
+    std::size_t frame = 0; ///< in which of several frames the corners are
+    osg::ref_ptr<DataLayer> layer;
+    /// Lower left, lower right, upper right, upper left; metres in the frame. Any convex quadrilateral.
+    std::array<osg::Vec2d, 4> corners;
+    double opacity = 1.0; ///< 0…1
+    int order = 0;        ///< the file's own; the higher one lies on top
+    bool visible = true;
+    double pixelsNone = 0.0, pixelsFull = 0.0; ///< ProjectiveMapping::setPixels()
+    double lowest = 0.0, highest = 0.0;        ///< range of a layer of values; both 0 if there are none
+    osg::ref_ptr<ColorTable> table; ///< colors of values; null: greys from the lowest to the highest
+
+    /// A mapping of it, of order 0. Null, with a warning, if the corners span no area.
+    osg::ref_ptr<ProjectiveMapping> makeMapping() const;
+};
+
+} // namespace osgGeoFX

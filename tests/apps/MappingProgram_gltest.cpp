@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// osggeofx_render with --mapping, as a person calls it: archives and rasters that GDAL writes, on a piece of the globe.
+#include <tools/GlFixture.h>
+#include <tools/KmlFiles.h>
+#include <tools/RunProgram.h>
+#include <tools/TempDir.h>
+#include <tools/TestRasters.h>
+
+#include <osg/CoordinateSystemNode>
+#include <osg/Geometry>
+#include <osg/MatrixTransform>
+#include <osgDB/ReadFile>
+#include <osgDB/WriteFile>
+
+#include <algorithm>
+#include <filesystem>
+
+using namespace geofx::test;
+
+namespace
+{
+
+constexpr int width = 200, height = 150;
+
+class MappingProgram : public GlFixture
+{
+protected:
+    void SetUp() override
+    {
+        GlFixture::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        writeGround();
+        writePicture((_folder / "red.png").string(), 16, 16,
+                     [](int, int) {
+                         return std::array<int, 4>{255, 0, 0, 255};
+                     });
+    }
+
+    /// A dark square around 7° east, 45° north, a tenth of a degree wide.
+    void writeGround() const
+    {
+        osg::EllipsoidModel earth;
+        const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+        const osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
+        osg::Vec3d center;
+        earth.convertLatLongHeightToXYZ(osg::DegreesToRadians(45.0), osg::DegreesToRadians(7.0), 0.0,
+                                        center.x(), center.y(), center.z());
+        constexpr int cells = 20;
+        for (int i = 0; i < (cells + 1) * (cells + 1); ++i)
+        {
+            const double x = 6.95 + 0.1 * (i % (cells + 1)) / cells,
+                         y = 44.95 + 0.1 * (i / (cells + 1)) / cells;
+            osg::Vec3d place;
+            earth.convertLatLongHeightToXYZ(osg::DegreesToRadians(y), osg::DegreesToRadians(x), 0.0,
+                                            place.x(), place.y(), place.z());
+            vertices->push_back(osg::Vec3(place - center));
+            if (i % (cells + 1) == cells || i / (cells + 1) == cells) continue;
+            for (const int corner : {i, i + 1, i + cells + 2, i, i + cells + 2, i + cells + 1})
+                triangles->push_back(static_cast<GLushort>(corner));
+        }
+        const osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
+        const osg::ref_ptr<osg::Vec4Array> color = new osg::Vec4Array;
+        color->push_back({0.1f, 0.1f, 0.1f, 1.0f});
+        ground->setVertexArray(vertices);
+        ground->setColorArray(color, osg::Array::BIND_OVERALL);
+        ground->addPrimitiveSet(triangles);
+        const osg::ref_ptr<osg::MatrixTransform> place =
+            new osg::MatrixTransform(osg::Matrix::translate(center));
+        place->addChild(ground);
+        place->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+        const osg::ref_ptr<osg::CoordinateSystemNode> node =
+            new osg::CoordinateSystemNode("WKT", "EPSG:4326");
+        node->setEllipsoidModel(new osg::EllipsoidModel);
+        node->addChild(place);
+        osgDB::writeNodeFile(*node, (_folder / "ground.osgt").string());
+    }
+
+    ProgramResult run(std::vector<std::string> arguments) const
+    {
+        const std::vector<std::string> usual = {builtProgram("osggeofx_render"),
+                                                "ground.osgt",
+                                                "--size",
+                                                std::to_string(width) + "x" + std::to_string(height),
+                                                "--view",
+                                                "7,45,5000,0,-90",
+                                                "-o",
+                                                "out.png"};
+        arguments.insert(arguments.begin(), usual.begin(), usual.end());
+        ProgramOptions options;
+        options.folder = _folder.path().string();
+        options.environment = {"DISPLAY=", "LC_ALL=de_DE.UTF-8"};
+        return runProgram(arguments, options);
+    }
+
+    /// Where the picture is red: the columns and rows from the upper left, and how many pixels.
+    struct Red
+    {
+        int left = width, right = -1, top = height, bottom = -1, count = 0;
+        double middleX() const { return (left + right) / 2.0; }
+    };
+    Red redOf(const std::vector<std::string>& arguments) const
+    {
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.standardError;
+        EXPECT_EQ(result.standardError, "");
+        const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile((_folder / "out.png").string());
+        Red red;
+        for (int i = 0; image && i < width * height; ++i)
+        {
+            const int x = i % width, y = i / width;
+            const unsigned char* const pixel =
+                image->data(static_cast<unsigned int>(x), static_cast<unsigned int>(height - 1 - y));
+            if (!(pixel[0] > 200 && pixel[1] < 60 && pixel[2] < 60)) continue;
+            red.left = std::min(red.left, x);
+            red.right = std::max(red.right, x);
+            red.top = std::min(red.top, y);
+            red.bottom = std::max(red.bottom, y);
+            ++red.count;
+        }
+        return red;
+    }
+
+    void expectRefusal(const std::vector<std::string>& arguments, const std::string& word) const
+    {
+        std::filesystem::remove(_folder / "out.png");
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exitCode, 2) << result.standardError;
+        EXPECT_NE(result.standardError.find(word), std::string::npos) << result.standardError;
+        EXPECT_EQ(std::count(result.standardError.begin(), result.standardError.end(), '\n'), 1)
+            << result.standardError;
+        EXPECT_FALSE(std::filesystem::exists(_folder / "out.png"));
+    }
+
+    TempDir _folder;
+};
+
+} // namespace
+
+// From 5 km above, a pixel spans about 18 m, and the box is 0.01° wide: 43 pixels, and 62 high.
+TEST_F(MappingProgram, AnArchiveIsInThePicture)
+{
+    EXPECT_EQ(redOf({}).count, 0);
+    writeArchive((_folder / "over.kmz").string(),
+                 {{"doc.kml", kml(groundOverlay("a.png", latLonBox(6.995, 44.995, 7.005, 45.005)))},
+                  {"a.png", bytesOf((_folder / "red.png").string())}});
+    const Red red = redOf({"--mapping", "over.kmz"});
+    EXPECT_NEAR(red.middleX(), width / 2 - 0.5, 1.0);
+    EXPECT_NEAR((red.top + red.bottom) / 2.0, height / 2 - 0.5, 1.0);
+    EXPECT_NEAR((red.bottom - red.top + 1.0) / (red.right - red.left + 1.0),
+                1.0 / std::cos(osg::DegreesToRadians(45.0)), 0.1);
+    EXPECT_NEAR(red.count, 43 * 62, 300);
+}
+
+TEST_F(MappingProgram, RastersHaveColorsByTables)
+{
+    TestRaster raster(40, 40, 1, GDT_Float32);
+    raster.placed(6.995, 45.005, 0.00025, 0.00025)
+        .crs("EPSG:4326")
+        .fill([](int column, int, int) { return column; });
+    raster.write(_folder / "values.tif");
+    _folder.write(
+        "right.sld",
+        R"(<StyledLayerDescriptor xmlns="http://www.opengis.net/sld"><NamedLayer><UserStyle><FeatureTypeStyle>
+        <Rule><RasterSymbolizer><ColorMap type="intervals"><ColorMapEntry color="#0000ff" quantity="20"/>
+        <ColorMapEntry color="#ff0000" quantity="100"/></ColorMap></RasterSymbolizer></Rule>
+        </FeatureTypeStyle></UserStyle></NamedLayer></StyledLayerDescriptor>)");
+    _folder.write("left.txt", "0 255 0 0\n19.9 255 0 0\n20 0 0 255\n40 0 0 255\n");
+    EXPECT_EQ(redOf({"--mapping", "values.tif"}).count, 0) << "greys";
+    const Red right = redOf({"--mapping", "values.tif", "--colors", "right.sld"});
+    EXPECT_NEAR(right.left, width / 2, 2);
+    EXPECT_NEAR(right.count, 43 * 62 / 2, 250);
+    const Red left = redOf({"--mapping", "values.tif", "--colors", "left.txt"});
+    EXPECT_NEAR(left.right, width / 2, 2);
+    EXPECT_NEAR(left.count, 43 * 62 / 2, 250);
+    // The later file lies on top.
+    writePicture((_folder / "a.png").string(), 8, 8,
+                 [](int, int) {
+                     return std::array<int, 4>{0, 0, 255, 255};
+                 });
+    _folder.write("blue.kml", kml(groundOverlay("a.png", latLonBox(6.99, 44.99, 7.01, 45.01))));
+    _folder.write("red.kml", kml(groundOverlay("red.png", latLonBox(6.995, 44.995, 7.005, 45.005))));
+    EXPECT_EQ(redOf({"--mapping", "red.kml", "--mapping", "blue.kml"}).count, 0);
+    EXPECT_NEAR(redOf({"--mapping", "blue.kml", "--mapping", "red.kml"}).count, 43 * 62, 300);
+}
+
+// A line from west to east north of the middle, as a GPX track; KML lines have a color of their own.
+TEST_F(MappingProgram, WaysAreInThePicture)
+{
+    const std::string gpx =
+        R"(<gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>
+        <trkpt lat="45.003" lon="6.99"/><trkpt lat="45.003" lon="7.01"/></trkseg></trk></gpx>)";
+    _folder.write("way.gpx", gpx);
+    EXPECT_EQ(redOf({"--route", "way.gpx", "--route-width", "100"}).count, 0) << "blue";
+    _folder.write("way.kml",
+                  kml("<Placemark><Style><LineStyle><color>ff0000ff</color></LineStyle></Style><LineString>"
+                      "<coordinates>6.99,45.003,0 7.01,45.003,0</coordinates></LineString></Placemark>"));
+    const Red red = redOf({"--route", "way.kml", "--route-width", "100"});
+    // 0.003° of latitude are 333.4 m, and 0.02° of longitude 1577 m.
+    const double pixel = 2.0 * 5000.0 * std::tan(osg::DegreesToRadians(15.0)) / height;
+    EXPECT_NEAR((red.top + red.bottom) / 2.0, height / 2 - 0.5 - 333.4 / pixel, 1.0);
+    EXPECT_NEAR(red.bottom - red.top + 1.0, 100.0 / pixel, 1.1);
+    EXPECT_NEAR(red.middleX(), width / 2 - 0.5, 1.0);
+    EXPECT_NEAR(red.right - red.left + 1.0, (1577.0 + 100.0) / pixel, 3.0);
+    // A way lies over the rasters.
+    _folder.write("blue.kml",
+                  kml(groundOverlay("", latLonBox(6.98, 44.98, 7.02, 45.02), "<color>ffff0000</color>")));
+    EXPECT_NEAR(redOf({"--route", "way.kml", "--route-width", "100", "--mapping", "blue.kml"}).count,
+                red.count, 40);
+    // By default a 120th of its extent: less than a pixel.
+    EXPECT_LT(redOf({"--route", "way.kml"}).count, red.count / 5);
+}
+
+TEST_F(MappingProgram, WhatCannotBeShownIsToldInASentence)
+{
+    expectRefusal({"--route", "none.gpx"}, "none.gpx: ");
+    expectRefusal({"--route-width", "10"}, "--route-width is for ways");
+    expectRefusal({"--mapping", "none.kmz"}, "none.kmz: the file does not exist");
+    expectRefusal({"--mapping", "none.tif"}, "none.tif: ");
+    expectRefusal({"--colors", "ramp.txt"}, "--colors is for values");
+    expectRefusal(
+        {"--mapping", writeRelief(_folder / "relief.tif", 4, 4, 7.0, 45.0, 0.001), "--colors", "none.sld"},
+        "none.sld: ");
+    _folder.write("inner/doc.kml", kml(groundOverlay("../red.png", latLonBox(6.995, 44.995, 7.005, 45.005))));
+    expectRefusal({"--mapping", "inner/doc.kml"}, "--allow-outside");
+    EXPECT_GT(redOf({"--mapping", "inner/doc.kml", "--allow-outside"}).count, 2000);
+}

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Rasters of files in the frames of mappings: where their texels lie, which frames they get, and what is refused. Where things must
+// lie, PROJ says. GDAL writes the pictures and archives.
+#include <osgGeoFX/geodata/OverlayReader.h>
+#include <tools/GeofxPlugins.h>
+#include <tools/KmlFiles.h>
+#include <tools/TempDir.h>
+#include <tools/TestRasters.h>
+
+#include <ogr_spatialref.h>
+#include <osg/Math>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <sys/resource.h>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+/// From degrees into a frame, metres.
+osg::Vec2d placed(const OverlayReader& reader, std::size_t frame, const osg::Vec2d& degrees)
+{
+    OGRSpatialReference from, to;
+    from.importFromEPSG(4326);
+    from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const LocalOrigin& origin = reader.frames[frame];
+    if (reader.globe)
+        to.SetFromUserInput(CPLSPrintf("+proj=ortho +ellps=WGS84 +lat_0=%.17g +lon_0=%.17g",
+                                       osg::RadiansToDegrees(origin.latitude),
+                                       osg::RadiansToDegrees(origin.longitude)));
+    else
+        to.SetFromUserInput(reader.wkt.c_str());
+    to.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRCoordinateTransformation> transformation(
+        OGRCreateCoordinateTransformation(&from, &to));
+    double x = degrees.x();
+    double y = degrees.y();
+    EXPECT_TRUE(transformation->Transform(1, &x, &y));
+    return osg::Vec2d(x, y) - (reader.globe ? osg::Vec2d() : origin.place());
+}
+
+/// The texel of an overlay at a place of its frame: RGBA, or all 0 outside.
+std::array<int, 4> texelAt(const GroundOverlay& overlay, const osg::Vec2d& place)
+{
+    const osg::ref_ptr<ProjectiveMapping> mapping = overlay.makeMapping();
+    const glm::dvec3 uvw = mapping->placeToRaster() * glm::dvec3(place.x(), place.y(), 1.0);
+    const double u = uvw.x / uvw.z;
+    const double v = uvw.y / uvw.z;
+    if (!(u >= 0.0 && u < 1.0 && v >= 0.0 && v < 1.0)) return {};
+    const osg::Image& image = *overlay.layer->getImage();
+    const unsigned char* const texel =
+        image.data(static_cast<unsigned int>(u * image.s()), static_cast<unsigned int>(v * image.t()));
+    return {texel[0], texel[1], texel[2], texel[3]};
+}
+
+/// A picture whose color tells its place: red from left to right, green from the bottom up.
+std::array<int, 4> ramp(int x, int y)
+{
+    return {x, 255 - y, 77, 255};
+}
+
+class OverlayReaderTest : public GeofxPlugins
+{
+protected:
+    void SetUp() override { GDALAllRegister(); }
+
+    std::string archive(const std::string& features, const std::string& name = "over.kmz")
+    {
+        const std::string picture = (_folder / "ramp.png").string();
+        if (!std::filesystem::exists(picture)) writePicture(picture, 256, 256, ramp);
+        const std::string file = (_folder / name).string();
+        writeArchive(file, {{"doc.kml", kml(features)}, {"files/ramp.png", bytesOf(picture)}});
+        return file;
+    }
+    bool read(const std::string& file, const OverlayReader::Options& options = {})
+    {
+        std::string error;
+        const bool done = _reader.read(file, options, error);
+        EXPECT_TRUE(done) << error;
+        return done;
+    }
+    std::string faultOf(const std::string& file)
+    {
+        std::string error;
+        EXPECT_FALSE(_reader.read(file, {}, error));
+        EXPECT_TRUE(_reader.overlays.empty() && _reader.frames.empty()) << "unchanged";
+        EXPECT_TRUE(!error.empty() && error.back() == '.') << error;
+        return error;
+    }
+    /// The overlay shows the ramp as it lies between its corners in degrees, to a texel.
+    void expectRamp(const GroundOverlay& overlay, const std::function<osg::Vec2d(double, double)>& degrees)
+    {
+        for (double u = 0.05; u < 1.0; u += 0.1)
+        {
+            for (double v = 0.05; v < 1.0; v += 0.1)
+            {
+                const std::array<int, 4> color =
+                    texelAt(overlay, placed(_reader, overlay.frame, degrees(u, v)));
+                EXPECT_NEAR(color[0], u * 256.0 - 0.5, 2.0) << u << " " << v;
+                EXPECT_NEAR(color[1], v * 256.0 - 0.5, 2.0) << u << " " << v;
+                EXPECT_EQ(color[3], 255);
+            }
+        }
+        EXPECT_EQ(texelAt(overlay, placed(_reader, overlay.frame, degrees(-0.02, 0.5)))[3], 0);
+        EXPECT_EQ(texelAt(overlay, placed(_reader, overlay.frame, degrees(0.5, 1.02)))[3], 0);
+    }
+
+    TempDir _folder;
+    OverlayReader _reader;
+};
+
+} // namespace
+
+TEST_F(OverlayReaderTest, ASmallPictureStaysAsItIs)
+{
+    ASSERT_TRUE(read(archive(groundOverlay("files/ramp.png", latLonBox(7.0, 45.0, 7.01, 45.006)))));
+    ASSERT_EQ(_reader.overlays.size(), 1u);
+    const GroundOverlay& overlay = _reader.overlays[0];
+    EXPECT_EQ(overlay.layer->getImage()->s(), 256);
+    EXPECT_EQ(overlay.name, "files/ramp.png");
+    expectRamp(overlay, [](double u, double v) { return osg::Vec2d(7.0 + 0.01 * u, 45.0 + 0.006 * v); });
+}
+
+TEST_F(OverlayReaderTest, ALargePictureIsBentWithTheGlobe)
+{
+    for (const double south : {-20.0, 40.0, 65.0})
+    {
+        SCOPED_TRACE(south);
+        _reader = OverlayReader();
+        ASSERT_TRUE(
+            read(archive(groundOverlay("files/ramp.png", latLonBox(170.0, south, -160.0, south + 20.0)))));
+        expectRamp(_reader.overlays.at(0),
+                   [&](double u, double v) { return osg::Vec2d(170.0 + 30.0 * u, south + 20.0 * v); });
+    }
+}
+
+TEST_F(OverlayReaderTest, AProjectedTerrainHasThemWhereItsProjectionHasThem)
+{
+    // osgEarth put them elsewhere on projected maps (its issue 140).
+    for (const double size : {0.02, 4.0})
+    {
+        SCOPED_TRACE(size);
+        _reader = OverlayReader();
+        _reader.globe = false;
+        _reader.wkt = wktOf(32604);
+        ASSERT_TRUE(read(
+            archive(groundOverlay("files/ramp.png", latLonBox(-159.0, 21.0, -159.0 + size, 21.0 + size)))));
+        expectRamp(_reader.overlays.at(0),
+                   [&](double u, double v) { return osg::Vec2d(-159.0 + size * u, 21.0 + size * v); });
+    }
+}
+
+TEST_F(OverlayReaderTest, AlphaIsTheMappingsAndColorsMultiply)
+{
+    ASSERT_TRUE(read(archive(
+        groundOverlay("files/ramp.png", latLonBox(7.0, 45.0, 7.01, 45.006), "<color>40ff8000</color>") +
+        groundOverlay("", latLonBox(7.0, 45.0, 7.01, 45.006), "<color>ff0000ff</color>"))));
+    const GroundOverlay& first = _reader.overlays.at(0);
+    EXPECT_NEAR(first.opacity, 64.0 / 255.0, 1e-6);
+    const std::array<int, 4> texel = texelAt(first, placed(_reader, 0, {7.005, 45.003}));
+    EXPECT_EQ(texel[0], 0);
+    EXPECT_NEAR(texel[1], 64, 1);
+    EXPECT_EQ(texel[2], 77);
+    EXPECT_EQ(texel[3], 255);
+    EXPECT_EQ(texelAt(_reader.overlays.at(1), placed(_reader, 0, {7.005, 45.003})),
+              (std::array<int, 4>{255, 0, 0, 255}));
+}
+
+TEST_F(OverlayReaderTest, NeighborsShareAFrameAndOthersDoNot)
+{
+    const auto small = [](double longitude, double latitude, double size)
+    {
+        return groundOverlay("files/ramp.png",
+                             latLonBox(longitude, latitude, longitude + size, latitude + size));
+    };
+    // The third one is on the other side of the globe; the texels of the fourth, 4 cm, want a frame nearby.
+    ASSERT_TRUE(read(archive(small(7.0, 45.0, 0.1) + small(9.0, 47.0, 0.1) + small(-170.0, -40.0, 0.1) +
+                             small(12.0, 50.0, 1e-4))));
+    ASSERT_EQ(_reader.overlays.size(), 4u);
+    EXPECT_EQ(_reader.overlays[0].frame, 0u);
+    EXPECT_EQ(_reader.overlays[1].frame, 0u);
+    EXPECT_EQ(_reader.overlays[2].frame, 1u);
+    EXPECT_EQ(_reader.overlays[3].frame, 2u);
+    // A later file may share them.
+    ASSERT_TRUE(read(archive(small(7.5, 45.5, 0.1), "later.kmz")));
+    EXPECT_EQ(_reader.overlays[4].frame, 0u);
+    EXPECT_EQ(_reader.frames.size(), 3u);
+}
+
+// No matter where a hundred of them lie, seven frames reach all.
+TEST_F(OverlayReaderTest, SevenFramesReachAllOfTheGlobe)
+{
+    std::string features;
+    for (int i = 0; i < 100; ++i)
+    {
+        const double latitude = osg::RadiansToDegrees(std::asin(-1.0 + (2.0 * i + 1.0) / 100.0));
+        const double longitude = std::remainder(i * 137.50776, 360.0);
+        features += groundOverlay("files/ramp.png",
+                                  latLonBox(longitude, latitude, longitude + 0.02, latitude + 0.01));
+    }
+    ASSERT_TRUE(read(archive(features)));
+    EXPECT_EQ(_reader.overlays.size(), 100u);
+    EXPECT_LE(_reader.frames.size(), 7u);
+    for (const GroundOverlay& each : _reader.overlays)
+        for (const osg::Vec2d& corner : each.corners)
+            EXPECT_LT(corner.length(), 6378137.0 * std::sin(osg::DegreesToRadians(81.0)));
+}
+
+TEST_F(OverlayReaderTest, RastersWithAGeoreferenceComeAsTheyAre)
+{
+    const std::string file = writeRelief(_folder / "relief.tif", 60, 40, 7.0, 46.0, 0.001);
+    ASSERT_TRUE(read(file));
+    const GroundOverlay& overlay = _reader.overlays.at(0);
+    EXPECT_EQ(overlay.layer->getKind(), DataLayer::VALUE);
+    EXPECT_LT(overlay.lowest, overlay.highest);
+    const osg::Vec2d corner = placed(_reader, 0, {7.0, 45.96});
+    EXPECT_NEAR(overlay.corners[0].x(), corner.x(), 20.0);
+    EXPECT_NEAR(overlay.corners[0].y(), corner.y(), 20.0);
+    EXPECT_EQ(overlay.name, "relief.tif");
+}
+
+TEST_F(OverlayReaderTest, TilesInAnMBTilesFileAreRead)
+{
+    TestRaster raster(300, 300, 3, GDT_Byte);
+    raster.placed(1000000.0, 5700000.0, 76.4, 76.4).crs("EPSG:3857");
+    raster.fill([](int column, int, int band) { return band == 0 ? column * 255 / 300 : 60; });
+    const std::string file = (_folder / "tiles.mbtiles").string();
+    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("MBTiles");
+    ASSERT_TRUE(driver);
+    GDALClose(driver->CreateCopy(file.c_str(), &raster.dataset(), FALSE, nullptr, nullptr, nullptr));
+    ASSERT_TRUE(read(file));
+    OGRSpatialReference mercator, degrees;
+    mercator.importFromEPSG(3857);
+    degrees.importFromEPSG(4326);
+    degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRCoordinateTransformation> toDegrees(
+        OGRCreateCoordinateTransformation(&mercator, &degrees));
+    for (const double share : {0.25, 0.5, 0.75})
+    {
+        double x = 1000000.0 + 300 * 76.4 * share;
+        double y = 5700000.0 - 150 * 76.4;
+        ASSERT_TRUE(toDegrees->Transform(1, &x, &y));
+        EXPECT_NEAR(texelAt(_reader.overlays.at(0), placed(_reader, 0, {x, y}))[0], 255.0 * share, 6.0)
+            << share;
+    }
+}
+
+TEST_F(OverlayReaderTest, WhatIsNoPictureIsRefused)
+{
+    EXPECT_TRUE(contains(faultOf(archive(groundOverlay("files/none.png", latLonBox(7.0, 45.0, 8.0, 46.0)))),
+                         "over.kmz/files/none.png: it is not there"));
+    EXPECT_TRUE(contains(faultOf((_folder / "none.tif").string()), "none.tif"));
+    // A format that names further files.
+    _folder.write(
+        "a.vrt",
+        "<VRTDataset rasterXSize=\"1\" rasterYSize=\"1\"><VRTRasterBand dataType=\"Byte\" band=\"1\">"
+        "<SimpleSource><SourceFilename>/etc/passwd</SourceFilename></SimpleSource>"
+        "</VRTRasterBand></VRTDataset>");
+    EXPECT_TRUE(contains(
+        faultOf(
+            _folder.write("doc.kml", kml(groundOverlay("a.vrt", latLonBox(7.0, 45.0, 8.0, 46.0)))).string()),
+        "a.vrt: it is not there, or no PNG"));
+}
+
+// A header that promises 10^5 x 10^5 pixels, with and without pixels behind it; and one that is cut off.
+TEST_F(OverlayReaderTest, LyingPicturesCostNothing)
+{
+    const std::string picture = (_folder / "ramp.png").string();
+    writePicture(picture, 256, 256, ramp);
+    const std::string whole = bytesOf(picture);
+    const auto withSize = [&](std::uint32_t width, std::uint32_t height)
+    {
+        std::string bytes = whole;
+        for (int i = 0; i < 4; ++i)
+        {
+            bytes[16 + static_cast<std::size_t>(i)] = static_cast<char>(width >> (24 - 8 * i));
+            bytes[20 + static_cast<std::size_t>(i)] = static_cast<char>(height >> (24 - 8 * i));
+        }
+        // The header's check sum, bit by bit.
+        std::uint32_t sum = ~0u;
+        for (std::size_t i = 12; i < 29; ++i)
+        {
+            sum ^= static_cast<unsigned char>(bytes[i]);
+            for (int bit = 0; bit < 8; ++bit)
+                sum = sum >> 1 ^ (sum & 1u ? 0xedb88320u : 0u);
+        }
+        sum = ~sum;
+        for (int i = 0; i < 4; ++i)
+            bytes[29 + static_cast<std::size_t>(i)] = static_cast<char>(sum >> (24 - 8 * i));
+        return bytes;
+    };
+    const auto faultOfPicture = [&](const std::string& bytes)
+    {
+        _folder.write("lying.png", bytes);
+        return faultOf(
+            _folder.write("doc.kml", kml(groundOverlay("lying.png", latLonBox(7.0, 45.0, 8.0, 46.0))))
+                .string());
+    };
+    rusage before{};
+    getrusage(RUSAGE_SELF, &before);
+    const std::string huge = faultOfPicture(withSize(100000, 100000));
+    EXPECT_TRUE(contains(huge, "lying.png: it says that it has 100000 × 100000 pixels")) << huge;
+    EXPECT_TRUE(contains(huge, "gdaladdo")) << huge;
+    const std::string lying = faultOfPicture(withSize(30000, 30000));
+    EXPECT_TRUE(contains(lying, "lying.png: its pixels cannot be read")) << lying;
+    const std::string cut = faultOfPicture(whole.substr(0, whole.size() / 2));
+    EXPECT_TRUE(contains(cut, "lying.png")) << cut;
+    rusage after{};
+    getrusage(RUSAGE_SELF, &after);
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 128 * 1024) << "KiB";
+}
+
+TEST_F(OverlayReaderTest, WhatDoesNotFitIsLeftOutAndTold)
+{
+    std::string features;
+    for (int i = 0; i < 6; ++i)
+        features += groundOverlay("files/ramp.png", latLonBox(7.0, 45.0, 7.01, 45.006));
+    OverlayReader::Options options;
+    options.maxTexels = 2.5 * 256 * 256;
+    ASSERT_TRUE(read(archive(features), options));
+    EXPECT_EQ(_reader.overlays.size(), 3u);
+    ASSERT_EQ(_reader.notices.size(), 1u);
+    EXPECT_TRUE(contains(_reader.notices[0], "3 of its 6 ground overlays are left out"))
+        << _reader.notices[0];
+}

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Ways of GPX, KML and other vector data, with their heights and altitude modes. GDAL's drivers GPX, LIBKML and GeoJSON write files,
+// too.
+#include <osgGeoFX/geodata/RouteVectors.h>
+#include <tools/KmlFiles.h>
+#include <tools/TempDir.h>
+
+#include <ogrsf_frmts.h>
+
+#include <memory>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+class RouteVectorsTest : public ::testing::Test
+{
+protected:
+    static std::vector<RoutePath> readAll(const std::string& file, const std::string& layer = {})
+    {
+        std::vector<RoutePath> routes;
+        std::string error;
+        EXPECT_TRUE(RouteVectors::read(file, layer, routes, error)) << error;
+        return routes;
+    }
+    std::vector<RoutePath> readKml(const std::string& features)
+    {
+        return readAll(_folder.write("doc.kml", kml(features)).string());
+    }
+    static std::string faultOf(const std::string& file, const std::string& layer = {})
+    {
+        std::vector<RoutePath> routes(1);
+        std::string error;
+        EXPECT_FALSE(RouteVectors::read(file, layer, routes, error));
+        EXPECT_EQ(routes.size(), 1u) << "unchanged";
+        EXPECT_TRUE(!error.empty() && error.back() == '.') << error;
+        return error;
+    }
+    static std::string placemark(const std::string& content)
+    {
+        return "<Placemark><name>way</name>" + content + "</Placemark>";
+    }
+    static std::string line(const std::string& more,
+                            const std::string& coordinates = "7,45,1000 7.1,45.1,1200")
+    {
+        return "<LineString>" + more + "<coordinates>" + coordinates + "</coordinates></LineString>";
+    }
+    /// A layer of lines written by one of GDAL's drivers.
+    std::string written(const char* format, const std::string& name, const std::string& wkt,
+                        std::vector<const char*> layerOptions = {})
+    {
+        GDALAllRegister();
+        const std::string file = (_folder / name).string();
+        GDALDataset* const dataset = GetGDALDriverManager()->GetDriverByName(format)->Create(
+            file.c_str(), 0, 0, 0, GDT_Unknown, nullptr);
+        EXPECT_TRUE(dataset);
+        OGRSpatialReference degrees;
+        degrees.importFromEPSG(4326);
+        degrees.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+        layerOptions.push_back(nullptr);
+        OGRLayer* const layer = dataset->CreateLayer(
+            "ways", &degrees, std::string(format) == "GPX" ? wkbLineString25D : wkbUnknown,
+            const_cast<char**>(layerOptions.data()));
+        EXPECT_TRUE(layer);
+        OGRFieldDefn field("name", OFTString);
+        if (layer->GetLayerDefn()->GetFieldIndex("name") < 0) layer->CreateField(&field);
+        OGRFeature feature(layer->GetLayerDefn());
+        feature.SetField("name", "way");
+        OGRGeometry* geometry = nullptr;
+        OGRGeometryFactory::createFromWkt(wkt.c_str(), nullptr, &geometry);
+        feature.SetGeometryDirectly(geometry);
+        EXPECT_EQ(layer->CreateFeature(&feature), OGRERR_NONE);
+        GDALClose(dataset);
+        return file;
+    }
+
+    TempDir _folder;
+};
+
+const std::string gpx =
+    R"(<?xml version="1.0"?><gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">
+<wpt lat="45" lon="7"><name>a point</name></wpt>
+<rte><name>plan</name><rtept lat="45" lon="7"/><rtept lat="45.1" lon="7.1"><ele>5</ele></rtept></rte>
+<trk><name>walk</name><trkseg><trkpt lat="45" lon="7"><ele>100</ele></trkpt><trkpt lat="45.1" lon="7.1"><ele>0</ele></trkpt></trkseg>
+<trkseg><trkpt lat="46" lon="7"/><trkpt lat="46.1" lon="7.1"><ele>5</ele></trkpt><trkpt lat="46.2" lon="7.1"/></trkseg>
+<trkseg><trkpt lat="46" lon="7"/></trkseg></trk></gpx>)";
+
+} // namespace
+
+TEST_F(RouteVectorsTest, GpxHasRoutesAndTheSegmentsOfTracks)
+{
+    const std::string file = _folder.write("walk.gpx", gpx).string();
+    const std::vector<RoutePath> routes = readAll(file);
+    ASSERT_EQ(routes.size(), 3u) << "a segment of one point is no way";
+    EXPECT_EQ(routes[0].name, "plan");
+    EXPECT_TRUE(routes[0].wayPoints);
+    EXPECT_EQ(routes[0].altitude, RoutePath::CLAMPED) << "not all of its points have a height";
+    EXPECT_EQ(routes[0].places[1], osg::Vec3d(7.1, 45.1, 0.0));
+    EXPECT_EQ(routes[1].name, "walk");
+    EXPECT_FALSE(routes[1].wayPoints);
+    // A height of 0 is one.
+    EXPECT_EQ(routes[1].altitude, RoutePath::ABSOLUTE);
+    EXPECT_EQ(routes[1].places[0], osg::Vec3d(7.0, 45.0, 100.0));
+    EXPECT_EQ(routes[2].altitude, RoutePath::CLAMPED);
+    EXPECT_EQ(routes[2].places.size(), 3u);
+    EXPECT_EQ(readAll(file, "routes").size(), 1u);
+    EXPECT_TRUE(contains(faultOf(file, "waypoints"), "\"waypoints\""));
+}
+
+TEST_F(RouteVectorsTest, KmlLinesHaveTheirAltitudeMode)
+{
+    const std::vector<RoutePath> routes = readKml(
+        placemark(line("")) + placemark(line("<altitudeMode>absolute</altitudeMode><extrude>1</extrude>")) +
+        placemark("<MultiGeometry>" + line("<altitudeMode>relativeToGround</altitudeMode>") +
+                  line("<altitudeMode>clampToGround</altitudeMode>") + "</MultiGeometry>"));
+    ASSERT_EQ(routes.size(), 4u);
+    EXPECT_EQ(routes[0].altitude, RoutePath::CLAMPED);
+    EXPECT_EQ(routes[0].places[0], osg::Vec3d(7.0, 45.0, 0.0)) << "heights of clamped lines mean nothing";
+    EXPECT_FALSE(routes[0].extruded);
+    EXPECT_EQ(routes[1].altitude, RoutePath::ABSOLUTE);
+    EXPECT_EQ(routes[1].places[1], osg::Vec3d(7.1, 45.1, 1200.0));
+    EXPECT_TRUE(routes[1].extruded);
+    EXPECT_EQ(routes[2].altitude, RoutePath::ABOVE_GROUND);
+    EXPECT_EQ(routes[3].altitude, RoutePath::CLAMPED);
+    for (const RoutePath& route : routes)
+        EXPECT_EQ(route.name, "way");
+}
+
+// GDAL does not tell the altitude mode of a track.
+TEST_F(RouteVectorsTest, KmlTracksHaveTheirAltitudeMode)
+{
+    const auto track = [](const std::string& more)
+    {
+        return "<gx:Track>" + more +
+               "<when>2020-01-01T00:00:00Z</when><when>2020-01-01T00:01:00Z</when><gx:coord>7 45 "
+               "1000</gx:coord>"
+               "<gx:coord>7.2 45 1100.5</gx:coord></gx:Track>";
+    };
+    const std::vector<RoutePath> routes =
+        readKml(placemark(track("<altitudeMode>absolute</altitudeMode>")) + placemark(track("")) +
+                placemark("<gx:MultiTrack><altitudeMode>absolute</altitudeMode>" + track("") + track("") +
+                          "</gx:MultiTrack>"));
+    ASSERT_EQ(routes.size(), 4u);
+    EXPECT_EQ(routes[0].altitude, RoutePath::ABSOLUTE);
+    EXPECT_EQ(routes[0].places[1], osg::Vec3d(7.2, 45.0, 1100.5));
+    EXPECT_EQ(routes[1].altitude, RoutePath::CLAMPED);
+    EXPECT_EQ(routes[2].altitude, RoutePath::ABSOLUTE);
+    EXPECT_EQ(routes[3].altitude, RoutePath::ABSOLUTE);
+}
+
+TEST_F(RouteVectorsTest, KmlColorsAreOwnOrShared)
+{
+    const std::vector<RoutePath> routes = readKml(
+        "<Style id=\"a\"><LineStyle><color>ff0000ff</color></LineStyle></Style>"
+        "<StyleMap id=\"m\"><Pair><key>normal</key><styleUrl>#a</styleUrl></Pair>"
+        "<Pair><key>highlight</key><styleUrl>#b</styleUrl></Pair></StyleMap>" +
+        placemark("<styleUrl>#m</styleUrl>" + line("")) +
+        placemark("<Style><LineStyle><color>80ff0000</color></LineStyle></Style>" + line("")) +
+        placemark(line("")) + "<Folder><visibility>0</visibility>" + placemark(line("")) + "</Folder>");
+    ASSERT_EQ(routes.size(), 3u) << "what is switched off is left out";
+    EXPECT_EQ(routes[0].color, osg::Vec4(1, 0, 0, 1));
+    EXPECT_EQ(routes[1].color, osg::Vec4(0, 0, 1, 128.0f / 255.0f));
+    EXPECT_FALSE(routes[2].color);
+}
+
+TEST_F(RouteVectorsTest, FilesOfGdalsDriversAreRead)
+{
+    const std::string wkt = "LINESTRING Z (7 45 1000,7.1 45.1 1200)";
+    const std::vector<RoutePath> track = readAll(written("GPX", "a.gpx", wkt, {"FORCE_GPX_TRACK=YES"}));
+    ASSERT_EQ(track.size(), 1u);
+    EXPECT_EQ(track[0].altitude, RoutePath::ABSOLUTE);
+    EXPECT_EQ(track[0].places[1], osg::Vec3d(7.1, 45.1, 1200.0));
+    // LIBKML writes no altitude mode: such lines are clamped.
+    for (const char* const name : {"a.kml", "a.kmz"})
+    {
+        const std::vector<RoutePath> kmlWay = readAll(written("LIBKML", name, wkt));
+        ASSERT_EQ(kmlWay.size(), 1u) << name;
+        EXPECT_EQ(kmlWay[0].places[1].x(), 7.1);
+        EXPECT_EQ(kmlWay[0].name, "way");
+    }
+    const std::vector<RoutePath> high = readAll(written("GeoJSON", "high.geojson", wkt));
+    EXPECT_EQ(high.at(0).altitude, RoutePath::ABSOLUTE);
+    EXPECT_EQ(high.at(0).places[0].z(), 1000.0);
+    const std::vector<RoutePath> flat =
+        readAll(written("GeoJSON", "flat.geojson", "MULTILINESTRING ((7 45,7.1 45.1),(8 45,8 46))"));
+    EXPECT_EQ(flat.size(), 2u);
+    EXPECT_EQ(flat.at(0).altitude, RoutePath::CLAMPED);
+}
+
+TEST_F(RouteVectorsTest, WhatCannotBeReadIsTold)
+{
+    EXPECT_TRUE(
+        contains(faultOf(_folder.write("cut.gpx", gpx.substr(0, gpx.size() / 2)).string()), "cut.gpx: "));
+    EXPECT_TRUE(contains(faultOf(_folder.write("no.gpx", "<gpx/>").string()), "no.gpx: "));
+    EXPECT_TRUE(contains(faultOf((_folder / "none.gpx").string()), "none.gpx: "));
+    EXPECT_TRUE(
+        contains(faultOf(_folder.write("none.kml", kml(groundOverlay("", latLonBox(7, 45, 8, 46)))).string()),
+                 "none.kml: it has no way"));
+    EXPECT_TRUE(
+        contains(faultOf(_folder.write("a.kml", kml("\n" + placemark(line("", "7,45 7,95")))).string()),
+                 "a.kml:3: the place \"7,95\""));
+    EXPECT_TRUE(contains(faultOf(_folder.write("a.kml", kml(placemark(line("", "7,45 here")))).string()),
+                         "\"here\""));
+}
