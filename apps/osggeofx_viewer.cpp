@@ -47,6 +47,8 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--fov <degrees>", "Vertical field of view (default: the scene's, or 30).");
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
                                "Add an effect to the scene's, as in osggeofx_render; as often as wanted.");
+    usage.addCommandLineOption(
+        "--exact-mappings", "Draw mappings anew in each frame instead of composing beforehand what rests.");
     usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
     usage.addCommandLineOption("--labels <file>",
                                "Show the names of a vector file, FILE or FILE:LAYER; as often as wanted.");
@@ -118,6 +120,7 @@ int main(int argc, char** argv)
     const osg::ref_ptr<osgDB::Options> reading =
         arguments.read("--allow-outside") ? new osgDB::Options("allowOutside") : nullptr;
     const bool sky = arguments.read("--sky");
+    const bool exactMappings = arguments.read("--exact-mappings");
     geofx::names::Options nameOptions;
     while (arguments.read("--labels", text))
         nameOptions.files.push_back(text);
@@ -183,6 +186,7 @@ int main(int argc, char** argv)
     if (sky && !scene->addSky(error)) return refuse("--sky: " + error);
     for (const auto& effect : effects)
         scene->effects->addEffect(effect);
+    if (!exactMappings) geofx::viewer::composeMappings(*scene->effects);
     scene->effects->listenTo(*scene->guard);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
     if (const std::string fault = geofx::names::faultOf(nameOptions, arguments[1]); !fault.empty())
