@@ -285,6 +285,7 @@ public:
             figure.remark = remark;
             figures.push_back(figure);
             if (route) figures.push_back(againstList(*mappings, times[0]));
+            figures.push_back(cached(row, route));
         }
         return figures;
     }
@@ -319,6 +320,43 @@ public:
         return figures;
     }
 
+    /// The same with pages: at rest, while one mapping moves, and on a flight.
+    std::vector<Figure> manyCached()
+    {
+        announce("drawing 100 and 10,000 mappings by pages");
+        const osg::ref_ptr<ProjectiveMappings> few = manyMappings(100);
+        const osg::ref_ptr<ProjectiveMappings> many = manyMappings(_smoke ? 1000 : 10000);
+        few->setCaching(ProjectiveMappings::AUTOMATIC);
+        many->setCaching(ProjectiveMappings::AUTOMATIC);
+        // Units of their own: a set whose units change when the other one is switched off makes its pages anew.
+        few->setUnits(8, 9, 10);
+        few->setCacheUnits(11, 12);
+        many->setUnits(13, 14, 15);
+        many->setCacheUnits(16, 17);
+        show(61756, *few);
+        _scene->addEffect(many);
+        const auto show100 = [&]
+        {
+            few->setEnabled(true);
+            many->setEnabled(false);
+        };
+        const auto showMany = [&]
+        {
+            few->setEnabled(false);
+            many->setEnabled(true);
+        };
+        show100();
+        settle(*few);
+        showMany();
+        settle(*many);
+        const std::vector<double> times = takeTurns({show100, showMany}, _rounds);
+        picture("many-cached");
+        Figure figure{"cached-many", "the same by pages", "", Bound::AtLeast, 0.95};
+        figure.measured = times[0] / times[1];
+        figure.remark = milliseconds("100: ", times[0]) + milliseconds(", 10,000: ", times[1]);
+        return {figure, movingOne(*many), flight(*many)};
+    }
+
     std::vector<Figure> huge()
     {
         announce("setting up 100,000 mappings");
@@ -332,16 +370,140 @@ public:
             times.push_back(1000.0 * _view->frame());
         picture("huge");
         const ProjectiveMappings::Capacity capacity = mappings->capacity();
+        const Figure pages = hugeCached();
         Figure time{"huge-time", "time from 100,000 mappings to their first frame", "seconds"};
         time.measured = setUp;
         time.remark = milliseconds("a frame then takes ", median(times));
         Figure memory{"huge-memory", "memory of 100,000 mappings and their grid on the GPU", "MiB"};
         memory.measured = capacity.texelsUsed / 65536.0;
         memory.remark = std::to_string(capacity.mappingsLeftOut) + " mappings left out";
-        return {time, memory};
+        return {time, memory, pages};
     }
 
 private:
+    /// Draws until all pages are there.
+    void settle(ProjectiveMappings& mappings)
+    {
+        for (int i = 0; i < 2000; ++i)
+        {
+            _view->frame();
+            const ProjectiveMappings::CacheStatistics now = mappings.cacheStatistics();
+            if (now.settled && now.reason.empty()) return;
+            if (i > 2 && now.reason != "pages are being drawn" && !now.reason.empty())
+                throw BenchError("The pages of mappings are not used, since " + now.reason + ".");
+        }
+        throw BenchError("The pages of mappings are never all drawn.");
+    }
+
+    /// A row of Table 1 with pages, over the same without mappings.
+    Figure cached(const Row& row, bool route)
+    {
+        const osg::ref_ptr<ProjectiveMappings> mappings = mappingsOf(row);
+        mappings->setCaching(ProjectiveMappings::AUTOMATIC);
+        show(_smoke ? std::min(row.vertices, 1000) : row.vertices, *mappings);
+        settle(*mappings);
+        const std::vector<double> times = takeTurns({[&] { mappings->setEnabled(false); },
+                                                     [&]
+                                                     {
+                                                         mappings->setEnabled(true);
+                                                     }},
+                                                    _rounds);
+        picture(std::string("cached-") + row.figure);
+        const std::string name = std::string("cached-") + row.figure;
+        Figure figure{name, "the same by pages of composed mappings", "", Bound::AtLeast, route ? 0.9 : 0.8};
+        figure.measured = times[0] / times[1];
+        const ProjectiveMappings::CacheStatistics pages = mappings->cacheStatistics();
+        figure.remark = milliseconds("with pages ", times[1]) +
+                        milliseconds(", without mappings ", times[0]) +
+                        ", pages: " + std::to_string(pages.pagesUsed);
+        return figure;
+    }
+
+    Figure hugeCached()
+    {
+        const osg::ref_ptr<ProjectiveMappings> mappings = manyMappings(_smoke ? 2000 : 100000);
+        mappings->setCaching(ProjectiveMappings::AUTOMATIC);
+        show(61756, *mappings);
+        settle(*mappings);
+        const std::vector<double> times = takeTurns({[&] { mappings->setEnabled(false); },
+                                                     [&]
+                                                     {
+                                                         mappings->setEnabled(true);
+                                                     }},
+                                                    _rounds);
+        Figure figure{"cached-huge", "frames a second with 100,000 mappings by pages over those without", "",
+                      Bound::AtLeast, 0.85};
+        figure.measured = times[0] / times[1];
+        figure.remark = milliseconds("with pages ", times[1]) + milliseconds(", without mappings ", times[0]);
+        return figure;
+    }
+
+    /// One of many mappings goes on in each frame.
+    Figure movingOne(ProjectiveMappings& mappings)
+    {
+        ProjectiveMapping* mapping = mappings.getMapping(mappings.getNumMappings() / 2);
+        mapping->setCenter({0.0, -500.0});
+        settle(mappings);
+        bool moves = false;
+        const std::uint64_t before = mappings.cacheStatistics().exactFrames;
+        std::vector<double> resting, moving;
+        for (int i = 0; i < 4 * _rounds; ++i)
+        {
+            // Each frame after a move would be drawn as it is after a rest; so both have their turns.
+            moves = !moves;
+            if (moves) mapping->setCenter(mapping->getCenter() + osg::Vec2d(3.0, 2.0));
+            (moves ? moving : resting).push_back(1000.0 * _view->frame());
+        }
+        Figure figure{"cached-moving",
+                      "frames a second while one of 10,000 mappings moves over those at rest, by pages", "",
+                      Bound::AtLeast, 0.8};
+        figure.measured = median(resting) / median(moving);
+        figure.remark =
+            milliseconds("resting ", median(resting)) + milliseconds(", moving ", median(moving)) +
+            ", frames without pages: " + std::to_string(mappings.cacheStatistics().exactFrames - before);
+        return figure;
+    }
+
+    /// A flight at 100 m/s, thirty frames a second, with mappings and without.
+    Figure flight(ProjectiveMappings& mappings)
+    {
+        const osg::Matrixd view = _view->camera().getViewMatrix();
+        const int count = _smoke ? 4 : 150;
+        const auto look = [&](int i)
+        {
+            const osg::Vec3d eye(-300.0, -4500.0 + 100.0 / 30.0 * i, 1200.0);
+            _view->camera().setViewMatrixAsLookAt(eye, eye + osg::Vec3d(100.0, 2500.0, -1100.0),
+                                                  osg::Vec3d(0.0, 0.0, 1.0));
+        };
+        look(0);
+        mappings.setEnabled(true);
+        settle(mappings);
+        const std::uint64_t before = mappings.cacheStatistics().exactFrames;
+        std::vector<double> with, without;
+        for (int i = 0; i < count; ++i)
+        {
+            look(i);
+            mappings.setEnabled(true);
+            with.push_back(1000.0 * _view->frame());
+            mappings.setEnabled(false);
+            without.push_back(1000.0 * _view->frame());
+        }
+        mappings.setEnabled(true);
+        _view->camera().setViewMatrix(view);
+        Figure figure{"cached-flight",
+                      "frames a second on a flight over 10,000 mappings by pages over those without", "",
+                      Bound::AtLeast, 0.7};
+        figure.measured = median(without) / median(with);
+        char worst[40];
+        std::snprintf(worst, sizeof worst, "%.2f",
+                      *std::max_element(with.begin(), with.end()) / median(with));
+        figure.remark =
+            milliseconds("with pages ", median(with)) + milliseconds(", without ", median(without)) +
+            ", longest over median " + worst +
+            ", frames without pages: " + std::to_string(mappings.cacheStatistics().exactFrames - before);
+        return figure;
+    }
+
     void show(int vertices, ProjectiveMappings& mappings)
     {
         while (_scene->getNumEffects() > 0)
@@ -458,6 +620,7 @@ std::vector<Figure> run(const Settings& settings)
     };
     if (settings.wants("table")) add(bench.table());
     if (settings.wants("many")) add(bench.many());
+    if (settings.wants("pages")) add(bench.manyCached());
     if (settings.wants("huge")) add(bench.huge());
     return figures;
 }
@@ -469,8 +632,8 @@ Suite mappingSuite()
     return {"mapping",
             "Draws projective mappings: the paper's Table 1 and its loop against the grid (table), 10,000 "
             "against 100 "
-            "and edits (many), 100,000 (huge)",
-            {"table", "many", "huge"},
+            "and edits (many), the same by pages, one that moves and a flight (pages), 100,000 (huge)",
+            {"table", "many", "pages", "huge"},
             run};
 }
 

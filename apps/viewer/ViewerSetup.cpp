@@ -6,6 +6,7 @@
 
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/map/MapKeys.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/paging/MemoryBudget.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/scene/TilePrefetch.h>
@@ -106,6 +107,15 @@ void selectPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::E
 }
 
 } // namespace
+
+void composeMappings(osgGeoFX::EffectScene& scene)
+{
+    for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+    {
+        auto* mappings = dynamic_cast<osgGeoFX::ProjectiveMappings*>(scene.getEffect(i));
+        if (mappings) mappings->setCaching(osgGeoFX::ProjectiveMappings::AUTOMATIC);
+    }
+}
 
 void setUpPaging(const Paging& paging, osgDB::DatabasePager& pager, const osgGeoFX::Scene& scene)
 {

@@ -22,6 +22,9 @@ osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> makeManipulators(osg::ArgumentPa
 /// Panorama maps begin with the manipulator that is made for them, unless a path is played.
 void addPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::EffectScene& scene);
 
+/// Lets all mappings of a scene be composed beforehand.
+void composeMappings(osgGeoFX::EffectScene& scene);
+
 /// What the command line says of tiles that are not in memory.
 struct Paging
 {

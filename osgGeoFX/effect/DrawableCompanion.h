@@ -21,6 +21,9 @@ public:
     virtual osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) = 0;
     /// The state of the companion. It inherits the effects' uniforms, but nothing of the drawable's own state set.
     virtual osg::StateSet* state() = 0;
+    /// Whether companion() gets the matrix of where a drawable stands on the undeformed ground, although it may be drawn
+    /// elsewhere as a rigid whole. False by default.
+    virtual bool standing() const { return false; }
     /// The largest distance, pixels, by which the companion extends beyond the drawable's own part of the image.
     virtual double reach() const { return 0.0; }
 

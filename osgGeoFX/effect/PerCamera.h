@@ -49,6 +49,15 @@ public:
     }
     Data& of(Owner& owner, const osg::Group& scene) { return of(owner, &scene); }
 
+    /// Calls an action with the data of each.
+    template<class Action>
+    void each(const Action& action) const
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto& [key, camera] : _all)
+            action(static_cast<const Data&>(camera->data));
+    }
+
     void releaseGLObjects(osg::State* state) const
     {
         const std::lock_guard<std::mutex> lock(_mutex);

@@ -3,8 +3,10 @@
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 
 #include <osgGeoFX/effect/DeformationChain.h>
+#include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/effect/detail/GlobeFrame.h>
+#include <osgGeoFX/mapping/detail/CameraPages.h>
 #include <osgGeoFX/mapping/detail/GpuMappings.h>
 
 #include <glm/glm.hpp>
@@ -69,6 +71,10 @@ public:
         osg::ref_ptr<GpuStore> store;
         std::size_t turn = 0;
         CameraList list;
+        CameraPages pages;
+
+        void releaseGLObjects(osg::State* state) { pages.releaseGLObjects(state); }
+        void resizeGLObjectBuffers(unsigned int size) { pages.resizeGLObjectBuffers(size); }
     };
 
     /// The mappings as they lie on a ground. One for each ground that some camera sees them on, and for the last one in any
@@ -158,10 +164,44 @@ bool isPowerOfTwo(int value)
 
 } // namespace
 
-ProjectiveMappings::ProjectiveMappings() : _drawing(std::make_unique<Drawing>()) {}
+/// Mappings as an effect that draws more than the scene: the pages.
+class ProjectiveMappings::Pages : public PassEffect
+{
+public:
+    explicit Pages(Drawing& drawing) : _drawing(drawing) {}
+
+    osg::Object* cloneType() const override { return nullptr; }
+    osg::Object* clone(const osg::CopyOp&) const override { return nullptr; }
+    const char* libraryName() const override { return "osgGeoFX"; }
+    const char* className() const override { return "ProjectiveMappings::Pages"; }
+    const Properties& properties() const override
+    {
+        static const Properties none;
+        return none;
+    }
+
+    DrawableCompanion* companion(const ScenePass& pass) override
+    {
+        return pass.within() ? nullptr : &_drawing.cameras.of(pass.state).pages.watch();
+    }
+    void cull(const ScenePass& pass) override
+    {
+        _drawing.cameras.of(pass.state).pages.draw(pass, pass.units[3], pass.units[4]);
+    }
+
+protected:
+    ~Pages() override = default;
+
+private:
+    Drawing& _drawing;
+};
+
+ProjectiveMappings::ProjectiveMappings() : _drawing(std::make_unique<Drawing>()), _pages(new Pages(*_drawing))
+{
+}
 
 ProjectiveMappings::ProjectiveMappings(const ProjectiveMappings& other, const osg::CopyOp& copy)
-    : SurfaceEffect(other, copy), _drawing(std::make_unique<Drawing>())
+    : SurfaceEffect(other, copy), _drawing(std::make_unique<Drawing>()), _pages(new Pages(*_drawing))
 {
     for (const Property& property : ProjectiveMappings::properties())
         property.put(*this, property.get(other));
@@ -211,6 +251,16 @@ const Properties& ProjectiveMappings::properties() const
             Property::number("maxDataSize", "the most memory for the mappings' parameters", 0.001, 32000.0,
                              "MiB")
                 .of<&Self::_maxDataSize>(),
+            Property::choice("caching", "whether mappings are composed beforehand",
+                             {{"off", ""}, {"automatic", "into pages, where these can show the same"}})
+                .of<&Self::_caching>(),
+            Property::integer("cacheSize", "the largest texture of pages, for each camera", 1, 512, "MiB")
+                .of<&Self::_cacheSize>(),
+            Property::integer("pagesPerFrame", "the number of pages that are drawn in a frame at most", 1, 64)
+                .of<&Self::_pagesPerFrame>(),
+            TextureUnits::property("pageUnit", "the texture unit of the pages").of<&Self::_pageUnit>(),
+            TextureUnits::property("pageTableUnit", "the texture unit of the table of pages")
+                .of<&Self::_pageTableUnit>(),
         });
     return all;
 }
@@ -224,12 +274,22 @@ std::string ProjectiveMappings::inconsistency() const
 
 std::vector<TextureUnitWish> ProjectiveMappings::textureUnits() const
 {
-    return {{"dataUnit", _dataUnit, 8}, {"layerUnit", _layerUnit, 9}, {"tableUnit", _tableUnit, 10}};
+    std::vector<TextureUnitWish> wishes = {
+        {"dataUnit", _dataUnit, 8}, {"layerUnit", _layerUnit, 9}, {"tableUnit", _tableUnit, 10}};
+    if (_caching == OFF) return wishes;
+    wishes.push_back({"pageUnit", _pageUnit, 16});
+    wishes.push_back({"pageTableUnit", _pageTableUnit, 17});
+    return wishes;
 }
 
 osg::Vec3d ProjectiveMappings::placeOf(const osg::Vec3d& world, const osg::EllipsoidModel* ellipsoid) const
 {
-    const osg::Vec3d position = world * osg::Matrixd::inverse(frameToWorld(ellipsoid));
+    return placeOfPosition(world * osg::Matrixd::inverse(frameToWorld(ellipsoid)), ellipsoid);
+}
+
+osg::Vec3d ProjectiveMappings::placeOfPosition(const osg::Vec3d& position,
+                                               const osg::EllipsoidModel* ellipsoid) const
+{
     if (!ellipsoid) return position;
     const glsl::geofx_Exaggeration globe = globeOf(*ellipsoid, _origin.latitude);
     const glm::dvec3 p(position.x(), position.y(), position.z());
@@ -377,6 +437,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     };
     const GpuMappings::Frame frame = camera.gpu->commit(
         settings(ellipsoid), position, camera.list, _wholeList ? GpuMappings::Wanted(largeEnough) : nullptr);
+    camera.pages.skip();
     const MappingIndex::Root& root = frame.root;
     const auto start = static_cast<int>(camera.list.offset());
     if (root.block == 0 || (_wholeList && start == 0)) return false;
@@ -410,12 +471,74 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     }
     setUniform(state, prefix + "globe", osg::Uniform::FLOAT_VEC4, osg::Vec4(globe));
     setUniform(state, prefix + "curve", osg::Uniform::FLOAT_VEC4, osg::Vec4(curve));
+    if (_caching == OFF) return true;
+    CameraPages::Task task;
+    task.gpu = camera.gpu;
+    task.frame = frame;
+    // All effects see the view's eye space, whichever camera draws it.
+    task.plane.toEye = frameToEye;
+    task.plane.fromEye = eyeToFrame;
+    task.plane.globe = ellipsoid != nullptr;
+    task.plane.curvature = ellipsoid ? 1.0 / ellipsoid->getRadiusPolar() : 0.0;
+    task.plane.positionOf = [this, ellipsoid](const osg::Vec3d& place)
+    {
+        return positionOf(place, ellipsoid);
+    };
+    task.plane.placeOf = [this, ellipsoid](const osg::Vec3d& at)
+    {
+        return placeOfPosition(at, ellipsoid);
+    };
+    // The shorter side of a pixel.
+    const double across =
+        2.0 / std::max(std::abs(projection(0, 0)) * std::max(view.viewportWidth, 1.0), 1e-30);
+    task.plane.pixel = parallel ? 0.0 : std::min(span, across);
+    task.plane.pixelAnywhere = parallel ? std::min(span, across) : 0.0;
+    task.opacity = _opacity;
+    task.anisotropy = _anisotropy;
+    task.megabytes = _cacheSize;
+    task.pagesPerFrame = _pagesPerFrame;
+    if (_wholeList) task.obstacle = "wholeList is on";
+    if (_linear) task.obstacle = "linear is on";
+    camera.pages.begin(std::move(task), state, prefix);
     return true;
+}
+
+PassEffect* ProjectiveMappings::asPassEffect()
+{
+    return _caching == OFF ? nullptr : _pages.get();
+}
+
+ProjectiveMappings::CacheStatistics ProjectiveMappings::cacheStatistics() const
+{
+    CacheStatistics all;
+    bool first = true;
+    _drawing->cameras.each(
+        [&](const Drawing::Camera& camera)
+        {
+            const CacheStatistics one = camera.pages.statistics();
+            all.pages += one.pages;
+            all.pagesUsed += one.pagesUsed;
+            all.settled = (first || all.settled) && one.settled;
+            all.pagesDrawn += one.pagesDrawn;
+            all.texelsDrawn += one.texelsDrawn;
+            all.pagedFrames += one.pagedFrames;
+            all.exactFrames += one.exactFrames;
+            if (!one.reason.empty()) all.reason = one.reason;
+            first = false;
+        });
+    return all;
+}
+
+void ProjectiveMappings::resizeGLObjectBuffers(unsigned int size)
+{
+    SurfaceEffect::resizeGLObjectBuffers(size);
+    _drawing->cameras.resizeGLObjectBuffers(size);
 }
 
 void ProjectiveMappings::releaseGLObjects(osg::State* state) const
 {
     _drawing->each([&](GpuMappings& gpu) { gpu.releaseGLObjects(state); });
+    _drawing->cameras.releaseGLObjects(state);
 }
 
 } // namespace osgGeoFX

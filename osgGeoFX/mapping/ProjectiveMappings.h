@@ -9,7 +9,9 @@
 
 #include <osg/CoordinateSystemNode>
 
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace osgGeoFX
@@ -44,6 +46,15 @@ struct MappingSettings;
     **Limits.** The class itself has no limit. If the GPU cannot hold everything, the least important layers and
     mappings are left out (lowest `importance` first, then the smaller mappings). One warning names the limit, and
     capacity() counts what was left out.
+
+    **Caching.** With AUTOMATIC, what does not change is composed once, into pages of a texture, and a fragment pays for
+    one fetch of a page, whatever number of mappings lies over it. Pages are made in a stage before the scene, as many in a
+    frame as `pagesPerFrame` says. Until all are there the picture is drawn as without. Mappings that change are drawn into
+    the pages below them in the same frame; if that is too much, the frame is drawn as without until they rest. While the
+    camera moves, coarser pages may show for some frames. A settled picture is within 2/255 of the one without, edges
+    within a pixel, whichever way the camera came. What depends on more than the place (fades, heights, symbols in
+    pixels, pinholes), and blends other than a mix with the source's alpha, cannot be composed: a set with such a mapping
+    is drawn as without. So are close-ups and other passes. cacheStatistics() tells what is done, and why.
 
     **With other effects.** Mappings lie on the undeformed ground and bend with it. They color the ground in the
     scene's order of effects. A scene may have several ProjectiveMappings. A subgraph with the define
@@ -140,6 +151,43 @@ public:
     bool setMaxDataSize(double megabytes) { return assign("maxDataSize", megabytes); }
     double getMaxDataSize() const { return _maxDataSize; }
 
+    enum Caching
+    {
+        OFF,
+        AUTOMATIC ///< pages of composed mappings, where they can show the same
+    };
+    /// Whether mappings are composed beforehand. Default: OFF.
+    bool setCaching(Caching caching) { return assign("caching", caching); }
+    Caching getCaching() const { return static_cast<Caching>(_caching); }
+    /// The largest texture of pages, MiB, 1…512, for each camera. A picture that needs more is drawn without pages. A page of
+    /// 256² texels has a quarter of a MiB. Default: 128.
+    bool setCacheSize(int megabytes) { return assign("cacheSize", megabytes); }
+    int getCacheSize() const { return _cacheSize; }
+    /// The number of pages that are drawn in a frame at most, 1…64; four times as many while none are shown. Default: 2.
+    bool setPagesPerFrame(int pages) { return assign("pagesPerFrame", pages); }
+    int getPagesPerFrame() const { return _pagesPerFrame; }
+    /// The texture units of the pages and of their table, 4…31, different from all others. With the default, −1, the
+    /// scene chooses: 16 and 17 if they are free. Without caching there are none.
+    bool setCacheUnits(int pages, int table)
+    {
+        return assign({{"pageUnit", pages}, {"pageTableUnit", table}});
+    }
+    int getPageUnit() const { return _pageUnit; }
+    int getPageTableUnit() const { return _pageTableUnit; }
+
+    /// What has become of the pages, of all cameras together.
+    struct CacheStatistics
+    {
+        int pages = 0, pagesUsed = 0;  ///< of the textures
+        bool settled = false;          ///< the last frame of each camera had all pages that it needs
+        std::uint64_t pagesDrawn = 0;  ///< or parts of pages, since the beginning
+        std::uint64_t texelsDrawn = 0; ///< the same
+        std::uint64_t pagedFrames = 0; ///< frames that showed pages
+        std::uint64_t exactFrames = 0; ///< frames that did not
+        std::string reason;            ///< why the last frame did not; empty if it did
+    };
+    CacheStatistics cacheStatistics() const;
+
     /// The room on the GPU, the part of it in use, and the numbers of mappings and layers that the last frame left
     /// out.
     struct Capacity
@@ -161,6 +209,9 @@ public:
     std::vector<Varying> varyings() const override { return {{"vec3", "position"}, {"vec3", "place"}}; }
     std::vector<TextureUnitWish> textureUnits() const override;
     bool fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view) override;
+    using SurfaceEffect::asPassEffect;
+    PassEffect* asPassEffect() override;
+    void resizeGLObjectBuffers(unsigned int size) override;
     void releaseGLObjects(osg::State* state) const override;
 
 protected:
@@ -169,8 +220,10 @@ protected:
 
 private:
     class Drawing;
+    class Pages;
     using Mappings = std::vector<osg::ref_ptr<ProjectiveMapping>>;
     void propertyChanged(PropertyHolder& mapping) override;
+    osg::Vec3d placeOfPosition(const osg::Vec3d& position, const osg::EllipsoidModel* ellipsoid) const;
     MappingSettings settings(const osg::EllipsoidModel* ellipsoid) const;
 
     LocalOrigin _origin;
@@ -181,8 +234,13 @@ private:
     int _dataUnit = -1, _layerUnit = -1, _tableUnit = -1;
     int _pageSide = 2048, _maxPages = 64;
     double _maxDataSize = 2048.0;
+    int _caching = OFF;
+    int _cacheSize = 128;
+    int _pagesPerFrame = 2;
+    int _pageUnit = -1, _pageTableUnit = -1;
     Mappings _mappings;
     std::unique_ptr<Drawing> _drawing;
+    osg::ref_ptr<Pages> _pages;
 };
 
 } // namespace osgGeoFX

@@ -6,7 +6,13 @@
 // osgGeoFX/mapping/detail/MappingIndex.cpp the grid.
 #include "lib/mapping.glsl"
 
-#pragma import_defines(GEOFX_MAPPING_CHANNELS)
+#pragma import_defines(GEOFX_MAPPING_CHANNELS, GEOFX_IN_PASS)
+// All mappings come from pages, on which they were composed beforehand (osgGeoFX/mapping/detail/CameraPages.h). Passes
+// that draw the scene again may show other ground, and some show other mappings: they go through the mappings themselves.
+#pragma import_defines(SLOT_PAGES, SLOT_PAGE_BASE)
+#if defined(SLOT_PAGES) && !defined(GEOFX_MAPPING_CHANNELS) && !defined(GEOFX_IN_PASS) && !defined(SLOT_COMPOSE)
+#define SLOT_PAGED
+#endif
 // What some of the mappings need; MappingRecord.h lists these defines. Code that no mapping needs is left out, since
 // compilers of CPUs run through all branches.
 #pragma import_defines(SLOT_COLORS, SLOT_VALUES, SLOT_CLASSES)
@@ -30,6 +36,37 @@ uniform vec3 SLOT_quality; // probes at most; one over the pages' and tables' si
 in vec3 SLOT_position;
 in vec3 SLOT_place;
 
+#ifdef SLOT_PAGED
+uniform sampler2D SLOT_pageTable; // osgGeoFX/mapping/detail/PageTable.h
+uniform sampler2D SLOT_pages;      // colors times opacities, and opacities
+uniform vec3 SLOT_pageFrame;  // the place of the origin, in the table's squares; one over their side
+uniform vec3 SLOT_pageWindow; // the middle of the square from which squares count, in the table; the width of one
+uniform vec4 SLOT_pageShape;  // the sides of a slot and of a page without its border, in the texture of pages
+uniform vec2 SLOT_pageStart;  // the border
+#ifdef SLOT_PAGE_BASE
+// A mapping below all others that changes the scene's own color alike everywhere.
+uniform vec4 SLOT_baseRed;
+uniform vec4 SLOT_baseGreen;
+uniform vec4 SLOT_baseBlue;
+uniform float SLOT_baseStrength;
+#endif
+
+vec4 SLOT_color(vec4 color)
+{
+    vec2 p = SLOT_place.xy * SLOT_pageFrame.z + SLOT_pageFrame.xy;
+    // The table's texel, at its middle. What lies beyond is blank, as its outermost texels are.
+    vec3 word = texture(SLOT_pageTable, floor(p) * SLOT_pageWindow.z + SLOT_pageWindow.xy).xyz * 255.0 + 0.5;
+    vec2 within = fract(p * intBitsToFloat(int(word.z) << 23));
+    vec4 page = texture(SLOT_pages, floor(word.xy) * SLOT_pageShape.xy + (within * SLOT_pageShape.zw + SLOT_pageStart));
+    vec3 below = color.rgb;
+#ifdef SLOT_PAGE_BASE
+    vec4 rgb = vec4(below, 1.0);
+    vec3 changed = vec3(dot(SLOT_baseRed, rgb), dot(SLOT_baseGreen, rgb), dot(SLOT_baseBlue, rgb));
+    below = mix(below, clamp(changed, 0.0, 1.0), SLOT_baseStrength);
+#endif
+    return vec4(below * (1.0 - page.a) + page.rgb, color.a);
+}
+#else
 const uint SLOT_block = 0x80000000u;
 
 uint SLOT_word(uvec4 words, uint which)
@@ -365,6 +402,9 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 color, SLOT_Fragment fragment)
     if (strength <= 0.0) return color;
 
     uint sourceOf = (codes >> 12u) & 3u;
+#ifdef SLOT_COMPOSE
+    if (sourceOf == 2u) return color; // which the scene's color must be known for
+#endif
     uint alphaOf = (codes >> 14u) & 3u;
     vec4 constant = vec4(0.0);
     vec4 range = vec4(0.0, 1.0, 0.0, 1.0);
@@ -457,7 +497,11 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 color, SLOT_Fragment fragment)
     }
 #endif
     // The usual case: source over destination.
+#ifdef SLOT_COMPOSE
+    return mix(color, vec4(source.rgb, 0.0), strength * source.a); // alpha: the share of what lies below
+#else
     return vec4(mix(color.rgb, source.rgb, strength * source.a), color.a);
+#endif
 }
 
 vec4 SLOT_color(vec4 color)
@@ -493,3 +537,4 @@ vec4 SLOT_color(vec4 color)
     } while (i < count);
     return color;
 }
+#endif

@@ -127,6 +127,46 @@ TEST_F(MappingThreads, AllModelsDrawTheSame)
     }
 }
 
+TEST_F(MappingThreads, EachViewHasItsPages)
+{
+    const osg::Vec3d eyes[] = {{0.0, -150.0, 250.0}, {100.0, 50.0, 200.0}};
+    Pictures expected;
+    for (const auto model : ThreadedViews::models)
+    {
+        SCOPED_TRACE("threading model " + std::to_string(model));
+        Random random(6);
+        const osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
+        mappings->setCaching(ProjectiveMappings::AUTOMATIC);
+        for (int i = 0; i < 60; ++i)
+            mappings->addMapping(makeOne(random));
+        const osg::ref_ptr<EffectScene> scene = sceneOf(mappings);
+        ThreadedViews views(model);
+        for (const osg::Vec3d& eye : eyes)
+            views.add(scene, *cameraAt(eye));
+        views.realize();
+        // One moves, and comes to rest.
+        for (int i = 0; i < 40; ++i)
+        {
+            mappings->getMapping(7)->setCenter({5.0 * i - 100.0, 3.0 * i - 80.0});
+            views.frame();
+        }
+        for (int i = 0; i < 100 && !mappings->cacheStatistics().settled; ++i)
+            views.frame();
+        const Pictures both = views.pictures();
+        EXPECT_EQ(mappings->cacheStatistics().reason, "");
+        EXPECT_GT(mappings->cacheStatistics().pagedFrames, 0u);
+        for (std::size_t i = 0; i < 2; ++i)
+        {
+            ASSERT_TRUE(both[i]);
+            if (expected.size() < 2)
+                expected.push_back(both[i]);
+            else
+                EXPECT_EQ(differing(*both[i], *expected[i]), 0) << i;
+        }
+    }
+    EXPECT_GT(differing(*expected[0], *expected[1]), WIDTH * HEIGHT / 4);
+}
+
 TEST_F(MappingThreads, EachViewDrawsWhatOneAloneDraws)
 {
     Random random(5);

@@ -522,6 +522,25 @@ TEST_F(EffectPairs, MappingsInCloseUps)
     expectPair(makeMappings(), closeUps, expected, 0.004);
 }
 
+// What draws the scene again goes through the mappings themselves; the scene has their pages.
+TEST_F(EffectPairs, PagesOfMappingsBesidePasses)
+{
+    const Effects others = {makeCloseUps({makeRectangle({100.0, -200.0}, 500.0)}), makeProjection()};
+    for (const osg::ref_ptr<Effect>& other : others)
+    {
+        SCOPED_TRACE(other->className());
+        const Picture expected = picture({makeMappings(), other}, _ground);
+        const osg::ref_ptr<ProjectiveMappings> paged = makeMappings();
+        paged->setCaching(ProjectiveMappings::AUTOMATIC);
+        Picture drawn = picture({paged, other}, _ground);
+        for (int i = 0; i < 100 && paged->cacheStatistics().pagedFrames < 2; ++i)
+            drawn = draw();
+        EXPECT_EQ(paged->cacheStatistics().reason, "");
+        EXPECT_GE(paged->cacheStatistics().pagedFrames, 2u);
+        expectSame(drawn, expected, 0.004, 3, "by pages");
+    }
+}
+
 TEST_F(EffectPairs, TwoSetsOfMappings)
 {
     const std::vector<osg::ref_ptr<ProjectiveMapping>> mappings = {

@@ -133,6 +133,9 @@ GpuMappings::Frame GpuMappings::commit(const Settings& settings, const PositionO
     _layers.update();
     _tables.update();
     _records.update(positionOf);
+    for (ProjectiveMapping* mapping : _changes.repainted)
+        _records.repaint(*mapping);
+    _changes.repainted.clear();
     _changes.mappings.clear();
     _changes.roomMade = false;
     warnOfLimits();
@@ -140,7 +143,28 @@ GpuMappings::Frame GpuMappings::commit(const Settings& settings, const PositionO
     if (wanted) _records.fill(list, wanted);
     const std::uint64_t number = _store->commit(_records.arena(), std::move(_changes.uploads));
     _changes.uploads = {};
-    return {number, _records.index().root(), _records.index().longestList(), _records.features(), _store};
+    Frame frame;
+    frame.number = number;
+    frame.root = _records.index().root();
+    frame.longestList = _records.index().longestList();
+    frame.features = _records.features();
+    frame.store = _store;
+    frame.exact = _records.exact();
+    if (const ProjectiveMapping* base = _records.base())
+    {
+        const std::optional<PlaneFootprint> outline = base->outline();
+        if (outline) frame.base = {base->getTransfer()->effectiveMatrix(), base->getOpacity(), *outline};
+        if (!outline) ++frame.exact;
+    }
+    return frame;
+}
+
+std::optional<std::vector<PlaneBox>> GpuMappings::changedSince(std::uint64_t& number) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    std::optional<std::vector<PlaneBox>> boxes = _records.changes().since(number);
+    number = _records.changes().number();
+    return boxes;
 }
 
 void GpuMappings::release(CameraList& list)

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <optional>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -60,11 +62,23 @@ public:
         std::size_t longestList = 0;
         std::uint32_t features = 0;
         osg::ref_ptr<GpuStore> store;
+        int exact = 0;                ///< the number of mappings that cannot be drawn beforehand
+        std::optional<PageBase> base; ///< below all others
     };
     /// Works in all changes. With `wanted`, it also replaces the camera's list by one of the wanted mappings.
     /// Without, the camera has no list.
     Frame commit(const Settings& settings, const PositionOf& positionOf, CameraList& list,
                  const Wanted& wanted);
+    /// Where the picture of the mappings has changed since a commit, and the number for the next call. Nothing for
+    /// everywhere.
+    std::optional<std::vector<PlaneBox>> changedSince(std::uint64_t& number) const;
+    /// Calls an action with the grid, which does not change in the meantime.
+    template<class Action>
+    void withIndex(const Action& action) const
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        action(_records.index());
+    }
     /// Gives the texels of a list back.
     void release(CameraList& list);
     ProjectiveMappings::Capacity capacity() const;

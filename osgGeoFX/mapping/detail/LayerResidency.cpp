@@ -92,6 +92,7 @@ void LayerResidency::update()
         const bool moved = updateLayer(*layer);
         if (moved || differs || !layer->seen)
             _changes.mappings.insert(layer->users.begin(), layer->users.end());
+        _changes.repainted.insert(layer->users.begin(), layer->users.end());
         layer->seen = true;
         layer->revision = data.revision();
         layer->imageCount = imageCountOf(data);

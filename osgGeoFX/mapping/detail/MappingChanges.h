@@ -14,6 +14,8 @@ namespace osgGeoFX
 struct MappingChanges
 {
     std::unordered_set<ProjectiveMapping*> mappings; ///< those whose records must be written anew
+    /// Those whose layers have other pixels in the same place.
+    std::unordered_set<ProjectiveMapping*> repainted;
     /// Room was made: layers and mappings that were left out are tried again.
     bool roomMade = false;
     GpuStore::Commit uploads;

@@ -115,6 +115,39 @@ bool MappingIndex::rebuild(const Items& items, double formerSize)
     return true;
 }
 
+bool MappingIndex::empty(const osg::Vec2d& low, const osg::Vec2d& high) const
+{
+    return _root.block == 0 || empty(_root.block, rootSquare(), low, high);
+}
+
+bool MappingIndex::empty(std::uint32_t block, const PlaneSquare& square, const osg::Vec2d& low,
+                         const osg::Vec2d& high) const
+{
+    const auto cellOf = [&](double metres, double origin)
+    {
+        return static_cast<unsigned int>(
+            std::clamp(std::floor((metres - origin) / square.size * 8), 0.0, 7.0));
+    };
+    const osg::Vec2d end = square.origin + osg::Vec2d(square.size, square.size);
+    if (high.x() < square.origin.x() || high.y() < square.origin.y() || low.x() > end.x() ||
+        low.y() > end.y())
+        return true;
+    for (unsigned int row = cellOf(low.y(), square.origin.y()); row <= cellOf(high.y(), square.origin.y());
+         ++row)
+    {
+        for (unsigned int column = cellOf(low.x(), square.origin.x());
+             column <= cellOf(high.x(), square.origin.x()); ++column)
+        {
+            const unsigned int cell = 8 * row + column;
+            const std::uint32_t word = _store.word(block, cell);
+            if (word == 0) continue;
+            if (!GridStore::isChild(word) || !empty(GridStore::offsetOf(word), square.cell(cell), low, high))
+                return false;
+        }
+    }
+    return true;
+}
+
 bool MappingIndex::insert(const Entry& entry)
 {
     if (contains(entry.id) || !entry.footprint.valid()) return false;

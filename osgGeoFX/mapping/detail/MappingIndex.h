@@ -96,6 +96,9 @@ public:
     /// What a shader finds for a place: all mappings over it and perhaps some nearby, in drawing order.
     std::vector<std::uint32_t> at(const osg::Vec2d& place) const;
 
+    /// Whether a shader finds nothing anywhere in a box, metres. It may be false although no mapping lies there.
+    bool empty(const osg::Vec2d& low, const osg::Vec2d& high) const;
+
     /// The number of mappings in the longest list so far.
     std::size_t longestList() const { return _store.longestList(); }
 
@@ -113,6 +116,8 @@ private:
     };
 
     PlaneSquare rootSquare() const { return {_root.origin, _root.size}; }
+    bool empty(std::uint32_t block, const PlaneSquare& square, const osg::Vec2d& low,
+               const osg::Vec2d& high) const;
     double margin() const;
     bool holds(const FootprintShape& shape) const;
     GridLimits limits(double rootSize, std::size_t count, std::uint32_t taken) const;

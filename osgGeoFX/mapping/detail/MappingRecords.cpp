@@ -65,6 +65,9 @@ void MappingRecords::clear()
         if (item.record != 0) _arena->release(item.record, item.texels);
     }
     _items.clear();
+    _bases.clear();
+    _exact = 0;
+    _planeChanges.addAll();
     _changes.mappings.clear();
     _sorted.clear();
     _leftOut = 0;
@@ -86,7 +89,11 @@ void MappingRecords::changeAll()
 void MappingRecords::reset()
 {
     for (auto& [mapping, item] : _items)
+    {
+        forget(item);
         item.record = 0;
+    }
+    _planeChanges.addAll();
     changeAll();
     _sorted.clear();
     _index.reset();
@@ -109,8 +116,51 @@ bool MappingRecords::isReady(const Item& item) const
     return mapping.getTransfer()->getAlpha() != ColorTransfer::FROM_MASK || _layers.placed(layers.mask);
 }
 
+/// Counts a mapping as it is now on the GPU.
+void MappingRecords::note(Item& item)
+{
+    forget(item);
+    const FootprintShape shape(item.mapping->footprint());
+    item.noted = true;
+    item.kind = pageKindOf(*item.mapping);
+    item.notedRank = item.rank;
+    item.box = {shape.low(), shape.high()};
+    if (item.kind == PageKind::Exact) ++_exact;
+    if (item.kind == PageKind::Base) _bases[item.rank] = item.mapping;
+    // What a base does is in no page.
+    if (item.kind == PageKind::Page) _planeChanges.add(item.box);
+}
+
+void MappingRecords::forget(Item& item)
+{
+    if (!item.noted) return;
+    item.noted = false;
+    if (item.kind == PageKind::Exact) --_exact;
+    if (item.kind == PageKind::Base) _bases.erase(item.notedRank);
+    if (item.kind == PageKind::Page) _planeChanges.add(item.box);
+}
+
+void MappingRecords::repaint(ProjectiveMapping& mapping)
+{
+    const auto found = _items.find(&mapping);
+    if (found != _items.end() && found->second.noted && found->second.kind == PageKind::Page)
+        _planeChanges.add(found->second.box);
+}
+
+int MappingRecords::exact() const
+{
+    return _exact + static_cast<int>(_bases.size()) - (base() ? 1 : 0);
+}
+
+const ProjectiveMapping* MappingRecords::base() const
+{
+    const bool below = !_bases.empty() && !_sorted.empty() && _bases.begin()->first == _sorted.begin()->first;
+    return below ? _bases.begin()->second : nullptr;
+}
+
 void MappingRecords::takeOff(Item& item)
 {
+    forget(item);
     if (item.record == 0) return;
     _index->erase(item.record);
     _arena->release(item.record, item.texels);
@@ -154,6 +204,7 @@ bool MappingRecords::place(Item& item, const PositionOf& positionOf)
         return false;
     }
     setRank(item, rank);
+    note(item);
     return true;
 }
 
@@ -170,6 +221,7 @@ bool MappingRecords::placeAll(const std::vector<Item*>& items, const PositionOf&
     {
         if (!writeRecord(*item, positionOf)) return false;
         setRank(*item, rankOf(*item));
+        note(*item);
     }
     std::vector<MappingIndex::Entry> entries;
     entries.reserve(_sorted.size());

@@ -5,6 +5,8 @@
 #include <osgGeoFX/mapping/detail/CameraList.h>
 #include <osgGeoFX/mapping/detail/LayerResidency.h>
 #include <osgGeoFX/mapping/detail/MappingIndex.h>
+#include <osgGeoFX/mapping/detail/PageKind.h>
+#include <osgGeoFX/mapping/detail/PlaneChanges.h>
 #include <osgGeoFX/mapping/detail/TableRows.h>
 
 #include <cstddef>
@@ -71,6 +73,15 @@ public:
     /// The number of mappings that show something and have no room.
     int leftOut() const { return _leftOut; }
 
+    /// Where the picture of the mappings has changed.
+    const PlaneChanges& changes() const { return _planeChanges; }
+    /// Notes that what a mapping shows has changed, although its record may stay as it is.
+    void repaint(ProjectiveMapping& mapping);
+    /// The number of mappings on the GPU that cannot be drawn beforehand, in their order or at all.
+    int exact() const;
+    /// The mapping of the kind Base below all others; null for none.
+    const ProjectiveMapping* base() const;
+
 private:
     struct Item
     {
@@ -81,6 +92,10 @@ private:
         std::uint32_t texels = 0;
         Sources sources;
         bool leftOut = false;
+        bool noted = false; ///< whether the next three are known, and counted
+        PageKind kind = PageKind::Page;
+        std::uint64_t notedRank = 0;
+        PlaneBox box;
     };
 
     bool isReady(const Item& item) const;
@@ -89,6 +104,8 @@ private:
     bool placeAll(const std::vector<Item*>& items, const PositionOf& positionOf);
     void placeByImportance(const PositionOf& positionOf);
     void takeOff(Item& item);
+    void note(Item& item);
+    void forget(Item& item);
     void setRank(Item& item, std::uint64_t rank);
     static std::uint64_t rankOf(const Item& item);
 
@@ -99,7 +116,10 @@ private:
     std::unique_ptr<MappingIndex> _index;
     std::uint64_t _sequence = 0;
     std::unordered_map<ProjectiveMapping*, Item> _items;
-    std::map<std::uint64_t, std::uint32_t> _sorted; ///< records on the GPU, by rank
+    std::map<std::uint64_t, std::uint32_t> _sorted;           ///< records on the GPU, by rank
+    std::map<std::uint64_t, const ProjectiveMapping*> _bases; ///< by rank
+    int _exact = 0;
+    PlaneChanges _planeChanges;
     std::uint32_t _features = 0;
     int _leftOut = 0;
 };

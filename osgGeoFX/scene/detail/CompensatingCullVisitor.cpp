@@ -272,10 +272,12 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const Task& task)
     for (DrawableCompanion* each : task.companions)
         each->start();
     if (task.state) pushStateSet(task.state);
+    if (task.inPass) pushStateSet(task.inPass);
     if (task.passState) pushStateSet(task.passState);
     _top = _currentStateGraph;
     task.traverse(*this);
     if (task.passState) popStateSet();
+    if (task.inPass) popStateSet();
     if (task.state) popStateSet();
     if (task.debugBounds)
     {
@@ -292,6 +294,7 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const std::vector
 {
     begin(outer, task);
     pushStateSet(task.state);
+    if (task.inPass) pushStateSet(task.inPass);
     if (task.passState) pushStateSet(task.passState);
     for (const ScenePass::Piece& piece : pieces)
     {
@@ -300,6 +303,7 @@ void CompensatingCullVisitor::run(osgUtil::CullVisitor& outer, const std::vector
         if (piece.state) popStateSet();
     }
     if (task.passState) popStateSet();
+    if (task.inPass) popStateSet();
     popStateSet();
     end(outer);
 }
@@ -606,7 +610,9 @@ void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, osg::RefMa
 {
     for (DrawableCompanion* each : _task.companions)
     {
-        osg::Drawable* companion = each->companion(drawable, inView(*modelView));
+        osg::Matrixd matrix = inView(*modelView);
+        if (each->standing() && _mode.unplaced) matrix = matrix * *_mode.unplaced;
+        osg::Drawable* companion = each->companion(drawable, matrix);
         if (!companion) continue;
         pushStateSet(each->state());
         addLeaf(*companion, modelView, depth);

@@ -86,7 +86,9 @@ public:
         std::vector<DrawableCompanion*> companions;
         bool findsNearAndFar = true;           ///< false: the camera's stay as they are
         osgUtil::RenderStage* stage = nullptr; ///< where it draws; null for where `outer` does
-        osg::StateSet* passState = nullptr;    ///< below `state`
+        osg::StateSet* inPass =
+            nullptr; ///< below `state`: tells shaders that this is a pass, not the scene itself
+        osg::StateSet* passState = nullptr; ///< below these
     };
 
     /// Whether `outer` begins a new frame. To be asked once before each frame's or traversal's run().

@@ -130,6 +130,7 @@ private:
 SceneDrawing::SceneDrawing()
 {
     _untouched->setDefine("GEOFX_DEFORMATION", osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE);
+    _inPass->setDefine("GEOFX_IN_PASS");
 }
 
 /// The same ones as long as the list of effects and what they get stay as they are.
@@ -306,6 +307,7 @@ bool SceneDrawing::Traversal::run()
     ++own.used;
     Task passTask = task;
     passTask.state = &state.set();
+    passTask.inPass = _drawing._inPass;
     passTask.following = &_drawing.programs.following();
     passTask.compensate = _scene.getCompensation();
     const CameraPass::Traversal passes = {

@@ -70,6 +70,7 @@ private:
     Effects _unitEffects; ///< those that the units were given to, and
     std::vector<unsigned int> _unitRevisions;
     osg::ref_ptr<osg::StateSet> _untouched = new osg::StateSet;
+    const osg::ref_ptr<osg::StateSet> _inPass = new osg::StateSet;
     std::optional<unsigned int> _boundsFrame; ///< the frame that another node's bounds were completed in
     std::set<std::string> _said;
     std::map<const osg::StateAttribute*, osg::observer_ptr<const osg::StateAttribute>> _strangers;

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/mapping/detail/PageView.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// Things on the ground are at most so much higher than the ground is stated to be, metres.
+constexpr double ofThings = 500.0;
+constexpr double nearest = 0.01; // metres
+
+void include(const osg::Vec3d& point, osg::Vec3d& low, osg::Vec3d& high)
+{
+    for (int i = 0; i < 3; ++i)
+    {
+        low[i] = std::min(low[i], point[i]);
+        high[i] = std::max(high[i], point[i]);
+    }
+}
+
+} // namespace
+
+osg::Drawable* PageWatch::companion(osg::Drawable& drawable, const osg::Matrixd& modelView)
+{
+    const osg::BoundingBox& box = drawable.getBoundingBox();
+    if (box.valid()) _boxes.push_back(EyeBox::of(box, modelView));
+    return nullptr;
+}
+
+PageView::PageView(const MappingIndex& index, const ScenePass& pass, const PageFrame& frame)
+    : _index(index), _pass(pass), _frame(frame)
+{
+    const ViewGeometry::Image& image = pass.view.image;
+    Visibility::Camera camera;
+    camera.projection = image.projection;
+    if (!image.ofView) camera.image = &image;
+    camera.viewport = pass.outer.getViewport();
+    osg::Polytope planes;
+    // Near and far are not known yet.
+    planes.setToUnitFrustum(false, false);
+    planes.transformProvidingInverse(camera.projection);
+    camera.planes = &planes;
+    camera.nearPlane = camera.farPlane = false;
+    _visibility.set(camera);
+    _eye = image.toView.getTrans();
+}
+
+std::vector<SeenGround> PageView::groundBelow(const std::vector<EyeBox>& boxes) const
+{
+    const MappingIndex::Root& root = _index.root();
+    const PlaneBox mapped{root.origin, root.origin + osg::Vec2d(root.size, root.size)};
+    std::vector<SeenGround> seen;
+    std::vector<osg::Vec3d> corners;
+    for (const EyeBox& box : boxes)
+    {
+        box.corners(corners);
+        osg::Vec3d low(DBL_MAX, DBL_MAX, DBL_MAX), high(-DBL_MAX, -DBL_MAX, -DBL_MAX);
+        for (const osg::Vec3d& corner : corners)
+            include(_frame.placeOf(corner * _frame.fromEye), low, high);
+        if (_frame.globe)
+        {
+            // Sides of a box may bulge beyond its corners.
+            const double size = 2.0 * box.ball().radius;
+            const double bulge = size * size * _frame.curvature / 8.0;
+            low -= osg::Vec3d(bulge, bulge, bulge);
+            high += osg::Vec3d(bulge, bulge, bulge);
+            const Ground& ground = _pass.view.ground;
+            if (ground.heightsKnown)
+            {
+                low.z() = std::max(low.z(), ground.minHeight - ofThings);
+                high.z() = std::min(high.z(), ground.maxHeight + ofThings);
+            }
+        }
+        const PlaneBox plane = PlaneBox{{low.x(), low.y()}, {high.x(), high.y()}}.within(mapped);
+        if (!plane.empty() && low.z() <= high.z()) seen.push_back({plane, low.z(), high.z()});
+    }
+    return seen;
+}
+
+void PageView::bound(const SeenGround& ground, osg::Vec3d& low, osg::Vec3d& high) const
+{
+    const PlaneBox& box = ground.box;
+    if (!_frame.globe)
+    {
+        low.set(box.low.x(), box.low.y(), ground.lowest);
+        high.set(box.high.x(), box.high.y(), ground.highest);
+        return;
+    }
+    low.set(DBL_MAX, DBL_MAX, DBL_MAX);
+    high = -low;
+    for (const double x : {box.low.x(), box.high.x()})
+    {
+        for (const double y : {box.low.y(), box.high.y()})
+        {
+            for (const double z : {ground.lowest, ground.highest})
+                include(_frame.positionOf({x, y, z}), low, high);
+        }
+    }
+    // The ground is higher in the middle than between its corners.
+    const osg::Vec2d size = box.high - box.low;
+    high.z() += size.length2() * _frame.curvature / 4.0;
+}
+
+EyeBox PageView::eyeBox(const osg::Vec3d& low, const osg::Vec3d& high) const
+{
+    EyeBox box;
+    box.center = (low + high) * 0.5 * _frame.toEye;
+    for (int i = 0; i < 3; ++i)
+    {
+        osg::Vec3d half;
+        half[i] = 0.5 * (high[i] - low[i]);
+        box.half[i] = osg::Matrixd::transform3x3(half, _frame.toEye);
+    }
+    return box;
+}
+
+bool PageView::shows(const SeenGround& ground)
+{
+    osg::Vec3d low, high;
+    bound(ground, low, high);
+    return !_visibility.outOfSight(_pass.chain, eyeBox(low, high), _visibility.all());
+}
+
+double PageView::texel(const SeenGround& ground)
+{
+    if (_frame.pixel <= 0.0) return _frame.pixelAnywhere;
+    osg::Vec3d low, high;
+    bound(ground, low, high);
+    double distance = 0.0;
+    if (_pass.chain.empty())
+    {
+        const osg::Vec3d eye = _eye * _frame.fromEye;
+        osg::Vec3d to;
+        for (int i = 0; i < 3; ++i)
+            to[i] = std::max({low[i] - eye[i], eye[i] - high[i], 0.0});
+        distance = to.length();
+    }
+    else
+    {
+        const Ball ball = eyeBox(low, high).ball();
+        distance = _pass.chain.lodDistance(ball, _eye) - ball.radius;
+    }
+    return std::max(distance, nearest) * _frame.pixel + _frame.pixelAnywhere;
+}
+
+} // namespace osgGeoFX
