@@ -165,6 +165,14 @@ TEST_F(KmlOverlaysTest, FoldersSwitchThemOffAndLimitTheirSizes)
         readText("<Placemark><visibility>0</visibility></Placemark><Folder><visibility>0</visibility>" + lod +
                  groundOverlay("", somewhere) + "</Folder>" + groundOverlay("", somewhere) +
                  groundOverlay("", somewhere, "<visibility>0</visibility>"));
+    // What other features say of themselves is not their folder's.
+    for (const std::string feature : {"Placemark", "ScreenOverlay", "PhotoOverlay", "Tour"})
+    {
+        const std::string other = "<" + feature + "><visibility>0</visibility>" + lod + "</" + feature + ">";
+        const KmlOverlay overlay = one(other + groundOverlay("", somewhere));
+        EXPECT_TRUE(overlay.visible) << feature;
+        EXPECT_EQ(overlay.pixelsFull, 0.0) << feature;
+    }
     ASSERT_EQ(overlays.size(), 3u);
     EXPECT_FALSE(overlays[0].visible);
     EXPECT_EQ(overlays[0].pixelsNone, 128.0);
