@@ -114,6 +114,11 @@ private:
         {
             const OGRGeometry* const geometry = point->GetGeometryRef();
             if (!geometry || wkbFlatten(geometry->getGeometryType()) != wkbPoint) continue;
+            const osg::Vec2d place(geometry->toPoint()->getX(), geometry->toPoint()->getY());
+            if (geometry->IsEmpty() || !(std::abs(place.x()) <= 360.0) || !(std::abs(place.y()) <= 90.0))
+                throw BuildError(_file + ": a place of its " + ways + " is none (" +
+                                 std::to_string(place.x()) + ", " + std::to_string(place.y()) +
+                                 "); write lon and lat in degrees.");
             const std::pair<GIntBig, int> here{point->GetFieldAsInteger64(way),
                                                part < 0 ? 0 : point->GetFieldAsInteger(part)};
             if (here != present)
@@ -126,11 +131,10 @@ private:
                 route.wayPoints = !segment;
                 _found.push_back(route);
             }
-            const bool hasHeight = height >= 0 && point->IsFieldSetAndNotNull(height);
+            const bool hasHeight = height >= 0 && point->IsFieldSetAndNotNull(height) &&
+                                   std::isfinite(point->GetFieldAsDouble(height));
             haveHeights = haveHeights && hasHeight;
-            take({geometry->toPoint()->getX(), geometry->toPoint()->getY(),
-                  hasHeight ? point->GetFieldAsDouble(height) : 0.0},
-                 _found.back());
+            take({place.x(), place.y(), hasHeight ? point->GetFieldAsDouble(height) : 0.0}, _found.back());
         }
         finish();
         checkReading(errors);
@@ -190,8 +194,8 @@ private:
             {
                 double x = line.getX(i);
                 double y = line.getY(i);
-                if (toDegrees.Transform(1, &x, &y) && std::isfinite(x) && std::isfinite(y) &&
-                    std::abs(y) <= 90.0)
+                if (toDegrees.Transform(1, &x, &y) && std::abs(x) <= 360.0 && std::abs(y) <= 90.0 &&
+                    (!hasHeights || std::isfinite(line.getZ(i))))
                     take({x, y, hasHeights ? line.getZ(i) : 0.0}, route);
             }
             if (route.places.size() > 1) _found.push_back(std::move(route));

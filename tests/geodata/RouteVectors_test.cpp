@@ -94,6 +94,14 @@ const std::string gpx =
 <trkseg><trkpt lat="46" lon="7"/><trkpt lat="46.1" lon="7.1"><ele>5</ele></trkpt><trkpt lat="46.2" lon="7.1"/></trkseg>
 <trkseg><trkpt lat="46" lon="7"/></trkseg></trk></gpx>)";
 
+/// A track of two places with heights, and of another one.
+std::string gpxOf(const std::string& point)
+{
+    return R"(<?xml version="1.0"?><gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">
+<trk><trkseg><trkpt lat="45" lon="7"><ele>100</ele></trkpt><trkpt lat="45" lon="7.1"><ele>0</ele></trkpt>)" +
+           point + "</trkseg></trk></gpx>";
+}
+
 } // namespace
 
 TEST_F(RouteVectorsTest, GpxHasRoutesAndTheSegmentsOfTracks)
@@ -114,6 +122,16 @@ TEST_F(RouteVectorsTest, GpxHasRoutesAndTheSegmentsOfTracks)
     EXPECT_EQ(routes[2].places.size(), 3u);
     EXPECT_EQ(readAll(file, "routes").size(), 1u);
     EXPECT_TRUE(contains(faultOf(file, "waypoints"), "\"waypoints\""));
+}
+
+TEST_F(RouteVectorsTest, AHeightThatIsNoNumberIsNone)
+{
+    const std::string text = gpxOf("<trkpt lat=\"45\" lon=\"7.2\"><ele>nan</ele></trkpt>");
+    const std::vector<RoutePath> routes = readAll(_folder.write("high.gpx", text).string());
+    ASSERT_EQ(routes.size(), 1u);
+    EXPECT_EQ(routes[0].altitude, RoutePath::CLAMPED);
+    EXPECT_EQ(routes[0].places,
+              (std::vector<osg::Vec3d>{{7.0, 45.0, 0.0}, {7.1, 45.0, 0.0}, {7.2, 45.0, 0.0}}));
 }
 
 TEST_F(RouteVectorsTest, KmlLinesHaveTheirAltitudeMode)
@@ -202,6 +220,11 @@ TEST_F(RouteVectorsTest, WhatCannotBeReadIsTold)
         contains(faultOf(_folder.write("cut.gpx", gpx.substr(0, gpx.size() / 2)).string()), "cut.gpx: "));
     EXPECT_TRUE(contains(faultOf(_folder.write("no.gpx", "<gpx/>").string()), "no.gpx: "));
     EXPECT_TRUE(contains(faultOf((_folder / "none.gpx").string()), "none.gpx: "));
+    for (const std::string point :
+         {"lat=\"nan\" lon=\"7\"", "lat=\"95\" lon=\"7\"", "lat=\"45\" lon=\"1e9\""})
+        EXPECT_TRUE(contains(faultOf(_folder.write("bad.gpx", gpxOf("<trkpt " + point + "/>")).string()),
+                             "bad.gpx: a place of its tracks is none"))
+            << point;
     EXPECT_TRUE(
         contains(faultOf(_folder.write("none.kml", kml(groundOverlay("", latLonBox(7, 45, 8, 46)))).string()),
                  "none.kml: it has no way"));
