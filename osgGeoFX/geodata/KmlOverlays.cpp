@@ -22,6 +22,7 @@ namespace
 
 constexpr std::size_t mostOverlays = 10000;
 constexpr std::size_t mostFiles = 10000;
+constexpr std::size_t mostNotices = 20;
 constexpr std::size_t mostBytes = std::size_t{1} << 30;
 
 const char* const remedy =
@@ -103,9 +104,11 @@ private:
             VSIStatBufL status;
             if (document.empty() || VSIStatL(document.c_str(), &status) != 0)
             {
+                if (++_missing > mostNotices) continue;
                 _notices.push_back(KmlFolder::plain(link.document) + ":" + std::to_string(next.line) +
                                    ": the file \"" + next.href +
-                                   "\" that it links is not there, and is left out.");
+                                   "\" that it links is not there, and is left out." +
+                                   (_missing == mostNotices ? " So are others, which are not named." : ""));
                 continue;
             }
             add(document, next.inherited);
@@ -119,6 +122,7 @@ private:
     std::set<std::string> _seen;
     std::vector<KmlOverlay> _found;
     std::size_t _bytes = 0;
+    std::size_t _missing = 0;
 };
 
 } // namespace

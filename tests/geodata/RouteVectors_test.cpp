@@ -5,6 +5,7 @@
 // too.
 #include <osgGeoFX/geodata/RouteVectors.h>
 #include <tools/KmlFiles.h>
+#include <tools/NotifyWatch.h>
 #include <tools/TempDir.h>
 
 #include <ogrsf_frmts.h>
@@ -212,6 +213,44 @@ TEST_F(RouteVectorsTest, FilesOfGdalsDriversAreRead)
         readAll(written("GeoJSON", "flat.geojson", "MULTILINESTRING ((7 45,7.1 45.1),(8 45,8 46))"));
     EXPECT_EQ(flat.size(), 2u);
     EXPECT_EQ(flat.at(0).altitude, RoutePath::CLAMPED);
+}
+
+TEST_F(RouteVectorsTest, MissingLinksAreToldAndTooManyRefused)
+{
+    const auto link = [](const std::string& href)
+    {
+        return "<NetworkLink><Link><href>" + href + "</href></Link></NetworkLink>";
+    };
+    NotifyWatch watch;
+    const std::vector<std::string> messages = watch.messagesOf(
+        [&] { EXPECT_EQ(readKml(placemark(line("")) + link("none.kml") + link("../out.kml")).size(), 1u); });
+    ASSERT_EQ(messages.size(), 2u);
+    EXPECT_TRUE(contains(messages[0], "doc.kml: the file \"none.kml\" that it links is not there"));
+    EXPECT_TRUE(contains(messages[1], "\"../out.kml\" that it links is not in its folder"));
+    std::string features;
+    for (int i = 0; i < 1000; ++i)
+    {
+        const std::string name = "part" + std::to_string(i) + ".kml";
+        _folder.write(name, kml(placemark(line(""))));
+        features += link(name);
+    }
+    EXPECT_TRUE(contains(faultOf(_folder.write("doc.kml", kml(features)).string()), "more than 1000 files"));
+    std::string many;
+    for (int i = 0; i < 10001; ++i)
+        many += link("part0.kml");
+    EXPECT_TRUE(contains(faultOf(_folder.write("doc.kml", kml(many)).string()), "more than 10000 links"));
+}
+
+TEST_F(RouteVectorsTest, LayersThatHoldNoLinesAreLeftOut)
+{
+    const std::string file = written("GPKG", "a.gpkg", "LINESTRING (7 45,7.1 45.1)");
+    GDALDataset* const dataset = GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE);
+    ASSERT_TRUE(dataset);
+    ASSERT_TRUE(dataset->CreateLayer("table", nullptr, wkbNone, nullptr));
+    ASSERT_TRUE(dataset->CreateLayer("points", nullptr, wkbPoint, nullptr));
+    GDALClose(dataset);
+    EXPECT_EQ(readAll(file).size(), 1u);
+    EXPECT_TRUE(contains(faultOf(file, "table"), "it has no way"));
 }
 
 TEST_F(RouteVectorsTest, WhatCannotBeReadIsTold)

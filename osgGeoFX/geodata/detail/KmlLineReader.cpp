@@ -20,13 +20,17 @@ namespace
 class Parser : public KmlStream
 {
 public:
-    explicit Parser(const std::string& document) : KmlStream(document) {}
+    Parser(const std::string& document, std::size_t mostPlaces) : KmlStream(document), _mostPlaces(mostPlaces)
+    {
+    }
 
     KmlLines read()
     {
         parse();
         KmlLines result;
         result.links = std::move(_networkLinks);
+        result.places = _places;
+        result.bytes = bytes();
         for (Line& line : _lines)
         {
             if (!line.route.color) line.route.color = colorOf(line.style, 0);
@@ -82,7 +86,11 @@ private:
         if (isAt({"Pair", "key"})) _key = text();
         if (isAt({"StyleMap", "Pair", "styleUrl"}) && _key == "normal") _links["#" + _styleId] = text();
         if (isAt({"NetworkLink", "Link", "href"}) || isAt({"NetworkLink", "Url", "href"}))
-            if (_visible.back()) _networkLinks.emplace_back(text());
+            if (_visible.back())
+            {
+                if (_networkLinks.size() >= mostKmlLinks) fail(line(), tooManyLinks);
+                _networkLinks.emplace_back(text());
+            }
         if (_route) takeGeometry();
         if (isAt({"MultiTrack", "altitudeMode"})) _tracksAltitude = altitude();
         if (element() == "Placemark") finishPlacemark();
@@ -145,9 +153,10 @@ private:
             fail(line(),
                  "the place \"" + std::string(tuple.substr(0, 60)) +
                      "\" of a line is none; write longitude, latitude and height, degrees and metres.");
-        if (++_places > mostRoutePlaces)
-            fail(line(),
-                 "the file's lines have more than ten million places; simplify them with ogr2ogr -simplify.");
+        if (++_places > _mostPlaces)
+            fail(line(), "with this place, the lines of the file and of what it links have more than ten "
+                         "million; simplify "
+                         "them with ogr2ogr -simplify.");
         _route->places.push_back(place);
     }
 
@@ -182,6 +191,7 @@ private:
     RoutePath::Altitude _tracksAltitude = RoutePath::CLAMPED; ///< of the present gx:MultiTrack
     std::vector<Line> _lines;
     std::size_t _first = 0; ///< of the present placemark's lines
+    const std::size_t _mostPlaces;
     std::size_t _places = 0;
     std::string _name, _styleUrl, _styleId, _key;
     std::optional<osg::Vec4> _placemarkColor;
@@ -192,9 +202,9 @@ private:
 
 } // namespace
 
-KmlLines readKmlLines(const std::string& document)
+KmlLines readKmlLines(const std::string& document, std::size_t mostPlaces)
 {
-    return Parser(document).read();
+    return Parser(document, mostPlaces).read();
 }
 
 } // namespace osgGeoFX

@@ -84,6 +84,7 @@ private:
         if (element() == "NetworkLink" && _link)
         {
             _link->inherited = _inherited.back();
+            if (_content.links.size() >= mostKmlLinks) fail(_link->line, tooManyLinks);
             if (!_link->href.empty()) _content.links.push_back(*_link);
             _link.reset();
         }

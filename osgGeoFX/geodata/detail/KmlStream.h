@@ -14,6 +14,11 @@ struct _xmlTextReader; // libxml2's
 namespace osgGeoFX
 {
 
+/// Of a text; more of them are told as a fault while it is read.
+constexpr std::size_t mostKmlLinks = 10000;
+inline constexpr const char* tooManyLinks =
+    "the file has more than 10000 links; open one of its parts instead.";
+
 /// Text without the spaces around it.
 std::string_view trimmed(std::string_view text);
 /// The whole of a text as a finite number, in every locale.
