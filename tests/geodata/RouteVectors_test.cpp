@@ -176,6 +176,29 @@ TEST_F(RouteVectorsTest, KmlTracksHaveTheirAltitudeMode)
     EXPECT_EQ(routes[3].altitude, RoutePath::ABSOLUTE);
 }
 
+TEST_F(RouteVectorsTest, TracksMayHaveGapsAndAnySpaces)
+{
+    const std::vector<RoutePath> routes = readKml(
+        placemark("<gx:Track><altitudeMode>absolute</altitudeMode><gx:coord>7  45\n\t 1000 "
+                  "</gx:coord><gx:coord/><gx:coord></gx:coord><gx:coord>7.2 45 5</gx:coord></gx:Track>") +
+        placemark(line("", "7,45,1 7.1,45")));
+    ASSERT_EQ(routes.size(), 2u);
+    EXPECT_EQ(routes[0].places, (std::vector<osg::Vec3d>{{7.0, 45.0, 1000.0}, {7.2, 45.0, 5.0}}));
+    EXPECT_EQ(routes[1].places.size(), 2u);
+}
+
+// libxml2's own limit of a text is 10 MB.
+TEST_F(RouteVectorsTest, AWayMayBeLong)
+{
+    std::string coordinates;
+    for (int i = 0; i < 500000; ++i)
+        coordinates += i % 2 ? "7.0000001,45.0000001,100 " : "7.0000002,45.0000001,100\n";
+    ASSERT_GT(coordinates.size(), 12000000u);
+    const std::vector<RoutePath> routes = readKml(placemark(line("", coordinates)));
+    ASSERT_EQ(routes.size(), 1u);
+    EXPECT_EQ(routes[0].places.size(), 500000u);
+}
+
 TEST_F(RouteVectorsTest, KmlColorsAreOwnOrShared)
 {
     const std::vector<RoutePath> routes = readKml(

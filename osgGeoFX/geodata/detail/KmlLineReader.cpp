@@ -48,7 +48,7 @@ private:
 
     std::size_t longestText() const override
     {
-        // Coordinates come in one text, which the document's own limit bounds.
+        // Coordinates come in one text, as long as the document at most.
         return isAt({"LineString", "coordinates"}) ? std::size_t{1} << 28 : KmlStream::longestText();
     }
 
@@ -108,7 +108,8 @@ private:
         if (element() == "altitudeMode") _route->altitude = altitude();
         if (element() == "extrude") _route->extruded = text() == "1" || text() == "true";
         if (isAt({"LineString", "coordinates"})) takeCoordinates(text());
-        if (isAt({"Track", "coord"})) takeTuple(text(), " \t\r\n");
+        // An empty one is a moment without a place.
+        if (isAt({"Track", "coord"}) && !text().empty()) takeTuple(text(), " \t\r\n");
         if (element() != "LineString" && element() != "Track") return;
         if (_route->altitude == RoutePath::CLAMPED)
             for (osg::Vec3d& place : _route->places)
@@ -148,6 +149,7 @@ private:
             if (!value) break;
             place[count] = *value;
             rest.remove_prefix(std::min(length + 1, rest.size()));
+            rest = trimmed(rest);
         }
         if (count < 2 || std::abs(place.x()) > 360.0 || std::abs(place.y()) > 90.0)
             fail(line(),

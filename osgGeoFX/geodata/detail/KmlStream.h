@@ -24,8 +24,8 @@ std::string_view trimmed(std::string_view text);
 /// The whole of a text as a finite number, in every locale.
 std::optional<double> numberOf(std::string_view text);
 
-/** A KML text, read as a stream by libxml2: no entities, no network, and libxml2's own limits of depth and length. So memory does not
-    grow with the number of elements. */
+/** A KML text, read as a stream by libxml2: no document type, so no entities; no network; limits of depth and length. So memory does
+    not grow with the number of elements. */
 class KmlStream
 {
 public:
