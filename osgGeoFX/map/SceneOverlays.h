@@ -18,7 +18,9 @@ namespace osgGeoFX
 
     @code
     osgGeoFX::SceneOverlays overlays(*scene.node, *scene.effects);
-    if (!overlays.add("fire.kmz", error)) …
+    std::vector<std::string> notices;
+    std::string error;
+    if (!overlays.add("fire.kmz", {}, notices, error)) …
     @endcode
 
     Each file lies on top of those before. Its mappings are in effects of this object's own, one for each frame that OverlayReader
