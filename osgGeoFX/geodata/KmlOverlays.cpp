@@ -95,7 +95,15 @@ private:
         for (KmlReader::Overlay overlay : content.overlays)
         {
             if (!overlay.href.empty())
+            {
                 overlay.overlay.image = resolved(link.document, overlay.href, overlay.line);
+                // No picture at all means a plain color.
+                if (overlay.overlay.image.empty())
+                    throw BuildError(
+                        KmlFolder::plain(link.document) + ":" + std::to_string(overlay.line) + ": \"" +
+                        overlay.href +
+                        "\" is no picture; name a PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000.");
+            }
             _found.push_back(std::move(overlay.overlay));
         }
         for (const KmlReader::Link& next : content.links)

@@ -189,7 +189,7 @@ private:
         }
         // As many texels as a face has room for.
         const double coarsest =
-            2.0 * osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) / (_options.maxSide - 8);
+            2.0 * osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) / std::max(1, _options.maxSide - 8);
         const MappingRaster::Window window = CubeFace::window(std::max(reach.texel, coarsest));
         for (const LocalOrigin& origin : CubeFace::origins())
         {

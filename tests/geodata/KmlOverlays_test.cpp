@@ -308,6 +308,14 @@ TEST_F(KmlOverlaysTest, WhatCannotBeIsToldWithItsLine)
     EXPECT_TRUE(contains(faultOfText("<Placemark/>"), "no ground overlays"));
 }
 
+TEST_F(KmlOverlaysTest, AnArchiveIsNoPicture)
+{
+    writeArchive((_folder / "a.kmz").string(), {{"p.png", "p"}});
+    for (const std::string href : {"a.kmz", "none.kmz"})
+        EXPECT_TRUE(contains(faultOfText("\n" + groundOverlay(href, somewhere)),
+                             "doc.kml:3: \"" + href + "\" is no picture"));
+}
+
 TEST_F(KmlOverlaysTest, DamagedFilesAreRefused)
 {
     const std::string whole = kml(groundOverlay("a.png", somewhere));

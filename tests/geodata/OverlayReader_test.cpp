@@ -9,6 +9,7 @@
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
 
+#include <cpl_string.h>
 #include <ogr_spatialref.h>
 #include <osg/Math>
 
@@ -383,6 +384,30 @@ TEST_F(OverlayReaderTest, LyingPicturesCostNothing)
     rusage after{};
     getrusage(RUSAGE_SELF, &after);
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 128 * 1024) << "KiB";
+}
+
+TEST_F(OverlayReaderTest, PicturesOfOneHugeBlockAreRefused)
+{
+    // GDAL reads a TIFF of one strip by its rows, but not one of two.
+    const std::string file = (_folder / "strip.tif").string();
+    CPLStringList creation;
+    for (const char* const option : {"COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BLOCKYSIZE=25000"})
+        creation.AddString(option);
+    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    GDALDataset* const dataset = driver->Create(file.c_str(), 30000, 30000, 1, GDT_Byte, creation.List());
+    ASSERT_TRUE(dataset);
+    GDALClose(dataset);
+    const std::string fault = faultOf(
+        _folder.write("doc.kml", kml(groundOverlay("strip.tif", latLonBox(7.0, 45.0, 8.0, 46.0)))).string());
+    EXPECT_TRUE(contains(fault, "strip.tif: its pixels lie in blocks of 30000 × 25000")) << fault;
+}
+
+TEST_F(OverlayReaderTest, ARasterAroundTheGlobeMayBeOfFewTexels)
+{
+    OverlayReader::Options options;
+    options.maxSide = 8;
+    EXPECT_TRUE(
+        read(archive(groundOverlay("files/ramp.png", latLonBox(-180.0, -90.0, 180.0, 90.0))), options));
 }
 
 TEST_F(OverlayReaderTest, WhatDoesNotFitIsLeftOutAndTold)

@@ -169,6 +169,15 @@ void FrameRaster::checkSize() const
                           format != "WEBP" && format != "JPEG";
     const double columns = top().GetRasterXSize();
     const double rows = top().GetRasterYSize();
+    // A block is decoded at once, also where a few of its pixels are wanted.
+    constexpr double largestBlock = 536870912.0; // bytes
+    int blockColumns = 0;
+    int blockRows = 0;
+    band().GetBlockSize(&blockColumns, &blockRows);
+    if (static_cast<double>(blockColumns) * blockRows * GDALGetDataTypeSizeBytes(band().GetRasterDataType()) >
+        largestBlock)
+        fail("its pixels lie in blocks of " + std::to_string(blockColumns) + " × " +
+             std::to_string(blockRows) + ", each of which is read at once; convert it to a tiled GeoTIFF");
     if (hasTiles || columns * rows <= mostPixels || band().GetOverviewCount() > 0) return;
     fail("it says that it has " + std::to_string(top().GetRasterXSize()) + " × " +
          std::to_string(top().GetRasterYSize()) + " pixels, which a " + format +
