@@ -58,6 +58,8 @@ public:
         return std::move(_found);
     }
 
+    const std::set<std::string>& documents() const { return _seen; }
+
 private:
     struct Link
     {
@@ -136,12 +138,23 @@ private:
 } // namespace
 
 bool KmlOverlays::read(const std::string& file, bool allowOutside, std::vector<KmlOverlay>& overlays,
-                       std::vector<std::string>& notices, std::string& error)
+                       std::vector<std::string>& notices, std::string& error, std::vector<std::string>* files)
 {
     initialiseGdal();
     try
     {
-        std::vector<KmlOverlay> found = Collector(file, allowOutside, notices).collect();
+        Collector collector(file, allowOutside, notices);
+        std::vector<KmlOverlay> found = collector.collect();
+        if (files)
+        {
+            std::set<std::string> all;
+            for (const std::string& document : collector.documents())
+                all.insert(KmlFolder::onDisk(document));
+            for (const KmlOverlay& overlay : found)
+                all.insert(KmlFolder::onDisk(overlay.image));
+            all.erase("");
+            files->insert(files->end(), all.begin(), all.end());
+        }
         overlays.insert(overlays.end(), std::make_move_iterator(found.begin()),
                         std::make_move_iterator(found.end()));
         return true;

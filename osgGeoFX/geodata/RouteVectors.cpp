@@ -50,6 +50,8 @@ public:
         return std::move(_found);
     }
 
+    const std::vector<std::string>& files() const { return _files; }
+
 private:
     /// With what its network links name within its folder; GDAL writes archives so.
     void readKml()
@@ -61,6 +63,7 @@ private:
         for (std::size_t next = 0; next < documents.size(); ++next)
         {
             const std::string document = documents[next];
+            _files.push_back(KmlFolder::onDisk(document));
             KmlLines content = readKmlLines(document, mostRoutePlaces - _places);
             _places += content.places;
             bytes += content.bytes;
@@ -262,17 +265,20 @@ private:
     std::vector<RoutePath> _found;
     std::size_t _places = 0;
     int _missing = 0;
+    std::vector<std::string> _files;
 };
 
 } // namespace
 
 bool RouteVectors::read(const std::string& file, const std::string& layer, std::vector<RoutePath>& routes,
-                        std::string& error)
+                        std::string& error, std::vector<std::string>* files)
 {
     initialiseGdal();
     try
     {
-        std::vector<RoutePath> found = Reader(file, layer).read();
+        Reader reader(file, layer);
+        std::vector<RoutePath> found = reader.read();
+        if (files) files->insert(files->end(), reader.files().begin(), reader.files().end());
         routes.insert(routes.end(), std::make_move_iterator(found.begin()),
                       std::make_move_iterator(found.end()));
         return true;

@@ -157,6 +157,7 @@ bool SceneRoutes::add(const std::string& file, const Options& options, std::stri
     request.file = file;
     request.layer = options.layer;
     if (!request.read(error)) return false;
+    _files.insert(_files.end(), request.files.begin(), request.files.end());
     for (const RoutePath& route : request.routes)
     {
         if (add(route, options, error)) continue;

@@ -243,6 +243,14 @@ TEST_F(KmlOverlaysTest, LinksWithinTheFolderAreFollowedOnce)
     const std::vector<KmlOverlay> overlays =
         readText("<NetworkLink><visibility>0</visibility><Url><href>tiles/a.kml</href></Url></NetworkLink>" +
                  link("tiles/c.kmz"));
+    std::vector<KmlOverlay> again;
+    std::vector<std::string> notices, files;
+    std::string error;
+    EXPECT_TRUE(KmlOverlays::read((_folder / "doc.kml").string(), false, again, notices, error, &files));
+    std::vector<std::string> expected;
+    for (const char* const name : {"doc.kml", "tiles/a.kml", "tiles/b.kml", "tiles/c.kmz"})
+        expected.push_back(std::filesystem::canonical(_folder / name).string());
+    EXPECT_EQ(files, expected);
     ASSERT_EQ(overlays.size(), 3u);
     EXPECT_EQ(bytesOf(overlays[0].image), "p");
     EXPECT_EQ(overlays[2].order, 2);
