@@ -44,7 +44,7 @@ void addOptions(CLI::App& app, Options& options)
 namespace
 {
 
-void showRoutes(const Options& options, osgGeoFX::Scene& scene)
+void showRoutes(Options& options, osgGeoFX::Scene& scene)
 {
     if (options.routes.empty() && options.routeWidth > 0.0)
         throw std::runtime_error("--route-width is for ways; give some with --route.");
@@ -59,9 +59,10 @@ void showRoutes(const Options& options, osgGeoFX::Scene& scene)
         std::tie(file, how.layer) = names::fileAndLayer(each);
         if (!routes.add(file, how, error)) throw std::runtime_error("--route: " + error);
     }
+    options.linked.insert(options.linked.end(), routes.files().begin(), routes.files().end());
 }
 
-void showRasters(const Options& options, bool allowOutside, osgGeoFX::Scene& scene,
+void showRasters(Options& options, bool allowOutside, osgGeoFX::Scene& scene,
                  std::vector<std::string>& notices)
 {
     if (options.files.empty() && !options.colors.empty())
@@ -74,12 +75,12 @@ void showRasters(const Options& options, bool allowOutside, osgGeoFX::Scene& sce
     std::string error;
     for (const std::string& file : options.files)
         if (!overlays.add(file, how, notices, error)) throw std::runtime_error("--mapping: " + error);
+    options.linked.insert(options.linked.end(), overlays.files().begin(), overlays.files().end());
 }
 
 } // namespace
 
-void show(const Options& options, bool allowOutside, osgGeoFX::Scene& scene,
-          std::vector<std::string>& notices)
+void show(Options& options, bool allowOutside, osgGeoFX::Scene& scene, std::vector<std::string>& notices)
 {
     showRasters(options, allowOutside, scene, notices);
     showRoutes(options, scene);
@@ -92,6 +93,8 @@ std::string agesOf(const Options& options)
         ages += "; on the ground " + file + names::ageOf(file);
     for (const std::string& file : options.routes)
         ages += "; the way " + file + names::ageOf(names::fileAndLayer(file).first);
+    for (const std::string& file : options.linked)
+        ages += "; " + file + names::ageOf(file);
     if (options.routeWidth > 0.0) ages += " " + std::to_string(options.routeWidth);
     return ages + (options.colors.empty() ? "" : "; " + options.colors + names::ageOf(options.colors));
 }

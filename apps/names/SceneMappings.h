@@ -22,15 +22,15 @@ struct Options
     std::vector<std::string> routes; ///< GPX, KML or other vector data with lines, or FILE:LAYER
     double routeWidth = 0.0;         ///< metres; 0: by their extent
     std::string colors;              ///< a color table's file, for values; empty: greys
+    std::vector<std::string> linked; ///< what show() has read of KML files, with what they link
 };
 
 /// Adds them to a program.
 void addOptions(CLI::App& app, Options& options);
 /// Puts the files onto the scene, the later ones on top, and ways over rasters. Throws std::runtime_error with a sentence. `notices`: gets sentences that
 /// people should know.
-void show(const Options& options, bool allowOutside, osgGeoFX::Scene& scene,
-          std::vector<std::string>& notices);
-/// When the files were changed last, as a text: what was drawn of former ones must not be used again.
+void show(Options& options, bool allowOutside, osgGeoFX::Scene& scene, std::vector<std::string>& notices);
+/// When the files were changed last, also those that KML files link if show() was called before, as a text: what was drawn of former ones must not be used again.
 std::string agesOf(const Options& options);
 
 } // namespace geofx::mappings

@@ -22,6 +22,7 @@ namespace
 
 constexpr std::size_t mostOverlays = 10000;
 constexpr std::size_t mostFiles = 10000;
+constexpr std::size_t mostNotices = 20;
 constexpr std::size_t mostBytes = std::size_t{1} << 30;
 
 const char* const remedy =
@@ -56,6 +57,8 @@ public:
                          [](const KmlOverlay& a, const KmlOverlay& b) { return a.order < b.order; });
         return std::move(_found);
     }
+
+    const std::set<std::string>& documents() const { return _seen; }
 
 private:
     struct Link
@@ -94,7 +97,15 @@ private:
         for (KmlReader::Overlay overlay : content.overlays)
         {
             if (!overlay.href.empty())
+            {
                 overlay.overlay.image = resolved(link.document, overlay.href, overlay.line);
+                // No picture at all means a plain color.
+                if (overlay.overlay.image.empty())
+                    throw BuildError(
+                        KmlFolder::plain(link.document) + ":" + std::to_string(overlay.line) + ": \"" +
+                        overlay.href +
+                        "\" is no picture; name a PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000.");
+            }
             _found.push_back(std::move(overlay.overlay));
         }
         for (const KmlReader::Link& next : content.links)
@@ -103,9 +114,11 @@ private:
             VSIStatBufL status;
             if (document.empty() || VSIStatL(document.c_str(), &status) != 0)
             {
+                if (++_missing > mostNotices) continue;
                 _notices.push_back(KmlFolder::plain(link.document) + ":" + std::to_string(next.line) +
                                    ": the file \"" + next.href +
-                                   "\" that it links is not there, and is left out.");
+                                   "\" that it links is not there, and is left out." +
+                                   (_missing == mostNotices ? " So are others, which are not named." : ""));
                 continue;
             }
             add(document, next.inherited);
@@ -119,17 +132,29 @@ private:
     std::set<std::string> _seen;
     std::vector<KmlOverlay> _found;
     std::size_t _bytes = 0;
+    std::size_t _missing = 0;
 };
 
 } // namespace
 
 bool KmlOverlays::read(const std::string& file, bool allowOutside, std::vector<KmlOverlay>& overlays,
-                       std::vector<std::string>& notices, std::string& error)
+                       std::vector<std::string>& notices, std::string& error, std::vector<std::string>* files)
 {
     initialiseGdal();
     try
     {
-        std::vector<KmlOverlay> found = Collector(file, allowOutside, notices).collect();
+        Collector collector(file, allowOutside, notices);
+        std::vector<KmlOverlay> found = collector.collect();
+        if (files)
+        {
+            std::set<std::string> all;
+            for (const std::string& document : collector.documents())
+                all.insert(KmlFolder::onDisk(document));
+            for (const KmlOverlay& overlay : found)
+                all.insert(KmlFolder::onDisk(overlay.image));
+            all.erase("");
+            files->insert(files->end(), all.begin(), all.end());
+        }
         overlays.insert(overlays.end(), std::make_move_iterator(found.begin()),
                         std::make_move_iterator(found.end()));
         return true;

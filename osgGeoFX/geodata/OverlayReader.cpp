@@ -69,6 +69,7 @@ public:
     std::vector<LocalOrigin> frames;
     std::vector<GroundOverlay> overlays;
     std::vector<std::string> notices;
+    std::vector<std::string> files;
 
 private:
     MappingFrame frameOf(std::size_t index) const
@@ -137,7 +138,8 @@ private:
     {
         std::vector<KmlOverlay> found;
         std::string error;
-        if (!KmlOverlays::read(_file, _options.allowOutside, found, notices, error)) throw BuildError(error);
+        if (!KmlOverlays::read(_file, _options.allowOutside, found, notices, error, &files))
+            throw BuildError(error);
         const OverlayRaster::Options options{_options.maxSide, _options.allowOutside};
         std::size_t done = 0;
         for (const KmlOverlay& each : found)
@@ -189,7 +191,7 @@ private:
         }
         // As many texels as a face has room for.
         const double coarsest =
-            2.0 * osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) / (_options.maxSide - 8);
+            2.0 * osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::PI_4) / std::max(1, _options.maxSide - 8);
         const MappingRaster::Window window = CubeFace::window(std::max(reach.texel, coarsest));
         for (const LocalOrigin& origin : CubeFace::origins())
         {
@@ -292,6 +294,7 @@ bool OverlayReader::read(const std::string& file, const Options& options, std::s
         frames = work.frames;
         std::move(work.overlays.begin(), work.overlays.end(), std::back_inserter(overlays));
         std::move(work.notices.begin(), work.notices.end(), std::back_inserter(notices));
+        std::move(work.files.begin(), work.files.end(), std::back_inserter(files));
         return true;
     }
     catch (const BuildError& failure)

@@ -41,6 +41,7 @@ public:
     std::vector<LocalOrigin> frames; ///< those that there are; grows
     std::vector<GroundOverlay> overlays;
     std::vector<std::string> notices; ///< sentences that people should know
+    std::vector<std::string> files;   ///< of KML: the file itself and those on disk that it links or shows
 
     /// Appends the overlays of a file, the lowest first. Returns false, with a sentence in `error` that names file and remedy,
     /// if the file cannot be used; nothing else changes then.

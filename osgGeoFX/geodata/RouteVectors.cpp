@@ -10,6 +10,7 @@
 
 #include <cpl_vsi.h>
 #include <ogr_featurestyle.h>
+#include <osg/Notify>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace osgGeoFX
@@ -26,8 +28,9 @@ namespace osgGeoFX
 namespace
 {
 
-/// A file and what it links.
+/// Of a file and what it links.
 constexpr std::size_t mostDocuments = 1000;
+constexpr std::size_t mostBytes = std::size_t{1} << 30;
 
 class Reader
 {
@@ -47,27 +50,53 @@ public:
         return std::move(_found);
     }
 
+    const std::vector<std::string>& files() const { return _files; }
+
 private:
     /// With what its network links name within its folder; GDAL writes archives so.
     void readKml()
     {
         const KmlFolder folder(_file, false);
         std::vector<std::string> documents = {folder.document()};
+        std::set<std::string> seen(documents.begin(), documents.end());
+        std::size_t bytes = 0;
         for (std::size_t next = 0; next < documents.size(); ++next)
         {
             const std::string document = documents[next];
-            KmlLines content = readKmlLines(document);
+            _files.push_back(KmlFolder::onDisk(document));
+            KmlLines content = readKmlLines(document, mostRoutePlaces - _places);
+            _places += content.places;
+            bytes += content.bytes;
+            if (bytes > mostBytes)
+                throw BuildError(_file + ": it and the files that it links have more than 1 GiB; open one of "
+                                         "its parts instead.");
             std::move(content.routes.begin(), content.routes.end(), std::back_inserter(_found));
             for (const std::string& href : content.links)
             {
                 const std::optional<std::string> linked = folder.resolve(document, href);
                 VSIStatBufL status;
-                const bool isThere = linked && VSIStatL(linked->c_str(), &status) == 0;
-                const bool isNew =
-                    std::find(documents.begin(), documents.end(), linked.value_or("")) == documents.end();
-                if (isThere && isNew && documents.size() < mostDocuments) documents.push_back(*linked);
+                if (!linked || VSIStatL(linked->c_str(), &status) != 0)
+                {
+                    tellMissing(document, href, linked.has_value());
+                    continue;
+                }
+                if (!seen.insert(*linked).second) continue;
+                if (seen.size() > mostDocuments)
+                    throw BuildError(_file + ": it links more than " + std::to_string(mostDocuments) +
+                                     " files; open one of its parts instead.");
+                documents.push_back(*linked);
             }
         }
+    }
+
+    void tellMissing(const std::string& document, const std::string& href, bool within)
+    {
+        constexpr int most = 20;
+        if (++_missing > most) return;
+        OSG_WARN << "osgGeoFX: " << KmlFolder::plain(document) << ": the file \"" << href.substr(0, 200)
+                 << "\" that it links " << (within ? "is not there" : "is not in its folder")
+                 << ", and is left out." << (_missing == most ? " So are others, which are not named." : "")
+                 << std::endl;
     }
 
     void readByGdal()
@@ -114,6 +143,11 @@ private:
         {
             const OGRGeometry* const geometry = point->GetGeometryRef();
             if (!geometry || wkbFlatten(geometry->getGeometryType()) != wkbPoint) continue;
+            const osg::Vec2d place(geometry->toPoint()->getX(), geometry->toPoint()->getY());
+            if (geometry->IsEmpty() || !(std::abs(place.x()) <= 360.0) || !(std::abs(place.y()) <= 90.0))
+                throw BuildError(_file + ": a place of its " + ways + " is none (" +
+                                 std::to_string(place.x()) + ", " + std::to_string(place.y()) +
+                                 "); write lon and lat in degrees.");
             const std::pair<GIntBig, int> here{point->GetFieldAsInteger64(way),
                                                part < 0 ? 0 : point->GetFieldAsInteger(part)};
             if (here != present)
@@ -126,18 +160,26 @@ private:
                 route.wayPoints = !segment;
                 _found.push_back(route);
             }
-            const bool hasHeight = height >= 0 && point->IsFieldSetAndNotNull(height);
+            const bool hasHeight = height >= 0 && point->IsFieldSetAndNotNull(height) &&
+                                   std::isfinite(point->GetFieldAsDouble(height));
             haveHeights = haveHeights && hasHeight;
-            take({geometry->toPoint()->getX(), geometry->toPoint()->getY(),
-                  hasHeight ? point->GetFieldAsDouble(height) : 0.0},
-                 _found.back());
+            take({place.x(), place.y(), hasHeight ? point->GetFieldAsDouble(height) : 0.0}, _found.back());
         }
         finish();
         checkReading(errors);
     }
 
+    /// Tables of attributes have no coordinate system, and points and areas hold no lines.
+    static bool mayHoldLines(OGRLayer& layer)
+    {
+        const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
+        if (type == wkbUnknown || type == wkbGeometryCollection) return true;
+        return OGR_GT_IsCurve(type) || OGR_GT_IsSubClassOf(type, wkbMultiCurve);
+    }
+
     void readLines(OGRLayer& layer)
     {
+        if (!mayHoldLines(layer)) return;
         const OGRSpatialReference* srs = layer.GetSpatialRef();
         if (!srs || srs->IsEmpty() || srs->IsLocal())
             throw BuildError(_file + ": its layer " + std::string(layer.GetName()) +
@@ -190,8 +232,8 @@ private:
             {
                 double x = line.getX(i);
                 double y = line.getY(i);
-                if (toDegrees.Transform(1, &x, &y) && std::isfinite(x) && std::isfinite(y) &&
-                    std::abs(y) <= 90.0)
+                if (toDegrees.Transform(1, &x, &y) && std::abs(x) <= 360.0 && std::abs(y) <= 90.0 &&
+                    (!hasHeights || std::isfinite(line.getZ(i))))
                     take({x, y, hasHeights ? line.getZ(i) : 0.0}, route);
             }
             if (route.places.size() > 1) _found.push_back(std::move(route));
@@ -222,17 +264,21 @@ private:
     const std::string& _layer;
     std::vector<RoutePath> _found;
     std::size_t _places = 0;
+    int _missing = 0;
+    std::vector<std::string> _files;
 };
 
 } // namespace
 
 bool RouteVectors::read(const std::string& file, const std::string& layer, std::vector<RoutePath>& routes,
-                        std::string& error)
+                        std::string& error, std::vector<std::string>* files)
 {
     initialiseGdal();
     try
     {
-        std::vector<RoutePath> found = Reader(file, layer).read();
+        Reader reader(file, layer);
+        std::vector<RoutePath> found = reader.read();
+        if (files) files->insert(files->end(), reader.files().begin(), reader.files().end());
         routes.insert(routes.end(), std::make_move_iterator(found.begin()),
                       std::make_move_iterator(found.end()));
         return true;

@@ -27,9 +27,9 @@ struct OSGGEOFXDATA_EXPORT RouteVectors
 {
     /// Appends the ways of a file. `layer`: one layer, empty for all (not of KML). If it fails, or if the file has no way, `routes` stays
     /// unchanged and a sentence in `error` names file and remedy. Ways of less than two places are left out. A file of more than ten
-    /// million places is refused.
+    /// million places is refused. `files` gets a KML file and those that it links.
     static bool read(const std::string& file, const std::string& layer, std::vector<RoutePath>& routes,
-                     std::string& error);
+                     std::string& error, std::vector<std::string>* files = nullptr);
 };
 
 } // namespace osgGeoFX

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -98,11 +99,17 @@ public:
                 std::strcmp(reinterpret_cast<const char*>(entry->name), "ColorMapEntry") == 0)
                 take(entry);
         if (_stops.empty()) fail(map, "the ColorMap has no ColorMapEntry; give it one or more.");
+        // QGIS's last interval. Only intervals have a color below their quantity.
+        const bool isOpen = std::isinf(_stops.back().value);
+        const osg::Vec4 last = _stops.back().color;
+        while (std::isinf(_stops.back().value) && _stops.size() > 1)
+            _stops.pop_back();
+        if (std::isinf(_stops.back().value)) _stops.back().value = 0.0;
         osg::ref_ptr<ColorTable> table = new ColorTable;
         if (type == "intervals")
         {
             table->setMode(ColorTable::STEPS);
-            table->setStops(intervals());
+            table->setStops(intervals(isOpen ? last : osg::Vec4()));
         }
         else if (type == "values")
         {
@@ -128,7 +135,10 @@ private:
         const std::string quantity = attribute(entry, "quantity").value_or("");
         const std::string color = attribute(entry, "color").value_or("");
         const std::string opacity = attribute(entry, "opacity").value_or("1");
-        const std::optional<double> value = number(quantity), alpha = number(opacity);
+        const std::optional<double> alpha = number(opacity);
+        const std::optional<double> value = quantity == "inf" || quantity == "+inf"
+                                                ? std::numeric_limits<double>::infinity()
+                                                : number(quantity);
         if (!value)
             fail(entry, "the entry's quantity is \"" + quantity.substr(0, 40) + "\"; write a number.");
         if (!alpha || *alpha < 0.0 || *alpha > 1.0)
@@ -147,14 +157,15 @@ private:
     }
 
     /// Colors that hold below their quantities become ones that hold from the quantity before on.
-    ColorTable::Stops intervals() const
+    /// `last`: from the last quantity on.
+    ColorTable::Stops intervals(const osg::Vec4& last) const
     {
         const double span = _stops.back().value - _stops.front().value;
         ColorTable::Stops result = {
             {_stops.front().value - (span > 0.0 ? span / static_cast<double>(_stops.size()) : 1.0),
              _stops.front().color}};
         for (std::size_t i = 0; i < _stops.size(); ++i)
-            result.push_back({_stops[i].value, i + 1 < _stops.size() ? _stops[i + 1].color : osg::Vec4()});
+            result.push_back({_stops[i].value, i + 1 < _stops.size() ? _stops[i + 1].color : last});
         return result;
     }
 

@@ -14,7 +14,7 @@ namespace osgGeoFX
 
     - `ramp`, the default, becomes LINEAR: below the first quantity its color stays, and above the last one that one's.
     - `intervals` becomes STEPS: a color holds below its quantity, down to the quantity before; at the last quantity and
-      above, nothing is drawn.
+      above, nothing is drawn. QGIS's last quantity is `inf`: that color holds above all others.
     - `values` becomes EXACT: a color holds at its quantity alone.
 
     An entry has `color` (#rrggbb), `quantity` and `opacity` (0…1, 1 if there is none). Thread-safe.

@@ -26,6 +26,7 @@ struct OSGGEOFXMAPS_EXPORT OverlayFile
     std::vector<LocalOrigin> frames;     ///< those that there are; grows
     std::vector<GroundOverlay> overlays; ///< what was read, the lowest first
     std::vector<std::string> notices;    ///< sentences that people should know
+    std::vector<std::string> files;      ///< of KML: the file itself and those on disk that it links or shows
 
     /// Appends the file's overlays. False, with a sentence in `error`, if it cannot.
     bool read(std::string& error);

@@ -17,8 +17,9 @@ namespace osgGeoFX
 struct OSGGEOFXMAPS_EXPORT RouteFile
 {
     std::string file;
-    std::string layer;             ///< empty: all layers
-    std::vector<RoutePath> routes; ///< what was read
+    std::string layer;              ///< empty: all layers
+    std::vector<RoutePath> routes;  ///< what was read
+    std::vector<std::string> files; ///< of KML: the file itself and those that it links
 
     /// Appends the file's ways to `routes`. False, with a sentence in `error`, if it cannot.
     bool read(std::string& error);

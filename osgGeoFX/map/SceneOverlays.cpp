@@ -51,6 +51,7 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
     }
     for (const auto& [frame, mapping] : mappings)
         _effects[frame]->addMapping(mapping);
+    _files.insert(_files.end(), request.files.begin(), request.files.end());
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     return true;
 }

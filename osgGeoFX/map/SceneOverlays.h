@@ -18,7 +18,9 @@ namespace osgGeoFX
 
     @code
     osgGeoFX::SceneOverlays overlays(*scene.node, *scene.effects);
-    if (!overlays.add("fire.kmz", error)) …
+    std::vector<std::string> notices;
+    std::string error;
+    if (!overlays.add("fire.kmz", {}, notices, error)) …
     @endcode
 
     Each file lies on top of those before. Its mappings are in effects of this object's own, one for each frame that OverlayReader
@@ -47,10 +49,14 @@ public:
     /// The effects with the mappings.
     const std::vector<osg::ref_ptr<ProjectiveMappings>>& effects() const { return _effects; }
 
+    /// Of the KML files that were added: these themselves and the files on disk that they link or show.
+    const std::vector<std::string>& files() const { return _files; }
+
 private:
     osg::ref_ptr<EffectScene> _scene;
     std::string _wkt; ///< of a projected scene
     std::vector<osg::ref_ptr<ProjectiveMappings>> _effects;
+    std::vector<std::string> _files;
 };
 
 } // namespace osgGeoFX

@@ -18,6 +18,8 @@ namespace
 
 constexpr double farthest = 0.79; // radians of arc, from an effect's origin
 constexpr std::size_t mostEffects = 3;
+/// Of all ways together. A leg has four; more of them take minutes and memory.
+constexpr std::size_t mostMappings = 400000;
 
 } // namespace
 
@@ -40,6 +42,16 @@ bool SceneRoutes::placeOf(const RoutePath& route, Way& way, std::string& error)
     if (!_ellipsoid && !_reference)
     {
         error = _referenceError;
+        return false;
+    }
+    const auto isPlace = [](const osg::Vec3d& place)
+    {
+        return std::abs(place.x()) <= 360.0 && std::abs(place.y()) <= 90.0 && std::isfinite(place.z());
+    };
+    if (route.places.empty() || !std::all_of(route.places.begin(), route.places.end(), isPlace))
+    {
+        error = "The way \"" + route.name +
+                "\" has no place, or one that is none; give degrees of longitude and latitude, and metres.";
         return false;
     }
     for (const osg::Vec2d& place : route.alongGreatCircles())
@@ -112,9 +124,18 @@ bool SceneRoutes::add(const RoutePath& route, const Options& options, std::strin
         const osg::Vec3d place = effect->placeOf(world, _ellipsoid);
         places.emplace_back(place.x(), place.y());
     }
+    std::size_t mappings = 0;
+    for (const osg::ref_ptr<ProjectiveMappings>& each : _effects)
+        mappings += each->getNumMappings();
+    if (mappings >= mostMappings)
+    {
+        error = "the ways have too many places to be shown together; simplify them, or show fewer.";
+        return false;
+    }
     if (!route.showOn(*effect, places, options.look))
     {
-        error = "the look of the way \"" + route.name + "\" is out of range; give another width.";
+        error = "the look of the way \"" + route.name +
+                "\" is out of range, or it has more than 20000 way points; give another width, or a track.";
         return false;
     }
     if (route.altitude != RoutePath::ABSOLUTE || !options.ribbons) return true;
@@ -136,6 +157,7 @@ bool SceneRoutes::add(const std::string& file, const Options& options, std::stri
     request.file = file;
     request.layer = options.layer;
     if (!request.read(error)) return false;
+    _files.insert(_files.end(), request.files.begin(), request.files.end());
     for (const RoutePath& route : request.routes)
     {
         if (add(route, options, error)) continue;

@@ -45,6 +45,9 @@ public:
     /// Adds a way. False, with a sentence in `error`, if it cannot.
     bool add(const RoutePath& route, const Options& options, std::string& error);
 
+    /// Of the KML files that were added: these themselves and the files on disk that they link or show.
+    const std::vector<std::string>& files() const { return _files; }
+
 private:
     struct Way
     {
@@ -60,6 +63,7 @@ private:
     osg::ref_ptr<Georeference> _reference;
     std::string _referenceError;
     std::vector<osg::ref_ptr<ProjectiveMappings>> _effects;
+    std::vector<std::string> _files;
 };
 
 } // namespace osgGeoFX

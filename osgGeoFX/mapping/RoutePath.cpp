@@ -5,6 +5,7 @@
 #include <osg/BoundingBox>
 #include <osg/CoordinateSystemNode>
 #include <osg/Math>
+#include <osg/Notify>
 
 #include <algorithm>
 #include <cmath>
@@ -102,8 +103,14 @@ bool RoutePath::showOn(ProjectiveMappings& effect, const std::vector<osg::Vec2d>
     if (color) style.color = *color;
     if (!wayPoints) style.pointRadius = 0.0;
     std::vector<osg::Vec2d> simple = way;
-    // Way points stay.
-    for (double tolerance = style.halfWidth / 4.0; !wayPoints; tolerance *= 2.0)
+    if (wayPoints && simple.size() > mostPlaces)
+    {
+        OSG_WARN << "osgGeoFX: RoutePath got a way of more than " << mostPlaces
+                 << " way points; it is not shown." << std::endl;
+        return false;
+    }
+    // Way points stay. The style's own half width may be 0, of a way with marks alone.
+    for (double tolerance = width / 8.0; !wayPoints; tolerance *= 2.0)
     {
         simple = simplified(simple, tolerance);
         if (simple.size() <= mostPlaces) break;

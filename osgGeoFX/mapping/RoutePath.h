@@ -52,7 +52,7 @@ struct OSGGEOFX_EXPORT RoutePath
     static RouteMapping::Style plainStyle();
     /** Draws the way on the ground, as RouteMapping does; its mappings stay in the effect, named after the way. `places`: the way in the effect's
         frame, metres. Way points get marks, the points of tracks none; these are simplified to an eighth of the width. False, with
-        a warning, if a place or the look is out of range. */
+        a warning, if a place or the look is out of range, or if there are more than 20000 way points. */
     bool showOn(ProjectiveMappings& effect, const std::vector<osg::Vec2d>& places, const Look& look) const;
 };
 

@@ -196,6 +196,7 @@ private:
         how.maxSide = request->maxSide;
         if (!reader.read(request->file, how, error)) return error;
         request->frames = reader.frames;
+        if constexpr (std::is_same_v<Request, OverlayFile>) request->files = reader.files;
         std::move(reader.overlays.begin(), reader.overlays.end(), std::back_inserter(request->overlays));
         std::move(reader.notices.begin(), reader.notices.end(), std::back_inserter(request->notices));
         return ReadResult(ReadResult::FILE_LOADED);
@@ -209,7 +210,9 @@ private:
         if (!error.empty()) return error;
         auto* request = static_cast<Request*>(const_cast<void*>(options.getPluginData("request")));
         if (!request) return ReadResult::FILE_NOT_HANDLED;
-        if (!RouteVectors::read(request->file, request->layer, request->routes, error)) return error;
+        std::vector<std::string> files;
+        if (!RouteVectors::read(request->file, request->layer, request->routes, error, &files)) return error;
+        if constexpr (std::is_same_v<Request, RouteFile>) request->files = files;
         return ReadResult(ReadResult::FILE_LOADED);
     }
 

@@ -165,6 +165,14 @@ TEST_F(KmlOverlaysTest, FoldersSwitchThemOffAndLimitTheirSizes)
         readText("<Placemark><visibility>0</visibility></Placemark><Folder><visibility>0</visibility>" + lod +
                  groundOverlay("", somewhere) + "</Folder>" + groundOverlay("", somewhere) +
                  groundOverlay("", somewhere, "<visibility>0</visibility>"));
+    // What other features say of themselves is not their folder's.
+    for (const std::string feature : {"Placemark", "ScreenOverlay", "PhotoOverlay", "Tour"})
+    {
+        const std::string other = "<" + feature + "><visibility>0</visibility>" + lod + "</" + feature + ">";
+        const KmlOverlay overlay = one(other + groundOverlay("", somewhere));
+        EXPECT_TRUE(overlay.visible) << feature;
+        EXPECT_EQ(overlay.pixelsFull, 0.0) << feature;
+    }
     ASSERT_EQ(overlays.size(), 3u);
     EXPECT_FALSE(overlays[0].visible);
     EXPECT_EQ(overlays[0].pixelsNone, 128.0);
@@ -235,6 +243,14 @@ TEST_F(KmlOverlaysTest, LinksWithinTheFolderAreFollowedOnce)
     const std::vector<KmlOverlay> overlays =
         readText("<NetworkLink><visibility>0</visibility><Url><href>tiles/a.kml</href></Url></NetworkLink>" +
                  link("tiles/c.kmz"));
+    std::vector<KmlOverlay> again;
+    std::vector<std::string> notices, files;
+    std::string error;
+    EXPECT_TRUE(KmlOverlays::read((_folder / "doc.kml").string(), false, again, notices, error, &files));
+    std::vector<std::string> expected;
+    for (const char* const name : {"doc.kml", "tiles/a.kml", "tiles/b.kml", "tiles/c.kmz"})
+        expected.push_back(std::filesystem::canonical(_folder / name).string());
+    EXPECT_EQ(files, expected);
     ASSERT_EQ(overlays.size(), 3u);
     EXPECT_EQ(bytesOf(overlays[0].image), "p");
     EXPECT_EQ(overlays[2].order, 2);
@@ -300,6 +316,14 @@ TEST_F(KmlOverlaysTest, WhatCannotBeIsToldWithItsLine)
     EXPECT_TRUE(contains(faultOfText("<Placemark/>"), "no ground overlays"));
 }
 
+TEST_F(KmlOverlaysTest, AnArchiveIsNoPicture)
+{
+    writeArchive((_folder / "a.kmz").string(), {{"p.png", "p"}});
+    for (const std::string href : {"a.kmz", "none.kmz"})
+        EXPECT_TRUE(contains(faultOfText("\n" + groundOverlay(href, somewhere)),
+                             "doc.kml:3: \"" + href + "\" is no picture"));
+}
+
 TEST_F(KmlOverlaysTest, DamagedFilesAreRefused)
 {
     const std::string whole = kml(groundOverlay("a.png", somewhere));
@@ -324,7 +348,7 @@ TEST_F(KmlOverlaysTest, DamagedFilesAreRefused)
         bomb += "\">";
     }
     bomb += "]><kml><Document><name>&a7;</name></Document></kml>";
-    faultOf(_folder.write("bomb.kml", bomb).string());
+    EXPECT_TRUE(contains(faultOf(_folder.write("bomb.kml", bomb).string()), "document type"));
     std::string deep = "<kml>";
     for (int i = 0; i < 5000; ++i)
         deep += "<Folder>";

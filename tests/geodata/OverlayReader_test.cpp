@@ -9,6 +9,7 @@
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
 
+#include <cpl_string.h>
 #include <ogr_spatialref.h>
 #include <osg/Math>
 
@@ -274,6 +275,69 @@ TEST_F(OverlayReaderTest, WhatIsNoPictureIsRefused)
         "a.vrt: it is not there, or no PNG"));
 }
 
+// GDAL opens what a picture's sidecars name, whatever its format, when it reads a picture at a lower resolution.
+TEST_F(OverlayReaderTest, SidecarsOfPicturesOpenNothing)
+{
+    const auto red = [](int, int)
+    {
+        return std::array<int, 4>{255, 0, 0, 255};
+    };
+    writePicture((_folder / "secret.tif").string(), 128, 128, red, "GTiff");
+    const std::string secret = (_folder / "secret.tif").string();
+    const std::string virtualSecret =
+        "<VRTDataset rasterXSize=\"128\" rasterYSize=\"128\"><VRTRasterBand dataType=\"Byte\" "
+        "band=\"1\"><SimpleSource><SourceFilename>" +
+        secret + "</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>";
+    const std::string metadata = "<PAMDataset><Metadata domain=\"OVERVIEWS\"><MDI key=\"OVERVIEW_FILE\">" +
+                                 secret + "</MDI></Metadata></PAMDataset>";
+    std::filesystem::create_directories(_folder / "inner");
+    OverlayReader::Options options;
+    options.maxSide = 128;
+    for (const std::string sidecar : {".aux.xml", ".ovr"})
+    {
+        for (const std::string format : {"PNG", "GTiff"})
+        {
+            SCOPED_TRACE(format + sidecar);
+            const std::filesystem::path picture = _folder / "inner" / ("x." + format);
+            writePicture(picture.string(), 256, 256, ramp, format.c_str());
+            const std::string text = sidecar == ".aux.xml" ? metadata : virtualSecret;
+            _folder.write("inner/x." + format + sidecar, text);
+            const std::string features =
+                groundOverlay("x." + format, latLonBox(7.0, 45.0, 7.01, 45.006)); // small: not warped
+            const std::string file = _folder.write("inner/doc.kml", kml(features)).string();
+            const std::string archived = (_folder / "inner/over.kmz").string();
+            writeArchive(archived, {{"doc.kml", kml(features)},
+                                    {"x." + format, bytesOf(picture.string())},
+                                    {"x." + format + sidecar, text}});
+            for (const std::string& each : {file, archived})
+            {
+                _reader = OverlayReader();
+                ASSERT_TRUE(read(each, options));
+                const GroundOverlay& overlay = _reader.overlays.at(0);
+                ASSERT_EQ(overlay.layer->getImage()->s(), 128);
+                const std::array<int, 4> texel = texelAt(overlay, placed(_reader, 0, {7.005, 45.003}));
+                EXPECT_NEAR(texel[0], 128, 3);
+                EXPECT_EQ(texel[2], 77);
+                EXPECT_EQ(texel[3], 255);
+            }
+            std::filesystem::remove(picture.string() + sidecar);
+        }
+    }
+    // A TIFF may name the file in itself.
+    const std::string own = (_folder / "inner/own.tif").string();
+    writePicture(own, 256, 256, ramp, "GTiff");
+    GDALDataset* const dataset = GDALDataset::Open(own.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE);
+    ASSERT_TRUE(dataset);
+    dataset->SetMetadataItem("OVERVIEW_FILE", secret.c_str(), "OVERVIEWS");
+    GDALClose(dataset);
+    _reader = OverlayReader();
+    EXPECT_TRUE(contains(
+        faultOf(
+            _folder.write("inner/doc.kml", kml(groundOverlay("own.tif", latLonBox(7.0, 45.0, 7.01, 45.006))))
+                .string()),
+        "own.tif: it names another file"));
+}
+
 // A header that promises 10^5 x 10^5 pixels, with and without pixels behind it; and one that is cut off.
 TEST_F(OverlayReaderTest, LyingPicturesCostNothing)
 {
@@ -320,6 +384,30 @@ TEST_F(OverlayReaderTest, LyingPicturesCostNothing)
     rusage after{};
     getrusage(RUSAGE_SELF, &after);
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 128 * 1024) << "KiB";
+}
+
+TEST_F(OverlayReaderTest, PicturesOfOneHugeBlockAreRefused)
+{
+    // GDAL reads a TIFF of one strip by its rows, but not one of two.
+    const std::string file = (_folder / "strip.tif").string();
+    CPLStringList creation;
+    for (const char* const option : {"COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BLOCKYSIZE=25000"})
+        creation.AddString(option);
+    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    GDALDataset* const dataset = driver->Create(file.c_str(), 30000, 30000, 1, GDT_Byte, creation.List());
+    ASSERT_TRUE(dataset);
+    GDALClose(dataset);
+    const std::string fault = faultOf(
+        _folder.write("doc.kml", kml(groundOverlay("strip.tif", latLonBox(7.0, 45.0, 8.0, 46.0)))).string());
+    EXPECT_TRUE(contains(fault, "strip.tif: its pixels lie in blocks of 30000 × 25000")) << fault;
+}
+
+TEST_F(OverlayReaderTest, ARasterAroundTheGlobeMayBeOfFewTexels)
+{
+    OverlayReader::Options options;
+    options.maxSide = 8;
+    EXPECT_TRUE(
+        read(archive(groundOverlay("files/ramp.png", latLonBox(-180.0, -90.0, 180.0, 90.0))), options));
 }
 
 TEST_F(OverlayReaderTest, WhatDoesNotFitIsLeftOutAndTold)

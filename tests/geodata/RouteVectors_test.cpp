@@ -5,6 +5,7 @@
 // too.
 #include <osgGeoFX/geodata/RouteVectors.h>
 #include <tools/KmlFiles.h>
+#include <tools/NotifyWatch.h>
 #include <tools/TempDir.h>
 
 #include <ogrsf_frmts.h>
@@ -94,6 +95,14 @@ const std::string gpx =
 <trkseg><trkpt lat="46" lon="7"/><trkpt lat="46.1" lon="7.1"><ele>5</ele></trkpt><trkpt lat="46.2" lon="7.1"/></trkseg>
 <trkseg><trkpt lat="46" lon="7"/></trkseg></trk></gpx>)";
 
+/// A track of two places with heights, and of another one.
+std::string gpxOf(const std::string& point)
+{
+    return R"(<?xml version="1.0"?><gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">
+<trk><trkseg><trkpt lat="45" lon="7"><ele>100</ele></trkpt><trkpt lat="45" lon="7.1"><ele>0</ele></trkpt>)" +
+           point + "</trkseg></trk></gpx>";
+}
+
 } // namespace
 
 TEST_F(RouteVectorsTest, GpxHasRoutesAndTheSegmentsOfTracks)
@@ -114,6 +123,16 @@ TEST_F(RouteVectorsTest, GpxHasRoutesAndTheSegmentsOfTracks)
     EXPECT_EQ(routes[2].places.size(), 3u);
     EXPECT_EQ(readAll(file, "routes").size(), 1u);
     EXPECT_TRUE(contains(faultOf(file, "waypoints"), "\"waypoints\""));
+}
+
+TEST_F(RouteVectorsTest, AHeightThatIsNoNumberIsNone)
+{
+    const std::string text = gpxOf("<trkpt lat=\"45\" lon=\"7.2\"><ele>nan</ele></trkpt>");
+    const std::vector<RoutePath> routes = readAll(_folder.write("high.gpx", text).string());
+    ASSERT_EQ(routes.size(), 1u);
+    EXPECT_EQ(routes[0].altitude, RoutePath::CLAMPED);
+    EXPECT_EQ(routes[0].places,
+              (std::vector<osg::Vec3d>{{7.0, 45.0, 0.0}, {7.1, 45.0, 0.0}, {7.2, 45.0, 0.0}}));
 }
 
 TEST_F(RouteVectorsTest, KmlLinesHaveTheirAltitudeMode)
@@ -157,6 +176,29 @@ TEST_F(RouteVectorsTest, KmlTracksHaveTheirAltitudeMode)
     EXPECT_EQ(routes[3].altitude, RoutePath::ABSOLUTE);
 }
 
+TEST_F(RouteVectorsTest, TracksMayHaveGapsAndAnySpaces)
+{
+    const std::vector<RoutePath> routes = readKml(
+        placemark("<gx:Track><altitudeMode>absolute</altitudeMode><gx:coord>7  45\n\t 1000 "
+                  "</gx:coord><gx:coord/><gx:coord></gx:coord><gx:coord>7.2 45 5</gx:coord></gx:Track>") +
+        placemark(line("", "7,45,1 7.1,45")));
+    ASSERT_EQ(routes.size(), 2u);
+    EXPECT_EQ(routes[0].places, (std::vector<osg::Vec3d>{{7.0, 45.0, 1000.0}, {7.2, 45.0, 5.0}}));
+    EXPECT_EQ(routes[1].places.size(), 2u);
+}
+
+// libxml2's own limit of a text is 10 MB.
+TEST_F(RouteVectorsTest, AWayMayBeLong)
+{
+    std::string coordinates;
+    for (int i = 0; i < 500000; ++i)
+        coordinates += i % 2 ? "7.0000001,45.0000001,100 " : "7.0000002,45.0000001,100\n";
+    ASSERT_GT(coordinates.size(), 12000000u);
+    const std::vector<RoutePath> routes = readKml(placemark(line("", coordinates)));
+    ASSERT_EQ(routes.size(), 1u);
+    EXPECT_EQ(routes[0].places.size(), 500000u);
+}
+
 TEST_F(RouteVectorsTest, KmlColorsAreOwnOrShared)
 {
     const std::vector<RoutePath> routes = readKml(
@@ -196,12 +238,55 @@ TEST_F(RouteVectorsTest, FilesOfGdalsDriversAreRead)
     EXPECT_EQ(flat.at(0).altitude, RoutePath::CLAMPED);
 }
 
+TEST_F(RouteVectorsTest, MissingLinksAreToldAndTooManyRefused)
+{
+    const auto link = [](const std::string& href)
+    {
+        return "<NetworkLink><Link><href>" + href + "</href></Link></NetworkLink>";
+    };
+    NotifyWatch watch;
+    const std::vector<std::string> messages = watch.messagesOf(
+        [&] { EXPECT_EQ(readKml(placemark(line("")) + link("none.kml") + link("../out.kml")).size(), 1u); });
+    ASSERT_EQ(messages.size(), 2u);
+    EXPECT_TRUE(contains(messages[0], "doc.kml: the file \"none.kml\" that it links is not there"));
+    EXPECT_TRUE(contains(messages[1], "\"../out.kml\" that it links is not in its folder"));
+    std::string features;
+    for (int i = 0; i < 1000; ++i)
+    {
+        const std::string name = "part" + std::to_string(i) + ".kml";
+        _folder.write(name, kml(placemark(line(""))));
+        features += link(name);
+    }
+    EXPECT_TRUE(contains(faultOf(_folder.write("doc.kml", kml(features)).string()), "more than 1000 files"));
+    std::string many;
+    for (int i = 0; i < 10001; ++i)
+        many += link("part0.kml");
+    EXPECT_TRUE(contains(faultOf(_folder.write("doc.kml", kml(many)).string()), "more than 10000 links"));
+}
+
+TEST_F(RouteVectorsTest, LayersThatHoldNoLinesAreLeftOut)
+{
+    const std::string file = written("GPKG", "a.gpkg", "LINESTRING (7 45,7.1 45.1)");
+    GDALDataset* const dataset = GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE);
+    ASSERT_TRUE(dataset);
+    ASSERT_TRUE(dataset->CreateLayer("table", nullptr, wkbNone, nullptr));
+    ASSERT_TRUE(dataset->CreateLayer("points", nullptr, wkbPoint, nullptr));
+    GDALClose(dataset);
+    EXPECT_EQ(readAll(file).size(), 1u);
+    EXPECT_TRUE(contains(faultOf(file, "table"), "it has no way"));
+}
+
 TEST_F(RouteVectorsTest, WhatCannotBeReadIsTold)
 {
     EXPECT_TRUE(
         contains(faultOf(_folder.write("cut.gpx", gpx.substr(0, gpx.size() / 2)).string()), "cut.gpx: "));
     EXPECT_TRUE(contains(faultOf(_folder.write("no.gpx", "<gpx/>").string()), "no.gpx: "));
     EXPECT_TRUE(contains(faultOf((_folder / "none.gpx").string()), "none.gpx: "));
+    for (const std::string point :
+         {"lat=\"nan\" lon=\"7\"", "lat=\"95\" lon=\"7\"", "lat=\"45\" lon=\"1e9\""})
+        EXPECT_TRUE(contains(faultOf(_folder.write("bad.gpx", gpxOf("<trkpt " + point + "/>")).string()),
+                             "bad.gpx: a place of its tracks is none"))
+            << point;
     EXPECT_TRUE(
         contains(faultOf(_folder.write("none.kml", kml(groundOverlay("", latLonBox(7, 45, 8, 46)))).string()),
                  "none.kml: it has no way"));

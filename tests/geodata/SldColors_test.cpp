@@ -77,6 +77,26 @@ TEST_F(SldColorsTest, IntervalsHoldBelowTheirQuantities)
     EXPECT_EQ(table->at(99.0), clear);
 }
 
+TEST_F(SldColorsTest, TheLastQuantityMayBeInfinite)
+{
+    // As QGIS writes it.
+    const std::string open = entries + R"(<sld:ColorMapEntry color="#ff0000" quantity="inf"/>)";
+    for (const std::string type : {"intervals", "ramp", "values"})
+    {
+        const osg::ref_ptr<ColorTable> table =
+            read("<sld:ColorMap type=\"" + type + "\">" + open + "</sld:ColorMap>");
+        const osg::Vec4 blue(0, 0, 1, 0.5f);
+        EXPECT_EQ(table->at(99.0), type == "intervals" ? red : type == "ramp" ? blue : clear) << type;
+    }
+    const osg::ref_ptr<ColorTable> one = read(
+        R"(<sld:ColorMap type="intervals"><sld:ColorMapEntry color="#ff0000" quantity="inf"/></sld:ColorMap>)");
+    EXPECT_EQ(one->at(-99.0), red);
+    EXPECT_EQ(one->at(99.0), red);
+    EXPECT_FALSE(faultOf(R"(<sld:ColorMap><sld:ColorMapEntry color="#ff0000" quantity="inf"/>
+                            <sld:ColorMapEntry color="#ff0000" quantity="1"/></sld:ColorMap>)")
+                     .empty());
+}
+
 TEST_F(SldColorsTest, ValuesHoldAlone)
 {
     const osg::ref_ptr<ColorTable> table =

@@ -3,6 +3,7 @@
 // What the makers of mappings put where, what they change when they are changed, and that they leave nothing behind.
 #include <osgGeoFX/mapping/GeometrySwap.h>
 #include <osgGeoFX/mapping/RouteMapping.h>
+#include <osgGeoFX/mapping/RoutePath.h>
 #include <osgGeoFX/mapping/SymbolMapping.h>
 #include <tools/NotifyWatch.h>
 #include <tools/RandomSamples.h>
@@ -82,6 +83,20 @@ bool refused(const std::function<bool()>& set)
 }
 
 } // namespace
+
+TEST_F(Route, ofAFileMayHaveMarksAloneAndHasAnEnd)
+{
+    RoutePath path;
+    RoutePath::Look look;
+    look.style.halfWidth = 0.0; // no line; this was a tolerance that never grew
+    std::vector<osg::Vec2d> zigzag;
+    for (int i = 0; i < 20001; ++i)
+        zigzag.emplace_back(i * 1.0, i % 2 * 5000.0);
+    EXPECT_TRUE(path.showOn(*_mappings, zigzag, look));
+    path.wayPoints = true;
+    EXPECT_FALSE(path.showOn(*_mappings, zigzag, look)) << "too many";
+    EXPECT_FALSE(path.showOn(*_mappings, {}, look));
+}
 
 TEST_F(Route, hasAStripForEachLegAndADiscForEachPoint)
 {

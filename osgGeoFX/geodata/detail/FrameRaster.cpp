@@ -45,6 +45,32 @@ std::string wktOf(const OGRSpatialReference& srs)
     return wkt;
 }
 
+/// While it lives, GDAL looks on this thread for no file beside the one that it opens.
+class WithoutSidecars
+{
+public:
+    explicit WithoutSidecars(const std::string& file)
+    {
+        const char* const before = CPLGetThreadLocalConfigOption("GDAL_PAM_ENABLED", nullptr);
+        if (before) _before = before;
+        CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", "NO");
+        // An empty list would mean that GDAL looks itself.
+        _siblings.AddString(CPLGetFilename(file.c_str()));
+    }
+    ~WithoutSidecars()
+    {
+        CPLSetThreadLocalConfigOption("GDAL_PAM_ENABLED", _before ? _before->c_str() : nullptr);
+    }
+    WithoutSidecars(const WithoutSidecars&) = delete;
+    WithoutSidecars& operator=(const WithoutSidecars&) = delete;
+
+    const char* const* siblings() const { return _siblings.List(); }
+
+private:
+    std::optional<std::string> _before;
+    CPLStringList _siblings;
+};
+
 } // namespace
 
 FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
@@ -91,14 +117,24 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
     static const char* const plainPictures[] = {"PNG", "JPEG", "GIF",         "GTiff",
                                                 "BMP", "WEBP", "JP2OpenJPEG", nullptr};
     GdalErrorScope errors;
-    _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
-                                          formats == PLAIN_PICTURES ? plainPictures : nullptr));
+    if (formats == PLAIN_PICTURES)
+    {
+        // Files beside a picture may be of any format, and so name any file and address: .aux.xml, .ovr and .msk.
+        const WithoutSidecars without(_file);
+        _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
+                                              plainPictures, nullptr, without.siblings()));
+    }
+    else
+        _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
     if (!_chain.back() && formats == PLAIN_PICTURES)
         fail("it is not there, or no PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000 (" + errors.message() +
              "); correct its name, or convert it to PNG");
     if (!_chain.back())
         fail("it is not a raster that GDAL can read (" + errors.message() +
              "); check it with gdalinfo, or convert it to GeoTIFF");
+    // A TIFF has metadata in itself.
+    if (formats == PLAIN_PICTURES && top().GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS"))
+        fail("it names another file as its overviews; convert it to PNG");
     if (top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
     checkSize();
@@ -133,6 +169,15 @@ void FrameRaster::checkSize() const
                           format != "WEBP" && format != "JPEG";
     const double columns = top().GetRasterXSize();
     const double rows = top().GetRasterYSize();
+    // A block is decoded at once, also where a few of its pixels are wanted.
+    constexpr double largestBlock = 536870912.0; // bytes
+    int blockColumns = 0;
+    int blockRows = 0;
+    band().GetBlockSize(&blockColumns, &blockRows);
+    if (static_cast<double>(blockColumns) * blockRows * GDALGetDataTypeSizeBytes(band().GetRasterDataType()) >
+        largestBlock)
+        fail("its pixels lie in blocks of " + std::to_string(blockColumns) + " × " +
+             std::to_string(blockRows) + ", each of which is read at once; convert it to a tiled GeoTIFF");
     if (hasTiles || columns * rows <= mostPixels || band().GetOverviewCount() > 0) return;
     fail("it says that it has " + std::to_string(top().GetRasterXSize()) + " × " +
          std::to_string(top().GetRasterYSize()) + " pixels, which a " + format +

@@ -124,6 +124,13 @@ std::optional<std::string> KmlFolder::resolve(const std::string& document, const
     return path;
 }
 
+std::string KmlFolder::onDisk(const std::string& path)
+{
+    const std::string archive = "/vsizip/{";
+    if (startsWith(path, archive)) return path.substr(archive.size(), path.find('}') - archive.size());
+    return startsWith(path, "/vsi") ? std::string() : path;
+}
+
 std::string KmlFolder::plain(const std::string& path)
 {
     std::string text = path;

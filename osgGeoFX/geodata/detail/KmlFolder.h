@@ -21,6 +21,8 @@ public:
     std::optional<std::string> resolve(const std::string& document, const std::string& href) const;
     /// For sentences: a path as a person knows it.
     static std::string plain(const std::string& path);
+    /// The file or archive on disk that holds what GDAL calls so; empty if there is none.
+    static std::string onDisk(const std::string& path);
 
 private:
     bool isWithin(const std::string& path) const;

@@ -20,13 +20,17 @@ namespace
 class Parser : public KmlStream
 {
 public:
-    explicit Parser(const std::string& document) : KmlStream(document) {}
+    Parser(const std::string& document, std::size_t mostPlaces) : KmlStream(document), _mostPlaces(mostPlaces)
+    {
+    }
 
     KmlLines read()
     {
         parse();
         KmlLines result;
         result.links = std::move(_networkLinks);
+        result.places = _places;
+        result.bytes = bytes();
         for (Line& line : _lines)
         {
             if (!line.route.color) line.route.color = colorOf(line.style, 0);
@@ -44,7 +48,7 @@ private:
 
     std::size_t longestText() const override
     {
-        // Coordinates come in one text, which the document's own limit bounds.
+        // Coordinates come in one text, as long as the document at most.
         return isAt({"LineString", "coordinates"}) ? std::size_t{1} << 28 : KmlStream::longestText();
     }
 
@@ -82,7 +86,11 @@ private:
         if (isAt({"Pair", "key"})) _key = text();
         if (isAt({"StyleMap", "Pair", "styleUrl"}) && _key == "normal") _links["#" + _styleId] = text();
         if (isAt({"NetworkLink", "Link", "href"}) || isAt({"NetworkLink", "Url", "href"}))
-            if (_visible.back()) _networkLinks.emplace_back(text());
+            if (_visible.back())
+            {
+                if (_networkLinks.size() >= mostKmlLinks) fail(line(), tooManyLinks);
+                _networkLinks.emplace_back(text());
+            }
         if (_route) takeGeometry();
         if (isAt({"MultiTrack", "altitudeMode"})) _tracksAltitude = altitude();
         if (element() == "Placemark") finishPlacemark();
@@ -100,7 +108,8 @@ private:
         if (element() == "altitudeMode") _route->altitude = altitude();
         if (element() == "extrude") _route->extruded = text() == "1" || text() == "true";
         if (isAt({"LineString", "coordinates"})) takeCoordinates(text());
-        if (isAt({"Track", "coord"})) takeTuple(text(), " \t\r\n");
+        // An empty one is a moment without a place.
+        if (isAt({"Track", "coord"}) && !text().empty()) takeTuple(text(), " \t\r\n");
         if (element() != "LineString" && element() != "Track") return;
         if (_route->altitude == RoutePath::CLAMPED)
             for (osg::Vec3d& place : _route->places)
@@ -140,14 +149,16 @@ private:
             if (!value) break;
             place[count] = *value;
             rest.remove_prefix(std::min(length + 1, rest.size()));
+            rest = trimmed(rest);
         }
         if (count < 2 || std::abs(place.x()) > 360.0 || std::abs(place.y()) > 90.0)
             fail(line(),
                  "the place \"" + std::string(tuple.substr(0, 60)) +
                      "\" of a line is none; write longitude, latitude and height, degrees and metres.");
-        if (++_places > mostRoutePlaces)
-            fail(line(),
-                 "the file's lines have more than ten million places; simplify them with ogr2ogr -simplify.");
+        if (++_places > _mostPlaces)
+            fail(line(), "with this place, the lines of the file and of what it links have more than ten "
+                         "million; simplify "
+                         "them with ogr2ogr -simplify.");
         _route->places.push_back(place);
     }
 
@@ -182,6 +193,7 @@ private:
     RoutePath::Altitude _tracksAltitude = RoutePath::CLAMPED; ///< of the present gx:MultiTrack
     std::vector<Line> _lines;
     std::size_t _first = 0; ///< of the present placemark's lines
+    const std::size_t _mostPlaces;
     std::size_t _places = 0;
     std::string _name, _styleUrl, _styleId, _key;
     std::optional<osg::Vec4> _placemarkColor;
@@ -192,9 +204,9 @@ private:
 
 } // namespace
 
-KmlLines readKmlLines(const std::string& document)
+KmlLines readKmlLines(const std::string& document, std::size_t mostPlaces)
 {
-    return Parser(document).read();
+    return Parser(document, mostPlaces).read();
 }
 
 } // namespace osgGeoFX

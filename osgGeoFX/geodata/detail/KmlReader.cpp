@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -48,7 +49,11 @@ public:
 private:
     static bool isFeature(const std::string& name)
     {
-        return name == "Document" || name == "Folder" || name == "GroundOverlay" || name == "NetworkLink";
+        // Also those that are not read: what they say of themselves is not their folder's.
+        static const char* const features[] = {"Document",     "Folder",    "GroundOverlay",
+                                               "NetworkLink",  "Placemark", "ScreenOverlay",
+                                               "PhotoOverlay", "Model",     "Tour"};
+        return std::find(std::begin(features), std::end(features), name) != std::end(features);
     }
 
     void begin() override
@@ -79,6 +84,7 @@ private:
         if (element() == "NetworkLink" && _link)
         {
             _link->inherited = _inherited.back();
+            if (_content.links.size() >= mostKmlLinks) fail(_link->line, tooManyLinks);
             if (!_link->href.empty()) _content.links.push_back(*_link);
             _link.reset();
         }

@@ -20,6 +20,7 @@ namespace
 {
 
 constexpr std::size_t largestDocument = std::size_t{256} << 20;
+constexpr std::size_t mostDepth = 256;
 
 /// A file as libxml2 reads it.
 struct Source
@@ -88,8 +89,10 @@ void KmlStream::parse()
     if (!file) throw BuildError(name + ": the file cannot be read; check its name and rights.");
     Source source;
     source.file = file.get();
-    const std::unique_ptr<xmlTextReader, ReaderCloser> reader(xmlReaderForIO(
-        &Source::read, &Source::close, &source, nullptr, nullptr, XML_PARSE_NONET | XML_PARSE_BIG_LINES));
+    const std::unique_ptr<xmlTextReader, ReaderCloser> reader(
+        xmlReaderForIO(&Source::read, &Source::close, &source, nullptr, nullptr,
+                       // A way's coordinates may have more than the 10 MB of libxml2's own limit.
+                       XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_HUGE));
     if (!reader) throw BuildError(name + ": there is no memory to read it; free some.");
     _reader = reader.get();
     xmlTextReaderSetStructuredErrorHandler(_reader, &Faults::note, this);
@@ -146,8 +149,12 @@ void KmlStream::takeNode()
     };
     switch (xmlTextReaderNodeType(_reader))
     {
+    case XML_READER_TYPE_DOCUMENT_TYPE:
+        fail(line(), "it is not KML (it has a document type, which may define entities); save it without.");
     case XML_READER_TYPE_ELEMENT:
     {
+        if (_path.size() >= mostDepth)
+            fail(line(), "it is not KML (its elements are more than 256 deep); save or export it again.");
         const bool isEmpty = xmlTextReaderIsEmptyElement(_reader) == 1;
         _path.emplace_back(reinterpret_cast<const char*>(xmlTextReaderConstLocalName(_reader)));
         _text.clear();

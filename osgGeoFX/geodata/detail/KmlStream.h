@@ -14,13 +14,18 @@ struct _xmlTextReader; // libxml2's
 namespace osgGeoFX
 {
 
+/// Of a text; more of them are told as a fault while it is read.
+constexpr std::size_t mostKmlLinks = 10000;
+inline constexpr const char* tooManyLinks =
+    "the file has more than 10000 links; open one of its parts instead.";
+
 /// Text without the spaces around it.
 std::string_view trimmed(std::string_view text);
 /// The whole of a text as a finite number, in every locale.
 std::optional<double> numberOf(std::string_view text);
 
-/** A KML text, read as a stream by libxml2: no entities, no network, and libxml2's own limits of depth and length. So memory does not
-    grow with the number of elements. */
+/** A KML text, read as a stream by libxml2: no document type, so no entities; no network; limits of depth and length. So memory does
+    not grow with the number of elements. */
 class KmlStream
 {
 public:
