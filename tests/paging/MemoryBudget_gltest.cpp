@@ -102,10 +102,7 @@ protected:
         EXPECT_TRUE(point.viewMatrix(*oahu->reference, view));
         viewer().getCamera()->setViewMatrix(view);
     }
-    void frame(double time = USE_REFERENCE_TIME)
-    {
-        viewer().frame(time);
-    }
+    void frame(double time = USE_REFERENCE_TIME) { viewer().frame(time); }
     void settle()
     {
         PagerMonitor monitor(viewer().getDatabasePager(), nullptr, 2);
