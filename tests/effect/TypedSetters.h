@@ -43,6 +43,12 @@ inline TypedSetters mappingsSetters()
         {"dataUnit", unit(0)},
         {"layerUnit", unit(1)},
         {"tableUnit", unit(2)},
+        {"pageUnit",
+         typed<Self>([](Self& o, double v) { return o.setCacheUnits(int(v), o.getPageTableUnit()); },
+                     [](const Self& o) { return static_cast<double>(o.getPageUnit()); })},
+        {"pageTableUnit",
+         typed<Self>([](Self& o, double v) { return o.setCacheUnits(o.getPageUnit(), static_cast<int>(v)); },
+                     [](const Self& o) { return static_cast<double>(o.getPageTableUnit()); })},
     };
 }
 

@@ -97,7 +97,7 @@ inline std::vector<double> candidateValues(const osgGeoFX::Property& property)
     }
     // All of a short range; of a long one its ends, the default's neighbours and the powers of two.
     std::vector<double> candidates;
-    const bool all = high - low < 32.0;
+    const bool all = high - low <= 32.0;
     for (double value = low; value <= high; value = all ? value + 1.0 : std::max(2.0 * value, value + 1.0))
         candidates.push_back(value);
     candidates.insert(candidates.end(), {property.defaultValue - 1.0, property.defaultValue + 1.0, high});
