@@ -49,7 +49,7 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
                                "Add an effect to the scene's, as in osggeofx_render; as often as wanted.");
     usage.addCommandLineOption(
-        "--exact-mappings", "Draw mappings anew in each frame instead of composing beforehand what rests.");
+        "--cache-mappings", "Compose mappings that rest beforehand, instead of drawing them anew in each frame.");
     usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
     usage.addCommandLineOption("--mapping <file>",
                                "Put a raster onto the ground: KML, KMZ, or any raster with a georeference.");
@@ -138,7 +138,7 @@ int main(int argc, char** argv)
     while (arguments.read("--route", text))
         mappingOptions.routes.push_back(text);
     const bool routeWidthGiven = arguments.read("--route-width", mappingOptions.routeWidth);
-    const bool exactMappings = arguments.read("--exact-mappings");
+    const bool cacheMappings = arguments.read("--cache-mappings");
     geofx::names::Options nameOptions;
     while (arguments.read("--labels", text))
         nameOptions.files.push_back(text);
@@ -208,7 +208,7 @@ int main(int argc, char** argv)
     if (sky && !scene->addSky(error)) return refuse("--sky: " + error);
     for (const auto& effect : effects)
         scene->effects->addEffect(effect);
-    if (!exactMappings) geofx::viewer::composeMappings(*scene->effects);
+    if (cacheMappings) geofx::viewer::composeMappings(*scene->effects);
     scene->effects->listenTo(*scene->guard);
     if (!fieldOfViewGiven) fieldOfView = scene->settings.homeFov.value_or(30.0);
     if (const std::string fault = geofx::names::faultOf(nameOptions, arguments[1]); !fault.empty())
