@@ -49,7 +49,8 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--effect '<kind> <property>=<value> ...'",
                                "Add an effect to the scene's, as in osggeofx_render; as often as wanted.");
     usage.addCommandLineOption(
-        "--cache-mappings", "Compose mappings that rest beforehand, instead of drawing them anew in each frame.");
+        "--cache-mappings",
+        "Compose mappings that rest beforehand, instead of drawing them anew in each frame.");
     usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
     usage.addCommandLineOption("--mapping <file>",
                                "Put a raster onto the ground: KML, KMZ, or any raster with a georeference.");
