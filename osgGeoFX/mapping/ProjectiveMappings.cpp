@@ -186,7 +186,9 @@ public:
     }
     void cull(const ScenePass& pass) override
     {
-        _drawing.cameras.of(pass.state).pages.draw(pass, pass.units[3], pass.units[4]);
+        // A camera's replacement of the effect may want pages where the scene's list has no units for them.
+        if (pass.units.size() == 5)
+            _drawing.cameras.of(pass.state).pages.draw(pass, pass.units[3], pass.units[4]);
     }
 
 protected:
@@ -471,7 +473,11 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     }
     setUniform(state, prefix + "globe", osg::Uniform::FLOAT_VEC4, osg::Vec4(globe));
     setUniform(state, prefix + "curve", osg::Uniform::FLOAT_VEC4, osg::Vec4(curve));
-    if (_caching == OFF) return true;
+    if (_caching == OFF)
+    {
+        camera.pages.stop(state, prefix);
+        return true;
+    }
     CameraPages::Task task;
     task.gpu = camera.gpu;
     task.frame = frame;

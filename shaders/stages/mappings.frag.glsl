@@ -53,6 +53,8 @@ uniform float SLOT_baseStrength;
 
 vec4 SLOT_color(vec4 color)
 {
+    // The other side of the globe has the same places once more.
+    if (SLOT_curve.x * SLOT_position.z < -1.0) return color;
     vec2 p = SLOT_place.xy * SLOT_pageFrame.z + SLOT_pageFrame.xy;
     // The table's texel, at its middle. What lies beyond is blank, as its outermost texels are.
     vec3 word = texture(SLOT_pageTable, floor(p) * SLOT_pageWindow.z + SLOT_pageWindow.xy).xyz * 255.0 + 0.5;

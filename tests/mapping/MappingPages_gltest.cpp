@@ -6,6 +6,8 @@
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/scene/DeformedView.h>
 
+#include <osg/AlphaFunc>
+#include <osg/ColorMask>
 #include <osg/CoordinateSystemNode>
 #include <osg/MatrixTransform>
 
@@ -223,6 +225,37 @@ TEST_F(MappingPages, ShowValuesMasksAndTheChangedScene)
     context->setRectangle({0.0, 0.0}, 300.0, 300.0);
     EXPECT_TRUE(same(*draw(), *drawExactly()));
     EXPECT_NE(_mappings->cacheStatistics().reason.find("does not cover"), std::string::npos);
+}
+
+TEST_F(MappingPages, LeaveGroundBeyondAllMappingsAsItIs)
+{
+    const osg::ref_ptr<ProjectiveMapping> context = new ProjectiveMapping;
+    context->setRectangle({4000.0, 0.0}, 300.0, 300.0);
+    context->getTransfer()->setSource(ColorTransfer::SCENE);
+    context->getTransfer()->setSaturation(0.0);
+    context->getTransfer()->setBrightness(0.2);
+    add(context);
+    const osg::ref_ptr<osg::Image> exact = drawExactly();
+    for (int i = 0; i < 10; ++i)
+        EXPECT_TRUE(same(*draw(), *exact)) << i;
+}
+
+TEST_F(MappingPages, KeepOffTheStatesAboveTheScene)
+{
+    for (EffectScene* scene : {_scene.get(), _exactScene.get()})
+    {
+        osg::StateSet& state = *scene->getOrCreateStateSet();
+        state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GREATER, 0.5f));
+        state.setAttributeAndModes(new osg::ColorMask(true, true, true, false));
+    }
+    addSome();
+    drawSettled();
+    // A place where nothing is left must be blank again.
+    const osg::ref_ptr<ProjectiveMapping> one = _mappings->getMapping(4);
+    remove(one);
+    const osg::ref_ptr<osg::Image> exact = drawExactly();
+    EXPECT_TRUE(right(*draw(), *exact));
+    EXPECT_TRUE(right(*drawSettled(), *exact));
 }
 
 TEST_F(MappingPages, AreTheSameWhicheverWayTheCameraCame)

@@ -4,6 +4,7 @@
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <tools/MappingStage.h>
+#include <tools/Outlines.h>
 #include <tools/RandomSamples.h>
 
 #include <GeographicLib/Geocentric.hpp>
@@ -116,25 +117,6 @@ protected:
             all.push_back(corners);
         }
         return all;
-    }
-
-    /// How far a point lies inside of a polygon, pixels; negative outside.
-    static double insideOf(const std::vector<osg::Vec2d>& polygon, const osg::Vec2d& point)
-    {
-        double nearest = 1e30;
-        bool within = false;
-        for (std::size_t i = 0; i < polygon.size(); ++i)
-        {
-            const osg::Vec2d& a = polygon[i];
-            const osg::Vec2d& b = polygon[(i + 1) % polygon.size()];
-            const osg::Vec2d edge = b - a;
-            const double share = std::clamp((point - a) * edge / std::max(edge.length2(), 1e-12), 0.0, 1.0);
-            nearest = std::min(nearest, (a + edge * share - point).length());
-            const bool crosses = (a.y() > point.y()) != (b.y() > point.y()) &&
-                                 point.x() < a.x() + edge.x() * (point.y() - a.y()) / edge.y();
-            within = within != crosses;
-        }
-        return within ? nearest : -nearest;
     }
 
     /// The overlay's pixels are those within its outline, to a pixel.

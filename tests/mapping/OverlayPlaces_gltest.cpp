@@ -8,6 +8,7 @@
 #include <tools/GeofxPlugins.h>
 #include <tools/KmlFiles.h>
 #include <tools/MappingStage.h>
+#include <tools/Outlines.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
@@ -30,6 +31,13 @@ namespace
 using Place = osg::Vec2d; // degrees of longitude and latitude
 using Corners = std::array<Place, 4>;
 using World = std::function<osg::Vec3d(const Place&)>;
+
+osg::Vec3d onEarth(const Place& place)
+{
+    osg::Vec3d p;
+    GeographicLib::Geocentric::WGS84().Forward(place.y(), place.x(), 0.0, p.x(), p.y(), p.z());
+    return p;
+}
 
 class OverlayPlaces : public MappingStage
 {
@@ -134,24 +142,6 @@ protected:
         return node;
     }
 
-    static double insideOf(const std::vector<osg::Vec2d>& polygon, const osg::Vec2d& point)
-    {
-        double nearest = 1e30;
-        bool within = false;
-        for (std::size_t i = 0; i < polygon.size(); ++i)
-        {
-            const osg::Vec2d& a = polygon[i];
-            const osg::Vec2d& b = polygon[(i + 1) % polygon.size()];
-            const osg::Vec2d edge = b - a;
-            const double share = std::clamp((point - a) * edge / std::max(edge.length2(), 1e-12), 0.0, 1.0);
-            nearest = std::min(nearest, (a + edge * share - point).length());
-            const bool crosses = (a.y() > point.y()) != (b.y() > point.y()) &&
-                                 point.x() < a.x() + edge.x() * (point.y() - a.y()) / edge.y();
-            within = within != crosses;
-        }
-        return within ? nearest : -nearest;
-    }
-
     /// Those from `first` on that the picture shows as a whole: each pixel more than one from the outline is the overlay's within it,
     /// and not outside of it. What is filtered across an edge belongs to the one that it is more like.
     void expectOutlines(std::size_t first, const World& world)
@@ -238,13 +228,7 @@ struct Region
 
 TEST_F(OverlayPlaces, AHundredOnAGlobe)
 {
-    const GeographicLib::Geocentric& earth = GeographicLib::Geocentric::WGS84();
-    const World world = [&](const Place& place)
-    {
-        osg::Vec3d p;
-        earth.Forward(place.y(), place.x(), 0.0, p.x(), p.y(), p.z());
-        return p;
-    };
+    const World world = onEarth;
     // Small and large ones; over the antimeridian; at 80° north, and so in the south.
     const Region regions[] = {{{-158.0, 21.45}, 4000.0},
                               {{179.98, -17.0}, 150000.0},
@@ -274,7 +258,8 @@ TEST_F(OverlayPlaces, AHundredOnAGlobe)
         _scene->addChild(node);
         std::vector<double> turn(9);
         osg::Vec3d foot;
-        earth.Forward(region.middle.y(), region.middle.x(), 0.0, foot.x(), foot.y(), foot.z(), turn);
+        GeographicLib::Geocentric::WGS84().Forward(region.middle.y(), region.middle.x(), 0.0, foot.x(),
+                                                   foot.y(), foot.z(), turn);
         lookAt(region.middle, {turn[2], turn[5], turn[8]}, {turn[1], turn[4], turn[7]}, region.half, world);
         expectOutlines(25 * i, world);
     }
@@ -320,13 +305,7 @@ TEST_F(OverlayPlaces, AHundredOnAProjectedTerrain)
 // A frame's plane has each of its places twice, on this side of the globe and on the other one.
 TEST_F(OverlayPlaces, NothingShowsOnTheOtherSideOfTheGlobe)
 {
-    const GeographicLib::Geocentric& earth = GeographicLib::Geocentric::WGS84();
-    const World world = [&](const Place& place)
-    {
-        osg::Vec3d p;
-        earth.Forward(place.y(), place.x(), 0.0, p.x(), p.y(), p.z());
-        return p;
-    };
+    const World world = onEarth;
     const Place here(10.0, 0.5), there(-169.0, -0.5); // within the overlay; mirrored by the frame's plane
     _overlays.push_back({});
     writePicture((_folder / "a.png").string(), 8, 8,
@@ -335,19 +314,30 @@ TEST_F(OverlayPlaces, NothingShowsOnTheOtherSideOfTheGlobe)
                  });
     _entries.emplace_back("a.png", bytesOf((_folder / "a.png").string()));
     show(groundOverlay("a.png", latLonBox(5.0, -4.0, 17.0, 4.0)), true);
-    for (const Place& middle : {here, there})
+    auto* const effect = dynamic_cast<ProjectiveMappings*>(_scene->getEffect(0));
+    ASSERT_TRUE(effect);
+    for (const auto caching : {ProjectiveMappings::OFF, ProjectiveMappings::AUTOMATIC})
     {
-        const osg::ref_ptr<osg::CoordinateSystemNode> node = new osg::CoordinateSystemNode;
-        node->setEllipsoidModel(new osg::EllipsoidModel);
-        node->addChild(groundAround(middle, 1.0, 1.0, world));
-        _scene->removeChildren(0, _scene->getNumChildren());
-        _scene->addChild(node);
-        osg::Vec3d up = world(middle);
-        up.normalize();
-        lookAt(middle, up, osg::Z_AXIS, 100000.0, world);
-        const osg::Vec3d color = at(*draw(), _width / 2, _height / 2);
-        EXPECT_TRUE(alike(color, middle == here ? osg::Vec3d(1.0, 1.0, 0.0) : groundColor()))
-            << middle.x() << ": " << color.x() << " " << color.y() << " " << color.z();
+        effect->setCaching(caching);
+        for (const Place& middle : {here, there})
+        {
+            const osg::ref_ptr<osg::CoordinateSystemNode> node = new osg::CoordinateSystemNode;
+            node->setEllipsoidModel(new osg::EllipsoidModel);
+            node->addChild(groundAround(middle, 1.0, 1.0, world));
+            _scene->removeChildren(0, _scene->getNumChildren());
+            _scene->addChild(node);
+            osg::Vec3d up = world(middle);
+            up.normalize();
+            lookAt(middle, up, osg::Z_AXIS, 100000.0, world);
+            const std::uint64_t before = effect->cacheStatistics().pagedFrames;
+            for (int frame = 0; frame < 30; ++frame)
+                draw();
+            const osg::Vec3d color = at(*draw(), _width / 2, _height / 2);
+            EXPECT_TRUE(alike(color, middle == here ? osg::Vec3d(1.0, 1.0, 0.0) : groundColor()))
+                << middle.x() << ": " << color.x() << " " << color.y() << " " << color.z();
+            EXPECT_EQ(effect->cacheStatistics().pagedFrames > before, caching != ProjectiveMappings::OFF)
+                << effect->cacheStatistics().reason;
+        }
     }
 }
 
@@ -371,13 +361,7 @@ protected:
     /// Pictures of parts of the globe must have, pixel by pixel, the color of the place that they show.
     void expectDirections(const std::string& file, double texel)
     {
-        const GeographicLib::Geocentric& earth = GeographicLib::Geocentric::WGS84();
-        const World world = [&](const Place& place)
-        {
-            osg::Vec3d p;
-            earth.Forward(place.y(), place.x(), 0.0, p.x(), p.y(), p.z());
-            return p;
-        };
+        const World world = onEarth;
         OverlayReader reader;
         std::string error;
         ASSERT_TRUE(reader.read(file, {}, error)) << error;
@@ -407,7 +391,8 @@ protected:
                 const osg::Vec3d position = osg::Vec3d(x, y, 0.0) * frame;
                 Place place;
                 double height = 0.0;
-                earth.Reverse(position.x(), position.y(), position.z(), place.y(), place.x(), height);
+                GeographicLib::Geocentric::WGS84().Reverse(position.x(), position.y(), position.z(),
+                                                           place.y(), place.x(), height);
                 return place;
             };
             // A cap around the place.

@@ -30,6 +30,12 @@ void setVector(osg::StateSet& state, const std::string& name, const osg::Vec4d& 
     state.getOrCreateUniform(name, osg::Uniform::FLOAT_VEC4)->set(osg::Vec4f(value));
 }
 
+void switchOff(osg::StateSet& state, const std::string& prefix)
+{
+    setDefine(state, prefix + "PAGES", false);
+    setDefine(state, prefix + "PAGE_BASE", false);
+}
+
 /// Whether a base covers a rectangle, to the rounding.
 bool covers(const PlaneFootprint& outline, const PlaneBox& box)
 {
@@ -56,13 +62,22 @@ bool covers(const PlaneFootprint& outline, const PlaneBox& box)
 void CameraPages::begin(Task task, osg::StateSet& state, const std::string& prefix)
 {
     _task = std::move(task);
-    setDefine(state, prefix + "PAGES", false);
+    _begun = true;
+    switchOff(state, prefix);
+}
+
+void CameraPages::stop(osg::StateSet& state, const std::string& prefix)
+{
+    _task.reset();
+    if (_begun) switchOff(state, prefix);
+    _begun = false;
 }
 
 void CameraPages::say(const char* why)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     _statistics.reason = why ? why : "";
+    if (why) _statistics.settled = false;
     ++(why ? _statistics.exactFrames : _statistics.pagedFrames);
     if (!_residency) return;
     _statistics.pages = _residency->slots() - 1;
@@ -75,16 +90,19 @@ ProjectiveMappings::CacheStatistics CameraPages::statistics() const
     return _statistics;
 }
 
-const char* CameraPages::obstacle(const ScenePass& pass, const std::vector<SeenGround>& seen) const
+const char* CameraPages::obstacle(const ScenePass& pass, const std::vector<SeenGround>& seen,
+                                  bool beyond) const
 {
     if (_task->obstacle) return _task->obstacle;
     if (_task->frame.exact > 0) return "a mapping cannot be drawn beforehand";
     const auto* scene = dynamic_cast<const EffectScene*>(&pass.scene);
     if (scene && scene->getShaderHost()) return "an engine assembles the shaders";
     if (!pass.outer.getViewport()) return "the camera has no viewport";
-    if (_task->frame.base && !std::all_of(seen.begin(), seen.end(),
-                                          [&](const SeenGround& ground)
-                                          { return covers(_task->frame.base->outline, ground.box); }))
+    if (_watch.boundless()) return "the place of something that is drawn is not known";
+    if (_task->frame.base &&
+        (beyond || !std::all_of(seen.begin(), seen.end(),
+                                [&](const SeenGround& ground)
+                                { return covers(_task->frame.base->outline, ground.box); })))
         return "a mapping that changes the scene's colors does not cover all that is seen";
     return nullptr;
 }
@@ -101,6 +119,8 @@ void CameraPages::applyChanges(const ScenePass& pass)
     const bool another = _gpu != _task->gpu.get();
     _gpu = _task->gpu.get();
     const std::optional<std::vector<PlaneBox>> boxes = _task->gpu->changedSince(_changes);
+    // Another camera may have brought changes since, which this frame does not draw with: they come once more.
+    _changes = _task->frame.changes;
     const bool sameLook = _opacity == _task->opacity && _anisotropy == _task->anisotropy;
     _opacity = _task->opacity;
     _anisotropy = _task->anisotropy;
@@ -130,7 +150,7 @@ bool CameraPages::plan(const ScenePass& pass, PageResidency::Frame& frame)
         {
             PageView view(index, pass, _task->plane);
             const std::vector<SeenGround> seen = view.groundBelow(_watch.boxes());
-            why = obstacle(pass, seen);
+            why = obstacle(pass, seen, view.beyond());
             if (!why) cut = _cut.make(seen, view, static_cast<std::size_t>(_residency->slots()));
             blank = index.root().origin - osg::Vec2d(index.root().size, index.root().size);
         });

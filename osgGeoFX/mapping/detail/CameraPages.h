@@ -41,6 +41,8 @@ public:
 
     /// Begins a frame, before the scene is culled. The state draws without pages until draw() finds that all are there.
     void begin(Task task, osg::StateSet& state, const std::string& prefix);
+    /// Pages are no longer wanted.
+    void stop(osg::StateSet& state, const std::string& prefix);
     /// Nothing is drawn in this frame.
     void skip() { _task.reset(); }
     PageWatch& watch() { return _watch; }
@@ -53,7 +55,7 @@ public:
     void resizeGLObjectBuffers(unsigned int size);
 
 private:
-    const char* obstacle(const ScenePass& pass, const std::vector<SeenGround>& seen) const;
+    const char* obstacle(const ScenePass& pass, const std::vector<SeenGround>& seen, bool beyond) const;
     void applyChanges(const ScenePass& pass);
     bool plan(const ScenePass& pass, PageResidency::Frame& frame);
     void show(const ScenePass& pass, int pageUnit, int tableUnit);
@@ -69,6 +71,7 @@ private:
     std::uint64_t _changes = 0;
     double _opacity = -1.0;
     int _anisotropy = 0;
+    bool _begun = false;  ///< whether the state has been told of pages
     bool _showed = false; ///< in the last frame
     std::atomic<bool> _lost{false};
     mutable std::mutex _mutex;

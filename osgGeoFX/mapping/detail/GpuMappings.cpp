@@ -150,6 +150,7 @@ GpuMappings::Frame GpuMappings::commit(const Settings& settings, const PositionO
     frame.features = _records.features();
     frame.store = _store;
     frame.exact = _records.exact();
+    frame.changes = _records.changes().number();
     if (const ProjectiveMapping* base = _records.base())
     {
         const std::optional<PlaneFootprint> outline = base->outline();
@@ -159,12 +160,10 @@ GpuMappings::Frame GpuMappings::commit(const Settings& settings, const PositionO
     return frame;
 }
 
-std::optional<std::vector<PlaneBox>> GpuMappings::changedSince(std::uint64_t& number) const
+std::optional<std::vector<PlaneBox>> GpuMappings::changedSince(std::uint64_t changes) const
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    std::optional<std::vector<PlaneBox>> boxes = _records.changes().since(number);
-    number = _records.changes().number();
-    return boxes;
+    return _records.changes().since(changes);
 }
 
 void GpuMappings::release(CameraList& list)

@@ -57,7 +57,8 @@ public:
     /// All that a frame is drawn with, as it was at one time.
     struct Frame
     {
-        std::uint64_t number = 0; ///< the number of the frame's commit
+        std::uint64_t number = 0;  ///< the number of the frame's commit
+        std::uint64_t changes = 0; ///< the number of changes that it brought, for changedSince()
         MappingIndex::Root root;
         std::size_t longestList = 0;
         std::uint32_t features = 0;
@@ -69,9 +70,8 @@ public:
     /// Without, the camera has no list.
     Frame commit(const Settings& settings, const PositionOf& positionOf, CameraList& list,
                  const Wanted& wanted);
-    /// Where the picture of the mappings has changed since a commit, and the number for the next call. Nothing for
-    /// everywhere.
-    std::optional<std::vector<PlaneBox>> changedSince(std::uint64_t& number) const;
+    /// Where the picture of the mappings has changed since a commit, by its number of changes. Nothing for everywhere.
+    std::optional<std::vector<PlaneBox>> changedSince(std::uint64_t changes) const;
     /// Calls an action with the grid, which does not change in the meantime.
     template<class Action>
     void withIndex(const Action& action) const

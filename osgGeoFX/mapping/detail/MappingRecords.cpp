@@ -124,7 +124,11 @@ void MappingRecords::note(Item& item)
     item.noted = true;
     item.kind = pageKindOf(*item.mapping);
     item.notedRank = item.rank;
-    item.box = {shape.low(), shape.high()};
+    const osg::Vec2d low = shape.low(), high = shape.high();
+    // As much as writeProjector() widens it for the rounding of floats.
+    const double rounding = 3e-7 * (std::max(std::abs(low.x()), std::abs(high.x())) +
+                                    std::max(std::abs(low.y()), std::abs(high.y())) + (high - low).length());
+    item.box = PlaneBox{low, high}.grown(rounding);
     if (item.kind == PageKind::Exact) ++_exact;
     if (item.kind == PageKind::Base) _bases[item.rank] = item.mapping;
     // What a base does is in no page.

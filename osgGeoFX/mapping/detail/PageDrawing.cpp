@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/detail/ProfileProgram.h>
 #include <osgGeoFX/scene/detail/PassStage.h>
 
+#include <osg/ColorMask>
 #include <osg/Depth>
 #include <osg/PolygonMode>
 
@@ -111,7 +112,9 @@ void PageDrawing::makeState(const std::string& prefix)
     _state->setAttributeAndModes(new osg::PolygonMode, osg::StateAttribute::ON | forced);
     // Not the camera's, which the states above have.
     _state->setAttribute(_viewport, forced);
-    for (const GLenum mode : {GL_DEPTH_TEST, GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST})
+    _state->setAttribute(new osg::ColorMask, forced);
+    for (const GLenum mode : {GL_DEPTH_TEST, GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST,
+                              GL_ALPHA_TEST, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_COLOR_LOGIC_OP})
         _state->setMode(mode, osg::StateAttribute::OFF | forced);
 }
 

@@ -30,7 +30,10 @@ void include(const osg::Vec3d& point, osg::Vec3d& low, osg::Vec3d& high)
 osg::Drawable* PageWatch::companion(osg::Drawable& drawable, const osg::Matrixd& modelView)
 {
     const osg::BoundingBox& box = drawable.getBoundingBox();
-    if (box.valid()) _boxes.push_back(EyeBox::of(box, modelView));
+    if (box.valid())
+        _boxes.push_back(EyeBox::of(box, modelView));
+    else
+        _boundless = true;
     return nullptr;
 }
 
@@ -52,7 +55,7 @@ PageView::PageView(const MappingIndex& index, const ScenePass& pass, const PageF
     _eye = image.toView.getTrans();
 }
 
-std::vector<SeenGround> PageView::groundBelow(const std::vector<EyeBox>& boxes) const
+std::vector<SeenGround> PageView::groundBelow(const std::vector<EyeBox>& boxes)
 {
     const MappingIndex::Root& root = _index.root();
     const PlaneBox mapped{root.origin, root.origin + osg::Vec2d(root.size, root.size)};
@@ -72,14 +75,18 @@ std::vector<SeenGround> PageView::groundBelow(const std::vector<EyeBox>& boxes) 
             low -= osg::Vec3d(bulge, bulge, bulge);
             high += osg::Vec3d(bulge, bulge, bulge);
             const Ground& ground = _pass.view.ground;
-            if (ground.heightsKnown)
+            const double lowest = ground.minHeight - ofThings, highest = ground.maxHeight + ofThings;
+            // What flies or lies deep is where it is.
+            if (ground.heightsKnown && low.z() <= highest && high.z() >= lowest)
             {
-                low.z() = std::max(low.z(), ground.minHeight - ofThings);
-                high.z() = std::min(high.z(), ground.maxHeight + ofThings);
+                low.z() = std::max(low.z(), lowest);
+                high.z() = std::min(high.z(), highest);
             }
         }
-        const PlaneBox plane = PlaneBox{{low.x(), low.y()}, {high.x(), high.y()}}.within(mapped);
-        if (!plane.empty() && low.z() <= high.z()) seen.push_back({plane, low.z(), high.z()});
+        const PlaneBox whole = {{low.x(), low.y()}, {high.x(), high.y()}};
+        const PlaneBox plane = whole.within(mapped);
+        _beyond = _beyond || !mapped.contains(whole);
+        if (!plane.empty()) seen.push_back({plane, low.z(), high.z()});
     }
     return seen;
 }

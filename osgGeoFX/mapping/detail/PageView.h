@@ -35,16 +35,23 @@ struct PageFrame
 class PageWatch final : public DrawableCompanion
 {
 public:
-    void start() override { _boxes.clear(); }
+    void start() override
+    {
+        _boxes.clear();
+        _boundless = false;
+    }
     osg::Drawable* companion(osg::Drawable& drawable, const osg::Matrixd& modelView) override;
     osg::StateSet* state() override { return nullptr; }
     bool standing() const override { return true; }
 
     /// Undeformed, in the view's eye space.
     const std::vector<EyeBox>& boxes() const { return _boxes; }
+    /// Whether something is drawn that nobody knows the place of.
+    bool boundless() const { return _boundless; }
 
 private:
     std::vector<EyeBox> _boxes;
+    bool _boundless = false;
 };
 
 /// What a camera sees of the plane. For one thread at a time; the index must not change.
@@ -54,7 +61,9 @@ public:
     PageView(const MappingIndex& index, const ScenePass& pass, const PageFrame& frame);
 
     /// The ground below the boxes, as far as mappings may lie there.
-    std::vector<SeenGround> groundBelow(const std::vector<EyeBox>& boxes) const;
+    std::vector<SeenGround> groundBelow(const std::vector<EyeBox>& boxes);
+    /// Whether groundBelow() has met what reaches beyond all mappings.
+    bool beyond() const { return _beyond; }
 
     bool empty(const PlaneBox& box) override { return _index.empty(box.low, box.high); }
     bool shows(const SeenGround& ground) override;
@@ -70,6 +79,7 @@ private:
     const PageFrame& _frame;
     Visibility _visibility;
     osg::Vec3d _eye; ///< in the view's eye space
+    bool _beyond = false;
 };
 
 } // namespace osgGeoFX
