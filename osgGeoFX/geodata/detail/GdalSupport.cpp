@@ -79,7 +79,8 @@ void forEachLayer(GDALDataset& dataset, const std::string& layer, const std::str
 
 void forEachFeature(
     OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
-    const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take)
+    const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take,
+    LongLines longLines)
 {
     const OGRSpatialReference* srs = layer.GetSpatialRef();
     if (!srs || srs->IsEmpty() || srs->IsLocal())
@@ -92,7 +93,8 @@ void forEachFeature(
     {
         if (!feature->GetGeometryRef()) continue;
         const std::unique_ptr<OGRGeometry> geometry(feature->GetGeometryRef()->getLinearGeometry());
-        geometry->segmentize(part);
+        if (!geometry) continue;
+        if (longLines == LongLines::DIVIDED) geometry->segmentize(part);
         take(*feature, *geometry, *toTarget);
     }
     if (errors.failed())

@@ -75,10 +75,18 @@ DatasetPtr openVectors(const std::string& file);
 void forEachLayer(GDALDataset& dataset, const std::string& layer, const std::string& file,
                   const std::function<void(OGRLayer&)>& take);
 
-/// Hands out each feature with its geometry, curves as straight lines and nothing longer than about a kilometre, for what is straight in
-/// the file bends elsewhere; with the way to the target's coordinates. Throws BuildError where the layer has no CRS or cannot be read.
+/// What forEachFeature() does with long lines.
+enum class LongLines
+{
+    DIVIDED, ///< none is longer than about a kilometre, for what is straight in the file bends elsewhere
+    KEPT     ///< for walls, which are short; an outline that is wrong may be endless
+};
+
+/// Hands out each feature with its geometry, curves as straight lines; with the way to the target's coordinates. Throws BuildError where
+/// the layer has no CRS or cannot be read.
 void forEachFeature(
     OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
-    const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take);
+    const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take,
+    LongLines longLines = LongLines::DIVIDED);
 
 } // namespace osgGeoFX

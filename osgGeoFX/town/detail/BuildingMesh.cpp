@@ -3,6 +3,7 @@
 #include <osgGeoFX/town/detail/BuildingMesh.h>
 
 #include <osgGeoFX/effect/RigidParts.h>
+#include <osgGeoFX/town/detail/Scatter.h>
 #include <osgGeoFX/town/detail/WindowPicture.h>
 
 #include <osgUtil/Tessellator>
@@ -44,13 +45,7 @@ Measures measuresOf(BuildingUse use)
 /// One of a building's numbers that look random, 0 to 1.
 double chance(std::uint32_t seed, std::uint32_t which)
 {
-    std::uint32_t x = seed ^ (which * 0x9e3779b9u + 0x85ebca6bu);
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    x ^= x >> 16;
-    return static_cast<double>(x) / 4294967295.0;
+    return scatter(seed ^ (which * 0x9e3779b9u + 0x85ebca6bu));
 }
 
 osg::Vec3d pick(const std::vector<osg::Vec3d>& colors, double chance)

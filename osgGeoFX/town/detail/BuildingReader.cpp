@@ -367,28 +367,6 @@ private:
     osg::Vec2d _about;      ///< the first point of the outline in work
 };
 
-/// As forEachFeature(), but without points in between: walls are short, and an outline that is wrong may be endless.
-void eachBuilding(
-    OGRLayer& layer, const OGRSpatialReference& target, const std::string& file,
-    const std::function<void(const OGRFeature&, const OGRGeometry&, OGRCoordinateTransformation&)>& take)
-{
-    const OGRSpatialReference* srs = layer.GetSpatialRef();
-    if (!srs || srs->IsEmpty() || srs->IsLocal())
-        throw BuildError(file + ": its layer " + std::string(layer.GetName()) +
-                         " has no coordinate reference system; name it with ogr2ogr -a_srs EPSG:N.");
-    const TransformationPtr toTarget = createTransformation(gisOrder(*srs), gisOrder(target), file);
-    const GdalErrorScope errors;
-    for (const auto& feature : layer)
-    {
-        if (!feature->GetGeometryRef()) continue;
-        const std::unique_ptr<OGRGeometry> geometry(feature->GetGeometryRef()->getLinearGeometry());
-        if (geometry) take(*feature, *geometry, *toTarget);
-    }
-    if (errors.failed())
-        throw BuildError(file + ": its features cannot be read (" + errors.message() +
-                         "); the file may be cut short: copy or export it again.");
-}
-
 } // namespace
 
 std::optional<double> lengthInWords(const std::string& text, HeightUnit unit)
@@ -430,20 +408,21 @@ void readBuildings(const TownOptions& options, const TownGrid& grid, const std::
     Reader reader(options, grid, metresPerUnit, summary, take);
     bool any = false;
     std::uint64_t done = 0;
-    forEachLayer(
-        *dataset, options.layer, options.buildings,
-        [&](OGRLayer& layer)
-        {
-            const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
-            const bool may = type == wkbUnknown || type == wkbPolygon || type == wkbMultiPolygon ||
-                             type == wkbGeometryCollection || type == wkbCurvePolygon ||
-                             type == wkbMultiSurface;
-            if (!may && options.layer.empty()) return;
-            any = true;
-            const Fields fields = reader.fieldsOf(*layer.GetLayerDefn());
-            const GIntBig known = layer.GetFeatureCount(TRUE);
-            const std::uint64_t total = done + static_cast<std::uint64_t>(std::max<GIntBig>(known, 0));
-            eachBuilding(layer, target, options.buildings,
+    forEachLayer(*dataset, options.layer, options.buildings,
+                 [&](OGRLayer& layer)
+                 {
+                     const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
+                     const bool may = type == wkbUnknown || type == wkbPolygon || type == wkbMultiPolygon ||
+                                      type == wkbGeometryCollection || type == wkbCurvePolygon ||
+                                      type == wkbMultiSurface;
+                     if (!may && options.layer.empty()) return;
+                     any = true;
+                     const Fields fields = reader.fieldsOf(*layer.GetLayerDefn());
+                     const GIntBig known = layer.GetFeatureCount(TRUE);
+                     const std::uint64_t total =
+                         done + static_cast<std::uint64_t>(std::max<GIntBig>(known, 0));
+                     forEachFeature(
+                         layer, target, options.buildings,
                          [&](const OGRFeature& feature, const OGRGeometry& geometry,
                              OGRCoordinateTransformation& toGrid)
                          {
@@ -455,8 +434,9 @@ void readBuildings(const TownOptions& options, const TownGrid& grid, const std::
                                  !progress(std::min(done, total), total, "buildings"))
                                  throw BuildError(options.database +
                                                   ": the town was stopped; the database is as it was.");
-                         });
-        });
+                         },
+                         LongLines::KEPT);
+                 });
     if (!any)
         throw BuildError(options.buildings +
                          ": it has no layer of polygons; name another file, or check it with ogrinfo.");

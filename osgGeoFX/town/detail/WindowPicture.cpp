@@ -3,6 +3,7 @@
 #include <osgGeoFX/town/detail/WindowPicture.h>
 
 #include <osgGeoFX/effect/RigidParts.h>
+#include <osgGeoFX/town/detail/Scatter.h>
 
 #include <osg/Material>
 #include <osg/Texture2D>
@@ -24,14 +25,8 @@ static_assert(BUILDING_USES * WindowPicture::rows * WindowPicture::cell + 64 <= 
 /// A number that looks random, 0 to 1, the same for the same three.
 double scattered(int a, int b, int c)
 {
-    std::uint32_t x = static_cast<std::uint32_t>(a) * 73856093u ^ static_cast<std::uint32_t>(b) * 19349663u ^
-                      static_cast<std::uint32_t>(c) * 83492791u;
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    x ^= x >> 16;
-    return static_cast<double>(x) / 4294967295.0;
+    return scatter(static_cast<std::uint32_t>(a) * 73856093u ^ static_cast<std::uint32_t>(b) * 19349663u ^
+                   static_cast<std::uint32_t>(c) * 83492791u);
 }
 
 /// What glass takes of a wall's color: some panes are dark, some have curtains, and some reflect the sky.
