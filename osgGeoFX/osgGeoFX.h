@@ -84,6 +84,9 @@
 #include <osgGeoFX/mapping/ValueLegend.h>
 #include <osgGeoFX/mapping/ValueMap.h>
 
+#include <osgGeoFX/light/SunLight.h>
+#include <osgGeoFX/light/SunPosition.h>
+
 #include <osgGeoFX/closeup/Anchor.h>
 #include <osgGeoFX/closeup/CloseUp.h>
 #include <osgGeoFX/closeup/CloseUpHandler.h>
@@ -122,6 +125,7 @@
 #include <osgGeoFX/viewer/PanelPicture.h>
 #include <osgGeoFX/viewer/PictureParts.h>
 #include <osgGeoFX/viewer/Scene.h>
+#include <osgGeoFX/viewer/SunKeys.h>
 #include <osgGeoFX/viewer/ViewPoint.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
 

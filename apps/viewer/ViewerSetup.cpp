@@ -19,6 +19,7 @@
 #include <osgGeoFX/viewer/LibertyHandler.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
 #include <osgGeoFX/viewer/PictureParts.h>
+#include <osgGeoFX/viewer/SunKeys.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
 
 #include <osg/Math>
@@ -181,6 +182,8 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     readout->setKey('g');
     add("Ground", readout);
     add("Ground", new osgGeoFX::ClickAndFly(*scene.effects));
+    const osg::ref_ptr<osgGeoFX::SunKeys> sun = new osgGeoFX::SunKeys(*scene.node);
+    if (sun->hasSun()) add("Ground", sun);
     add("Effects", new osgGeoFX::EffectKeys(*scene.effects));
     const osg::ref_ptr<osgGeoFX::EffectPanel> effects = new osgGeoFX::EffectPanel(*scene.effects);
     add("List of effects", effects);

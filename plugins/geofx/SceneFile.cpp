@@ -52,9 +52,7 @@ public:
             result.homeView = homeView(view);
             result.homeViewPlace = _xml.place(view);
         }
-        if (xmlNode* sunNode = child(root, "sun"))
-            result.sun = SceneSun{_xml.place(sunNode), real(sunNode, "azimuth"), real(sunNode, "elevation"),
-                                  color(sunNode, "color"), color(sunNode, "ambient")};
+        if (xmlNode* sunNode = child(root, "sun")) result.sun = sun(sunNode);
         if (xmlNode* background = child(root, "background"))
         {
             result.background = color(background, "color");
@@ -145,6 +143,35 @@ private:
                 scene.panoramas.push_back(
                     {map, pathIfAny(node, "palette"), pathIfAny(node, "skyImage"), strokeLines(node)});
         }
+    }
+
+    SceneSun sun(xmlNode* node) const
+    {
+        SceneSun result;
+        result.place = _xml.place(node);
+        result.color = color(node, "color");
+        result.ambient = color(node, "ambient");
+        const bool azimuth = !attributeOf(node, "azimuth").empty();
+        const bool elevation = !attributeOf(node, "elevation").empty();
+        const std::string time = attributeOf(node, "time");
+        if (azimuth != elevation || azimuth == !time.empty())
+        {
+            _xml.fail(node, "the sun's place is unclear; expected: azimuth and elevation, or time alone.");
+        }
+        else if (azimuth)
+        {
+            result.azimuth = real(node, "azimuth");
+            result.elevation = real(node, "elevation");
+        }
+        else
+        {
+            result.time = readClockTime(time);
+            if (!result.time)
+                _xml.fail(node,
+                          "time is \"" + time +
+                              "\"; expected: a time of the years 1 to 9999 with a zone of up to 14 hours.");
+        }
+        return result;
     }
 
     SceneMap mapOf(xmlNode* node) const

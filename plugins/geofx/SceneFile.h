@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/closeup/CloseUps.h>
+#include <osgGeoFX/light/SunPosition.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/mapping/RoutePath.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
@@ -79,6 +80,7 @@ struct SceneSun
     ScenePlace place;
     double azimuth = 0.0, elevation = 0.0;
     SceneColor color{}, ambient{};
+    std::optional<ClockTime> time; ///< the sun stands where it does then, not at azimuth and elevation
 };
 
 /// Degrees on a globe, else metres of the terrain's coordinate system.

@@ -7,6 +7,7 @@
 #include "MappingsLoader.h"
 #include "PanoramasLoader.h"
 
+#include <osgGeoFX/light/SunLight.h>
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -69,51 +70,68 @@ bool sunPlace(const SceneFile& scene, const osg::Node& terrain, const Georeferen
     return false;
 }
 
-/// Unit vector to the sun, in the world; nothing, with the reason in `error`, if that is unknown.
-std::optional<osg::Vec3d> sunDirection(const SceneFile& scene, const osg::Node& terrain, std::string& error)
-{
-    const osg::ref_ptr<Georeference> reference = Georeference::create(&terrain, error);
-    double longitude = 0.0, latitude = 0.0;
-    if (!reference || !sunPlace(scene, terrain, *reference, longitude, latitude, error)) return std::nullopt;
-    osg::Matrixd frame;
-    if (!reference->localToWorld(longitude, latitude, 0.0, frame))
-    {
-        error = "The home view lies outside the terrain's projection; correct its longitude and latitude.";
-        return std::nullopt;
-    }
-    const double azimuth = osg::DegreesToRadians(scene.sun->azimuth);
-    const double elevation = osg::DegreesToRadians(scene.sun->elevation);
-    const osg::Vec3d local(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
-                           std::sin(elevation));
-    return osg::Matrixd::transform3x3(local, frame);
-}
-
 osg::Vec4 opaque(const SceneColor& color)
 {
     return osg::Vec4(osg::Vec3d(color[0], color[1], color[2]), 1.0);
 }
 
-void addSun(osg::Group& group, const SceneSun& sun, const osg::Vec3d& direction)
+/// A light that stays where the scene says.
+osg::ref_ptr<osg::LightSource> fixedSun(const SceneSun& sun, const osg::Matrixd& frame)
 {
-    // A viewer puts its headlight, number 0, into the list of lights before the scene's: ours comes later and
-    // wins.
+    const double azimuth = osg::DegreesToRadians(sun.azimuth),
+                 elevation = osg::DegreesToRadians(sun.elevation);
+    const osg::Vec3d local(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
+                           std::sin(elevation));
     osg::ref_ptr<osg::Light> light = new osg::Light(0);
-    light->setPosition(osg::Vec4d(direction, 0.0));
+    light->setPosition(osg::Vec4d(osg::Matrixd::transform3x3(local, frame), 0.0));
     light->setDiffuse(opaque(sun.color));
     light->setSpecular(opaque(sun.color));
     light->setAmbient(opaque(sun.ambient));
     osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
-    source->setName("sun");
     source->setLight(light);
+    return source;
+}
+
+/// False, with the reason in `error`, if it is unknown from where the sun is seen.
+bool addSun(const SceneFile& scene, const osg::Node& terrain, osg::Group& group, std::string& error)
+{
+    const SceneSun& sun = *scene.sun;
+    const osg::ref_ptr<Georeference> reference = Georeference::create(&terrain, error);
+    double longitude = 0.0, latitude = 0.0;
+    if (!reference || !sunPlace(scene, terrain, *reference, longitude, latitude, error)) return false;
+    osg::Matrixd frame;
+    if (!reference->localToWorld(longitude, latitude, 0.0, frame))
+    {
+        error = "The home view lies outside the terrain's projection; correct its longitude and latitude.";
+        return false;
+    }
+    osg::ref_ptr<osg::LightSource> source;
+    if (sun.time)
+    {
+        const osg::ref_ptr<SunLight> light = new SunLight;
+        light->setPlace(longitude, latitude, frame);
+        light->setTime(*sun.time);
+        light->setColor(opaque(sun.color));
+        light->setAmbient(opaque(sun.ambient));
+        source = light;
+    }
+    else
+    {
+        source = fixedSun(sun, frame);
+    }
+    // A viewer puts its headlight, number 0, into the list of lights before the scene's: ours comes later and
+    // wins.
+    source->setName("sun");
     group.addChild(source);
 
     osg::StateSet* state = group.getOrCreateStateSet();
     state->setMode(GL_LIGHTING, osg::StateAttribute::ON);
-    state->setAssociatedModes(light, osg::StateAttribute::ON);
+    state->setAssociatedModes(source->getLight(), osg::StateAttribute::ON);
     // OSG adds an ambient light of its own, 0.1; the scene's says all.
     osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
     model->setAmbientIntensity(osg::Vec4(0.0f, 0.0f, 0.0f, 1.0f));
     state->setAttributeAndModes(model);
+    return true;
 }
 
 } // namespace
@@ -192,15 +210,10 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
     }
     group->addChild(terrain);
     if (effects && !addEffects(scene, *effects, *terrain, error)) return nullptr;
-    if (scene.sun)
+    if (scene.sun && !addSun(scene, *terrain, *group, error))
     {
-        const std::optional<osg::Vec3d> direction = sunDirection(scene, *terrain, error);
-        if (!direction)
-        {
-            error = scene.sun->place.message(error);
-            return nullptr;
-        }
-        addSun(*group, *scene.sun, *direction);
+        error = scene.sun->place.message(error);
+        return nullptr;
     }
     if (scene.map) group = withMap(*scene.map, *effects, error);
     if (group) tellPrograms(scene, *group);

@@ -5,6 +5,7 @@
 #include "PropertySerializers.h"
 
 #include <osgGeoFX/effect/TextureUnits.h>
+#include <osgGeoFX/light/SunLight.h>
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/EffectCullCallback.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -231,6 +232,77 @@ bool writeReference(osgDB::OutputStream& stream, const RigidReference& node)
     return true;
 }
 
+bool hasPlace(const SunLight& sun)
+{
+    return sun.getLongitude() != 0.0 || sun.getLatitude() != 0.0 || !sun.getFrame().isIdentity();
+}
+
+/// Longitude and latitude, and the frame there.
+bool readPlace(osgDB::InputStream& stream, SunLight& sun)
+{
+    double numbers[18] = {};
+    bool good = true;
+    for (double& number : numbers)
+    {
+        std::string text;
+        stream >> text;
+        good = parseExact(text, number) && std::isfinite(number) && good;
+    }
+    if (good)
+        sun.setPlace(numbers[0], numbers[1], osg::Matrixd(numbers + 2));
+    else
+        OSG_WARN << "osgGeoFX: A file is wrong: SunLight: Place must be 18 finite numbers. The default stays."
+                 << std::endl;
+    return true;
+}
+
+bool writePlace(osgDB::OutputStream& stream, const SunLight& sun)
+{
+    stream << exactText(sun.getLongitude()) << exactText(sun.getLatitude());
+    for (int i = 0; i < 16; ++i)
+        stream << exactText(sun.getFrame().ptr()[i]);
+    stream << std::endl;
+    return true;
+}
+
+bool hasTime(const SunLight& sun)
+{
+    return sun.getTime() != SunLight::firstTime();
+}
+
+bool readTime(osgDB::InputStream& stream, SunLight& sun)
+{
+    std::string text;
+    ClockTime time;
+    stream >> text >> time.zone;
+    if (parseExact(text, time.time) && std::isfinite(time.time))
+        sun.setTime(time);
+    else
+        OSG_WARN << "osgGeoFX: A file is wrong: SunLight: Time must be two finite numbers. The default stays."
+                 << std::endl;
+    return true;
+}
+
+bool writeTime(osgDB::OutputStream& stream, const SunLight& sun)
+{
+    stream << exactText(sun.getTime().time) << sun.getTime().zone << std::endl;
+    return true;
+}
+
+void addSunProperties(const char*, osgDB::ObjectWrapper* wrapper)
+{
+    using Sun = osgDB::UserSerializer<SunLight>;
+    wrapper->addSerializer(new Sun("Place", hasPlace, readPlace, writePlace), osgDB::BaseSerializer::RW_USER);
+    wrapper->addSerializer(new Sun("Time", hasTime, readTime, writeTime), osgDB::BaseSerializer::RW_USER);
+    using Color = osgDB::PropByRefSerializer<SunLight, osg::Vec4>;
+    const osg::ref_ptr<SunLight> sample = new SunLight;
+    wrapper->addSerializer(new Color("Color", sample->getColor(), &SunLight::getColor, &SunLight::setColor),
+                           osgDB::BaseSerializer::RW_VEC4F);
+    wrapper->addSerializer(
+        new Color("Ambient", sample->getAmbient(), &SunLight::getAmbient, &SunLight::setAmbient),
+        osgDB::BaseSerializer::RW_VEC4F);
+}
+
 template<typename Class>
 void addFlag(osgDB::ObjectWrapper& wrapper, const char* name, bool (Class::*getter)() const,
              void (Class::*setter)(bool))
@@ -287,6 +359,9 @@ const osgDB::RegisterCustomWrapperProxy referenceWrapper([]() -> osg::Object* { 
                                                          "osg::Object osg::Node osg::Group "
                                                          "osgGeoFX::RigidReference",
                                                          &addReferenceProperties);
+const osgDB::RegisterCustomWrapperProxy
+sunWrapper([]() -> osg::Object* { return new SunLight; }, serializerDomain, "osgGeoFX::SunLight",
+           "osg::Object osg::Node osg::Group osg::LightSource osgGeoFX::SunLight", &addSunProperties);
 /// OSG's own serializers cast objects in a way that a virtual base class forbids.
 class CallbackSerializer : public osgDB::BaseSerializer
 {

@@ -9,6 +9,7 @@
 #include <osg/Geode>
 #include <osg/Geometry>
 #include <osg/Material>
+#include <osg/Math>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 #include <osgDB/WriteFile>
@@ -70,6 +71,23 @@ TEST_F(SceneSun, TakesThePlaceOfTheHeadlight)
                osg::Vec3(127.5f, 64, 32))
                   .length(),
               2.0f);
+}
+
+// A square that faces up where the equator meets the zero meridian, so the sun's height is its light.
+TEST_F(SceneSun, FollowsAClock)
+{
+    const auto by = [&](const std::string& time)
+    {
+        return middle("<sun time='" + time + "' color='#ffffff' ambient='#000000'/>");
+    };
+    // At noon of an equinox it stands in the zenith, two hours earlier 60° high.
+    EXPECT_LT((by("2026-03-20T12:07:30Z") - osg::Vec3(255, 255, 255)).length(), 3.0f);
+    const osg::Vec3 morning = by("2026-03-20T10:07:30Z");
+    EXPECT_NEAR(morning.x(), 255.0 * std::sin(osg::DegreesToRadians(60.0)), 4.0);
+    EXPECT_GT(morning.x(), morning.z() + 2.0f);
+    EXPECT_LT(by("2026-03-20T23:00:00Z").length(), 1.0f);
+    // The same moment by another clock.
+    EXPECT_LT((by("2026-03-20T00:07:30-10:00") - morning).length(), 1.0f);
 }
 
 } // namespace

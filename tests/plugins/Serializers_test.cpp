@@ -3,6 +3,7 @@
 //
 // Every class of the kit through osgDB's ASCII, binary and XML files, by the plugin osgdb_serializers_osggeofx.
 #include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/light/SunLight.h>
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/EffectCullCallback.h>
 #include <plugins/SerializerFixture.h>
@@ -44,12 +45,13 @@ using osgGeoFX::Property;
 using osgGeoFX::PropertyHolder;
 using osgGeoFX::propertyHolderKinds;
 using osgGeoFX::RigidReference;
+using osgGeoFX::SunLight;
 
 TEST_F(Serializers, ThereIsAWrapperForEachClass)
 {
     auto* wrappers = osgDB::Registry::instance()->getObjectWrapperManager();
-    std::vector<osg::ref_ptr<osg::Object>> objects = {new EffectScene, new RigidReference,
-                                                      new EffectCullCallback, new CameraEffects};
+    std::vector<osg::ref_ptr<osg::Object>> objects = {
+        new EffectScene, new RigidReference, new EffectCullCallback, new CameraEffects, new SunLight};
     for (const std::string& kind : propertyHolderKinds())
         objects.emplace_back(createPropertyHolder(kind));
     for (const auto& object : objects)
@@ -250,6 +252,36 @@ const std::vector<Setting<RigidReference>>& referenceSettings()
     return all;
 }
 
+const std::vector<Setting<SunLight>>& sunSettings()
+{
+    const double angle = 1.0 / 3.0, place = -5459123.456789012;
+    static const std::vector<Setting<SunLight>> all = {
+        {[=](auto& s) { s.setPlace(angle, 0.0, osg::Matrixd()); }, [](auto& s) { return s.getLongitude(); },
+         0.0, angle},
+        {[=](auto& s) { s.setPlace(angle, -angle, osg::Matrixd()); }, [](auto& s) { return s.getLatitude(); },
+         0.0, -angle},
+        {[=](auto& s) { s.setPlace(0.0, 0.0, osg::Matrixd::translate(0.0, place, 0.0)); },
+         [](auto& s) { return s.getFrame()(3, 1); }, 0.0, place},
+        {[=](auto& s) {
+             s.setTime({1e9 / 3.0, 0});
+         },
+         [](auto& s) { return s.getTime().time; }, SunLight::firstTime().time, 1e9 / 3.0},
+        {[](auto& s) {
+             s.setTime({1e9 / 3.0, -36000});
+         },
+         [](auto& s) { return s.getTime().zone; }, 0.0, -36000.0},
+        {[](auto& s) {
+             s.setColor({0.5f, 0.25f, 0.125f, 1.0f});
+         },
+         [](auto& s) { return s.getColor().y(); }, static_cast<double>(244.0f / 255.0f), 0.25},
+        {[](auto& s) {
+             s.setAmbient({0.5f, 0.25f, 0.125f, 1.0f});
+         },
+         [](auto& s) { return s.getAmbient().y(); }, static_cast<double>(85.0f / 255.0f), 0.25},
+    };
+    return all;
+}
+
 template<typename Class>
 void expectSettings(const std::vector<Setting<Class>>& settings,
                     const std::function<osg::ref_ptr<Class>(const Class&)>& copy)
@@ -283,6 +315,7 @@ TEST_F(Serializers, NodesKeepEverySetting)
         };
         expectSettings<EffectScene>(sceneSettings(), copy);
         expectSettings<RigidReference>(referenceSettings(), copy);
+        expectSettings<SunLight>(sunSettings(), copy);
     }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The viewer's event handlers, with events put into the queue of an off-screen viewer.
 #include <osgGeoFX/viewer/Scene.h>
+#include <osgGeoFX/viewer/SunKeys.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
 #include <tools/GlFixture.h>
 #include <tools/PagedScene.h>
@@ -142,4 +143,33 @@ TEST(ViewerProgram, HasAHelpPage)
     EXPECT_EQ(result.exitCode, 0);
     EXPECT_NE(result.standardOutput.find("--fov"), std::string::npos);
     EXPECT_NE(result.standardOutput.find("--SingleThreaded"), std::string::npos);
+}
+
+TEST_F(ViewerHandlers, KeysMoveTheSun)
+{
+    const osg::ref_ptr<osgGeoFX::SunLight> sun = new osgGeoFX::SunLight;
+    sun->setTime(*osgGeoFX::readClockTime("2026-06-21T07:30:00-10:00"));
+    EXPECT_FALSE(osgGeoFX::SunKeys(*_scene->node).hasSun());
+    _scene->node->asGroup()->addChild(sun);
+    const osg::ref_ptr<osgGeoFX::SunKeys> keys = new osgGeoFX::SunKeys(*_scene->node);
+    ASSERT_TRUE(keys->hasSun());
+    viewer().addEventHandler(keys);
+    viewer().frame();
+    const osg::Vec4 before = sun->getLight()->getPosition();
+    EXPECT_EQ(keys->text(), "");
+    viewer().getEventQueue()->keyPress('u');
+    viewer().frame();
+    EXPECT_EQ(keys->text().substr(0, 25), "2026-06-21T08:00:00-10:00");
+    EXPECT_NE(sun->getLight()->getPosition(), before);
+    for (int i = 0; i < 2; ++i)
+        viewer().getEventQueue()->keyPress('U');
+    viewer().frame();
+    EXPECT_EQ(keys->text().substr(0, 25), "2026-06-21T07:00:00-10:00");
+    viewer().getEventQueue()->keyPress('u');
+    viewer().frame();
+    EXPECT_EQ(sun->getLight()->getPosition(), before);
+    // The text goes by itself.
+    for (int i = 0; i < 300 && !keys->text().empty(); ++i)
+        frames(1);
+    EXPECT_EQ(keys->text(), "");
 }
