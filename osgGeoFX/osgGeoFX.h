@@ -65,6 +65,8 @@
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 
+#include <osgGeoFX/ground/GroundDetail.h>
+
 #include <osgGeoFX/mapping/ColorTransfer.h>
 #include <osgGeoFX/mapping/DataLayer.h>
 #include <osgGeoFX/mapping/Footprint.h>

@@ -3,7 +3,10 @@
 # SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 """Derives lines.geojson from landcover.tif: the middles of the cells of roads, freeways, railroads and streams.
 
-    lines.py landcover.tif lines.geojson
+    lines.py landcover.tif lines.geojson [ground.tif]
+
+With ground.tif, it also writes the land cover without these cells: each gets the class beside it. A terrain of it has its roads and
+streams as lines alone, as wide as they are, and not as rows of cells. Then short lines are kept, too.
 
 Needs Debian's python3-gdal and python3-numpy. Thinning is Zhang and Suen's (1984)."""
 import json
@@ -100,7 +103,20 @@ def simplify(points, tolerance):
     return numpy.vstack([simplify(points[:at + 1], tolerance)[:-1], simplify(points[at:], tolerance)])
 
 
-def main(source, target):
+def without_lines(classes):
+    """The land cover with the class beside them in the cells of lines, ring by ring from their borders."""
+    ground = classes.copy()
+    missing = numpy.isin(ground, [kind[0] for kind in KINDS])
+    while missing.any() and not missing.all():
+        former, unknown = ground.copy(), missing.copy()
+        for way in AROUND[1::2] + AROUND[0::2]:  # those that share a side come last, and count
+            known = unknown & ~shifted(unknown, *way) & (shifted(former, *way) != 0)
+            ground[known] = shifted(former, *way)[known]
+            missing &= ~known
+    return ground
+
+
+def main(source, target, ground=None):
     sys.setrecursionlimit(100000)
     data = gdal.Open(source)
     classes = data.ReadAsArray()
@@ -110,19 +126,25 @@ def main(source, target):
         cells = classes == value
         # Streams flow below roads, and roads end at crossings with larger ones.
         cells = thin(cells)
+        lines = []
         for line in trace(cells):
-            if len(line) < least:
+            if len(line) < (3 if ground else least):
                 continue
             points = simplify(smooth(line), 0.4)
-            features.append({"type": "Feature", "properties": {"style": style},
-                             "geometry": {"type": "LineString", "coordinates": [
-                                 [round(left + wide * (c + 0.5), 5), round(top + high * (r + 0.5), 5)]
-                                 for r, c in points]}})
+            lines.append([[round(left + wide * (c + 0.5), 5), round(top + high * (r + 0.5), 5)] for r, c in points])
+        # Many short lines take less as one.
+        kinds = [("MultiLineString", lines)] if ground else [("LineString", line) for line in lines]
+        features += [{"type": "Feature", "properties": {"style": style}, "geometry": {"type": kind, "coordinates": each}}
+                     for kind, each in kinds]
     with open(target, "w") as file:
         file.write('{"type": "FeatureCollection", "features": [\n')
         file.write(",\n".join(json.dumps(each, separators=(",", ":")) for each in features))
         file.write("\n]}\n")
-    print(len(features), "lines,", sum(len(each["geometry"]["coordinates"]) for each in features), "places")
+    if ground:
+        copy = gdal.GetDriverByName("GTiff").CreateCopy(ground, data, options=["COMPRESS=DEFLATE", "TILED=YES"])
+        copy.GetRasterBand(1).WriteArray(without_lines(classes))
+        copy = None
+    print(len(features), "features")
 
 
 main(*sys.argv[1:])

@@ -22,8 +22,10 @@ class BendSnapshot : public DeformationSnapshot
 public:
     struct Look
     {
-        double transitionDetail, contextDetail, saturation, brightness, map;
-        bool foldPossible; ///< the heights of what stands in the zone are not known for sure
+        double transitionDetail, contextDetail;
+        osg::Vec4d context; ///< saturation, brightness, whether there is a map, blocks
+        osg::Vec4d focus;   ///< saturation, brightness, whether the map is there
+        bool foldPossible;  ///< the heights of what stands in the zone are not known for sure
     };
 
     BendSnapshot(const glsl::geofx_BendView& view, const Look& look) : _view(view), _look(look)
@@ -157,7 +159,8 @@ public:
                 {"bend", {bend.size, bend.angle, bend.slope, bend.arc}},
                 {"angle", {bend.direction.x, bend.direction.y, bend.bisector.x, bend.bisector.y}},
                 {"end", {bend.end.x, bend.end.y, 0.0, 0.0}},
-                {"look", {_look.saturation, _look.brightness, _look.map, 0.0}}};
+                {"look", _look.context},
+                {"focusLook", _look.focus}};
     }
 
 private:
@@ -314,7 +317,8 @@ PerspectiveBend::PerspectiveBend(const PerspectiveBend& other, const osg::CopyOp
       _planeReference(other._planeReference), _tallest(other._tallest),
       _transitionDetail(other._transitionDetail), _contextDetail(other._contextDetail),
       _contextSaturation(other._contextSaturation), _contextBrightness(other._contextBrightness),
-      _mapUnit(other._mapUnit)
+      _contextBlocks(other._contextBlocks), _focusSaturation(other._focusSaturation),
+      _focusBrightness(other._focusBrightness), _mapUnit(other._mapUnit), _mapPlace(other._mapPlace)
 {
 }
 
@@ -352,8 +356,19 @@ Properties PerspectiveBend::bendProperties()
             .of<&Self::_contextSaturation>(),
         Property::number("contextBrightness", "the brightness of the context; 0 is black", 0.0, 2.0)
             .of<&Self::_contextBrightness>(),
-        Property::integer("mapUnit", "the texture unit of a map that the context shows; -1 is none", -1, 3)
+        Property::number("contextBlocks",
+                         "how far buildings lose windows and colors in the context, and become blocks", 0.0,
+                         1.0)
+            .of<&Self::_contextBlocks>(),
+        Property::number("focusSaturation", "the saturation of the focus; 0 is grey", 0.0, 2.0)
+            .of<&Self::_focusSaturation>(),
+        Property::number("focusBrightness", "the brightness of the focus; 0 is black", 0.0, 2.0)
+            .of<&Self::_focusBrightness>(),
+        Property::integer("mapUnit", "the texture unit of a map that mapPlace shows; -1 is none", -1, 3)
             .of<&Self::_mapUnit>(),
+        Property::choice("mapPlace", "where the map of mapUnit replaces the ground's own colors",
+                         {{"context", "a map behind a photo"}, {"focus", "a photo behind a map"}})
+            .of<&Self::_mapPlace>(),
     };
 }
 
@@ -422,14 +437,19 @@ osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeom
     // A database that tells its heights needs no watching, unless someone says that they do not matter; and what hangs
     // below T in it are skirts.
     const bool foldPossible = !view.ground.heightsKnown || (_tallest >= 0.0 && angle > 0.0);
-    const BendSnapshot::Look look = {_transitionDetail,  _contextDetail,           _contextSaturation,
-                                     _contextBrightness, _mapUnit < 0 ? 0.0 : 1.0, foldPossible};
+    const BendSnapshot::Look look = {
+        _transitionDetail,
+        _contextDetail,
+        {_contextSaturation, _contextBrightness, _mapUnit < 0 ? 0.0 : 1.0, _contextBlocks},
+        {_focusSaturation, _focusBrightness, _mapPlace == FOCUS ? 1.0 : 0.0, 0.0},
+        foldPossible};
     return new BendSnapshot(bend, look);
 }
 
 std::string PerspectiveBend::fragmentFile() const
 {
-    const bool plain = _contextSaturation == 1.0 && _contextBrightness == 1.0 && _mapUnit < 0;
+    const bool plain = _contextSaturation == 1.0 && _contextBrightness == 1.0 && _contextBlocks == 0.0 &&
+                       _focusSaturation == 1.0 && _focusBrightness == 1.0 && _mapUnit < 0;
     return plain ? std::string() : "stages/bendstyle.glsl";
 }
 

@@ -34,8 +34,11 @@ struct OSGGEOFX_EXPORT BendPlacement
     reaches the curve's radius. `tallest` prevents this: PedestrianView widens the zone, and BirdsEyeView reduces the
     bend angle. Light and shadows are computed on the undeformed terrain.
 
-    Each fragment has a style value q, from 0 in the focus to 1 in the context. The context's saturation and brightness
-    are blended in by q. So is the map of texture unit `mapUnit`, which replaces the ground's own colors.
+    **Styles.** Each fragment has a style value q, from 0 in the focus to 1 in the context. By q, and in this order, are blended:
+    the map of texture unit `mapUnit`, which replaces the ground's own colors in the context, or in the focus (`mapPlace`);
+    buildings into plain blocks (`contextBlocks`); saturation and brightness. On the side of the map, buildings are blocks, too. All of
+    them may act at once. What stands behind the bend in the scene's list, such as the mappings of a route, keeps
+    its colors everywhere. Where a camera has no bend, it has no styles.
     @ingroup deformation */
 class OSGGEOFX_EXPORT PerspectiveBend : public Deformation
 {
@@ -50,6 +53,12 @@ public:
     {
         GROUND, ///< planeHeight is the height of T above the ellipsoid or map zero
         EYE     ///< planeHeight is the height of T above the eye, so it is negative
+    };
+
+    enum MapPlace
+    {
+        CONTEXT, ///< a map behind a photo
+        FOCUS    ///< a photo behind a map
     };
 
     /// The curve of the transition zone. Default: ARC_LENGTH.
@@ -79,7 +88,20 @@ public:
     /// Brightness of the context, 0…2: 0 is black and 1, the default, leaves it unchanged.
     bool setContextBrightness(double factor) { return assign("contextBrightness", factor); }
     double getContextBrightness() const { return _contextBrightness; }
-    /// Texture unit of a map that the context shows, 0…3. The default, −1, means no map.
+    /// How far buildings lose windows and colors in the context, 0, the default, to 1: plain blocks in the light. Buildings are
+    /// things with references of their own (RigidParts) that have no program.
+    bool setContextBlocks(double share) { return assign("contextBlocks", share); }
+    double getContextBlocks() const { return _contextBlocks; }
+    /// Saturation of the focus, 0…2: 0 is grey and 1, the default, leaves it unchanged.
+    bool setFocusSaturation(double factor) { return assign("focusSaturation", factor); }
+    double getFocusSaturation() const { return _focusSaturation; }
+    /// Brightness of the focus, 0…2: 0 is black and 1, the default, leaves it unchanged.
+    bool setFocusBrightness(double factor) { return assign("focusBrightness", factor); }
+    double getFocusBrightness() const { return _focusBrightness; }
+    /// Where the map of mapUnit is shown. Default: CONTEXT.
+    bool setMapPlace(MapPlace place) { return assign("mapPlace", place); }
+    MapPlace getMapPlace() const { return static_cast<MapPlace>(_mapPlace); }
+    /// Texture unit of a map that the context shows, or the focus, 0…3. The default, −1, means no map.
     bool setMapUnit(int unit) { return assign("mapUnit", unit); }
     int getMapUnit() const { return _mapUnit; }
 
@@ -104,7 +126,7 @@ public:
     bool isProjection() const override { return true; }
     std::string vertexFile() const override { return "stages/bendview.glsl"; }
     bool carriesThings() const override { return true; }
-    /// Empty if the context has the same style as the focus.
+    /// Empty if focus and context have no styles.
     std::string fragmentFile() const override;
     std::string constants() const override;
     int mapUnit() const override { return _mapUnit; }
@@ -139,7 +161,11 @@ private:
     double _contextDetail = 1.0;
     double _contextSaturation = 1.0;
     double _contextBrightness = 1.0;
+    double _contextBlocks = 0.0;
+    double _focusSaturation = 1.0;
+    double _focusBrightness = 1.0;
     int _mapUnit = -1;
+    int _mapPlace = CONTEXT;
 };
 
 } // namespace osgGeoFX

@@ -74,6 +74,10 @@ using Rgba = glm::dvec4;
 
 #include <shaders/lib/painting.glsl>
 
+#include <shaders/lib/detail.glsl>
+
+#include <shaders/lib/bendstyle.glsl>
+
 #include <shaders/lib/cylinder.glsl>
 #include <shaders/lib/profile.glsl>
 
@@ -114,6 +118,10 @@ using Rgba = glm::vec4;
 #include <shaders/lib/lines.glsl>
 
 #include <shaders/lib/painting.glsl>
+
+#include <shaders/lib/detail.glsl>
+
+#include <shaders/lib/bendstyle.glsl>
 
 #include <shaders/lib/cylinder.glsl>
 #include <shaders/lib/profile.glsl>

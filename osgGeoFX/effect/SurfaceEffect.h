@@ -36,7 +36,8 @@ struct SurfaceView
     - Name a fragment shader file with `vec4 SLOT_color(vec4 color)`.
     - Fill the state of a camera in fill().
 
-    The effects of a scene color in their order. The styles of bends take part in this order.
+    The effects of a scene color in their order, but for those that come first (comesFirst()). The styles of bends take part
+    in this order.
     apps/examples/Contours.h is an example.
 
     @ingroup effect */
@@ -62,6 +63,10 @@ public:
     /// Whether an effect that repaints mixes its color with the one that comes in for now, so that lights, textures and fog
     /// are computed all the same. False by default.
     virtual bool fades() const { return false; }
+
+    /// Whether the effect belongs to the ground's own look, so that it colors before all styles and all other surface effects,
+    /// wherever it stands in the scene's list. False by default.
+    virtual bool comesFirst() const { return false; }
 
     /** Puts everything that the shaders need into a camera's state: uniforms with the prefix, and textures on the
         view's units. False if there is nothing to draw. Several cameras' threads may call it at once. Each call gets

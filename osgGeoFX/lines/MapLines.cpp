@@ -179,6 +179,7 @@ MapLines::MapLines(std::vector<MapLine> lines, std::map<std::string, LineStyle> 
     state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | osg::StateAttribute::PROTECTED);
     // Maps' lines are no ground, which panorama maps would paint.
     state.setDefine("GEOFX_PAINTED", osg::StateAttribute::OFF);
+    state.setDefine("GEOFX_DETAIL", osg::StateAttribute::OFF);
 
     auto cells = cellsOf(_lines);
     std::vector<std::string> order;

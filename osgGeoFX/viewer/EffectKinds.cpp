@@ -8,6 +8,7 @@
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/ground/GroundDetail.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
@@ -53,6 +54,10 @@ constexpr Kind<Effect> effects[] = {
      "A liberty that painters of maps take with a region: a summit enlarged, a valley widened, a mountain "
      "turned; the "
      "ground around it stays as it is."},
+    {"groundDetail", make<Effect, GroundDetail>,
+     "The ground from nearby: grass, crowns of trees, rock, sand, gardens and waves below the resolution of "
+     "its "
+     "colors, and sharp borders between them."},
     {"projectiveMappings", make<Effect, ProjectiveMappings>,
      "Rasters thrown onto the terrain and what stands on it, thousands at once. They lie in a frame whose "
      "origin is "

@@ -7,6 +7,7 @@
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/ground/GroundDetail.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
 
@@ -57,6 +58,7 @@ const Wrapper<VerticalExaggeration> verticalExaggeration("osgGeoFX::VerticalExag
                                                          deformation + " osgGeoFX::VerticalExaggeration");
 const Wrapper<RegionalLiberty> regionalLiberty("osgGeoFX::RegionalLiberty",
                                                deformation + " osgGeoFX::RegionalLiberty");
+const Wrapper<GroundDetail> groundDetail("osgGeoFX::GroundDetail", effect + " osgGeoFX::GroundDetail");
 const Wrapper<PanoramaMap, addImagesAndLines> panoramaMap("osgGeoFX::PanoramaMap",
                                                           deformation + " osgGeoFX::PanoramaMap");
 

@@ -9,7 +9,7 @@
 #pragma import_defines(GEOFX_COLOR_SUM, GEOFX_FOG, GEOFX_MAP, GEOFX_PAINTED, GEOFX_FADING)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_NORMAL_MAP)
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE)
-#pragma import_defines(GEOFX_HDR)
+#pragma import_defines(GEOFX_HDR, GEOFX_RIGID)
 #pragma import_defines(GEOFX_PART, GEOFX_MIRROR)
 
 // OpenGL bounds the colors of fragments where the frame buffer does, too (ARB_color_buffer_float).
@@ -144,7 +144,9 @@ void main()
 #if defined(GEOFX_FOG) && defined(GEOFX_PAINTED) && defined(GEOFX_FADING)
     color = fogged(color); // a painting has no fog
 #endif
-#ifdef GEOFX_MAP
+#ifdef GEOFX_RIGID
+    color = geofx_fragment(color, vec4(primary.rgb, 1.0)); // a building without its texture
+#elif defined(GEOFX_MAP)
     color = geofx_fragment(color, primary * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
 #else
     color = geofx_fragment(color, vec4(0.0));

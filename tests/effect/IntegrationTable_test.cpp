@@ -5,6 +5,7 @@
 #include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/TextureUnits.h>
+#include <osgGeoFX/ground/GroundDetail.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
@@ -82,7 +83,8 @@ Row rowOf(const std::string& what, const std::string& className)
 
 TEST(IntegrationTable, HasTheUnitsAndBindingsThatTheSceneGives)
 {
-    const TextureUnits::Effects effects = {new ProjectiveMappings, new PanoramaMap, new CloseUps};
+    const TextureUnits::Effects effects = {new ProjectiveMappings, new PanoramaMap, new CloseUps,
+                                           new GroundDetail};
     const TextureUnits given = TextureUnits::of(effects);
     for (std::size_t i = 0; i < effects.size(); ++i)
     {

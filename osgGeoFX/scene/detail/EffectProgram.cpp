@@ -38,7 +38,7 @@ std::string normalFile(const Deformation& deformation)
 /// What stands in the place of the words in capitals in stages/functions.*.
 struct Parts
 {
-    std::string imports, functions, locate, face, deform, normal, turn, color, move, finish, pixel;
+    std::string imports, functions, locate, face, deform, normal, turn, first, color, move, finish, pixel;
 
     std::string fill(std::string text) const
     {
@@ -48,7 +48,7 @@ struct Parts
         text = replaced(std::move(text), "GEOFX_FACE_CALLS", face);
         text = replaced(std::move(text), "GEOFX_DEFORM_CALLS", deform);
         text = replaced(std::move(text), "GEOFX_NORMAL_CALLS", normal);
-        text = replaced(std::move(text), "GEOFX_COLOR_CALLS", color);
+        text = replaced(std::move(text), "GEOFX_COLOR_CALLS", first + color);
         text = replaced(std::move(text), "GEOFX_MOVE_CALLS", move);
         text = replaced(std::move(text), "GEOFX_PIXEL_CALLS", pixel);
         return replaced(std::move(text), "GEOFX_FINISH_CALLS", finish);
@@ -121,7 +121,12 @@ void addSurface(Parts& parts, const SurfaceEffect& surface, const std::string& p
     if (surface.looksAtNormals())
         parts.face += conditional("defined(" + define + ")", "    " + prefix + "face(eyeNormal);\n");
     parts.locate += conditional("defined(" + define + ")", "    " + prefix + "locate(located);\n");
-    parts.color += conditional("defined(" + define + ")", "    result = " + prefix + "color(result);\n");
+    const std::string color =
+        conditional("defined(" + define + ")", "    result = " + prefix + "color(result);\n");
+    if (surface.comesFirst())
+        parts.first += color;
+    else
+        parts.color += color;
 }
 
 /// The code of all effects for one stage.
