@@ -34,8 +34,6 @@ namespace geofx::bench
 namespace
 {
 
-using osgGeoFX::EffectScene;
-
 constexpr OffscreenView::Size FULL_SIZE = {1600, 900};
 const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
 
@@ -337,11 +335,7 @@ private:
     /// Frame and cull over the very same tiles, without a hierarchy.
     std::vector<Figure> sameTiles(const Case& each, osgGeoFX::Effect& effect, osg::Group& tiles)
     {
-        const osg::ref_ptr<EffectScene> bent = new EffectScene;
-        bent->setTerrainFrame(_scene.reference->isGeocentric() ? EffectScene::GEOCENTRIC
-                                                               : EffectScene::PROJECTED);
-        bent->addEffect(&effect);
-        bent->addChild(&tiles);
+        const osg::ref_ptr<osgGeoFX::EffectScene> bent = deformedTiles(_scene, effect, tiles);
         const osg::ref_ptr<osg::Group> straight = new osg::Group;
         straight->addChild(&tiles);
         const auto first = [&]
@@ -447,7 +441,7 @@ std::vector<Figure> run(const Settings& settings)
     {
         const std::filesystem::path town = townToDraw(settings, folder.path());
         if (settings.wants("town")) add(measureTownCulling(settings, town));
-        if (settings.wants("tables")) add(measurePaperTables(settings, town));
+        if (settings.wants("tables")) add(measurePaperTables(settings, town, folder.path()));
     }
     return figures;
 }

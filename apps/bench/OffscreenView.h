@@ -42,6 +42,7 @@ public:
     OffscreenView& operator=(const OffscreenView&) = delete;
 
     osg::Camera& camera() { return *_viewer->getCamera(); }
+    osg::View& view() { return *_viewer; }
 
     /// World to eye.
     void look(const osg::Matrixd& view) { camera().setViewMatrix(view); }

@@ -16,8 +16,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
+#include <ctime>
+#include <fstream>
 #include <optional>
+#include <string>
+#include <utility>
 
 namespace geofx::bench
 {
@@ -33,19 +36,31 @@ constexpr double DURATION = 30.0;
 /// What a flight along a path took.
 struct Flight
 {
-    double seconds = 0.0;
+    double seconds = 0.0, processorSeconds = 0.0;
     std::uint64_t bytes = 0, firstBytes = 0; ///< on the way, and of the picture at its start
     double triangles = 0.0, drawables = 0.0; ///< of a frame, a mean
 };
 
+struct Flights
+{
+    Flight straight, bent;
+};
+
+double processorSeconds()
+{
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// Flies along paths, with the terrain read anew each time.
-class Flights
+class Pilot
 {
 public:
     /// `lines`: of the picture that tiles are chosen for, which may be larger than the one that is drawn.
-    Flights(const Settings& settings, std::filesystem::path terrain, OffscreenView::Size size, int lines,
-            int frames)
-        : _terrain(std::move(terrain)), _pictures(settings.pictures), _lines(lines), _frames(frames),
+    Pilot(const Settings& settings, std::filesystem::path scene, OffscreenView::Size size, int lines,
+          int frames)
+        : _file(std::move(scene)), _pictures(settings.pictures), _lines(lines), _frames(frames),
           _view(size, FIELD_OF_VIEW, _root)
     {
         osg::Camera& camera = _view.camera();
@@ -53,106 +68,155 @@ public:
                                                static_cast<float>(size.height) / static_cast<float>(lines));
     }
 
-    /// `complete`: each frame waits for its tiles, and is counted and not timed. Otherwise tiles come beside the frames, as they do for users.
-    Flight fly(const CameraPath& path, bool bent, bool complete)
+    /// Tiles come beside the frames, as they do for users. Straight frames and bent ones take turns, each with its own terrain.
+    Flights time(const CameraPath& path)
     {
-        std::string error;
-        const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(_terrain.string(), error);
-        if (!scene) throw BenchError(error);
-        if (!scene->terrain || !scene->reference)
-            throw BenchError(_terrain.string() + ": it is no terrain database; name one with --terrain FILE.");
-        const osg::ref_ptr<osgGeoFX::Effect> effect =
-            bent ? osgGeoFX::parseEffect(path.effect, error) : nullptr;
-        if (bent && !effect) throw BenchError(error);
-        if (effect) scene->effects->addEffect(effect);
-        _view.camera().setLODScale(scene->lodScale(_lines, FIELD_OF_VIEW));
-        _root->addChild(scene->node);
-        _view.look(path.view(0.0, *scene->reference));
-        _view.settle();
-
-        Flight flight;
-        flight.firstBytes = scene->guard->counts().bytesRead;
-        int counted = 0;
+        const osgGeoFX::Scene scenes[] = {load(path, false), load(path, true)};
+        Flights result;
+        for (const osgGeoFX::Scene& scene : scenes)
+            start(scene, path);
         for (int frame = 1; frame <= _frames; ++frame)
         {
             const double share = static_cast<double>(frame) / _frames;
-            _view.look(path.view(share, *scene->reference));
-            flight.seconds += _view.frame(share * DURATION);
-            if (!complete) continue;
-            _view.settle(share * DURATION);
-            if (frame % PERIOD == PERIOD / 2)
+            // Each is first in every other round.
+            for (const int which : {frame % 2, 1 - frame % 2})
             {
-                const OffscreenView::Drawn drawn = _view.count(share * DURATION);
-                flight.triangles += static_cast<double>(drawn.triangles);
-                flight.drawables += static_cast<double>(drawn.drawables);
-                ++counted;
+                show(scenes[which], path, share);
+                const double before = processorSeconds();
+                Flight& flight = which == 0 ? result.straight : result.bent;
+                flight.seconds += _view.frame(share * DURATION);
+                flight.processorSeconds += processorSeconds() - before;
             }
         }
-        flight.bytes = scene->guard->counts().bytesRead - flight.firstBytes;
-        if (counted > 0)
-        {
-            flight.triangles /= counted;
-            flight.drawables /= counted;
-        }
-        if (!complete && !_pictures.empty())
-        {
-            _view.look(path.view(0.5, *scene->reference));
-            _view.settle(DURATION);
-            const std::filesystem::path file =
-                _pictures / (path.name + "-" + std::to_string(_lines) + (bent ? "-bent.png" : "-straight.png"));
-            if (!osgDB::writeImageFile(*_view.capture(), file.string()))
-                throw BenchError(file.string() + ": the picture cannot be written; name another folder.");
-        }
-        _root->removeChildren(0, _root->getNumChildren());
-        return flight;
+        if (!_pictures.empty())
+            for (const int which : {0, 1})
+                picture(scenes[which], path, which == 0 ? "straight" : "bent");
+        land();
+        return result;
+    }
+
+    /// Each frame waits for its tiles, and is counted.
+    Flights count(const CameraPath& path)
+    {
+        return {count(path, false), count(path, true)};
     }
 
 private:
     /// Frames from one that is counted to the next; those of the shortest flight have one.
     static constexpr int PERIOD = 3;
 
-    const std::filesystem::path _terrain, _pictures;
+    osgGeoFX::Scene load(const CameraPath& path, bool bent) const
+    {
+        std::string error;
+        const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("allowOutside");
+        const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(_file.string(), error, options);
+        if (!scene) throw BenchError(error);
+        if (!scene->terrain || !scene->reference)
+            throw BenchError("The database is no terrain; name one with --terrain FILE.");
+        if (!bent) return *scene;
+        const osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::parseEffect(path.effect, error);
+        if (!effect) throw BenchError(error);
+        scene->effects->addEffect(effect);
+        return *scene;
+    }
+
+    void show(const osgGeoFX::Scene& scene, const CameraPath& path, double share)
+    {
+        if (_root->getNumChildren() != 1 || _root->getChild(0) != scene.node)
+        {
+            _root->removeChildren(0, _root->getNumChildren());
+            _root->addChild(scene.node);
+            scene.setUpView(_view.view());
+        }
+        _view.look(path.view(share, *scene.reference));
+    }
+
+    void start(const osgGeoFX::Scene& scene, const CameraPath& path)
+    {
+        _view.camera().setLODScale(scene.lodScale(_lines, FIELD_OF_VIEW));
+        show(scene, path, 0.0);
+        _view.settle();
+    }
+
+    Flight count(const CameraPath& path, bool bent)
+    {
+        const osgGeoFX::Scene scene = load(path, bent);
+        start(scene, path);
+        Flight flight;
+        flight.firstBytes = scene.guard->counts().bytesRead;
+        int counted = 0;
+        for (int frame = 1; frame <= _frames; ++frame)
+        {
+            const double share = static_cast<double>(frame) / _frames;
+            show(scene, path, share);
+            _view.settle(share * DURATION);
+            if (frame % PERIOD != PERIOD / 2) continue;
+            const OffscreenView::Drawn drawn = _view.count(share * DURATION);
+            flight.triangles += static_cast<double>(drawn.triangles);
+            flight.drawables += static_cast<double>(drawn.drawables);
+            ++counted;
+        }
+        flight.bytes = scene.guard->counts().bytesRead - flight.firstBytes;
+        flight.triangles /= counted;
+        flight.drawables /= counted;
+        land();
+        return flight;
+    }
+
+    void picture(const osgGeoFX::Scene& scene, const CameraPath& path, const std::string& kind)
+    {
+        show(scene, path, 0.5);
+        _view.settle(DURATION);
+        const std::filesystem::path file =
+            _pictures / (path.name + "-" + std::to_string(_lines) + "-" + kind + ".png");
+        if (!osgDB::writeImageFile(*_view.capture(), file.string()))
+            throw BenchError(file.string() + ": the picture cannot be written; name another folder.");
+    }
+
+    void land() { _root->removeChildren(0, _root->getNumChildren()); }
+
+    const std::filesystem::path _file, _pictures;
     const int _lines, _frames;
     const osg::ref_ptr<osg::Group> _root = new osg::Group;
     OffscreenView _view;
 };
 
 /// A row of the paper's Table 1.
-Figure speed(Flights& flights, const CameraPath& path, std::size_t size, int frames, int rounds)
+Figure speed(Pilot& pilot, const CameraPath& path, std::size_t size, int frames)
 {
     const OffscreenView::Size paper = SIZES[size];
     const std::string pixels = std::to_string(paper.width) + "x" + std::to_string(paper.height);
-    double straight = 0.0, bent = 0.0;
-    for (int round = 0; round < rounds; ++round)
-    {
-        // In turns, and each is once the first.
-        for (const bool which : {round % 2 == 1, round % 2 == 0})
-            (which ? bent : straight) += flights.fly(path, which, false).seconds;
-    }
+    const auto [straight, bent] = pilot.time(path);
     Figure figure{"table1-" + path.name + "-" + pixels,
                   "frames a second with the deformation over those without, at " + pixels +
                       ", tiles coming as one flies: " + path.what,
                   "", Bound::AtLeast, path.leastSpeed};
-    figure.measured = straight / bent;
-    const double drawn = static_cast<double>(frames) * rounds;
+    figure.measured = straight.seconds / bent.seconds;
     const CameraPath::Speed& theirs = path.paperSpeeds[size];
-    char remark[200];
-    std::snprintf(remark, sizeof remark, "%.2f with, %.2f without; the paper: %.2f with, %.2f without, %.2f",
-                  drawn / bent, drawn / straight, theirs.bent, theirs.straight, theirs.bent / theirs.straight);
+    char remark[250];
+    std::snprintf(remark, sizeof remark,
+                  "%.2f with, %.2f without (by processor time %.2f); the paper: %.2f with, %.2f without, %.2f",
+                  frames / bent.seconds, frames / straight.seconds,
+                  straight.processorSeconds / bent.processorSeconds, theirs.bent, theirs.straight,
+                  theirs.bent / theirs.straight);
     figure.remark = remark;
-    figure.details = {{"bentFramesPerSecond", drawn / bent},
-                      {"straightFramesPerSecond", drawn / straight},
+    figure.details = {{"bentFramesPerSecond", frames / bent.seconds},
+                      {"straightFramesPerSecond", frames / straight.seconds},
+                      {"bentProcessorSeconds", bent.processorSeconds},
+                      {"straightProcessorSeconds", straight.processorSeconds},
                       {"paperBentFramesPerSecond", theirs.bent},
                       {"paperStraightFramesPerSecond", theirs.straight}};
+    announce("  " + figure.remark);
     return figure;
 }
 
 /// A row of the paper's Table 2.
-Figure bytes(Flights& flights, const CameraPath& path, int frames)
+Figure bytes(Pilot& pilot, const CameraPath& path, int frames)
 {
-    const Flight straight = flights.fly(path, false, true), bent = flights.fly(path, true, true);
+    const auto [straight, bent] = pilot.count(path);
     Figure figure{"table2-" + path.name,
-                  "bytes read for each frame with the deformation over those without, each frame with all its tiles: " +
+                  "bytes read for each frame with the deformation over those without, each frame with all its "
+                  "tiles: " +
                       path.what,
                   "", path.below ? Bound::Below : Bound::AtMost, path.mostBytes};
     const auto each = [frames](std::uint64_t all)
@@ -164,8 +228,8 @@ Figure bytes(Flights& flights, const CameraPath& path, int frames)
                                          : each(bent.firstBytes) / each(straight.firstBytes);
     char remark[400];
     std::snprintf(remark, sizeof remark,
-                  "%.0f with, %.0f without; the first picture %.1f and %.1f MB; %.0f and %.0f thousand triangles in %.0f and "
-                  "%.0f drawables; the paper: %.0f with, %.0f without, %.2f",
+                  "%.0f with, %.0f without; the first picture %.1f and %.1f MB; %.0f and %.0f thousand "
+                  "triangles in %.0f and %.0f drawables; the paper: %.0f with, %.0f without, %.2f",
                   each(bent.bytes), each(straight.bytes), static_cast<double>(bent.firstBytes) * 1e-6,
                   static_cast<double>(straight.firstBytes) * 1e-6, bent.triangles * 1e-3,
                   straight.triangles * 1e-3, bent.drawables, straight.drawables, path.paperBentBytes,
@@ -179,14 +243,31 @@ Figure bytes(Flights& flights, const CameraPath& path, int frames)
                       {"straightTriangles", straight.triangles},
                       {"paperBentBytesPerFrame", path.paperBentBytes},
                       {"paperStraightBytesPerFrame", path.paperStraightBytes}};
+    announce("  " + figure.remark);
     return figure;
+}
+
+/// A scene with the light of an afternoon, for without one a viewer's own lamp lights the ground.
+std::filesystem::path writeScene(const std::filesystem::path& folder, const std::filesystem::path& terrain)
+{
+    const std::filesystem::path file = folder / "paper.geofx";
+    std::ofstream stream(file);
+    stream << "<geofx version=\"1\">\n  <terrain><database file=\"" << terrain.string()
+           << "\"/></terrain>\n"
+              "  <sun azimuth=\"300\" elevation=\"34\" color=\"#d8d0be\" ambient=\"#59606b\"/>\n"
+              "  <background color=\"#b9d3ea\"/>\n</geofx>\n";
+    stream.close();
+    if (!stream) throw BenchError(file.string() + ": it cannot be written; is the disk full?");
+    return file;
 }
 
 } // namespace
 
-std::vector<Figure> measurePaperTables(const Settings& settings, const std::filesystem::path& terrain)
+std::vector<Figure> measurePaperTables(const Settings& settings, const std::filesystem::path& terrain,
+                                       const std::filesystem::path& folder)
 {
-    const int frames = settings.smoke ? 3 : settings.quick ? 30 : 60, rounds = settings.smoke ? 1 : 2;
+    const int frames = settings.smoke ? 3 : settings.quick ? 30 : 120;
+    const std::filesystem::path scene = writeScene(folder, terrain);
     const auto size = [&](std::size_t i, int part)
     {
         const int smaller = settings.smoke ? 10 : part;
@@ -195,23 +276,22 @@ std::vector<Figure> measurePaperTables(const Settings& settings, const std::file
     // First, so that the files lie in the system's cache for whatever is timed. Bytes do not depend on the pixels.
     std::vector<Figure> reads;
     {
-        Flights flights(settings, terrain, size(0, 4), settings.smoke ? size(0, 1).height : SIZES[0].height,
-                        frames);
+        Pilot pilot(settings, scene, size(0, 8), size(0, 1).height, frames);
         for (const CameraPath& path : cameraPaths())
         {
             announce("counting the bytes of " + path.name);
-            reads.push_back(bytes(flights, path, frames));
+            reads.push_back(bytes(pilot, path, frames));
         }
     }
     std::vector<Figure> figures;
     for (std::size_t i = 0; i < SIZES.size(); ++i)
     {
-        Flights flights(settings, terrain, size(i, 1), size(i, 1).height, frames);
+        Pilot pilot(settings, scene, size(i, 1), size(i, 1).height, frames);
         for (const CameraPath& path : cameraPaths())
         {
             announce("flying " + path.name + " at " + std::to_string(SIZES[i].width) + "x" +
                      std::to_string(SIZES[i].height));
-            figures.push_back(speed(flights, path, i, frames, rounds));
+            figures.push_back(speed(pilot, path, i, frames));
         }
     }
     figures.insert(figures.end(), reads.begin(), reads.end());

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "TileCollector.h"
 
+#include <osg/CoordinateSystemNode>
 #include <osgUtil/SceneView>
 #include <osgViewer/Renderer>
 
@@ -20,6 +21,15 @@ std::vector<osg::StateSet*> stateAbove(const osg::Node& node, const osg::Node& s
         if (each->getStateSet())
             result.insert(result.begin(), const_cast<osg::StateSet*>(each->getStateSet()));
     return result;
+}
+
+const osg::CoordinateSystemNode* systemBelow(const osg::Node& node)
+{
+    if (const auto* system = dynamic_cast<const osg::CoordinateSystemNode*>(&node)) return system;
+    const osg::Group* group = node.asGroup();
+    for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
+        if (const osg::CoordinateSystemNode* found = systemBelow(*group->getChild(i))) return found;
+    return nullptr;
 }
 
 } // namespace
@@ -76,6 +86,20 @@ osg::Group& TileCollector::below(const std::vector<osg::StateSet*>& states) cons
         group = inner;
     }
     return *group;
+}
+
+osg::ref_ptr<osgGeoFX::EffectScene> deformedTiles(const osgGeoFX::Scene& scene, osgGeoFX::Effect& effect,
+                                                  osg::Group& tiles)
+{
+    const osg::CoordinateSystemNode* system = systemBelow(*scene.node);
+    if (!system) throw BenchError("The terrain has no coordinate system; take one of osggeofx_build.");
+    const osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode(*system);
+    root->removeChildren(0, root->getNumChildren());
+    root->addChild(&tiles);
+    const osg::ref_ptr<osgGeoFX::EffectScene> bent = new osgGeoFX::EffectScene;
+    bent->addEffect(&effect);
+    bent->addChild(root);
+    return bent;
 }
 
 } // namespace geofx::bench

@@ -10,6 +10,9 @@
 #include <osg/MatrixTransform>
 #include <osgUtil/RenderBin>
 
+#include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/viewer/Scene.h>
+
 #include <functional>
 #include <map>
 #include <utility>
@@ -45,5 +48,10 @@ private:
     const Filter _filter;
     mutable std::map<std::pair<const osg::Group*, const osg::StateSet*>, osg::Group*> _groups;
 };
+
+/// Collected tiles below an effect, as the scene has them: its coordinate system above them, which a scene without one would
+/// look for in each frame.
+osg::ref_ptr<osgGeoFX::EffectScene> deformedTiles(const osgGeoFX::Scene& scene, osgGeoFX::Effect& effect,
+                                                  osg::Group& tiles);
 
 } // namespace geofx::bench

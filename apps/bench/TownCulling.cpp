@@ -24,8 +24,6 @@ namespace geofx::bench
 namespace
 {
 
-using osgGeoFX::EffectScene;
-
 const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
 /// Frames that are culled of each in a round: after the first one, which finds out what was asked for.
 constexpr int FRAMES = 5;
@@ -72,11 +70,7 @@ public:
         const std::size_t drawables = _view.count().drawables;
         _scene.effects->removeEffect(effect);
 
-        const osg::ref_ptr<EffectScene> bent = new EffectScene;
-        bent->setTerrainFrame(_scene.reference->isGeocentric() ? EffectScene::GEOCENTRIC
-                                                               : EffectScene::PROJECTED);
-        bent->addEffect(effect);
-        bent->addChild(town);
+        const osg::ref_ptr<osgGeoFX::EffectScene> bent = deformedTiles(_scene, *effect, *town);
         const osg::ref_ptr<osg::Group> straight = new osg::Group;
         straight->addChild(town);
         const osg::Matrixd above = viewOfAll(*town);
