@@ -54,7 +54,7 @@ const std::vector<CameraPath>& cameraPaths()
         {"pedestrian-2",
          "a way down a hill, the town behind it folded up",
          "pedestrianView bendAngle=42 focusDistance=2300 zoneWidth=2500 tallest=500",
-         {place(-157.8170, 21.3320, 650.0, 214.0, -3.0), place(-157.8225, 21.3230, 560.0, 206.0, -3.0)},
+         {place(-157.8170, 21.3320, 650.0, 214.0, -3.0), place(-157.8290, 21.3190, 500.0, 185.0, -3.0)},
          1.0,
          1.0,
          true,

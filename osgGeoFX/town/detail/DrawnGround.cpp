@@ -20,8 +20,9 @@ namespace osgGeoFX
 namespace
 {
 
-/// Surfaces of finest tiles that are kept: some 2 MB each.
-constexpr std::size_t MOST_SURFACES = 12;
+/// Files whose finest tiles are kept: four tiles each, some 2 MB for a tile. A large cell of a town touches four where tiles are as
+/// wide as half of it.
+constexpr std::size_t MOST_READ = 5;
 /// Files whose tiles are remembered.
 constexpr std::size_t MOST_FILES = 20000;
 
@@ -163,44 +164,52 @@ DrawnGround::Tiles& DrawnGround::tilesIn(const std::string& file)
     if (!node)
         throw BuildError(file +
                          ": this tile of the ground cannot be read; build the database again with --anew.");
-    return _files[file] = tilesOf(*node, osgDB::getFilePath(file));
+    Tiles& tiles = _files[file] = tilesOf(*node, osgDB::getFilePath(file));
+    // Who asks for finest tiles will soon ask for their ground.
+    if (std::any_of(tiles.begin(), tiles.end(), [](const Tile& tile) { return tile.finer.empty(); }))
+        makeSurfaces(tiles, *node);
+    return tiles;
 }
 
-const DrawnGround::Surface& DrawnGround::surfaceOf(Tile& tile, const std::string& file, std::size_t index)
+const DrawnGround::Surface& DrawnGround::surfaceOf(Tiles& tiles, const std::string& file, std::size_t index)
 {
-    if (!tile.surface)
+    if (!tiles[index].surface)
     {
         const osg::ref_ptr<const osg::Node> node =
             file.empty() ? _root
                          : osg::ref_ptr<const osg::Node>(osgDB::readRefNodeFile(file, new osgDB::Options));
-        const osg::Group* group = node ? node->asGroup() : nullptr;
-        const osg::Transform* found = nullptr;
-        std::size_t count = 0;
-        for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
-        {
-            const osg::Node& child = *group->getChild(i);
-            const auto* paged = dynamic_cast<const osg::PagedLOD*>(&child);
-            const bool finest = child.asTransform() && TileInfo::isTile(child);
-            if (!finest && !(paged && TileInfo::coarseOf(*paged) && paged->getNumFileNames() > 1)) continue;
-            if (count++ == index) found = child.asTransform();
-        }
-        if (!found)
-            throw BuildError(
-                file + ": this tile of the ground cannot be read; build the database again with --anew.");
-        tile.surface = std::make_shared<Surface>(*found, _grid);
-        _kept.push_back(tile.surface);
-        if (_kept.size() > MOST_SURFACES)
-        {
-            const std::shared_ptr<Surface> oldest = _kept.front();
-            _kept.pop_front();
-            for (Tile& each : _top)
-                if (each.surface == oldest) each.surface = nullptr;
-            for (auto& [name, tiles] : _files)
-                for (Tile& each : tiles)
-                    if (each.surface == oldest) each.surface = nullptr;
-        }
+        if (node) makeSurfaces(tiles, *node);
     }
-    return *tile.surface;
+    if (!tiles[index].surface)
+        throw BuildError(file +
+                         ": this tile of the ground cannot be read; build the database again with --anew.");
+    if (_kept.front() != &tiles)
+    {
+        _kept.remove(&tiles);
+        _kept.push_front(&tiles);
+    }
+    return *tiles[index].surface;
+}
+
+/// Those of all tiles of a file at once: most of the time is that of reading it.
+void DrawnGround::makeSurfaces(Tiles& tiles, const osg::Node& node)
+{
+    const osg::Group* group = node.asGroup();
+    std::size_t count = 0;
+    for (unsigned int i = 0; group && i < group->getNumChildren() && count < tiles.size(); ++i)
+    {
+        const osg::Node& child = *group->getChild(i);
+        const auto* paged = dynamic_cast<const osg::PagedLOD*>(&child);
+        const bool finest = child.asTransform() && TileInfo::isTile(child);
+        if (!finest && !(paged && TileInfo::coarseOf(*paged) && paged->getNumFileNames() > 1)) continue;
+        Tile& tile = tiles[count++];
+        if (finest && tile.finer.empty()) tile.surface = std::make_shared<Surface>(*child.asTransform(), _grid);
+    }
+    _kept.push_front(&tiles);
+    if (_kept.size() <= MOST_READ) return;
+    for (Tile& tile : *_kept.back())
+        tile.surface = nullptr;
+    _kept.pop_back();
 }
 
 std::optional<double> DrawnGround::find(Tiles& tiles, const std::string& file, const osg::Vec2d& place,
@@ -219,7 +228,7 @@ std::optional<double> DrawnGround::find(Tiles& tiles, const std::string& file, c
             height = find(tilesIn(finer), finer, place, low, up);
         }
         else
-            height = surfaceOf(tile, file, i).at(place, _grid);
+            height = surfaceOf(tiles, file, i).at(place, _grid);
         if (height) return height;
     }
     return {};
@@ -230,6 +239,8 @@ std::optional<double> DrawnGround::at(const osg::Vec2d& place)
     if (!_grid.contains(_grid.turned(place))) return {};
     if (_files.size() > MOST_FILES)
     {
+        for (Tile& tile : _top)
+            tile.surface = nullptr;
         _files.clear();
         _kept.clear();
     }
