@@ -81,8 +81,8 @@ int run(const std::vector<std::string>& names, const std::string& jsonFile, bool
             throw BenchError("--suite " + name + ": there is none; --list shows them.");
     }
     checkGroups(settings.only, names);
-    for (fs::path* path : {&settings.builder, &settings.inventor, &settings.data, &settings.work, &settings.terrain,
-                           &settings.pictures, &settings.osgEarth, &settings.fuji})
+    for (fs::path* path : {&settings.builder, &settings.inventor, &settings.data, &settings.work,
+                           &settings.terrain, &settings.pictures, &settings.osgEarth, &settings.fuji})
         complete(*path);
     if (!settings.pictures.empty()) fs::create_directories(settings.pictures);
 

@@ -28,10 +28,10 @@ struct CameraPath
     std::string effect; ///< as on the command line
     /// The camera is led evenly from one to the next.
     std::vector<osgGeoFX::ViewPoint> places;
-    double leastSpeed = 0.0; ///< frames a second with the deformation over those without, at least
-    double mostBytes = 0.0;  ///< bytes a frame with the deformation over those without, at most
-    bool below = false;      ///< they must be fewer
-    std::array<Speed, 3> paperSpeeds;      ///< by size, the largest first
+    double leastSpeed = 0.0;          ///< frames a second with the deformation over those without, at least
+    double mostBytes = 0.0;           ///< bytes a frame with the deformation over those without, at most
+    bool below = false;               ///< they must be fewer
+    std::array<Speed, 3> paperSpeeds; ///< by size, the largest first
     double paperStraightBytes, paperBentBytes; ///< a frame, at the largest size
 
     /// World to eye; `share` of the way, 0 to 1. Throws BenchError where the database has no such place.

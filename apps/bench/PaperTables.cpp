@@ -125,10 +125,7 @@ public:
     }
 
     /// Each frame waits for its tiles, and is counted.
-    Flights count(const CameraPath& path)
-    {
-        return {count(path, false), count(path, true)};
-    }
+    Flights count(const CameraPath& path) { return {count(path, false), count(path, true)}; }
 
 private:
     /// Frames from one that is counted to the next; those of the shortest flight have one.
@@ -226,11 +223,11 @@ Figure speed(Pilot& pilot, const CameraPath& path, std::size_t size, int frames)
     figure.measured = straight.seconds / bent.seconds;
     const CameraPath::Speed& theirs = path.paperSpeeds[size];
     char remark[250];
-    std::snprintf(remark, sizeof remark,
-                  "%.2f with, %.2f without (by processor time %.2f); the paper: %.2f with, %.2f without, %.2f",
-                  frames / bent.seconds, frames / straight.seconds,
-                  straight.processorSeconds / bent.processorSeconds, theirs.bent, theirs.straight,
-                  theirs.bent / theirs.straight);
+    std::snprintf(
+        remark, sizeof remark,
+        "%.2f with, %.2f without (by processor time %.2f); the paper: %.2f with, %.2f without, %.2f",
+        frames / bent.seconds, frames / straight.seconds, straight.processorSeconds / bent.processorSeconds,
+        theirs.bent, theirs.straight, theirs.bent / theirs.straight);
     figure.remark = remark;
     figure.details = {{"bentFramesPerSecond", frames / bent.seconds},
                       {"straightFramesPerSecond", frames / straight.seconds},
@@ -246,11 +243,12 @@ Figure speed(Pilot& pilot, const CameraPath& path, std::size_t size, int frames)
 Figure bytes(Pilot& pilot, const CameraPath& path, int frames)
 {
     const auto [straight, bent] = pilot.count(path);
-    Figure figure{"table2-" + path.name,
-                  "bytes read for each frame with the deformation over those without, each frame with all its "
-                  "tiles: " +
-                      path.what,
-                  "", path.below ? Bound::Below : Bound::AtMost, path.mostBytes};
+    Figure figure{
+        "table2-" + path.name,
+        "bytes read for each frame with the deformation over those without, each frame with all its "
+        "tiles: " +
+            path.what,
+        "", path.below ? Bound::Below : Bound::AtMost, path.mostBytes};
     const auto each = [frames](std::uint64_t all)
     {
         return static_cast<double>(all) / frames;

@@ -34,8 +34,8 @@ class TownCulling
 public:
     TownCulling(const Settings& settings, const std::filesystem::path& terrain)
         : _rounds(settings.smoke ? 2 : 15),
-          _view(settings.smoke ? OffscreenView::Size{160, 120} : OffscreenView::Size{1600, 1200}, FIELD_OF_VIEW,
-                _root)
+          _view(settings.smoke ? OffscreenView::Size{160, 120} : OffscreenView::Size{1600, 1200},
+                FIELD_OF_VIEW, _root)
     {
         const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(terrain.string());
         osg::Group* database = node ? node->asGroup() : nullptr;
@@ -46,10 +46,10 @@ public:
         std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::adopt(database, error);
         if (!scene) throw BenchError(error);
         if (!scene->reference || database->getNumChildren() == 0)
-            throw BenchError(terrain.string() + ": it has no town; name a database with one with --terrain FILE.");
+            throw BenchError(terrain.string() +
+                             ": it has no town; name a database with one with --terrain FILE.");
         _scene = std::move(*scene);
-        _view.camera().setLODScale(
-            _scene.lodScale(_view.camera().getViewport()->height(), FIELD_OF_VIEW));
+        _view.camera().setLODScale(_scene.lodScale(_view.camera().getViewport()->height(), FIELD_OF_VIEW));
     }
 
     std::vector<Figure> measure(const CameraPath& path)
@@ -97,7 +97,8 @@ public:
                       same.second, drawables);
         ratio.remark = remark;
         Figure time{"cull-town-time-" + path.name,
-                    "time to cull the deformed town with its levels of detail: " + path.what, "ms", Bound::Below, 2.0};
+                    "time to cull the deformed town with its levels of detail: " + path.what, "ms",
+                    Bound::Below, 2.0};
         time.measured = paged;
         return {ratio, time};
     }

@@ -38,8 +38,9 @@ std::filesystem::path townToDraw(const Settings& settings, const std::filesystem
 {
     if (!settings.terrain.empty() && hasTown(settings.terrain)) return settings.terrain;
     if (settings.inventor.empty())
-        throw BenchError("There is no geofx_invent beside this program, which makes up a town; build it (it is one of "
-                         "the tests' tools), or name a database with a town with --terrain FILE.");
+        throw BenchError(
+            "There is no geofx_invent beside this program, which makes up a town; build it (it is one of "
+            "the tests' tools), or name a database with a town with --terrain FILE.");
     if (!settings.smoke) requireSpace(folder, DISK_BYTES);
     const std::filesystem::path oahu = settings.data / "oahu", town = folder / "town.gpkg",
                                 aerial = folder / "aerial.tif", database = folder / "town";
@@ -54,9 +55,9 @@ std::filesystem::path townToDraw(const Settings& settings, const std::filesystem
     runChild({settings.inventor.string(), "aerial", aerial.string(), settings.smoke ? "512" : "12960"});
     announce("building the terrain with the town");
     std::vector<std::string> command = builderCommand(settings, elevation, database, 2);
-    command.insert(command.end(),
-                   {"--landcover", (oahu / "landcover.tif").string(), "--landcover-table",
-                    (oahu / "landcover.csv").string(), "--imagery", aerial.string(), "--buildings", town.string()});
+    command.insert(command.end(), {"--landcover", (oahu / "landcover.tif").string(), "--landcover-table",
+                                   (oahu / "landcover.csv").string(), "--imagery", aerial.string(),
+                                   "--buildings", town.string()});
     runChild(command);
     std::filesystem::remove(aerial);
     return database / "terrain.osgb";

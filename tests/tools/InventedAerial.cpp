@@ -98,11 +98,12 @@ std::array<Look, CLASSES> looks()
 
 void inventAerial(const std::string& file, int columns)
 {
-    if (columns < 1 || columns > 65536) throw std::runtime_error("An aerial picture has 1 to 65,536 columns.");
+    if (columns < 1 || columns > 65536)
+        throw std::runtime_error("An aerial picture has 1 to 65,536 columns.");
     const OahuRaster<unsigned char> cover("landcover.tif", GDT_Byte);
     const std::array<Look, CLASSES> all = looks();
-    const int rows = std::max(1, static_cast<int>(static_cast<std::int64_t>(columns) * cover.rows() /
-                                                  cover.columns()));
+    const int rows =
+        std::max(1, static_cast<int>(static_cast<std::int64_t>(columns) * cover.rows() / cover.columns()));
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
     char** options = CSLSetNameValue(CSLSetNameValue(nullptr, "INTERLEAVE", "PIXEL"), "PHOTOMETRIC", "RGB");
     std::filesystem::remove(file);
@@ -137,7 +138,8 @@ void inventAerial(const std::string& file, int columns)
             if (look.roofs)
             {
                 // Lots of some 15 m with roofs of red, grey and white, and gardens.
-                const float lot = corner(static_cast<int>(std::floor(x * 2.0f)), static_cast<int>(std::floor(y * 2.0f)), 7);
+                const float lot =
+                    corner(static_cast<int>(std::floor(x * 2.0f)), static_cast<int>(std::floor(y * 2.0f)), 7);
                 if (lot > 0.5f)
                     light += 0.2f;
                 else if (lot > 0.1f)

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace osgGeoFX
 {
@@ -67,38 +68,28 @@ public:
         }
         if (_corners.empty()) return;
         _side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(_corners.size()) / 6.0)), 1, 256);
-        _cells.resize(static_cast<std::size_t>(_side) * static_cast<std::size_t>(_side));
-        for (unsigned int i = 0; i < _corners.size(); i += 3)
-        {
-            osg::Vec2d low(1e300, 1e300), high(-1e300, -1e300);
-            for (unsigned int c = 0; c < 3; ++c)
-            {
-                const osg::Vec3d& place = _places[_corners[i + c]];
-                low.set(std::min(low.x(), place.x()), std::min(low.y(), place.y()));
-                high.set(std::max(high.x(), place.x()), std::max(high.y(), place.y()));
-            }
-            for (int row = cell(low.y(), _low.y(), _high.y()); row <= cell(high.y(), _low.y(), _high.y());
-                 ++row)
-                for (int column = cell(low.x(), _low.x(), _high.x());
-                     column <= cell(high.x(), _low.x(), _high.x()); ++column)
-                    _cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(_side) +
-                           static_cast<std::size_t>(column)]
-                        .push_back(i);
-        }
+        // In one list: a vector for each cell would take several times the memory, in pieces that the heap does not get back.
+        _starts.assign(static_cast<std::size_t>(_side) * static_cast<std::size_t>(_side) + 1, 0);
+        forEachCell([this](std::size_t index, unsigned int) { ++_starts[index + 1]; });
+        std::partial_sum(_starts.begin(), _starts.end(), _starts.begin());
+        _touching.resize(_starts.back());
+        std::vector<unsigned int> next(_starts.begin(), _starts.end() - 1);
+        forEachCell([&](std::size_t index, unsigned int triangle) { _touching[next[index]++] = triangle; });
     }
 
     std::optional<double> at(const osg::Vec2d& anywhere, const TownGrid& grid) const
     {
         const osg::Vec2d place = grid.turned(anywhere, (_low + _high) * 0.5);
         const double tolerance = 1e-9 * (_high - _low).length();
-        if (_cells.empty() || place.x() < _low.x() - tolerance || place.y() < _low.y() - tolerance ||
+        if (_touching.empty() || place.x() < _low.x() - tolerance || place.y() < _low.y() - tolerance ||
             place.x() > _high.x() + tolerance || place.y() > _high.y() + tolerance)
             return {};
         const std::size_t index =
             static_cast<std::size_t>(cell(place.y(), _low.y(), _high.y())) * static_cast<std::size_t>(_side) +
             static_cast<std::size_t>(cell(place.x(), _low.x(), _high.x()));
-        for (const unsigned int triangle : _cells[index])
+        for (unsigned int i = _starts[index]; i < _starts[index + 1]; ++i)
         {
+            const unsigned int triangle = _touching[i];
             const osg::Vec3d &a = _places[_corners[triangle]], &b = _places[_corners[triangle + 1]],
                              &c = _places[_corners[triangle + 2]];
             const osg::Vec2d ab(b.x() - a.x(), b.y() - a.y()), ac(c.x() - a.x(), c.y() - a.y()),
@@ -115,6 +106,29 @@ public:
     }
 
 private:
+    /// Hands out each triangle, by its first corner, with each cell that it touches.
+    template<typename Take>
+    void forEachCell(Take take) const
+    {
+        for (unsigned int i = 0; i < _corners.size(); i += 3)
+        {
+            osg::Vec2d low(1e300, 1e300), high(-1e300, -1e300);
+            for (unsigned int c = 0; c < 3; ++c)
+            {
+                const osg::Vec3d& place = _places[_corners[i + c]];
+                low.set(std::min(low.x(), place.x()), std::min(low.y(), place.y()));
+                high.set(std::max(high.x(), place.x()), std::max(high.y(), place.y()));
+            }
+            for (int row = cell(low.y(), _low.y(), _high.y()); row <= cell(high.y(), _low.y(), _high.y());
+                 ++row)
+                for (int column = cell(low.x(), _low.x(), _high.x());
+                     column <= cell(high.x(), _low.x(), _high.x()); ++column)
+                    take(static_cast<std::size_t>(row) * static_cast<std::size_t>(_side) +
+                             static_cast<std::size_t>(column),
+                         i);
+        }
+    }
+
     int cell(double value, double low, double high) const
     {
         const double share = high > low ? (value - low) / (high - low) : 0.0;
@@ -125,7 +139,8 @@ private:
     std::vector<unsigned int> _corners;
     osg::Vec2d _low = osg::Vec2d(1e300, 1e300), _high = osg::Vec2d(-1e300, -1e300);
     int _side = 0;
-    std::vector<std::vector<unsigned int>> _cells; ///< of a grid over the tile: the triangles that touch them
+    /// Of the cells of a grid over the tile: the triangles that touch each, and where they begin.
+    std::vector<unsigned int> _touching, _starts;
 };
 
 DrawnGround::DrawnGround(const TownGrid& grid, const osg::Node& root, std::string folder)
@@ -203,7 +218,8 @@ void DrawnGround::makeSurfaces(Tiles& tiles, const osg::Node& node)
         const bool finest = child.asTransform() && TileInfo::isTile(child);
         if (!finest && !(paged && TileInfo::coarseOf(*paged) && paged->getNumFileNames() > 1)) continue;
         Tile& tile = tiles[count++];
-        if (finest && tile.finer.empty()) tile.surface = std::make_shared<Surface>(*child.asTransform(), _grid);
+        if (finest && tile.finer.empty())
+            tile.surface = std::make_shared<Surface>(*child.asTransform(), _grid);
     }
     _kept.push_front(&tiles);
     if (_kept.size() <= MOST_READ) return;

@@ -17,10 +17,11 @@ int main(int argc, char** argv)
 {
     if (argc < 3)
     {
-        std::fputs("Usage: geofx_invent town FILE.gpkg [BUILDINGS],\n       geofx_invent crowd FILE.gpkg "
-                   "[BUILDINGS],\n       geofx_invent aerial FILE.tif [COLUMNS], or\n       geofx_invent NAME "
-                   "FILE.tif [SAMPLES]; the names:\n",
-                   stderr);
+        std::fputs(
+            "Usage: geofx_invent town FILE.gpkg [BUILDINGS],\n       geofx_invent crowd FILE.gpkg "
+            "[BUILDINGS],\n       geofx_invent aerial FILE.tif [COLUMNS], or\n       geofx_invent NAME "
+            "FILE.tif [SAMPLES]; the names:\n",
+            stderr);
         for (const std::string& name : geofx::test::inventedTerrains())
             std::fprintf(stderr, "  %s\n", name.c_str());
         return 2;
@@ -30,9 +31,9 @@ int main(int argc, char** argv)
         const std::string name = argv[1];
         if (name == "town" || name == "crowd")
         {
-            const int count = name == "town"
-                                  ? geofx::test::inventTown(argv[2], argc > 3 ? std::atoi(argv[3]) : 16000)
-                                  : geofx::test::inventCrowd(argv[2], argc > 3 ? std::atoi(argv[3]) : 1000000);
+            const int count =
+                name == "town" ? geofx::test::inventTown(argv[2], argc > 3 ? std::atoi(argv[3]) : 16000)
+                               : geofx::test::inventCrowd(argv[2], argc > 3 ? std::atoi(argv[3]) : 1000000);
             std::printf("%s: %d buildings.\n", argv[2], count);
             return 0;
         }
