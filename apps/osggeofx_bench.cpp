@@ -33,10 +33,11 @@ fs::path defaultData()
     return fs::exists(installed) ? installed.lexically_normal() : fs::path(GEOFX_SOURCE_DATA);
 }
 
-fs::path defaultBuilder()
+/// A program that lies beside this one; empty if there is none.
+fs::path sibling(const std::string& name)
 {
-    const fs::path sibling = programFolder() / "osggeofx_build";
-    return fs::exists(sibling) ? sibling : fs::path();
+    const fs::path path = programFolder() / name;
+    return fs::exists(path) ? path : fs::path();
 }
 
 void complete(fs::path& path)
@@ -80,8 +81,8 @@ int run(const std::vector<std::string>& names, const std::string& jsonFile, bool
             throw BenchError("--suite " + name + ": there is none; --list shows them.");
     }
     checkGroups(settings.only, names);
-    for (fs::path* path : {&settings.builder, &settings.data, &settings.work, &settings.terrain,
-                           &settings.pictures, &settings.osgEarth, &settings.fuji})
+    for (fs::path* path : {&settings.builder, &settings.inventor, &settings.data, &settings.work,
+                           &settings.terrain, &settings.pictures, &settings.osgEarth, &settings.fuji})
         complete(*path);
     if (!settings.pictures.empty()) fs::create_directories(settings.pictures);
 
@@ -137,6 +138,9 @@ int main(int argc, char** argv)
         ->type_name("FILE");
     app.add_option("--builder", settings.builder, "osggeofx_build; the default lies beside this program")
         ->type_name("FILE");
+    app.add_option("--inventor", settings.inventor,
+                   "geofx_invent, which makes up a town; the default lies beside this program")
+        ->type_name("FILE");
     app.add_option("--data", settings.data, "The data folder, which has the folder oahu")->type_name("DIR");
     app.add_option("--work", settings.work,
                    "Where temporary files are made (a full run needs 7 GB for a while)")
@@ -154,7 +158,8 @@ int main(int argc, char** argv)
 
     try
     {
-        if (settings.builder.empty()) settings.builder = defaultBuilder();
+        if (settings.builder.empty()) settings.builder = sibling("osggeofx_build");
+        if (settings.inventor.empty()) settings.inventor = sibling("geofx_invent");
         if (settings.data.empty()) settings.data = defaultData();
         if (settings.work.empty()) settings.work = fs::temp_directory_path();
         if (listOnly)

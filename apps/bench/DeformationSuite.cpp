@@ -6,7 +6,10 @@
 #include "ChildProcess.h"
 #include "OahuTerrain.h"
 #include "OffscreenView.h"
+#include "PaperTables.h"
 #include "TerrainSuite.h"
+#include "TileCollector.h"
+#include "TownTerrain.h"
 #include "WorkFolder.h"
 
 #include <osgGeoFX/scene/DeformedView.h>
@@ -19,9 +22,8 @@
 #include <osg/Stats>
 #include <osg/Switch>
 #include <osgDB/WriteFile>
-#include <osgUtil/SceneView>
-#include <osgViewer/Renderer>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <random>
@@ -31,8 +33,6 @@ namespace geofx::bench
 
 namespace
 {
-
-using osgGeoFX::EffectScene;
 
 constexpr OffscreenView::Size FULL_SIZE = {1600, 900};
 const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
@@ -68,75 +68,6 @@ std::vector<Case> cases()
              "turn=15",
              place(-157.862, 21.24, 3500.0, 20.0, -20.0), 0.0}};
 }
-
-/// The state that a node's own parents set below \p scene, first that of the uppermost.
-std::vector<osg::StateSet*> stateAbove(const osg::Node& node, const osg::Node& scene)
-{
-    std::vector<osg::StateSet*> result;
-    for (const osg::Node* each = node.getNumParents() ? node.getParent(0) : nullptr; each && each != &scene;
-         each = each->getNumParents() ? each->getParent(0) : nullptr)
-        if (each->getStateSet())
-            result.insert(result.begin(), const_cast<osg::StateSet*>(each->getStateSet()));
-    return result;
-}
-
-/// Takes down what is about to be drawn.
-class TileCollector : public osg::Camera::DrawCallback
-{
-public:
-    explicit TileCollector(const osg::Node& scene) : _scene(scene) {}
-
-    using osg::Camera::DrawCallback::operator();
-    void operator()(osg::RenderInfo& info) const override
-    {
-        auto* renderer = dynamic_cast<osgViewer::Renderer*>(info.getCurrentCamera()->getRenderer());
-        if (!renderer) return;
-        osg::Matrixd toWorld;
-        toWorld.invert(info.getCurrentCamera()->getViewMatrix());
-        add(*renderer->getSceneView(0)->getRenderStage(), toWorld);
-    }
-
-    /// The meshes, each below a transform, and these below the database's state without its levels of detail.
-    mutable osg::ref_ptr<osg::Group> tiles = new osg::Group;
-
-private:
-    void add(const osgUtil::RenderBin& bin, const osg::Matrixd& toWorld) const
-    {
-        for (const osgUtil::StateGraph* graph : bin.getStateGraphList())
-        {
-            for (const auto& leaf : graph->_leaves)
-            {
-                if (!leaf->_modelview) continue;
-                osg::ref_ptr<osg::MatrixTransform> tile =
-                    new osg::MatrixTransform(*leaf->_modelview * toWorld);
-                tile->addChild(leaf->_drawable);
-                below(stateAbove(*leaf->_drawable, _scene)).addChild(tile);
-            }
-        }
-        for (const auto& inner : bin.getRenderBinList())
-            add(*inner.second, toWorld);
-    }
-
-    osg::Group& below(const std::vector<osg::StateSet*>& states) const
-    {
-        osg::Group* group = tiles;
-        for (osg::StateSet* state : states)
-        {
-            osg::Group*& inner = _groups[{group, state}];
-            if (!inner)
-            {
-                inner = new osg::Group;
-                inner->setStateSet(state);
-                group->addChild(inner);
-            }
-            group = inner;
-        }
-        return *group;
-    }
-
-    const osg::Node& _scene;
-    mutable std::map<std::pair<const osg::Group*, const osg::StateSet*>, osg::Group*> _groups;
-};
 
 /// Puts the vertices of collected tiles where a deformation leaves them, in copies.
 class BentBeforehand
@@ -234,7 +165,7 @@ public:
         _scene.effects->addEffect(effect);
         const OffscreenView::Drawn bent = settled(each, "bent");
         figures.push_back(path(each, straight, bent, *effect));
-        const osg::ref_ptr<osg::Group> tiles = collect();
+        const osg::ref_ptr<osg::Group> tiles = TileCollector::collect(*_view, *_scene.node);
         figures.push_back(picking(each));
         _scene.effects->removeEffect(effect);
         figures.push_back(bytes(each, *effect));
@@ -282,17 +213,6 @@ private:
                 throw BenchError(file.string() + ": the picture cannot be written; name another folder.");
         }
         return _view->count();
-    }
-
-    osg::ref_ptr<osg::Group> collect()
-    {
-        const osg::ref_ptr<TileCollector> collector = new TileCollector(*_scene.node);
-        _view->camera().addInitialDrawCallback(collector);
-        _view->frame();
-        _view->camera().removeInitialDrawCallback(collector);
-        if (collector->tiles->getNumChildren() == 0)
-            throw BenchError("Nothing of the terrain is in the view.");
-        return collector->tiles;
     }
 
     /// Medians of frames that take turns; of the cull traversal alone where `cull` is set. Milliseconds.
@@ -415,11 +335,7 @@ private:
     /// Frame and cull over the very same tiles, without a hierarchy.
     std::vector<Figure> sameTiles(const Case& each, osgGeoFX::Effect& effect, osg::Group& tiles)
     {
-        const osg::ref_ptr<EffectScene> bent = new EffectScene;
-        bent->setTerrainFrame(_scene.reference->isGeocentric() ? EffectScene::GEOCENTRIC
-                                                               : EffectScene::PROJECTED);
-        bent->addEffect(&effect);
-        bent->addChild(&tiles);
+        const osg::ref_ptr<osgGeoFX::EffectScene> bent = deformedTiles(_scene, effect, tiles);
         const osg::ref_ptr<osg::Group> straight = new osg::Group;
         straight->addChild(&tiles);
         const auto first = [&]
@@ -507,16 +423,26 @@ private:
 std::vector<Figure> run(const Settings& settings)
 {
     const WorkFolder folder(settings.work);
-    const std::filesystem::path terrain = terrainToDraw(settings, folder);
-    Bench bench(terrain, settings);
     std::vector<Figure> figures;
-    for (const Case& each : cases())
+    const auto add = [&](const std::vector<Figure>& more)
     {
-        if (!settings.wants(each.name)) continue;
-        for (const Figure& figure : bench.measure(each))
-            figures.push_back(figure);
+        figures.insert(figures.end(), more.begin(), more.end());
+    };
+    const std::vector<Case> all = cases();
+    if (std::any_of(all.begin(), all.end(), [&](const Case& each) { return settings.wants(each.name); }) ||
+        settings.wants("cull"))
+    {
+        Bench bench(terrainToDraw(settings, folder), settings);
+        for (const Case& each : all)
+            if (settings.wants(each.name)) add(bench.measure(each));
+        if (settings.wants("cull")) figures.push_back(bench.cullOfPagedScene(all.back()));
     }
-    if (settings.wants("cull")) figures.push_back(bench.cullOfPagedScene(cases().back()));
+    if (settings.wants("town") || settings.wants("tables"))
+    {
+        const std::filesystem::path town = townToDraw(settings, folder.path());
+        if (settings.wants("town")) add(measureTownCulling(settings, town));
+        if (settings.wants("tables")) add(measurePaperTables(settings, town, folder.path()));
+    }
     return figures;
 }
 
@@ -526,10 +452,9 @@ Suite deformationSuite()
 {
     return {"deformation",
             "Draws Oahu bent and straight: frames, culling, picking (birdsEye, pedestrian, exaggeration, "
-            "liberty), "
-            "and the culling "
-            "of the paged terrain (cull)",
-            {"birdsEye", "pedestrian", "exaggeration", "liberty", "cull"},
+            "liberty), the culling of the paged terrain (cull) and of a town of 16,000 buildings (town), and "
+            "the paper's two tables along paths over this town (tables)",
+            {"birdsEye", "pedestrian", "exaggeration", "liberty", "cull", "town", "tables"},
             run};
 }
 

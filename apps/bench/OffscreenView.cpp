@@ -76,11 +76,11 @@ double OffscreenView::frame(double time)
     return secondsSince(start);
 }
 
-void OffscreenView::settle()
+void OffscreenView::settle(double time)
 {
     const auto start = Clock::now();
     _monitor->restart();
-    for (frame(); !_monitor->frameFinished(); frame())
+    for (frame(time); !_monitor->frameFinished(); frame(time))
     {
         if (secondsSince(start) > 600.0)
             throw BenchError(
@@ -89,11 +89,11 @@ void OffscreenView::settle()
     }
 }
 
-OffscreenView::Drawn OffscreenView::count()
+OffscreenView::Drawn OffscreenView::count(double time)
 {
     osg::Stats& stats = *camera().getStats();
     stats.collectStats("scene", true);
-    frame();
+    frame(time);
     stats.collectStats("scene", false);
     double triangles = 0.0, drawables = 0.0;
     const unsigned int number = _viewer->getFrameStamp()->getFrameNumber();

@@ -42,18 +42,19 @@ public:
     OffscreenView& operator=(const OffscreenView&) = delete;
 
     osg::Camera& camera() { return *_viewer->getCamera(); }
+    osg::View& view() { return *_viewer; }
 
     /// World to eye.
     void look(const osg::Matrixd& view) { camera().setViewMatrix(view); }
 
-    /// Draws until the pager has nothing more to bring; throws BenchError if that takes ten minutes.
-    void settle();
+    /// Draws until the pager has nothing more to bring; throws BenchError if that takes ten minutes. `time`: as for frame().
+    void settle(double time = 0.0);
 
     /// Draws the frame of a time, in seconds, and waits for the end of it; the seconds that it took.
     double frame(double time = 0.0);
 
     /// What a frame draws.
-    Drawn count();
+    Drawn count(double time = 0.0);
 
     /// What OpenGL holds for this view.
     GlObjectCount objects();

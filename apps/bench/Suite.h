@@ -15,6 +15,7 @@ namespace geofx::bench
 struct Settings
 {
     std::filesystem::path builder;  ///< osggeofx_build; empty where there is none
+    std::filesystem::path inventor; ///< geofx_invent; empty where there is none
     std::filesystem::path data;     ///< the folder with oahu/
     std::filesystem::path work;     ///< where temporary folders are made
     std::filesystem::path terrain;  ///< a database to draw instead of one built for it; may be empty

@@ -434,9 +434,11 @@ osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeom
     const double sum = std::abs(place->planeHeight) + std::abs(place->start) + place->size + std::abs(angle) +
                        std::abs(forward * view.up);
     if (!(sum < 1e15) || angle == 0.0) return nullptr;
-    // A database that tells its heights needs no watching, unless someone says that they do not matter; and what hangs
-    // below T in it are skirts.
-    const bool foldPossible = !view.ground.heightsKnown || (_tallest >= 0.0 && angle > 0.0);
+    // A database that tells its heights needs no watching, unless someone says that they do not matter, and they do; and what
+    // hangs below T in it are skirts.
+    const double highest = view.ground.maxHeight - planeLevel(view);
+    const bool matters = !(highest * std::abs(glsl::geofx_bendCurvature(bend.bend)) < foldMargin);
+    const bool foldPossible = !view.ground.heightsKnown || (_tallest >= 0.0 && angle > 0.0 && matters);
     const BendSnapshot::Look look = {
         _transitionDetail,
         _contextDetail,

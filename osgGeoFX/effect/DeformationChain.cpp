@@ -150,16 +150,16 @@ bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
 double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
 {
     if (_tileEdge <= 0.0 || _snapshots.empty()) return HUGE_VAL;
+    // To ask for a tile is to look at a child, which lies elsewhere in memory. Most nodes are told by less.
+    if (TileInfo::meshesOf(node)) return blockLimit(node, ball);
+    const double share = longestEdge(ball) / (_tileEdge * ball.radius);
+    if (!(share < 1.0)) return HUGE_VAL;
     double range = 0.0;
     if (TileInfo::coarseOf(node))
         range = static_cast<double>(node.getMaxRange(1));
-    else if (_ownTiles || TileInfo::meshesOf(node))
-        return blockLimit(node, ball);
-    else
+    else if (!_ownTiles)
         range = rangeOfFiner(node);
     if (!(range > 0.0)) return HUGE_VAL;
-    const double share = longestEdge(ball) / (_tileEdge * ball.radius);
-    if (!(share < 1.0)) return HUGE_VAL;
     // An edge misses its curve by its square. So to a pager the finer tiles are as urgent as those of relief that is as many times
     // too coarse; a sea far too coarse for a bend that is new would else wait for relief that is nearly right.
     constexpr double least = 0.001, most = 0.999;

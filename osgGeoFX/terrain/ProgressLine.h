@@ -36,8 +36,9 @@ public:
             _open = true;
             if (done >= total) end();
         }
-        else if (!_terminal && percent / 10 > _tenths)
+        else if (!_terminal && percent / 10 != _tenths)
         {
+            // It goes back where something new begins.
             std::fprintf(stderr, "%s: %d %% (%s)\n", _title.c_str(), percent, phase.c_str());
             _tenths = percent / 10;
         }

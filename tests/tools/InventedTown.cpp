@@ -2,18 +2,21 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <tools/InventedTown.h>
 
+#include <tools/OahuRaster.h>
+
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 #include <osg/Math>
 #include <osg/Vec2d>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace geofx::test
@@ -33,6 +36,7 @@ osg::Vec2d place(double longitude, double latitude)
 // Values of data/oahu/landcover.csv.
 enum Cover
 {
+    MARSH = 5,
     TOWN = 15,
     URBAN = 16,
     INDUSTRIAL = 17
@@ -65,40 +69,12 @@ private:
     std::uint64_t _state;
 };
 
-/// A raster of data/oahu, all of it.
+/// The value of a raster at a place.
 template<typename T>
-class Raster
+T valueAt(const OahuRaster<T>& raster, const osg::Vec2d& place)
 {
-public:
-    Raster(const std::string& name, GDALDataType type)
-    {
-        GDALAllRegister();
-        const std::string file = std::string(GEOFX_SOURCE_DIR) + "/data/oahu/" + name;
-        const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str()));
-        if (!data || data->GetGeoTransform(_transform.data()) != CE_None)
-            throw std::runtime_error(file + " cannot be read.");
-        _columns = data->GetRasterXSize();
-        _rows = data->GetRasterYSize();
-        _values.resize(static_cast<std::size_t>(_columns) * static_cast<std::size_t>(_rows));
-        if (data->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, _columns, _rows, _values.data(), _columns, _rows,
-                                             type, 0, 0) != CE_None)
-            throw std::runtime_error(file + " cannot be read.");
-    }
-    T at(const osg::Vec2d& place) const
-    {
-        const double longitude = LONGITUDE + place.x() / METRES_X, latitude = LATITUDE + place.y() / METRES_Y;
-        const auto column = static_cast<int>(std::floor((longitude - _transform[0]) / _transform[1]));
-        const auto row = static_cast<int>(std::floor((latitude - _transform[3]) / _transform[5]));
-        if (column < 0 || row < 0 || column >= _columns || row >= _rows) return T(0);
-        return _values[static_cast<std::size_t>(row) * static_cast<std::size_t>(_columns) +
-                       static_cast<std::size_t>(column)];
-    }
-
-private:
-    std::array<double, 6> _transform{};
-    int _columns = 0, _rows = 0;
-    std::vector<T> _values;
-};
+    return raster.at(LONGITUDE + place.x() / METRES_X, LATITUDE + place.y() / METRES_Y);
+}
 
 struct House
 {
@@ -200,7 +176,7 @@ private:
     void addBlock(const osg::Vec2d& middle, const osg::Vec2d& along, const osg::Vec2d& across, double length,
                   double width, Dice& dice)
     {
-        const int kind = _cover.at(middle);
+        const int kind = valueAt(_cover, middle);
         const double dense = density(middle);
         if (kind == INDUSTRIAL) addRows(middle, along, across, {length, width, 18.0, 34.0, 1, 'h'}, dice);
         // The land cover takes most of Honolulu for a city; its houses begin where high-rises end.
@@ -330,7 +306,7 @@ private:
     {
         const auto built = [&](const osg::Vec2d& corner)
         {
-            const int kind = _cover.at(corner);
+            const int kind = valueAt(_cover, corner);
             return kind == TOWN || kind == URBAN || kind == INDUSTRIAL;
         };
         double low = 1e300, high = -1e300;
@@ -338,8 +314,8 @@ private:
         for (const osg::Vec2d& corner : house.outline)
         {
             if (!built(corner)) return;
-            low = std::min(low, static_cast<double>(_ground.at(corner + (corner - at))));
-            high = std::max(high, static_cast<double>(_ground.at(corner + (corner - at))));
+            low = std::min(low, static_cast<double>(valueAt(_ground, corner + (corner - at))));
+            high = std::max(high, static_cast<double>(valueAt(_ground, corner + (corner - at))));
         }
         if (high - low > 14.0) return;
         const osg::Vec2d line[] = {place(-157.8720, 21.3150), place(-157.8605, 21.3085),
@@ -356,8 +332,8 @@ private:
         _houses.push_back(std::move(house));
     }
 
-    const Raster<unsigned char> _cover;
-    const Raster<float> _ground;
+    const OahuRaster<unsigned char> _cover;
+    const OahuRaster<float> _ground;
     std::vector<District> _districts;
     std::vector<Center> _centers;
     std::vector<House> _houses;
@@ -377,6 +353,58 @@ void addRing(OGRPolygon& polygon, const std::vector<osg::Vec2d>& places)
     polygon.addRingDirectly(ring);
 }
 
+/// Writes buildings, one after the other, as a GeoPackage's layer "buildings".
+class TownFile
+{
+public:
+    explicit TownFile(std::string file) : _file(std::move(file))
+    {
+        GDALAllRegister();
+        GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+        if (!driver) throw std::runtime_error("GDAL has no driver for GeoPackages.");
+        std::filesystem::remove(_file);
+        CPLSetConfigOption("OGR_CURRENT_DATE", "2026-01-01T00:00:00.000Z"); // else the file has the day's
+        _data.reset(driver->Create(_file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+        OGRSpatialReference srs;
+        srs.importFromEPSG(4326);
+        srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+        _layer = _data ? _data->CreateLayer("buildings", &srs, wkbPolygon, nullptr) : nullptr;
+        if (!_layer) throw std::runtime_error(_file + " cannot be made.");
+        OGRFieldDefn height("height", OFTReal), storeys("storeys", OFTInteger), roof("roof", OFTString),
+            use("use", OFTString);
+        for (OGRFieldDefn* field : {&height, &storeys, &roof, &use})
+            _layer->CreateField(field);
+        _data->StartTransaction();
+    }
+
+    void add(const House& house)
+    {
+        OGRPolygon polygon;
+        addRing(polygon, house.outline);
+        if (!house.courtyard.empty()) addRing(polygon, house.courtyard);
+        const std::unique_ptr<OGRFeature> feature(OGRFeature::CreateFeature(_layer->GetLayerDefn()));
+        feature->SetGeometry(&polygon);
+        feature->SetField("height", std::round(house.height * 10.0) / 10.0);
+        feature->SetField("storeys", std::max(1, static_cast<int>(house.height / 3.1)));
+        feature->SetField("roof", house.roof);
+        feature->SetField("use", house.use);
+        if (_layer->CreateFeature(feature.get()) != OGRERR_NONE)
+            throw std::runtime_error(_file + " cannot be written.");
+    }
+
+    void finish()
+    {
+        _data->CommitTransaction();
+        _data.reset(); // which writes the date
+        CPLSetConfigOption("OGR_CURRENT_DATE", nullptr);
+    }
+
+private:
+    const std::string _file;
+    std::unique_ptr<GDALDataset> _data;
+    OGRLayer* _layer = nullptr;
+};
+
 } // namespace
 
 int inventTown(const std::string& file, int count)
@@ -386,41 +414,50 @@ int inventTown(const std::string& file, int count)
                      [](const House& a, const House& b) { return a.rank < b.rank; });
     if (count > 0 && static_cast<std::size_t>(count) < houses.size())
         houses.resize(static_cast<std::size_t>(count));
-
-    GDALAllRegister();
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-    if (!driver) throw std::runtime_error("GDAL has no driver for GeoPackages.");
-    std::filesystem::remove(file);
-    CPLSetConfigOption("OGR_CURRENT_DATE", "2026-01-01T00:00:00.000Z"); // else the file has the day's
-    std::unique_ptr<GDALDataset> data(driver->Create(file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-    OGRSpatialReference srs;
-    srs.importFromEPSG(4326);
-    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    OGRLayer* layer = data ? data->CreateLayer("buildings", &srs, wkbPolygon, nullptr) : nullptr;
-    if (!layer) throw std::runtime_error(file + " cannot be made.");
-    OGRFieldDefn height("height", OFTReal), storeys("storeys", OFTInteger), roof("roof", OFTString),
-        use("use", OFTString);
-    for (OGRFieldDefn* field : {&height, &storeys, &roof, &use})
-        layer->CreateField(field);
-    data->StartTransaction();
+    TownFile town(file);
     for (const House& house : houses)
-    {
-        OGRPolygon polygon;
-        addRing(polygon, house.outline);
-        if (!house.courtyard.empty()) addRing(polygon, house.courtyard);
-        const std::unique_ptr<OGRFeature> feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-        feature->SetGeometry(&polygon);
-        feature->SetField("height", std::round(house.height * 10.0) / 10.0);
-        feature->SetField("storeys", std::max(1, static_cast<int>(house.height / 3.1)));
-        feature->SetField("roof", house.roof);
-        feature->SetField("use", house.use);
-        if (layer->CreateFeature(feature.get()) != OGRERR_NONE)
-            throw std::runtime_error(file + " cannot be written.");
-    }
-    data->CommitTransaction();
-    data.reset(); // which writes the date
-    CPLSetConfigOption("OGR_CURRENT_DATE", nullptr);
+        town.add(house);
+    town.finish();
     return static_cast<int>(houses.size());
+}
+
+int inventCrowd(const std::string& file, int count)
+{
+    const OahuRaster<unsigned char> cover("landcover.tif", GDT_Byte);
+    // All land, in rows from the north; as far apart as makes the wanted number.
+    const double west = cover.transform()[0], north = cover.transform()[3], across = cover.transform()[1],
+                 down = cover.transform()[5];
+    const auto isLand = [](unsigned char kind)
+    {
+        return kind > MARSH;
+    };
+    double land = 0.0;
+    for (int row = 0; row < cover.rows(); ++row)
+        for (int column = 0; column < cover.columns(); ++column)
+            land += isLand(cover.pixel(column, row)) ? 1.0 : 0.0;
+    // A little closer than needed, since chance decides what is land.
+    const double step = std::sqrt(land / (1.02 * std::max(count, 1)));
+    TownFile town(file);
+    int made = 0;
+    for (double row = 0.5 * step; row < cover.rows() && made < count; row += step)
+        for (double column = 0.5 * step; column < cover.columns() && made < count; column += step)
+        {
+            if (!isLand(cover.pixel(static_cast<int>(column), static_cast<int>(row)))) continue;
+            Dice dice(static_cast<std::uint64_t>(row * 64.0), static_cast<std::uint64_t>(column * 64.0), 9);
+            const osg::Vec2d middle = place(west + across * column, north + down * row);
+            const double turn = dice.uniform(0.0, 1.5), room = 0.35 * step * 30.0;
+            const osg::Vec2d along(std::cos(turn), std::sin(turn)), side(-along.y(), along.x());
+            House house;
+            const osg::Vec2d a = along * std::min(dice.uniform(0.5, 1.0) * room, 12.0),
+                             b = side * std::min(dice.uniform(0.5, 1.0) * room, 8.0);
+            house.outline = {middle - a - b, middle + a - b, middle + a + b, middle - a + b};
+            house.height = dice.uniform(4.0, 12.0);
+            house.roof = dice.chance(0.5) ? "gabled" : "flat";
+            town.add(house);
+            ++made;
+        }
+    town.finish();
+    return made;
 }
 
 } // namespace geofx::test

@@ -14,4 +14,8 @@ namespace geofx::test
     the same bytes. Throws std::runtime_error. */
 int inventTown(const std::string& file, int count);
 
+/** Writes `count` houses, or somewhat fewer, evenly over all of Oahu's land, in the same form: far more than a town has, for
+    measuring. Throws std::runtime_error. */
+int inventCrowd(const std::string& file, int count);
+
 } // namespace geofx::test

@@ -3,6 +3,7 @@
 //
 // osggeofx_build --buildings: with a terrain and into one, and its refusals.
 #include <tools/FolderContents.h>
+#include <tools/RandomSamples.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
@@ -10,10 +11,17 @@
 
 #include <gtest/gtest.h>
 
+#include <malloc.h>
+
+#include <cmath>
+
 using namespace geofx::test;
 
 namespace
 {
+
+/// MiB, see below.
+constexpr double MOST_MORE = 8.0;
 
 ProgramResult build(std::vector<std::string> arguments)
 {
@@ -55,6 +63,46 @@ TEST(TownProgram, BuildsATownWithATerrainAndIntoOne)
     // Called again without a town, the terrain stays as it is, and its town too.
     EXPECT_EQ(build({"--dem", dem, "--tile-size", "32", "-o", one, "--quiet"}).exitCode, 0);
     EXPECT_EQ(buildingsOf(folder / "one", "detail").size(), 20u);
+}
+
+// A town on four times the ground takes some bytes more for each building, and not their outlines, meshes or blocks.
+TEST(TownProgram, MemoryDoesNotGrowWithTheTown)
+{
+    const TempDir folder;
+    // Some twenty of a town's large cells, of which one at a time is in memory.
+    const std::string dem = writeRelief(folder / "dem.tif", 400, 300, 10.0, 47.0, 0.001);
+    const std::string output = (folder / "database").string();
+    ASSERT_EQ(build({"--dem", dem, "--tile-size", "32", "-o", output, "--quiet"}).exitCode, 0);
+    const int most = fullTest() ? 1000000 : 16000;
+    const int across = static_cast<int>(std::sqrt(most)), rows = most / across + 1;
+    std::vector<double> peaks;
+    for (const int count : {most / 4, most})
+    {
+        const std::string file = (folder / (std::to_string(count) + ".gpkg")).string();
+        {
+            // As dense in both.
+            std::vector<Feature> features;
+            for (int i = 0; i < count; ++i)
+                features.push_back(
+                    {rectangle(10.005 + 0.39 * (i % across) / across, 46.995 - 0.29 * (i / across) / rows,
+                               0.06 / across, 0.04 / across),
+                     {std::to_string(4 + i % 30)}});
+            writeFeatures(file, {"height:real"}, features);
+        }
+        // What this process has let go is not to count as the program's.
+        malloc_trim(0);
+        ProgramOptions options;
+        options.seconds = 0.0;
+        const ProgramResult result = runProgram(
+            {builtProgram("osggeofx_build"), "--buildings", file, "-o", output, "--threads", "2"}, options);
+        ASSERT_EQ(result.exitCode, 0) << result.standardError;
+        EXPECT_NE(result.standardOutput.find("buildings a second"), std::string::npos)
+            << result.standardOutput;
+        peaks.push_back(result.peakMiB);
+    }
+    // 16 bytes for each building, twice that while the list grows; and what the heap does not get back.
+    EXPECT_LT(peaks[1] - peaks[0], MOST_MORE + 32.0 * (most - most / 4) / 1048576.0)
+        << peaks[0] << " and " << peaks[1] << " MiB";
 }
 
 TEST(TownProgram, Refusals)

@@ -83,8 +83,10 @@ void CompensatingCullVisitor::applyBlock(osg::LOD& block)
     if (!out || partsInSight(block, ball))
     {
         const double distance = _mode.chain->lodDistance(ball, viewPoint(), &deformed);
-        const auto told = static_cast<float>(
-            std::min(distance * static_cast<double>(getLODScale()), _mode.chain->lodLimit(block, ball)));
+        auto told = static_cast<float>(distance * static_cast<double>(getLODScale()));
+        // A limit makes nothing finer than the finest mesh.
+        if (block.getNumRanges() > 0 && told >= block.getMaxRange(0))
+            told = std::min(told, static_cast<float>(_mode.chain->lodLimit(block, ball)));
         for (unsigned int i = 0; i < block.getNumChildren(); ++i)
         {
             if (block.getMinRange(i) <= told && told < block.getMaxRange(i)) applyPart(*block.getChild(i));

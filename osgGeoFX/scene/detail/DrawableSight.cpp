@@ -25,14 +25,17 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     const bool test = drawable.isCullingActive();
     const bool small = test && place.smallCounts && _sight.cullsSmall();
     Visibility::Mask planes = test ? place.planes : 0;
-    // Most drawables lie in the middle of the picture and between near and far. Their bounding spheres settle it.
-    if (!planes && !small && !place.chain.looksAtBoxes() && !_wishes.bounds)
+    // Most drawables lie beside the picture, or in the middle of it and between near and far. Their bounding spheres settle it,
+    // and nothing else in memory is looked at, which takes longer than to compute.
+    if (!small && !place.chain.looksAtBoxes() && !_wishes.bounds)
     {
         const osg::BoundingSphere& sphere = drawable.getBound();
         const Ball roughly = place.chain.bound({osg::Vec3d(sphere.center()) * place.modelView,
                                                 static_cast<double>(sphere.radius()) * place.scale});
+        if (planes && _sight.outOfSight(roughly, planes, true)) return false;
         depth = _depths.depthOf(roughly.center);
-        if (!_wishes.depths || !place.depthCounts || _depths.covers(roughly)) return true;
+        const bool depthSettled = !_wishes.depths || !place.depthCounts || _depths.covers(roughly);
+        if (!planes && depthSettled) return true;
     }
     const EyeBox box = EyeBox::of(bounds, place.modelView);
     const Ball deformed = place.chain.bound(box.ball());
@@ -43,19 +46,18 @@ bool DrawableSight::inSight(const osg::Drawable& drawable, const Place& place, d
     // The hull and the smaller boxes are tested only where no point is known to show: neither the box's middle nor
     // the small box that showed last time.
     const bool crosses = planes && !_sight.holds(deformed.center, planes);
+    const bool depthWanted = _wishes.depths && place.depthCounts && !_depths.covers(deformed);
     // Things that keep their shape are not squeezed where the ground around them is, so they reach beyond what becomes of their box.
     const double margin =
-        crosses || _wishes.depths ? RigidParts::reach(drawable, place.chain, box.ball(), place.scale) : 0.0;
+        crosses || depthWanted ? RigidParts::reach(drawable, place.chain, box.ball(), place.scale) : 0.0;
     if (crosses && !witnessInSight(drawable, place, planes) &&
         (_sight.misses(place.chain, box, planes, margin) || meshOutside(drawable, place, planes)))
         return false;
     // What keeps its shape does not fold.
-    const bool complains = !place.chain.empty() && !RigidParts::of(drawable);
-    for (const auto& snapshot : place.chain.snapshots())
-    {
-        if (complains && _complaint.empty()) _complaint = snapshot->complaint(box);
-    }
-    if (_wishes.depths && place.depthCounts) _depths.add(box, deformed, place.chain, margin);
+    if (place.chain.looksAtBoxes() && _complaint.empty() && !RigidParts::of(drawable))
+        for (const auto& snapshot : place.chain.snapshots())
+            if (_complaint.empty()) _complaint = snapshot->complaint(box);
+    if (depthWanted) _depths.add(box, deformed, place.chain, margin);
     if (_wishes.bounds) _bounds.add(box, place.chain);
     return true;
 }

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace osgGeoFX
 {
@@ -20,8 +21,9 @@ namespace osgGeoFX
 namespace
 {
 
-/// Surfaces of finest tiles that are kept: some 2 MB each.
-constexpr std::size_t MOST_SURFACES = 12;
+/// Files whose finest tiles are kept: four tiles each, some 2 MB for a tile. A large cell of a town touches four where tiles are as
+/// wide as half of it.
+constexpr std::size_t MOST_READ = 5;
 /// Files whose tiles are remembered.
 constexpr std::size_t MOST_FILES = 20000;
 
@@ -66,38 +68,28 @@ public:
         }
         if (_corners.empty()) return;
         _side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(_corners.size()) / 6.0)), 1, 256);
-        _cells.resize(static_cast<std::size_t>(_side) * static_cast<std::size_t>(_side));
-        for (unsigned int i = 0; i < _corners.size(); i += 3)
-        {
-            osg::Vec2d low(1e300, 1e300), high(-1e300, -1e300);
-            for (unsigned int c = 0; c < 3; ++c)
-            {
-                const osg::Vec3d& place = _places[_corners[i + c]];
-                low.set(std::min(low.x(), place.x()), std::min(low.y(), place.y()));
-                high.set(std::max(high.x(), place.x()), std::max(high.y(), place.y()));
-            }
-            for (int row = cell(low.y(), _low.y(), _high.y()); row <= cell(high.y(), _low.y(), _high.y());
-                 ++row)
-                for (int column = cell(low.x(), _low.x(), _high.x());
-                     column <= cell(high.x(), _low.x(), _high.x()); ++column)
-                    _cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(_side) +
-                           static_cast<std::size_t>(column)]
-                        .push_back(i);
-        }
+        // In one list: a vector for each cell would take several times the memory, in pieces that the heap does not get back.
+        _starts.assign(static_cast<std::size_t>(_side) * static_cast<std::size_t>(_side) + 1, 0);
+        forEachCell([this](std::size_t index, unsigned int) { ++_starts[index + 1]; });
+        std::partial_sum(_starts.begin(), _starts.end(), _starts.begin());
+        _touching.resize(_starts.back());
+        std::vector<unsigned int> next(_starts.begin(), _starts.end() - 1);
+        forEachCell([&](std::size_t index, unsigned int triangle) { _touching[next[index]++] = triangle; });
     }
 
     std::optional<double> at(const osg::Vec2d& anywhere, const TownGrid& grid) const
     {
         const osg::Vec2d place = grid.turned(anywhere, (_low + _high) * 0.5);
         const double tolerance = 1e-9 * (_high - _low).length();
-        if (_cells.empty() || place.x() < _low.x() - tolerance || place.y() < _low.y() - tolerance ||
+        if (_touching.empty() || place.x() < _low.x() - tolerance || place.y() < _low.y() - tolerance ||
             place.x() > _high.x() + tolerance || place.y() > _high.y() + tolerance)
             return {};
         const std::size_t index =
             static_cast<std::size_t>(cell(place.y(), _low.y(), _high.y())) * static_cast<std::size_t>(_side) +
             static_cast<std::size_t>(cell(place.x(), _low.x(), _high.x()));
-        for (const unsigned int triangle : _cells[index])
+        for (unsigned int i = _starts[index]; i < _starts[index + 1]; ++i)
         {
+            const unsigned int triangle = _touching[i];
             const osg::Vec3d &a = _places[_corners[triangle]], &b = _places[_corners[triangle + 1]],
                              &c = _places[_corners[triangle + 2]];
             const osg::Vec2d ab(b.x() - a.x(), b.y() - a.y()), ac(c.x() - a.x(), c.y() - a.y()),
@@ -114,6 +106,29 @@ public:
     }
 
 private:
+    /// Hands out each triangle, by its first corner, with each cell that it touches.
+    template<typename Take>
+    void forEachCell(Take take) const
+    {
+        for (unsigned int i = 0; i < _corners.size(); i += 3)
+        {
+            osg::Vec2d low(1e300, 1e300), high(-1e300, -1e300);
+            for (unsigned int c = 0; c < 3; ++c)
+            {
+                const osg::Vec3d& place = _places[_corners[i + c]];
+                low.set(std::min(low.x(), place.x()), std::min(low.y(), place.y()));
+                high.set(std::max(high.x(), place.x()), std::max(high.y(), place.y()));
+            }
+            for (int row = cell(low.y(), _low.y(), _high.y()); row <= cell(high.y(), _low.y(), _high.y());
+                 ++row)
+                for (int column = cell(low.x(), _low.x(), _high.x());
+                     column <= cell(high.x(), _low.x(), _high.x()); ++column)
+                    take(static_cast<std::size_t>(row) * static_cast<std::size_t>(_side) +
+                             static_cast<std::size_t>(column),
+                         i);
+        }
+    }
+
     int cell(double value, double low, double high) const
     {
         const double share = high > low ? (value - low) / (high - low) : 0.0;
@@ -124,7 +139,8 @@ private:
     std::vector<unsigned int> _corners;
     osg::Vec2d _low = osg::Vec2d(1e300, 1e300), _high = osg::Vec2d(-1e300, -1e300);
     int _side = 0;
-    std::vector<std::vector<unsigned int>> _cells; ///< of a grid over the tile: the triangles that touch them
+    /// Of the cells of a grid over the tile: the triangles that touch each, and where they begin.
+    std::vector<unsigned int> _touching, _starts;
 };
 
 DrawnGround::DrawnGround(const TownGrid& grid, const osg::Node& root, std::string folder)
@@ -163,44 +179,53 @@ DrawnGround::Tiles& DrawnGround::tilesIn(const std::string& file)
     if (!node)
         throw BuildError(file +
                          ": this tile of the ground cannot be read; build the database again with --anew.");
-    return _files[file] = tilesOf(*node, osgDB::getFilePath(file));
+    Tiles& tiles = _files[file] = tilesOf(*node, osgDB::getFilePath(file));
+    // Who asks for finest tiles will soon ask for their ground.
+    if (std::any_of(tiles.begin(), tiles.end(), [](const Tile& tile) { return tile.finer.empty(); }))
+        makeSurfaces(tiles, *node);
+    return tiles;
 }
 
-const DrawnGround::Surface& DrawnGround::surfaceOf(Tile& tile, const std::string& file, std::size_t index)
+const DrawnGround::Surface& DrawnGround::surfaceOf(Tiles& tiles, const std::string& file, std::size_t index)
 {
-    if (!tile.surface)
+    if (!tiles[index].surface)
     {
         const osg::ref_ptr<const osg::Node> node =
             file.empty() ? _root
                          : osg::ref_ptr<const osg::Node>(osgDB::readRefNodeFile(file, new osgDB::Options));
-        const osg::Group* group = node ? node->asGroup() : nullptr;
-        const osg::Transform* found = nullptr;
-        std::size_t count = 0;
-        for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
-        {
-            const osg::Node& child = *group->getChild(i);
-            const auto* paged = dynamic_cast<const osg::PagedLOD*>(&child);
-            const bool finest = child.asTransform() && TileInfo::isTile(child);
-            if (!finest && !(paged && TileInfo::coarseOf(*paged) && paged->getNumFileNames() > 1)) continue;
-            if (count++ == index) found = child.asTransform();
-        }
-        if (!found)
-            throw BuildError(
-                file + ": this tile of the ground cannot be read; build the database again with --anew.");
-        tile.surface = std::make_shared<Surface>(*found, _grid);
-        _kept.push_back(tile.surface);
-        if (_kept.size() > MOST_SURFACES)
-        {
-            const std::shared_ptr<Surface> oldest = _kept.front();
-            _kept.pop_front();
-            for (Tile& each : _top)
-                if (each.surface == oldest) each.surface = nullptr;
-            for (auto& [name, tiles] : _files)
-                for (Tile& each : tiles)
-                    if (each.surface == oldest) each.surface = nullptr;
-        }
+        if (node) makeSurfaces(tiles, *node);
     }
-    return *tile.surface;
+    if (!tiles[index].surface)
+        throw BuildError(file +
+                         ": this tile of the ground cannot be read; build the database again with --anew.");
+    if (_kept.front() != &tiles)
+    {
+        _kept.remove(&tiles);
+        _kept.push_front(&tiles);
+    }
+    return *tiles[index].surface;
+}
+
+/// Those of all tiles of a file at once: most of the time is that of reading it.
+void DrawnGround::makeSurfaces(Tiles& tiles, const osg::Node& node)
+{
+    const osg::Group* group = node.asGroup();
+    std::size_t count = 0;
+    for (unsigned int i = 0; group && i < group->getNumChildren() && count < tiles.size(); ++i)
+    {
+        const osg::Node& child = *group->getChild(i);
+        const auto* paged = dynamic_cast<const osg::PagedLOD*>(&child);
+        const bool finest = child.asTransform() && TileInfo::isTile(child);
+        if (!finest && !(paged && TileInfo::coarseOf(*paged) && paged->getNumFileNames() > 1)) continue;
+        Tile& tile = tiles[count++];
+        if (finest && tile.finer.empty())
+            tile.surface = std::make_shared<Surface>(*child.asTransform(), _grid);
+    }
+    _kept.push_front(&tiles);
+    if (_kept.size() <= MOST_READ) return;
+    for (Tile& tile : *_kept.back())
+        tile.surface = nullptr;
+    _kept.pop_back();
 }
 
 std::optional<double> DrawnGround::find(Tiles& tiles, const std::string& file, const osg::Vec2d& place,
@@ -219,7 +244,7 @@ std::optional<double> DrawnGround::find(Tiles& tiles, const std::string& file, c
             height = find(tilesIn(finer), finer, place, low, up);
         }
         else
-            height = surfaceOf(tile, file, i).at(place, _grid);
+            height = surfaceOf(tiles, file, i).at(place, _grid);
         if (height) return height;
     }
     return {};
@@ -230,6 +255,8 @@ std::optional<double> DrawnGround::at(const osg::Vec2d& place)
     if (!_grid.contains(_grid.turned(place))) return {};
     if (_files.size() > MOST_FILES)
     {
+        for (Tile& tile : _top)
+            tile.surface = nullptr;
         _files.clear();
         _kept.clear();
     }

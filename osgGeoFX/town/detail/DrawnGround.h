@@ -45,14 +45,15 @@ private:
     Tiles& tilesIn(const std::string& file);
     std::optional<double> find(Tiles& tiles, const std::string& file, const osg::Vec2d& place,
                                const osg::Vec3d& low, const osg::Vec3d& up);
-    const Surface& surfaceOf(Tile& tile, const std::string& file, std::size_t index);
+    const Surface& surfaceOf(Tiles& tiles, const std::string& file, std::size_t index);
+    void makeSurfaces(Tiles& tiles, const osg::Node& node);
 
     const TownGrid& _grid;
     const osg::ref_ptr<const osg::Node> _root;
     const std::string _folder;
     Tiles _top;
     std::map<std::string, Tiles> _files;
-    std::list<std::shared_ptr<Surface>> _kept;
+    std::list<Tiles*> _kept; ///< whose surfaces are there; those asked for last come first
 };
 
 } // namespace osgGeoFX

@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Writes one of the invented terrains: geofx_invent NAME FILE.tif [SAMPLES]
-// or a town for the terrain of data/oahu: geofx_invent town FILE.gpkg [BUILDINGS]
+// or, for the terrain of data/oahu, a town (geofx_invent town FILE.gpkg [BUILDINGS]), houses all over the island (geofx_invent
+// crowd FILE.gpkg [BUILDINGS]), or an aerial picture (geofx_invent aerial FILE.tif [COLUMNS]).
+#include <tools/InventedAerial.h>
 #include <tools/InventedTerrain.h>
 #include <tools/InventedTown.h>
 
@@ -15,19 +17,29 @@ int main(int argc, char** argv)
 {
     if (argc < 3)
     {
-        std::fputs("Usage: geofx_invent town FILE.gpkg [BUILDINGS], or\n       geofx_invent NAME FILE.tif "
-                   "[SAMPLES]; the names:\n",
-                   stderr);
+        std::fputs(
+            "Usage: geofx_invent town FILE.gpkg [BUILDINGS],\n       geofx_invent crowd FILE.gpkg "
+            "[BUILDINGS],\n       geofx_invent aerial FILE.tif [COLUMNS], or\n       geofx_invent NAME "
+            "FILE.tif [SAMPLES]; the names:\n",
+            stderr);
         for (const std::string& name : geofx::test::inventedTerrains())
             std::fprintf(stderr, "  %s\n", name.c_str());
         return 2;
     }
     try
     {
-        if (std::string(argv[1]) == "town")
+        const std::string name = argv[1];
+        if (name == "town" || name == "crowd")
         {
-            const int count = geofx::test::inventTown(argv[2], argc > 3 ? std::atoi(argv[3]) : 16000);
+            const int count =
+                name == "town" ? geofx::test::inventTown(argv[2], argc > 3 ? std::atoi(argv[3]) : 16000)
+                               : geofx::test::inventCrowd(argv[2], argc > 3 ? std::atoi(argv[3]) : 1000000);
             std::printf("%s: %d buildings.\n", argv[2], count);
+            return 0;
+        }
+        if (name == "aerial")
+        {
+            geofx::test::inventAerial(argv[2], argc > 3 ? std::atoi(argv[3]) : 12960);
             return 0;
         }
         geofx::test::inventTerrain(argv[1], argv[2], argc > 3 ? std::atoi(argv[3]) : 0);
