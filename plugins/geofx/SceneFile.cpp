@@ -285,6 +285,8 @@ std::vector<ScenePath> filesOf(const SceneFile& scene)
         {
             if (mapping.raster) paths.push_back(mapping.raster->file);
         }
+        for (const SceneSequence& sequence : mappings.sequences)
+            paths.push_back(sequence.file);
         for (const SceneOverlay& overlay : mappings.overlays)
             paths.push_back(overlay.file);
         for (const SceneRoute& route : mappings.routes)

@@ -10,6 +10,7 @@
 #include <osgGeoFX/deformation/BlendedView.h>
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
@@ -240,6 +241,13 @@ inline TypedSetters regionSetters()
     };
 }
 
+inline TypedSetters clockSetters()
+{
+    using Self = osgGeoFX::LayerClock;
+    using Range = Two<Self, &Self::setRange, &Self::getBegin, &Self::getEnd>;
+    return {{"begin", Range::first()}, {"end", Range::second()}};
+}
+
 inline TypedSetters libertySetters()
 {
     using Self = osgGeoFX::RegionalLiberty;
@@ -330,6 +338,7 @@ inline const TypedSetters& typedSetters(const std::string& kind)
             {"projectiveMappings", mappingsSetters()},
             {"projectiveMapping", mappingSetters()},
             {"dataLayer", layerSetters()},
+            {"layerClock", clockSetters()},
             {"colorTransfer", transferSetters()},
             {"regionalLiberty", libertySetters()},
             {"panoramaMap", panoramaSetters()},

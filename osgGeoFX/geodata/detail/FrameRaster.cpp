@@ -135,6 +135,18 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
     // A TIFF has metadata in itself.
     if (formats == PLAIN_PICTURES && top().GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS"))
         fail("it names another file as its overviews; convert it to PNG");
+    prepare(wanted, placed);
+}
+
+FrameRaster::FrameRaster(std::string file, std::vector<DatasetPtr> chain,
+                         std::optional<DataLayer::Kind> wanted)
+    : _file(std::move(file)), _chain(std::move(chain))
+{
+    prepare(wanted, true);
+}
+
+void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
+{
     if (top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
     checkSize();
@@ -182,6 +194,23 @@ void FrameRaster::checkSize() const
     fail("it says that it has " + std::to_string(top().GetRasterXSize()) + " × " +
          std::to_string(top().GetRasterYSize()) + " pixels, which a " + format +
          " cannot be read in parts of; convert it to a tiled GeoTIFF, or give it overviews with gdaladdo");
+}
+
+void FrameRaster::checkOverviews() const
+{
+    constexpr double mostPixels = 8192.0 * 8192.0;
+    double least = size().x() * size().y();
+    for (int i = 0; i < band().GetOverviewCount(); ++i)
+    {
+        GDALRasterBand* const overview = band().GetOverview(i);
+        if (overview)
+            least = std::min(least, static_cast<double>(overview->GetXSize()) * overview->GetYSize());
+    }
+    if (least > mostPixels)
+        fail("it has no overviews that are small enough, so that a picture of all of it would take all of "
+             "its pixels; make "
+             "them with gdaladdo -r average \"" +
+             _file + "\" 4 16 64 256");
 }
 
 FrameRaster::~FrameRaster()

@@ -57,6 +57,8 @@ public:
     /// `placed`: whether it needs a georeference, which all but picture() go by.
     FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed = true,
                 Formats formats = ANY_FORMAT);
+    /// The same of datasets that are open, each above the one before it; `file` is for messages.
+    FrameRaster(std::string file, std::vector<DatasetPtr> chain, std::optional<DataLayer::Kind> wanted);
     ~FrameRaster();
     FrameRaster(const FrameRaster&) = delete;
     FrameRaster& operator=(const FrameRaster&) = delete;
@@ -66,6 +68,8 @@ public:
     double offset = 0.0;
 
     [[noreturn]] void fail(const std::string& what) const;
+    /// Fails where a coarse picture of all of it takes more pixels than can be read at once.
+    void checkOverviews() const;
 
     /// What the raster covers, from edge to edge of its outermost pixels, and the size of a texel that keeps its
     /// resolution; in the CRS's unit.
@@ -106,6 +110,7 @@ private:
     GDALDataset& top() const { return *_chain.back(); }
     GDALRasterBand& band() const { return *top().GetRasterBand(1); }
     [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
+    void prepare(std::optional<DataLayer::Kind> wanted, bool placed);
     void checkPlace() const;
     void checkSize() const;
     void readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const;
