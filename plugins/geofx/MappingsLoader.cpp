@@ -171,12 +171,15 @@ private:
             player = new LayerPlayer(nullptr);
             _node.addUpdateCallback(player);
         }
-        player->add(sequence);
         LayerClock& clock = *player->getClock();
         // All of the time in twenty seconds, unless somebody says otherwise.
         constexpr double wholeTime = 20.0;
+        const double before = clock.getEnd() - clock.getBegin();
+        const bool usual = before == 0.0 || clock.getSpeed() == before / wholeTime;
+        player->add(sequence);
         const double length = clock.getEnd() - clock.getBegin();
-        if (each.speed || length > 0.0) clock.setSpeed(each.speed.value_or(length / wholeTime));
+        if (usual && length > 0.0) clock.setSpeed(length / wholeTime);
+        if (each.speed) clock.setSpeed(*each.speed);
         // So that there is a picture in the first frame.
         sequence->setWaiting(true);
         sequence->update();

@@ -391,12 +391,12 @@ std::unique_ptr<TimeSteps> TimeSteps::open(const std::string& file, const std::s
         const GdalErrorScope errors;
         dataset.reset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
     }
-    // A folder may be a Zarr.
-    if (!dataset && folder) return std::make_unique<FileSteps>(file);
+    // A folder may be a Zarr, too.
     if (dataset) return std::make_unique<DimensionSteps>(file, std::move(dataset), variable);
     if (!variable.empty())
         throw BuildError(file + ": it has no variables, so \"" + variable +
                          "\" is none of it; name the file alone.");
+    if (folder) return std::make_unique<FileSteps>(file);
     return std::make_unique<BandSteps>(file);
 }
 
