@@ -236,7 +236,8 @@ std::vector<Figure> pagedRaster(OffscreenView& view, EffectScene& scene, const S
     overlays.paged = true;
     std::string error;
     if (!overlays.read(error)) throw BenchError(error);
-    if (!overlays.overlays[0].tiles) throw BenchError(file + ": it has no tiles.");
+    if (!overlays.overlays[0].tiles)
+        throw BenchError(overlays.notices.empty() ? file + ": it has no tiles." : overlays.notices[0]);
     const osg::ref_ptr<PagedRaster> raster = PagedRaster::create(overlays.overlays[0].tiles, {}, error);
     if (!raster) throw BenchError(error);
     const osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;

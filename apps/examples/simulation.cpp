@@ -64,8 +64,7 @@ constexpr double fireLongitude = -158.15, fireLatitude = 21.47; // scrub above W
 const Stage floodStage = {-157.92,           21.32, 768,  21600.0, "-157.872,21.262,1500,20,-17", 36.0,
                           "Water over land", "m",   300.0};
 const Stage fireStage = {
-    -158.13, 21.47, 640, 36000.0, "-158.235,21.405,3000,55,-19", 34.0, "Hours since the fire came",
-    "h",     300.0};
+    -158.13, 21.47, 640, 36000.0, "-158.235,21.405,3000,55,-19", 34.0, "Since the fire came", "h", 300.0};
 
 osg::Vec4 color(int rgb, double alpha)
 {
@@ -76,7 +75,9 @@ osg::Vec4 color(int rgb, double alpha)
 osg::ref_ptr<ColorTable> waterColors()
 {
     osg::ref_ptr<ColorTable> table = new ColorTable;
-    table->addStop(0.0, color(0xbfe9f2, 0.45));
+    table->addStop(-5.0, color(0xbfe9f2, 0.0));
+    table->addStop(0.0, color(0xbfe9f2, 0.0));
+    table->addStop(0.0, color(0xbfe9f2, 0.5));
     table->addStop(0.5, color(0x7fd0e6, 0.65));
     table->addStop(3.0, color(0x2f8fcb, 0.8));
     table->addStop(12.0, color(0x123f80, 0.9));
@@ -87,7 +88,9 @@ osg::ref_ptr<ColorTable> waterColors()
 osg::ref_ptr<ColorTable> fireColors(double second)
 {
     osg::ref_ptr<ColorTable> table = new ColorTable;
-    table->addStop(0.0 * second, color(0xfff3a0, 1.0));
+    table->addStop(-3600.0 * second, color(0xfff3a0, 0.0));
+    table->addStop(0.0, color(0xfff3a0, 0.0));
+    table->addStop(0.0, color(0xfff3a0, 1.0));
     table->addStop(300.0 * second, color(0xffb21e, 1.0));
     table->addStop(900.0 * second, color(0xe8500f, 0.97));
     table->addStop(1800.0 * second, color(0x8c1f10, 0.92));
@@ -219,8 +222,7 @@ private:
         style.unit = _stage.unit;
         style.width = _stage.legendWidth;
         style.font = osgText::readRefFontFile("DejaVuSans.ttf");
-        const auto [first, last] = shown->range();
-        legend = makeLegend(*shown, first, last, style);
+        legend = makeLegend(*shown, 0.0, shown->range().second, style);
     }
 
     osg::ref_ptr<osg::Image> read(const std::string& file, DataLayer::Kind kind) const

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -42,7 +43,7 @@ public:
         raster->checkOverviews();
         _kind = raster->kind;
         _extent = raster->extent(_crs);
-        _idle.push_back(std::move(raster));
+        _idle[itself].push_back(std::move(raster));
     }
 
     osg::Vec2d low() const override { return _extent.low * _crs.metresPerUnit - _crs.origin; }
@@ -55,10 +56,15 @@ public:
     {
         try
         {
-            std::unique_ptr<FrameRaster> raster = take();
+            std::unique_ptr<FrameRaster> raster = take(itself);
+            const int overview = raster->overviewFor((to - from).x() / columns / texel());
+            if (overview != itself)
+            {
+                give(itself, std::move(raster));
+                raster = take(overview);
+            }
             const osg::ref_ptr<osg::Image> image = read(*raster, from, to, columns, rows);
-            const std::lock_guard<std::mutex> lock(_mutex);
-            _idle.push_back(std::move(raster));
+            give(overview, std::move(raster));
             return image;
         }
         catch (const BuildError& failure)
@@ -72,19 +78,28 @@ protected:
     ~Tiles() override = default;
 
 private:
+    static constexpr int itself = -1;
+
     /// GDAL's datasets are for one thread each.
-    std::unique_ptr<FrameRaster> take()
+    std::unique_ptr<FrameRaster> take(int overview)
     {
         {
             const std::lock_guard<std::mutex> lock(_mutex);
-            if (!_idle.empty())
+            std::vector<std::unique_ptr<FrameRaster>>& idle = _idle[overview];
+            if (!idle.empty())
             {
-                std::unique_ptr<FrameRaster> raster = std::move(_idle.back());
-                _idle.pop_back();
+                std::unique_ptr<FrameRaster> raster = std::move(idle.back());
+                idle.pop_back();
                 return raster;
             }
         }
-        return std::make_unique<FrameRaster>(_file, _wanted);
+        return std::make_unique<FrameRaster>(_file, _wanted, true, FrameRaster::ANY_FORMAT, overview);
+    }
+
+    void give(int overview, std::unique_ptr<FrameRaster> raster)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        _idle[overview].push_back(std::move(raster));
     }
 
     osg::ref_ptr<osg::Image> read(const FrameRaster& raster, const osg::Vec2d& from, const osg::Vec2d& to,
@@ -123,7 +138,7 @@ private:
     DataLayer::Kind _kind = DataLayer::COLOR;
     FrameRaster::Extent _extent;
     std::mutex _mutex;
-    std::vector<std::unique_ptr<FrameRaster>> _idle;
+    std::map<int, std::vector<std::unique_ptr<FrameRaster>>> _idle; ///< by overview
 };
 
 } // namespace

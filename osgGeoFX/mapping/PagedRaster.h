@@ -41,7 +41,7 @@ public:
     struct Options
     {
         int megabytes = 256; ///< for tiles in main memory and on the GPU together, 32…65536 MiB
-        int threads = 1;     ///< that read, 1…16
+        int threads = 2;     ///< that read, 1…16
         /// So many tiles are shown for the first time in a frame at most, 1…64: each takes about a millisecond.
         int tilesPerFrame = 4;
     };

@@ -113,6 +113,52 @@ TEST(TiledRaster, LargeFilesNeedOverviews)
     EXPECT_EQ(GDALGetCacheMax64(), cache);
 }
 
+TEST(TiledRaster, CoarseTilesAreReadFromOverviewsOfAllKindsOfRasters)
+{
+    const TempDir folder;
+    // The overviews have another color than the raster, so that one sees what is read.
+    for (const char* kind : {"plain", "nodata", "alpha", "values"})
+    {
+        const bool values = std::string(kind) == "values";
+        const bool alpha = std::string(kind) == "alpha";
+        TestRaster raster(1024, 1024, values ? 1 : alpha ? 4 : 3, GDT_Byte);
+        raster.placed(-158.0, 21.5, 0.0002, 0.0002).crs("EPSG:4326");
+        raster.fill([](int, int, int band) { return band == 3 ? 255.0 : 200.0; });
+        if (alpha) raster.dataset().GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
+        if (std::string(kind) == "nodata")
+            for (int band = 1; band <= 3; ++band)
+                raster.dataset().GetRasterBand(band)->SetNoDataValue(7.0);
+        const std::string file = raster.write(folder.path() / (std::string(kind) + ".tif"), {"TILED=YES"});
+        {
+            const DatasetPtr dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+            int levels[] = {4, 16};
+            ASSERT_EQ(dataset->BuildOverviews("NEAREST", 2, levels, 0, nullptr, nullptr, nullptr), CE_None);
+            for (int band = 1; band <= std::min(3, dataset->GetRasterCount()); ++band)
+                for (int i = 0; i < 2; ++i)
+                    ASSERT_EQ(dataset->GetRasterBand(band)->GetOverview(i)->Fill(i == 0 ? 100.0 : 50.0),
+                              CE_None);
+        }
+        std::string error;
+        const osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(file, oahu(), std::nullopt, error);
+        ASSERT_TRUE(tiles) << error;
+        const osg::Vec2d middle = (tiles->low() + tiles->high()) * 0.5;
+        const auto valueOf = [&](double pixels)
+        {
+            const double side = 16.0 * pixels * tiles->texel();
+            const osg::ref_ptr<osg::Image> image =
+                tiles->read(middle, middle + osg::Vec2d(side, side), 16, 16, error);
+            EXPECT_TRUE(image) << error;
+            if (!image) return -1.0;
+            return values ? static_cast<double>(*reinterpret_cast<const float*>(image->data(8, 8)))
+                          : static_cast<double>(*image->data(8, 8));
+        };
+        EXPECT_EQ(valueOf(1.0), 200.0) << kind;
+        EXPECT_EQ(valueOf(3.0), 200.0) << kind;
+        EXPECT_EQ(valueOf(4.2), 100.0) << kind;
+        EXPECT_EQ(valueOf(20.0), 50.0) << kind;
+    }
+}
+
 TEST(TiledRaster, WhatIsNoRasterIsRefused)
 {
     const TempDir folder;

@@ -12,6 +12,8 @@ namespace simulation
 namespace
 {
 
+constexpr float soon = 3600.0f; // seconds
+
 struct Cell
 {
     float time;
@@ -81,7 +83,7 @@ void Fire::draw(double time, osg::Image& image) const
         for (int column = 0; column < _times.columns; ++column)
         {
             const float age = now - _times.at(column, row);
-            out[column] = age >= 0.0f ? age : std::numeric_limits<float>::quiet_NaN();
+            out[column] = age > -soon ? age : std::numeric_limits<float>::quiet_NaN();
         }
     }
     image.dirty();

@@ -30,8 +30,8 @@ public:
 
     /// When the fire comes, seconds after it began; `never` where it does not.
     const Field& times() const { return _times; }
-    /// Writes for how long each cell has been burning or burnt at a time, seconds; NaN where the fire has not come. `image` has floats
-    /// in one channel, and the grid's size.
+    /// Writes for how long each cell has been burning or burnt at a time, seconds. Where the fire comes within an hour, it is negative:
+    /// so filters find its front between cells. NaN elsewhere. `image` has floats in one channel, and the grid's size.
     void draw(double time, osg::Image& image) const;
     std::size_t burnt(double time) const;
 

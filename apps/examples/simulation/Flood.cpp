@@ -12,6 +12,8 @@ namespace simulation
 namespace
 {
 
+constexpr float nearlyWet = 5.0f; // metres
+
 struct Cell
 {
     float level;
@@ -53,6 +55,23 @@ Flood::Flood(const Field& heights, const std::function<bool(int column, int row)
             open.push({level, column, row});
         }
     }
+    findShore();
+}
+
+/// The sea's cells that touch land.
+void Flood::findShore()
+{
+    _shore.assign(_sea.size(), false);
+    for (int i = 0; i < static_cast<int>(_sea.size()); ++i)
+    {
+        const int column = i % _levels.columns, row = i / _levels.columns;
+        for (int k = 0; k < 9 && _sea[static_cast<std::size_t>(i)]; ++k)
+        {
+            const int x = column + k % 3 - 1, y = row + k / 3 - 1;
+            const auto other = static_cast<std::size_t>(y * _levels.columns + x);
+            if (_levels.has(x, y) && !_sea[other]) _shore[static_cast<std::size_t>(i)] = true;
+        }
+    }
 }
 
 void Flood::draw(double level, osg::Image& image) const
@@ -64,8 +83,13 @@ void Flood::draw(double level, osg::Image& image) const
         auto* out = reinterpret_cast<float*>(image.data(0, static_cast<unsigned int>(row)));
         for (int column = 0; column < _levels.columns; ++column, ++index)
         {
-            const bool wet = !_sea[index] && _levels.cells[index] < sea;
-            out[column] = wet ? sea - _heights.cells[index] : std::numeric_limits<float>::quiet_NaN();
+            const float over = sea - _levels.cells[index];
+            if (_shore[index])
+                out[column] = sea;
+            else if (_sea[index] || over <= -nearlyWet)
+                out[column] = std::numeric_limits<float>::quiet_NaN();
+            else
+                out[column] = over > 0.0f ? sea - _heights.cells[index] : over;
         }
     }
     image.dirty();

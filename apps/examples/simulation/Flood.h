@@ -23,15 +23,19 @@ public:
 
     /// The sea's level at which a cell goes under, metres; -infinity in the sea itself.
     const Field& levels() const { return _levels; }
-    /// Writes the depth of the water over land, metres, for a level of the sea; NaN where there is none, and in the sea.
-    /// `image` has floats in one channel, and the grid's size.
+    /// Writes the depth of the water over land, metres, for a level of the sea. Where the sea has to rise less than five metres more, it
+    /// is negative: so filters find the shore between cells. Cells of the sea beside land have the sea's rise, so that no strip of land is
+    /// left between both. NaN elsewhere. `image` has floats in one channel, and
+    /// the grid's size.
     void draw(double level, osg::Image& image) const;
     /// Cells of land that are under water at a level.
     std::size_t flooded(double level) const;
 
 private:
+    void findShore();
+
     Field _heights, _levels;
-    std::vector<bool> _sea;
+    std::vector<bool> _sea, _shore;
 };
 
 } // namespace simulation
