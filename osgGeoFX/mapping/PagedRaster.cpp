@@ -30,7 +30,7 @@ constexpr int sideOutOfSight = 32;
 /// What a camera needed is kept for so many updates after it was seen last.
 constexpr std::uint64_t patience = 120;
 /// A view that needs too many tiles is coarser by such factors.
-constexpr double coarserBy = 1.41421356;
+constexpr double coarserBy = 1.41421356; // in each step
 constexpr int mostCoarser = 24;
 /// Between what is in memory and what is needed, every second level is read.
 constexpr int levelStep = 2;
@@ -123,18 +123,33 @@ public:
 
     void see(const void* camera, const std::vector<SeenGround>& seen, PageSight& sight)
     {
-        std::optional<std::vector<MappingPage>> cut;
-        int tries = 0;
+        using Cut = std::optional<std::vector<MappingPage>>;
         PageCut maker;
-        for (double scale = 1.0; !cut && tries < mostCoarser; scale *= coarserBy, ++tries)
+        const auto cutAt = [&](int step) -> Cut
         {
-            TileSight own(sight, _extent, _texel, scale);
-            cut = maker.make(seen, own, _most);
+            TileSight own(sight, _extent, _texel, std::pow(coarserBy, step));
+            return maker.make(seen, own, _most);
+        };
+        int step = 0;
+        {
+            const std::lock_guard<std::mutex> lock(_mutex);
+            step = _demands[camera].coarser;
+        }
+        // The finest one that there is memory for; as a rule it is as fine as in the last frame.
+        Cut cut = cutAt(step);
+        while (!cut && step < mostCoarser)
+            cut = cutAt(++step);
+        while (cut && step > 0)
+        {
+            Cut finer = cutAt(step - 1);
+            if (!finer) break;
+            cut = std::move(finer);
+            --step;
         }
         const std::lock_guard<std::mutex> lock(_mutex);
         Demand& demand = _demands[camera];
         demand.time = _time;
-        demand.coarser = tries > 1;
+        demand.coarser = step;
         // Roots are coarse enough, and there.
         std::set<MappingPage> pages;
         for (const MappingPage& page : cut.value_or(std::vector<MappingPage>()))
@@ -236,7 +251,7 @@ private:
     {
         std::set<MappingPage> pages;
         std::uint64_t time = 0;
-        bool coarser = false;
+        int coarser = 0; ///< by so many steps than it wants
     };
 
     template<class Action>
@@ -268,7 +283,7 @@ private:
                 continue;
             }
             _wanted.insert(demand->second.pages.begin(), demand->second.pages.end());
-            coarser = coarser || demand->second.coarser;
+            coarser = coarser || demand->second.coarser > 0;
             ++demand;
         }
         for (const MappingPage& page : _wanted)
