@@ -84,7 +84,7 @@ void Flood::draw(double level, osg::Image& image) const
         for (int column = 0; column < _levels.columns; ++column, ++index)
         {
             const float over = sea - _levels.cells[index];
-            if (_shore[index])
+            if (_shore[index] && sea > 0.0f)
                 out[column] = sea;
             else if (_sea[index] || over <= -nearlyWet)
                 out[column] = std::numeric_limits<float>::quiet_NaN();
