@@ -43,7 +43,7 @@ public:
         int megabytes = 256; ///< for tiles in main memory and on the GPU together, 32…65536 MiB
         int threads = 2;     ///< that read, 1…16
         /// So many tiles are shown for the first time in a frame at most, 1…64: each takes about a millisecond.
-        int tilesPerFrame = 8;
+        int tilesPerFrame = 6;
     };
 
     /// Reads the coarse picture. Null, with a sentence in `error`, if it cannot be read, or if an option is out of range.

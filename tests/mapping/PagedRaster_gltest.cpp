@@ -4,6 +4,7 @@
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/viewer/SceneData.h>
 #include <tools/MappingStage.h>
 
 #include <osg/CoordinateSystemNode>
@@ -264,6 +265,31 @@ TEST_F(PagedRasters, ComeAndGo)
     _mappings->removeMappings();
     EXPECT_EQ(_mappings->getNumRasters(), 0u);
     EXPECT_LE(difference(at(*draw(), 160, 120), groundColor()), tolerance);
+}
+
+TEST_F(PagedRasters, TellWhetherAPictureHasAllThatItNeeds)
+{
+    EXPECT_TRUE(hasAllData(*_scene)) << "there is no raster";
+    add();
+    for (const double pixel : {0.3, 0.05})
+    {
+        lookDown({100.0 * pixel, 50.0}, pixel);
+        draw();
+        // The first frame of a view cannot have what it has just asked for.
+        EXPECT_FALSE(hasAllData(*_scene)) << pixel;
+        osg::ref_ptr<osg::Image> image;
+        for (int i = 0; i < 2000 && !hasAllData(*_scene); ++i)
+        {
+            image = draw();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        ASSERT_TRUE(hasAllData(*_scene));
+        EXPECT_EQ(wrong(*image), 0) << pixel;
+    }
+    lookDown({100.0, 50.0}, 0.05);
+    _raster->getMapping()->setEnabled(false);
+    draw();
+    EXPECT_TRUE(hasAllData(*_scene)) << "it is not shown";
 }
 
 TEST_F(PagedRasters, AreComposedBeforehandLikeOtherMappings)
