@@ -6,6 +6,7 @@
 #include <osgGeoFX/mapping/detail/TileStore.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -95,6 +96,8 @@ osg::ref_ptr<DataLayer> partOf(const DataLayer& layer, const MappingPage& page, 
 
 class PagedRaster::Work
 {
+    using Clock = std::chrono::steady_clock;
+
 public:
     Work(RasterTiles* tiles, const Options& options, osg::Image* coarse)
         : _extent{tiles->low(), tiles->high()}, _texel(tiles->texel()), _options(options),
@@ -168,7 +171,11 @@ public:
         const bool look = _revision != _mapping->revision();
         collect();
         _store.want(missing());
-        _budget = _options.tilesPerFrame;
+        const auto now = Clock::now();
+        const std::chrono::duration<double, std::milli> frame = now - _updated;
+        _updated = now;
+        _budget =
+            std::clamp(static_cast<int>(0.1 * std::min(frame.count(), 1e3)), _options.tilesPerFrame, 64);
         _pending = false;
         Leaves leaves;
         eachRoot([&](const MappingPage& page) { visit(page, page, _store.find(page), leaves); });
@@ -384,7 +391,8 @@ private:
         }
         _statistics.wanted = static_cast<int>(_wanted.size());
         _statistics.waiting = 0;
-        for (const MappingPage& page : _wanted)
+        // Coarser ones, too: they show where a finer one cannot be read.
+        for (const MappingPage& page : missing())
         {
             if (!_store.find(page) && !_store.hasFailed(page)) ++_statistics.waiting;
         }
@@ -406,6 +414,7 @@ private:
     Leaves _leaves;
     unsigned int _revision = 0;
     int _budget = 0;
+    Clock::time_point _updated;
     bool _pending = false;
     double _shownMegabytes = 0.0;
     Statistics _statistics;

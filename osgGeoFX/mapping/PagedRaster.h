@@ -42,7 +42,8 @@ public:
     {
         int megabytes = 256; ///< for tiles in main memory and on the GPU together, 32…65536 MiB
         int threads = 2;     ///< that read, 1…16
-        /// So many tiles are shown for the first time in a frame at most, 1…64: each takes about a millisecond.
+        /// So many tiles are shown for the first time in a frame, 1…64: each takes about a millisecond. More, where frames take so long
+        /// that it is a tenth of their time.
         int tilesPerFrame = 6;
     };
 
@@ -57,7 +58,7 @@ public:
     {
         int shown = 0;          ///< tiles and parts of coarser ones
         int wanted = 0;         ///< tiles that the cameras need now
-        int waiting = 0;        ///< of these, those that are not read yet
+        int waiting = 0;        ///< tiles that are not read yet, of these and above them
         int inMemory = 0;       ///< tiles
         int failed = 0;         ///< tiles that cannot be read; coarser ones show in their place
         std::size_t read = 0;   ///< tiles, since the beginning
