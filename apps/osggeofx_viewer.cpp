@@ -54,6 +54,9 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
     usage.addCommandLineOption("--mapping <file>",
                                "Put a raster onto the ground: KML, KMZ, or any raster with a georeference.");
+    usage.addCommandLineOption(
+        "--sequence <file>", "Rasters in time: NetCDF, GRIB, Zarr, bands or a folder; FILE, FILE:VARIABLE or "
+                             "FOLDER.");
     usage.addCommandLineOption("--colors <file>",
                                "The colors of values: a table of gdaldem color-relief, GMT or SLD.");
     usage.addCommandLineOption(
@@ -135,6 +138,9 @@ int main(int argc, char** argv)
     geofx::mappings::Options mappingOptions;
     while (arguments.read("--mapping", text))
         mappingOptions.files.push_back(text);
+    while (arguments.read("--sequence", text))
+        mappingOptions.sequences.push_back(text);
+    mappingOptions.waits = false;
     arguments.read("--colors", mappingOptions.colors);
     while (arguments.read("--route", text))
         mappingOptions.routes.push_back(text);

@@ -97,6 +97,10 @@
 #include <osgGeoFX/closeup/RegionOfInterest.h>
 #include <osgGeoFX/closeup/SurfaceData.h>
 #include <osgGeoFX/closeup/SurfaceDerivation.h>
+#include <osgGeoFX/mapping/LayerClock.h>
+#include <osgGeoFX/mapping/LayerSequence.h>
+#include <osgGeoFX/mapping/PagedRaster.h>
+#include <osgGeoFX/mapping/RasterTiles.h>
 
 #include <osgGeoFX/panorama/MaterialCover.h>
 #include <osgGeoFX/panorama/PanoramaBrush.h>
@@ -127,6 +131,7 @@
 #include <osgGeoFX/viewer/PanelPicture.h>
 #include <osgGeoFX/viewer/PictureParts.h>
 #include <osgGeoFX/viewer/Scene.h>
+#include <osgGeoFX/viewer/SceneData.h>
 #include <osgGeoFX/viewer/SunKeys.h>
 #include <osgGeoFX/viewer/ViewPoint.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
@@ -137,4 +142,5 @@
 #include <osgGeoFX/offscreen/ImageCapture.h>
 #include <osgGeoFX/offscreen/LeastTriangles.h>
 #include <osgGeoFX/offscreen/SceneRenderer.h>
+#include <osgGeoFX/viewer/TimeBar.h>
 #endif

@@ -17,9 +17,11 @@
 #include <osgGeoFX/geodata/PalettePoints.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
 #include <osgGeoFX/geodata/RouteVectors.h>
+#include <osgGeoFX/geodata/SequenceRaster.h>
 #include <osgGeoFX/geodata/SldColors.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
+#include <osgGeoFX/geodata/TiledRaster.h>
 
 #include <osgGeoFX/terrain/BuilderCode.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>

@@ -30,6 +30,8 @@
 #include <osgGeoFX/map/RouteFile.h>
 #include <osgGeoFX/map/SceneOverlays.h>
 #include <osgGeoFX/map/SceneRoutes.h>
+#include <osgGeoFX/map/SceneSequences.h>
+#include <osgGeoFX/map/SequenceFile.h>
 
 #include <osgGeoFX/print/PictureLayers.h>
 #include <osgGeoFX/print/PictureMesh.h>

@@ -3,6 +3,7 @@
 #include "MappingSuite.h"
 
 #include "BenchError.h"
+#include "LiveLayers.h"
 #include "OffscreenView.h"
 
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
@@ -357,6 +358,22 @@ public:
         return {figure, movingOne(*many), flight(*many)};
     }
 
+    /// What changes in time, and what is larger than memory.
+    std::vector<Figure> live(const Settings& settings)
+    {
+        const osg::ref_ptr<ProjectiveMappings> none = new ProjectiveMappings;
+        show(61756, *none);
+        _scene->removeEffect(none);
+        return liveLayers(*_view, *_scene, settings);
+    }
+    std::vector<Figure> paged(const Settings& settings)
+    {
+        const osg::ref_ptr<ProjectiveMappings> none = new ProjectiveMappings;
+        show(61756, *none);
+        _scene->removeEffect(none);
+        return pagedRaster(*_view, *_scene, settings);
+    }
+
     std::vector<Figure> huge()
     {
         announce("setting up 100,000 mappings");
@@ -622,6 +639,8 @@ std::vector<Figure> run(const Settings& settings)
     if (settings.wants("many")) add(bench.many());
     if (settings.wants("pages")) add(bench.manyCached());
     if (settings.wants("huge")) add(bench.huge());
+    if (settings.wants("live")) add(bench.live(settings));
+    if (settings.wants("paged")) add(bench.paged(settings));
     return figures;
 }
 
@@ -632,8 +651,10 @@ Suite mappingSuite()
     return {"mapping",
             "Draws projective mappings: the paper's Table 1 and its loop against the grid (table), 10,000 "
             "against 100 "
-            "and edits (many), the same by pages, one that moves and a flight (pages), 100,000 (huge)",
-            {"table", "many", "pages", "huge"},
+            "and edits (many), the same by pages, one that moves and a flight (pages), 100,000 (huge), a "
+            "layer that changes in each frame (live), a raster of "
+            "60,000² pixels (paged)",
+            {"table", "many", "pages", "huge", "live", "paged"},
             run};
 }
 

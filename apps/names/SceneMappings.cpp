@@ -6,6 +6,7 @@
 
 #include <osgGeoFX/map/SceneOverlays.h>
 #include <osgGeoFX/map/SceneRoutes.h>
+#include <osgGeoFX/map/SceneSequences.h>
 
 #include <CLI/CLI.hpp>
 
@@ -23,6 +24,13 @@ void addOptions(CLI::App& app, Options& options)
         ->expected(1)
         ->type_name("FILE")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--sequence", options.sequences,
+                   "Rasters in time to put onto the ground: the time of NetCDF, GRIB or Zarr, the bands of a "
+                   "raster, or a "
+                   "folder of rasters; FILE, FILE:VARIABLE or FOLDER. As often as wanted")
+        ->expected(1)
+        ->type_name("FILE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option(
            "--route", options.routes,
            "A way to put onto the ground: the routes and tracks of GPX, the lines and tracks of KML or KMZ, "
@@ -34,10 +42,10 @@ void addOptions(CLI::App& app, Options& options)
                    "Width of the ways' lines, metres (default: by their extent)")
         ->type_name("M")
         ->check(CLI::PositiveNumber);
-    app.add_option(
-           "--colors", options.colors,
-           "The colors of values that --mapping shows: a color table of gdaldem color-relief, GMT (.cpt) or "
-           "SLD (default: greys)")
+    app.add_option("--colors", options.colors,
+                   "The colors of values that --mapping and --sequence show: a color table of gdaldem "
+                   "color-relief, GMT (.cpt) or "
+                   "SLD (default: greys)")
         ->type_name("FILE");
 }
 
@@ -65,17 +73,30 @@ void showRoutes(Options& options, osgGeoFX::Scene& scene)
 void showRasters(Options& options, bool allowOutside, osgGeoFX::Scene& scene,
                  std::vector<std::string>& notices)
 {
-    if (options.files.empty() && !options.colors.empty())
-        throw std::runtime_error("--colors is for values; give some with --mapping.");
+    if (options.files.empty() && options.sequences.empty() && !options.colors.empty())
+        throw std::runtime_error("--colors is for values; give some with --mapping or --sequence.");
     if (options.files.empty()) return;
     osgGeoFX::SceneOverlays overlays(*scene.node, *scene.effects);
     osgGeoFX::SceneOverlays::Options how;
     how.allowOutside = allowOutside;
     how.colors = options.colors;
+    how.paged = options.paged;
     std::string error;
     for (const std::string& file : options.files)
         if (!overlays.add(file, how, notices, error)) throw std::runtime_error("--mapping: " + error);
     options.linked.insert(options.linked.end(), overlays.files().begin(), overlays.files().end());
+}
+
+void showSequences(const Options& options, osgGeoFX::Scene& scene)
+{
+    if (options.sequences.empty()) return;
+    osgGeoFX::SceneSequences sequences(*scene.node, *scene.effects);
+    osgGeoFX::SceneSequences::Options how;
+    how.colors = options.colors;
+    how.waits = options.waits;
+    std::string error;
+    for (const std::string& file : options.sequences)
+        if (!sequences.add(file, how, error)) throw std::runtime_error("--sequence: " + error);
 }
 
 } // namespace
@@ -83,6 +104,7 @@ void showRasters(Options& options, bool allowOutside, osgGeoFX::Scene& scene,
 void show(Options& options, bool allowOutside, osgGeoFX::Scene& scene, std::vector<std::string>& notices)
 {
     showRasters(options, allowOutside, scene, notices);
+    showSequences(options, scene);
     showRoutes(options, scene);
 }
 
@@ -91,6 +113,8 @@ std::string agesOf(const Options& options)
     std::string ages;
     for (const std::string& file : options.files)
         ages += "; on the ground " + file + names::ageOf(file);
+    for (const std::string& file : options.sequences)
+        ages += "; in time " + file + names::ageOf(names::fileAndLayer(file).first);
     for (const std::string& file : options.routes)
         ages += "; the way " + file + names::ageOf(names::fileAndLayer(file).first);
     for (const std::string& file : options.linked)

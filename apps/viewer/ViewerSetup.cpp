@@ -20,6 +20,7 @@
 #include <osgGeoFX/viewer/MappingPanel.h>
 #include <osgGeoFX/viewer/PictureParts.h>
 #include <osgGeoFX/viewer/SunKeys.h>
+#include <osgGeoFX/viewer/TimeBar.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
 
 #include <osg/Math>
@@ -196,6 +197,8 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
                        [automatic] { automatic->request(osgGeoFX::PanoramaComposer::usualLiberties); });
     const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
     if (panel->hasEffect()) add("List of mappings", panel);
+    if (osgGeoFX::LayerPlayer* const player = osgGeoFX::LayerPlayer::of(*scene.effects))
+        add("Layers in time", new osgGeoFX::TimeBar(*player->getClock()));
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)
     {
         auto* closeUps = dynamic_cast<osgGeoFX::CloseUps*>(scene.effects->getEffect(i));

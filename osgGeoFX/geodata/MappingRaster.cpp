@@ -44,19 +44,23 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
                          const MappingRaster::Options& options)
 {
     const FrameCrs crs = crsOf(frame, file);
-    const FrameRaster raster(file, options.kind);
+    const FrameRaster whole(file, options.kind);
     FrameRaster::Extent extent;
     if (const std::optional<MappingRaster::Window>& window = options.window)
         extent = {crs.fromFrame(window->low), crs.fromFrame(window->high), window->texel / crs.metresPerUnit};
     else
-        extent = raster.extent(crs);
+        extent = whole.extent(crs);
     const osg::Vec2d size = extent.high - extent.low;
-    // With fewer texels than it has, GDAL reads from overviews.
     const double texel = std::max(extent.texel, std::max(size.x(), size.y()) / options.maxSide);
     const auto texels = [&](double length)
     {
         return std::max(1, std::min(options.maxSide, static_cast<int>(std::lround(length / texel))));
     };
+    // With fewer texels than all of it has, an overview is enough.
+    const int overview = options.window ? -1 : whole.overviewFor(texel / extent.texel);
+    std::optional<FrameRaster> coarse;
+    if (overview >= 0) coarse.emplace(file, options.kind, true, FrameRaster::ANY_FORMAT, overview);
+    const FrameRaster& raster = coarse ? *coarse : whole;
     const DatasetPtr warped = raster.warped(crs, extent.low, extent.high, texels(size.x()), texels(size.y()));
 
     MappingRaster result;

@@ -7,6 +7,7 @@
 #include <osgGeoFX/geodata/MappingRaster.h>
 #include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/geodata/SldColors.h>
+#include <osgGeoFX/geodata/TiledRaster.h>
 #include <osgGeoFX/geodata/detail/CubeFace.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
 
@@ -238,7 +239,8 @@ private:
         const std::size_t before = overlays.size();
         const auto take = [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
         {
-            const MappingRaster::Options options{std::nullopt, _options.maxSide, window};
+            MappingRaster::Options options{std::nullopt, _options.maxSide, window};
+            if (_options.paged && !window) overlay.tiles = tilesIn(frame, options.maxSide);
             const std::optional<MappingRaster> raster = MappingRaster::read(_file, frame, options, error);
             if (!raster) throw BuildError(error);
             const osg::Vec2d& low = raster->low;
@@ -250,6 +252,24 @@ private:
         };
         addParts(reach, _file, overlay, take);
         giveColors(before);
+    }
+
+    /// Null for a raster that is small enough. With tiles, a coarse picture is enough for the rest.
+    osg::ref_ptr<RasterTiles> tilesIn(const MappingFrame& frame, int& maxSide)
+    {
+        constexpr int coarse = 512;
+        std::string error;
+        osg::ref_ptr<RasterTiles> tiles = TiledRaster::open(_file, frame, std::nullopt, error);
+        if (!tiles)
+        {
+            // What cannot be read at all says so below.
+            notices.push_back(error);
+            return nullptr;
+        }
+        const osg::Vec2d size = (tiles->high() - tiles->low()) / tiles->texel();
+        if (std::max(size.x(), size.y()) <= maxSide) return nullptr;
+        maxSide = std::min(maxSide, coarse);
+        return tiles;
     }
 
     /// The parts of a raster from an index on have one range and one table.

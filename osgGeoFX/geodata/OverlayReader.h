@@ -31,6 +31,9 @@ public:
         /// Colors of values: an SLD file (SldColors), or one that ColorRampFile reads. Empty: none.
         std::string colors;
         int maxSide = 2048; ///< texels along the longer side of a raster, 1…16384
+        /// Whether a raster with a georeference that has more pixels than `maxSide` along a side gives its tiles, too
+        /// (GroundOverlay::tiles); its layer is a coarse picture then.
+        bool paged = false;
         /// Of a file's overlays together; those that come later are left out, with a notice. 2^27 texels have 512 MiB.
         double maxTexels = 134217728.0;
     };

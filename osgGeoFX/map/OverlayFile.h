@@ -21,6 +21,7 @@ struct OSGGEOFXMAPS_EXPORT OverlayFile
     bool allowOutside = false; ///< whether a KML file may name files outside of its folder, and addresses
     std::string colors;        ///< of values: an SLD file, or one that ColorRampFile reads; empty: none
     int maxSide = 2048;        ///< texels along the longer side of a raster, 1…16384
+    bool paged = false;        ///< OverlayReader::Options::paged
     bool globe = true;         ///< the terrain is one
     std::string wkt;           ///< the coordinate system of a projected terrain
     std::vector<LocalOrigin> frames;     ///< those that there are; grows

@@ -23,6 +23,7 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
     request.allowOutside = options.allowOutside;
     request.colors = options.colors;
     request.maxSide = options.maxSide;
+    request.paged = options.paged;
     request.globe = _scene->ground().ellipsoid.valid();
     request.wkt = _wkt;
     for (const osg::ref_ptr<ProjectiveMappings>& effect : _effects)
@@ -30,8 +31,18 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
     if (!request.read(error)) return false;
 
     std::vector<std::pair<std::size_t, osg::ref_ptr<ProjectiveMapping>>> mappings;
+    std::vector<std::pair<std::size_t, osg::ref_ptr<PagedRaster>>> rasters;
     for (const GroundOverlay& overlay : request.overlays)
     {
+        if (overlay.tiles)
+        {
+            const osg::ref_ptr<PagedRaster> raster =
+                PagedRaster::create(overlay.tiles, options.paging, error);
+            if (!raster) return false;
+            overlay.setLook(*raster->getMapping());
+            rasters.emplace_back(overlay.frame, raster);
+            continue;
+        }
         const osg::ref_ptr<ProjectiveMapping> mapping = overlay.makeMapping();
         if (!mapping)
         {
@@ -51,6 +62,8 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
     }
     for (const auto& [frame, mapping] : mappings)
         _effects[frame]->addMapping(mapping);
+    for (const auto& [frame, raster] : rasters)
+        _effects[frame]->addRaster(raster);
     _files.insert(_files.end(), request.files.begin(), request.files.end());
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     return true;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
+#include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/EffectScene.h>
 
@@ -40,6 +41,9 @@ public:
         /// Colors of values: an SLD file, or one that ColorRampFile reads. Empty: greys from the lowest to the highest value.
         std::string colors;
         int maxSide = 2048; ///< texels along the longer side of a raster, 1…16384
+        /// Whether a raster with more pixels than that, and a georeference, is read in tiles as it is needed (PagedRaster).
+        bool paged = false;
+        PagedRaster::Options paging = {};
     };
     /// Adds a file. False, with a sentence in `error`, if it cannot; the scene stays as it is then. `notices` gets sentences that
     /// people should know.

@@ -6,9 +6,9 @@ namespace osgGeoFX
 {
 
 DataLayer::DataLayer(const DataLayer& other, const osg::CopyOp& copy)
-    : PropertyHolder(other, copy), _image(copy(other._image.get())), _kind(other._kind),
-      _smooth(other._smooth), _sRgb(other._sRgb), _hasNoData(other._hasNoData), _noData(other._noData),
-      _importance(other._importance)
+    : PropertyHolder(other, copy), _image(copy(other._image.get())), _texture(other._texture),
+      _kind(other._kind), _smooth(other._smooth), _sRgb(other._sRgb), _hasNoData(other._hasNoData),
+      _noData(other._noData), _importance(other._importance)
 {
 }
 
@@ -18,6 +18,13 @@ void DataLayer::setImage(osg::Image* image)
 {
     if (_image == image) return;
     _image = image;
+    touch();
+}
+
+void DataLayer::setTexture(osg::Texture2D* texture)
+{
+    if (_texture == texture) return;
+    _texture = texture;
     touch();
 }
 

@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/PropertyHolder.h>
 
 #include <osg/Image>
+#include <osg/Texture2D>
 
 namespace osgGeoFX
 {
@@ -13,8 +14,9 @@ namespace osgGeoFX
 
     The image is an osg::Image of any uncompressed 2D format. Rows count from the bottom, as in OSG. A program may
     replace the image. An image that changes (osg::Image::dirty(), or an osg::ImageStream that plays) is uploaded
-    again. The drawing may read the image at any time during a frame, so a program changes it only between frames. An
-    image larger than a page of ProjectiveMappings is reduced, with a warning.
+    again, the rows that differ alone; so a simulation may write it in each frame. The drawing may read the image at any
+    time during a frame, so a program changes it only between frames. An image larger than a page of ProjectiveMappings
+    is reduced, with a warning.
     @ingroup mapping */
 class OSGGEOFX_EXPORT DataLayer : public PropertyHolder
 {
@@ -39,6 +41,14 @@ public:
     osg::Image* getImage() { return _image.get(); }
     const osg::Image* getImage() const { return _image.get(); }
 
+    /// A texture that another pass fills on the GPU, such as a camera that is drawn before the scene. It takes the place of the
+    /// image. Each frame copies it, within the GPU; what is drawn later in the same frame shows in the next one. The texture has
+    /// a size (setTextureSize()) and colors; other kinds than COLOR show nothing, with a warning, and a color table may show
+    /// their grey. Mappings with such a layer are never composed beforehand. Files do not have it. Default: none.
+    void setTexture(osg::Texture2D* texture);
+    osg::Texture2D* getTexture() { return _texture.get(); }
+    const osg::Texture2D* getTexture() const { return _texture.get(); }
+
     /// Whether colors and values are interpolated between texels. Otherwise the nearest texel counts. Classes are
     /// never interpolated. Default: true.
     bool setSmooth(bool smooth) { return assign("smooth", smooth ? 1.0 : 0.0); }
@@ -62,6 +72,7 @@ protected:
 
 private:
     osg::ref_ptr<osg::Image> _image;
+    osg::ref_ptr<osg::Texture2D> _texture;
     int _kind = COLOR;
     bool _smooth = true;
     bool _sRgb = true;

@@ -13,18 +13,24 @@ osg::ref_ptr<ProjectiveMapping> GroundOverlay::makeMapping() const
     osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
     const osg::Vec2d quad[4] = {corners[0], corners[1], corners[2], corners[3]};
     if (!mapping->setQuad(quad)) return nullptr;
-    mapping->setName(name);
     mapping->setLayer(layer);
-    mapping->setOpacity(opacity);
-    mapping->setEnabled(visible);
-    mapping->setPixels(pixelsNone, pixelsFull);
-    if (!layer || layer->getKind() == DataLayer::COLOR) return mapping;
+    setLook(*mapping);
+    return mapping;
+}
+
+void GroundOverlay::setLook(ProjectiveMapping& mapping) const
+{
+    mapping.setName(name);
+    mapping.setOpacity(opacity);
+    mapping.setEnabled(visible);
+    mapping.setPixels(pixelsNone, pixelsFull);
+    if (!layer || layer->getKind() == DataLayer::COLOR) return;
     const osg::ref_ptr<ColorTransfer> transfer = new ColorTransfer;
     double low = lowest;
     double high = highest;
     if (table)
     {
-        mapping->setTable(table);
+        mapping.setTable(table);
         transfer->setSource(ColorTransfer::TABLE);
         std::tie(low, high) = table->range();
     }
@@ -32,8 +38,7 @@ osg::ref_ptr<ProjectiveMapping> GroundOverlay::makeMapping() const
     low = std::clamp(low, -most, most);
     high = std::clamp(high, -most, most);
     if (low < high) transfer->setValueRange(low, high);
-    mapping->setTransfer(transfer);
-    return mapping;
+    mapping.setTransfer(transfer);
 }
 
 } // namespace osgGeoFX

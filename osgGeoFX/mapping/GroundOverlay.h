@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/mapping/ProjectiveMapping.h>
+#include <osgGeoFX/mapping/RasterTiles.h>
 
 #include <array>
 #include <cstddef>
@@ -27,8 +28,13 @@ struct OSGGEOFX_EXPORT GroundOverlay
     double lowest = 0.0, highest = 0.0;        ///< range of a layer of values; both 0 if there are none
     osg::ref_ptr<ColorTable> table; ///< colors of values; null: greys from the lowest to the highest
 
+    /// All of the raster, for a PagedRaster, where the layer has only a coarse picture of it; null where the layer is all there is.
+    osg::ref_ptr<RasterTiles> tiles;
+
     /// A mapping of it, of order 0. Null, with a warning, if the corners span no area.
     osg::ref_ptr<ProjectiveMapping> makeMapping() const;
+    /// Gives a mapping that has its place and its layer all else.
+    void setLook(ProjectiveMapping& mapping) const;
 };
 
 } // namespace osgGeoFX

@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/effect/detail/GlobeFrame.h>
+#include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/detail/CameraPages.h>
 #include <osgGeoFX/mapping/detail/GpuMappings.h>
 
@@ -17,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <mutex>
 #include <unordered_set>
 
@@ -72,6 +74,8 @@ public:
         std::size_t turn = 0;
         CameraList list;
         CameraPages pages;
+        PageFrame plane;
+        bool sees = false; ///< whether the plane is that of this frame
 
         void releaseGLObjects(osg::State* state) { pages.releaseGLObjects(state); }
         void resizeGLObjectBuffers(unsigned int size) { pages.resizeGLObjectBuffers(size); }
@@ -96,8 +100,30 @@ public:
         _last = std::make_shared<GpuMappings>();
         for (const osg::ref_ptr<ProjectiveMapping>& mapping : mappings)
             _last->add(*mapping);
+        for (const auto& [whole, parts] : _parts)
+            _last->setParts(*whole, parts, {});
         _grounds.push_back({radii, _last});
         return _last;
+    }
+
+    /// Replaces what is drawn in the place of a mapping.
+    void setParts(const osg::ref_ptr<ProjectiveMapping>& whole, GpuMappings::Parts parts)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        GpuMappings::Parts& former = _parts[whole];
+        std::sort(parts.begin(), parts.end());
+        GpuMappings::Parts added, removed;
+        std::set_difference(parts.begin(), parts.end(), former.begin(), former.end(),
+                            std::back_inserter(added));
+        std::set_difference(former.begin(), former.end(), parts.begin(), parts.end(),
+                            std::back_inserter(removed));
+        for (const Ground& ground : _grounds)
+        {
+            if (const std::shared_ptr<GpuMappings> gpu = ground.gpu.lock())
+                gpu->setParts(*whole, added, removed);
+        }
+        former = std::move(parts);
+        if (former.empty()) _parts.erase(whole);
     }
 
     /// Tells all of them.
@@ -122,6 +148,7 @@ public:
     }
 
     PerCamera<Camera, osg::StateSet> cameras;
+    std::mutex rasters; ///< what one camera takes from them is shown before another one asks
     std::unordered_set<const ProjectiveMapping*> all; ///< to be found faster than in the list
 
 private:
@@ -131,6 +158,8 @@ private:
         std::weak_ptr<GpuMappings> gpu;
     };
     mutable std::mutex _mutex;
+    std::map<osg::ref_ptr<ProjectiveMapping>, GpuMappings::Parts>
+        _parts; ///< by what they are drawn for, sorted
     std::vector<Ground> _grounds;
     std::shared_ptr<GpuMappings> _last;
 };
@@ -168,7 +197,10 @@ bool isPowerOfTwo(int value)
 class ProjectiveMappings::Pages : public PassEffect
 {
 public:
-    explicit Pages(Drawing& drawing) : _drawing(drawing) {}
+    explicit Pages(Drawing& drawing, const std::vector<osg::ref_ptr<PagedRaster>>& rasters)
+        : _drawing(drawing), _rasters(rasters)
+    {
+    }
 
     osg::Object* cloneType() const override { return nullptr; }
     osg::Object* clone(const osg::CopyOp&) const override { return nullptr; }
@@ -186,24 +218,41 @@ public:
     }
     void cull(const ScenePass& pass) override
     {
+        Drawing::Camera& camera = _drawing.cameras.of(pass.state);
+        if (camera.sees && !camera.pages.watch().boundless())
+        {
+            for (const osg::ref_ptr<PagedRaster>& raster : _rasters)
+                see(*raster, camera, pass);
+        }
+        camera.sees = false;
         // A camera's replacement of the effect may want pages where the scene's list has no units for them.
-        if (pass.units.size() == 5)
-            _drawing.cameras.of(pass.state).pages.draw(pass, pass.units[3], pass.units[4]);
+        if (pass.units.size() == 5) camera.pages.draw(pass, pass.units[3], pass.units[4]);
     }
 
 protected:
     ~Pages() override = default;
 
 private:
+    static void see(PagedRaster& raster, Drawing::Camera& camera, const ScenePass& pass)
+    {
+        const PlaneBox extent{raster.low(), raster.high()};
+        PageView view(
+            extent, [](const PlaneBox&) { return false; }, pass, camera.plane);
+        raster.see(&camera, view.groundBelow(camera.pages.watch().boxes()), view);
+    }
+
     Drawing& _drawing;
+    const std::vector<osg::ref_ptr<PagedRaster>>& _rasters;
 };
 
-ProjectiveMappings::ProjectiveMappings() : _drawing(std::make_unique<Drawing>()), _pages(new Pages(*_drawing))
+ProjectiveMappings::ProjectiveMappings()
+    : _drawing(std::make_unique<Drawing>()), _pages(new Pages(*_drawing, _rasters))
 {
 }
 
 ProjectiveMappings::ProjectiveMappings(const ProjectiveMappings& other, const osg::CopyOp& copy)
-    : SurfaceEffect(other, copy), _drawing(std::make_unique<Drawing>()), _pages(new Pages(*_drawing))
+    : SurfaceEffect(other, copy), _drawing(std::make_unique<Drawing>()),
+      _pages(new Pages(*_drawing, _rasters))
 {
     for (const Property& property : ProjectiveMappings::properties())
         property.put(*this, property.get(other));
@@ -337,6 +386,11 @@ bool ProjectiveMappings::removeMapping(ProjectiveMapping* mapping)
 {
     const auto found = std::find(_mappings.begin(), _mappings.end(), mapping);
     if (found == _mappings.end()) return false;
+    const osg::ref_ptr<ProjectiveMapping> lives = mapping;
+    _rasters.erase(std::remove_if(_rasters.begin(), _rasters.end(),
+                                  [&](const auto& raster) { return raster->getMapping() == mapping; }),
+                   _rasters.end());
+    _drawing->setParts(lives, {});
     mapping->removeListener(*this);
     _drawing->all.erase(mapping);
     _drawing->each([&](GpuMappings& gpu) { gpu.remove(*mapping); });
@@ -349,10 +403,38 @@ void ProjectiveMappings::removeMappings()
 {
     for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
         mapping->removeListener(*this);
+    for (const osg::ref_ptr<PagedRaster>& raster : _rasters)
+        _drawing->setParts(raster->getMapping(), {});
+    _rasters.clear();
     _drawing->all.clear();
     _drawing->each([](GpuMappings& gpu) { gpu.clear(); });
     _mappings.clear();
     touch();
+}
+
+bool ProjectiveMappings::addRaster(PagedRaster* raster)
+{
+    if (!addMapping(raster ? raster->getMapping() : nullptr)) return false;
+    raster->reset();
+    _rasters.emplace_back(raster);
+    return true;
+}
+
+bool ProjectiveMappings::removeRaster(PagedRaster* raster)
+{
+    const bool found = std::find(_rasters.begin(), _rasters.end(), raster) != _rasters.end();
+    return found && removeMapping(raster->getMapping());
+}
+
+/// Shows what has been read since.
+void ProjectiveMappings::updateRasters()
+{
+    const std::lock_guard<std::mutex> lock(_drawing->rasters);
+    for (const osg::ref_ptr<PagedRaster>& raster : _rasters)
+    {
+        PagedRaster::Parts parts;
+        if (raster->update(parts)) _drawing->setParts(raster->getMapping(), std::move(parts));
+    }
 }
 
 void ProjectiveMappings::propertyChanged(PropertyHolder& mapping)
@@ -390,6 +472,8 @@ MappingSettings ProjectiveMappings::settings(const osg::EllipsoidModel* ellipsoi
     settings.pageSide = _pageSide;
     settings.maxPages = _maxPages;
     settings.maxTexels = static_cast<int>(std::min(_maxDataSize * texelsInMegabyte, 2147483647.0));
+    for (const osg::ref_ptr<PagedRaster>& raster : _rasters)
+        settings.reservedPages += raster->pagesOf(_pageSide);
     if (ellipsoid)
     {
         settings.longitude = _origin.longitude;
@@ -420,6 +504,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     const bool parallel = projection(3, 3) != 0.0;
 
     Drawing::Camera& camera = _drawing->cameras.of(state);
+    updateRasters();
     camera.show(_drawing->on(ellipsoid, _mappings));
     const osg::Vec3d eye = eyeToFrame.getTrans();
     const auto position = [&](const osg::Vec3d& place)
@@ -473,6 +558,26 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     }
     setUniform(state, prefix + "globe", osg::Uniform::FLOAT_VEC4, osg::Vec4(globe));
     setUniform(state, prefix + "curve", osg::Uniform::FLOAT_VEC4, osg::Vec4(curve));
+    PageFrame& plane = camera.plane;
+    camera.sees = true;
+    // All effects see the view's eye space, whichever camera draws it.
+    plane.toEye = frameToEye;
+    plane.fromEye = eyeToFrame;
+    plane.globe = ellipsoid != nullptr;
+    plane.curvature = ellipsoid ? 1.0 / ellipsoid->getRadiusPolar() : 0.0;
+    plane.positionOf = [this, ellipsoid](const osg::Vec3d& place)
+    {
+        return positionOf(place, ellipsoid);
+    };
+    plane.placeOf = [this, ellipsoid](const osg::Vec3d& at)
+    {
+        return placeOfPosition(at, ellipsoid);
+    };
+    // The shorter side of a pixel.
+    const double across =
+        2.0 / std::max(std::abs(projection(0, 0)) * std::max(view.viewportWidth, 1.0), 1e-30);
+    plane.pixel = parallel ? 0.0 : std::min(span, across);
+    plane.pixelAnywhere = parallel ? std::min(span, across) : 0.0;
     if (_caching == OFF)
     {
         camera.pages.stop(state, prefix);
@@ -481,24 +586,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     CameraPages::Task task;
     task.gpu = camera.gpu;
     task.frame = frame;
-    // All effects see the view's eye space, whichever camera draws it.
-    task.plane.toEye = frameToEye;
-    task.plane.fromEye = eyeToFrame;
-    task.plane.globe = ellipsoid != nullptr;
-    task.plane.curvature = ellipsoid ? 1.0 / ellipsoid->getRadiusPolar() : 0.0;
-    task.plane.positionOf = [this, ellipsoid](const osg::Vec3d& place)
-    {
-        return positionOf(place, ellipsoid);
-    };
-    task.plane.placeOf = [this, ellipsoid](const osg::Vec3d& at)
-    {
-        return placeOfPosition(at, ellipsoid);
-    };
-    // The shorter side of a pixel.
-    const double across =
-        2.0 / std::max(std::abs(projection(0, 0)) * std::max(view.viewportWidth, 1.0), 1e-30);
-    task.plane.pixel = parallel ? 0.0 : std::min(span, across);
-    task.plane.pixelAnywhere = parallel ? std::min(span, across) : 0.0;
+    task.plane = plane;
     task.opacity = _opacity;
     task.anisotropy = _anisotropy;
     task.megabytes = _cacheSize;
@@ -511,7 +599,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
 
 PassEffect* ProjectiveMappings::asPassEffect()
 {
-    return _caching == OFF ? nullptr : _pages.get();
+    return _caching == OFF && _rasters.empty() ? nullptr : _pages.get();
 }
 
 ProjectiveMappings::CacheStatistics ProjectiveMappings::cacheStatistics() const

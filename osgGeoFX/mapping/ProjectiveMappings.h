@@ -17,6 +17,7 @@
 namespace osgGeoFX
 {
 
+class PagedRaster;
 struct MappingSettings;
 
 /** Projects any number of georeferenced rasters onto everything below its EffectScene, in one pass and at run time.
@@ -112,6 +113,14 @@ public:
     unsigned int getNumMappings() const { return static_cast<unsigned int>(_mappings.size()); }
     ProjectiveMapping* getMapping(unsigned int i) { return _mappings[i].get(); }
     const ProjectiveMapping* getMapping(unsigned int i) const { return _mappings[i].get(); }
+    /// Shows a raster that is larger than memory, in the place of its mapping (PagedRaster::getMapping()), which is added as by
+    /// addMapping(). A null pointer and a raster that was added before are refused with a warning. One ProjectiveMappings may have a raster.
+    bool addRaster(PagedRaster* raster);
+    /// Removes the raster and its mapping. Returns false if the raster is not there.
+    bool removeRaster(PagedRaster* raster);
+    unsigned int getNumRasters() const { return static_cast<unsigned int>(_rasters.size()); }
+    PagedRaster* getRaster(unsigned int i) { return _rasters[i].get(); }
+    const PagedRaster* getRaster(unsigned int i) const { return _rasters[i].get(); }
     /// All enabled mappings of the projector PLANE whose rasters contain this place, the topmost first. Fades are
     /// ignored, and so are sizes in pixels and turned symbols.
     std::vector<ProjectiveMapping*> mappingsAt(const osg::Vec2d& place) const;
@@ -223,6 +232,7 @@ private:
     class Pages;
     using Mappings = std::vector<osg::ref_ptr<ProjectiveMapping>>;
     void propertyChanged(PropertyHolder& mapping) override;
+    void updateRasters();
     osg::Vec3d placeOfPosition(const osg::Vec3d& position, const osg::EllipsoidModel* ellipsoid) const;
     MappingSettings settings(const osg::EllipsoidModel* ellipsoid) const;
 
@@ -239,6 +249,7 @@ private:
     int _pagesPerFrame = 2;
     int _pageUnit = -1, _pageTableUnit = -1;
     Mappings _mappings;
+    std::vector<osg::ref_ptr<PagedRaster>> _rasters;
     std::unique_ptr<Drawing> _drawing;
     osg::ref_ptr<Pages> _pages;
 };

@@ -11,6 +11,7 @@
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/viewer/Overlay.h>
 #include <osgGeoFX/viewer/PictureParts.h>
+#include <osgGeoFX/viewer/SceneData.h>
 
 #include <osg/Group>
 #include <osg/Stats>
@@ -331,6 +332,8 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
             return nullptr;
         }
         done = parts.monitor->frameFinished() || !parts.options.waitForTiles;
+        const bool waits = done && parts.options.waitForTiles && !hasAllData(*parts.effects);
+        done = done && !waits;
         const double left = parts.options.timeout - secondsSince(start);
         if (!done && left <= 0.0)
         {
@@ -340,7 +343,11 @@ osg::ref_ptr<osg::Image> SceneRenderer::render(const osg::Matrixd& view, double 
             error = text.str();
             return nullptr;
         }
-        if (!done) parts.monitor->waitForReads(left);
+        // What mappings read has threads of its own.
+        if (waits)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        else if (!done)
+            parts.monitor->waitForReads(left);
     }
     const PagerMonitor::Progress progress = parts.monitor->takeProgress();
     statistics.tilesLoaded = progress.tilesLoaded;

@@ -70,6 +70,18 @@ struct OSGGEOFX_EXPORT LayerPixels
     static std::optional<LayerPixels> make(const osg::Image& image, const Options& options,
                                            std::string& error);
 
+    /// A range of rows of level 0: first, first + 1, … end − 1. Empty if both are equal.
+    struct Rows
+    {
+        int first = 0;
+        int end = 0;
+    };
+    /** The same for an image that has changed since `former` was made of it with the same options, in less time: only the
+        rows that differ and the levels above them are made anew. `changed` tells which rows of level 0 these are; all, if
+        the image has another size or is reduced. */
+    static std::optional<LayerPixels> remake(const osg::Image& image, const Options& options,
+                                             const LayerPixels& former, Rows& changed, std::string& error);
+
     /// The number in a texel of values or classes; NaN for none.
     static float value(Texel texel);
     /// The texel of a number; `none` for NaN.

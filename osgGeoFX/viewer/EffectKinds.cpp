@@ -9,6 +9,7 @@
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/ground/GroundDetail.h>
+#include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
@@ -74,6 +75,7 @@ constexpr Kind<Effect> effects[] = {
 constexpr Kind<PropertyHolder> parts[] = {
     {"projectiveMapping", make<PropertyHolder, ProjectiveMapping>, "A raster on the terrain."},
     {"dataLayer", make<PropertyHolder, DataLayer>, "The raster that a mapping shows."},
+    {"layerClock", make<PropertyHolder, LayerClock>, "The time of layers that change with it."},
     {"colorTransfer", make<PropertyHolder, ColorTransfer>,
      "How rasters become colors, and how these meet the scene's."},
     {"closeUp", make<PropertyHolder, CloseUp>, "A region of the ground, lifted out."},

@@ -63,6 +63,8 @@ public:
             // The origin is the first mapping's, or nobody's.
             _hasOrigin = true;
         }
+        for (const SceneSequence& sequence : _mappings.sequences)
+            add(sequence);
         for (const SceneOverlay& overlay : _mappings.overlays)
             add(overlay);
         for (const SceneRoute& route : _mappings.routes)
@@ -135,6 +137,54 @@ private:
             request.raster.layer->getKind() == DataLayer::COLOR && !mapping.mapping->getTable();
         if (!mapping.hasTransfer && !plainColors)
             setTransfer(*mapping.mapping, request.raster.lowest, request.raster.highest);
+    }
+
+    void add(const SceneSequence& each)
+    {
+        SceneSequenceRequest request;
+        request.file = each.file.path + (each.variable.empty() ? "" : ":" + each.variable);
+        request.globe = _ellipsoid != nullptr;
+        request.wkt = _terrain.frame().wkt;
+        request.maxSide = each.maxSide;
+        request.moves = !_hasOrigin;
+        request.origin = _effect.getLocalOrigin();
+        const std::string fault =
+            SceneTerrain::ask(each.place, "sceneSequence", &request, "use a <layer> with a <mapping>");
+        if (!request.steps) fail(each.place, fault);
+        _effect.setLocalOrigin(request.origin);
+        _hasOrigin = true;
+        const osg::ref_ptr<LayerSequence> sequence = new LayerSequence(request.steps);
+        sequence->setBlending(each.blending);
+        ProjectiveMapping& mapping = *each.mapping;
+        const osg::Vec2d half = (request.high - request.low) / 2.0;
+        if (!mapping.setRectangle(request.low + half, half.x(), half.y()))
+            fail(each.place, "the rasters cover no area on the ground; check them with gdalinfo.");
+        mapping.setLayer(sequence->getLayer());
+        const bool plainColors = request.steps->kind() == DataLayer::COLOR && !mapping.getTable();
+        if (!each.hasTransfer && !plainColors) setTransfer(mapping, request.lowest, request.highest);
+        if (mapping.getName().empty()) mapping.setName(request.variable);
+        _effect.addMapping(&mapping);
+
+        osg::ref_ptr<LayerPlayer> player = LayerPlayer::of(_node);
+        if (!player)
+        {
+            player = new LayerPlayer(nullptr);
+            _node.addUpdateCallback(player);
+        }
+        LayerClock& clock = *player->getClock();
+        // All of the time in twenty seconds, unless somebody says otherwise.
+        constexpr double wholeTime = 20.0;
+        const double before = clock.getEnd() - clock.getBegin();
+        const bool usual = before == 0.0 || clock.getSpeed() == before / wholeTime;
+        player->add(sequence);
+        const double length = clock.getEnd() - clock.getBegin();
+        if (usual && length > 0.0) clock.setSpeed(length / wholeTime);
+        if (each.speed) clock.setSpeed(*each.speed);
+        // So that there is a picture in the first frame.
+        sequence->setWaiting(true);
+        sequence->update();
+        sequence->setWaiting(false);
+        if (!sequence->fault().empty()) fail(each.place, sequence->fault());
     }
 
     void add(const SceneOverlay& overlay)

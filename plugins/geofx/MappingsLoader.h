@@ -5,6 +5,7 @@
 #include "SceneLoading.h"
 
 #include <osgGeoFX/mapping/GroundOverlay.h>
+#include <osgGeoFX/mapping/LayerSequence.h>
 
 namespace osgGeoFX
 {
@@ -30,6 +31,23 @@ struct SceneOverlaysRequest
     std::vector<LocalOrigin> frames; ///< those that there are; grows
     std::vector<GroundOverlay> overlays;
     std::vector<std::string> notices;
+};
+
+/// What osgdb_geofxdata is asked for under the name "sceneSequence", and its answer.
+struct SceneSequenceRequest
+{
+    std::string file; ///< with the variable behind a colon
+    std::string colors;
+    int maxSide = 0;
+    bool globe = true;
+    std::string wkt;
+    bool moves = true; ///< the frame's origin becomes the rasters' middle
+    LocalOrigin origin;
+    osg::ref_ptr<SequenceSteps> steps;
+    osg::Vec2d low, high;
+    double lowest = 0.0, highest = 0.0;
+    osg::ref_ptr<ColorTable> table;
+    std::string variable, unit;
 };
 
 /// What osgdb_geofxdata is asked for under the name "sceneRoutes", and its answer.

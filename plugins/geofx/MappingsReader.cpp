@@ -29,6 +29,8 @@ public:
                 readTable(_xml, node, _tables, _result.tables);
             else if (kind == "transfer")
                 readTransfer(node);
+            else if (kind == "sequence")
+                readSequence(node);
             else if (kind == "overlays")
                 readOverlays(node);
             else if (kind == "route")
@@ -53,6 +55,26 @@ private:
         const osg::ref_ptr<ColorTransfer> transfer = new ColorTransfer;
         _xml.set(*transfer, node, {"name"});
         addNamed(_xml, node, _transfers, *transfer);
+    }
+
+    void readSequence(xmlNode* node)
+    {
+        SceneSequence sequence;
+        sequence.place = _xml.place(node);
+        sequence.file = _xml.path(node, "file");
+        sequence.variable = attributeOf(node, "variable");
+        sequence.maxSide = SceneXml::integer(node, "maxSide");
+        sequence.blending = attributeOf(node, "blending") != "false" && attributeOf(node, "blending") != "0";
+        if (isGiven(node, "speed")) sequence.speed = SceneXml::real(node, "speed");
+        sequence.mapping = new ProjectiveMapping;
+        sequence.mapping->setOpacity(SceneXml::real(node, "opacity"));
+        sequence.mapping->setOrder(SceneXml::integer(node, "order"));
+        sequence.mapping->setName(attributeOf(node, "name"));
+        sequence.mapping->setTable(findNamed(_xml, node, "table", _tables, "colorTable"));
+        sequence.hasTransfer = isGiven(node, "transfer");
+        if (ColorTransfer* transfer = findNamed(_xml, node, "transfer", _transfers, "transfer"))
+            sequence.mapping->setTransfer(transfer);
+        _result.sequences.push_back(sequence);
     }
 
     void readOverlays(xmlNode* node)

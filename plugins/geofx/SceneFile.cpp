@@ -213,14 +213,14 @@ private:
 
 /// What keeps a path from being read; empty if nothing does, or if it is not a file (GDAL's /vsi…, an
 /// address).
-std::string faultOf(const std::string& path)
+std::string faultOf(const std::string& path, bool mayBeFolder)
 {
     if (path.rfind("/vsi", 0) == 0 || path.find("://") != std::string::npos) return {};
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
     if (status.type() == fs::file_type::not_found) return "does not exist";
     if (code) return "cannot be read (" + code.message() + ")";
-    if (fs::is_directory(status)) return "is a folder";
+    if (fs::is_directory(status) && !mayBeFolder) return "is a folder";
     return {};
 }
 
@@ -312,6 +312,8 @@ std::vector<ScenePath> filesOf(const SceneFile& scene)
         {
             if (mapping.raster) paths.push_back(mapping.raster->file);
         }
+        for (const SceneSequence& sequence : mappings.sequences)
+            paths.push_back(sequence.file);
         for (const SceneOverlay& overlay : mappings.overlays)
             paths.push_back(overlay.file);
         for (const SceneRoute& route : mappings.routes)
@@ -356,7 +358,8 @@ std::vector<std::string> missingFiles(const SceneFile& scene)
     std::vector<std::string> errors;
     for (const ScenePath& path : filesOf(scene))
     {
-        const std::string fault = faultOf(path.path);
+        // Rasters in time may be the files of a folder.
+        const std::string fault = faultOf(path.path, path.place.element == "sequence");
         if (!fault.empty())
             errors.push_back(path.place.message(
                 "the file \"" + path.path + "\" " + fault + "; correct the attribute \"" + path.attribute +

@@ -132,6 +132,19 @@ struct SceneOverlay
     int order = 0;
 };
 
+/// Rasters in time.
+struct SceneSequence
+{
+    ScenePlace place;
+    ScenePath file;
+    std::string variable;                    ///< empty: the first one
+    osg::ref_ptr<ProjectiveMapping> mapping; ///< without its place and its layer
+    bool hasTransfer = false;
+    int maxSide = 0;
+    bool blending = true;
+    std::optional<double> speed;
+};
+
 /// A way over the ground, of a file or of way points.
 struct SceneRoute
 {
@@ -157,9 +170,10 @@ struct SceneMappings
     bool hasOrigin = false;
     std::vector<Layer> layers;
     std::vector<SceneTable> tables;
-    std::vector<SceneMapping> mappings; ///< as many as the effect has, in the same order
-    std::vector<SceneOverlay> overlays; ///< over these
-    std::vector<SceneRoute> routes;     ///< over all
+    std::vector<SceneMapping> mappings;   ///< as many as the effect has, in the same order
+    std::vector<SceneSequence> sequences; ///< over these
+    std::vector<SceneOverlay> overlays;   ///< over these
+    std::vector<SceneRoute> routes;       ///< over all
 };
 
 /// A picture of surface data, or with DEM several.

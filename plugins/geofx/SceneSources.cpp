@@ -5,6 +5,8 @@
 
 #include <osgGeoFX/paging/RemoteFiles.h>
 
+#include <osgDB/FileNameUtils>
+#include <osgDB/FileUtils>
 #include <osgDB/fstream>
 
 #include <set>
@@ -19,11 +21,30 @@ namespace
 /// Virtual files upon virtual files; more than these are no person's.
 constexpr std::size_t mostFiles = 10000;
 
+/// The files in a folder of rasters; none of a Zarr, which takes data from nowhere else.
+std::vector<std::string> filesIn(const std::string& folder)
+{
+    std::vector<std::string> files;
+    if (osgDB::fileType(folder) != osgDB::DIRECTORY) return files;
+    for (const std::string& name : osgDB::getDirectoryContents(folder))
+    {
+        if (name == ".zgroup" || name == ".zarray" || name == ".zmetadata") return {};
+        const std::string file = osgDB::concatPaths(folder, name);
+        if (osgDB::fileType(file) == osgDB::REGULAR_FILE) files.push_back(file);
+    }
+    return files;
+}
+
 /// What keeps a file from being read; empty where all that it takes its data from lies within the folder.
 std::string faultOf(const std::string& file, const std::string& folder)
 {
     std::set<std::string> known{file};
     std::vector<std::string> open{file};
+    for (const std::string& each : filesIn(file))
+    {
+        known.insert(each);
+        open.push_back(each);
+    }
     while (!open.empty())
     {
         SourcesRequest request;

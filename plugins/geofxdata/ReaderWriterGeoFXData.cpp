@@ -17,6 +17,7 @@
 #include <osgGeoFX/geodata/OverlayReader.h>
 #include <osgGeoFX/geodata/PictureRaster.h>
 #include <osgGeoFX/geodata/RouteVectors.h>
+#include <osgGeoFX/geodata/SequenceRaster.h>
 #include <osgGeoFX/geodata/SldColors.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
@@ -24,6 +25,8 @@
 #include <osgGeoFX/lines/LineFile.h>
 #include <osgGeoFX/map/OverlayFile.h>
 #include <osgGeoFX/map/RouteFile.h>
+#include <osgGeoFX/map/SequenceFile.h>
+#include <osgGeoFX/raster/ColorRampFile.h>
 
 #include <osg/ValueObject>
 #include <osgDB/Registry>
@@ -42,11 +45,10 @@ public:
         supportsExtension("geofxdata", "osgGeoFX's services that need GDAL; not a file format");
         supportsOption("wkt", "for the object \"georeference\": the projected coordinate system, as WKT");
         supportsOption("rasters", "for the object \"terrain\": the rasters of a .geofx scene (plugin data)");
-        supportsOption(
-            "request",
-            "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
-            "\"names\", \"lines\", \"overlays\", \"picture\", \"routes\" and \"sources\": a raster "
-            "or vector data of a .geofx scene (plugin data)");
+        supportsOption("request", "for the objects \"mappingRaster\", \"surfaceData\", \"strokeVectors\", "
+                                  "\"names\", \"lines\", \"overlays\", \"picture\", \"routes\", \"sequence\" "
+                                  "and \"sources\": a raster "
+                                  "or vector data of a .geofx scene (plugin data)");
         supportsOption("version", "for the objects of scenes: the version of the plugin that asks");
     }
 
@@ -64,6 +66,8 @@ public:
         if (name == "overlays" && options) return overlays<OverlayFile>(*options);
         if (name == "picture" && options) return picture(*options);
         if (name == "routes" && options) return routes<RouteFile>(*options);
+        if (name == "sequence" && options) return sequence<SequenceFile>(*options);
+        if (name == "sceneSequence" && options) return sequence<SceneSequenceRequest>(*options);
         if (name == "sceneOverlays" && options) return overlays<SceneOverlaysRequest>(*options);
         if (name == "sceneRoutes" && options) return routes<SceneRoutesRequest>(*options);
         if (name == "colors" && options) return colors(*options);
@@ -191,7 +195,11 @@ private:
         reader.wkt = request->wkt;
         reader.frames = request->frames;
         OverlayReader::Options how;
-        if constexpr (std::is_same_v<Request, OverlayFile>) how.allowOutside = request->allowOutside;
+        if constexpr (std::is_same_v<Request, OverlayFile>)
+        {
+            how.allowOutside = request->allowOutside;
+            how.paged = request->paged;
+        }
         how.colors = request->colors;
         how.maxSide = request->maxSide;
         if (!reader.read(request->file, how, error)) return error;
@@ -213,6 +221,42 @@ private:
         std::vector<std::string> files;
         if (!RouteVectors::read(request->file, request->layer, request->routes, error, &files)) return error;
         if constexpr (std::is_same_v<Request, RouteFile>) request->files = files;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// The answer is in the request.
+    template<typename Request>
+    static ReadResult sequence(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<Request*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        const auto [file, variable] = SequenceRaster::parse(request->file);
+        SequenceRaster::Options how;
+        how.variable = variable;
+        how.maxSide = request->maxSide;
+        MappingFrame frame;
+        frame.globe = request->globe;
+        frame.wkt = request->wkt;
+        frame.origin = request->origin;
+        const std::optional<SequenceRaster> raster =
+            SequenceRaster::open(file, frame, request->moves, how, error);
+        if (!raster) return error;
+        request->origin = frame.origin;
+        request->steps = raster->steps;
+        request->low = raster->low;
+        request->high = raster->high;
+        request->lowest = raster->lowest;
+        request->highest = raster->highest;
+        request->variable = raster->variable;
+        request->unit = raster->unit;
+        if (request->colors.empty()) return ReadResult(ReadResult::FILE_LOADED);
+        const ColorRampFile::Range range(raster->lowest, raster->highest);
+        request->table = SldColors::isSld(request->colors)
+                             ? SldColors::read(request->colors, error)
+                             : ColorRampFile::read(request->colors, range, error);
+        if (!request->table) return error;
         return ReadResult(ReadResult::FILE_LOADED);
     }
 

@@ -4,6 +4,7 @@
 // Wrappers of the mappings and of what they are made of.
 #include "Wrappers.h"
 
+#include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 
 #include <osg/Notify>
@@ -116,6 +117,7 @@ private:
 
 const TableWrapper tableWrapper;
 const Wrapper<DataLayer, addPicture> layerWrapper("osgGeoFX::DataLayer", "osg::Object osgGeoFX::DataLayer");
+const Wrapper<LayerClock> clockWrapper("osgGeoFX::LayerClock", "osg::Object osgGeoFX::LayerClock");
 const Wrapper<ColorTransfer> transferWrapper("osgGeoFX::ColorTransfer",
                                              "osg::Object osgGeoFX::ColorTransfer");
 const Wrapper<ProjectiveMapping, addMappingParts> mappingWrapper("osgGeoFX::ProjectiveMapping",

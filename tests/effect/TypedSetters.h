@@ -11,6 +11,7 @@
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/ground/GroundDetail.h>
+#include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
@@ -241,6 +242,13 @@ inline TypedSetters regionSetters()
     };
 }
 
+inline TypedSetters clockSetters()
+{
+    using Self = osgGeoFX::LayerClock;
+    using Range = Two<Self, &Self::setRange, &Self::getBegin, &Self::getEnd>;
+    return {{"begin", Range::first()}, {"end", Range::second()}};
+}
+
 inline TypedSetters libertySetters()
 {
     using Self = osgGeoFX::RegionalLiberty;
@@ -331,6 +339,7 @@ inline const TypedSetters& typedSetters(const std::string& kind)
             {"projectiveMappings", mappingsSetters()},
             {"projectiveMapping", mappingSetters()},
             {"dataLayer", layerSetters()},
+            {"layerClock", clockSetters()},
             {"colorTransfer", transferSetters()},
             {"regionalLiberty", libertySetters()},
             {"panoramaMap", panoramaSetters()},

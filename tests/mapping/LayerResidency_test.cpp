@@ -305,11 +305,21 @@ TEST_F(LayerResidencyTest, AnotherPictureIsUploadedWhereItHasRoom)
     show(makeLayer(quarter));
     update();
     const Place place = placeOfLayer(layer);
-    // In its place, and no record is the worse for it.
+    // The same picture is there already.
     layer->getImage()->dirty();
     MappingChanges told = update();
+    EXPECT_TRUE(told.uploads.layers.empty());
+    EXPECT_TRUE(told.repainted.empty());
+    // In its place, and no record is the worse for it.
+    *layer->getImage()->data(3, 20) = 7;
+    layer->getImage()->dirty();
+    told = update();
     ASSERT_EQ(told.uploads.layers.size(), 1u);
     EXPECT_EQ(placeOf(told.uploads.layers[0].slot), place);
+    ASSERT_TRUE(told.uploads.layers[0].rows);
+    EXPECT_EQ(told.uploads.layers[0].rows->first, 20);
+    EXPECT_EQ(told.uploads.layers[0].rows->end, 21);
+    EXPECT_EQ(told.repainted.count(user), 1u);
     EXPECT_TRUE(told.mappings.empty());
     // Of another size, in another place.
     resize(*layer->getImage(), quarter / 2);

@@ -4,6 +4,7 @@
 // <projectiveMappings> of the scene file: the parser alone, then with files and terrain through the plugin osgdb_geofx.
 #include <plugins/SceneFixture.h>
 
+#include <osgGeoFX/mapping/LayerSequence.h>
 #include <osgGeoFX/raster/LayerPixels.h>
 #include <tools/KmlFiles.h>
 #include <tools/TestRasters.h>
@@ -19,6 +20,7 @@
 #include <osgDB/WriteFile>
 
 #include <cmath>
+#include <filesystem>
 
 namespace
 {
@@ -191,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "<transfer>"},
         Mistake{"NoSuchMask", "<raster file='a' mask='c'/>", "3: <raster>: mask=\"c\" ", "<layer>"},
         Mistake{"Order", "<mapping/>\n<layer name='a' file='a'/>", "4: <layer>: this element is out of place",
-                "<raster>, <overlays>, <route>, in this order."},
+                "<raster>, <sequence>, <overlays>, <route>, in this order."},
         Mistake{"UnknownElement", "<decal/>", "3: <decal>: this element is not known in <projectiveMappings>",
                 "<mapping>"},
         Mistake{"UnknownAttribute", "<mapping centreX='2'/>",
@@ -579,6 +581,72 @@ TEST_F(SceneMappingsPlugin, MistakesAreNamedWithPlaceAndMend)
     expect(messageWith("<mapping longitude='1' latitude='2'/>"), "mapping", "no coordinate system");
     geofx::test::TestRaster(4, 4).placed(1.0, 2.0, 0.1, 0.1).crs("EPSG:4326").write(_folder / "r.tif");
     expect(messageWith("<raster file='r.tif'/>"), "raster", "the terrain has no coordinate system");
+}
+
+// Rasters in time are a mapping of the effect, whose layer follows a clock in the update traversal.
+TEST_F(SceneMappingsPlugin, SequencesFollowTheScenesClock)
+{
+    setTerrain(0);
+    std::filesystem::create_directory(_folder / "rain");
+    for (int step = 0; step < 3; ++step)
+    {
+        geofx::test::TestRaster raster(8, 8);
+        raster.placed(-158.0, 21.31, 0.001, 0.001).crs("EPSG:4326");
+        raster.fill([step](int, int, int) { return 10.0 * step; });
+        raster.write(_folder / "rain" / ("rain_20260112_0" + std::to_string(step) + "00.tif"));
+    }
+    auto* const effect = effectOf<ProjectiveMappings>(
+        sceneWith("<colorTable name='c' ready='viridis' low='0' high='20'/>"
+                  "<sequence file='rain' table='c' opacity='.5' order='3' speed='1800'/>"
+                  "<sequence name='greys' file='rain' blending='false'/>"));
+    ASSERT_TRUE(effect);
+    ASSERT_EQ(effect->getNumMappings(), 2u);
+    EXPECT_EQ(effect->getMapping(1)->getName(), "greys");
+    const ProjectiveMapping& mapping = *effect->getMapping(0);
+    EXPECT_EQ(mapping.getOpacity(), 0.5);
+    EXPECT_EQ(mapping.getOrder(), 3);
+    EXPECT_EQ(mapping.getTransfer()->getSource(), ColorTransfer::TABLE);
+    EXPECT_EQ(mapping.getTransfer()->getHighValue(), 20.0);
+    EXPECT_NEAR(effect->getLatitude(), osg::DegreesToRadians(21.306), 1e-6)
+        << "the origin is in their middle";
+    const auto value = [&](unsigned int index)
+    {
+        const osg::Image& image = *effect->getMapping(index)->getLayer()->getImage();
+        return *reinterpret_cast<const float*>(
+            image.data(static_cast<unsigned int>(image.s() / 2), static_cast<unsigned int>(image.t() / 2)));
+    };
+    EXPECT_EQ(value(0), 0.0f) << "there is a picture at once";
+    auto* const scene = dynamic_cast<osgGeoFX::EffectScene*>(_scene.get());
+    ASSERT_TRUE(scene);
+    osgGeoFX::LayerPlayer* const player = osgGeoFX::LayerPlayer::of(*scene);
+    ASSERT_TRUE(player);
+    ASSERT_EQ(player->getNumSequences(), 2u);
+    EXPECT_EQ(player->getClock()->text(player->getClock()->getEnd()), "2026-01-12 02:00 UTC");
+    for (unsigned int i = 0; i < 2; ++i)
+        player->getSequence(i)->setWaiting(true);
+    // Four halves of an hour.
+    player->update(0.0);
+    player->update(3.0);
+    EXPECT_FLOAT_EQ(value(0), 15.0f);
+    EXPECT_FLOAT_EQ(value(1), 10.0f);
+
+    const auto expectFault = [&](const std::string& inside, const std::string& word)
+    {
+        const std::string message = messageOf(_folder.write("x.geofx", sceneWith(inside)));
+        EXPECT_NE(message.find(word), std::string::npos) << message;
+    };
+    expectFault("<sequence file='none'/>", "none");
+    expectFault("<sequence file='rain' variable='snow'/>", "no variables");
+    std::filesystem::create_directory(_folder / "empty");
+    expectFault("<sequence file='empty'/>", "no rasters");
+    expectFault("<sequence file='../rain'/>", "leads out of the scene's folder");
+    _folder.write(
+        "rain/rain_20260112_0500.vrt",
+        "<VRTDataset rasterXSize='8' rasterYSize='8'><VRTRasterBand dataType='Float32' "
+        "band='1'><SimpleSource>"
+        "<SourceFilename relativeToVRT='1'>../../outside.tif</SourceFilename></SimpleSource></VRTRasterBand>"
+        "</VRTDataset>");
+    expectFault("<sequence file='rain'/>", "lies outside the scene's folder");
 }
 
 // Ground overlays and ways of files, and a way of way points, are mappings of the effect, where GeographicLib has their places.

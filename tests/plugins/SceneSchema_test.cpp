@@ -294,11 +294,13 @@ TEST_F(SceneSchema, HasThePropertiesOfWhatEffectsAreMadeOf)
     }
 }
 
-/// The classes that elements are of. Surface data is not: an element says its place by its edges or its files.
+/// The classes that elements are of. Surface data is not: an element says its place by its edges or its files. Nor is a clock: all
+/// sequences of a scene share one.
 std::vector<std::string> elementKinds()
 {
     std::vector<std::string> kinds = osgGeoFX::propertyHolderKinds();
-    kinds.erase(std::remove(kinds.begin(), kinds.end(), "surfaceData"), kinds.end());
+    for (const char* none : {"surfaceData", "layerClock"})
+        kinds.erase(std::remove(kinds.begin(), kinds.end(), none), kinds.end());
     return kinds;
 }
 

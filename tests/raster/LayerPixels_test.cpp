@@ -553,6 +553,68 @@ std::string refusal(const osg::Image& image, const Options& options = {})
     return error;
 }
 
+TEST(LayerPixels, RemakesWhatHasChanged)
+{
+    Random random(31);
+    std::string error;
+    for (int i = 0; i < 60; ++i)
+    {
+        const int width = random.integer(1, 70), height = random.integer(1, 70);
+        Options options;
+        options.kind = static_cast<Kind>(i % 3);
+        const bool colors = options.kind == Kind::Color;
+        const osg::ref_ptr<osg::Image> image = new osg::Image;
+        image->allocateImage(width, height, 1, colors ? GL_RGBA : GL_RED,
+                             colors ? GL_UNSIGNED_BYTE : GL_FLOAT);
+        const auto paint = [&](int x, int y)
+        {
+            unsigned char* texel = image->data(x, y);
+            if (!colors)
+                *reinterpret_cast<float*>(texel) = static_cast<float>(random.integer(0, 5));
+            else
+                for (int c = 0; c < 4; ++c)
+                    texel[c] = static_cast<unsigned char>(random.integer(0, 255));
+        };
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                paint(x, y);
+        std::optional<LayerPixels> pixels = LayerPixels::make(*image, options, error);
+        ASSERT_TRUE(pixels) << error;
+        for (int change = 0; change < 4; ++change)
+        {
+            const std::vector<Texel> before = pixels->levels[0];
+            const int from = random.integer(0, height - 1), to = random.integer(from, height - 1);
+            for (int y = from; y <= to; ++y)
+                paint(random.integer(0, width - 1), y);
+            LayerPixels::Rows rows;
+            pixels = LayerPixels::remake(*image, options, *pixels, rows, error);
+            ASSERT_TRUE(pixels) << error;
+            const std::optional<LayerPixels> anew = LayerPixels::make(*image, options, error);
+            ASSERT_EQ(pixels->levels, anew->levels);
+            // All rows that differ, and no others beside them.
+            const auto side = static_cast<std::size_t>(pixels->side);
+            for (int y = 0; y < pixels->side; ++y)
+            {
+                const auto at = static_cast<std::ptrdiff_t>(y * side);
+                const bool same = std::equal(before.begin() + at, before.begin() + at + pixels->side,
+                                             pixels->levels[0].begin() + at);
+                const bool within = y >= rows.first && y < rows.end;
+                EXPECT_TRUE(within || same) << y;
+                EXPECT_FALSE(same && y == rows.first && rows.end > rows.first);
+            }
+            EXPECT_LE(rows.end, to + 1 == height ? pixels->side : to + 1);
+        }
+        LayerPixels::Rows rows{3, 9};
+        ASSERT_TRUE(LayerPixels::remake(*image, options, *pixels, rows, error));
+        EXPECT_EQ(rows.first, rows.end) << "nothing has changed";
+        options.maxSide = 4;
+        const std::optional<LayerPixels> reduced = LayerPixels::remake(*image, options, *pixels, rows, error);
+        ASSERT_TRUE(reduced);
+        EXPECT_EQ(reduced->levels, LayerPixels::make(*image, options, error)->levels);
+        EXPECT_TRUE(std::max(width, height) <= 4 || rows.end == reduced->side) << "all of it";
+    }
+}
+
 TEST(LayerPixels, RefusesWithASentence)
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;

@@ -111,7 +111,7 @@ VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file)
 }
 
 FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed,
-                         Formats formats)
+                         Formats formats, int overview)
     : _file(std::move(file))
 {
     static const char* const plainPictures[] = {"PNG", "JPEG", "GIF",         "GTiff",
@@ -125,7 +125,12 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
                                               plainPictures, nullptr, without.siblings()));
     }
     else
-        _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
+    {
+        CPLStringList options;
+        if (overview >= 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(overview).c_str());
+        _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr,
+                                              options.List()));
+    }
     if (!_chain.back() && formats == PLAIN_PICTURES)
         fail("it is not there, or no PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000 (" + errors.message() +
              "); correct its name, or convert it to PNG");
@@ -135,6 +140,18 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
     // A TIFF has metadata in itself.
     if (formats == PLAIN_PICTURES && top().GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS"))
         fail("it names another file as its overviews; convert it to PNG");
+    prepare(wanted, placed);
+}
+
+FrameRaster::FrameRaster(std::string file, std::vector<DatasetPtr> chain,
+                         std::optional<DataLayer::Kind> wanted)
+    : _file(std::move(file)), _chain(std::move(chain))
+{
+    prepare(wanted, true);
+}
+
+void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
+{
     if (top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
     checkSize();
@@ -182,6 +199,46 @@ void FrameRaster::checkSize() const
     fail("it says that it has " + std::to_string(top().GetRasterXSize()) + " × " +
          std::to_string(top().GetRasterYSize()) + " pixels, which a " + format +
          " cannot be read in parts of; convert it to a tiled GeoTIFF, or give it overviews with gdaladdo");
+}
+
+std::vector<double> FrameRaster::overviews() const
+{
+    std::vector<double> factors;
+    GDALRasterBand* const band = _chain.front()->GetRasterBand(1);
+    for (int i = 0; i < band->GetOverviewCount(); ++i)
+    {
+        GDALRasterBand* const overview = band->GetOverview(i);
+        factors.push_back(overview ? static_cast<double>(band->GetXSize()) / std::max(1, overview->GetXSize())
+                                   : 1.0);
+    }
+    return factors;
+}
+
+int FrameRaster::overviewFor(double pixels) const
+{
+    const std::vector<double> factors = overviews();
+    int best = -1;
+    double coarsest = 1.0;
+    for (std::size_t i = 0; i < factors.size(); ++i)
+    {
+        constexpr double slack = 1.05; // sides are rounded to whole pixels
+        if (factors[i] <= coarsest || factors[i] > slack * pixels) continue;
+        coarsest = factors[i];
+        best = static_cast<int>(i);
+    }
+    return best;
+}
+
+void FrameRaster::checkOverviews() const
+{
+    constexpr double mostPixels = 8192.0 * 8192.0;
+    double coarsest = 1.0;
+    for (const double factor : overviews())
+        coarsest = std::max(coarsest, factor);
+    if (size().x() * size().y() > mostPixels * coarsest * coarsest)
+        fail("it has no overviews that are small enough, so that a picture of all of it would take all of "
+             "its pixels; make them with gdaladdo -r average \"" +
+             _file + "\" 4 16 64 256");
 }
 
 FrameRaster::~FrameRaster()

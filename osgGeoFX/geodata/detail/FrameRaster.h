@@ -54,9 +54,12 @@ public:
         ANY_FORMAT,
         PLAIN_PICTURES ///< formats that hold all of a picture themselves: PNG, JPEG, GIF, TIFF, BMP, WebP, JPEG 2000
     };
-    /// `placed`: whether it needs a georeference, which all but picture() go by.
+    /// `placed`: whether it needs a georeference, which all but picture() go by. `overview`: the index of the overview that is
+    /// taken for the raster; -1 for the raster itself.
     FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed = true,
-                Formats formats = ANY_FORMAT);
+                Formats formats = ANY_FORMAT, int overview = -1);
+    /// The same of datasets that are open, each above the one before it; `file` is for messages.
+    FrameRaster(std::string file, std::vector<DatasetPtr> chain, std::optional<DataLayer::Kind> wanted);
     ~FrameRaster();
     FrameRaster(const FrameRaster&) = delete;
     FrameRaster& operator=(const FrameRaster&) = delete;
@@ -66,6 +69,13 @@ public:
     double offset = 0.0;
 
     [[noreturn]] void fail(const std::string& what) const;
+    /// How many pixels of the file along a side are one of each of its overviews, in the file's order. (Virtual datasets on top of
+    /// a file hide them where it has a mask.)
+    std::vector<double> overviews() const;
+    /// The coarsest overview that is fine enough where so many of the raster's pixels along a side are a texel; -1 for the raster itself.
+    int overviewFor(double pixels) const;
+    /// Fails where a coarse picture of all of it takes more pixels than can be read at once.
+    void checkOverviews() const;
 
     /// What the raster covers, from edge to edge of its outermost pixels, and the size of a texel that keeps its
     /// resolution; in the CRS's unit.
@@ -106,6 +116,7 @@ private:
     GDALDataset& top() const { return *_chain.back(); }
     GDALRasterBand& band() const { return *top().GetRasterBand(1); }
     [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
+    void prepare(std::optional<DataLayer::Kind> wanted, bool placed);
     void checkPlace() const;
     void checkSize() const;
     void readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const;

@@ -148,11 +148,14 @@ bool CameraPages::plan(const ScenePass& pass, PageResidency::Frame& frame)
     _task->gpu->withIndex(
         [&](const MappingIndex& index)
         {
-            PageView view(index, pass, _task->plane);
+            const MappingIndex::Root& root = index.root();
+            PageView view(
+                {root.origin, root.origin + osg::Vec2d(root.size, root.size)},
+                [&index](const PlaneBox& box) { return index.empty(box.low, box.high); }, pass, _task->plane);
             const std::vector<SeenGround> seen = view.groundBelow(_watch.boxes());
             why = obstacle(pass, seen, view.beyond());
             if (!why) cut = _cut.make(seen, view, static_cast<std::size_t>(_residency->slots()));
-            blank = index.root().origin - osg::Vec2d(index.root().size, index.root().size);
+            blank = root.origin - osg::Vec2d(root.size, root.size);
         });
     if (!why && !cut) why = "the picture needs more pages than there is memory for";
     if (why)

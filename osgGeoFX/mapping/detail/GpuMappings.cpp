@@ -35,10 +35,23 @@ void GpuMappings::add(ProjectiveMapping& mapping)
 void GpuMappings::remove(ProjectiveMapping& mapping)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
+    drop(mapping);
+}
+
+void GpuMappings::drop(ProjectiveMapping& mapping)
+{
     MappingRecords::Sources* sources = _records.sources(mapping);
     if (!sources) return;
     use(mapping, {}, *sources);
     _records.remove(mapping);
+}
+
+void GpuMappings::setParts(ProjectiveMapping& whole, const Parts& added, const Parts& removed)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (const osg::ref_ptr<ProjectiveMapping>& part : added)
+        _records.addPart(*part, whole);
+    _leaving.insert(_leaving.end(), removed.begin(), removed.end());
 }
 
 void GpuMappings::clear()
@@ -47,6 +60,7 @@ void GpuMappings::clear()
     _records.each([this](ProjectiveMapping& mapping, MappingRecords::Sources& sources)
                   { use(mapping, {}, sources); });
     _records.clear();
+    _leaving.clear();
 }
 
 void GpuMappings::change(ProjectiveMapping& mapping)
@@ -77,6 +91,8 @@ void GpuMappings::reset(Settings settings)
         if (!settings.sameFrame(_settings)) _records.changeAll();
         if (settings.sameRoom(_settings))
         {
+            if (settings.reservedPages > _settings.reservedPages)
+                _store->reserve(std::min(settings.reservedPages, settings.maxPages));
             _settings = settings;
             return;
         }
@@ -96,6 +112,7 @@ void GpuMappings::reset(Settings settings)
         _changes.uploads = {};
     }
     _records.arena().setLimit(static_cast<std::uint32_t>(settings.maxTexels));
+    _store->reserve(std::min(settings.reservedPages, settings.maxPages));
 }
 
 void GpuMappings::warnOfLimits()
@@ -130,6 +147,9 @@ GpuMappings::Frame GpuMappings::commit(const Settings& settings, const PositionO
     reset(settings);
     for (ProjectiveMapping* mapping : _changes.mappings)
         use(*mapping, sourcesOf(*mapping), *_records.sources(*mapping));
+    for (const osg::ref_ptr<ProjectiveMapping>& part : _leaving)
+        drop(*part);
+    _leaving.clear();
     _layers.update();
     _tables.update();
     _records.update(positionOf);

@@ -23,6 +23,7 @@ struct MappingSettings
     int pageSide = 0;
     int maxPages = 0;
     int maxTexels = 0;
+    int reservedPages = 0; ///< to have from the beginning, since more of them take a while
     /// The origin on a globe, on which positions depend; 0 on a plane.
     double longitude = 0.0;
     double latitude = 0.0;
@@ -53,6 +54,9 @@ public:
     void remove(ProjectiveMapping& mapping);
     void clear();
     void change(ProjectiveMapping& mapping);
+    /// Replaces parts of a mapping (MappingRecords::addPart()). Layers that both have keep their places.
+    using Parts = std::vector<osg::ref_ptr<ProjectiveMapping>>;
+    void setParts(ProjectiveMapping& whole, const Parts& added, const Parts& removed);
 
     /// All that a frame is drawn with, as it was at one time.
     struct Frame
@@ -88,6 +92,7 @@ private:
     void reset(Settings settings);
     void use(ProjectiveMapping& mapping, const MappingRecords::Sources& next,
              MappingRecords::Sources& former);
+    void drop(ProjectiveMapping& mapping);
     void warnOfLimits();
 
     mutable std::mutex _mutex;
@@ -96,6 +101,7 @@ private:
     LayerResidency _layers{_changes};
     TableRows _tables{_changes};
     MappingRecords _records{_changes, _layers, _tables};
+    Parts _leaving;                ///< until the next commit
     osg::ref_ptr<GpuStore> _store; ///< null before the first commit
     bool _warnedMappings = false;
     bool _warnedLayers = false;

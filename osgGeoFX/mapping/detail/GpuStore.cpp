@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/detail/GpuStore.h>
 
+#include <osgGeoFX/mapping/detail/SlotCopy.h>
+
 #include <osg/ContextData>
 #include <osg/GLExtensions>
 #include <osg/GLObjects>
@@ -105,6 +107,8 @@ std::uint64_t GpuStore::commit(TexelArena& arena, Commit changes)
         if (layer.pixels)
         {
             _layers[key] = layer;
+            _layers[key].rows.reset();
+            // All of it is kept, whatever part of it is uploaded.
             entry.bytes += 4 * layer.pixels->levels[0].size() * 4 / 3;
             _pages = std::max(_pages, powerOfTwo(layer.slot.page + 1));
         }
@@ -128,6 +132,12 @@ std::uint64_t GpuStore::commit(TexelArena& arena, Commit changes)
         _journal.pop_front();
     }
     return _number;
+}
+
+void GpuStore::reserve(int pages)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _pages = std::max(_pages, powerOfTwo(pages));
 }
 
 GpuStore::Limits GpuStore::limits() const
@@ -176,14 +186,18 @@ void GpuStore::uploadLayers(const Context& context, osg::State& state, const std
     for (const Layer& layer : layers)
     {
         if (!layer.pixels || layer.slot.page >= context.pages) continue;
+        LayerPixels::Rows rows = layer.rows.value_or(LayerPixels::Rows{0, layer.slot.side});
         for (std::size_t level = 0; level < layer.pixels->levels.size(); ++level)
         {
             const auto shift = static_cast<int>(level);
             const int side = layer.slot.side >> shift;
-            gl->glTexSubImage3D(texture2DArray, shift, layer.slot.x >> shift, layer.slot.y >> shift,
-                                layer.slot.page, side, side, 1, GL_RGBA, reversedBytes,
-                                layer.pixels->levels[level].data());
-            _uploaded += 4u * static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side);
+            const int count = rows.end - rows.first;
+            gl->glTexSubImage3D(
+                texture2DArray, shift, layer.slot.x >> shift, (layer.slot.y >> shift) + rows.first,
+                layer.slot.page, side, count, 1, GL_RGBA, reversedBytes,
+                layer.pixels->levels[level].data() + static_cast<std::ptrdiff_t>(rows.first) * side);
+            _uploaded += 4u * static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(count);
+            rows = {rows.first / 2, (rows.end + 1) / 2};
         }
     }
 }
@@ -289,6 +303,26 @@ void GpuStore::update(Context& context, osg::State& state, std::uint64_t upTo)
     state.get<osg::GLExtensions>()->glBindBuffer(textureBuffer, 0);
 }
 
+/// Once in each frame.
+void GpuStore::copyTextures(Context& context, osg::State& state)
+{
+    const osg::FrameStamp* stamp = state.getFrameStamp();
+    const unsigned int frame = stamp ? stamp->getFrameNumber() : 0;
+    if (stamp && context.copied == frame) return;
+    context.copied = frame;
+    std::optional<SlotCopy> copy;
+    for (const auto& [key, layer] : _layers)
+    {
+        const osg::Texture* texture = layer.texture;
+        if (!texture || layer.slot.page >= context.pages) continue;
+        // What this context has not drawn yet has nothing to copy.
+        const osg::Texture::TextureObject* object = texture->getTextureObject(state.getContextID());
+        if (!object) continue;
+        if (!copy) copy.emplace(*state.get<osg::GLExtensions>());
+        copy->copy(object->id(), layer.pixels->width, layer.pixels->height, context.layers, layer.slot);
+    }
+}
+
 void GpuStore::bind(Part part, osg::State& state, std::uint64_t upTo)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
@@ -302,6 +336,7 @@ void GpuStore::bind(Part part, osg::State& state, std::uint64_t upTo)
         glBindTexture(textureBuffer, context.data);
         break;
     case Part::Layers:
+        copyTextures(context, state);
         glBindTexture(texture2DArray, context.layers);
         break;
     case Part::Tables:

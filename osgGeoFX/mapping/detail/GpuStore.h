@@ -9,6 +9,7 @@
 #include <osg/Referenced>
 #include <osg/State>
 #include <osg/StateAttribute>
+#include <osg/Texture2D>
 #include <osg/observer_ptr>
 
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace osgGeoFX
@@ -43,6 +45,10 @@ public:
     {
         LayerAtlas::Slot slot;
         std::shared_ptr<const LayerPixels> pixels; ///< null: the slot is free
+        /// Of level 0, those that differ from what was in the slot before; nothing for all.
+        std::optional<LayerPixels::Rows> rows = std::nullopt;
+        /// What each frame copies over the pixels; null for none.
+        osg::ref_ptr<osg::Texture2D> texture = nullptr;
     };
     struct Table
     {
@@ -56,6 +62,8 @@ public:
     };
     /// Takes over the arena's changes and these. The result is the number for the frame to cull.
     std::uint64_t commit(TexelArena& arena, Commit changes);
+    /// So many pages are there from a context's next upload of all on, or from the next time it needs more.
+    void reserve(int pages);
 
     /// The limits of the GPU; 0 before it has drawn anything.
     struct Limits
@@ -106,6 +114,8 @@ private:
         unsigned int buffer = 0, data = 0, layers = 0, tables = 0;
         int pages = 0;
         int rows = 0;
+        /// The number of the frame that textures were copied for last.
+        std::optional<unsigned int> copied;
     };
     using SlotKey = std::pair<int, std::pair<int, int>>;
 
@@ -115,6 +125,7 @@ private:
     void uploadTexels(Context& context, osg::State& state, const Texels& texels);
     void uploadLayers(const Context& context, osg::State& state, const std::vector<Layer>& layers);
     void uploadAllLayers(Context& context, osg::State& state);
+    void copyTextures(Context& context, osg::State& state);
     void uploadTable(const Table& table);
     void uploadAllTables(Context& context);
     void askLimits();

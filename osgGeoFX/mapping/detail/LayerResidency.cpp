@@ -34,6 +34,7 @@ void LayerResidency::reset(int pageSide, int maxPages)
     for (auto& [data, layer] : _layers)
     {
         layer.placed.reset();
+        layer.pixels.reset();
         layer.seen = false;
     }
     _pageSide = pageSide;
@@ -89,20 +90,21 @@ void LayerResidency::update()
         if (!isStale(*layer)) continue;
         const DataLayer& data = *layer->data;
         const bool differs = layer->revision != data.revision();
-        const bool moved = updateLayer(*layer);
-        if (moved || differs || !layer->seen)
+        const Outcome outcome = updateLayer(*layer);
+        if (outcome.moved || differs || !layer->seen)
             _changes.mappings.insert(layer->users.begin(), layer->users.end());
-        _changes.repainted.insert(layer->users.begin(), layer->users.end());
+        if (outcome.painted || differs) _changes.repainted.insert(layer->users.begin(), layer->users.end());
         layer->seen = true;
         layer->revision = data.revision();
         layer->imageCount = imageCountOf(data);
     }
 }
 
-/// Whether the layer has moved.
-bool LayerResidency::updateLayer(Layer& layer)
+LayerResidency::Outcome LayerResidency::updateLayer(Layer& layer)
 {
-    const std::shared_ptr<LayerPixels> pixels = pixelsOf(layer);
+    Outcome outcome;
+    LayerPixels::Rows changed;
+    const std::shared_ptr<const LayerPixels> pixels = pixelsOf(layer, changed);
     const std::optional<PlacedLayer> former = layer.placed;
     if (layer.placed && (!pixels || pixels->side != layer.placed->slot.side)) unplace(layer);
     if (pixels && !layer.placed)
@@ -117,15 +119,56 @@ bool LayerResidency::updateLayer(Layer& layer)
     {
         layer.placed->width = pixels->width;
         layer.placed->height = pixels->height;
-        _changes.uploads.layers.push_back({layer.placed->slot, pixels});
+        GpuStore::Layer upload{layer.placed->slot, pixels};
+        // What lies in another place, or nowhere yet, is not there at all.
+        if (isSame(former, layer.placed)) upload.rows = changed;
+        upload.texture = layer.data->getTexture();
+        const bool same = upload.rows && upload.rows->first == upload.rows->end && !upload.texture;
+        if (!same) _changes.uploads.layers.push_back(upload);
+        outcome.painted = !same;
     }
-    return !isSame(former, layer.placed);
+    layer.pixels = layer.placed ? pixels : nullptr;
+    outcome.moved = !isSame(former, layer.placed);
+    outcome.painted = outcome.painted || outcome.moved;
+    return outcome;
 }
 
-/// Null for a layer without a picture, and for one that cannot be drawn.
-std::shared_ptr<LayerPixels> LayerResidency::pixelsOf(const Layer& layer) const
+/// Transparent, of a texture's size: what shows until it is copied. Null for one that cannot be.
+std::shared_ptr<const LayerPixels> LayerResidency::blankOf(const Layer& layer) const
 {
     const DataLayer& data = *layer.data;
+    const int width = data.getTexture()->getTextureWidth(), height = data.getTexture()->getTextureHeight();
+    std::string fault;
+    if (data.getKind() != DataLayer::COLOR)
+        fault = "a texture has colors, not values; set its kind to COLOR.";
+    if (width < 1 || height < 1) fault = "its texture has no size; call setTextureSize().";
+    if (std::max(width, height) > _pageSide)
+        fault = "its texture is larger than pages of " + std::to_string(_pageSide) +
+                "; raise ProjectiveMappings' pageSide.";
+    if (!fault.empty())
+    {
+        if (!layer.seen || layer.revision != data.revision())
+            OSG_WARN << "osgGeoFX: DataLayer \"" << data.getName() << "\": " << fault << " It is not drawn."
+                     << std::endl;
+        return nullptr;
+    }
+    auto pixels = std::make_shared<LayerPixels>();
+    pixels->width = width;
+    pixels->height = height;
+    pixels->side = 1;
+    while (pixels->side < std::max(width, height))
+        pixels->side *= 2;
+    for (auto side = static_cast<std::size_t>(pixels->side); side > 0; side /= 2)
+        pixels->levels.emplace_back(side * side);
+    return pixels;
+}
+
+/// Null for a layer without a picture, and for one that cannot be drawn. `changed`: the rows that differ from the former ones.
+std::shared_ptr<const LayerPixels> LayerResidency::pixelsOf(const Layer& layer,
+                                                            LayerPixels::Rows& changed) const
+{
+    const DataLayer& data = *layer.data;
+    if (data.getTexture()) return blankOf(layer);
     const osg::Image* image = data.getImage();
     if (!image || image->s() <= 0) return nullptr;
     LayerPixels::Options options;
@@ -134,7 +177,12 @@ std::shared_ptr<LayerPixels> LayerResidency::pixelsOf(const Layer& layer) const
     if (data.getHasNoData()) options.noData = data.getNoData();
     options.maxSide = _pageSide;
     std::string error;
-    std::optional<LayerPixels> made = LayerPixels::make(*image, options, error);
+    // Of an image that changes again and again most is often the same.
+    const bool live = layer.pixels && layer.revision == data.revision();
+    std::optional<LayerPixels> made =
+        live ? LayerPixels::remake(*image, options, *layer.pixels, changed, error)
+             : LayerPixels::make(*image, options, error);
+    if (made && !live) changed = {0, made->side};
     if (!made)
     {
         OSG_WARN << "osgGeoFX: DataLayer \"" << data.getName() << "\": " << error << " It is not drawn."
@@ -181,6 +229,7 @@ void LayerResidency::unplace(Layer& layer)
     _atlas.release(layer.placed->slot);
     _changes.uploads.layers.push_back({layer.placed->slot, nullptr});
     layer.placed.reset();
+    layer.pixels.reset();
     _changes.roomMade = true;
 }
 

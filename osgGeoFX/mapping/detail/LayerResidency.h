@@ -58,13 +58,20 @@ private:
         unsigned int revision = 0;
         unsigned int imageCount = 0;
         std::optional<PlacedLayer> placed;
+        std::shared_ptr<const LayerPixels> pixels; ///< as they were uploaded
         bool leftOut = false;
     };
 
     void leave(DataLayer* data, ProjectiveMapping& user);
     bool isStale(const Layer& layer) const;
-    bool updateLayer(Layer& layer);
-    std::shared_ptr<LayerPixels> pixelsOf(const Layer& layer) const;
+    struct Outcome
+    {
+        bool moved = false;
+        bool painted = false; ///< its texels are others, or elsewhere
+    };
+    Outcome updateLayer(Layer& layer);
+    std::shared_ptr<const LayerPixels> pixelsOf(const Layer& layer, LayerPixels::Rows& changed) const;
+    std::shared_ptr<const LayerPixels> blankOf(const Layer& layer) const;
     std::optional<LayerAtlas::Slot> findRoom(int side, const DataLayer& data);
     bool makeRoomFor(const DataLayer& data);
     void unplace(Layer& layer);

@@ -12,6 +12,8 @@ namespace
 
 /// With so many changes at once, the whole grid is made anew.
 constexpr std::size_t bulk = 2000;
+/// Numbers between one mapping and the next, for the parts of the first.
+constexpr std::uint64_t mostParts = 1u << 14u;
 
 bool needsLayer(const ProjectiveMapping& mapping)
 {
@@ -42,8 +44,31 @@ void MappingRecords::add(ProjectiveMapping& mapping)
 {
     Item& item = _items[&mapping];
     item.mapping = &mapping;
-    item.sequence = ++_sequence;
+    item.sequence = _sequence += mostParts;
     _changes.mappings.insert(&mapping);
+}
+
+bool MappingRecords::addPart(ProjectiveMapping& part, ProjectiveMapping& whole)
+{
+    const auto found = _items.find(&whole);
+    if (found == _items.end() || found->second.parts.size() + 1 >= mostParts) return false;
+    Item& owner = found->second;
+    std::uint64_t number = 1;
+    for (const std::uint64_t taken : owner.parts)
+    {
+        if (taken != number) break;
+        ++number;
+    }
+    if (owner.parts.empty()) _changes.mappings.insert(&whole);
+    owner.parts.insert(number);
+    const std::uint64_t sequence = owner.sequence + number;
+    // The reference above may be invalid from here on.
+    Item& item = _items[&part];
+    item.mapping = &part;
+    item.sequence = sequence;
+    item.whole = &whole;
+    _changes.mappings.insert(&part);
+    return true;
 }
 
 void MappingRecords::remove(ProjectiveMapping& mapping)
@@ -52,6 +77,12 @@ void MappingRecords::remove(ProjectiveMapping& mapping)
     if (found == _items.end()) return;
     takeOff(found->second);
     if (found->second.leftOut) --_leftOut;
+    const auto owner = _items.find(found->second.whole);
+    if (found->second.whole && owner != _items.end())
+    {
+        owner->second.parts.erase(found->second.sequence - owner->second.sequence);
+        if (owner->second.parts.empty()) _changes.mappings.insert(found->second.whole);
+    }
     _changes.mappings.erase(&mapping);
     _items.erase(found);
 }
@@ -110,6 +141,7 @@ bool MappingRecords::isReady(const Item& item) const
 {
     const ProjectiveMapping& mapping = *item.mapping;
     const LayerResidency::Pair& layers = item.sources.layers;
+    if (!item.parts.empty()) return false; // which show in its place
     if (!mapping.getEnabled() || mapping.getOpacity() <= 0.0 || mapping.getChannels() == 0) return false;
     if ((needsLayer(mapping) || mapping.getLayer()) && !_layers.placed(layers.layer)) return false;
     if (mapping.getTransfer()->getSource() == ColorTransfer::TABLE && !mapping.getTable()) return false;

@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -42,6 +43,10 @@ public:
     MappingRecords(MappingChanges& changes, const LayerResidency& layers, const TableRows& tables);
 
     void add(ProjectiveMapping& mapping);
+    /// Adds a mapping that is drawn in the place of another one, which was added; with others, in no order. The other one shows
+    /// again when the last of its parts is removed. False if it has too many.
+    bool addPart(ProjectiveMapping& part, ProjectiveMapping& whole);
+    /// A mapping must have no parts any more.
     void remove(ProjectiveMapping& mapping);
     void clear();
     std::size_t count() const { return _items.size(); }
@@ -91,6 +96,8 @@ private:
         std::uint32_t record = 0; ///< 0: not on the GPU
         std::uint32_t texels = 0;
         Sources sources;
+        ProjectiveMapping* whole = nullptr; ///< of which it is a part
+        std::set<std::uint64_t> parts;      ///< their numbers
         bool leftOut = false;
         bool noted = false; ///< whether the next three are known, and counted
         PageKind kind = PageKind::Page;

@@ -10,6 +10,12 @@ namespace osgGeoFX
 namespace
 {
 
+/// Whether it shows what another pass draws, in each frame anew.
+bool isLive(const DataLayer* layer)
+{
+    return layer && layer->getTexture();
+}
+
 /// Whether it is the same from wherever it is seen, at any height and slope.
 bool dependsOnPlaceAlone(const ProjectiveMapping& mapping)
 {
@@ -28,6 +34,7 @@ PageKind pageKindOf(const ProjectiveMapping& mapping)
     const bool mixes = transfer.getSourceFactor() == ColorTransfer::SOURCE_ALPHA &&
                        transfer.getDestinationFactor() == ColorTransfer::ONE_MINUS_SOURCE_ALPHA &&
                        transfer.getEquation() == ColorTransfer::ADD;
+    if (isLive(mapping.getLayer()) || isLive(mapping.getMask())) return PageKind::Exact;
     if (!mixes || !dependsOnPlaceAlone(mapping)) return PageKind::Exact;
     if (transfer.getSource() != ColorTransfer::SCENE) return PageKind::Page;
     const bool alike = !mapping.getLayer() && (transfer.getAlpha() == ColorTransfer::OPAQUE ||

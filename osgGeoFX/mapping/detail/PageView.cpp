@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -37,8 +38,8 @@ osg::Drawable* PageWatch::companion(osg::Drawable& drawable, const osg::Matrixd&
     return nullptr;
 }
 
-PageView::PageView(const MappingIndex& index, const ScenePass& pass, const PageFrame& frame)
-    : _index(index), _pass(pass), _frame(frame)
+PageView::PageView(const PlaneBox& mapped, IsEmpty isEmpty, const ScenePass& pass, const PageFrame& frame)
+    : _mapped(mapped), _isEmpty(std::move(isEmpty)), _pass(pass), _frame(frame)
 {
     const ViewGeometry::Image& image = pass.view.image;
     Visibility::Camera camera;
@@ -57,8 +58,6 @@ PageView::PageView(const MappingIndex& index, const ScenePass& pass, const PageF
 
 std::vector<SeenGround> PageView::groundBelow(const std::vector<EyeBox>& boxes)
 {
-    const MappingIndex::Root& root = _index.root();
-    const PlaneBox mapped{root.origin, root.origin + osg::Vec2d(root.size, root.size)};
     std::vector<SeenGround> seen;
     std::vector<osg::Vec3d> corners;
     for (const EyeBox& box : boxes)
@@ -84,8 +83,8 @@ std::vector<SeenGround> PageView::groundBelow(const std::vector<EyeBox>& boxes)
             }
         }
         const PlaneBox whole = {{low.x(), low.y()}, {high.x(), high.y()}};
-        const PlaneBox plane = whole.within(mapped);
-        _beyond = _beyond || !mapped.contains(whole);
+        const PlaneBox plane = whole.within(_mapped);
+        _beyond = _beyond || !_mapped.contains(whole);
         if (!plane.empty()) seen.push_back({plane, low.z(), high.z()});
     }
     return seen;

@@ -4,7 +4,6 @@
 
 #include <osgGeoFX/effect/DrawableCompanion.h>
 #include <osgGeoFX/effect/ScenePass.h>
-#include <osgGeoFX/mapping/detail/MappingIndex.h>
 #include <osgGeoFX/mapping/detail/PageCut.h>
 #include <osgGeoFX/scene/detail/Visibility.h>
 
@@ -54,18 +53,20 @@ private:
     bool _boundless = false;
 };
 
-/// What a camera sees of the plane. For one thread at a time; the index must not change.
+/// What a camera sees of a part of the plane. For one thread at a time.
 class PageView final : public PageSight
 {
 public:
-    PageView(const MappingIndex& index, const ScenePass& pass, const PageFrame& frame);
+    /// `mapped`: beyond it nothing lies. `isEmpty`: whether nothing lies on a part of it.
+    using IsEmpty = std::function<bool(const PlaneBox& box)>;
+    PageView(const PlaneBox& mapped, IsEmpty isEmpty, const ScenePass& pass, const PageFrame& frame);
 
-    /// The ground below the boxes, as far as mappings may lie there.
+    /// The ground below the boxes, as far as something may lie there.
     std::vector<SeenGround> groundBelow(const std::vector<EyeBox>& boxes);
-    /// Whether groundBelow() has met what reaches beyond all mappings.
+    /// Whether groundBelow() has met what reaches beyond that.
     bool beyond() const { return _beyond; }
 
-    bool empty(const PlaneBox& box) override { return _index.empty(box.low, box.high); }
+    bool empty(const PlaneBox& box) override { return _isEmpty(box); }
     bool shows(const SeenGround& ground) override;
     double texel(const SeenGround& ground) override;
 
@@ -74,7 +75,8 @@ private:
     void bound(const SeenGround& ground, osg::Vec3d& low, osg::Vec3d& high) const;
     EyeBox eyeBox(const osg::Vec3d& low, const osg::Vec3d& high) const;
 
-    const MappingIndex& _index;
+    const PlaneBox _mapped;
+    const IsEmpty _isEmpty;
     const ScenePass& _pass;
     const PageFrame& _frame;
     Visibility _visibility;

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/geodata/SequenceRaster.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/detail/TimeSteps.h>
+
+#include <osg/Math>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// So many steps are looked at for the range of values.
+constexpr std::size_t looks = 8;
+
+class Steps final : public SequenceSteps
+{
+public:
+    Steps(std::unique_ptr<TimeSteps> steps, FrameCrs crs, const SequenceRaster::Options& options)
+        : _steps(std::move(steps)), _crs(std::move(crs))
+    {
+        const std::unique_ptr<FrameRaster> first = _steps->step(0);
+        _kind = first->kind;
+        extent = first->extent(_crs);
+        const osg::Vec2d size = extent.high - extent.low;
+        const double texel = std::max(extent.texel, std::max(size.x(), size.y()) / options.maxSide);
+        const auto texels = [&](double length)
+        {
+            return std::clamp(static_cast<int>(std::lround(length / texel)), 1, options.maxSide);
+        };
+        _columns = texels(size.x());
+        _rows = texels(size.y());
+    }
+
+    const std::vector<double>& times() const override { return _steps->times; }
+    bool dated() const override { return _steps->dated; }
+    DataLayer::Kind kind() const override { return _kind; }
+    osg::ref_ptr<osg::Image> read(std::size_t step, std::string& error) override
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        try
+        {
+            return read(*_steps->step(step));
+        }
+        catch (const BuildError& failure)
+        {
+            error = failure.what();
+            return nullptr;
+        }
+    }
+
+    const TimeSteps& source() const { return *_steps; }
+    const FrameCrs& crs() const { return _crs; }
+
+    FrameRaster::Extent extent;
+
+protected:
+    ~Steps() override = default;
+
+private:
+    osg::ref_ptr<osg::Image> read(const FrameRaster& raster) const
+    {
+        if (raster.kind != _kind) raster.fail("it has other data than the first step; make all steps alike");
+        const DatasetPtr warped = raster.warped(_crs, extent.low, extent.high, _columns, _rows);
+        osg::ref_ptr<osg::Image> image = new osg::Image;
+        if (_kind == DataLayer::COLOR)
+        {
+            image->allocateImage(_columns, _rows, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+            raster.readColors(*warped, image->data());
+            return image;
+        }
+        image->allocateImage(_columns, _rows, 1, GL_RED, GL_FLOAT);
+        image->setInternalTextureFormat(GL_R32F);
+        std::vector<double> line;
+        for (int row = 0; row < _rows; ++row)
+        {
+            raster.readValues(*warped, row, line);
+            auto* out = reinterpret_cast<float*>(image->data(0, static_cast<unsigned int>(_rows - 1 - row)));
+            std::transform(line.begin(), line.end(), out,
+                           [](double value) { return static_cast<float>(value); });
+        }
+        return image;
+    }
+
+    std::unique_ptr<TimeSteps> _steps;
+    const FrameCrs _crs;
+    DataLayer::Kind _kind = DataLayer::VALUE;
+    int _columns = 1, _rows = 1;
+    std::mutex _mutex; ///< of the datasets
+};
+
+void move(TimeSteps& steps, MappingFrame& frame, const std::string& file)
+{
+    FrameCrs crs;
+    if (frame.globe)
+        crs.definition = "EPSG:4326";
+    else
+        crs = crsOf(frame, file);
+    const osg::Vec2d middle = steps.step(0)->middle(crs);
+    if (frame.globe)
+        frame.origin =
+            LocalOrigin::onGlobe(osg::DegreesToRadians(middle.x()), osg::DegreesToRadians(middle.y()));
+    else
+        frame.origin = LocalOrigin::onPlane(middle * crs.metresPerUnit);
+}
+
+void findRange(Steps& steps, SequenceRaster& result)
+{
+    if (steps.kind() == DataLayer::COLOR) return;
+    bool any = false;
+    const std::size_t count = steps.times().size();
+    for (std::size_t i = 0; i < std::min(looks, count); ++i)
+    {
+        std::string error;
+        const osg::ref_ptr<osg::Image> image =
+            steps.read(i * (count - 1) / std::max<std::size_t>(1, std::min(looks, count) - 1), error);
+        if (!image) throw BuildError(error);
+        const auto* values = reinterpret_cast<const float*>(image->data());
+        const auto texels = static_cast<std::ptrdiff_t>(image->s()) * image->t();
+        for (std::ptrdiff_t k = 0; k < texels; ++k)
+        {
+            const auto value = static_cast<double>(values[k]);
+            if (!std::isfinite(value)) continue;
+            result.lowest = any ? std::min(result.lowest, value) : value;
+            result.highest = any ? std::max(result.highest, value) : value;
+            any = true;
+        }
+    }
+}
+
+} // namespace
+
+std::optional<SequenceRaster> SequenceRaster::open(const std::string& file, MappingFrame& frame, bool moves,
+                                                   const Options& options, std::string& error)
+{
+    initialiseGdal();
+    try
+    {
+        std::unique_ptr<TimeSteps> source = TimeSteps::open(file, options.variable);
+        MappingFrame moved = frame;
+        if (moves) move(*source, moved, file);
+        const osg::ref_ptr<Steps> steps = new Steps(std::move(source), crsOf(moved, file), options);
+        SequenceRaster result;
+        result.variable = steps->source().variable;
+        result.unit = steps->source().unit;
+        const FrameCrs& crs = steps->crs();
+        result.low = steps->extent.low * crs.metresPerUnit - crs.origin;
+        result.high = steps->extent.high * crs.metresPerUnit - crs.origin;
+        findRange(*steps, result);
+        result.steps = steps;
+        frame = moved;
+        return result;
+    }
+    catch (const BuildError& failure)
+    {
+        error = failure.what();
+        return std::nullopt;
+    }
+}
+
+std::pair<std::string, std::string> SequenceRaster::parse(const std::string& text)
+{
+    std::error_code fault;
+    const std::size_t colon = text.rfind(':');
+    if (std::filesystem::exists(text, fault) || colon == std::string::npos) return {text, ""};
+    return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+} // namespace osgGeoFX

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/geodata/TiledRaster.h>
+
+#include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/detail/FrameRaster.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+constexpr GIntBig mostCache = 64 << 20; // bytes
+
+/// Keeps GDAL's cache small while any tiled raster lives.
+std::shared_ptr<GdalCacheLimit> smallCache()
+{
+    static std::mutex mutex;
+    static std::weak_ptr<GdalCacheLimit> limit;
+    const std::lock_guard<std::mutex> lock(mutex);
+    std::shared_ptr<GdalCacheLimit> result = limit.lock();
+    if (!result) result = std::make_shared<GdalCacheLimit>(std::min(mostCache, GDALGetCacheMax64()));
+    limit = result;
+    return result;
+}
+
+class Tiles final : public RasterTiles
+{
+public:
+    Tiles(std::string file, FrameCrs crs, std::optional<DataLayer::Kind> wanted)
+        : _cache(smallCache()), _file(std::move(file)), _crs(std::move(crs)), _wanted(wanted)
+    {
+        auto raster = std::make_unique<FrameRaster>(_file, _wanted);
+        raster->checkOverviews();
+        _kind = raster->kind;
+        _extent = raster->extent(_crs);
+        _idle[itself].push_back(std::move(raster));
+    }
+
+    osg::Vec2d low() const override { return _extent.low * _crs.metresPerUnit - _crs.origin; }
+    osg::Vec2d high() const override { return _extent.high * _crs.metresPerUnit - _crs.origin; }
+    double texel() const override { return _extent.texel * _crs.metresPerUnit; }
+    DataLayer::Kind kind() const override { return _kind; }
+
+    osg::ref_ptr<osg::Image> read(const osg::Vec2d& from, const osg::Vec2d& to, int columns, int rows,
+                                  std::string& error) override
+    {
+        try
+        {
+            std::unique_ptr<FrameRaster> raster = take(itself);
+            const int overview = raster->overviewFor((to - from).x() / columns / texel());
+            if (overview != itself)
+            {
+                give(itself, std::move(raster));
+                raster = take(overview);
+            }
+            const osg::ref_ptr<osg::Image> image = read(*raster, from, to, columns, rows);
+            give(overview, std::move(raster));
+            return image;
+        }
+        catch (const BuildError& failure)
+        {
+            error = failure.what();
+            return nullptr;
+        }
+    }
+
+protected:
+    ~Tiles() override = default;
+
+private:
+    static constexpr int itself = -1;
+
+    /// GDAL's datasets are for one thread each.
+    std::unique_ptr<FrameRaster> take(int overview)
+    {
+        {
+            const std::lock_guard<std::mutex> lock(_mutex);
+            std::vector<std::unique_ptr<FrameRaster>>& idle = _idle[overview];
+            if (!idle.empty())
+            {
+                std::unique_ptr<FrameRaster> raster = std::move(idle.back());
+                idle.pop_back();
+                return raster;
+            }
+        }
+        return std::make_unique<FrameRaster>(_file, _wanted, true, FrameRaster::ANY_FORMAT, overview);
+    }
+
+    void give(int overview, std::unique_ptr<FrameRaster> raster)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        _idle[overview].push_back(std::move(raster));
+    }
+
+    osg::ref_ptr<osg::Image> read(const FrameRaster& raster, const osg::Vec2d& from, const osg::Vec2d& to,
+                                  int columns, int rows) const
+    {
+        const DatasetPtr warped =
+            raster.warped(_crs, _crs.fromFrame(from), _crs.fromFrame(to), columns, rows);
+        osg::ref_ptr<osg::Image> image = new osg::Image;
+        if (_kind == DataLayer::COLOR)
+        {
+            image->allocateImage(columns, rows, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+            raster.readColors(*warped, image->data());
+        }
+        else
+        {
+            image->allocateImage(columns, rows, 1, GL_RED, GL_FLOAT);
+            image->setInternalTextureFormat(GL_R32F);
+            std::vector<double> line;
+            for (int row = 0; row < rows; ++row)
+            {
+                raster.readValues(*warped, row, line);
+                auto* out =
+                    reinterpret_cast<float*>(image->data(0, static_cast<unsigned int>(rows - 1 - row)));
+                std::transform(line.begin(), line.end(), out,
+                               [](double value) { return static_cast<float>(value); });
+            }
+        }
+        image->setFileName(_file);
+        return image;
+    }
+
+    const std::shared_ptr<GdalCacheLimit> _cache;
+    const std::string _file;
+    const FrameCrs _crs;
+    const std::optional<DataLayer::Kind> _wanted;
+    DataLayer::Kind _kind = DataLayer::COLOR;
+    FrameRaster::Extent _extent;
+    std::mutex _mutex;
+    std::map<int, std::vector<std::unique_ptr<FrameRaster>>> _idle; ///< by overview
+};
+
+} // namespace
+
+osg::ref_ptr<RasterTiles> TiledRaster::open(const std::string& file, const MappingFrame& frame,
+                                            std::optional<DataLayer::Kind> kind, std::string& error)
+{
+    initialiseGdal();
+    try
+    {
+        return new Tiles(file, crsOf(frame, file), kind);
+    }
+    catch (const BuildError& failure)
+    {
+        error = failure.what();
+        return nullptr;
+    }
+}
+
+} // namespace osgGeoFX

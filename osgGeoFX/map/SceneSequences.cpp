@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include <osgGeoFX/map/SceneSequences.h>
+
+#include <osgGeoFX/map/SequenceFile.h>
+#include <osgGeoFX/map/detail/SceneCrs.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace osgGeoFX
+{
+
+namespace
+{
+
+/// That all of the time takes, of the program's.
+constexpr double wholeTime = 20.0;
+
+void setColors(ProjectiveMapping& mapping, const SequenceFile& file)
+{
+    if (file.steps->kind() == DataLayer::COLOR) return;
+    constexpr double most = 9e7; // ColorTransfer's
+    double low = std::clamp(file.lowest, -most, most), high = std::clamp(file.highest, -most, most);
+    if (!(low < high)) high = low + 1.0;
+    osg::ref_ptr<ColorTable> table = file.table;
+    if (!table) table = ColorTable::named("viridis", low, high);
+    std::tie(low, high) = table->range();
+    mapping.setTable(table);
+    mapping.getTransfer()->setSource(ColorTransfer::TABLE);
+    mapping.getTransfer()->setValueRange(std::clamp(low, -most, most), std::clamp(high, -most, most));
+}
+
+} // namespace
+
+SceneSequences::SceneSequences(osg::Node& node, EffectScene& scene)
+    : _scene(&scene), _player(LayerPlayer::of(scene))
+{
+    if (!scene.ground().ellipsoid) _wkt = crsOfScene(node);
+    if (_player) return;
+    _player = new LayerPlayer(nullptr);
+    scene.addUpdateCallback(_player);
+}
+
+bool SceneSequences::add(const std::string& file, const Options& options, std::string& error)
+{
+    SequenceFile request;
+    request.file = file;
+    request.colors = options.colors;
+    request.maxSide = options.maxSide;
+    request.globe = _scene->ground().ellipsoid.valid();
+    request.wkt = _wkt;
+    if (!request.read(error)) return false;
+
+    const osg::ref_ptr<LayerSequence> sequence = new LayerSequence(request.steps);
+    sequence->setWaiting(options.waits);
+    const osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
+    const osg::Vec2d half = (request.high - request.low) / 2.0;
+    if (!mapping->setRectangle(request.low + half, half.x(), half.y()))
+    {
+        error = file + ": it covers no area on the ground; check it with gdalinfo.";
+        return false;
+    }
+    mapping->setName(request.variable.empty() ? file : request.variable);
+    mapping->setLayer(sequence->getLayer());
+    mapping->setOpacity(options.opacity);
+    setColors(*mapping, request);
+    const osg::ref_ptr<ProjectiveMappings> effect = new ProjectiveMappings;
+    effect->setName("sequence");
+    effect->setLocalOrigin(request.origin);
+    effect->addMapping(mapping);
+    _scene->addEffect(effect);
+
+    LayerClock& clock = *_player->getClock();
+    const double before = clock.getEnd() - clock.getBegin();
+    // What nobody has set follows the range.
+    const bool usual = before == 0.0 || clock.getSpeed() == before / wholeTime;
+    _player->add(sequence);
+    const double length = clock.getEnd() - clock.getBegin();
+    if (usual && length > 0.0) clock.setSpeed(length / wholeTime);
+    sequence->update();
+    return true;
+}
+
+} // namespace osgGeoFX

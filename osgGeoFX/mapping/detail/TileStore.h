@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/mapping/DataLayer.h>
+#include <osgGeoFX/mapping/RasterTiles.h>
+#include <osgGeoFX/mapping/detail/MappingPage.h>
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The tiles of a raster that are in memory. Threads of its own read those that are wanted, in their order; those that were wanted
+    longest ago make room. A tile is the square of a MappingPage. Thread-safe. */
+class TileStore
+{
+public:
+    /// Texels a side of a tile.
+    static constexpr int side = 256;
+
+    /// `most`: tiles in memory, unless more are wanted.
+    TileStore(RasterTiles* tiles, int threads, std::size_t most);
+    /// Waits for the reads that are under way.
+    ~TileStore();
+    TileStore(const TileStore&) = delete;
+    TileStore& operator=(const TileStore&) = delete;
+
+    /// Reads a tile now, and keeps it for good. Null, with a sentence in `error`, if it cannot.
+    osg::ref_ptr<DataLayer> readNow(const MappingPage& page, std::string& error);
+    /// From now on these are read, the first ones first, and those that were wanted before are not.
+    void want(const std::vector<MappingPage>& pages);
+    /// A tile that is in memory; null for others. What is asked for stays longer.
+    osg::ref_ptr<DataLayer> find(const MappingPage& page);
+
+    struct Count
+    {
+        int inMemory = 0, failed = 0;
+        std::size_t read = 0;
+    };
+    Count count() const;
+    /// Whether a tile cannot be read.
+    bool hasFailed(const MappingPage& page) const;
+
+private:
+    struct Tile
+    {
+        osg::ref_ptr<DataLayer> layer; ///< null while it is read, and if it has failed
+        std::uint64_t used = 0;
+        bool kept = false;
+        bool failed = false;
+    };
+    osg::ref_ptr<DataLayer> read(const MappingPage& page, std::string& error) const;
+    void work();
+    void evict();
+
+    const osg::ref_ptr<RasterTiles> _tiles;
+    const std::size_t _most;
+    mutable std::mutex _mutex;
+    std::condition_variable _news;
+    bool _over = false;
+    std::vector<MappingPage> _queue; ///< the next one last
+    std::set<MappingPage> _wanted;
+    std::map<MappingPage, Tile> _all;
+    std::uint64_t _time = 0;
+    std::size_t _read = 0;
+    int _failed = 0;
+    std::vector<std::thread> _threads;
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/Export.h>
+
+namespace osgGeoFX
+{
+
+class EffectScene;
+
+/// Whether the last frame had all that the scene's effects read while it is shown: the tiles of rasters that are larger than memory
+/// (PagedRaster). What a pager reads is PagerMonitor's matter. Between frames.
+/// @ingroup viewer
+OSGGEOFX_EXPORT bool hasAllData(const EffectScene& scene);
+
+} // namespace osgGeoFX

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Rasters in time: where their values lie, when, and what is refused. GDAL writes the data sets; where things must lie, PROJ says.
+#include <osgGeoFX/geodata/SequenceRaster.h>
+#include <tools/TempDir.h>
+#include <tools/TestRasters.h>
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+#include <osg/Math>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+constexpr double west = -160.0, south = 19.0;
+constexpr int columns = 60, rows = 40; ///< of a tenth of a degree
+constexpr double start = 1768197600.0; ///< 2026-01-12 06:00 UTC
+
+/// A value that a bilinear filter keeps.
+double valueAt(double longitude, double latitude, int step)
+{
+    return 100.0 * step + (longitude + 160.0) + 2.0 * (latitude - 19.0);
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+struct Look
+{
+    const char* driver = "netCDF";
+    const char* unit = "hours since 2026-01-12 06:00:00";
+    const char* calendar = nullptr;
+    bool degrees = true; ///< whether longitudes and latitudes say so
+    bool southUp = false;
+    double east = 0.0; ///< added to longitudes
+    int levels = 0;    ///< of another dimension
+};
+
+std::string write(const std::filesystem::path& file, const Look& look = {})
+{
+    GDALAllRegister();
+    const DatasetPtr dataset(GetGDALDriverManager()
+                                 ->GetDriverByName(look.driver)
+                                 ->CreateMultiDimensional(file.c_str(), nullptr, nullptr));
+    EXPECT_TRUE(dataset);
+    const std::shared_ptr<GDALGroup> root = dataset->GetRootGroup();
+    const auto numbers = GDALExtendedDataType::Create(GDT_Float64);
+    const auto dimension =
+        [&](const char* name, const char* type, const std::vector<double>& values, const char* unit)
+    {
+        const std::shared_ptr<GDALDimension> result =
+            root->CreateDimension(name, type, "", values.size(), nullptr);
+        const std::shared_ptr<GDALMDArray> array = root->CreateMDArray(name, {result}, numbers, nullptr);
+        if (unit) array->SetUnit(unit);
+        const GUInt64 from = 0;
+        const size_t count = values.size();
+        EXPECT_TRUE(array->Write(&from, &count, nullptr, nullptr, numbers, values.data()));
+        if (unit && look.calendar && std::string(name) == "time")
+            array->CreateAttribute("calendar", {}, GDALExtendedDataType::CreateString(), nullptr)
+                ->Write(look.calendar);
+        // NetCDF goes by the name alone, and says so.
+        CPLPushErrorHandler(CPLQuietErrorHandler);
+        result->SetIndexingVariable(array);
+        CPLPopErrorHandler();
+        return result;
+    };
+    std::vector<double> longitudes, latitudes;
+    for (int i = 0; i < columns; ++i)
+        longitudes.push_back(west + look.east + 0.1 * (i + 0.5));
+    for (int i = 0; i < rows; ++i)
+        latitudes.push_back(look.southUp ? south + 0.1 * (i + 0.5) : south + 0.1 * (rows - i - 0.5));
+    std::vector<std::shared_ptr<GDALDimension>> dimensions = {
+        dimension("time", GDAL_DIM_TYPE_TEMPORAL, {0.0, 3.0, 6.0, 12.0}, look.unit)};
+    if (look.levels > 0)
+        dimensions.push_back(
+            root->CreateDimension("level", "", "", static_cast<GUInt64>(look.levels), nullptr));
+    dimensions.push_back(
+        dimension("lat", GDAL_DIM_TYPE_HORIZONTAL_Y, latitudes, look.degrees ? "degrees_north" : "m"));
+    dimensions.push_back(
+        dimension("lon", GDAL_DIM_TYPE_HORIZONTAL_X, longitudes, look.degrees ? "degrees_east" : "m"));
+    const auto floats = GDALExtendedDataType::Create(GDT_Float32);
+    const std::shared_ptr<GDALMDArray> rain = root->CreateMDArray("rain", dimensions, floats, nullptr);
+    rain->SetUnit("mm");
+    std::vector<float> values;
+    for (int step = 0; step < 4; ++step)
+        for (int level = 0; level < std::max(1, look.levels); ++level)
+            for (const double latitude : latitudes)
+                for (const double longitude : longitudes)
+                    values.push_back(
+                        static_cast<float>(valueAt(longitude - look.east, latitude, step) + 1000.0 * level));
+    const std::vector<GUInt64> from(dimensions.size(), 0);
+    std::vector<size_t> count;
+    for (const auto& each : dimensions)
+        count.push_back(static_cast<size_t>(each->GetSize()));
+    EXPECT_TRUE(rain->Write(from.data(), count.data(), nullptr, nullptr, floats, values.data()));
+    return file.string();
+}
+
+/// The value of a step at a place in degrees.
+double valueOf(const SequenceRaster& raster, std::size_t step, const MappingFrame& frame, double longitude,
+               double latitude)
+{
+    std::string error;
+    const osg::ref_ptr<osg::Image> image = raster.steps->read(step, error);
+    EXPECT_TRUE(image) << error;
+    if (!image) return 0.0;
+    OGRSpatialReference from, to;
+    from.importFromEPSG(4326);
+    from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    to.SetFromUserInput(CPLSPrintf("+proj=ortho +ellps=WGS84 +lat_0=%.17g +lon_0=%.17g",
+                                   osg::RadiansToDegrees(frame.origin.latitude),
+                                   osg::RadiansToDegrees(frame.origin.longitude)));
+    const std::unique_ptr<OGRCoordinateTransformation> transformation(
+        OGRCreateCoordinateTransformation(&from, &to));
+    double x = longitude, y = latitude;
+    EXPECT_TRUE(transformation->Transform(1, &x, &y));
+    const double column = (x - raster.low.x()) / (raster.high.x() - raster.low.x()) * image->s() - 0.5;
+    const double row = (y - raster.low.y()) / (raster.high.y() - raster.low.y()) * image->t() - 0.5;
+    const auto i = static_cast<unsigned int>(column), j = static_cast<unsigned int>(row);
+    const auto texel = [&](unsigned int c, unsigned int r)
+    {
+        return static_cast<double>(*reinterpret_cast<const float*>(image->data(c, r)));
+    };
+    const double u = column - i, v = row - j;
+    return (1.0 - v) * ((1.0 - u) * texel(i, j) + u * texel(i + 1, j)) +
+           v * ((1.0 - u) * texel(i, j + 1) + u * texel(i + 1, j + 1));
+}
+
+std::optional<SequenceRaster> opened(const std::string& file, MappingFrame& frame, std::string& error,
+                                     const std::string& variable = {})
+{
+    SequenceRaster::Options options;
+    options.variable = variable;
+    options.maxSide = 200;
+    return SequenceRaster::open(file, frame, true, options, error);
+}
+
+void expectRight(const SequenceRaster& raster, const MappingFrame& frame, double east = 0.0)
+{
+    for (std::size_t step = 0; step < raster.steps->times().size(); ++step)
+        for (const auto& [longitude, latitude] :
+             {std::pair(-157.0, 21.0), std::pair(-159.5, 19.6), std::pair(-154.6, 22.4)})
+            EXPECT_NEAR(valueOf(raster, step, frame, longitude + east, latitude),
+                        valueAt(longitude, latitude, static_cast<int>(step)), 0.02)
+                << "step " << step << " at " << longitude << ", " << latitude;
+}
+
+std::string faultOf(const std::string& file, const std::string& variable = {})
+{
+    MappingFrame frame;
+    std::string error;
+    EXPECT_FALSE(opened(file, frame, error, variable));
+    EXPECT_TRUE(contains(error, file)) << error;
+    return error;
+}
+
+} // namespace
+
+class SequenceRasters : public ::testing::Test
+{
+protected:
+    TempDir _folder;
+    std::filesystem::path path(const char* name) const { return _folder.path() / name; }
+};
+
+TEST_F(SequenceRasters, TheTimeDimensionOfNetCdfAndZarr)
+{
+    for (const char* driver : {"netCDF", "Zarr"})
+    {
+        SCOPED_TRACE(driver);
+        Look look;
+        look.driver = driver;
+        for (const bool southUp : {false, true})
+        {
+            look.southUp = southUp;
+            const std::string file = write(
+                path((std::string(southUp ? "up" : "down") + (driver[0] == 'n' ? ".nc" : ".zarr")).c_str()),
+                look);
+            MappingFrame frame;
+            std::string error;
+            const std::optional<SequenceRaster> raster = opened(file, frame, error);
+            ASSERT_TRUE(raster) << error;
+            EXPECT_EQ(raster->variable, "rain");
+            EXPECT_EQ(raster->unit, "mm");
+            EXPECT_TRUE(raster->steps->dated());
+            EXPECT_EQ(raster->steps->times(),
+                      (std::vector<double>{start, start + 10800.0, start + 21600.0, start + 43200.0}));
+            EXPECT_EQ(raster->steps->kind(), DataLayer::VALUE);
+            EXPECT_NEAR(raster->lowest, valueAt(west, south, 0), 0.3);
+            EXPECT_NEAR(raster->highest, valueAt(west + 6.0, south + 4.0, 3), 0.3);
+            expectRight(*raster, frame);
+        }
+    }
+}
+
+TEST_F(SequenceRasters, LongitudesBeyond180AndTheFirstLevel)
+{
+    Look look;
+    look.east = 360.0;
+    look.levels = 3;
+    MappingFrame frame;
+    std::string error;
+    const std::optional<SequenceRaster> raster = opened(write(path("east.nc"), look), frame, error);
+    ASSERT_TRUE(raster) << error;
+    expectRight(*raster, frame);
+}
+
+TEST_F(SequenceRasters, OtherCalendarsAndUnitsCount)
+{
+    Look look;
+    look.calendar = "360_day";
+    look.unit = "days since 2000-01-01";
+    MappingFrame frame;
+    std::string error;
+    std::optional<SequenceRaster> raster = opened(write(path("climate.nc"), look), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_FALSE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times(), (std::vector<double>{0.0, 259200.0, 518400.0, 1036800.0}));
+    look.calendar = nullptr;
+    look.unit = "fortnights";
+    raster = opened(write(path("odd.nc"), look), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_FALSE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times(), (std::vector<double>{0.0, 3.0, 6.0, 12.0}));
+}
+
+TEST_F(SequenceRasters, BandsAndFoldersOfRasters)
+{
+    TestRaster bands(columns, rows, 3);
+    bands.placed(west, south + 4.0, 0.1, 0.1).crs("EPSG:4326");
+    bands.fill([](int column, int row, int band)
+               { return valueAt(west + 0.1 * (column + 0.5), south + 4.0 - 0.1 * (row + 0.5), band); });
+    const std::string plain = bands.write(path("bands.tif"));
+    MappingFrame frame;
+    std::string error;
+    std::optional<SequenceRaster> raster = opened(plain, frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_FALSE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times(), (std::vector<double>{0.0, 1.0, 2.0}));
+    expectRight(*raster, frame);
+    for (int band = 0; band < 3; ++band)
+        bands.dataset().GetRasterBand(band + 1)->SetDescription(CPLSPrintf("2026-01-12T%02d:00", 6 + band));
+    raster = opened(bands.write(path("dated.tif")), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_EQ(raster->steps->times(), (std::vector<double>{start, start + 3600.0, start + 7200.0}));
+
+    std::filesystem::create_directory(path("steps"));
+    for (int step = 0; step < 3; ++step)
+    {
+        TestRaster one(columns, rows);
+        one.placed(west, south + 4.0, 0.1, 0.1).crs("EPSG:4326");
+        one.fill([&](int column, int row, int)
+                 { return valueAt(west + 0.1 * (column + 0.5), south + 4.0 - 0.1 * (row + 0.5), step); });
+        one.write(path("steps") / CPLSPrintf("rain_20260112_%02d00.tif", 6 + 6 * step));
+    }
+    std::ofstream(path("steps") / "readme.txt") << "no raster";
+    raster = opened(path("steps").string(), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_TRUE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times(), (std::vector<double>{start, start + 21600.0, start + 43200.0}));
+    expectRight(*raster, frame);
+}
+
+TEST_F(SequenceRasters, TheTimeOfGrib)
+{
+    GDALAllRegister();
+    TestRaster bands(columns, rows, 3, GDT_Float64);
+    bands.placed(west, south + 4.0, 0.1, 0.1).crs("EPSG:4326");
+    bands.fill([](int column, int row, int band)
+               { return valueAt(west + 0.1 * (column + 0.5), south + 4.0 - 0.1 * (row + 0.5), band); });
+    CPLStringList options;
+    options.AddString("DATA_ENCODING=IEEE_FLOATING_POINT");
+    for (int band = 0; band < 3; ++band)
+        options.AddString(CPLSPrintf("BAND_%d_IDS=REF_TIME=2026-01-12T%02d:00:00Z", band + 1, 6 + band));
+    const std::string file = path("rain.grib2").string();
+    DatasetPtr(GetGDALDriverManager()->GetDriverByName("GRIB")->CreateCopy(
+        file.c_str(), &bands.dataset(), FALSE, options.List(), nullptr, nullptr));
+    MappingFrame frame;
+    std::string error;
+    const std::optional<SequenceRaster> raster = opened(file, frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_TRUE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times(), (std::vector<double>{start, start + 3600.0, start + 7200.0}));
+    expectRight(*raster, frame);
+    // A message that ends in its middle.
+    std::filesystem::resize_file(file, std::filesystem::file_size(file) / 8);
+    EXPECT_TRUE(contains(faultOf(file), "gdalinfo") || contains(faultOf(file), "copy or export"));
+}
+
+TEST_F(SequenceRasters, WhatIsWrongIsSaid)
+{
+    const std::string good = write(path("good.nc"));
+    EXPECT_TRUE(contains(faultOf(good, "snow"), "\"snow\""));
+    EXPECT_TRUE(contains(faultOf(good, "snow"), "it has rain"));
+    Look look;
+    look.degrees = false;
+    EXPECT_TRUE(contains(faultOf(write(path("nowhere.nc"), look)), "no coordinate reference system"));
+    std::filesystem::copy_file(good, path("cut.nc"));
+    std::filesystem::resize_file(path("cut.nc"), 700);
+    faultOf(path("cut.nc").string());
+    EXPECT_TRUE(contains(faultOf(path("none.nc").string()), "gdalinfo"));
+    std::ofstream(path("words.nc")) << "these are words";
+    faultOf(path("words.nc").string());
+    std::filesystem::create_directory(path("empty"));
+    EXPECT_TRUE(contains(faultOf(path("empty").string()), "no rasters"));
+    TestRaster one(4, 4);
+    one.placed(west, south, 0.1, 0.1).crs("EPSG:4326");
+    EXPECT_TRUE(contains(faultOf(one.write(path("one.tif"))), "--mapping"));
+    EXPECT_TRUE(contains(faultOf(path("one.tif").string(), "rain"), "no variables"));
+    // A step that goes bad later is said when it is read, and the others stay.
+    std::filesystem::create_directory(path("steps"));
+    for (const char* name : {"a.tif", "b.tif", "c.tif"})
+        one.write(path("steps") / name);
+    MappingFrame frame;
+    std::string error;
+    const std::optional<SequenceRaster> raster = opened(path("steps").string(), frame, error);
+    ASSERT_TRUE(raster) << error;
+    std::filesystem::resize_file(path("steps") / "b.tif", 100);
+    EXPECT_FALSE(raster->steps->read(1, error));
+    EXPECT_TRUE(contains(error, "b.tif")) << error;
+    EXPECT_TRUE(raster->steps->read(2, error));
+}
+
+TEST_F(SequenceRasters, FilesAndVariables)
+{
+    const std::string file = write(path("a:b.nc"));
+    EXPECT_EQ(SequenceRaster::parse(file), std::pair(file, std::string()));
+    EXPECT_EQ(SequenceRaster::parse(file + ":rain"), std::pair(file, std::string("rain")));
+    EXPECT_EQ(SequenceRaster::parse("none.nc"), std::pair(std::string("none.nc"), std::string()));
+}
