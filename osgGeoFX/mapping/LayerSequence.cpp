@@ -116,13 +116,14 @@ public:
     void want(const std::vector<std::size_t>& steps)
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        const std::set<std::size_t> wanted(steps.begin(), steps.end());
+        _wanted = std::set<std::size_t>(steps.begin(), steps.end());
         for (auto each = _images.begin(); each != _images.end();)
-            each = wanted.count(each->first) > 0 ? std::next(each) : _images.erase(each);
+            each = _wanted.count(each->first) > 0 ? std::next(each) : _images.erase(each);
         _queue.clear();
         for (auto step = steps.rbegin(); step != steps.rend(); ++step)
         {
-            if (_images.count(*step) == 0 && _failed.count(*step) == 0) _queue.push_back(*step);
+            const bool known = _images.count(*step) > 0 || _failed.count(*step) > 0 || _reading == *step;
+            if (!known) _queue.push_back(*step);
         }
         _news.notify_all();
     }
@@ -155,6 +156,7 @@ private:
             if (_over) return;
             const std::size_t step = _queue.back();
             _queue.pop_back();
+            _reading = step;
             lock.unlock();
             std::string error;
             osg::ref_ptr<osg::Image> image = _steps.read(step, error);
@@ -166,9 +168,9 @@ private:
             }
             if (image && !_first) _first = new osg::Image(*image, osg::CopyOp::SHALLOW_COPY);
             lock.lock();
-            if (image)
-                _images[step] = image;
-            else
+            _reading.reset();
+            if (image && _wanted.count(step) > 0) _images[step] = image;
+            if (!image)
             {
                 _failed.insert(step);
                 if (_fault.empty()) OSG_WARN << "osgGeoFX: LayerSequence: " << error << std::endl;
@@ -183,7 +185,9 @@ private:
     mutable std::mutex _mutex;
     std::condition_variable _news;
     bool _over = false;
+    std::set<std::size_t> _wanted;
     std::vector<std::size_t> _queue; ///< the next one last
+    std::optional<std::size_t> _reading;
     std::map<std::size_t, osg::ref_ptr<osg::Image>> _images;
     std::set<std::size_t> _failed;
     std::string _fault;
