@@ -137,3 +137,23 @@ TEST_F(Folds, AreNotToldOfADatabaseThatTellsItsHeights)
     EXPECT_EQ(said(*sceneOf(makeFold(10.0), {tower})).size(), 1u)
         << "someone says that its heights do not matter";
 }
+
+// So culling need not look at each box of it: where its heights matter, it must, and nowhere else.
+TEST_F(Folds, AreWatchedWhereTheGroundIsHighEnough)
+{
+    const auto watches = [](double highest, double tallest)
+    {
+        const osg::ref_ptr<EffectScene> scene =
+            sceneOf(makeFold(tallest), {database(0.0, highest, makeBox(10.0f))});
+        // Level, over y = −150 m, northward.
+        const osg::Matrixd view =
+            osg::Matrixd::lookAt(osg::Vec3d(0, -150, 30), osg::Vec3d(0, 0, 30), osg::Vec3d(0, 0, 1));
+        const auto chain = scene->deformation(view, osg::Matrixd::perspective(40.0, 4.0 / 3.0, 1.0, 10000.0));
+        EXPECT_FALSE(chain->empty());
+        return chain->looksAtBoxes();
+    };
+    // The radius is some 35 m; the zone is never narrower than `tallest` needs.
+    EXPECT_FALSE(watches(20.0, 10.0));
+    EXPECT_TRUE(watches(60.0, 10.0));
+    EXPECT_FALSE(watches(60.0, -1.0));
+}
