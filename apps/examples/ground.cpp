@@ -18,7 +18,7 @@ int main(int argc, char** argv)
     detail->setRelief(0.8);   // how much light and shade its waves make
     detail->setSmallest(0.3); // metres
     const osg::ref_ptr<osgGeoFX::BirdsEyeView> view = new osgGeoFX::BirdsEyeView;
-    view->setMapUnit(1);             // what the tiles have on this unit
+    view->setCoverMap(true);         // a map of what the tiles say of the ground
     view->setContextSaturation(0.3); // and greyer
     view->setContextBlocks(1.0);     // buildings without windows
     const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;

@@ -17,6 +17,7 @@ from osgeo import gdal
 
 # Class of the land cover, style of a line, the least length in cells.
 KINDS = [(3, "river", 25), (21, "rail", 20), (19, "secondary", 25), (20, "motorway", 12)]
+CANALS = [(4, "canal", 2)]
 AROUND = [(-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1)]
 
 
@@ -106,7 +107,7 @@ def simplify(points, tolerance):
 def without_lines(classes):
     """The land cover with the class beside them in the cells of lines, ring by ring from their borders."""
     ground = classes.copy()
-    missing = numpy.isin(ground, [kind[0] for kind in KINDS])
+    missing = numpy.isin(ground, [kind[0] for kind in KINDS + CANALS])
     while missing.any() and not missing.all():
         former, unknown = ground.copy(), missing.copy()
         for way in AROUND[1::2] + AROUND[0::2]:  # those that share a side come last, and count
@@ -122,13 +123,13 @@ def main(source, target, ground=None):
     classes = data.ReadAsArray()
     left, wide, _, top, _, high = data.GetGeoTransform()
     features = []
-    for value, style, least in KINDS:
+    for value, style, least in KINDS + (CANALS if ground else []):
         cells = classes == value
         # Streams flow below roads, and roads end at crossings with larger ones.
         cells = thin(cells)
         lines = []
         for line in trace(cells):
-            if len(line) < (3 if ground else least):
+            if len(line) < (2 if ground else least):
                 continue
             points = simplify(smooth(line), 0.4)
             lines.append([[round(left + wide * (c + 0.5), 5), round(top + high * (r + 0.5), 5)] for r, c in points])

@@ -318,7 +318,8 @@ PerspectiveBend::PerspectiveBend(const PerspectiveBend& other, const osg::CopyOp
       _transitionDetail(other._transitionDetail), _contextDetail(other._contextDetail),
       _contextSaturation(other._contextSaturation), _contextBrightness(other._contextBrightness),
       _contextBlocks(other._contextBlocks), _focusSaturation(other._focusSaturation),
-      _focusBrightness(other._focusBrightness), _mapUnit(other._mapUnit), _mapPlace(other._mapPlace)
+      _focusBrightness(other._focusBrightness), _mapUnit(other._mapUnit), _coverMap(other._coverMap),
+      _mapPlace(other._mapPlace)
 {
 }
 
@@ -366,7 +367,10 @@ Properties PerspectiveBend::bendProperties()
             .of<&Self::_focusBrightness>(),
         Property::integer("mapUnit", "the texture unit of a map that mapPlace shows; -1 is none", -1, 3)
             .of<&Self::_mapUnit>(),
-        Property::choice("mapPlace", "where the map of mapUnit replaces the ground's own colors",
+        Property::flag("coverMap",
+                       "whether the map is made of what tiles say of the ground: water, woods and towns")
+            .of<&Self::_coverMap>(),
+        Property::choice("mapPlace", "where the map replaces the ground's own colors",
                          {{"context", "a map behind a photo"}, {"focus", "a photo behind a map"}})
             .of<&Self::_mapPlace>(),
     };
@@ -442,7 +446,7 @@ osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeom
     const BendSnapshot::Look look = {
         _transitionDetail,
         _contextDetail,
-        {_contextSaturation, _contextBrightness, _mapUnit < 0 ? 0.0 : 1.0, _contextBlocks},
+        {_contextSaturation, _contextBrightness, _mapUnit < 0 && !_coverMap ? 0.0 : 1.0, _contextBlocks},
         {_focusSaturation, _focusBrightness, _mapPlace == FOCUS ? 1.0 : 0.0, 0.0},
         foldPossible};
     return new BendSnapshot(bend, look);
@@ -451,13 +455,20 @@ osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeom
 std::string PerspectiveBend::fragmentFile() const
 {
     const bool plain = _contextSaturation == 1.0 && _contextBrightness == 1.0 && _contextBlocks == 0.0 &&
-                       _focusSaturation == 1.0 && _focusBrightness == 1.0 && _mapUnit < 0;
+                       _focusSaturation == 1.0 && _focusBrightness == 1.0 && _mapUnit < 0 && !_coverMap;
     return plain ? std::string() : "stages/bendstyle.glsl";
 }
 
 std::string PerspectiveBend::constants() const
 {
-    return "const int SLOT_curve = " + std::to_string(_curve) + ";\n";
+    return "const int SLOT_curve = " + std::to_string(_curve) + ";\n" +
+           (_coverMap ? "#define SLOT_COVER_MAP\n" : "");
+}
+
+std::vector<Varying> PerspectiveBend::varyings() const
+{
+    if (!_coverMap) return {};
+    return {{"vec2", "mapPlace"}};
 }
 
 } // namespace osgGeoFX

@@ -35,7 +35,7 @@ struct OSGGEOFX_EXPORT BendPlacement
     bend angle. Light and shadows are computed on the undeformed terrain.
 
     **Styles.** Each fragment has a style value q, from 0 in the focus to 1 in the context. By q, and in this order, are blended:
-    the map of texture unit `mapUnit`, which replaces the ground's own colors in the context, or in the focus (`mapPlace`);
+    a map (`mapUnit`, `coverMap`), which replaces the ground's own colors in the context, or in the focus (`mapPlace`);
     buildings into plain blocks (`contextBlocks`); saturation and brightness. On the side of the map, buildings are blocks, too. All of
     them may act at once. What stands behind the bend in the scene's list, such as the mappings of a route, keeps
     its colors everywhere. Where a camera has no bend, it has no styles.
@@ -98,7 +98,11 @@ public:
     /// Brightness of the focus, 0…2: 0 is black and 1, the default, leaves it unchanged.
     bool setFocusBrightness(double factor) { return assign("focusBrightness", factor); }
     double getFocusBrightness() const { return _focusBrightness; }
-    /// Where the map of mapUnit is shown. Default: CONTEXT.
+    /// Whether the map is made of what tiles say of the ground (shaders/lib/cover.glsl): water, woods, towns, in their light. Ground
+    /// that has a texture on mapUnit shows that one. Default: false.
+    bool setCoverMap(bool on) { return assign("coverMap", on ? 1.0 : 0.0); }
+    bool getCoverMap() const { return _coverMap; }
+    /// Where the map is shown. Default: CONTEXT.
     bool setMapPlace(MapPlace place) { return assign("mapPlace", place); }
     MapPlace getMapPlace() const { return static_cast<MapPlace>(_mapPlace); }
     /// Texture unit of a map that the context shows, or the focus, 0…3. The default, −1, means no map.
@@ -129,6 +133,7 @@ public:
     /// Empty if focus and context have no styles.
     std::string fragmentFile() const override;
     std::string constants() const override;
+    std::vector<Varying> varyings() const override;
     int mapUnit() const override { return _mapUnit; }
 
 protected:
@@ -165,6 +170,7 @@ private:
     double _focusSaturation = 1.0;
     double _focusBrightness = 1.0;
     int _mapUnit = -1;
+    bool _coverMap = false;
     int _mapPlace = CONTEXT;
 };
 

@@ -187,8 +187,9 @@ GEOFX_INLINE geofx_DetailLook geofx_detailLookOf(geofx_DetailClasses classes)
 GEOFX_INLINE Number geofx_detailGardens(Number green, geofx_DetailWaves waves)
 {
     Number height = waves.soft.y + Number(0.5) * waves.soft.z;
-    // Heights have a deviation of about 0.4.
-    Number edge = Number(0.5) - geofx_share(green);
+    // The height that this share is above: heights are distributed as errors are, with a deviation of about a half.
+    Number share = clamp(green, Number(0.001), Number(0.999));
+    Number edge = Number(0.21) * log2((1 - share) / share);
     Number patches = geofx_ease(height, edge - Number(0.2), edge + Number(0.2));
     return mix(geofx_share(green), patches, geofx_share(Number(0.8) * waves.shown.y));
 }

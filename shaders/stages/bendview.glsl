@@ -9,6 +9,9 @@ uniform vec4 SLOT_forward;
 uniform vec4 SLOT_bend;
 uniform vec4 SLOT_angle;
 uniform vec4 SLOT_end;
+#ifdef SLOT_COVER_MAP
+out vec2 SLOT_mapPlace; // in the tile's texture of what lies on the ground
+#endif
 
 geofx_BendView SLOT_view()
 {
@@ -35,5 +38,8 @@ vec3 SLOT_normal(vec3 position, vec3 normal)
 
 float SLOT_style(vec3 position)
 {
+#ifdef SLOT_COVER_MAP
+    SLOT_mapPlace = gl_MultiTexCoord0.xy;
+#endif
     return geofx_bendViewStyle(SLOT_view(), position);
 }

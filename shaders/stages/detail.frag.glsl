@@ -5,6 +5,7 @@
 #pragma import_defines(GEOFX_DETAIL, GEOFX_PAINTED, GEOFX_RIGID)
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TEXTURE_0)
 #include "lib/detail.glsl"
+#include "stages/shore.glsl"
 
 uniform mat4 SLOT_toFrame;
 uniform mat4 SLOT_octaves[GEOFX_DETAIL_MOST]; // from the frame to the noise
@@ -79,10 +80,10 @@ struct SLOT_Texels
     vec4 cover;
 };
 
-SLOT_Texels SLOT_texelsAt(vec2 stray, SLOT_Pixel pixel, vec3 none)
+// `cover`: as it is without them. `none`: the color where there is no texture.
+SLOT_Texels SLOT_texelsAt(vec4 cover, vec2 stray, SLOT_Pixel pixel, vec3 none)
 {
     SLOT_Texels result;
-    vec4 cover = textureLod(SLOT_cover, SLOT_ground.xy, 0.0);
     result = SLOT_Texels(none, none, cover);
 #ifdef GEOFX_TEXTURE_0
     if (SLOT_TEXTURED)
@@ -138,7 +139,9 @@ vec4 SLOT_color(vec4 color)
     float nearness = SLOT_how.x * geofx_detailNearness(pixel.pixels);
     if (nearness <= 0.0) return color;
     vec4 known = textureLod(SLOT_cover, SLOT_ground.xy, 0.0);
-    if (!geofx_coverKnown(known) && SLOT_waves.w > 0.5) return color;
+    bool sure = geofx_coverKnown(known);
+    if (!sure && SLOT_waves.w > 0.5) return color;
+    if (sure) known.a = mix(known.a, geofx_smoothShore(SLOT_cover, SLOT_ground.xy), SLOT_how.z);
 
     // Light that falls straight down sees no waves.
     vec3 towards = SLOT_towardsLight();
@@ -159,12 +162,11 @@ vec4 SLOT_color(vec4 color)
     }
     // Streets are straight; the edge of a wood is not.
     stray *= 0.3 * (1.0 - 0.85 * geofx_share(2.0 * known.g));
-    SLOT_Texels texels = SLOT_texelsAt(stray, pixel, color.rgb);
+    SLOT_Texels texels = SLOT_texelsAt(known, stray, pixel, color.rgb);
 
     float steepness = SLOT_steepness();
     geofx_Cover cover;
     float height = SLOT_position.z + 0.5 * SLOT_waves.z * dot(SLOT_position.xy, SLOT_position.xy);
-    bool sure = geofx_coverKnown(known);
     if (sure)
         cover = geofx_coverOf(texels.cover);
     else

@@ -92,11 +92,31 @@ TEST(BendStyle, BuildingsBecomeBlocksInTheContextAndOnTheMap)
     geofx_BendStyle style = plain;
     style.blocks = 1.0;
     expectColor(geofx_bendRestyle(style, windows, bare, true, 0.0), windows);
-    expectColor(geofx_bendRestyle(style, windows, bare, true, 1.0), 0.8 * Rgb(0.9, 0.885, 0.86));
+    expectColor(geofx_bendRestyle(style, windows, bare, true, 1.0),
+                (0.55 + 0.55 * 0.8) * Rgb(0.86, 0.84, 0.81));
     expectColor(geofx_bendRestyle(style, windows, bare, false, 1.0), windows);
     style.blocks = 0.0;
     style.map = 1.0;
     style.mapInFocus = 1.0;
-    expectColor(geofx_bendRestyle(style, windows, bare, true, 0.0), 0.8 * Rgb(0.9, 0.885, 0.86));
+    expectColor(geofx_bendRestyle(style, windows, bare, true, 0.0),
+                (0.55 + 0.55 * 0.8) * Rgb(0.86, 0.84, 0.81));
     expectColor(geofx_bendRestyle(style, windows, bare, true, 1.0), windows);
+}
+
+TEST(BendStyle, TheMapShowsWaterWoodsAndTownsInTheirLight)
+{
+    const Rgb light(0.8);
+    const Rgb open = geofx_bendMap({0.0, 0.0, 0.0, -500.0}, 0.0, light);
+    const Rgb wood = geofx_bendMap({0.9, 0.0, 0.0, -500.0}, 0.0, light);
+    const Rgb town = geofx_bendMap({0.2, 0.6, 0.0, -500.0}, 0.0, light);
+    const Rgb water = geofx_bendMap({0.9, 0.6, 0.5, 500.0}, 1.0, light);
+    EXPECT_GT(wood.y, wood.x + 0.05) << "green";
+    EXPECT_GT(water.z, water.x + 0.15) << "blue, whatever else is there";
+    for (const Rgb& color : {open, wood, town, water})
+    {
+        EXPECT_GT(greyOf(color), 0.6) << "pale";
+        EXPECT_LE(std::max({color.x, color.y, color.z}), 1.0);
+    }
+    EXPECT_LT(greyOf(town), greyOf(open));
+    EXPECT_LT(greyOf(geofx_bendMap({0.0, 0.0, 0.0, -500.0}, 0.0, Rgb(0.2))), greyOf(open));
 }

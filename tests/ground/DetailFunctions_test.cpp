@@ -171,11 +171,11 @@ TEST(DetailFunctions, GardensAreTheirShareNearAndFar)
             double height = 0.0;
             for (int j = 0; j < 12; ++j)
                 height += random.uniform(-0.5, 0.5);
-            waves.soft.y = 0.4 * height;
+            waves.soft.y = 0.52 * height;
             waves.shown.y = 2.0;
             sum += geofx_detailGardens(green, waves);
         }
-        EXPECT_NEAR(sum / 20000, green, 0.13);
+        EXPECT_NEAR(sum / 20000, green, 0.04);
     }
 }
 

@@ -267,7 +267,12 @@ glm::dvec3 GroundDetailTest::evaluate(const Place& place, const Place& right, co
     const double pixels = texel / longer;
 
     const glm::dvec2 at = (place.local + glm::dvec2(HALF)) / texel - 0.5;
-    const glm::dvec4 known = bilinear(*_cover, at);
+    glm::dvec4 known = bilinear(*_cover, at);
+    double shore = 0.0;
+    for (const glm::dvec2 way :
+         {glm::dvec2(0.75, 0.75), glm::dvec2(-0.75, 0.75), glm::dvec2(0.75, -0.75), glm::dvec2(-0.75, -0.75)})
+        shore += 0.25 * bilinear(*_cover, at + way).w;
+    known.w = glm::mix(known.w, shore, _detail->getEdges());
     const osg::Vec3d level = osg::Vec3d(towards.x(), towards.y(), 0.0) / std::max(towards.z(), 0.35);
     const osg::Vec3d lightInWorld = osg::Matrixd::transform3x3(level, _frame);
     geofx_DetailWaves waves = geofx_detailCalm();

@@ -95,6 +95,7 @@ CameraState::CameraState(const EffectProgram::Effects& effects, int mapUnit,
         _set->addUniform(new osg::Uniform(("geofx_texture" + std::to_string(unit)).c_str(), unit));
     _set->addUniform(new osg::Uniform("geofx_normals", static_cast<int>(TileNormals::unit)));
     _set->addUniform(new osg::Uniform("geofx_map", std::max(mapUnit, 0)));
+    _set->addUniform(new osg::Uniform("geofx_cover", TextureUnits::ofCover));
     _set->setAttribute(new ContextWatch(effects));
 }
 
