@@ -148,6 +148,7 @@ Flown fly(const Conditions& conditions, const FlightPath& path)
     if (!context->valid()) throw BenchError("Nothing can be drawn: " + context->error());
     osgViewer::Viewer viewer;
     viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    viewer.setUseConfigureAffinity(false);
     osg::Camera& camera = *viewer.getCamera();
     camera.setGraphicsContext(context);
     camera.setViewport(0, 0, WIDTH, HEIGHT);

@@ -60,6 +60,7 @@ OffscreenView::OffscreenView(Size size, double fieldOfView, osg::Node* scene) : 
     camera().addFinalDrawCallback(new FinishCallback);
     _capture = osgGeoFX::ImageCapture::attach(&camera());
     _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    _viewer->setUseConfigureAffinity(false); // the pager's threads would share this one's core
     _viewer->setLightingMode(osg::View::HEADLIGHT);
     _viewer->setSceneData(scene);
     _viewer->realize();

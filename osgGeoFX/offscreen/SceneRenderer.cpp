@@ -290,6 +290,8 @@ std::unique_ptr<SceneRenderer> SceneRenderer::create(const Scene& scene, const O
     }
     parts->viewer = new StillViewer;
     parts->viewer->setThreadingModel(osgViewer::Viewer::SingleThreaded);
+    // OSG would tie this thread, and all that it starts, to the first core; all processes of a film would share that one.
+    parts->viewer->setUseConfigureAffinity(false);
     parts->setUpCamera(scene, *context);
     parts->setUpScene(scene);
     osg::ref_ptr<DeepFrame> deep;

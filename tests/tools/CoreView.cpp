@@ -42,6 +42,7 @@ CoreView::CoreView(int width, int height)
     if (!_context->valid()) return;
     viewer = new osgViewer::Viewer;
     viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    viewer->setUseConfigureAffinity(false);
     viewer->setLightingMode(osg::View::NO_LIGHT);
     osg::Camera* camera = viewer->getCamera();
     camera->setGraphicsContext(_context);

@@ -54,6 +54,7 @@ void GlFixture::SetUp()
     }
     _viewer = new osgViewer::Viewer;
     _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    _viewer->setUseConfigureAffinity(false); // or all tests that run at once would share one core
     osg::Camera* camera = _viewer->getCamera();
     camera->setGraphicsContext(_context.get());
     camera->setViewport(0, 0, _width, _height);
