@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/paging/Georeference.h>
 
+#include <osgGeoFX/paging/PluginFolder.h>
+
 #include <osg/NodeVisitor>
 #include <osgDB/Options>
 #include <osgDB/ReaderWriter>
@@ -102,6 +104,7 @@ private:
 
 osg::ref_ptr<Georeference> createProjected(const std::string& wkt, std::string& error)
 {
+    addPluginFolder();
     osgDB::ReaderWriter* plugin = osgDB::Registry::instance()->getReaderWriterForExtension("geofxdata");
     if (!plugin)
     {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/viewer/Scene.h>
 
+#include <osgGeoFX/paging/PluginFolder.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/detail/HorizonClamp.h>
@@ -13,8 +14,6 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 #include <osgDB/Registry>
-
-#include <dlfcn.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,17 +46,6 @@ std::vector<osg::Vec3d> outlineOf(const TerrainInfo& info, const Georeference* r
         points.push_back(world);
     }
     return points;
-}
-
-/// Our plugins lie below the folder of this library, in the build tree and in a prefix alike; OSG looks only in
-/// its own prefix and in OSG_LIBRARY_PATH.
-void addPluginFolder()
-{
-    Dl_info self{};
-    if (dladdr(reinterpret_cast<void*>(&addPluginFolder), &self) == 0 || !self.dli_fname) return;
-    const std::string folder = osgDB::getFilePath(self.dli_fname);
-    osgDB::FilePathList& folders = osgDB::Registry::instance()->getLibraryFilePathList();
-    if (std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
 }
 
 } // namespace

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/labels/detail/DataPlugin.h>
 
+#include <osgGeoFX/paging/PluginFolder.h>
+
 #include <osgDB/Options>
 #include <osgDB/Registry>
 
@@ -10,6 +12,7 @@ namespace osgGeoFX
 
 bool askDataPlugin(const std::string& service, void* request, const std::string& file, std::string& error)
 {
+    addPluginFolder();
     osgDB::ReaderWriter* const plugin = osgDB::Registry::instance()->getReaderWriterForExtension("geofxdata");
     if (!plugin)
     {
