@@ -9,6 +9,7 @@
 #include "PaperTables.h"
 #include "TerrainSuite.h"
 #include "TileCollector.h"
+#include "TownCulling.h"
 #include "TownTerrain.h"
 #include "WorkFolder.h"
 
@@ -19,7 +20,6 @@
 #include <osg/Geometry>
 #include <osg/Math>
 #include <osg/MatrixTransform>
-#include <osg/Stats>
 #include <osg/Switch>
 #include <osgDB/WriteFile>
 
@@ -122,12 +122,9 @@ private:
     std::map<const osg::Array*, osg::ref_ptr<osg::Vec3Array>> _known;
 };
 
+using Part = OffscreenView::Part;
 /// Milliseconds of two things that take turns.
-struct Pair
-{
-    double first;
-    double second;
-};
+using Pair = std::pair<double, double>;
 
 class Bench
 {
@@ -185,8 +182,8 @@ public:
         _view->look(matrix);
         _scene.effects->addEffect(nothing);
         _view->settle();
-        const Pair cull =
-            compare([&] { nothing->setEnabled(false); }, [&] { nothing->setEnabled(true); }, true);
+        const Pair cull = _view->takeTurns(
+            _rounds, Part::CULL, [&] { nothing->setEnabled(false); }, [&] { nothing->setEnabled(true); });
         _scene.effects->removeEffect(nothing);
         Figure figure{"cull-paged",
                       "time to cull the paged terrain with compensation over OSG's own, same tiles", "",
@@ -215,38 +212,6 @@ private:
         return _view->count();
     }
 
-    /// Medians of frames that take turns; of the cull traversal alone where `cull` is set. Milliseconds.
-    template<typename First, typename Second>
-    Pair compare(First first, Second second, bool cull)
-    {
-        std::vector<double> times[2];
-        osg::Stats& stats = *_view->camera().getStats();
-        stats.collectStats("rendering", true);
-        for (int round = 0; round < _rounds; ++round)
-        {
-            for (int which = 0; which < 2; ++which)
-            {
-                if (which == 0)
-                    first();
-                else
-                    second();
-                _view->frame();
-                for (int frame = 0; frame < (cull ? 5 : 1); ++frame)
-                {
-                    double seconds = _view->frame();
-                    if (cull)
-                    {
-                        stats.getAttribute(stats.getLatestFrameNumber(), "Cull traversal time taken",
-                                           seconds);
-                    }
-                    times[which].push_back(1000.0 * seconds);
-                }
-            }
-        }
-        stats.collectStats("rendering", false);
-        return {median(times[0]), median(times[1])};
-    }
-
     static void describe(Figure& figure, const Pair& times, const char* first, const char* second)
     {
         char remark[200];
@@ -260,8 +225,8 @@ private:
     Figure path(const Case& each, const OffscreenView::Drawn& straight, const OffscreenView::Drawn& bent,
                 osgGeoFX::Effect& effect)
     {
-        const Pair frames =
-            compare([&] { effect.setEnabled(false); }, [&] { effect.setEnabled(true); }, false);
+        const Pair frames = _view->takeTurns(
+            _rounds, Part::ALL, [&] { effect.setEnabled(false); }, [&] { effect.setEnabled(true); });
         Figure figure{
             std::string("frames-") + each.name,
             std::string("frames a second with the deformation over those without, each with its tiles: ") +
@@ -350,12 +315,13 @@ private:
         osg::Camera& camera = _view->camera();
         const osg::CullSettings::CullingMode mode = camera.getCullingMode();
         camera.setCullingMode(osg::CullSettings::NO_CULLING);
-        const Pair frames = compare(first, second, false);
+        const Pair frames = _view->takeTurns(_rounds, Part::ALL, first, second);
         const osg::ref_ptr<osg::Group> moved =
             BentBeforehand(*bent->deformation(camera.getViewMatrix(), camera.getProjectionMatrix()),
                            camera.getViewMatrix())
                 .copy(tiles);
-        const Pair samePicture = compare([&] { draw(moved); }, second, false);
+        const Pair samePicture = _view->takeTurns(
+            _rounds, Part::ALL, [&] { draw(moved); }, second);
         camera.setCullingMode(mode);
         Figure frame{std::string("bent-") + each.name,
                      std::string("time of a deformed frame over a straight one, same camera and tiles: ") +
@@ -373,20 +339,10 @@ private:
         bending.measured = samePicture.second / samePicture.first;
         describe(bending, samePicture, "moved beforehand", "deformed");
 
-        // OSG's camera goes where it sees them all.
         const osg::Matrixd view = camera.getViewMatrix();
-        const osg::BoundingSphere& bound = tiles.getBound();
-        const osg::Vec3d middle(bound.center());
-        osg::Vec3d upwards(0.0, 0.0, 1.0);
-        if (_scene.reference->isGeocentric())
-        {
-            upwards = middle;
-            upwards.normalize();
-        }
-        const double distance = static_cast<double>(bound.radius()) / std::sin(FIELD_OF_VIEW / 2.0);
-        const osg::Matrixd above =
-            osg::Matrixd::lookAt(middle + upwards * distance, middle, osg::Vec3d(1.0, 2.0, 3.0));
-        const Pair culls = compare(
+        const osg::Matrixd above = viewOfAll(_scene, tiles, FIELD_OF_VIEW);
+        const Pair culls = _view->takeTurns(
+            _rounds, Part::CULL,
             [&]
             {
                 first();
@@ -396,8 +352,7 @@ private:
             {
                 second();
                 camera.setViewMatrix(view);
-            },
-            true);
+            });
         camera.setViewMatrix(view);
         draw(_scene.node);
         Figure cull{

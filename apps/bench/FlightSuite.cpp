@@ -22,7 +22,6 @@
 #include <osgViewer/Renderer>
 #include <osgViewer/Viewer>
 
-#include <ctime>
 #include <unistd.h>
 
 #include <algorithm>
@@ -127,14 +126,6 @@ struct Flown
     double longest() const { return *std::max_element(seconds.begin(), seconds.end()); }
 };
 
-/// Of this thread: what other programs take does not count, and OpenGL's own threads do not, either.
-double processorSeconds()
-{
-    timespec time = {};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 /// A flight in real time. Each frame has its place on the way and its time; a frame that is late is drawn at once.
 Flown fly(const Conditions& conditions, const FlightPath& path)
 {
@@ -191,10 +182,10 @@ Flown fly(const Conditions& conditions, const FlightPath& path)
         std::this_thread::sleep_until(
             start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time)));
         camera.setViewMatrix(path.view(time));
-        const double processor = processorSeconds();
+        const double processor = threadSeconds();
         const auto begin = Clock::now();
         viewer.frame(time);
-        flown.processor.push_back(processorSeconds() - processor - drawn->seconds);
+        flown.processor.push_back(threadSeconds() - processor - drawn->seconds);
         flown.seconds.push_back(secondsSince(begin) - drawn->seconds);
         flown.tiles.push_back(drawn->tiles);
         aheadTimes.push_back(ahead->counts().milliseconds);

@@ -4,6 +4,7 @@
 
 #include "BenchError.h"
 #include "ChildProcess.h"
+#include "Machine.h"
 #include "WorkFolder.h"
 
 #include <osgGeoFX/map/OverlayFile.h>
@@ -17,7 +18,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <random>
 
@@ -47,17 +47,6 @@ std::string milliseconds(const std::string& what, double time)
 void look(OffscreenView& view, const osg::Vec3d& eye, const osg::Vec3d& at)
 {
     view.look(osg::Matrixd::lookAt(eye, at, osg::Vec3d(0.0, 0.0, 1.0)));
-}
-
-/// MiB of main memory that the process has.
-double residentMegabytes()
-{
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);)
-    {
-        if (line.compare(0, 6, "VmRSS:") == 0) return std::strtod(line.c_str() + 6, nullptr) / 1024.0;
-    }
-    return 0.0;
 }
 
 /// Rings that move on, in all texels.
@@ -137,12 +126,6 @@ std::string makeRaster(const std::filesystem::path& folder, int side)
 /// Processor time of a tile as fine as the raster, milliseconds: whatever else the machine does.
 double tileTime(RasterTiles& tiles)
 {
-    const auto now = []
-    {
-        timespec time{};
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-        return 1000.0 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) / 1e6;
-    };
     std::vector<double> times;
     const double side = 256.0 * tiles.texel();
     for (int i = 0; i < 20; ++i)
@@ -150,9 +133,9 @@ double tileTime(RasterTiles& tiles)
         const osg::Vec2d from(tiles.low().x() + (3.0 + 7.3 * i) * side,
                               tiles.low().y() + (5.0 + 3.7 * i) * side);
         std::string error;
-        const double before = now();
+        const double before = threadSeconds();
         if (!tiles.read(from, from + osg::Vec2d(side, side), 256, 256, error)) throw BenchError(error);
-        times.push_back(now() - before);
+        times.push_back(1000.0 * (threadSeconds() - before));
     }
     return median(times);
 }
@@ -251,7 +234,7 @@ std::vector<Figure> pagedRaster(OffscreenView& view, EffectScene& scene, const S
         view.frame();
 
     announce("paging it");
-    const double before = residentMegabytes();
+    const double before = residentMiB();
     const auto start = Clock::now();
     OverlayFile overlays;
     overlays.file = file;
@@ -274,7 +257,7 @@ std::vector<Figure> pagedRaster(OffscreenView& view, EffectScene& scene, const S
     const double first = opened + secondsSince(second);
     settle(view, *raster);
 
-    double slowest = 0.0, longest = 0.0, longestOverRest = 0.0, most = residentMegabytes();
+    double slowest = 0.0, longest = 0.0, longestOverRest = 0.0, most = residentMiB();
     bool coarser = false;
     std::mt19937 engine(3);
     std::uniform_real_distribution<double> where(-0.7 * reach, 0.7 * reach);
@@ -295,7 +278,7 @@ std::vector<Figure> pagedRaster(OffscreenView& view, EffectScene& scene, const S
             longest = std::max(longest, paging.frames[k] / median(paging.frames));
             longestOverRest = std::max(longestOverRest, paging.frames[k] / median(resting));
         }
-        most = std::max(most, residentMegabytes());
+        most = std::max(most, residentMiB());
         coarser = coarser || raster->statistics().coarser;
         if (!settings.pictures.empty() && i < 3)
         {

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
 
+#include <ctime>
 #include <unistd.h>
 
 #include <fstream>
@@ -61,6 +62,28 @@ double residentMiB()
     double size = 0.0, resident = 0.0;
     file >> size >> resident;
     return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
+namespace
+{
+
+double secondsOf(clockid_t clock)
+{
+    timespec time{};
+    clock_gettime(clock, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+} // namespace
+
+double processSeconds()
+{
+    return secondsOf(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+double threadSeconds()
+{
+    return secondsOf(CLOCK_THREAD_CPUTIME_ID);
 }
 
 } // namespace geofx::bench

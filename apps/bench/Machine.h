@@ -24,4 +24,9 @@ struct Machine
 /// Main memory that this process has now, MiB.
 double residentMiB();
 
+/// Processor time that this process has taken, in all of its threads, seconds. What other programs take does not count.
+double processSeconds();
+/// The same of this thread alone: OpenGL's own threads do not count.
+double threadSeconds();
+
 } // namespace geofx::bench

@@ -3,6 +3,7 @@
 #include "OffscreenView.h"
 
 #include "BenchError.h"
+#include "Figure.h"
 #include "Interruption.h"
 
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
@@ -10,6 +11,7 @@
 #include <osg/Stats>
 
 #include <chrono>
+#include <vector>
 
 namespace geofx::bench
 {
@@ -88,6 +90,30 @@ void OffscreenView::settle(double time)
                 "The terrain's tiles did not come within ten minutes; is its disk within reach?");
         _monitor->waitForReads(1.0);
     }
+}
+
+std::pair<double, double> OffscreenView::takeTurns(int rounds, Part part, const std::function<void()>& first,
+                                                   const std::function<void()>& second)
+{
+    // Culls are short, and five of them tell more than one.
+    const int frames = part == Part::CULL ? 5 : 1;
+    std::vector<double> times[2];
+    osg::Stats& stats = *camera().getStats();
+    stats.collectStats("rendering", true);
+    for (int turn = 0; turn < 2 * rounds; ++turn)
+    {
+        (turn % 2 ? second : first)();
+        frame();
+        for (int i = 0; i < frames; ++i)
+        {
+            double seconds = frame();
+            if (part == Part::CULL)
+                stats.getAttribute(stats.getLatestFrameNumber(), "Cull traversal time taken", seconds);
+            times[turn % 2].push_back(1000.0 * seconds);
+        }
+    }
+    stats.collectStats("rendering", false);
+    return {median(times[0]), median(times[1])};
 }
 
 OffscreenView::Drawn OffscreenView::count(double time)

@@ -13,7 +13,9 @@
 #include <osgGeoFX/paging/PagerMonitor.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <utility>
 
 namespace geofx::bench
 {
@@ -52,6 +54,17 @@ public:
 
     /// Draws the frame of a time, in seconds, and waits for the end of it; the seconds that it took.
     double frame(double time = 0.0);
+
+    /// What is timed of a frame: all of it, or the cull traversal alone.
+    enum class Part
+    {
+        ALL,
+        CULL
+    };
+    /// Frames of two scenes that take turns, so that other programs disturb both alike: `first` and `second` show one of them each.
+    /// Medians over `rounds`, milliseconds. The first frame after a change does not count.
+    std::pair<double, double> takeTurns(int rounds, Part part, const std::function<void()>& first,
+                                        const std::function<void()>& second);
 
     /// What a frame draws.
     Drawn count(double time = 0.0);

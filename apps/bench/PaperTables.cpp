@@ -3,8 +3,9 @@
 #include "PaperTables.h"
 
 #include "BenchError.h"
-#include "CameraPath.h"
+#include "Machine.h"
 #include "OffscreenView.h"
+#include "PaperPath.h"
 
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
@@ -18,7 +19,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <optional>
 #include <string>
@@ -75,13 +75,6 @@ public:
     void tileRead(osg::Node& tile) override { applyTo(tile); }
 };
 
-double processorSeconds()
-{
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 /// Flies along paths, with the terrain read anew each time.
 class Pilot
 {
@@ -98,7 +91,7 @@ public:
     }
 
     /// Tiles come beside the frames, as they do for users. Straight frames and bent ones take turns, each with its own terrain.
-    Flights time(const CameraPath& path)
+    Flights time(const PaperPath& path)
     {
         const osgGeoFX::Scene scenes[] = {load(path, false), load(path, true)};
         Flights result;
@@ -111,10 +104,10 @@ public:
             for (const int which : {frame % 2, 1 - frame % 2})
             {
                 show(scenes[which], path, share);
-                const double before = processorSeconds();
+                const double before = processSeconds();
                 Flight& flight = which == 0 ? result.straight : result.bent;
                 flight.seconds += _view.frame(share * DURATION);
-                flight.processorSeconds += processorSeconds() - before;
+                flight.processorSeconds += processSeconds() - before;
             }
         }
         if (!_pictures.empty())
@@ -125,13 +118,13 @@ public:
     }
 
     /// Each frame waits for its tiles, and is counted.
-    Flights count(const CameraPath& path) { return {count(path, false), count(path, true)}; }
+    Flights count(const PaperPath& path) { return {count(path, false), count(path, true)}; }
 
 private:
     /// Frames from one that is counted to the next; those of the shortest flight have one.
     static constexpr int PERIOD = 3;
 
-    osgGeoFX::Scene load(const CameraPath& path, bool bent) const
+    osgGeoFX::Scene load(const PaperPath& path, bool bent) const
     {
         std::string error;
         const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("allowOutside");
@@ -148,7 +141,7 @@ private:
         return *scene;
     }
 
-    void show(const osgGeoFX::Scene& scene, const CameraPath& path, double share)
+    void show(const osgGeoFX::Scene& scene, const PaperPath& path, double share)
     {
         if (_root->getNumChildren() != 1 || _root->getChild(0) != scene.node)
         {
@@ -159,14 +152,14 @@ private:
         _view.look(path.view(share, *scene.reference));
     }
 
-    void start(const osgGeoFX::Scene& scene, const CameraPath& path)
+    void start(const osgGeoFX::Scene& scene, const PaperPath& path)
     {
         _view.camera().setLODScale(scene.lodScale(_lines, FIELD_OF_VIEW));
         show(scene, path, 0.0);
         _view.settle();
     }
 
-    Flight count(const CameraPath& path, bool bent)
+    Flight count(const PaperPath& path, bool bent)
     {
         const osgGeoFX::Scene scene = load(path, bent);
         start(scene, path);
@@ -191,7 +184,7 @@ private:
         return flight;
     }
 
-    void picture(const osgGeoFX::Scene& scene, const CameraPath& path, const std::string& kind)
+    void picture(const osgGeoFX::Scene& scene, const PaperPath& path, const std::string& kind)
     {
         show(scene, path, 0.5);
         _view.settle(DURATION);
@@ -211,7 +204,7 @@ private:
 };
 
 /// A row of the paper's Table 1.
-Figure speed(Pilot& pilot, const CameraPath& path, std::size_t size, int frames)
+Figure speed(Pilot& pilot, const PaperPath& path, std::size_t size, int frames)
 {
     const OffscreenView::Size paper = SIZES[size];
     const std::string pixels = std::to_string(paper.width) + "x" + std::to_string(paper.height);
@@ -221,7 +214,7 @@ Figure speed(Pilot& pilot, const CameraPath& path, std::size_t size, int frames)
                       ", tiles coming as one flies, without anisotropic filtering: " + path.what,
                   "", Bound::AtLeast, path.leastSpeed};
     figure.measured = straight.seconds / bent.seconds;
-    const CameraPath::Speed& theirs = path.paperSpeeds[size];
+    const PaperPath::Speed& theirs = path.paperSpeeds[size];
     char remark[250];
     std::snprintf(
         remark, sizeof remark,
@@ -240,7 +233,7 @@ Figure speed(Pilot& pilot, const CameraPath& path, std::size_t size, int frames)
 }
 
 /// A row of the paper's Table 2.
-Figure bytes(Pilot& pilot, const CameraPath& path, int frames)
+Figure bytes(Pilot& pilot, const PaperPath& path, int frames)
 {
     const auto [straight, bent] = pilot.count(path);
     Figure figure{
@@ -307,7 +300,7 @@ std::vector<Figure> measurePaperTables(const Settings& settings, const std::file
     std::vector<Figure> reads;
     {
         Pilot pilot(settings, scene, size(0, 8), size(0, 1).height, frames);
-        for (const CameraPath& path : cameraPaths())
+        for (const PaperPath& path : paperPaths())
         {
             announce("counting the bytes of " + path.name);
             reads.push_back(bytes(pilot, path, frames));
@@ -317,7 +310,7 @@ std::vector<Figure> measurePaperTables(const Settings& settings, const std::file
     for (std::size_t i = 0; i < SIZES.size(); ++i)
     {
         Pilot pilot(settings, scene, size(i, 1), size(i, 1).height, frames);
-        for (const CameraPath& path : cameraPaths())
+        for (const PaperPath& path : paperPaths())
         {
             announce("flying " + path.name + " at " + std::to_string(SIZES[i].width) + "x" +
                      std::to_string(SIZES[i].height));

@@ -15,7 +15,4 @@ namespace geofx::bench
 std::vector<Figure> measurePaperTables(const Settings& settings, const std::filesystem::path& terrain,
                                        const std::filesystem::path& folder);
 
-/// How long culling a town takes, against OSG's own for the same drawables. `terrain`: the database. Throws BenchError.
-std::vector<Figure> measureTownCulling(const Settings& settings, const std::filesystem::path& terrain);
-
 } // namespace geofx::bench

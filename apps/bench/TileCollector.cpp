@@ -6,6 +6,8 @@
 #include <osgUtil/SceneView>
 #include <osgViewer/Renderer>
 
+#include <cmath>
+
 namespace geofx::bench
 {
 
@@ -100,6 +102,20 @@ osg::ref_ptr<osgGeoFX::EffectScene> deformedTiles(const osgGeoFX::Scene& scene, 
     bent->addEffect(&effect);
     bent->addChild(root);
     return bent;
+}
+
+osg::Matrixd viewOfAll(const osgGeoFX::Scene& scene, const osg::Group& tiles, double fieldOfView)
+{
+    const osg::BoundingSphere& bound = tiles.getBound();
+    const osg::Vec3d middle(bound.center());
+    osg::Vec3d upwards(0.0, 0.0, 1.0);
+    if (scene.reference->isGeocentric())
+    {
+        upwards = middle;
+        upwards.normalize();
+    }
+    const double distance = static_cast<double>(bound.radius()) / std::sin(fieldOfView / 2.0);
+    return osg::Matrixd::lookAt(middle + upwards * distance, middle, osg::Vec3d(1.0, 2.0, 3.0));
 }
 
 } // namespace geofx::bench

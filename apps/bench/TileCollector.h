@@ -8,6 +8,7 @@
 #include <osg/Camera>
 #include <osg/Group>
 #include <osg/MatrixTransform>
+#include <osg/Matrixd>
 #include <osgUtil/RenderBin>
 
 #include <osgGeoFX/scene/EffectScene.h>
@@ -53,5 +54,8 @@ private:
 /// look for in each frame.
 osg::ref_ptr<osgGeoFX::EffectScene> deformedTiles(const osgGeoFX::Scene& scene, osgGeoFX::Effect& effect,
                                                   osg::Group& tiles);
+
+/// The view matrix from which OSG's own camera sees all of them, from straight above.
+osg::Matrixd viewOfAll(const osgGeoFX::Scene& scene, const osg::Group& tiles, double fieldOfView);
 
 } // namespace geofx::bench

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#include "TownCulling.h"
+
 #include "BenchError.h"
-#include "CameraPath.h"
 #include "OffscreenView.h"
-#include "PaperTables.h"
+#include "PaperPath.h"
 #include "TileCollector.h"
 
 #include <osgGeoFX/effect/RigidParts.h>
@@ -11,7 +12,6 @@
 #include <osgGeoFX/viewer/Scene.h>
 
 #include <osg/Math>
-#include <osg/Stats>
 #include <osgDB/ReadFile>
 
 #include <cstdio>
@@ -25,8 +25,6 @@ namespace
 {
 
 const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
-/// Frames that are culled of each in a round: after the first one, which finds out what was asked for.
-constexpr int FRAMES = 5;
 
 /// A town without its ground, in one view.
 class TownCulling
@@ -52,7 +50,7 @@ public:
         _view.camera().setLODScale(_scene.lodScale(_view.camera().getViewport()->height(), FIELD_OF_VIEW));
     }
 
-    std::vector<Figure> measure(const CameraPath& path)
+    std::vector<Figure> measure(const PaperPath& path)
     {
         announce("culling the town: " + path.name);
         std::string error;
@@ -63,7 +61,10 @@ public:
         const osg::Matrixd look = path.view(0.5, *_scene.reference);
         _view.look(look);
         _view.settle();
-        const double paged = cull([] {}, [] {}).second;
+        const double paged = _view
+                                 .takeTurns(
+                                     _rounds, OffscreenView::Part::CULL, [] {}, [] {})
+                                 .second;
         const osg::ref_ptr<osg::Group> town = TileCollector::collect(
             _view, *_scene.node,
             [](const osg::Drawable& drawable) { return osgGeoFX::RigidParts::of(drawable) != nullptr; });
@@ -73,8 +74,9 @@ public:
         const osg::ref_ptr<osgGeoFX::EffectScene> bent = deformedTiles(_scene, *effect, *town);
         const osg::ref_ptr<osg::Group> straight = new osg::Group;
         straight->addChild(town);
-        const osg::Matrixd above = viewOfAll(*town);
-        const std::pair<double, double> same = cull(
+        const osg::Matrixd above = viewOfAll(_scene, *town, FIELD_OF_VIEW);
+        const std::pair<double, double> same = _view.takeTurns(
+            _rounds, OffscreenView::Part::CULL,
             [&]
             {
                 draw(straight);
@@ -110,50 +112,6 @@ private:
         _root->addChild(what);
     }
 
-    /// From where OSG's camera sees them all.
-    osg::Matrixd viewOfAll(const osg::Group& town) const
-    {
-        const osg::BoundingSphere& bound = town.getBound();
-        const osg::Vec3d middle(bound.center());
-        osg::Vec3d upwards(0.0, 0.0, 1.0);
-        if (_scene.reference->isGeocentric())
-        {
-            upwards = middle;
-            upwards.normalize();
-        }
-        const double distance = static_cast<double>(bound.radius()) / std::sin(FIELD_OF_VIEW / 2.0);
-        return osg::Matrixd::lookAt(middle + upwards * distance, middle, osg::Vec3d(1.0, 2.0, 3.0));
-    }
-
-    /// Medians of the cull traversals of two scenes that take turns, milliseconds.
-    template<typename First, typename Second>
-    std::pair<double, double> cull(First first, Second second)
-    {
-        std::vector<double> times[2];
-        osg::Stats& stats = *_view.camera().getStats();
-        stats.collectStats("rendering", true);
-        for (int round = 0; round < _rounds; ++round)
-        {
-            for (int which = 0; which < 2; ++which)
-            {
-                if (which == 0)
-                    first();
-                else
-                    second();
-                _view.frame();
-                for (int frame = 0; frame < FRAMES; ++frame)
-                {
-                    _view.frame();
-                    double seconds = 0.0;
-                    stats.getAttribute(stats.getLatestFrameNumber(), "Cull traversal time taken", seconds);
-                    times[which].push_back(1000.0 * seconds);
-                }
-            }
-        }
-        stats.collectStats("rendering", false);
-        return {median(times[0]), median(times[1])};
-    }
-
     const int _rounds;
     const osg::ref_ptr<osg::Group> _root = new osg::Group;
     OffscreenView _view;
@@ -166,7 +124,7 @@ std::vector<Figure> measureTownCulling(const Settings& settings, const std::file
 {
     TownCulling culling(settings, terrain);
     std::vector<Figure> figures;
-    for (const CameraPath& path : cameraPaths())
+    for (const PaperPath& path : paperPaths())
         for (const Figure& figure : culling.measure(path))
             figures.push_back(figure);
     return figures;

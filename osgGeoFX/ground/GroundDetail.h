@@ -17,7 +17,7 @@ class DetailNoise;
 
     **What it does.** From where a texel of the ground's colors takes two pixels, waves of noise come in, all of them from five
     pixels on. They change the ground's color and its light by what lies there. Borders between classes become sharp lines, also the
-    shore. No color changes in the mean, and far ground stays as it is. No wave is shown that is shorter than 2.5 pixels, so nothing
+    shore. On land no color changes in the mean; water is lighter at shores. Far ground stays as it is. No wave is shown that is shorter than 2.5 pixels, so nothing
     shimmers. Waves lie on the undeformed ground, so they do not swim in bends, and are the same in each picture, from
     anywhere, on planes and globes. Nothing moves, so culling and picking do not change.
 

@@ -6,6 +6,7 @@
 #include "MappingsReader.h"
 #include "SceneXml.h"
 
+#include <osgGeoFX/deformation/PerspectiveBend.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 
 #include <cstring>
@@ -278,6 +279,13 @@ SceneResult parseEngineScene(const std::string& text, const std::string& file, c
     if (scene.sun)
         result.errors.push_back(scene.sun->place.message(
             "the map has a sky of its own; expected: a <sky> in the <map> instead."));
+    for (const osg::ref_ptr<Effect>& effect : scene.effects)
+    {
+        const auto* bend = dynamic_cast<const PerspectiveBend*>(effect.get());
+        if (bend && bend->getCoverMap())
+            result.errors.push_back(scene.place.message(
+                "the map's tiles do not say what lies on the ground; expected: bends without coverMap."));
+    }
     if (scene.background)
         result.errors.push_back(scene.backgroundPlace.message(
             "the background is the program's; expected: no <background> in an .earth file."));

@@ -3,7 +3,6 @@
 #include "HostUnits.h"
 
 #include <osgGeoFX/effect/TextureUnits.h>
-#include <osgGeoFX/panorama/PanoramaMap.h>
 
 namespace osgGeoFX
 {
@@ -43,11 +42,11 @@ bool HostUnits::reserve(osgEarth::TerrainResources& resources, EffectScene& scen
                         "out, or layers of the map that have textures of their own.";
                 break;
             }
-            auto* map = wish.ofTerrain ? dynamic_cast<PanoramaMap*>(&effect) : nullptr;
-            if (map)
-                map->setCoverUnit(unit);
-            else
+            // osgEarth's tiles do not say what lies on the ground, so any unit does for that, which nobody else uses.
+            if (!wish.ofTerrain)
                 units.push_back(unit);
+            else if (!effect.setProperty(wish.property, unit, error))
+                break;
         }
     }
     return scene.setTextureUnits(units) && error.empty();

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Detail of the ground below the resolution of its colors: what GroundDetail makes of waves of noise, octave by octave, and how it
-// keeps borders of classes sharp. Colors are coded as in images (sRGB). All that changes a color changes none in the mean, so detail may
-// come and go with the distance. NaN counts as the lower end of a range.
+// keeps borders of classes sharp. Colors are coded as in images (sRGB). On land no color changes in the mean, so detail may
+// come and go with the distance; water is lighter at shores. NaN counts as the lower end of a range.
 #ifndef __cplusplus
 #include "lib/types.glsl"
 #include "lib/cover.glsl"

@@ -5,23 +5,23 @@
 #pragma import_defines(GEOFX_RIGID)
 #include "lib/bendstyle.glsl"
 #include "stages/shore.glsl"
+#include "stages/cover.glsl"
 
 uniform vec4 SLOT_look;      // of the context: saturation, brightness, whether there is a map, blocks
 uniform vec4 SLOT_focusLook; // saturation, brightness, whether the map is here
 
 #ifdef SLOT_COVER_MAP
-uniform sampler2D geofx_cover; // of the tiles: lib/cover.glsl
 in vec2 SLOT_mapPlace;
 
-// `bare`: the ground without its colors, in its light; alpha is 1 if it has a map.
+// `bare`: the map that the ground has, alpha above 0; or its light alone, alpha below 0; or nothing.
 vec4 SLOT_map(vec4 bare)
 {
     vec4 texel = texture(geofx_cover, SLOT_mapPlace);
     float shore = geofx_smoothShore(geofx_cover, SLOT_mapPlace);
     float wet = clamp((shore - 128.0 / 255.0) / max(fwidth(shore), 1e-4) + 0.5, 0.0, 1.0);
     if (bare.a > 0.0 || !geofx_coverKnown(texel)) return bare;
-    // A program of an application does not tell the light.
-    vec3 light = bare.rgb == vec3(0.0) ? vec3(1.0) : bare.rgb;
+    // A program of an application tells no light.
+    vec3 light = bare.a < 0.0 ? bare.rgb : vec3(1.0);
     return vec4(geofx_bendMap(geofx_coverOf(texel), wet, light), 1.0);
 }
 #endif
@@ -38,5 +38,6 @@ vec4 SLOT_restyle(vec4 color, vec4 map, float style)
     map = SLOT_map(map);
 #endif
 #endif
+    map.a = max(map.a, 0.0);
     return vec4(geofx_bendRestyle(styles, color.rgb, map, building, style), color.a);
 }

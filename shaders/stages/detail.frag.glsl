@@ -3,7 +3,7 @@
 //
 // GroundDetail in the fragment stage. SLOT_ stands for the effect's prefix.
 #pragma import_defines(GEOFX_DETAIL, GEOFX_PAINTED, GEOFX_RIGID)
-#pragma import_defines(GEOFX_LIGHTS, GEOFX_TEXTURE_0)
+#pragma import_defines(GEOFX_LIGHTS, GEOFX_TEXTURE_0, GEOFX_TEXGEN_0)
 #include "lib/detail.glsl"
 #include "stages/shore.glsl"
 
@@ -19,8 +19,8 @@ uniform sampler2D SLOT_colors;
 in vec3 SLOT_position;
 in vec3 SLOT_ground;
 
-// Textures that only modulate can be looked up again.
-#ifdef GEOFX_TEXTURE_0
+// Textures that only modulate can be looked up again, by coordinates that are the vertices' own.
+#if defined(GEOFX_TEXTURE_0) && !defined(GEOFX_TEXGEN_0)
 #define SLOT_TEXTURED ((GEOFX_TEXTURE_0 & 7) == 1)
 #else
 #define SLOT_TEXTURED false
@@ -29,12 +29,16 @@ in vec3 SLOT_ground;
 vec3 SLOT_towardsLight()
 {
 #if defined(GEOFX_LIGHTS) && !defined(GEOFX_HOST_NORMAL) && !defined(GEOFX_CORE)
-    vec4 light = gl_LightSource[0].position;
-    vec3 eye = light.w == 0.0 ? light.xyz : light.xyz / light.w;
-    return normalize(mat3(SLOT_toFrame) * geofx_directionInView(eye));
-#else
-    return SLOT_sun.xyz;
+    if ((GEOFX_LIGHTS & 1) != 0)
+    {
+        vec4 light = gl_LightSource[0].position;
+        vec3 towards = light.w == 0.0 ? mat3(SLOT_toFrame) * geofx_directionInView(light.xyz)
+                                      : (SLOT_toFrame * vec4(geofx_inView(light.xyz / light.w), 1.0)).xyz - SLOT_position;
+        float distance = length(towards);
+        if (distance > 0.0) return towards / distance;
+    }
 #endif
+    return SLOT_sun.xyz;
 }
 
 float SLOT_steepness()
@@ -90,7 +94,10 @@ SLOT_Texels SLOT_texelsAt(vec4 cover, vec2 stray, SLOT_Pixel pixel, vec3 none)
     {
         ivec2 size = textureSize(SLOT_colors, 0);
         ivec2 last = size - 1;
-        vec2 at = clamp(SLOT_ground.xy * vec2(size) - 0.5, vec2(0.0), vec2(last));
+        // Beyond its border a texture begins again.
+        vec2 place = SLOT_ground.xy;
+        if (any(greaterThan(abs(place - 0.5), vec2(0.501)))) place = fract(place);
+        vec2 at = clamp(place * vec2(size) - 0.5, vec2(0.0), vec2(last));
         result.smoothColor = textureLod(SLOT_colors, SLOT_ground.xy, 0.0).rgb;
         // A tile ends with texels that its neighbors have, too: nothing strays there, so there is no seam.
         vec2 room = min(at, vec2(last) - at);
@@ -129,6 +136,8 @@ vec4 SLOT_color(vec4 color)
 #if !defined(GEOFX_DETAIL) || defined(GEOFX_PAINTED) || defined(GEOFX_RIGID)
     return color;
 #else
+    // Here, since it may need differences between neighboring pixels, and some of these return below.
+    float steepness = SLOT_steepness();
     vec2 size = vec2(1.0);
 #ifdef GEOFX_TEXTURE_0
     if (SLOT_TEXTURED) size = vec2(textureSize(SLOT_colors, 0));
@@ -164,7 +173,6 @@ vec4 SLOT_color(vec4 color)
     stray *= 0.3 * (1.0 - 0.85 * geofx_share(2.0 * known.g));
     SLOT_Texels texels = SLOT_texelsAt(known, stray, pixel, color.rgb);
 
-    float steepness = SLOT_steepness();
     geofx_Cover cover;
     float height = SLOT_position.z + 0.5 * SLOT_waves.z * dot(SLOT_position.xy, SLOT_position.xy);
     if (sure)

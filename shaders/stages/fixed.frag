@@ -149,7 +149,7 @@ void main()
 #elif defined(GEOFX_MAP)
     color = geofx_fragment(color, primary * texture2DProj(geofx_map, tame(gl_TexCoord[0])));
 #else
-    color = geofx_fragment(color, vec4(primary.rgb, 0.0)); // the light alone
+    color = geofx_fragment(color, vec4(primary.rgb, -1.0)); // the light alone
 #endif
 #if defined(GEOFX_FOG) && !(defined(GEOFX_PAINTED) && defined(GEOFX_FADING))
     color = fogged(color);

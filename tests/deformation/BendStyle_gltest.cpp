@@ -3,14 +3,17 @@
 //
 // Styles of bent views in pictures: the map of what tiles say of the ground, blocks, and what keeps its color across.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/effect/GlslFunctions.h>
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <tools/GlFixture.h>
+#include <tools/SmoothTexture.h>
 
 #include <osg/Geometry>
+#include <osg/LightModel>
 #include <osg/Texture2D>
 
 #include <cmath>
@@ -30,12 +33,7 @@ osg::ref_ptr<osg::Texture2D> textureOf(const osg::Vec4& west, const osg::Vec4& e
     image->allocateImage(64, 64, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     for (unsigned int i = 0; i < 64 * 64; ++i)
         image->setColor(i % 64 < 32 ? west : east, i % 64, i / 64);
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
-    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
-    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
-    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
-    return texture;
+    return smoothTexture(image);
 }
 
 /// A quad in cells, so that it can bend. `along`: its sides from a corner.
@@ -245,4 +243,31 @@ TEST_F(BendStyles, BuildingsOfTheContextAreBlocks)
         for (int channel = 0; channel < 3; ++channel)
             EXPECT_NEAR(actual[channel], expected[channel], 3.0 / 255.0) << y;
     }
+}
+
+// Two bends may be in a scene, and the shaders of both are put together even if one is off.
+TEST_F(BendStyles, TwoBendsMayHaveMaps)
+{
+    _bend->setCoverMap(true);
+    const osg::ref_ptr<osg::Image> one = draw();
+    const osg::ref_ptr<PedestrianView> other = new PedestrianView;
+    other->setCoverMap(true);
+    other->setEnabled(false);
+    _scene->addEffect(other);
+    const osg::ref_ptr<osg::Image> two = draw();
+    expectColor(colorAt(*two, context), rgb(osg::Vec4(osg::Vec4d(colorAt(*one, context), 1.0))));
+    EXPECT_GT((colorAt(*two, context) - osg::Vec3d(0.35, 0.5, 0.25)).length(), 0.02) << "no map";
+}
+
+// Ground in the dark is dark on the map, too.
+TEST_F(BendStyles, DarkGroundIsDarkOnTheMap)
+{
+    _bend->setCoverMap(true);
+    _bend->setMapPlace(PerspectiveBend::FOCUS);
+    osg::StateSet& state = *_root->getOrCreateStateSet();
+    state.setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    const osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
+    model->setAmbientIntensity({0.0f, 0.0f, 0.0f, 1.0f});
+    state.setAttribute(model);
+    expectColor(colorAt(*draw(), focus), glsl::geofx_bendMap(west, 0.0, glm::dvec3(0.0)));
 }

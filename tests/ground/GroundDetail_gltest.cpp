@@ -12,12 +12,14 @@
 #include <osgGeoFX/scene/DeformedView.h>
 #include <tools/GlFixture.h>
 #include <tools/RandomSamples.h>
+#include <tools/SmoothTexture.h>
 
 #include <osg/Geometry>
 #include <osg/LightModel>
 #include <osg/LightSource>
 #include <osg/Material>
 #include <osg/MatrixTransform>
+#include <osg/TexMat>
 #include <osg/Texture2D>
 
 #include <algorithm>
@@ -50,16 +52,6 @@ int classAt(int x, int y)
 {
     if (x > 24) return 3;
     return (x / 5 + 2 * (y / 7)) % 3;
-}
-
-osg::ref_ptr<osg::Texture2D> textureOf(osg::Image* image)
-{
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
-    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
-    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
-    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
-    return texture;
 }
 
 osg::ref_ptr<osg::Image> newImage()
@@ -193,8 +185,8 @@ protected:
         ground->setUseDisplayList(false);
         ground->setUseVertexBufferObjects(false);
         osg::StateSet& state = *ground->getOrCreateStateSet();
-        state.setTextureAttributeAndModes(0, textureOf(_colors));
-        state.setTextureAttribute(7, textureOf(_cover));
+        state.setTextureAttributeAndModes(0, smoothTexture(_colors));
+        state.setTextureAttribute(7, smoothTexture(_cover));
         _frame = frame;
         _ground = new osg::MatrixTransform(frame);
         _ground->addChild(ground);
@@ -576,4 +568,65 @@ TEST_F(GroundDetailTest, OfTerrainsThatTellNothing)
     draw();
     const osg::ref_ptr<osg::Image> detailed = draw();
     EXPECT_GT(differing(*plain, *detailed), WIDTH * HEIGHT / 4);
+}
+
+// A texture that begins again, and coordinates that a texture matrix makes, show the same detail.
+TEST_F(GroundDetailTest, FollowsTheTexturesCoordinates)
+{
+    draw();
+    const osg::ref_ptr<osg::Image> plain = draw();
+    osg::Geometry& ground = *_ground->getChild(0)->asGeometry();
+    auto& coordinates = static_cast<osg::Vec2Array&>(*ground.getTexCoordArray(0));
+    osg::StateSet& state = *ground.getStateSet();
+    for (osg::Vec2& at : coordinates)
+        at *= 0.25f;
+    state.setTextureAttributeAndModes(0, new osg::TexMat(osg::Matrixd::scale(4.0, 4.0, 1.0)));
+    // What lies there goes by the same coordinates.
+    EXPECT_EQ(differing(*plain, *draw()), 0);
+    state.removeTextureAttribute(0, osg::StateAttribute::TEXMAT);
+    auto& colors = static_cast<osg::Texture2D&>(*state.getTextureAttribute(0, osg::StateAttribute::TEXTURE));
+    auto& cover = static_cast<osg::Texture2D&>(*state.getTextureAttribute(7, osg::StateAttribute::TEXTURE));
+    for (osg::Texture2D* texture : {&colors, &cover})
+    {
+        texture->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+        texture->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+    }
+    for (osg::Vec2& at : coordinates)
+        at = at * 4.0f + osg::Vec2(3.0f, 3.0f);
+    // But for the texels of the border, and what floats of 3 to 4 round.
+    EXPECT_LT(meanDifference(*plain, *draw()), 0.004);
+}
+
+// Only light 0, if it is on, tells where light comes from. One at the eye shines along the view.
+TEST_F(GroundDetailTest, OtherLightsTellNothing)
+{
+    osg::StateSet& state = *_root->getOrCreateStateSet();
+    osg::ref_ptr<osg::Material> material = new osg::Material;
+    material->setEmission(osg::Material::FRONT_AND_BACK, {1.0f, 1.0f, 1.0f, 1.0f});
+    state.setAttribute(material);
+    draw();
+    const osg::ref_ptr<osg::Image> unlit = draw();
+    state.setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    state.setMode(GL_LIGHT0, osg::StateAttribute::OFF);
+    state.setMode(GL_LIGHT1, osg::StateAttribute::ON);
+    // Number 0 stands elsewhere, but is out.
+    for (const int number : {0, 1})
+    {
+        osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+        source->setLight(new osg::Light(static_cast<unsigned int>(number)));
+        source->getLight()->setPosition({1.0f, 1.0f, 0.2f, 0.0f});
+        _root->addChild(source);
+    }
+    draw();
+    EXPECT_EQ(differing(*unlit, *draw()), 0);
+    state.setMode(GL_LIGHT0, osg::StateAttribute::ON);
+    const osg::ref_ptr<osg::LightSource> lamp = new osg::LightSource;
+    lamp->setReferenceFrame(osg::LightSource::ABSOLUTE_RF);
+    lamp->getLight()->setPosition({0.0f, 0.0f, 0.0f, 1.0f});
+    _root->addChild(lamp);
+    draw();
+    const osg::ref_ptr<osg::Image> lit = draw();
+    for (int y = 0; y < HEIGHT / 2; y += 3)
+        for (int x = 0; x < WIDTH; x += 3)
+            ASSERT_GT(colorAt(*lit, x, y).length(), 0.02) << x << " " << y;
 }

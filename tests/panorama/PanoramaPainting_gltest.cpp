@@ -5,6 +5,7 @@
 // value, and a picture of whatever terrain there is.
 #include <tools/GlFixture.h>
 #include <tools/RandomSamples.h>
+#include <tools/SmoothTexture.h>
 
 #include <osg/Geometry>
 #include <osg/Texture2D>
@@ -70,12 +71,7 @@ osg::ref_ptr<osg::Texture2D> makeCover(const Land& land)
                 bytes[i] = static_cast<unsigned char>(std::lround(texel[i] * 255.0));
         }
     }
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
-    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
-    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
-    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
-    return texture;
+    return smoothTexture(image);
 }
 
 osg::ref_ptr<osg::Geometry> makeLand(const Land& land)

@@ -67,6 +67,10 @@ TEST(SceneFile, MayBeAPartOfAnEnginesFile)
         EXPECT_EQ(result.errors.size(), 1u) << ::testing::PrintToString(result.errors);
         return result.errors.empty() ? std::string() : result.errors.front();
     };
+    // The engine's tiles do not say what lies on the ground.
+    std::string covered = map;
+    covered.replace(covered.find("focusLine='0.4'"), 15, "coverMap='true'");
+    EXPECT_NE(errorOf(covered).find("bends without coverMap"), std::string::npos) << errorOf(covered);
     // Lines are those of the whole file.
     std::string wrong = map;
     wrong.replace(wrong.find("focusLine"), 9, "focusLane");

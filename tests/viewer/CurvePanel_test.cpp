@@ -7,73 +7,31 @@
 #include <osgGeoFX/viewer/detail/CurveGraph.h>
 #include <tools/NotifyWatch.h>
 #include <tools/RandomViews.h>
+#include <tools/WindowEvents.h>
 
-#include <gtest/gtest.h>
 #include <osg/Geometry>
 #include <osgText/Text>
-#include <osgViewer/Viewer>
 
 #include <cmath>
-#include <functional>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
-using Event = osgGA::GUIEventAdapter;
 using Points = std::vector<osg::Vec2d>;
 
 namespace
 {
 
-constexpr double WIDTH = 1280.0, HEIGHT = 720.0;
-
-class CurvePanelTest : public ::testing::Test
+class CurvePanelTest : public WindowEvents
 {
 protected:
-    void SetUp() override
-    {
-        _viewer.setSceneData(_scene);
-        _viewer.getCamera()->setViewport(10, 20, static_cast<int>(WIDTH), static_cast<int>(HEIGHT));
-    }
+    void SetUp() override { viewer.setSceneData(_scene); }
 
-    bool send(Event::EventType type, const std::function<void(Event&)>& fill)
-    {
-        osg::ref_ptr<Event> event = new Event;
-        event->setEventType(type);
-        fill(*event);
-        return _panel->handle(*event, _viewer);
-    }
-    bool press(int key)
-    {
-        return send(Event::KEYDOWN, [&](Event& event) { event.setKey(key); });
-    }
-    /// At a place of the viewport, whose corner is not the window's.
-    bool mouse(Event::EventType type, const osg::Vec2d& place, int button = Event::LEFT_MOUSE_BUTTON)
-    {
-        return send(type,
-                    [&](Event& event)
-                    {
-                        event.setX(static_cast<float>(place.x() + 10.0));
-                        event.setY(static_cast<float>(place.y() + 20.0));
-                        event.setButton(button);
-                        event.setButtonMask(static_cast<unsigned int>(button));
-                    });
-    }
-    bool click(const osg::Vec2d& place, int button = Event::LEFT_MOUSE_BUTTON)
-    {
-        const bool taken = mouse(Event::PUSH, place, button);
-        EXPECT_EQ(mouse(Event::RELEASE, place, button), taken);
-        return taken;
-    }
     void drag(const osg::Vec2d& from, const osg::Vec2d& to)
     {
         EXPECT_TRUE(mouse(Event::PUSH, from));
         EXPECT_TRUE(mouse(Event::DRAG, (from + to) * 0.5));
         EXPECT_TRUE(mouse(Event::DRAG, to));
         EXPECT_TRUE(mouse(Event::RELEASE, to));
-    }
-    void frame()
-    {
-        send(Event::FRAME, [](Event&) {});
     }
 
     /// Where the panel shows a height of the picture, measured from what it draws, not from what it says.
@@ -88,8 +46,6 @@ protected:
         frame();
     }
 
-    osg::Camera& overlay() { return *_viewer.getSlave(0)._camera; }
-    osg::Group& picture() { return *overlay().getChild(0)->asGroup(); }
     std::vector<const osgText::Text*> texts()
     {
         std::vector<const osgText::Text*> result;
@@ -99,7 +55,8 @@ protected:
         return result;
     }
 
-    osgViewer::Viewer _viewer;
+    osgGA::GUIEventHandler& handler() override { return *_panel; }
+
     osg::ref_ptr<EffectScene> _scene = new EffectScene;
     osg::ref_ptr<PanoramaMap> _map = new PanoramaMap;
     osg::ref_ptr<CurvePanel> _panel = new CurvePanel(*_scene);
@@ -113,7 +70,7 @@ TEST_F(CurvePanelTest, SaysWhereThereIsNoMap)
     EXPECT_FALSE(mouse(Event::PUSH, {1200.0, 50.0})) << "hidden, it takes nothing";
     EXPECT_FALSE(press(Event::KEY_Delete));
     frame();
-    EXPECT_EQ(_viewer.getNumSlaves(), 0u);
+    EXPECT_EQ(viewer.getNumSlaves(), 0u);
     EXPECT_TRUE(press(Event::KEY_F4));
     frame();
     EXPECT_EQ(_panel->map(), nullptr);
@@ -311,7 +268,7 @@ TEST_F(CurvePanelTest, DrawsInsideItsBoxAndOnlyWhatIsNew)
     EXPECT_NE(&picture(), before);
     for (const auto& [width, height] : {std::pair(1280, 720), {640, 480}, {1920, 1080}, {3840, 2160}})
     {
-        _viewer.getCamera()->setViewport(10, 20, width, height);
+        viewer.getCamera()->setViewport(10, 20, width, height);
         frame();
         const CurveGraph graph(width, height);
         EXPECT_GE(graph.panel.left, 0.0);

@@ -2,63 +2,26 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The bar of the layers' time, with events made by hand, in a viewer that never draws: where things are is taken from what it draws.
 #include <osgGeoFX/viewer/TimeBar.h>
+#include <tools/WindowEvents.h>
 
-#include <gtest/gtest.h>
 #include <osg/Geometry>
 #include <osgText/Text>
-#include <osgViewer/Viewer>
-
-#include <functional>
 
 using namespace osgGeoFX;
-using Event = osgGA::GUIEventAdapter;
+using namespace geofx::test;
 
 namespace
 {
 
-class TimeBarTest : public ::testing::Test
+class TimeBarTest : public WindowEvents
 {
 protected:
     void SetUp() override
     {
-        _viewer.getCamera()->setViewport(10, 20, 1280, 720);
         _clock->setRange(1000.0, 3000.0);
         _clock->setTime(1500.0);
         frame();
     }
-    bool send(Event::EventType type, const std::function<void(Event&)>& fill)
-    {
-        osg::ref_ptr<Event> event = new Event;
-        event->setEventType(type);
-        fill(*event);
-        return _bar->handle(*event, _viewer);
-    }
-    bool press(int key)
-    {
-        return send(Event::KEYDOWN, [&](Event& event) { event.setKey(key); });
-    }
-    /// At a place of the viewport, whose corner is not the window's.
-    bool mouse(Event::EventType type, const osg::Vec2d& place, int button = Event::LEFT_MOUSE_BUTTON)
-    {
-        return send(type,
-                    [&](Event& event)
-                    {
-                        event.setX(static_cast<float>(place.x() + 10.0));
-                        event.setY(static_cast<float>(place.y() + 20.0));
-                        event.setButton(button);
-                    });
-    }
-    bool click(const osg::Vec2d& place, int button = Event::LEFT_MOUSE_BUTTON)
-    {
-        const bool taken = mouse(Event::PUSH, place, button);
-        EXPECT_EQ(mouse(Event::RELEASE, place, button), taken);
-        return taken;
-    }
-    void frame()
-    {
-        send(Event::FRAME, [](Event&) {});
-    }
-    osg::Group& picture() { return *_viewer.getSlave(0)._camera->getChild(0)->asGroup(); }
     /// One of the rectangles that are drawn, the lowest first: panel, track, what is past, thumb, and the button's.
     osg::BoundingBoxd rectangle(std::size_t number)
     {
@@ -80,7 +43,8 @@ protected:
         return {track.xMin() + share * (track.xMax() - track.xMin()), track.center().y()};
     }
 
-    osgViewer::Viewer _viewer;
+    osgGA::GUIEventHandler& handler() override { return *_bar; }
+
     osg::ref_ptr<LayerClock> _clock = new LayerClock;
     osg::ref_ptr<TimeBar> _bar = new TimeBar(*_clock);
 };
@@ -157,11 +121,11 @@ TEST_F(TimeBarTest, IsHiddenByItsKey)
     EXPECT_TRUE(press(Event::KEY_F3));
     EXPECT_FALSE(_bar->shown());
     EXPECT_EQ(_bar->text(), "");
-    EXPECT_EQ(_viewer.getSlave(0)._camera->getNodeMask(), 0u);
+    EXPECT_EQ(viewer.getSlave(0)._camera->getNodeMask(), 0u);
     EXPECT_FALSE(click(onTrack(0.5)));
     EXPECT_TRUE(press('y')) << "keys work all the same";
     EXPECT_TRUE(press(Event::KEY_F3));
     frame();
-    EXPECT_NE(_viewer.getSlave(0)._camera->getNodeMask(), 0u);
+    EXPECT_NE(viewer.getSlave(0)._camera->getNodeMask(), 0u);
     EXPECT_TRUE(click(onTrack(0.5)));
 }

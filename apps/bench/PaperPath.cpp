@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
-#include "CameraPath.h"
+#include "PaperPath.h"
 
 #include "BenchError.h"
 
@@ -25,7 +25,7 @@ ViewPoint place(double longitude, double latitude, double height, double heading
 
 } // namespace
 
-osg::Matrixd CameraPath::view(double share, const osgGeoFX::Georeference& reference) const
+osg::Matrixd PaperPath::view(double share, const osgGeoFX::Georeference& reference) const
 {
     const double along = std::clamp(share, 0.0, 1.0) * static_cast<double>(places.size() - 1);
     const auto first = std::min(static_cast<std::size_t>(along), places.size() - 2);
@@ -37,9 +37,9 @@ osg::Matrixd CameraPath::view(double share, const osgGeoFX::Georeference& refere
     return matrix;
 }
 
-const std::vector<CameraPath>& cameraPaths()
+const std::vector<PaperPath>& paperPaths()
 {
-    static const std::vector<CameraPath> paths = {
+    static const std::vector<PaperPath> paths = {
         {"pedestrian-1",
          "a way between Waikiki's towers, the town folded up ahead",
          "pedestrianView bendAngle=45 focusDistance=700 zoneWidth=1200 planeHeight=5 tallest=150",

@@ -15,7 +15,7 @@ namespace geofx::bench
 {
 
 /// A camera's way over Honolulu with an effect, as the paper on multi-perspective views measures them.
-struct CameraPath
+struct PaperPath
 {
     /// Frames a second, without and with the deformation.
     struct Speed
@@ -39,6 +39,6 @@ struct CameraPath
 };
 
 /// The paper's four paths over Honolulu: two for each effect.
-const std::vector<CameraPath>& cameraPaths();
+const std::vector<PaperPath>& paperPaths();
 
 } // namespace geofx::bench
