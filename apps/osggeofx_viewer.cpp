@@ -140,7 +140,6 @@ int main(int argc, char** argv)
         mappingOptions.files.push_back(text);
     while (arguments.read("--sequence", text))
         mappingOptions.sequences.push_back(text);
-    mappingOptions.waits = false;
     arguments.read("--colors", mappingOptions.colors);
     while (arguments.read("--route", text))
         mappingOptions.routes.push_back(text);

@@ -20,6 +20,7 @@
 #include <osgGeoFX/batch/WorkStage.h>
 #include <osgGeoFX/batch/WorkTimes.h>
 
+#include <osgGeoFX/effect/ClockTime.h>
 #include <osgGeoFX/effect/Deformation.h>
 #include <osgGeoFX/effect/DeformationChain.h>
 #include <osgGeoFX/effect/DepthConvention.h>

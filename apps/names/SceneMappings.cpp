@@ -93,7 +93,6 @@ void showSequences(const Options& options, osgGeoFX::Scene& scene)
     osgGeoFX::SceneSequences sequences(*scene.node, *scene.effects);
     osgGeoFX::SceneSequences::Options how;
     how.colors = options.colors;
-    how.waits = options.waits;
     std::string error;
     for (const std::string& file : options.sequences)
         if (!sequences.add(file, how, error)) throw std::runtime_error("--sequence: " + error);

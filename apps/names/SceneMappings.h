@@ -21,7 +21,6 @@ struct Options
     std::vector<std::string> files;     ///< KML, KMZ, or any raster with a georeference
     std::vector<std::string> sequences; ///< rasters in time: files, FILE:VARIABLE, or folders
     bool paged = true;                  ///< whether large rasters are read in tiles as they are needed
-    bool waits = true;                  ///< whether pictures wait for the steps of sequences
     std::vector<std::string> routes;    ///< GPX, KML or other vector data with lines, or FILE:LAYER
     double routeWidth = 0.0;            ///< metres; 0: by their extent
     std::string colors;                 ///< a color table's file, for values; empty: greys

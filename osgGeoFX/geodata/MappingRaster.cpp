@@ -18,28 +18,6 @@ namespace osgGeoFX
 namespace
 {
 
-void readValues(const FrameRaster& raster, GDALDataset& warped, osg::Image& image, MappingRaster& result)
-{
-    const int height = warped.GetRasterYSize();
-    image.allocateImage(warped.GetRasterXSize(), height, 1, GL_RED, GL_FLOAT);
-    image.setInternalTextureFormat(GL_R32F);
-    std::vector<double> line;
-    bool any = false;
-    for (int row = 0; row < height; ++row)
-    {
-        raster.readValues(warped, row, line);
-        auto* out = reinterpret_cast<float*>(image.data(0, static_cast<unsigned int>(height - 1 - row)));
-        for (const double value : line)
-        {
-            *out++ = static_cast<float>(value);
-            if (std::isnan(value)) continue;
-            result.lowest = any ? std::min(result.lowest, value) : value;
-            result.highest = any ? std::max(result.highest, value) : value;
-            any = true;
-        }
-    }
-}
-
 MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
                          const MappingRaster::Options& options)
 {
@@ -61,40 +39,21 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
     std::optional<FrameRaster> coarse;
     if (overview >= 0) coarse.emplace(file, options.kind, true, FrameRaster::ANY_FORMAT, overview);
     const FrameRaster& raster = coarse ? *coarse : whole;
-    const DatasetPtr warped = raster.warped(crs, extent.low, extent.high, texels(size.x()), texels(size.y()));
 
     MappingRaster result;
     result.low = extent.low * crs.metresPerUnit - crs.origin;
     result.high = extent.high * crs.metresPerUnit - crs.origin;
-    const osg::ref_ptr<osg::Image> image = new osg::Image;
-    if (raster.kind == DataLayer::COLOR)
+    double lowest = 1.0, highest = 0.0; // none yet
+    const osg::ref_ptr<osg::Image> image =
+        raster.image(crs, extent.low, extent.high, texels(size.x()), texels(size.y()), &lowest, &highest);
+    if (lowest <= highest)
     {
-        image->allocateImage(warped->GetRasterXSize(), warped->GetRasterYSize(), 1, GL_RGBA,
-                             GL_UNSIGNED_BYTE);
-        raster.readColors(*warped, image->data());
+        result.lowest = lowest;
+        result.highest = highest;
     }
-    else
-        readValues(raster, *warped, *image, result);
-    image->setFileName(file);
     result.layer = new DataLayer(image);
     result.layer->setKind(raster.kind);
     return result;
-}
-
-void move(const std::string& file, MappingFrame& frame)
-{
-    const FrameRaster raster(file, std::nullopt);
-    FrameCrs crs;
-    if (frame.globe)
-        crs.definition = "EPSG:4326";
-    else
-        crs = crsOf(frame, file);
-    const osg::Vec2d middle = raster.middle(crs);
-    if (frame.globe)
-        frame.origin =
-            LocalOrigin::onGlobe(osg::DegreesToRadians(middle.x()), osg::DegreesToRadians(middle.y()));
-    else
-        frame.origin = LocalOrigin::onPlane(middle * crs.metresPerUnit);
 }
 
 } // namespace
@@ -119,7 +78,7 @@ bool MappingRaster::moveToMiddle(const std::string& file, MappingFrame& frame, s
     initialiseGdal();
     try
     {
-        move(file, frame);
+        FrameRaster(file, std::nullopt).moveToMiddle(frame);
         return true;
     }
     catch (const BuildError& failure)

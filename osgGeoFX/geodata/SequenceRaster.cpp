@@ -5,6 +5,7 @@
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/TimeSteps.h>
 
+#include <osg/CoordinateSystemNode>
 #include <osg/Math>
 
 #include <algorithm>
@@ -71,25 +72,7 @@ private:
     osg::ref_ptr<osg::Image> read(const FrameRaster& raster) const
     {
         if (raster.kind != _kind) raster.fail("it has other data than the first step; make all steps alike");
-        const DatasetPtr warped = raster.warped(_crs, extent.low, extent.high, _columns, _rows);
-        osg::ref_ptr<osg::Image> image = new osg::Image;
-        if (_kind == DataLayer::COLOR)
-        {
-            image->allocateImage(_columns, _rows, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-            raster.readColors(*warped, image->data());
-            return image;
-        }
-        image->allocateImage(_columns, _rows, 1, GL_RED, GL_FLOAT);
-        image->setInternalTextureFormat(GL_R32F);
-        std::vector<double> line;
-        for (int row = 0; row < _rows; ++row)
-        {
-            raster.readValues(*warped, row, line);
-            auto* out = reinterpret_cast<float*>(image->data(0, static_cast<unsigned int>(_rows - 1 - row)));
-            std::transform(line.begin(), line.end(), out,
-                           [](double value) { return static_cast<float>(value); });
-        }
-        return image;
+        return raster.image(_crs, extent.low, extent.high, _columns, _rows);
     }
 
     std::unique_ptr<TimeSteps> _steps;
@@ -99,19 +82,20 @@ private:
     std::mutex _mutex; ///< of the datasets
 };
 
-void move(TimeSteps& steps, MappingFrame& frame, const std::string& file)
+/// On a globe, a frame is a plane that touches it: what lies beyond is on its other side, or squeezed.
+constexpr double farthest = 60.0; // degrees of arc
+
+void checkReach(const FrameRaster::Extent& extent, const FrameCrs& crs, const std::string& file)
 {
-    FrameCrs crs;
-    if (frame.globe)
-        crs.definition = "EPSG:4326";
-    else
-        crs = crsOf(frame, file);
-    const osg::Vec2d middle = steps.step(0)->middle(crs);
-    if (frame.globe)
-        frame.origin =
-            LocalOrigin::onGlobe(osg::DegreesToRadians(middle.x()), osg::DegreesToRadians(middle.y()));
-    else
-        frame.origin = LocalOrigin::onPlane(middle * crs.metresPerUnit);
+    const osg::Vec2d low = extent.low * crs.metresPerUnit - crs.origin;
+    const osg::Vec2d high = extent.high * crs.metresPerUnit - crs.origin;
+    const double reach =
+        std::max({std::abs(low.x()), std::abs(low.y()), std::abs(high.x()), std::abs(high.y())});
+    if (reach > osg::WGS_84_RADIUS_EQUATOR * std::sin(osg::DegreesToRadians(farthest)))
+        throw BuildError(
+            file +
+            ": it reaches farther around the globe than a layer in time can, 60 degrees from its middle; cut "
+            "a part out with gdal_translate -projwin, or gdalmdimtranslate -subset.");
 }
 
 void findRange(Steps& steps, SequenceRaster& result)
@@ -148,8 +132,9 @@ std::optional<SequenceRaster> SequenceRaster::open(const std::string& file, Mapp
     {
         std::unique_ptr<TimeSteps> source = TimeSteps::open(file, options.variable);
         MappingFrame moved = frame;
-        if (moves) move(*source, moved, file);
+        if (moves) source->step(0)->moveToMiddle(moved);
         const osg::ref_ptr<Steps> steps = new Steps(std::move(source), crsOf(moved, file), options);
+        if (moved.globe) checkReach(steps->extent, steps->crs(), file);
         SequenceRaster result;
         result.variable = steps->source().variable;
         result.unit = steps->source().unit;
@@ -172,7 +157,10 @@ std::pair<std::string, std::string> SequenceRaster::parse(const std::string& tex
 {
     std::error_code fault;
     const std::size_t colon = text.rfind(':');
-    if (std::filesystem::exists(text, fault) || colon == std::string::npos) return {text, ""};
+    // That of an address, "/vsicurl/https://…", is none.
+    const std::size_t slash = text.rfind('/');
+    const bool none = colon == std::string::npos || (slash != std::string::npos && colon < slash);
+    if (none || std::filesystem::exists(text, fault)) return {text, ""};
     return {text.substr(0, colon), text.substr(colon + 1)};
 }
 

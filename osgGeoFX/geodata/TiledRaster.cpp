@@ -63,7 +63,8 @@ public:
                 give(itself, std::move(raster));
                 raster = take(overview);
             }
-            const osg::ref_ptr<osg::Image> image = read(*raster, from, to, columns, rows);
+            const osg::ref_ptr<osg::Image> image =
+                raster->image(_crs, _crs.fromFrame(from), _crs.fromFrame(to), columns, rows);
             give(overview, std::move(raster));
             return image;
         }
@@ -100,35 +101,6 @@ private:
     {
         const std::lock_guard<std::mutex> lock(_mutex);
         _idle[overview].push_back(std::move(raster));
-    }
-
-    osg::ref_ptr<osg::Image> read(const FrameRaster& raster, const osg::Vec2d& from, const osg::Vec2d& to,
-                                  int columns, int rows) const
-    {
-        const DatasetPtr warped =
-            raster.warped(_crs, _crs.fromFrame(from), _crs.fromFrame(to), columns, rows);
-        osg::ref_ptr<osg::Image> image = new osg::Image;
-        if (_kind == DataLayer::COLOR)
-        {
-            image->allocateImage(columns, rows, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-            raster.readColors(*warped, image->data());
-        }
-        else
-        {
-            image->allocateImage(columns, rows, 1, GL_RED, GL_FLOAT);
-            image->setInternalTextureFormat(GL_R32F);
-            std::vector<double> line;
-            for (int row = 0; row < rows; ++row)
-            {
-                raster.readValues(*warped, row, line);
-                auto* out =
-                    reinterpret_cast<float*>(image->data(0, static_cast<unsigned int>(rows - 1 - row)));
-                std::transform(line.begin(), line.end(), out,
-                               [](double value) { return static_cast<float>(value); });
-            }
-        }
-        image->setFileName(_file);
-        return image;
     }
 
     const std::shared_ptr<GdalCacheLimit> _cache;

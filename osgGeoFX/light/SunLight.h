@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/Export.h>
+#include <osgGeoFX/effect/ClockTime.h>
 #include <osgGeoFX/light/SunPosition.h>
 
 #include <osg/LightSource>

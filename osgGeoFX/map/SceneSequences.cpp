@@ -14,9 +14,6 @@ namespace osgGeoFX
 namespace
 {
 
-/// That all of the time takes, of the program's.
-constexpr double wholeTime = 20.0;
-
 void setColors(ProjectiveMapping& mapping, const SequenceFile& file)
 {
     if (file.steps->kind() == DataLayer::COLOR) return;
@@ -34,12 +31,9 @@ void setColors(ProjectiveMapping& mapping, const SequenceFile& file)
 } // namespace
 
 SceneSequences::SceneSequences(osg::Node& node, EffectScene& scene)
-    : _scene(&scene), _player(LayerPlayer::of(scene))
+    : _scene(&scene), _player(LayerPlayer::onto(scene))
 {
     if (!scene.ground().ellipsoid) _wkt = crsOfScene(node);
-    if (_player) return;
-    _player = new LayerPlayer(nullptr);
-    scene.addUpdateCallback(_player);
 }
 
 bool SceneSequences::add(const std::string& file, const Options& options, std::string& error)
@@ -53,7 +47,12 @@ bool SceneSequences::add(const std::string& file, const Options& options, std::s
     if (!request.read(error)) return false;
 
     const osg::ref_ptr<LayerSequence> sequence = new LayerSequence(request.steps);
-    sequence->setWaiting(options.waits);
+    const std::string fault = _player->faultOf(*sequence);
+    if (!fault.empty())
+    {
+        error = file + ": " + fault;
+        return false;
+    }
     const osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
     const osg::Vec2d half = (request.high - request.low) / 2.0;
     if (!mapping->setRectangle(request.low + half, half.x(), half.y()))
@@ -71,13 +70,7 @@ bool SceneSequences::add(const std::string& file, const Options& options, std::s
     effect->addMapping(mapping);
     _scene->addEffect(effect);
 
-    LayerClock& clock = *_player->getClock();
-    const double before = clock.getEnd() - clock.getBegin();
-    // What nobody has set follows the range.
-    const bool usual = before == 0.0 || clock.getSpeed() == before / wholeTime;
-    _player->add(sequence);
-    const double length = clock.getEnd() - clock.getBegin();
-    if (usual && length > 0.0) clock.setSpeed(length / wholeTime);
+    _player->add(sequence, LayerPlayer::usualTime);
     sequence->update();
     return true;
 }

@@ -40,7 +40,6 @@ public:
             colors; ///< of values: an SLD file, or one that ColorRampFile reads; empty: viridis over their range
         double opacity = 1.0; ///< 0…1
         int maxSide = 1024;   ///< texels along the longer side, 1…16384
-        bool waits = false;   ///< LayerSequence::setWaiting()
     };
     /// Adds a file, "FILE" or "FILE:VARIABLE", or a folder. False, with a sentence in `error`, if it cannot; the scene stays as it is then.
     bool add(const std::string& file, const Options& options, std::string& error);

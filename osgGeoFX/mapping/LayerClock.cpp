@@ -2,12 +2,15 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/LayerClock.h>
 
+#include <osgGeoFX/effect/ClockTime.h>
 #include <osgGeoFX/mapping/LayerSequence.h>
 
 #include <osg/FrameStamp>
 #include <osg/NodeVisitor>
+#include <osg/Notify>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -19,39 +22,13 @@ namespace
 {
 
 constexpr double most = 1e12; // seconds
-constexpr std::int64_t secondsOfDay = 86400;
 
-/// Days since 1970 of a date of the Gregorian calendar; of its era of 400 years, of 146,097 days each.
-std::int64_t daysOf(std::int64_t year, int month, int day)
-{
-    // Years begin in March, so that the leap day is their last.
-    if (month <= 2) --year;
-    const std::int64_t era = (year >= 0 ? year : year - 399) / 400;
-    const std::int64_t yearOfEra = year - era * 400;
-    const std::int64_t dayOfYear = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-    return era * 146097 + yearOfEra * 365 + yearOfEra / 4 - yearOfEra / 100 + dayOfYear - 719468;
-}
-
+/// To the minute.
 std::string dateOf(double seconds)
 {
-    const auto minutes = static_cast<std::int64_t>(std::floor(seconds / 60.0 + 0.5));
-    const std::int64_t minutesOfDay = secondsOfDay / 60;
-    const std::int64_t days =
-        minutes >= 0 ? minutes / minutesOfDay : -((minutesOfDay - 1 - minutes) / minutesOfDay);
-    const std::int64_t rest = minutes - days * minutesOfDay;
-    const std::int64_t shifted = days + 719468;
-    const std::int64_t era = (shifted >= 0 ? shifted : shifted - 146096) / 146097;
-    const std::int64_t dayOfEra = shifted - era * 146097;
-    const std::int64_t yearOfEra = (dayOfEra - dayOfEra / 1460 + dayOfEra / 36524 - dayOfEra / 146096) / 365;
-    const std::int64_t dayOfYear = dayOfEra - (365 * yearOfEra + yearOfEra / 4 - yearOfEra / 100);
-    const std::int64_t month = (5 * dayOfYear + 2) / 153;
-    const auto day = static_cast<int>(dayOfYear - (153 * month + 2) / 5 + 1);
-    const auto civil = static_cast<int>(month < 10 ? month + 3 : month - 9);
-    const auto year = static_cast<long>(yearOfEra + era * 400 + (civil <= 2 ? 1 : 0));
-    char text[64];
-    std::snprintf(text, sizeof text, "%04ld-%02d-%02d %02d:%02d UTC", year, civil, day,
-                  static_cast<int>(rest / 60), static_cast<int>(rest % 60));
-    return text;
+    const std::string text = textOf({60.0 * std::floor(seconds / 60.0 + 0.5), 0});
+    const std::size_t middle = text.find('T');
+    return text.substr(0, middle) + " " + text.substr(middle + 1, 5) + " UTC";
 }
 
 } // namespace
@@ -140,34 +117,78 @@ std::string LayerClock::text(double time) const
 
 std::optional<double> LayerClock::parseDate(const std::string& text)
 {
+    // Data sets leave out zeros and parts of the time, and write zones in several ways. ClockTime takes one.
     int year = 0, month = 0, day = 0, hour = 0, minute = 0, end = 0;
     double second = 0.0;
-    if (std::sscanf(text.c_str(), "%5d-%2d-%2d%n", &year, &month, &day, &end) != 3 || end == 0)
-        return std::nullopt;
+    if (std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end) != 3) return std::nullopt;
     std::string rest = text.substr(static_cast<std::size_t>(end));
-    if (!rest.empty() && (rest[0] == 'T' || rest[0] == ' '))
+    if (rest.size() > 1 && (rest[0] == 'T' || rest[0] == ' ') &&
+        std::isdigit(static_cast<unsigned char>(rest[1])))
     {
-        const int count = std::sscanf(rest.c_str() + 1, "%2d:%2d:%lf", &hour, &minute, &second);
-        if (count < 1) return std::nullopt;
-        const std::size_t tail = rest.find_first_not_of("0123456789:.", 1);
-        rest = tail == std::string::npos ? "" : rest.substr(tail);
+        const char* const time = rest.c_str() + 1;
+        int ends[3] = {};
+        std::sscanf(time, "%2d%n:%2d%n:%lf%n", &hour, &ends[0], &minute, &ends[1], &second, &ends[2]);
+        rest = time + std::max({ends[0], ends[1], ends[2]});
     }
-    if (rest != "" && rest != "Z" && rest != " UTC" && rest != "UTC") return std::nullopt;
-    if (month < 1 || month > 12 || day < 1 || day > 31 || hour < 0 || hour > 24 || minute < 0 ||
-        minute > 59 || !(second >= 0.0 && second < 61.0))
-        return std::nullopt;
-    return static_cast<double>(daysOf(year, month, day) * secondsOfDay + hour * 3600 + minute * 60) + second;
+    while (!rest.empty() && rest[0] == ' ')
+        rest.erase(0, 1);
+    int zoneHours = 0, zoneMinutes = 0, zoneEnd = 0;
+    char sign = '+';
+    if (rest == "UTC" || rest == "GMT" || rest == "Z") rest.clear();
+    if (!rest.empty())
+    {
+        // +10, +1000, +10:00
+        const bool colon = rest.find(':') != std::string::npos;
+        const int count = std::sscanf(rest.c_str(), colon ? "%c%2d%n:%2d%n" : "%c%2d%n%2d%n", &sign,
+                                      &zoneHours, &zoneEnd, &zoneMinutes, &zoneEnd);
+        if (count < 2 || zoneEnd != static_cast<int>(rest.size()) || (sign != '+' && sign != '-'))
+            return std::nullopt;
+    }
+    char whole[80];
+    std::snprintf(whole, sizeof whole, "%04d-%02d-%02dT%02d:%02d:%09.6f%c%02d:%02d", year, month, day, hour,
+                  minute, second, sign, zoneHours, zoneMinutes);
+    const std::optional<ClockTime> time = readClockTime(whole);
+    return time ? std::optional<double>(time->time) : std::nullopt;
 }
 
 LayerPlayer::LayerPlayer(LayerClock* clock) : _clock(clock ? clock : new LayerClock) {}
 
 LayerPlayer::~LayerPlayer() = default;
 
-void LayerPlayer::add(LayerSequence* sequence)
+LayerPlayer* LayerPlayer::onto(osg::Node& node)
 {
-    if (!sequence) return;
+    if (LayerPlayer* const known = of(node)) return known;
+    const osg::ref_ptr<LayerPlayer> player = new LayerPlayer(nullptr);
+    node.addUpdateCallback(player);
+    return player;
+}
+
+std::string LayerPlayer::faultOf(const LayerSequence& sequence) const
+{
+    if (_sequences.empty() || _clock->getDated() == sequence.steps().dated()) return {};
+    return sequence.steps().dated() ? "its steps have dates, and those of the layers with the same clock "
+                                      "have none; show them apart."
+                                    : "its steps have no dates, and those of the layers with the same clock "
+                                      "do; name its files by dates, "
+                                      "or show them apart.";
+}
+
+bool LayerPlayer::add(LayerSequence* sequence, double wholeTime)
+{
+    if (!sequence) return false;
+    const std::string fault = faultOf(*sequence);
+    if (!fault.empty())
+    {
+        OSG_WARN << "osgGeoFX: LayerPlayer::add leaves a sequence out: " << fault << std::endl;
+        return false;
+    }
+    const double before = _clock->getEnd() - _clock->getBegin();
+    const bool fits = wholeTime > 0.0 && (before == 0.0 || _clock->getSpeed() == before / wholeTime);
     sequence->setClock(_clock);
     _sequences.emplace_back(sequence);
+    const double length = _clock->getEnd() - _clock->getBegin();
+    if (fits && length > 0.0) _clock->setSpeed(length / wholeTime);
+    return true;
 }
 
 LayerPlayer* LayerPlayer::of(osg::Node& node)

@@ -21,7 +21,7 @@ class LayerSequence;
     number of sequences and simulations may share one.
 
     Times are seconds: since 1970 in UTC if `dated`, else since anything. A clock that plays goes on with the program's time,
-    `speed` times as fast, from where it stood when it was changed last. So the frames of a film have the same times, whichever
+    `speed` times as fast, from where it stood when it was changed last; at first, from the program's time 0. So the frames of a film have the same times, whichever
     of them are drawn.
 
     Setters refuse values out of range: they return false, warn once and keep the former value.
@@ -60,8 +60,8 @@ public:
     void advance(double programSeconds);
     /// A time for people: "2026-01-12 06:00 UTC", or "90.5 s" and "1:30:00".
     std::string text(double time) const;
-    /// Such a date as seconds since 1970: "2026-01-12", "2026-01-12T06:00:00Z", with or without its parts of a day. Nothing for any
-    /// other text.
+    /// Such a date as seconds since 1970: "2026-01-12", "2026-1-12 6:00", "2026-01-12T06:00:00Z", with a zone such as "+10:00" or
+    /// without. Nothing for any other text.
     static std::optional<double> parseDate(const std::string& text);
 
     const Properties& properties() const override;
@@ -99,11 +99,16 @@ private:
 class OSGGEOFX_EXPORT LayerPlayer : public osg::Callback
 {
 public:
+    static constexpr double usualTime =
+        20.0; ///< seconds that the kit's programs and scene files take for all of a range
     explicit LayerPlayer(LayerClock* clock);
 
     LayerClock* getClock() { return _clock.get(); }
-    /// A sequence gets the player's clock.
-    void add(LayerSequence* sequence);
+    /** A sequence gets the player's clock. `wholeTime`: the seconds of the program that all of the clock's range takes then,
+        unless somebody has set another speed; 0 leaves the speed as it is. False, with a warning, if faultOf() says why. */
+    bool add(LayerSequence* sequence, double wholeTime = 0.0);
+    /// Why a sequence cannot have the player's clock: times with dates and times without any are no common ones. Empty if it can.
+    std::string faultOf(const LayerSequence& sequence) const;
     /// What is done in each frame, with the clock's time.
     using Action = std::function<void(double time)>;
     void add(Action action) { _actions.push_back(std::move(action)); }
@@ -111,6 +116,8 @@ public:
     LayerSequence* getSequence(unsigned int i) { return _sequences[i].get(); }
     /// The first player among a node's update callbacks; null if there is none.
     static LayerPlayer* of(osg::Node& node);
+    /// The same; a new one where there is none.
+    static LayerPlayer* onto(osg::Node& node);
 
     /// Goes on to a time of the program, seconds. The callback does it with the simulation time.
     void update(double programSeconds);

@@ -77,6 +77,7 @@ ImageSteps::ImageSteps(std::vector<osg::ref_ptr<osg::Image>> images, std::vector
                        DataLayer::Kind kind, bool dated)
     : _images(std::move(images)), _times(std::move(times)), _kind(kind), _dated(dated)
 {
+    _images.resize(std::max<std::size_t>(_images.size(), 1));
     if (_times.size() == _images.size() && std::is_sorted(_times.begin(), _times.end())) return;
     if (!_times.empty())
         OSG_WARN << "osgGeoFX: ImageSteps got " << _times.size() << " times for " << _images.size()
@@ -139,6 +140,11 @@ public:
         known = isKnown();
         const auto found = _images.find(step);
         return found != _images.end() ? found->second : nullptr;
+    }
+    bool hasFailed(std::size_t step) const
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        return _failed.count(step) > 0;
     }
     std::string fault() const
     {
@@ -231,35 +237,54 @@ std::string LayerSequence::fault() const
     return _reader->fault();
 }
 
+/// The moment that is shown for one, as far as it is known which steps cannot be read; nothing if none can.
+std::optional<LayerSequence::Moment> LayerSequence::readable(Moment moment) const
+{
+    const std::size_t count = _steps->times().size();
+    if (moment.share > 0.0 && _reader->hasFailed(moment.step + 1)) moment.share = 0.0;
+    if (!_reader->hasFailed(moment.step)) return moment;
+    for (std::size_t step = moment.step; step-- > 0;)
+        if (!_reader->hasFailed(step)) return Moment{step, 0.0};
+    for (std::size_t step = moment.step + 1; step < count; ++step)
+        if (!_reader->hasFailed(step)) return Moment{step, 0.0};
+    return std::nullopt;
+}
+
 bool LayerSequence::update()
 {
-    Moment moment = momentOf(_clock->getTime());
+    Moment asked = momentOf(_clock->getTime());
     const std::size_t count = _steps->times().size();
     const bool classes = _steps->kind() == DataLayer::CLASS;
-    if (!_blending) moment.share = 0.0;
-    if (classes && moment.share >= 0.5) ++moment.step;
-    if (classes) moment.share = 0.0;
+    if (!_blending) asked.share = 0.0;
+    if (classes && asked.share >= 0.5) ++asked.step;
+    if (classes) asked.share = 0.0;
 
-    std::vector<std::size_t> wanted = {moment.step};
-    if (moment.share > 0.0) wanted.push_back(moment.step + 1);
-    const bool backwards = _clock->getSpeed() < 0.0;
-    for (std::size_t i = 1; i <= std::min(ahead, count - 1); ++i)
+    // Each turn but the last one finds a step that cannot be read.
+    while (const std::optional<Moment> moment = readable(asked))
     {
-        const std::size_t next = (moment.step + (backwards ? count - i : i)) % count;
-        if (std::find(wanted.begin(), wanted.end(), next) == wanted.end()) wanted.push_back(next);
-    }
-    _reader->want(wanted);
+        std::vector<std::size_t> wanted = {moment->step};
+        if (moment->share > 0.0) wanted.push_back(moment->step + 1);
+        const bool backwards = _clock->getSpeed() < 0.0;
+        for (std::size_t i = 1; i <= std::min(ahead, count - 1); ++i)
+        {
+            const std::size_t next = (asked.step + (backwards ? count - i : i)) % count;
+            if (std::find(wanted.begin(), wanted.end(), next) == wanted.end()) wanted.push_back(next);
+        }
+        _reader->want(wanted);
 
-    bool known = false, secondKnown = true;
-    osg::ref_ptr<osg::Image> first = _reader->find(moment.step, _waiting, known);
-    osg::ref_ptr<osg::Image> second;
-    if (moment.share > 0.0) second = _reader->find(moment.step + 1, _waiting, secondKnown);
-    if (!known || !secondKnown) return false;
-    if (_shown && _shown->step == moment.step && _shown->share == moment.share) return true;
-    _shown = moment;
-    // In the place of one that cannot be read, the other one, or the last picture.
-    if (!first) std::swap(first, second);
-    if (first) show(*first, second, moment.share);
+        bool known = false, secondKnown = true;
+        const osg::ref_ptr<osg::Image> first = _reader->find(moment->step, _waiting, known);
+        osg::ref_ptr<osg::Image> second;
+        if (moment->share > 0.0) second = _reader->find(moment->step + 1, _waiting, secondKnown);
+        _settled = known && secondKnown;
+        if (!_settled) return false;
+        if (!first || (moment->share > 0.0 && !second)) continue;
+        if (_shown && _shown->step == moment->step && _shown->share == moment->share) return true;
+        _shown = moment;
+        show(*first, second, moment->share);
+        return true;
+    }
+    _settled = true;
     return true;
 }
 

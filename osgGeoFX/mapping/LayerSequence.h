@@ -41,7 +41,8 @@ protected:
 class OSGGEOFX_EXPORT ImageSteps : public SequenceSteps
 {
 public:
-    /// `times` are as many as images, in rising order, else the steps are 0, 1, 2 …
+    /// `times` are as many as images, in rising order, else the steps are 0, 1, 2 … Without images there is one step, which
+    /// cannot be read.
     ImageSteps(std::vector<osg::ref_ptr<osg::Image>> images, std::vector<double> times, DataLayer::Kind kind,
                bool dated = false);
 
@@ -74,7 +75,7 @@ private:
 
     A few steps are in memory: those around the time, and those that come next, which a thread of its own reads. If a step is
     not there yet, the last picture stays. A step that cannot be read, or has another size or format than the first one, is said
-    once and shows the one before it. Files have the layer with its present picture, and not the sequence.
+    once and shows the nearest one before it that can; without any, the first one that can. Files have the layer with its present picture, and not the sequence.
     @ingroup mapping */
 class OSGGEOFX_EXPORT LayerSequence : public osg::Referenced
 {
@@ -83,6 +84,7 @@ public:
     explicit LayerSequence(SequenceSteps* steps);
 
     SequenceSteps& steps() { return *_steps; }
+    const SequenceSteps& steps() const { return *_steps; }
     /// The layer that it writes. Never null; always the same.
     DataLayer* getLayer() { return _layer.get(); }
     /// The clock gets the range of the steps' times, too. Null is refused with a warning. Default: one of its own.
@@ -97,6 +99,8 @@ public:
 
     /// Makes the layer's picture that of the clock's time; between frames. False if a step is not there yet.
     bool update();
+    /// Whether the layer had all that the last update() needed.
+    bool settled() const { return _settled; }
     /// Of a time: the step at or before it, and the share of the next one, 0…1.
     struct Moment
     {
@@ -112,6 +116,7 @@ protected:
 
 private:
     class Reader;
+    std::optional<Moment> readable(Moment moment) const;
     void show(const osg::Image& first, const osg::Image* second, double share);
 
     osg::ref_ptr<SequenceSteps> _steps;
@@ -120,6 +125,7 @@ private:
     std::unique_ptr<Reader> _reader;
     bool _blending = true;
     bool _waiting = false;
+    bool _settled = false;
     std::optional<Moment> _shown;
 };
 

@@ -190,7 +190,7 @@ public:
         }
         _revision = _mapping->revision();
         _leaves = std::move(leaves);
-        settle();
+        settle(same);
         if (same) return false;
         parts.clear();
         for (const auto& [page, leaf] : _leaves)
@@ -252,6 +252,7 @@ private:
         MappingPage source; ///< the tile that it is, or is a part of
         osg::ref_ptr<DataLayer> layer;
         osg::ref_ptr<ProjectiveMapping> part;
+        int most = 0; ///< texels a side that a part of a tile may have
     };
     using Leaves = std::map<MappingPage, Leaf>;
     struct Demand
@@ -351,13 +352,12 @@ private:
 
     Leaf leafOf(const MappingPage& page, const MappingPage& source, const osg::ref_ptr<DataLayer>& layer)
     {
-        if (page == source) return {source, layer, nullptr};
+        if (page == source) return {source, layer, nullptr, 0};
         const int most = _wanted.count(page) > 0 ? TileStore::side : sideOutOfSight;
         const auto former = _leaves.find(page);
-        if (former != _leaves.end() && former->second.source == source &&
-            former->second.layer->getImage()->s() <= most)
+        if (former != _leaves.end() && former->second.source == source && former->second.most == most)
             return former->second;
-        return {source, partOf(*layer, source, page, most), nullptr};
+        return {source, partOf(*layer, source, page, most), nullptr, most};
     }
 
     osg::ref_ptr<ProjectiveMapping> partFor(const MappingPage& page,
@@ -379,7 +379,8 @@ private:
         return part;
     }
 
-    void settle()
+    /// `same`: whether all is shown as it was. Otherwise another camera may have drawn this frame before it was.
+    void settle(bool same)
     {
         _statistics.shown = static_cast<int>(_leaves.size());
         _shownMegabytes = 0.0;
@@ -396,7 +397,7 @@ private:
         {
             if (!_store.find(page) && !_store.hasFailed(page)) ++_statistics.waiting;
         }
-        _statistics.settled = _statistics.waiting == 0 && !_pending;
+        _statistics.settled = same && _statistics.waiting == 0 && !_pending;
     }
 
     const PlaneBox _extent;
@@ -443,9 +444,11 @@ osg::ref_ptr<PagedRaster> PagedRaster::create(RasterTiles* tiles, const Options&
     {
         return std::clamp(static_cast<int>(std::lround(metres / texel)), 1, coarseSide);
     };
-    const osg::ref_ptr<osg::Image> coarse =
-        tiles->read(tiles->low(), tiles->high(), texels(size.x()), texels(size.y()), error);
+    const int columns = texels(size.x()), rows = texels(size.y());
+    const osg::ref_ptr<osg::Image> coarse = tiles->read(tiles->low(), tiles->high(), columns, rows, error);
     if (!coarse) return nullptr;
+    error = TileStore::faultOf(*coarse, columns, rows, tiles->kind());
+    if (!error.empty()) return nullptr;
     osg::ref_ptr<PagedRaster> raster = new PagedRaster(tiles, options, coarse);
     if (!raster->_work->start(error)) return nullptr;
     return raster;

@@ -40,8 +40,9 @@ class OSGGEOFX_EXPORT PagedRaster : public osg::Referenced
 public:
     struct Options
     {
-        int megabytes = 256; ///< for tiles in main memory and on the GPU together, 32…65536 MiB
-        int threads = 2;     ///< that read, 1…16
+        int megabytes =
+            256; ///< for tiles in main memory and on the GPU together, of each camera that sees it, 32…65536 MiB
+        int threads = 2; ///< that read, 1…16
         /// So many tiles are shown for the first time in a frame, 1…64: each takes about a millisecond. More, where frames take so long
         /// that it is a tenth of their time.
         int tilesPerFrame = 6;

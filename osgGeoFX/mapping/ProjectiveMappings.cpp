@@ -219,7 +219,8 @@ public:
     void cull(const ScenePass& pass) override
     {
         Drawing::Camera& camera = _drawing.cameras.of(pass.state);
-        if (camera.sees && !camera.pages.watch().boundless())
+        // What has no bounds asks for no tiles.
+        if (camera.sees)
         {
             for (const osg::ref_ptr<PagedRaster>& raster : _rasters)
                 see(*raster, camera, pass);

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/viewer/SceneData.h>
 
+#include <osgGeoFX/mapping/LayerClock.h>
+#include <osgGeoFX/mapping/LayerSequence.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/EffectScene.h>
@@ -9,8 +11,13 @@
 namespace osgGeoFX
 {
 
-bool hasAllData(const EffectScene& scene)
+bool hasAllData(EffectScene& scene)
 {
+    if (LayerPlayer* const player = LayerPlayer::of(scene))
+    {
+        for (unsigned int i = 0; i < player->getNumSequences(); ++i)
+            if (!player->getSequence(i)->settled()) return false;
+    }
     for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
     {
         const auto* mappings = dynamic_cast<const ProjectiveMappings*>(scene.getEffect(i));

@@ -10,8 +10,8 @@ namespace osgGeoFX
 class EffectScene;
 
 /// Whether the last frame had all that the scene's effects read while it is shown: the tiles of rasters that are larger than memory
-/// (PagedRaster). What a pager reads is PagerMonitor's matter. Between frames.
+/// (PagedRaster), and the steps of layers in time (LayerSequence). What a pager reads is PagerMonitor's matter. Between frames.
 /// @ingroup viewer
-OSGGEOFX_EXPORT bool hasAllData(const EffectScene& scene);
+OSGGEOFX_EXPORT bool hasAllData(EffectScene& scene);
 
 } // namespace osgGeoFX

@@ -125,6 +125,7 @@ bool TimeBar::key(int code)
     {
     case Event::KEY_F3:
         _shown = !_shown;
+        if (!_shown) letGo();
         if (!_shown && _overlay) _overlay->setNodeMask(0u);
         return true;
     case 'y':
@@ -139,6 +140,13 @@ bool TimeBar::key(int code)
     default:
         return false;
     }
+}
+
+/// Ends what a button that is held does.
+void TimeBar::letGo()
+{
+    if (_dragged) _clock->setPlaying(_plays);
+    _held = _dragged = false;
 }
 
 void TimeBar::drag(double x, const Layout& layout)
@@ -193,8 +201,7 @@ bool TimeBar::handle(const Event& event, osgGA::GUIActionAdapter& action)
     case Event::RELEASE:
     {
         const bool held = _held;
-        if (_dragged) _clock->setPlaying(_plays);
-        _held = _dragged = false;
+        letGo();
         // What began here is nothing for a camera manipulator.
         return held;
     }

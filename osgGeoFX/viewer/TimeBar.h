@@ -45,6 +45,7 @@ private:
     struct Content;
     bool key(int code);
     bool push(const osgGA::GUIEventAdapter& event, double x, double y, const Layout& layout);
+    void letGo();
     void drag(double x, const Layout& layout);
     Content content() const;
     void show(osgViewer::View& view);

@@ -165,21 +165,11 @@ private:
         if (mapping.getName().empty()) mapping.setName(request.variable);
         _effect.addMapping(&mapping);
 
-        osg::ref_ptr<LayerPlayer> player = LayerPlayer::of(_node);
-        if (!player)
-        {
-            player = new LayerPlayer(nullptr);
-            _node.addUpdateCallback(player);
-        }
-        LayerClock& clock = *player->getClock();
-        // All of the time in twenty seconds, unless somebody says otherwise.
-        constexpr double wholeTime = 20.0;
-        const double before = clock.getEnd() - clock.getBegin();
-        const bool usual = before == 0.0 || clock.getSpeed() == before / wholeTime;
-        player->add(sequence);
-        const double length = clock.getEnd() - clock.getBegin();
-        if (usual && length > 0.0) clock.setSpeed(length / wholeTime);
-        if (each.speed) clock.setSpeed(*each.speed);
+        LayerPlayer& player = *LayerPlayer::onto(_node);
+        const std::string clash = player.faultOf(*sequence);
+        if (!clash.empty()) fail(each.place, clash);
+        player.add(sequence, LayerPlayer::usualTime);
+        if (each.speed) player.getClock()->setSpeed(*each.speed);
         // So that there is a picture in the first frame.
         sequence->setWaiting(true);
         sequence->update();

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/closeup/CloseUps.h>
-#include <osgGeoFX/light/SunPosition.h>
+#include <osgGeoFX/effect/ClockTime.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/mapping/RoutePath.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>

@@ -231,6 +231,17 @@ TEST_F(SequenceRasters, OtherCalendarsAndUnitsCount)
     EXPECT_FALSE(raster->steps->dated());
     EXPECT_EQ(raster->steps->times(), (std::vector<double>{0.0, 259200.0, 518400.0, 1036800.0}));
     look.calendar = nullptr;
+    // Zones count, and times as Zarr's are; those beyond all clocks do not.
+    look.unit = "hours since 1970-01-02 06:00 +10:00";
+    raster = opened(write(path("zone.nc"), look), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_TRUE(raster->steps->dated());
+    EXPECT_EQ(raster->steps->times().front(), 86400.0 - 4 * 3600.0);
+    look.unit = "nanoseconds since 1970-01-01";
+    raster = opened(write(path("nano.nc"), look), frame, error);
+    ASSERT_TRUE(raster) << error;
+    EXPECT_TRUE(raster->steps->dated());
+    EXPECT_NEAR(raster->steps->times().back(), 12e-9, 1e-15);
     look.unit = "fortnights";
     raster = opened(write(path("odd.nc"), look), frame, error);
     ASSERT_TRUE(raster) << error;
@@ -321,6 +332,15 @@ TEST_F(SequenceRasters, WhatIsWrongIsSaid)
     one.placed(west, south, 0.1, 0.1).crs("EPSG:4326");
     EXPECT_TRUE(contains(faultOf(one.write(path("one.tif"))), "--mapping"));
     EXPECT_TRUE(contains(faultOf(path("one.tif").string(), "rain"), "no variables"));
+    // On a globe, half of a map of the world would lie on the other side of its frame.
+    MappingFrame globe;
+    globe.globe = true;
+    std::string reach;
+    std::filesystem::create_directory(path("world"));
+    TestRaster(36, 18).placed(-180.0, 90.0, 10.0, 10.0).crs("EPSG:4326").write(path("world") / "a.tif");
+    TestRaster(36, 18).placed(-180.0, 90.0, 10.0, 10.0).crs("EPSG:4326").write(path("world") / "b.tif");
+    EXPECT_FALSE(SequenceRaster::open(path("world").string(), globe, true, {}, reach));
+    EXPECT_TRUE(contains(reach, "-projwin")) << reach;
     // A step that goes bad later is said when it is read, and the others stay.
     std::filesystem::create_directory(path("steps"));
     for (const char* name : {"a.tif", "b.tif", "c.tif"})
@@ -341,4 +361,7 @@ TEST_F(SequenceRasters, FilesAndVariables)
     EXPECT_EQ(SequenceRaster::parse(file), std::pair(file, std::string()));
     EXPECT_EQ(SequenceRaster::parse(file + ":rain"), std::pair(file, std::string("rain")));
     EXPECT_EQ(SequenceRaster::parse("none.nc"), std::pair(std::string("none.nc"), std::string()));
+    const std::string address = "/vsicurl/https://host/rain.nc";
+    EXPECT_EQ(SequenceRaster::parse(address), std::pair(address, std::string()));
+    EXPECT_EQ(SequenceRaster::parse(address + ":rain"), std::pair(address, std::string("rain")));
 }

@@ -363,8 +363,14 @@ TEST_F(SceneMap, WithoutThePluginASentenceSaysWhatToDo)
     const fs::path plugins = _folder / "lib" / found.parent_path().filename();
     fs::create_directories(plugins);
     fs::create_symlink(found, plugins / "osgdb_geofx.so");
+    // The kit finds plugins beside its library, so the library lies there, too.
+    const fs::path libraries = found.parent_path().parent_path();
+    for (const auto& entry : fs::directory_iterator(libraries))
+        if (!entry.is_directory())
+            fs::create_symlink(entry.path(), _folder / "lib" / entry.path().filename());
     geofx::test::ProgramOptions options;
-    options.environment = {"OSG_LIBRARY_PATH=" + (_folder / "lib").string()};
+    options.environment = {"OSG_LIBRARY_PATH=" + (_folder / "lib").string(),
+                           "LD_LIBRARY_PATH=" + (_folder / "lib").string()};
     const auto alone =
         geofx::test::runProgram({geofx::test::builtProgram("read_scene"), scene.string()}, options);
     EXPECT_EQ(alone.exitCode, 1);

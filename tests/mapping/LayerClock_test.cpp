@@ -127,8 +127,14 @@ TEST(LayerClock, TextsAreDatesOfTheCalendar)
     }
     EXPECT_EQ(LayerClock::parseDate("1970-01-02").value_or(-1.0), 86400.0);
     EXPECT_EQ(LayerClock::parseDate("1970-01-01T00:00:01.5Z").value_or(-1.0), 1.5);
+    EXPECT_EQ(LayerClock::parseDate("1970-1-2 6:5").value_or(-1.0), 86400.0 + 6 * 3600.0 + 300.0);
+    for (const char* zone : {"+10:00", " +10:00", "+1000", " +10"})
+        EXPECT_EQ(LayerClock::parseDate("1970-01-02 06:00" + std::string(zone)).value_or(-1.0),
+                  86400.0 - 4 * 3600.0)
+            << zone;
     for (const char* wrong :
-         {"", "1970", "1970-13-01", "1970-01-01T", "1970-01-01 25:00", "1970-01-01 10:00 CET"})
+         {"", "1970", "1970-13-01", "1970-01-01T", "1970-01-01 25:00", "1970-01-01 10:00 CET", "1970-02-31",
+          "1970-01-01 24:30", "1970-01-01 06::", "1970-01-01 06:00 +10:00 or so", "1970-01-01 06:00 +"})
         EXPECT_FALSE(LayerClock::parseDate(wrong)) << wrong;
 }
 

@@ -2,15 +2,19 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // Layers that change in time: blends between steps, what is read when, and steps that cannot be.
 #include <osgGeoFX/mapping/LayerSequence.h>
+#include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/viewer/SceneData.h>
 #include <tools/NotifyWatch.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <mutex>
 #include <set>
+#include <thread>
 
 using namespace osgGeoFX;
 
@@ -184,9 +188,10 @@ TEST(LayerSequence, StepsThatCannotBeReadAreSaidOnce)
         [&]
         {
             EXPECT_EQ(valueAt(*sequence, 20.0), 2.0f);
-            EXPECT_EQ(valueAt(*sequence, 25.0), 2.0f) << "the other one";
-            EXPECT_EQ(valueAt(*sequence, 30.0), 2.0f) << "the last picture";
-            EXPECT_EQ(valueAt(*sequence, 35.0), 4.0f);
+            EXPECT_EQ(valueAt(*sequence, 25.0), 2.0f) << "the one before it";
+            EXPECT_EQ(valueAt(*sequence, 80.0), 8.0f);
+            EXPECT_EQ(valueAt(*sequence, 30.0), 2.0f) << "whatever was shown before";
+            EXPECT_EQ(valueAt(*sequence, 35.0), 2.0f);
             EXPECT_EQ(valueAt(*sequence, 50.0), 4.0f) << "another size";
             EXPECT_EQ(valueAt(*sequence, 60.0), 6.0f);
         });
@@ -213,4 +218,54 @@ TEST(LayerSequence, SequencesShareAClock)
     geofx::test::NotifyWatch watch;
     EXPECT_EQ(watch.messagesOf([&] { one->setClock(nullptr); }).size(), 1u);
     EXPECT_EQ(one->getClock(), other->getClock());
+}
+
+TEST(LayerSequence, WithoutStepsThatCanBeReadNothingIsShown)
+{
+    geofx::test::NotifyWatch watch;
+    const osg::ref_ptr<LayerSequence> none = sequenceOf(new ImageSteps({}, {}, DataLayer::VALUE));
+    EXPECT_EQ(watch.messagesOf([&] { EXPECT_TRUE(none->update()); }).size(), 1u);
+    EXPECT_TRUE(none->settled());
+    EXPECT_EQ(none->getLayer()->getImage()->s(), 0);
+    // The first one cannot be read: the next one that can.
+    const osg::ref_ptr<WatchedSteps> steps = new WatchedSteps(4);
+    steps->broken = 0;
+    const osg::ref_ptr<LayerSequence> sequence = sequenceOf(steps);
+    watch.messagesOf([&] { EXPECT_EQ(valueAt(*sequence, 0.0), 1.0f); });
+}
+
+// A program that draws pictures asks whether a frame had all that it needed.
+TEST(LayerSequence, PicturesWaitForTheirSteps)
+{
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    EXPECT_TRUE(hasAllData(*scene));
+    const osg::ref_ptr<WatchedSteps> steps = new WatchedSteps(20);
+    const osg::ref_ptr<LayerSequence> sequence = new LayerSequence(steps);
+    const osg::ref_ptr<LayerPlayer> player = LayerPlayer::onto(*scene);
+    EXPECT_EQ(LayerPlayer::onto(*scene), player) << "one is enough";
+    EXPECT_TRUE(player->add(sequence, LayerPlayer::usualTime));
+    EXPECT_EQ(player->getClock()->getSpeed(), 190.0 / LayerPlayer::usualTime);
+    EXPECT_FALSE(hasAllData(*scene)) << "nothing has been read";
+    int turns = 0;
+    for (player->update(11.0); !hasAllData(*scene) && turns < 5000; ++turns)
+    {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        player->update(11.0);
+    }
+    ASSERT_TRUE(hasAllData(*scene));
+    EXPECT_FLOAT_EQ(reinterpret_cast<const float*>(sequence->getLayer()->getImage()->data())[0], 10.45f);
+}
+
+// Seconds since 1970 and hours of a forecast are no common time.
+TEST(LayerSequence, DatedAndUndatedOnesDoNotShareAClock)
+{
+    const osg::ref_ptr<LayerPlayer> player = new LayerPlayer(nullptr);
+    EXPECT_TRUE(player->add(new LayerSequence(new WatchedSteps(5))));
+    const osg::ref_ptr<LayerSequence> dated =
+        new LayerSequence(new ImageSteps({numbers({1.0f})}, {1.7e9}, DataLayer::VALUE, true));
+    EXPECT_NE(player->faultOf(*dated).find("show them apart"), std::string::npos);
+    geofx::test::NotifyWatch watch;
+    EXPECT_EQ(watch.messagesOf([&] { EXPECT_FALSE(player->add(dated)); }).size(), 1u);
+    EXPECT_EQ(player->getNumSequences(), 1u);
+    EXPECT_EQ(player->getClock()->getEnd(), 40.0);
 }

@@ -40,7 +40,8 @@ public:
         ++reads;
         texels += columns * rows;
         osg::ref_ptr<osg::Image> image = new osg::Image;
-        image->allocateImage(columns, rows, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+        image->allocateImage(columns, rows, 1, format, GL_UNSIGNED_BYTE);
+        if (format != GL_RGBA) return image;
         for (int y = 0; y < rows; ++y)
         {
             for (int x = 0; x < columns; ++x)
@@ -64,6 +65,7 @@ public:
                 0.5 + place.x() / 2500.0};
     }
 
+    GLenum format = GL_RGBA;
     double brokenBelow = 0.0; ///< tiles smaller than this cannot be read
     std::atomic<int> reads{0};
     std::atomic<std::int64_t> texels{0};
@@ -315,6 +317,11 @@ TEST_F(PagedRasters, OptionsOutOfRangeAreRefused)
     EXPECT_EQ(error, "PagedRaster: megabytes must be 32 to 65536, not 3.");
     EXPECT_FALSE(PagedRaster::create(nullptr, {}, error));
     EXPECT_NE(error.find("covers no area"), std::string::npos);
+    // A program's own tiles may be anything.
+    _tiles->format = GL_RGB;
+    EXPECT_FALSE(PagedRaster::create(_tiles, {}, error));
+    EXPECT_NE(error.find("is not 512 x 512 pixels of GL_RGBA bytes"), std::string::npos) << error;
+    _tiles->format = GL_RGBA;
     _tiles->brokenBelow = 1e9;
     EXPECT_FALSE(PagedRaster::create(_tiles, {}, error));
     EXPECT_NE(error.find("ortho.tif"), std::string::npos);

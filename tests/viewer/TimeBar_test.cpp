@@ -123,6 +123,13 @@ TEST_F(TimeBarTest, IsHiddenByItsKey)
     EXPECT_EQ(_bar->text(), "");
     EXPECT_EQ(viewer.getSlave(0)._camera->getNodeMask(), 0u);
     EXPECT_FALSE(click(onTrack(0.5)));
+    EXPECT_TRUE(_clock->getPlaying());
+    EXPECT_TRUE(press(Event::KEY_F3));
+    frame();
+    EXPECT_TRUE(mouse(Event::PUSH, onTrack(0.2)));
+    EXPECT_FALSE(_clock->getPlaying());
+    EXPECT_TRUE(press(Event::KEY_F3));
+    EXPECT_TRUE(_clock->getPlaying()) << "the hand has let go";
     EXPECT_TRUE(press('y')) << "keys work all the same";
     EXPECT_TRUE(press(Event::KEY_F3));
     frame();

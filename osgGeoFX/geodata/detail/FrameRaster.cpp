@@ -367,6 +367,50 @@ void FrameRaster::readColors(GDALDataset& warped, unsigned char* colors) const
         fail("its pixels cannot be read; copy or export it again");
 }
 
+osg::ref_ptr<osg::Image> FrameRaster::image(const FrameCrs& crs, const osg::Vec2d& from, const osg::Vec2d& to,
+                                            int width, int height, double* low, double* high) const
+{
+    const DatasetPtr pixels = warped(crs, from, to, width, height);
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->setFileName(_file);
+    if (kind == DataLayer::COLOR)
+    {
+        image->allocateImage(width, height, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+        readColors(*pixels, image->data());
+        return image;
+    }
+    image->allocateImage(width, height, 1, GL_RED, GL_FLOAT);
+    image->setInternalTextureFormat(GL_R32F);
+    std::vector<double> line;
+    for (int row = 0; row < height; ++row)
+    {
+        readValues(*pixels, row, line);
+        auto* out = reinterpret_cast<float*>(image->data(0, static_cast<unsigned int>(height - 1 - row)));
+        for (const double value : line)
+        {
+            *out++ = static_cast<float>(value);
+            if (!low || std::isnan(value)) continue;
+            const bool first = *low > *high;
+            *low = first ? value : std::min(*low, value);
+            *high = first ? value : std::max(*high, value);
+        }
+    }
+    return image;
+}
+
+void FrameRaster::moveToMiddle(MappingFrame& frame) const
+{
+    FrameCrs crs;
+    if (frame.globe)
+        crs.definition = "EPSG:4326";
+    else
+        crs = crsOf(frame, _file);
+    const osg::Vec2d place = middle(crs);
+    frame.origin =
+        frame.globe ? LocalOrigin::onGlobe(osg::DegreesToRadians(place.x()), osg::DegreesToRadians(place.y()))
+                    : LocalOrigin::onPlane(place * crs.metresPerUnit);
+}
+
 osg::ref_ptr<osg::Image> FrameRaster::picture(int maxSide) const
 {
     const osg::Vec2d all = size();

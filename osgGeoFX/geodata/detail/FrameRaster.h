@@ -86,6 +86,8 @@ public:
     };
     Extent extent(const FrameCrs& crs) const;
     osg::Vec2d middle(const FrameCrs& crs) const;
+    /// Moves a frame's origin to the raster's middle.
+    void moveToMiddle(MappingFrame& frame) const;
     /// From 0…1 of the raster's sides, from its lower left corner, to the CRS's unit. Not beyond the raster's own life.
     std::function<osg::Vec2d(const osg::Vec2d&)> placer(const FrameCrs& crs) const;
 
@@ -97,6 +99,12 @@ public:
     void readValues(GDALDataset& warped, int row, std::vector<double>& values) const;
     /// Colors that were warped, four bytes each, in rows from the south.
     void readColors(GDALDataset& warped, unsigned char* colors) const;
+
+    /// The same as an image, in rows from the south: RGBA bytes, or floats. With `low` and `high` the range of values that are there
+    /// grows, or begins if *low > *high.
+    osg::ref_ptr<osg::Image> image(const FrameCrs& crs, const osg::Vec2d& from, const osg::Vec2d& to,
+                                   int width, int height, double* low = nullptr,
+                                   double* high = nullptr) const;
 
     /// The raster's own pixels, in rows from the south: colors as RGBA bytes, else floats with NaN where there is none. One
     /// with more than `maxSide` pixels on a side is reduced to it, by area, or of classes and palettes by the nearest pixel.

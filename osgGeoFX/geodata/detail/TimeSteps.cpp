@@ -67,9 +67,11 @@ void checkTimes(TimeSteps& steps, const std::string& file)
     if (steps.times.empty()) throw BuildError(file + ": it has no steps; check it with gdalinfo.");
     if (steps.times.size() > mostSteps)
         throw BuildError(file + ": it has more than a million steps; split it.");
-    bool rising = true;
+    // A LayerClock has no others.
+    constexpr double most = 1e12;
+    bool rising = std::abs(steps.times[0]) <= most;
     for (std::size_t i = 1; i < steps.times.size(); ++i)
-        rising = rising && steps.times[i] > steps.times[i - 1];
+        rising = rising && steps.times[i] > steps.times[i - 1] && steps.times[i] <= most;
     if (rising) return;
     steps.dated = false;
     for (std::size_t i = 0; i < steps.times.size(); ++i)
@@ -329,25 +331,37 @@ std::optional<TimeUnit> TimeUnit::parse(const std::string& text)
     if (all == "sec utc") return unit;
     const std::size_t since = all.find(" since ");
     const std::string word = all.substr(0, since);
-    const std::pair<const char*, double> units[] = {
-        {"s", 1.0},        {"sec", 1.0},      {"second", 1.0},  {"seconds", 1.0}, {"min", 60.0},
-        {"minute", 60.0},  {"minutes", 60.0}, {"h", 3600.0},    {"hr", 3600.0},   {"hour", 3600.0},
-        {"hours", 3600.0}, {"d", 86400.0},    {"day", 86400.0}, {"days", 86400.0}};
+    const std::pair<const char*, double> units[] = {{"ns", 1e-9},
+                                                    {"nanosecond", 1e-9},
+                                                    {"nanoseconds", 1e-9},
+                                                    {"us", 1e-6},
+                                                    {"microsecond", 1e-6},
+                                                    {"microseconds", 1e-6},
+                                                    {"ms", 1e-3},
+                                                    {"msec", 1e-3},
+                                                    {"millisecond", 1e-3},
+                                                    {"milliseconds", 1e-3},
+                                                    {"s", 1.0},
+                                                    {"sec", 1.0},
+                                                    {"second", 1.0},
+                                                    {"seconds", 1.0},
+                                                    {"min", 60.0},
+                                                    {"minute", 60.0},
+                                                    {"minutes", 60.0},
+                                                    {"h", 3600.0},
+                                                    {"hr", 3600.0},
+                                                    {"hour", 3600.0},
+                                                    {"hours", 3600.0},
+                                                    {"d", 86400.0},
+                                                    {"day", 86400.0},
+                                                    {"days", 86400.0}};
     const auto* const known = std::find_if(std::begin(units), std::end(units),
                                            [&](const auto& each) { return word == each.first; });
     if (known == std::end(units) || since == std::string::npos) return std::nullopt;
     unit.seconds = known->second;
-    // One digit for months and days is usual, too.
-    int year = 0, month = 0, day = 0, end = 0;
-    const std::string start = text.substr(since + 7);
-    if (std::sscanf(start.c_str(), "%5d-%2d-%2d%n", &year, &month, &day, &end) != 3) return std::nullopt;
-    std::string rest = start.substr(static_cast<std::size_t>(end));
-    const std::optional<double> day0 = LayerClock::parseDate(start.substr(0, static_cast<std::size_t>(end)));
-    if (!day0) return std::nullopt;
-    int hour = 0, minute = 0;
-    double second = 0.0;
-    if (!rest.empty()) std::sscanf(rest.c_str() + 1, "%2d:%2d:%lf", &hour, &minute, &second);
-    unit.start = *day0 + hour * 3600.0 + minute * 60.0 + second;
+    const std::optional<double> start = LayerClock::parseDate(text.substr(since + 7));
+    if (!start) return std::nullopt;
+    unit.start = *start;
     return unit;
 }
 

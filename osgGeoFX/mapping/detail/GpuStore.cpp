@@ -179,13 +179,15 @@ void GpuStore::uploadTexels(Context& context, osg::State& state, const Texels& t
     _uploaded += static_cast<std::uint64_t>(bytes);
 }
 
-void GpuStore::uploadLayers(const Context& context, osg::State& state, const std::vector<Layer>& layers)
+void GpuStore::uploadLayers(Context& context, osg::State& state, const std::vector<Layer>& layers)
 {
     const auto* gl = state.get<osg::GLExtensions>();
     glBindTexture(texture2DArray, context.layers);
     for (const Layer& layer : layers)
     {
         if (!layer.pixels || layer.slot.page >= context.pages) continue;
+        // Blank pixels now: the texture is copied again, in this frame, too.
+        if (layer.texture) context.copied.reset();
         LayerPixels::Rows rows = layer.rows.value_or(LayerPixels::Rows{0, layer.slot.side});
         for (std::size_t level = 0; level < layer.pixels->levels.size(); ++level)
         {

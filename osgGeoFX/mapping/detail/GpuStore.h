@@ -123,7 +123,7 @@ private:
     void uploadAll(Context& context, osg::State& state);
     void replay(Context& context, osg::State& state, const Entry& entry);
     void uploadTexels(Context& context, osg::State& state, const Texels& texels);
-    void uploadLayers(const Context& context, osg::State& state, const std::vector<Layer>& layers);
+    void uploadLayers(Context& context, osg::State& state, const std::vector<Layer>& layers);
     void uploadAllLayers(Context& context, osg::State& state);
     void copyTextures(Context& context, osg::State& state);
     void uploadTable(const Table& table);

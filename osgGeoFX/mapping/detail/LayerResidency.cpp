@@ -69,6 +69,11 @@ void LayerResidency::leave(DataLayer* data, ProjectiveMapping& user)
 
 bool LayerResidency::isStale(const Layer& layer) const
 {
+    const osg::Texture* const texture = layer.data->getTexture();
+    if (texture && layer.pixels &&
+        (texture->getTextureWidth() != layer.pixels->width ||
+         texture->getTextureHeight() != layer.pixels->height))
+        return true;
     return !layer.seen || layer.revision != layer.data->revision() ||
            layer.imageCount != imageCountOf(*layer.data) || (layer.leftOut && _changes.roomMade);
 }

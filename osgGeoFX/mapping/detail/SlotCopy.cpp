@@ -20,7 +20,7 @@ SlotCopy::SlotCopy(const osg::GLExtensions& gl) : _gl(gl)
 {
     glGetIntegerv(readBinding, &_read);
     glGetIntegerv(drawBinding, &_drawn);
-    // The only state that copies between frame buffers go by.
+    // Of the state that copies between frame buffers go by: these textures have no sRGB format.
     _scissor = glIsEnabled(GL_SCISSOR_TEST) == GL_TRUE;
     if (_scissor) glDisable(GL_SCISSOR_TEST);
     _gl.glGenFramebuffers(2, _buffers);

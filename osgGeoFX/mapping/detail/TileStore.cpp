@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 
 namespace osgGeoFX
 {
@@ -27,11 +28,26 @@ TileStore::~TileStore()
         each.join();
 }
 
+std::string TileStore::faultOf(const osg::Image& image, int columns, int rows, DataLayer::Kind kind)
+{
+    const bool color = kind == DataLayer::COLOR;
+    const bool right = image.s() == columns && image.t() == rows && image.data() &&
+                       image.getDataType() == (color ? GL_UNSIGNED_BYTE : GL_FLOAT) &&
+                       (color ? image.getPixelFormat() == GL_RGBA
+                              : osg::Image::computeNumComponents(image.getPixelFormat()) == 1);
+    if (right) return {};
+    return "A tile of the raster \"" + image.getFileName() + "\" is not " + std::to_string(columns) + " x " +
+           std::to_string(rows) + (color ? " pixels of GL_RGBA bytes" : " values, a float each") +
+           "; RasterTiles::read() must make it so.";
+}
+
 osg::ref_ptr<DataLayer> TileStore::read(const MappingPage& page, std::string& error) const
 {
     const PlaneBox square = page.square();
     const osg::ref_ptr<osg::Image> image = _tiles->read(square.low, square.high, side, side, error);
     if (!image) return nullptr;
+    error = faultOf(*image, side, side, _tiles->kind());
+    if (!error.empty()) return nullptr;
     osg::ref_ptr<DataLayer> layer = new DataLayer(image);
     layer->setKind(_tiles->kind());
     return layer;

@@ -33,6 +33,9 @@ public:
     TileStore(const TileStore&) = delete;
     TileStore& operator=(const TileStore&) = delete;
 
+    /// Why an image is no such rectangle of a raster; empty if it is.
+    static std::string faultOf(const osg::Image& image, int columns, int rows, DataLayer::Kind kind);
+
     /// Reads a tile now, and keeps it for good. Null, with a sentence in `error`, if it cannot.
     osg::ref_ptr<DataLayer> readNow(const MappingPage& page, std::string& error);
     /// From now on these are read, the first ones first, and those that were wanted before are not.
