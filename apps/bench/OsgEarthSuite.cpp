@@ -61,12 +61,22 @@ struct Terrain
     fs::path sea;      ///< the Earth without the region
 };
 
+/// By what pictures are smaller where no one measures them.
+int shrink(const Settings& settings)
+{
+    return settings.smoke ? 8 : 1;
+}
+
 /// The builder with what all databases here have in common.
 std::vector<std::string> build(const Settings& settings, const fs::path& output)
 {
-    const double pixels = osgGeoFX::pixelsPerRadian(HEIGHT, osg::DegreesToRadians(FIELD_OF_VIEW));
-    return {settings.builder.string(), "--quiet", "--pixels-per-radian", std::to_string(pixels), "--output",
-            output.string(),           "--dem"};
+    const double pixels =
+        osgGeoFX::pixelsPerRadian(HEIGHT / shrink(settings), osg::DegreesToRadians(FIELD_OF_VIEW));
+    std::vector<std::string> command = {settings.builder.string(), "--quiet",  "--pixels-per-radian",
+                                        std::to_string(pixels),    "--output", output.string()};
+    if (settings.smoke) command.insert(command.end(), {"--tile-size", "32"});
+    command.push_back("--dem");
+    return command;
 }
 
 Terrain makeTerrain(const Settings& settings, const fs::path& dem, const fs::path& folder)
@@ -194,11 +204,13 @@ public:
 private:
     nlohmann::json run(std::vector<std::string> what, const NamedView& view)
     {
+        const int size = shrink(_settings);
         std::vector<std::string> command = {_drawer.string(),
                                             "--view",
                                             view.place,
                                             "--size",
-                                            std::to_string(WIDTH) + "x" + std::to_string(HEIGHT),
+                                            std::to_string(WIDTH / size) + "x" +
+                                                std::to_string(HEIGHT / size),
                                             "--fov",
                                             std::to_string(FIELD_OF_VIEW)};
         if (_settings.smoke) command.insert(command.end(), {"--still", "0.2"});

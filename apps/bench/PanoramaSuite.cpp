@@ -79,7 +79,7 @@ public:
         _reference = scene->reference;
         scene->effects->addEffect(_map);
         _view = std::make_unique<OffscreenView>(_size, FIELD_OF_VIEW, scene->node);
-        _lodScale = scene->lodScale(_size.height, FIELD_OF_VIEW);
+        _lodScale = (settings.smoke ? 4.0f : 1.0f) * scene->lodScale(_size.height, FIELD_OF_VIEW);
     }
 
     std::vector<Figure> measure(const NamedView& view)
