@@ -183,3 +183,28 @@ TEST_F(GlobeFlight, IsCalmAndWhole)
     EXPECT_GT(median, 0.1) << "nothing moves";
     EXPECT_LE(*most, 3.0 * median);
 }
+
+// Depths by the logarithm of the distance are fine everywhere, so they show which of two grounds is nearer.
+TEST_F(GlobeFlight, NoDepthsFight)
+{
+    if (!load()) return;
+    for (int step = fullTest() ? 5 : 80; step <= STEPS; step += fullTest() ? 5 : 80)
+    {
+        osg::Matrixd view;
+        ASSERT_TRUE(placeOf(step).viewMatrix(*_scene->reference, view));
+        const osg::ref_ptr<osg::Image> image = draw(view);
+        _scene->effects->setDepthConvention({DepthConvention::LOGARITHMIC_BY_FRAGMENT, 1e8});
+        const osg::ref_ptr<osg::Image> fine = render(_scene->node);
+        _scene->effects->setDepthConvention({});
+        int fighting = 0;
+        for (int i = 0; i < 4 * WIDTH * HEIGHT; i += 4)
+        {
+            int most = 0;
+            for (int c = 0; c < 3; ++c)
+                most = std::max(most, std::abs(image->data()[i + c] - fine->data()[i + c]));
+            fighting += most > 4 ? 1 : 0;
+        }
+        std::cout << "step " << step << ": " << fighting << " pixels\n";
+        EXPECT_LE(fighting, WIDTH * HEIGHT / 1000) << "step " << step;
+    }
+}
