@@ -134,6 +134,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
                    "--help-effects lists "
                    "those of panoramaMap. As often as wanted")
         ->expected(1)
+        ->allow_extra_args(false)
         ->type_name("NAME=VALUE")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option("--samples", arguments.samples, "Samples per pixel (4)")->check(CLI::Range(0u, 64u));
@@ -151,6 +152,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
                    "Print the place that a pixel shows: longitude, latitude and height; pixels count from "
                    "the upper left. As often as wanted")
         ->expected(1)
+        ->allow_extra_args(false)
         ->type_name("X,Y")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_flag(
@@ -165,6 +167,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
            "properties of "
            "regionalLiberty, which osggeofx_render --help-effects lists. As often as wanted")
         ->expected(1)
+        ->allow_extra_args(false)
         ->type_name("'LON,LAT NAME=VALUE …'")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     geofx::names::addOptions(app, arguments.names);

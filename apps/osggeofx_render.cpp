@@ -49,6 +49,7 @@ struct Arguments
     std::string plan;
     double fieldOfView = 0.0;
     std::vector<std::string> effects;
+    std::vector<std::string> cities;
     geofx::mappings::Options mappings;
     geofx::names::Options names;
     geofx::layers::Options layers;
@@ -125,10 +126,19 @@ void addOptions(CLI::App& app, Arguments& arguments)
            "properties, which are the scene file's. As often as wanted")
         ->type_name("'KIND …'")
         ->expected(1)
+        ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     // What CLI11 has for a version is a text that takes the place of everything else.
     app.set_version_flag("--help-effects", osgGeoFX::effectsHelp,
                          "List the effects with all their properties");
+    app.add_option(
+           "--city", arguments.cities,
+           "A city model of others to add, in the scene's coordinates; each building keeps its shape in "
+           "bends. As often as wanted")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->type_name("FILE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     geofx::mappings::addOptions(app, arguments.mappings);
     geofx::names::addOptions(app, arguments.names);
     geofx::layers::addOptions(app, arguments.layers);
@@ -466,6 +476,9 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
     std::optional<osgGeoFX::Scene> scene =
         osgGeoFX::Scene::load(arguments.scene, error, arguments.allowOutside ? reading.get() : nullptr);
     if (!scene) throw Failure(badInput, error);
+    for (const std::string& city : arguments.cities)
+        if (!scene->addCity(city, error, arguments.allowOutside ? reading.get() : nullptr))
+            throw Failure(badInput, "--city: " + error);
     if (arguments.sky && !scene->addSky(error)) throw Failure(badInput, "--sky: " + error);
     addEffects(arguments, *scene->effects);
     std::vector<std::string> notices;

@@ -52,6 +52,9 @@ void describe(osg::ApplicationUsage& usage)
         "--cache-mappings",
         "Compose mappings that rest beforehand, instead of drawing them anew in each frame.");
     usage.addCommandLineOption("--sky", "Put a sky around the Earth in place of the plain background.");
+    usage.addCommandLineOption("--city <file>",
+                               "Add a city model of others, in the scene's coordinates; each building keeps "
+                               "its shape in bends.");
     usage.addCommandLineOption("--mapping <file>",
                                "Put a raster onto the ground: KML, KMZ, or any raster with a georeference.");
     usage.addCommandLineOption(
@@ -135,6 +138,9 @@ int main(int argc, char** argv)
     const osg::ref_ptr<osgDB::Options> reading =
         arguments.read("--allow-outside") ? new osgDB::Options("allowOutside") : nullptr;
     const bool sky = arguments.read("--sky");
+    std::vector<std::string> cities;
+    while (arguments.read("--city", text))
+        cities.push_back(text);
     geofx::mappings::Options mappingOptions;
     while (arguments.read("--mapping", text))
         mappingOptions.files.push_back(text);
@@ -211,6 +217,8 @@ int main(int argc, char** argv)
         return refuse(error);
     }
 
+    for (const std::string& city : cities)
+        if (!scene->addCity(city, error, reading)) return refuse("--city: " + error);
     if (sky && !scene->addSky(error)) return refuse("--sky: " + error);
     for (const auto& effect : effects)
         scene->effects->addEffect(effect);

@@ -56,6 +56,7 @@
 #include <osgGeoFX/scene/EngineTiles.h>
 #include <osgGeoFX/scene/MeshRefiner.h>
 #include <osgGeoFX/scene/ProgramAdapter.h>
+#include <osgGeoFX/scene/RigidModel.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/ShaderHost.h>
 #include <osgGeoFX/scene/TilePrefetch.h>

@@ -22,6 +22,7 @@ void addOptions(CLI::App& app, Options& options)
                    "A raster to put onto the ground: KML or KMZ with ground overlays, or any raster with a "
                    "georeference that GDAL reads. As often as wanted, the later ones on top")
         ->expected(1)
+        ->allow_extra_args(false)
         ->type_name("FILE")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option("--sequence", options.sequences,
@@ -29,6 +30,7 @@ void addOptions(CLI::App& app, Options& options)
                    "raster, or a "
                    "folder of rasters; FILE, FILE:VARIABLE or FOLDER. As often as wanted")
         ->expected(1)
+        ->allow_extra_args(false)
         ->type_name("FILE")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option(
@@ -36,6 +38,7 @@ void addOptions(CLI::App& app, Options& options)
            "A way to put onto the ground: the routes and tracks of GPX, the lines and tracks of KML or KMZ, "
            "the lines of any other vector data that GDAL reads; FILE or FILE:LAYER. As often as wanted")
         ->expected(1)
+        ->allow_extra_args(false)
         ->type_name("FILE")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option("--route-width", options.routeWidth,

@@ -57,6 +57,7 @@ void addOptions(CLI::App& app, Options& options)
                    "FILE:LAYER. As often as "
                    "wanted")
         ->expected(1)
+        ->allow_extra_args(false)
         ->type_name("FILE")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option(
@@ -64,6 +65,7 @@ void addOptions(CLI::App& app, Options& options)
            "Lines to put onto the ground, such as roads, lifts and rivers: vector data of any kind that "
            "GDAL reads, FILE or FILE:LAYER. As often as wanted")
         ->expected(1)
+        ->allow_extra_args(false)
         ->type_name("FILE")
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     app.add_option("--style", options.style,

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/paging/PluginFolder.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
+#include <osgGeoFX/scene/RigidModel.h>
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/detail/HorizonClamp.h>
 
@@ -107,7 +108,12 @@ EffectScene* findEffects(osg::Node* node, int depth)
 
 } // namespace
 
-std::optional<Scene> Scene::load(const std::string& file, std::string& error, const osgDB::Options* options)
+namespace
+{
+
+/// Null, with a sentence in `error`, if the file cannot be read; `what` it is: "scene".
+osg::ref_ptr<osg::Node> readNode(const std::string& what, const std::string& file, std::string& error,
+                                 const osgDB::Options* options)
 {
     addPluginFolder();
     const bool isRemote = RemoteFiles::isRemote(file),
@@ -118,10 +124,10 @@ std::optional<Scene> Scene::load(const std::string& file, std::string& error, co
     if (isRemote && !isScene)
     {
         const RemoteFiles::Node read = RemoteFiles::readNode(file, options, RemoteFiles::Order::ServerFirst);
-        if (read.node) return adopt(read.node, error);
-        error = "The scene \"" + file + "\" cannot be read (" + read.reason + "); " +
+        if (read.node) return read.node;
+        error = "The " + what + " \"" + file + "\" cannot be read (" + read.reason + "); " +
                 RemoteFiles::remedyOf(read.fault);
-        return std::nullopt;
+        return nullptr;
     }
     // Names such as "cow.osgt.10.scale" are no files, and yet OSG reads them.
     std::string reason = osgDB::fileExists(file) ? TileGuard::faultOf(file) : std::string();
@@ -136,15 +142,21 @@ std::optional<Scene> Scene::load(const std::string& file, std::string& error, co
     {
         reason = exception.what();
     }
-    if (!result.validNode())
-    {
-        if (!isRemote && !osgDB::fileExists(file)) reason = "it does not exist";
-        if (reason.empty()) reason = result.statusMessage();
-        error = "The scene \"" + file + "\" cannot be read (" + reason +
-                "); name a file that OpenSceneGraph or one of its plugins reads.";
-        return std::nullopt;
-    }
-    return adopt(result.getNode(), error);
+    if (result.validNode()) return result.getNode();
+    if (!isRemote && !osgDB::fileExists(file)) reason = "it does not exist";
+    if (reason.empty()) reason = result.statusMessage();
+    error = "The " + what + " \"" + file + "\" cannot be read (" + reason +
+            "); name a file that OpenSceneGraph or one of its plugins reads.";
+    return nullptr;
+}
+
+} // namespace
+
+std::optional<Scene> Scene::load(const std::string& file, std::string& error, const osgDB::Options* options)
+{
+    const osg::ref_ptr<osg::Node> node = readNode("scene", file, error, options);
+    if (!node) return std::nullopt;
+    return adopt(node, error);
 }
 
 std::optional<Scene> Scene::adopt(osg::Node* node, std::string& error)
@@ -174,6 +186,19 @@ std::optional<Scene> Scene::adopt(osg::Node* node, std::string& error)
     }
     scene.effects->listenTo(*scene.guard);
     return scene;
+}
+
+bool Scene::addCity(const std::string& file, std::string& error, const osgDB::Options* options)
+{
+    const osg::ref_ptr<osg::Node> city = readNode("city model", file, error, options);
+    if (!city) return false;
+    const osg::ref_ptr<RigidModel> rigid = new RigidModel(effects->ground().ellipsoid);
+    rigid->prepare(*city);
+    const osg::ref_ptr<TileGuard> tiles = TileGuard::install(city);
+    tiles->addListener(rigid);
+    effects->listenTo(*tiles);
+    effects->addChild(city);
+    return true;
 }
 
 bool Scene::addSky(std::string& error)

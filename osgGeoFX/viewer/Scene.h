@@ -66,6 +66,11 @@ struct OSGGEOFX_EXPORT Scene
     /// scene data nor the camera's pose.
     void setUpView(osg::View& view) const;
 
+    /// Adds a city model of others to the effects' children, in the scene's world coordinates. Its buildings keep their shape in
+    /// bends (RigidModel), also those of tiles that are read later. False, with a sentence in `error`, if the file cannot be read.
+    /// Call it before the scene is shown.
+    bool addCity(const std::string& file, std::string& error, const osgDB::Options* options = nullptr);
+
     /// Puts a sky around the Earth (makeEarthSky()) behind the scene. The color of its deep air is the background's.
     /// False, with a sentence in `error`, if the scene is not geocentric. Call it before the scene is shown, once.
     bool addSky(std::string& error);

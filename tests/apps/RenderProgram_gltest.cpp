@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The program osggeofx_render, as a person calls it.
+#include <osgGeoFX/paging/PluginFolder.h>
+#include <osgGeoFX/scene/RigidReference.h>
 #include <tools/GlFixture.h>
 #include <tools/ImageComparison.h>
 #include <tools/PagedScene.h>
@@ -9,7 +11,9 @@
 
 #include <nlohmann/json.hpp>
 #include <osg/Image>
+#include <osg/MatrixTransform>
 #include <osgDB/ReadFile>
+#include <osgDB/WriteFile>
 
 #include <algorithm>
 #include <filesystem>
@@ -188,6 +192,62 @@ TEST_F(RenderProgram, RefusesBadInputWithASentence)
     expectRefusal({"terrain.osgb", "-o", "out.png", "--stats", "no/such/folder.json"}, "folder.json");
     expectRefusal({"terrain.osgb", "-o", "out.png", "--least-triangles"}, "--stats");
     expectRefusal({"terrain.osgb", "-o", "out.png", "--size", "64x48@100dpi", "--inset"}, "--inset");
+    expectRefusal({"terrain.osgb", "-o", "out.png", "--city", "missing.obj"}, "--city: The city model");
+}
+
+// Buildings of a file that knows nothing of the kit stand as those that have a node each.
+TEST_F(RenderProgram, CitiesKeepTheirShape)
+{
+    PagedScene::write(_folder.path(), PagedScene::Kind::Flat);
+    const std::string corners[] = {"-60 -60 0",   "60 -60 0",   "-60 60 0",   "60 60 0",
+                                   "-60 -60 200", "60 -60 200", "-60 60 200", "60 60 200"};
+    std::string text;
+    for (const std::string& corner : corners)
+        text += "v " + corner + '\n';
+    _folder.write("house.obj", text + "f 1 2 6 5\nf 2 4 8 6\nf 4 3 7 8\nf 3 1 5 7\nf 5 6 8 7\n");
+    osgGeoFX::addPluginFolder();
+    watch().ignore("unable to find material");
+    // OSG's reader of .obj turns models upright unless it is told not to.
+    const osg::ref_ptr<osg::Node> house =
+        osgDB::readRefNodeFile((_folder / "house.obj").string(), new osgDB::Options("noRotation"));
+    ASSERT_TRUE(house);
+    const osg::ref_ptr<osg::Group> city = new osg::Group, nodes = new osg::Group;
+    for (int i = 0; i < 60; ++i)
+    {
+        const osg::Vec3d foot(-900.0 + 300.0 * (i % 6), -1400.0 + 300.0 * (i / 6), 0.0);
+        const osg::ref_ptr<osg::MatrixTransform> place =
+            new osg::MatrixTransform(osg::Matrix::translate(foot));
+        place->addChild(house);
+        city->addChild(osg::clone(place.get(), osg::CopyOp::DEEP_COPY_ALL));
+        const osg::ref_ptr<osgGeoFX::RigidReference> rigid = new osgGeoFX::RigidReference;
+        rigid->setReference(foot);
+        rigid->addChild(place);
+        nodes->addChild(rigid);
+    }
+    ASSERT_TRUE(osgDB::writeNodeFile(*city, (_folder / "city.osgb").string()));
+    ASSERT_TRUE(osgDB::writeNodeFile(*nodes, (_folder / "nodes.osgb").string()));
+    const auto draw = [&](const std::string& name, std::vector<std::string> more)
+    {
+        more.insert(more.end(),
+                    {"terrain.osgb", "-o", name, "--size", "320x240", "--eye", "0,-2600,700", "--look",
+                     "0,0,0", "--up", "0,0,1", "--effect", "birdsEyeView contextTilt=0.7"});
+        expectPicture(more);
+        return image(name);
+    };
+    const osg::ref_ptr<osg::Image> without = draw("without.png", {}),
+                                   rigid = draw("nodes.png", {"--city", "nodes.osgb"}),
+                                   found = draw("city.png", {"--city", "city.osgb"});
+    const auto apart = [](const osg::Image& a, const osg::Image& b)
+    {
+        int count = 0;
+        for (unsigned int y = 0; y < 240; ++y)
+            for (unsigned int x = 0; x < 320; ++x)
+                count += (a.getColor(x, y) - b.getColor(x, y)).length() > 0.03f ? 1 : 0;
+        return count;
+    };
+    const int seen = apart(*rigid, *without);
+    EXPECT_GT(seen, 2000);
+    EXPECT_LE(apart(*found, *rigid), seen / 50);
 }
 
 // A print is the picture in tiles, with its resolution.
