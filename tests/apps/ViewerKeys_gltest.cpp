@@ -178,7 +178,7 @@ protected:
         geofx::viewer::addHandlers(viewer(), *_scene, *_manipulators, _file);
         viewer().getCamera()->setProjectionMatrixAsPerspective(30.0, 1280.0 / 720.0, 1.0, 1e6);
         geofx::viewer::setHome(*_manipulators, *_scene, 30.0, 1280.0 / 720.0);
-        viewer().setCameraManipulator(_manipulators);
+        geofx::viewer::setManipulators(viewer(), *_manipulators, *_scene->effects);
         for (const auto& handler : viewer().getEventHandlers())
             if (auto* page = dynamic_cast<HelpPage*>(handler.get())) _page = page;
         ASSERT_TRUE(_page);
