@@ -117,6 +117,7 @@
 
 #include <osgGeoFX/viewer/AboveGround.h>
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
+#include <osgGeoFX/viewer/BendHandles.h>
 #include <osgGeoFX/viewer/BendOnGround.h>
 #include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>

@@ -12,6 +12,7 @@
 #include <osgGeoFX/scene/TilePrefetch.h>
 #include <osgGeoFX/viewer/AboveGround.h>
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
+#include <osgGeoFX/viewer/BendHandles.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
 #include <osgGeoFX/viewer/Compass.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
@@ -199,6 +200,7 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     const osg::ref_ptr<osgGeoFX::SunKeys> sun = new osgGeoFX::SunKeys(*scene.node);
     if (sun->hasSun()) add("Ground", sun);
     add("Effects", new osgGeoFX::EffectKeys(*scene.effects));
+    add("Effects", new osgGeoFX::BendHandles(*scene.effects));
     const osg::ref_ptr<osgGeoFX::EffectPanel> effects = new osgGeoFX::EffectPanel(*scene.effects);
     add("Lists", effects);
     const osg::ref_ptr<osgGeoFX::AutomaticPanorama> automatic =

@@ -106,8 +106,6 @@ void Compass::Content::setGround(const ViewOrientation& view, const Layout& layo
         return toPixel(corner + (place - low) * scale);
     };
     eye = pixel({});
-    const ViewOrientation::Point* first = nullptr;
-    const ViewOrientation::Point* last = nullptr;
     for (const ViewOrientation::Point& point : view.profile)
     {
         if (!isNear(point)) continue;
@@ -122,10 +120,9 @@ void Compass::Content::setGround(const ViewOrientation& view, const Layout& layo
         if (ground.back().second.empty() || ground.back().second.back() != place)
             ground.back().second.push_back(place);
         if (!point.inPicture) continue;
-        if (!first) first = &point;
-        last = &point;
+        if (wedge.empty()) wedge.push_back(eye);
+        wedge.push_back(place);
     }
-    if (first != last) wedge = {eye, pixel(first->place), pixel(last->place)};
 }
 
 Compass::Compass(EffectScene& scene, const Georeference* reference, osgText::Font* font)
@@ -235,8 +232,9 @@ void Compass::draw(const Content& content)
     }
     // The ground from the side.
     shapes.polygon(content.wedge, {0.95f, 0.95f, 0.95f, 0.14f});
-    for (std::size_t i = 1; i < content.wedge.size(); ++i)
-        shapes.line({content.wedge[0], content.wedge[i]}, 1.0, {0.95f, 0.95f, 0.95f, 0.55f});
+    for (const std::size_t i : {std::size_t(1), content.wedge.size() - 1})
+        if (i < content.wedge.size())
+            shapes.line({content.wedge[0], content.wedge[i]}, 1.0, {0.95f, 0.95f, 0.95f, 0.55f});
     for (const auto& [part, points] : content.ground)
         shapes.line(points, 0.24 * text, partColors[part]);
     if (!content.ground.empty()) shapes.disc(content.eye, 0.28 * text, overlay::bright);

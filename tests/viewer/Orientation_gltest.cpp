@@ -3,6 +3,7 @@
 // The compass and the small map over pictures of Oʻahu. With GEOFX_KEEP_PICTURES=FOLDER they are kept, to be looked at.
 #include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/viewer/BendHandles.h>
 #include <osgGeoFX/viewer/Compass.h>
 #include <osgGeoFX/viewer/MiniMap.h>
 #include <tools/GlFixture.h>
@@ -187,11 +188,17 @@ TEST_F(OrientationPictures, OfOahuBentLeaveTheRestOfThePictureAlone)
     }
     EXPECT_GT(changed, 50000u);
     EXPECT_EQ(elsewhere, 0u);
+    viewer().addEventHandler(new BendHandles(*scene->effects));
+    press('d');
+    settle();
+    keep("handles-birdseye");
+    EXPECT_TRUE(bird->getZoneLines());
     bird->setEnabled(false);
     walker->setEnabled(true);
     look("-157.817,21.332,650,214,-3");
     settle();
     settle();
     keep("orientation-pedestrian");
+    EXPECT_TRUE(walker->getZoneLines() && !bird->getZoneLines());
     EXPECT_EQ(compass->text().substr(0, 10), "214° -3°") << compass->text();
 }
