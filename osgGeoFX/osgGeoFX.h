@@ -127,6 +127,7 @@
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
+#include <osgGeoFX/viewer/EffectPresets.h>
 #include <osgGeoFX/viewer/GroundGrip.h>
 #include <osgGeoFX/viewer/HelpPage.h>
 #include <osgGeoFX/viewer/Liberties.h>
@@ -138,6 +139,7 @@
 #include <osgGeoFX/viewer/PanelCursor.h>
 #include <osgGeoFX/viewer/PanelPicture.h>
 #include <osgGeoFX/viewer/PictureParts.h>
+#include <osgGeoFX/viewer/PresetKeys.h>
 #include <osgGeoFX/viewer/Scene.h>
 #include <osgGeoFX/viewer/SceneData.h>
 #include <osgGeoFX/viewer/SunKeys.h>

@@ -24,6 +24,7 @@
 #include <osgGeoFX/viewer/MappingPanel.h>
 #include <osgGeoFX/viewer/MiniMap.h>
 #include <osgGeoFX/viewer/PictureParts.h>
+#include <osgGeoFX/viewer/PresetKeys.h>
 #include <osgGeoFX/viewer/SunKeys.h>
 #include <osgGeoFX/viewer/TimeBar.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
@@ -201,6 +202,8 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     if (sun->hasSun()) add("Ground", sun);
     add("Effects", new osgGeoFX::EffectKeys(*scene.effects));
     add("Effects", new osgGeoFX::BendHandles(*scene.effects));
+    const osg::ref_ptr<osgGeoFX::PresetKeys> presets = new osgGeoFX::PresetKeys(*scene.effects);
+    if (presets->hasPresets()) add("Effects", presets);
     const osg::ref_ptr<osgGeoFX::EffectPanel> effects = new osgGeoFX::EffectPanel(*scene.effects);
     add("Lists", effects);
     const osg::ref_ptr<osgGeoFX::AutomaticPanorama> automatic =

@@ -8,6 +8,7 @@
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
+#include <osgGeoFX/viewer/EffectPresets.h>
 #include <osgGeoFX/viewer/HelpPage.h>
 #include <osgGeoFX/viewer/Liberties.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
@@ -163,6 +164,7 @@ protected:
         _scene->effects->addEffect(closeUps);
         _map->setEnabled(false);
         _scene->effects->addEffect(_map);
+        EffectPreset::write(*_scene->effects, {{"usual", {{"birdsEyeView.focusLine", "0.4"}}}});
         viewer().setSceneData(_scene->node);
     }
 

@@ -206,4 +206,9 @@ TEST_F(BendHandlesTest, LeaveOtherEventsToOthers)
     // A click that does not move changes nothing.
     EXPECT_TRUE(click(knob + osg::Vec2d(3.0, 5.0)));
     EXPECT_EQ(bend->getFocusLine(), 0.4);
+    // Held beside its middle, it does not jump there.
+    EXPECT_TRUE(mouse(Event::PUSH, knob + osg::Vec2d(3.0, 8.0)));
+    EXPECT_TRUE(mouse(Event::DRAG, knob + osg::Vec2d(4.0, 8.0)));
+    EXPECT_TRUE(mouse(Event::RELEASE, knob + osg::Vec2d(4.0, 8.0)));
+    EXPECT_NEAR(bend->getFocusLine(), 0.4, 1e-9);
 }
