@@ -38,7 +38,8 @@ void describe(osg::ApplicationUsage& usage)
         "osggeofx_viewer shows terrain databases, .geofx scenes and whatever else OpenSceneGraph reads. "
         "It takes osgviewer's options and keys; press h in the window for its own keys, H for osgviewer's. g "
         "shows "
-        "the coordinates of the ground below the pointer. F9 lists the scene's "
+        "the coordinates of the ground below the pointer, o a compass and i a small map. F9 lists the "
+        "scene's "
         "mappings, F10 its effects with all their properties. A click makes a close-up active (the key u "
         "says when), Shift and the left button drag "
         "it. F11 makes a panorama map of any terrain, F12 saves it as a scene file and as a recipe of "
@@ -258,6 +259,6 @@ int main(int argc, char** argv)
     const double aspect = viewport ? viewport->aspectRatio() : 1.0;
     viewer.getCamera()->setProjectionMatrixAsPerspective(fieldOfView, aspect, 1.0, 1e6);
     geofx::viewer::setHome(*manipulators, *scene, fieldOfView, aspect);
-    viewer.setCameraManipulator(manipulators);
+    geofx::viewer::setManipulators(viewer, *manipulators, *scene->effects);
     return viewer.run();
 }

@@ -116,26 +116,35 @@
 #include <osgGeoFX/panorama/StrokeLines.h>
 #include <osgGeoFX/panorama/TerrainRelief.h>
 
+#include <osgGeoFX/viewer/AboveGround.h>
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
+#include <osgGeoFX/viewer/BendHandles.h>
+#include <osgGeoFX/viewer/BendOnGround.h>
 #include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
+#include <osgGeoFX/viewer/Compass.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
+#include <osgGeoFX/viewer/EffectPresets.h>
+#include <osgGeoFX/viewer/GroundGrip.h>
 #include <osgGeoFX/viewer/HelpPage.h>
 #include <osgGeoFX/viewer/Liberties.h>
 #include <osgGeoFX/viewer/LibertyHandler.h>
 #include <osgGeoFX/viewer/ListPanel.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
+#include <osgGeoFX/viewer/MiniMap.h>
 #include <osgGeoFX/viewer/Overlay.h>
 #include <osgGeoFX/viewer/PanelCursor.h>
 #include <osgGeoFX/viewer/PanelPicture.h>
 #include <osgGeoFX/viewer/PictureParts.h>
+#include <osgGeoFX/viewer/PresetKeys.h>
 #include <osgGeoFX/viewer/Scene.h>
 #include <osgGeoFX/viewer/SceneData.h>
 #include <osgGeoFX/viewer/SunKeys.h>
+#include <osgGeoFX/viewer/ViewOrientation.h>
 #include <osgGeoFX/viewer/ViewPoint.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
 

@@ -10,15 +10,21 @@
 #include <osgGeoFX/paging/MemoryBudget.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/scene/TilePrefetch.h>
+#include <osgGeoFX/viewer/AboveGround.h>
 #include <osgGeoFX/viewer/AutomaticPanorama.h>
+#include <osgGeoFX/viewer/BendHandles.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
+#include <osgGeoFX/viewer/Compass.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
 #include <osgGeoFX/viewer/EffectKeys.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
+#include <osgGeoFX/viewer/GroundGrip.h>
 #include <osgGeoFX/viewer/HelpPage.h>
 #include <osgGeoFX/viewer/LibertyHandler.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
+#include <osgGeoFX/viewer/MiniMap.h>
 #include <osgGeoFX/viewer/PictureParts.h>
+#include <osgGeoFX/viewer/PresetKeys.h>
 #include <osgGeoFX/viewer/SunKeys.h>
 #include <osgGeoFX/viewer/TimeBar.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
@@ -110,6 +116,12 @@ void selectPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::E
 
 } // namespace
 
+void setManipulators(osgViewer::Viewer& viewer, osgGA::KeySwitchMatrixManipulator& manipulators,
+                     osgGeoFX::EffectScene& scene)
+{
+    viewer.setCameraManipulator(new osgGeoFX::AboveGround(scene, manipulators));
+}
+
 void composeMappings(osgGeoFX::EffectScene& scene)
 {
     for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
@@ -183,11 +195,17 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     readout->setKey('g');
     add("Ground", readout);
     add("Ground", new osgGeoFX::ClickAndFly(*scene.effects));
+    add("Ground", new osgGeoFX::GroundGrip(*scene.effects));
+    add("Ground", new osgGeoFX::Compass(*scene.effects, scene.reference));
+    add("Ground", new osgGeoFX::MiniMap(*scene.effects, scene.reference, scene.terrain));
     const osg::ref_ptr<osgGeoFX::SunKeys> sun = new osgGeoFX::SunKeys(*scene.node);
     if (sun->hasSun()) add("Ground", sun);
     add("Effects", new osgGeoFX::EffectKeys(*scene.effects));
+    add("Effects", new osgGeoFX::BendHandles(*scene.effects));
+    const osg::ref_ptr<osgGeoFX::PresetKeys> presets = new osgGeoFX::PresetKeys(*scene.effects);
+    if (presets->hasPresets()) add("Effects", presets);
     const osg::ref_ptr<osgGeoFX::EffectPanel> effects = new osgGeoFX::EffectPanel(*scene.effects);
-    add("List of effects", effects);
+    add("Lists", effects);
     const osg::ref_ptr<osgGeoFX::AutomaticPanorama> automatic =
         new osgGeoFX::AutomaticPanorama(*scene.effects, *scene.node);
     automatic->setPrepared([manipulators = osg::ref_ptr(&manipulators), scene = scene.effects](
@@ -196,7 +214,7 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
     effects->addButton("Make one with liberties",
                        [automatic] { automatic->request(osgGeoFX::PanoramaComposer::usualLiberties); });
     const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
-    if (panel->hasEffect()) add("List of mappings", panel);
+    if (panel->hasEffect()) add("Lists", panel);
     if (osgGeoFX::LayerPlayer* const player = osgGeoFX::LayerPlayer::of(*scene.effects))
         add("Layers in time", new osgGeoFX::TimeBar(*player->getClock()));
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)

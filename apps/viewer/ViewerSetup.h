@@ -22,6 +22,10 @@ osg::ref_ptr<osgGA::KeySwitchMatrixManipulator> makeManipulators(osg::ArgumentPa
 /// Panorama maps begin with the manipulator that is made for them, unless a path is played.
 void addPanorama(osgGA::KeySwitchMatrixManipulator& manipulators, osgGeoFX::EffectScene& scene);
 
+/// Gives the viewer the manipulators, which keep above the ground as it is seen.
+void setManipulators(osgViewer::Viewer& viewer, osgGA::KeySwitchMatrixManipulator& manipulators,
+                     osgGeoFX::EffectScene& scene);
+
 /// Lets all mappings of a scene be composed beforehand.
 void composeMappings(osgGeoFX::EffectScene& scene);
 

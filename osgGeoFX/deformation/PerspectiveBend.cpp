@@ -319,7 +319,7 @@ PerspectiveBend::PerspectiveBend(const PerspectiveBend& other, const osg::CopyOp
       _contextSaturation(other._contextSaturation), _contextBrightness(other._contextBrightness),
       _contextBlocks(other._contextBlocks), _focusSaturation(other._focusSaturation),
       _focusBrightness(other._focusBrightness), _mapUnit(other._mapUnit), _coverMap(other._coverMap),
-      _mapPlace(other._mapPlace)
+      _mapPlace(other._mapPlace), _zoneLines(other._zoneLines)
 {
 }
 
@@ -373,6 +373,9 @@ Properties PerspectiveBend::bendProperties()
         Property::choice("mapPlace", "where the map replaces the ground's own colors",
                          {{"context", "a map behind a photo"}, {"focus", "a photo behind a map"}})
             .of<&Self::_mapPlace>(),
+        Property::flag("zoneLines",
+                       "whether lines on the ground show where the transition zone begins and ends")
+            .of<&Self::_zoneLines>(),
     };
 }
 
@@ -455,20 +458,23 @@ osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeom
 std::string PerspectiveBend::fragmentFile() const
 {
     const bool plain = _contextSaturation == 1.0 && _contextBrightness == 1.0 && _contextBlocks == 0.0 &&
-                       _focusSaturation == 1.0 && _focusBrightness == 1.0 && _mapUnit < 0 && !_coverMap;
+                       _focusSaturation == 1.0 && _focusBrightness == 1.0 && _mapUnit < 0 && !_coverMap &&
+                       !_zoneLines;
     return plain ? std::string() : "stages/bendstyle.glsl";
 }
 
 std::string PerspectiveBend::constants() const
 {
     return "const int SLOT_curve = " + std::to_string(_curve) + ";\n" +
-           (_coverMap ? "#define SLOT_COVER_MAP\n" : "");
+           (_coverMap ? "#define SLOT_COVER_MAP\n" : "") + (_zoneLines ? "#define SLOT_ZONE_LINES\n" : "");
 }
 
 std::vector<Varying> PerspectiveBend::varyings() const
 {
-    if (!_coverMap) return {};
-    return {{"vec2", "mapPlace"}};
+    std::vector<Varying> result;
+    if (_coverMap) result.push_back({"vec2", "mapPlace"});
+    if (_zoneLines) result.push_back({"float", "ahead"});
+    return result;
 }
 
 } // namespace osgGeoFX

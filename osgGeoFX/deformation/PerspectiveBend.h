@@ -109,6 +109,10 @@ public:
     bool setMapUnit(int unit) { return assign("mapUnit", unit); }
     int getMapUnit() const { return _mapUnit; }
 
+    /// Whether lines on the ground show where the transition zone begins (amber) and ends (blue). Default: false.
+    bool setZoneLines(bool on) { return assign("zoneLines", on ? 1.0 : 0.0); }
+    bool getZoneLines() const { return _zoneLines; }
+
     /// The placement of the bend for this camera. Empty if there is no bend.
     std::optional<BendPlacement> placement(const ViewGeometry& view) const
     {
@@ -172,6 +176,7 @@ private:
     int _mapUnit = -1;
     bool _coverMap = false;
     int _mapPlace = CONTEXT;
+    bool _zoneLines = false;
 };
 
 } // namespace osgGeoFX

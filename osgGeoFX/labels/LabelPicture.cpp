@@ -52,7 +52,7 @@ void LabelPicture::place(const std::vector<NameSet::Seen>& seen, const std::vect
     {
         candidates.push_back(seen[i].label);
         candidates.back().id = i;
-        candidates.back().visible = i < visible.size() && visible[i];
+        candidates.back().visible = seen[i].label.visible && i < visible.size() && visible[i];
     }
     LabelLayout::Rules scaled = rules;
     scaled.gap *= _names->getScale();

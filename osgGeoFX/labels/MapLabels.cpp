@@ -311,7 +311,8 @@ void MapLabels::traverse(osg::NodeVisitor& visitor)
         {
             NameSet::Seen& seen = view.seen[i];
             const auto known = view.sight.find(seen.name);
-            seen.label.visible = _shown && known != view.sight.end() && known->second.visible;
+            seen.label.visible =
+                seen.label.visible && _shown && known != view.sight.end() && known->second.visible;
             candidates.push_back(seen.label);
             view.index[seen.name] = i;
         }

@@ -235,6 +235,11 @@ bool NameSet::see(std::size_t index, const DeformedView& view, double width, dou
     if (!(seen.label.size.x() > 0.0)) return false;
     for (const osg::Vec3d& place : name.places)
         seen.drawn.push_back(view.deform(place));
+    if (_contextImportance > -HUGE_VAL && !(name.importance >= _contextImportance))
+    {
+        const osg::Vec3d& middle = name.places[name.places.size() / 2];
+        seen.label.visible = view.chain().style(middle * view.modelView()) < 0.5;
+    }
     return true;
 }
 
@@ -264,14 +269,18 @@ std::vector<NameSet::Seen> NameSet::inPicture(const DeformedView& view, double w
         std::pair<std::size_t, std::size_t>; // the first name, and the branch + 1; 0 for the name itself
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     queue.push({_tree.front().first, 1});
-    while (!queue.empty() && found.size() < most)
+    std::size_t visible = 0;
+    // Those that are left out fade, but must not become endless.
+    while (!queue.empty() && visible < most && found.size() < 2 * most)
     {
         const auto [first, branchIndex] = queue.top();
         queue.pop();
         if (branchIndex == 0)
         {
             Seen seen;
-            if (see(first, view, width, height, seen)) found.push_back(std::move(seen));
+            if (!see(first, view, width, height, seen)) continue;
+            visible += seen.label.visible ? 1 : 0;
+            found.push_back(std::move(seen));
             continue;
         }
         const Branch& branch = _tree[branchIndex - 1];

@@ -13,6 +13,7 @@
 #include <osg/Referenced>
 #include <osg/Vec4>
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -64,6 +65,11 @@ public:
     void setScale(double scale);
     double getScale() const { return _scale; }
 
+    /// In the context of a bend, beyond the middle of its transition zone, only landmarks keep their names: those of at least this importance. Less
+    /// important names are found there, and are not visible. −∞, the default, keeps all; names of unknown importance are no landmarks.
+    void setContextImportance(double least) { _contextImportance = least; }
+    double getContextImportance() const { return _contextImportance; }
+
     /// A name in a picture.
     struct Seen
     {
@@ -73,7 +79,7 @@ public:
         std::vector<osg::Vec3d> drawn;
     };
     /** The names whose places lie in the picture of a view, `width` × `height` pixels, the most important ones first.
-        `most`: how many at most. All are taken to be visible. */
+        `most`: how many visible ones at most. All are taken to be visible but those that setContextImportance() leaves out. */
     std::vector<Seen> inPicture(const DeformedView& view, double width, double height, std::size_t most);
     /// How many of a name's places are to be seen in the pictures of a view's cameras, or of tiles.
     static std::size_t placesShown(const Seen& seen,
@@ -101,6 +107,7 @@ private:
     std::vector<MapName> _names;
     std::map<std::string, NameStyle> _styles;
     double _scale = 1.0;
+    double _contextImportance = -HUGE_VAL;
     std::vector<Branch> _tree;
     std::unordered_map<std::size_t, std::unique_ptr<LabelText>> _texts;
 };

@@ -70,6 +70,7 @@ MapContents MapContents::take(osg::Node& node)
         std::copy(set->names().begin(), set->names().end(), std::back_inserter(contents.names));
         for (const auto& [name, style] : set->styles())
             contents.styles.names[name] = style;
+        contents.styles.contextImportance = set->getContextImportance();
     }
     for (const osg::ref_ptr<MapLines>& lines : nodes.lines)
     {
@@ -87,6 +88,7 @@ osg::ref_ptr<NameSet> MapContents::makeNames() const
     osg::ref_ptr<NameSet> set = new NameSet(names);
     for (const auto& [name, style] : styles.names)
         set->setStyle(name, style);
+    set->setContextImportance(styles.contextImportance);
     return set;
 }
 
@@ -128,6 +130,7 @@ std::string MapContents::digest() const
         write(stream, name, style);
     for (const auto& [name, style] : styles.lines)
         write(stream, name, style);
+    if (styles.contextImportance > -HUGE_VAL) stream << '|' << styles.contextImportance;
     // FNV-1a.
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const char each : stream.str())

@@ -158,16 +158,17 @@ void readFile(const std::string& file, MapStyles& styles)
     std::ifstream stream(file);
     if (!stream) throw Fault("The style file \"" + file + "\" cannot be read; check its name.");
     const json whole = json::parse(stream, nullptr, false, true);
-    if (whole.is_discarded() || !whole.is_object() || !(whole.contains("names") || whole.contains("lines")))
+    if (whole.is_discarded() || !whole.is_object() ||
+        !(whole.contains("names") || whole.contains("lines") || whole.contains("contextImportance")))
         throw Fault("\"" + file +
                     "\" is no style file; it must be JSON such as {\"names\": {\"peak\": {\"size\": 16}}, "
                     "\"lines\": {\"river\": {\"width\": 2}}}.");
     for (const auto& [key, value] : whole.items())
     {
-        if (key == "names" || key == "lines" || key == "lineField") continue;
+        if (key == "names" || key == "lines" || key == "lineField" || key == "contextImportance") continue;
         std::string sentence = "\"" + file + "\": \"";
         sentence += key;
-        throw Fault(sentence + "\" is not known; there are names, lines and lineField.");
+        throw Fault(sentence + "\" is not known; there are names, lines, lineField and contextImportance.");
     }
     readAll(whole, file, "names",
             {"font", "size", "bold", "italic", "spacing", "color", "halo", "haloWidth", "manner", "longest",
@@ -177,6 +178,12 @@ void readFile(const std::string& file, MapStyles& styles)
             {"color", "casing", "width", "least", "ground", "casingWidth", "dash", "gap", "hand", "rank",
              "straight", "shown"},
             styles.lines, readLine);
+    if (whole.contains("contextImportance"))
+    {
+        if (!whole.at("contextImportance").is_number())
+            throw Fault("\"" + file + "\": \"contextImportance\" must be a number.");
+        styles.contextImportance = whole.at("contextImportance").get<double>();
+    }
     if (whole.contains("lineField"))
     {
         if (!whole.at("lineField").is_string())

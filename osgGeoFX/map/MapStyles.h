@@ -6,6 +6,7 @@
 #include <osgGeoFX/labels/NameSet.h>
 #include <osgGeoFX/lines/LineStyle.h>
 
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -21,6 +22,8 @@ struct OSGGEOFXMAPS_EXPORT MapStyles
 {
     std::map<std::string, NameStyle> names = usualNameStyles();
     std::map<std::string, LineStyle> lines = usualLineStyles();
+    /// The least importance of names in the context of a bend (NameSet::setContextImportance()); −∞: all names.
+    double contextImportance = -HUGE_VAL;
     std::string lineField; ///< the field of a line file that names the style; empty: the usual ones
 
     /// Changes the styles as a style file says. False, with a sentence in `error`, if it cannot be read or says what is not known; then

@@ -90,11 +90,11 @@ double EffectPanel::stepped(const Property& property, double value, double steps
 void EffectPanel::getUsage(osg::ApplicationUsage& usage) const
 {
     usage.addKeyboardMouseBinding("F10", "Toggle the list of effects; with the list:");
-    usage.addKeyboardMouseBinding("Up and Down", "Select a property");
+    usage.addKeyboardMouseBinding("Up and Down", "Select a row of the list");
     usage.addKeyboardMouseBinding("Page Up and Page Down, Home and End", "Go farther in the list");
-    usage.addKeyboardMouseBinding("Left and Right", "Change the property by a step, with Shift by ten");
-    usage.addKeyboardMouseBinding(", and .", "Change it by a tenth of a step");
-    usage.addKeyboardMouseBinding("Return", "Switch it, take the next choice, or its default");
+    usage.addKeyboardMouseBinding("Left and Right", "Change a property by a step (Shift: ten), or opacity");
+    usage.addKeyboardMouseBinding(", and .", "Change it by a tenth of a step, or blending");
+    usage.addKeyboardMouseBinding("Return", "Switch it, take the next choice, or the default");
 }
 
 void EffectPanel::addButton(const std::string& text, std::function<void()> press)

@@ -99,13 +99,13 @@ MappingPanel::~MappingPanel() = default;
 void MappingPanel::getUsage(osg::ApplicationUsage& usage) const
 {
     usage.addKeyboardMouseBinding("F9", "Toggle the list of mappings; with the list:");
-    usage.addKeyboardMouseBinding("Up and Down", "Select a mapping");
+    usage.addKeyboardMouseBinding("Up and Down", "Select a row of the list");
     usage.addKeyboardMouseBinding("Page Up and Page Down, Home and End", "Go farther in the list");
     usage.addKeyboardMouseBinding("Alt + left button", "Select the topmost mapping below the pointer");
-    usage.addKeyboardMouseBinding("Return", "Switch the selected mapping on or off");
-    usage.addKeyboardMouseBinding("Left and Right", "Change the selected mapping's opacity");
+    usage.addKeyboardMouseBinding("Return", "Switch it, take the next choice, or the default");
+    usage.addKeyboardMouseBinding("Left and Right", "Change a property by a step (Shift: ten), or opacity");
     usage.addKeyboardMouseBinding("+ and -", "Raise or lower the selected mapping");
-    usage.addKeyboardMouseBinding(", and .", "Change the selected mapping's blending");
+    usage.addKeyboardMouseBinding(", and .", "Change it by a tenth of a step, or blending");
 }
 
 bool MappingPanel::hasEffect() const

@@ -86,7 +86,7 @@ std::vector<WebName> WebNames::layOut(NameSet& names, EffectScene& scene) const
             const bool within = seen.label.anchor.x() >= 0.0 && seen.label.anchor.y() >= 0.0 &&
                                 seen.label.anchor.x() <= scale * width &&
                                 seen.label.anchor.y() <= scale * height;
-            if (!shows || !within) continue;
+            if (!shows || !within || !seen.label.visible) continue;
             candidates.push_back(seen.label);
             if (found.count(seen.name)) continue;
             const MapName& name = names.names()[seen.name];

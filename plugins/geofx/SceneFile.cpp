@@ -60,6 +60,7 @@ public:
             result.backgroundPlace = _xml.place(background);
         }
         if (xmlNode* effectsNode = child(root, "effects")) effects(effectsNode, result);
+        if (xmlNode* presetsNode = child(root, "presets")) presets(presetsNode, result);
         if (xmlNode* map = child(root, "map")) result.map = mapOf(map);
         return result;
     }
@@ -143,6 +144,27 @@ private:
             if (auto* map = dynamic_cast<PanoramaMap*>(effect.get()))
                 scene.panoramas.push_back(
                     {map, pathIfAny(node, "palette"), pathIfAny(node, "skyImage"), strokeLines(node)});
+        }
+    }
+
+    void presets(xmlNode* parent, SceneFile& scene) const
+    {
+        for (xmlNode* node = child(parent, "preset"); node; node = SceneXml::next(node->next, "preset"))
+        {
+            EffectPreset preset{attributeOf(node, "name"), {}};
+            for (const EffectPreset& other : scene.presets)
+                if (other.name == preset.name)
+                    _xml.fail(node, "the name \"" + preset.name +
+                                        "\" stands twice; give one of them another name.");
+            for (xmlNode* each = child(node, "set"); each; each = SceneXml::next(each->next, "set"))
+            {
+                const std::string property = attributeOf(each, "property"),
+                                  value = attributeOf(each, "value");
+                const std::string fault = EffectPreset::fault(scene.effects, property, value);
+                if (!fault.empty()) _xml.fail(each, fault);
+                preset.settings.emplace_back(property, value);
+            }
+            scene.presets.push_back(preset);
         }
     }
 

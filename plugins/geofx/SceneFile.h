@@ -9,6 +9,7 @@
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/viewer/EffectPresets.h>
 
 #include <osg/ref_ptr>
 
@@ -286,6 +287,7 @@ struct SceneFile
     std::vector<SceneMappings> mappings;       ///< of the effects among them that have mappings
     std::vector<SceneCloseUps> closeUps;       ///< of the effects among them that have close-ups
     std::vector<ScenePanorama> panoramas;      ///< of the effects among them that are panorama maps
+    std::vector<EffectPreset> presets;         ///< of these effects
     std::optional<SceneMap> map;
 };
 

@@ -141,6 +141,7 @@ bool addEffects(const SceneFile& scene, EffectScene& node, const osg::Node& terr
     node.setGround(scene.ground);
     for (const osg::ref_ptr<Effect>& effect : scene.effects)
         node.addEffect(effect);
+    if (!scene.presets.empty()) EffectPreset::write(node, scene.presets);
     try
     {
         SceneTerrain ground(node, terrain);

@@ -26,6 +26,22 @@ vec4 SLOT_map(vec4 bare)
 }
 #endif
 
+#ifdef SLOT_ZONE_LINES
+uniform vec4 SLOT_bend; // the zone's width first
+in float SLOT_ahead;
+
+// Two pixels wide, between dark edges, so that they are seen on any ground.
+vec3 SLOT_withLines(vec3 color)
+{
+    float pixel = max(length(vec2(dFdx(SLOT_ahead), dFdy(SLOT_ahead))), 1e-6);
+    float first = abs(SLOT_ahead) / pixel;
+    float last = abs(SLOT_ahead - SLOT_bend.x) / pixel;
+    color = mix(color, vec3(0.06, 0.07, 0.09), 0.6 * (1.0 - smoothstep(2.0, 3.2, min(first, last))));
+    color = mix(color, vec3(0.45, 0.74, 1.0), 1.0 - smoothstep(1.0, 2.0, last));
+    return mix(color, vec3(0.98, 0.72, 0.28), 1.0 - smoothstep(1.0, 2.0, first));
+}
+#endif
+
 vec4 SLOT_restyle(vec4 color, vec4 map, float style)
 {
     geofx_BendStyle styles = geofx_BendStyle(SLOT_look.x, SLOT_look.y, SLOT_focusLook.x, SLOT_focusLook.y, SLOT_look.z,
@@ -39,5 +55,9 @@ vec4 SLOT_restyle(vec4 color, vec4 map, float style)
 #endif
 #endif
     map.a = max(map.a, 0.0);
-    return vec4(geofx_bendRestyle(styles, color.rgb, map, building, style), color.a);
+    vec3 restyled = geofx_bendRestyle(styles, color.rgb, map, building, style);
+#if defined(SLOT_ZONE_LINES) && !defined(GEOFX_RIGID)
+    restyled = SLOT_withLines(restyled);
+#endif
+    return vec4(restyled, color.a);
 }

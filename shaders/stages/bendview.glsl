@@ -12,6 +12,9 @@ uniform vec4 SLOT_end;
 #ifdef SLOT_COVER_MAP
 out vec2 SLOT_mapPlace; // in the tile's texture of what lies on the ground
 #endif
+#ifdef SLOT_ZONE_LINES
+out float SLOT_ahead; // of where the zone begins, metres
+#endif
 
 geofx_BendView SLOT_view()
 {
@@ -40,6 +43,9 @@ float SLOT_style(vec3 position)
 {
 #ifdef SLOT_COVER_MAP
     SLOT_mapPlace = gl_MultiTexCoord0.xy;
+#endif
+#ifdef SLOT_ZONE_LINES
+    SLOT_ahead = geofx_bendViewProfile(SLOT_view(), position).x;
 #endif
     return geofx_bendViewStyle(SLOT_view(), position);
 }

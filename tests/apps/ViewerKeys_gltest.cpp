@@ -8,6 +8,7 @@
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
 #include <osgGeoFX/viewer/EffectPanel.h>
+#include <osgGeoFX/viewer/EffectPresets.h>
 #include <osgGeoFX/viewer/HelpPage.h>
 #include <osgGeoFX/viewer/Liberties.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
@@ -163,6 +164,7 @@ protected:
         _scene->effects->addEffect(closeUps);
         _map->setEnabled(false);
         _scene->effects->addEffect(_map);
+        EffectPreset::write(*_scene->effects, {{"usual", {{"birdsEyeView.focusLine", "0.4"}}}});
         viewer().setSceneData(_scene->node);
     }
 
@@ -178,7 +180,7 @@ protected:
         geofx::viewer::addHandlers(viewer(), *_scene, *_manipulators, _file);
         viewer().getCamera()->setProjectionMatrixAsPerspective(30.0, 1280.0 / 720.0, 1.0, 1e6);
         geofx::viewer::setHome(*_manipulators, *_scene, 30.0, 1280.0 / 720.0);
-        viewer().setCameraManipulator(_manipulators);
+        geofx::viewer::setManipulators(viewer(), *_manipulators, *_scene->effects);
         for (const auto& handler : viewer().getEventHandlers())
             if (auto* page = dynamic_cast<HelpPage*>(handler.get())) _page = page;
         ASSERT_TRUE(_page);

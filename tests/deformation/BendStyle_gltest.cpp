@@ -271,3 +271,55 @@ TEST_F(BendStyles, DarkGroundIsDarkOnTheMap)
     state.setAttribute(model);
     expectColor(colorAt(*draw(), focus), glsl::geofx_bendMap(west, 0.0, glm::dvec3(0.0)));
 }
+
+// Lines on the ground where the zone begins and ends, and nowhere else.
+TEST_F(BendStyles, ZoneLinesLieOnTheGround)
+{
+    const osg::ref_ptr<osg::Geometry> house =
+        makeQuad({-500.0f, -700.0f, 0.0f}, {200.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 100.0f});
+    const osg::ref_ptr<osg::Vec4Array> references =
+        new osg::Vec4Array(house->getVertexArray()->getNumElements());
+    std::fill(references->begin(), references->end(), osg::Vec4(-400.0f, -700.0f, 0.0f, 200.0f));
+    house->setVertexAttribArray(RigidParts::attribute, references, osg::Array::BIND_PER_VERTEX);
+    house->getOrCreateStateSet()->setDefine(RigidParts::define);
+    house->getOrCreateStateSet()->setTextureAttributeAndModes(0, textureOf(windows, windows));
+    _scene->addChild(house);
+    const osg::ref_ptr<PedestrianView> walker = new PedestrianView;
+    walker->setFocusDistance(1200.0);
+    walker->setZoneWidth(900.0);
+    walker->setBendAngle(osg::DegreesToRadians(30.0));
+    walker->setTallest(0.0);
+    _scene->removeEffect(_bend);
+    _scene->addEffect(walker);
+    const osg::ref_ptr<osg::Image> plain = draw();
+    walker->setZoneLines(true);
+    const osg::ref_ptr<osg::Image> lined = draw();
+    const DeformedView view(*_scene, *viewer().getCamera());
+    const auto rowOf = [&](double x, double y)
+    {
+        osg::Vec2d pixel;
+        return view.project({x, y, 0.0}, pixel) ? pixel.y() : -1.0;
+    };
+    // So far from the point below the eye.
+    const double first = -1900.0 + 1200.0, last = first + 900.0;
+    const osg::Vec3d amber = colorAt(*lined, {300.0, first, 0.0}), blue = colorAt(*lined, {300.0, last, 0.0});
+    EXPECT_LT((amber - osg::Vec3d(0.98, 0.72, 0.28)).length(), 0.15);
+    EXPECT_LT((blue - osg::Vec3d(0.45, 0.74, 1.0)).length(), 0.15);
+    unsigned int changed = 0;
+    for (unsigned int y = 0; y < HEIGHT; ++y)
+    {
+        for (unsigned int x = 0; x < WIDTH; ++x)
+        {
+            if (std::equal(plain->data(x, y), plain->data(x, y) + 3, lined->data(x, y))) continue;
+            ++changed;
+            const double row = y + 0.5;
+            EXPECT_LT(std::min(std::abs(row - rowOf(0.0, first)), std::abs(row - rowOf(0.0, last))), 4.5)
+                << x << " " << y;
+        }
+    }
+    EXPECT_GT(changed, 4u * WIDTH);
+    // A house on the line has none.
+    const osg::Vec3d wall(-400.0, first, 50.0);
+    expectColor(colorAt(*plain, wall), rgb(windows));
+    EXPECT_LT((colorAt(*lined, wall) - colorAt(*plain, wall)).length(), 1e-9);
+}

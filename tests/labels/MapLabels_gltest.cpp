@@ -380,3 +380,32 @@ TEST_F(MapLabelsTest, NamesFollowCurves)
                         static_cast<int>(label.corner.y() + label.size.y()) + 3),
               ink);
 }
+
+// Landmarks alone keep their names in the context of a bend, in a live picture, too.
+TEST_F(MapLabelsTest, LandmarksAlone)
+{
+    _scene->addEffect(kinds()[2]);
+    look({0.0, -1300.0, 300.0}, {0.0, 0.0, 0.0});
+    const osg::Camera& camera = *viewer().getCamera();
+    const auto count = [&](bool important)
+    {
+        drawSettled();
+        const DeformedView view(*_scene, camera);
+        int far = 0;
+        for (const MapLabels::Shown& each : _labels->shown(camera))
+        {
+            const MapName& name = _names->names()[each.name];
+            const bool isFar = view.chain().style(name.places[0] * view.modelView()) >= 0.5;
+            far += isFar && (name.importance >= 400.0) == important ? 1 : 0;
+        }
+        return far;
+    };
+    EXPECT_GT(count(false), 0);
+    const int before = count(true);
+    EXPECT_GT(before, 0);
+    _names->setContextImportance(400.0);
+    EXPECT_EQ(count(false), 0);
+    EXPECT_GE(count(true), before) << "they have more room";
+    EXPECT_GT(_labels->shown(camera).size(), static_cast<std::size_t>(count(true)))
+        << "the focus has its names";
+}

@@ -520,4 +520,41 @@ TEST(SceneFile, TheScenesOfOahuAreSome)
     }
 }
 
+TEST(ScenePresets, AreReadWithTheirEffects)
+{
+    const std::string effects = "<effects><birdsEyeView/><blendedView/><birdsEyeView/></effects>\n";
+    const SceneFile scene = parsed(sceneWith(
+        effects + "<presets><preset name='a'><set property='birdsEyeView[2].focusLine' value='0.3'/>"
+                  "<set property='blendedView.pedestrianView.bendAngle' value='30'/></preset>"
+                  "<preset name='b'><set property='birdsEyeView.curve' value='bezier'/></preset></presets>"));
+    ASSERT_EQ(scene.presets.size(), 2u);
+    EXPECT_EQ(scene.presets[0].name, "a");
+    ASSERT_EQ(scene.presets[0].settings.size(), 2u);
+    EXPECT_EQ(scene.presets[0].settings[1],
+              std::pair(std::string("blendedView.pedestrianView.bendAngle"), std::string("30")));
+    EXPECT_EQ(scene.presets[1].settings[0].second, "bezier");
+    const auto errorOf = [&](const std::string& inside)
+    {
+        const SceneResult result =
+            parseScene(sceneWith(effects + "<presets>\n" + inside + "</presets>"), "x.geofx", "/scenes");
+        EXPECT_FALSE(result.scene);
+        EXPECT_EQ(result.errors.size(), 1u) << ::testing::PrintToString(result.errors);
+        return result.errors.empty() ? std::string() : result.errors.front();
+    };
+    const auto setting = [&](const std::string& property, const std::string& value)
+    {
+        return errorOf("<preset name='a'>\n<set property='" + property + "' value='" + value +
+                       "'/></preset>");
+    };
+    EXPECT_EQ(setting("lens.size", "1").rfind("x.geofx:5: <set>: ", 0), 0u) << setting("lens.size", "1");
+    EXPECT_NE(setting("birdsEyeView.focusLane", "1").find("no property \"focusLane\""), std::string::npos);
+    EXPECT_NE(setting("birdsEyeView.focusLine", "nan").find("focusLine"), std::string::npos);
+    EXPECT_NE(setting("blendedView.pedestrianView.bendAngle", "100").find("bendAngle"), std::string::npos);
+    EXPECT_NE(errorOf("<preset name='a'/>").find("<preset>"), std::string::npos);
+    const std::string good = "<set property='birdsEyeView.curve' value='bezier'/>";
+    EXPECT_NE(errorOf("<preset name='a'>" + good + "</preset><preset name='a'>" + good + "</preset>")
+                  .find("stands twice"),
+              std::string::npos);
+}
+
 } // namespace
