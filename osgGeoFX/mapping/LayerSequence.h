@@ -31,9 +31,15 @@ public:
     virtual DataLayer::Kind kind() const = 0;
     /// The picture of a step. Null, with a sentence in `error`, if it cannot be read. One thread at a time calls it, any.
     virtual osg::ref_ptr<osg::Image> read(std::size_t step, std::string& error) = 0;
+    /// The same for several threads at once: each one waits for its turn, in the order in which they have come.
+    osg::ref_ptr<osg::Image> readInTurn(std::size_t step, std::string& error);
 
 protected:
     ~SequenceSteps() override;
+
+private:
+    struct Turns;
+    std::unique_ptr<Turns> _turns;
 };
 
 /** Steps whose pictures are in memory.

@@ -217,6 +217,26 @@ public:
         return all;
     }
 
+    Tile tileAt(const osg::Vec2d& place)
+    {
+        const PlaneBox at{place, place};
+        if (!at.overlaps(_extent)) return {};
+        for (int level = MappingPage::finest; level <= _rootLevel; ++level)
+        {
+            const double side = MappingPage::sideOf(level);
+            // The last of finer ones than the raster's pixels.
+            if (level < _rootLevel && 2.0 * side <= TileStore::side * _texel) continue;
+            const auto cell = [&](double metres)
+            {
+                return static_cast<std::int64_t>(std::floor(metres / side));
+            };
+            const MappingPage page{level, cell(place.x()), cell(place.y())};
+            const osg::ref_ptr<DataLayer> layer = _store.find(page);
+            if (layer) return {layer, page.square().low, page.square().high};
+        }
+        return {};
+    }
+
     /// With some room for parts of tiles.
     int pagesOf(int side) const
     {
@@ -474,6 +494,11 @@ const ProjectiveMapping* PagedRaster::getMapping() const
 PagedRaster::Statistics PagedRaster::statistics() const
 {
     return _work->statistics();
+}
+
+PagedRaster::Tile PagedRaster::tileAt(const osg::Vec2d& place) const
+{
+    return _work->tileAt(place);
 }
 
 osg::Vec2d PagedRaster::low() const

@@ -55,6 +55,15 @@ public:
     ProjectiveMapping* getMapping();
     const ProjectiveMapping* getMapping() const;
 
+    /// A part of the raster in memory.
+    struct Tile
+    {
+        osg::ref_ptr<DataLayer> layer; ///< not to be changed; null beyond the raster
+        osg::Vec2d low, high;          ///< what it covers, metres in the frame
+    };
+    /// The finest tile in memory at a place of the frame, metres; beside what was read there is always a coarse one. From any thread.
+    Tile tileAt(const osg::Vec2d& place) const;
+
     struct Statistics
     {
         int shown = 0;          ///< tiles and parts of coarser ones
