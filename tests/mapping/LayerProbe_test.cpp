@@ -256,6 +256,9 @@ TEST(ProbeOnAGlobe, ReadsTheFootOnTheEllipsoid)
         ASSERT_EQ(found.size(), 1u);
         EXPECT_NEAR(*found[0].value, slope(foot * east, foot * north), 1e-4);
     }
+    // The straight line down comes out some tens of kilometres beside the antipode.
+    mappings->getMapping(0)->setRectangle({0.0, 0.0}, 1e5, 1e5);
+    EXPECT_EQ(LayerProbe::at(*scene, position(longitude, latitude, 0.0)).readings.size(), 1u);
     EXPECT_TRUE(LayerProbe::at(*scene, position(longitude + osg::PI, -latitude, 0.0)).readings.empty())
         << "the other side of the globe has the same x and y";
 }
