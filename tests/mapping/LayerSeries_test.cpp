@@ -127,6 +127,7 @@ TEST(LayerSeries, NobodyWaitsForReaders)
     EXPECT_FALSE(series->points()[0].known);
     steps->open(true);
     series->wait();
+    EXPECT_NEAR(*series->points()[0].value, 4.0, 1e-5) << "which was being read for the first place";
     EXPECT_NEAR(*series->points()[7].value, 74.0, 1e-5) << "of the last place, not of the first";
     // Each place but the last was given up after the step that was being read.
     EXPECT_LE(steps->started, 1002);
