@@ -44,7 +44,7 @@ SeriesGraph::SeriesGraph(double width, double height, const std::vector<LayerSer
     panel.bottom = std::round(6.5 * text);
     panel.width =
         std::clamp(std::round(0.42 * width), 20.0 * text, std::max(20.0 * text, width - 2.0 * margin));
-    panel.height = std::round(14.0 * text);
+    panel.height = std::round(16.0 * text);
     const double labels = std::round(5.5 * text);
     graph = {panel.left + labels, panel.bottom + 1.6 * line, panel.width - labels - 2.0 * margin,
              panel.height - 4.1 * line};
@@ -141,7 +141,7 @@ void SeriesGraph::findTicks(const LayerClock& clock)
     for (const double number : numbers)
         values.push_back({number, tickText(number, numbers.size() > 1 ? numbers[1] - numbers[0] : 1.0)});
 
-    const int most = std::max(2, static_cast<int>(graph.width / (7.0 * text)));
+    const int most = std::max(2, static_cast<int>(graph.width / (5.5 * text)));
     const std::vector<double> moments = roundTimes(begin, end, most);
     const double step = moments.size() > 1 ? moments[1] - moments[0] : day;
     for (const double moment : moments)
