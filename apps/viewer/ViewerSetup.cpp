@@ -198,7 +198,7 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
                        [automatic] { automatic->request(osgGeoFX::PanoramaComposer::usualLiberties); });
     const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
     if (panel->hasEffect()) add("List of mappings", panel);
-    if (panel->hasEffect()) add("Values of layers", new osgGeoFX::ProbePanel(*scene.effects));
+    if (panel->hasEffect()) add("Ground", new osgGeoFX::ProbePanel(*scene.effects));
     if (osgGeoFX::LayerPlayer* const player = osgGeoFX::LayerPlayer::of(*scene.effects))
         add("Layers in time", new osgGeoFX::TimeBar(*player->getClock()));
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)

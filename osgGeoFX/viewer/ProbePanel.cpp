@@ -165,8 +165,7 @@ ProbePanel::~ProbePanel() = default;
 
 void ProbePanel::getUsage(osg::ApplicationUsage& usage) const
 {
-    usage.addKeyboardMouseBinding("v", "Toggle the values of the layers below the pointer");
-    usage.addKeyboardMouseBinding("V", "Plot the layer in time below the pointer; elsewhere, close the plot");
+    usage.addKeyboardMouseBinding("v and V", "Values of layers below the pointer; a plot of one in time");
 }
 
 std::vector<std::string> ProbePanel::lines() const
