@@ -103,6 +103,7 @@
 #include <osgGeoFX/mapping/LayerProbe.h>
 #include <osgGeoFX/mapping/LayerSequence.h>
 #include <osgGeoFX/mapping/LayerSeries.h>
+#include <osgGeoFX/mapping/LayerSource.h>
 #include <osgGeoFX/mapping/LayerWords.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/RasterTiles.h>

@@ -222,9 +222,10 @@ private:
     std::thread _thread; ///< the last, since it uses the others
 };
 
-LayerSequence::LayerSequence(SequenceSteps* steps)
-    : _steps(steps), _layer(new DataLayer(new osg::Image)), _reader(std::make_unique<Reader>(*steps))
+LayerSequence::LayerSequence(SequenceSteps* steps, DataLayer* layer)
+    : _steps(steps), _layer(layer ? layer : new DataLayer), _reader(std::make_unique<Reader>(*steps))
 {
+    _layer->setImage(new osg::Image);
     _layer->setKind(steps->kind());
     setClock(new LayerClock);
 }

@@ -415,7 +415,11 @@ void ProjectiveMappings::removeMappings()
 
 bool ProjectiveMappings::addRaster(PagedRaster* raster)
 {
-    if (!addMapping(raster ? raster->getMapping() : nullptr)) return false;
+    ProjectiveMapping* const mapping = raster ? raster->getMapping() : nullptr;
+    const bool there = mapping && std::find(_mappings.begin(), _mappings.end(), mapping) != _mappings.end();
+    const bool shown = std::find(_rasters.begin(), _rasters.end(), raster) != _rasters.end();
+    // A raster that is shown is refused as its mapping is.
+    if ((!there || shown) && !addMapping(mapping)) return false;
     raster->reset();
     _rasters.emplace_back(raster);
     return true;
