@@ -9,6 +9,7 @@
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/detail/CameraPages.h>
 #include <osgGeoFX/mapping/detail/GpuMappings.h>
+#include <osgGeoFX/mapping/detail/Graticule.h>
 
 #include <glm/glm.hpp>
 #include <osg/Math>
@@ -562,6 +563,10 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
         curve.set(globeFrame.curvature, globeFrame.scale, 0.0, 0.0);
     }
     setUniform(state, prefix + "globe", osg::Uniform::FLOAT_VEC4, osg::Vec4(globe));
+    const Graticule graticule(_origin, ellipsoid);
+    setUniform(state, prefix + "gridOrigin", osg::Uniform::FLOAT_VEC4, osg::Vec4(graticule.origin));
+    setUniform(state, prefix + "gridGlobe", osg::Uniform::FLOAT_VEC4, osg::Vec4(graticule.globe));
+    setUniform(state, prefix + "gridDrift", osg::Uniform::FLOAT, static_cast<float>(graticule.drift));
     setUniform(state, prefix + "curve", osg::Uniform::FLOAT_VEC4, osg::Vec4(curve));
     PageFrame& plane = camera.plane;
     camera.sees = true;
