@@ -9,6 +9,7 @@
 #include "plan/PicturePlan.h"
 #include "print/PrintOptions.h"
 #include "render/Camera.h"
+#include "render/Values.h"
 #include "web/ScenePage.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
@@ -58,6 +59,7 @@ struct Arguments
     bool inset = false;
     bool sky = false;
     bool noCull = false;
+    geofx::render::Values values;
     bool noCompensation = false;
     bool debugBounds = false;
     bool allowOutside = false;
@@ -141,6 +143,7 @@ void addOptions(CLI::App& app, Arguments& arguments)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     geofx::mappings::addOptions(app, arguments.mappings);
     geofx::names::addOptions(app, arguments.names);
+    arguments.values.addOptions(app);
     geofx::layers::addOptions(app, arguments.layers);
     geofx::web::addOptions(app, arguments.web);
     geofx::print::addOptions(app, arguments.print);
@@ -345,11 +348,17 @@ void check(const Arguments& arguments, const geofx::plan::Division& division, co
     const std::string bitsFault = geofx::print::faultOf(arguments.print, arguments.output);
     if (!bitsFault.empty()) throw Failure(badInput, bitsFault);
     geofx::layers::check(arguments.layers);
+    arguments.values.check();
     const bool film = !arguments.camera.path.empty();
     if (arguments.layers.any() && (film || arguments.inset))
         throw Failure(
             badInput,
             "--layers and --mesh are for one picture as it is drawn; leave --path and --inset out.");
+    if (arguments.values.any() && (film || geofx::print::isPrint(arguments.print, arguments.output, size)))
+        throw Failure(
+            badInput,
+            "--values is for one picture that is drawn at once; leave --path out, and take a --size in "
+            "pixels, up to 4096.");
     if (arguments.web.wanted() && film)
         throw Failure(badInput, "--web shows one picture; leave --path out, or --web.");
     if (division.any() && !film && !geofx::print::isPrint(arguments.print, arguments.output, size))
@@ -405,6 +414,11 @@ public:
         if (_arguments.stats.empty() || _statistics->write(_arguments.stats)) return;
         throw Failure(badInput, "The figures cannot be written to \"" + _arguments.stats +
                                     "\"; check the folder, its permissions and the disk's space.");
+    }
+
+    void printValues() const
+    {
+        if (_renderer) _arguments.values.print(_scene, _renderer->camera());
     }
 
 private:
@@ -517,6 +531,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
             pictures.draw(frame);
         if (page) page->write(*scene, options, camera.view(0), map.names());
         pictures.writeStatistics();
+        pictures.printValues();
     }
     geofx::layers::write(arguments.layers, *scene, size, options, map, camera.view(0));
 }

@@ -101,7 +101,11 @@
 #include <osgGeoFX/closeup/SurfaceData.h>
 #include <osgGeoFX/closeup/SurfaceDerivation.h>
 #include <osgGeoFX/mapping/LayerClock.h>
+#include <osgGeoFX/mapping/LayerProbe.h>
 #include <osgGeoFX/mapping/LayerSequence.h>
+#include <osgGeoFX/mapping/LayerSeries.h>
+#include <osgGeoFX/mapping/LayerSource.h>
+#include <osgGeoFX/mapping/LayerWords.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/RasterTiles.h>
 
@@ -141,6 +145,7 @@
 #include <osgGeoFX/viewer/PanelPicture.h>
 #include <osgGeoFX/viewer/PictureParts.h>
 #include <osgGeoFX/viewer/PresetKeys.h>
+#include <osgGeoFX/viewer/ProbePanel.h>
 #include <osgGeoFX/viewer/Scene.h>
 #include <osgGeoFX/viewer/SceneData.h>
 #include <osgGeoFX/viewer/SunKeys.h>

@@ -25,6 +25,7 @@
 #include <osgGeoFX/viewer/MiniMap.h>
 #include <osgGeoFX/viewer/PictureParts.h>
 #include <osgGeoFX/viewer/PresetKeys.h>
+#include <osgGeoFX/viewer/ProbePanel.h>
 #include <osgGeoFX/viewer/SunKeys.h>
 #include <osgGeoFX/viewer/TimeBar.h>
 #include <osgGeoFX/viewer/ViewerHandlers.h>
@@ -215,6 +216,7 @@ void addHandlers(osgViewer::Viewer& viewer, const osgGeoFX::Scene& scene,
                        [automatic] { automatic->request(osgGeoFX::PanoramaComposer::usualLiberties); });
     const osg::ref_ptr<osgGeoFX::MappingPanel> panel = new osgGeoFX::MappingPanel(*scene.effects);
     if (panel->hasEffect()) add("Lists", panel);
+    if (panel->hasEffect()) add("Ground", new osgGeoFX::ProbePanel(*scene.effects));
     if (osgGeoFX::LayerPlayer* const player = osgGeoFX::LayerPlayer::of(*scene.effects))
         add("Layers in time", new osgGeoFX::TimeBar(*player->getClock()));
     for (unsigned int i = 0; i < scene.effects->getNumEffects(); ++i)

@@ -53,6 +53,7 @@ MappingRaster readRaster(const std::string& file, const MappingFrame& frame,
     }
     result.layer = new DataLayer(image);
     result.layer->setKind(raster.kind);
+    raster.giveWords(*result.layer);
     return result;
 }
 

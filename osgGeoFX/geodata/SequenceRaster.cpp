@@ -27,8 +27,15 @@ constexpr std::size_t looks = 8;
 class Steps final : public SequenceSteps
 {
 public:
-    Steps(std::unique_ptr<TimeSteps> steps, FrameCrs crs, const SequenceRaster::Options& options)
-        : _steps(std::move(steps)), _crs(std::move(crs))
+    Steps(std::unique_ptr<TimeSteps> steps, const MappingFrame& frame, const std::string& file,
+          const SequenceRaster::Options& options)
+        : _steps(std::move(steps)),
+          _crs(crsOf(frame, file)), _source{file + (options.variable.empty() ? "" : ":" + options.variable),
+                                            frame.globe,
+                                            frame.wkt,
+                                            frame.origin,
+                                            options.maxSide,
+                                            std::nullopt}
     {
         const std::unique_ptr<FrameRaster> first = _steps->step(0);
         _kind = first->kind;
@@ -46,6 +53,7 @@ public:
     const std::vector<double>& times() const override { return _steps->times; }
     bool dated() const override { return _steps->dated; }
     DataLayer::Kind kind() const override { return _kind; }
+    std::optional<LayerSource> source() const override { return _source; }
     osg::ref_ptr<osg::Image> read(std::size_t step, std::string& error) override
     {
         const std::lock_guard<std::mutex> lock(_mutex);
@@ -60,7 +68,7 @@ public:
         }
     }
 
-    const TimeSteps& source() const { return *_steps; }
+    const TimeSteps& timeSteps() const { return *_steps; }
     const FrameCrs& crs() const { return _crs; }
 
     FrameRaster::Extent extent;
@@ -77,6 +85,7 @@ private:
 
     std::unique_ptr<TimeSteps> _steps;
     const FrameCrs _crs;
+    const LayerSource _source;
     DataLayer::Kind _kind = DataLayer::VALUE;
     int _columns = 1, _rows = 1;
     std::mutex _mutex; ///< of the datasets
@@ -133,11 +142,11 @@ std::optional<SequenceRaster> SequenceRaster::open(const std::string& file, Mapp
         std::unique_ptr<TimeSteps> source = TimeSteps::open(file, options.variable);
         MappingFrame moved = frame;
         if (moves) source->step(0)->moveToMiddle(moved);
-        const osg::ref_ptr<Steps> steps = new Steps(std::move(source), crsOf(moved, file), options);
+        const osg::ref_ptr<Steps> steps = new Steps(std::move(source), moved, file, options);
         if (moved.globe) checkReach(steps->extent, steps->crs(), file);
         SequenceRaster result;
-        result.variable = steps->source().variable;
-        result.unit = steps->source().unit;
+        result.variable = steps->timeSteps().variable;
+        result.unit = steps->timeSteps().unit;
         const FrameCrs& crs = steps->crs();
         result.low = steps->extent.low * crs.metresPerUnit - crs.origin;
         result.high = steps->extent.high * crs.metresPerUnit - crs.origin;

@@ -36,8 +36,9 @@ std::shared_ptr<GdalCacheLimit> smallCache()
 class Tiles final : public RasterTiles
 {
 public:
-    Tiles(std::string file, FrameCrs crs, std::optional<DataLayer::Kind> wanted)
-        : _cache(smallCache()), _file(std::move(file)), _crs(std::move(crs)), _wanted(wanted)
+    Tiles(std::string file, const MappingFrame& frame, std::optional<DataLayer::Kind> wanted)
+        : _cache(smallCache()), _file(std::move(file)), _frame(frame), _crs(crsOf(frame, _file)),
+          _wanted(wanted)
     {
         auto raster = std::make_unique<FrameRaster>(_file, _wanted);
         raster->checkOverviews();
@@ -50,6 +51,16 @@ public:
     osg::Vec2d high() const override { return _extent.high * _crs.metresPerUnit - _crs.origin; }
     double texel() const override { return _extent.texel * _crs.metresPerUnit; }
     DataLayer::Kind kind() const override { return _kind; }
+    std::optional<LayerSource> source() const override
+    {
+        LayerSource source;
+        source.file = _file;
+        source.globe = _frame.globe;
+        source.wkt = _frame.wkt;
+        source.origin = _frame.origin;
+        if (_wanted) source.kind = *_wanted;
+        return source;
+    }
 
     osg::ref_ptr<osg::Image> read(const osg::Vec2d& from, const osg::Vec2d& to, int columns, int rows,
                                   std::string& error) override
@@ -105,6 +116,7 @@ private:
 
     const std::shared_ptr<GdalCacheLimit> _cache;
     const std::string _file;
+    const MappingFrame _frame;
     const FrameCrs _crs;
     const std::optional<DataLayer::Kind> _wanted;
     DataLayer::Kind _kind = DataLayer::COLOR;
@@ -121,7 +133,7 @@ osg::ref_ptr<RasterTiles> TiledRaster::open(const std::string& file, const Mappi
     initialiseGdal();
     try
     {
-        return new Tiles(file, crsOf(frame, file), kind);
+        return new Tiles(file, frame, kind);
     }
     catch (const BuildError& failure)
     {

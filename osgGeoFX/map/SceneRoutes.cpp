@@ -2,13 +2,18 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/map/SceneRoutes.h>
 
+#include <osgGeoFX/labels/FinestGround.h>
 #include <osgGeoFX/map/RouteFile.h>
 #include <osgGeoFX/mapping/PathRibbon.h>
+#include <osgGeoFX/panorama/TerrainRelief.h>
 
 #include <osg/Math>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -23,8 +28,56 @@ constexpr std::size_t mostMappings = 400000;
 
 } // namespace
 
+/// The ground of the scene as its database has it, above its zero height.
+class SceneRoutes::Heights
+{
+public:
+    static std::shared_ptr<Heights> of(const osg::Node& terrain, const osg::EllipsoidModel* ellipsoid,
+                                       const Georeference& reference, std::string& error)
+    {
+        std::optional<TerrainRelief> relief = TerrainRelief::read(terrain, ellipsoid, reliefCells, error);
+        if (!relief) return nullptr;
+        return std::make_shared<Heights>(terrain, ellipsoid, reference, std::move(*relief));
+    }
+    Heights(const osg::Node& terrain, const osg::EllipsoidModel* ellipsoid, const Georeference& reference,
+            TerrainRelief relief)
+        : _relief(std::move(relief)), _ground(terrain, ellipsoid, _relief), _reference(reference),
+          _globe(ellipsoid != nullptr)
+    {
+    }
+    double at(double longitude, double latitude) const
+    {
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        osg::Vec2d place(longitude, latitude);
+        osg::Vec3d world;
+        const double x = osg::DegreesToRadians(longitude), y = osg::DegreesToRadians(latitude);
+        if (!_globe)
+        {
+            if (!_reference.toWorld(x, y, 0.0, world)) return none;
+            place.set(world.x(), world.y());
+        }
+        double height = _ground.finest(place.x(), place.y());
+        // A ray may slip through exactly between triangles.
+        const double step = _globe ? 1e-7 : 1e-2;
+        for (int i = 1; i <= 4 && !std::isfinite(height); ++i)
+            height = _ground.finest(place.x() + step * i, place.y() + step * (i % 2));
+        if (!std::isfinite(height)) height = _ground.coarse(place.x(), place.y());
+        if (!std::isfinite(height)) return none;
+        double back = 0.0, east = 0.0, north = 0.0;
+        world = _ground.world(place.x(), place.y(), height);
+        return _reference.toGeodetic(world, east, north, back) ? back : none;
+    }
+
+private:
+    static constexpr int reliefCells = 256;
+    const TerrainRelief _relief;
+    const FinestGround _ground;
+    const Georeference& _reference;
+    const bool _globe;
+};
+
 SceneRoutes::SceneRoutes(osg::Node& node, EffectScene& scene)
-    : _scene(&scene), _ellipsoid(scene.ground().ellipsoid)
+    : _node(node), _scene(&scene), _ellipsoid(scene.ground().ellipsoid)
 {
     _reference = Georeference::create(&node, _referenceError);
 }
@@ -138,16 +191,48 @@ bool SceneRoutes::add(const RoutePath& route, const Options& options, std::strin
                 "\" is out of range, or it has more than 20000 way points; give another width, or a track.";
         return false;
     }
-    if (route.altitude != RoutePath::ABSOLUTE || !options.ribbons) return true;
+    if (route.altitude == RoutePath::CLAMPED || !options.ribbons) return true;
+    return addRibbons(route, options, error);
+}
+
+bool SceneRoutes::addRibbons(const RoutePath& route, const Options& options, std::string& error)
+{
     if (!_reference)
     {
         error = _referenceError;
         return false;
     }
+    const bool onGround = route.altitude == RoutePath::ABOVE_GROUND;
+    if ((onGround || route.extruded) && !_heights)
+    {
+        std::string fault;
+        _heights = Heights::of(_node, _ellipsoid, *_reference, fault);
+        if (!_heights && onGround)
+        {
+            error = "the heights of the way \"" + route.name +
+                    "\" count from the ground, and there is none: " + fault;
+            return false;
+        }
+    }
+    PathRibbon::Ground ground;
+    if (_heights)
+        ground = [this](double longitude, double latitude)
+        {
+            return _heights->at(longitude, latitude);
+        };
+    // Ways in the air are no ground.
+    const auto show = [&](bool on)
+    {
+        for (const osg::ref_ptr<osg::Node>& each : _ribbons)
+            each->setNodeMask(on ? ~0u : 0u);
+    };
+    show(false);
     const std::vector<osg::ref_ptr<osg::Node>> nodes =
-        PathRibbon::nodesOf(route, options.look, *_reference, error);
+        PathRibbon::nodesOf(route, options.look, *_reference, error, ground);
+    show(true);
     for (const osg::ref_ptr<osg::Node>& node : nodes)
         _scene->addChild(node);
+    _ribbons.insert(_ribbons.end(), nodes.begin(), nodes.end());
     return !nodes.empty();
 }
 

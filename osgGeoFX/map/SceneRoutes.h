@@ -10,6 +10,7 @@
 
 #include <osg/Node>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ namespace osgGeoFX
     if (!routes.add("hike.gpx", {}, error)) …
     @endcode
 
-    A way lies on the ground, whatever its altitude mode is, and one of absolute heights is in the air, too (`ribbons`). It follows great circles between its places. Way points get marks,
+    A way lies on the ground, whatever its altitude mode is, and one with heights is in the air, too (`ribbons`): above the sea, or above the ground of
+    the scene, as fine as its database has it. It follows great circles between its places. Way points get marks,
     the points of tracks none. The mappings stay in the scene when this object is gone: they are in effects named "routes", behind the scene's
     other effects, one for each part of the globe of 45° of arc. The plugin osgdb_geofxdata reads the files. One thread at a time, between frames.
     @ingroup map */
@@ -38,7 +40,7 @@ public:
         std::string layer; ///< one layer; empty: all
         RoutePath::Look look;
         bool ribbons =
-            true; ///< whether ways of absolute heights are also drawn in the air (PathRibbon): as tubes, extruded ones with a curtain
+            true; ///< whether ways with heights are also drawn in the air (PathRibbon): as tubes, extruded ones with a curtain
     };
     /// Adds the ways of a file. False, with a sentence in `error`, if it cannot; the ways before the one at fault stay then.
     bool add(const std::string& file, const Options& options, std::string& error);
@@ -57,12 +59,17 @@ private:
     };
     bool placeOf(const RoutePath& route, Way& way, std::string& error);
     ProjectiveMappings* effectFor(const Way& way, std::string& error);
+    bool addRibbons(const RoutePath& route, const Options& options, std::string& error);
 
+    class Heights;
+    osg::Node& _node;
     osg::ref_ptr<EffectScene> _scene;
+    std::shared_ptr<Heights> _heights; ///< of the ground; null until they are needed
     osg::ref_ptr<const osg::EllipsoidModel> _ellipsoid;
     osg::ref_ptr<Georeference> _reference;
     std::string _referenceError;
     std::vector<osg::ref_ptr<ProjectiveMappings>> _effects;
+    std::vector<osg::ref_ptr<osg::Node>> _ribbons;
     std::vector<std::string> _files;
 };
 

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/map/SequenceFile.h>
 #include <osgGeoFX/map/detail/SceneCrs.h>
+#include <osgGeoFX/mapping/LayerWords.h>
 
 #include <algorithm>
 #include <tuple>
@@ -61,6 +62,7 @@ bool SceneSequences::add(const std::string& file, const Options& options, std::s
         return false;
     }
     mapping->setName(request.variable.empty() ? file : request.variable);
+    LayerWords::setUnit(*sequence->getLayer(), request.unit);
     mapping->setLayer(sequence->getLayer());
     mapping->setOpacity(options.opacity);
     setColors(*mapping, request);

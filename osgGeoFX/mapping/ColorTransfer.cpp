@@ -143,6 +143,24 @@ const Properties& ColorTransfer::properties() const
             Property::color("constantColor", "the constant color").of<&Self::_constantColor>(),
             Property::number("constantAlpha", "the alpha of the constant color", 0.0, 1.0)
                 .of<&Self::_constantAlpha>(),
+            Property::choice("pattern", "what alpha has in the picture's pixels; a mask takes its place",
+                             {{"none", ""},
+                              {"contours", "lines of equal height"},
+                              {"graticule", "degrees on a globe, or the terrain's metres"},
+                              {"hatching", "parallel lines"},
+                              {"dots", "discs at the corners of squares"}})
+                .of<&Self::_pattern>(),
+            Property::number("patternInterval",
+                             "from line to line: metres, or degrees of a graticule on a globe", 1e-4, 1e7)
+                .of<&Self::_patternInterval>(),
+            Property::number("patternWidth", "the width of lines, and of dots their diameter", 0.1, 100.0,
+                             "px")
+                .of<&Self::_patternWidth>(),
+            Property::integer("patternIndex", "each so-manieth line is twice as wide; 0: none is", 0, 31)
+                .of<&Self::_patternIndex>(),
+            Property::angle("patternAngle", "the direction of hatching, clockwise from the frame's y axis",
+                            -osg::PI, osg::PI)
+                .of<&Self::_patternAngle>(),
             Property::number("brightness", "the factor of the brightness; 0 is black", 0.0, 4.0)
                 .of<&Self::_brightness>(),
             Property::number("contrast", "the factor of the contrast about a middle grey", 0.0, 4.0)

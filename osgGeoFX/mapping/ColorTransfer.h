@@ -77,6 +77,17 @@ public:
         DISCARD
     };
 
+    /// A pattern that is computed for each pixel of the picture, sharp at any distance: the alpha is that of its lines or dots, and 0
+    /// between them. It needs no layer; with CONSTANT as the source it has the constant's color.
+    enum Pattern
+    {
+        NONE,
+        CONTOURS, ///< lines of equal height above the frame's ellipsoid or plane, metres
+        GRATICULE, ///< degrees of longitude and latitude on a globe; on a plane, metres of the terrain's coordinates
+        HATCHING, ///< parallel lines, metres apart on the ground
+        DOTS      ///< discs at the corners of squares, metres apart on the ground
+    };
+
     /// The origin of the source color. Default: LAYER.
     bool setSource(Source source) { return assign("source", source); }
     Source getSource() const { return static_cast<Source>(_source); }
@@ -108,6 +119,24 @@ public:
     /// are rounded to eight bits. Default: opaque white.
     bool setConstant(const osg::Vec4d& rgba);
     osg::Vec4d getConstant() const { return {unpackedColor(_constantColor), _constantAlpha}; }
+
+    /// With FROM_MASK there is none. Level ground has no contours, but the noise of floating-point heights on a globe's
+    /// sea may have some at 0: ProjectiveMapping::setHeights() leaves the sea out. Mappings with a pattern are never composed beforehand. Default: NONE.
+    bool setPattern(Pattern pattern) { return assign("pattern", pattern); }
+    Pattern getPattern() const { return static_cast<Pattern>(_pattern); }
+    /// From line to line or from dot to dot: metres, or degrees of a graticule on a globe; 1e-4…1e7. Lines that are closer together in the
+    /// picture than twice their width fade away. Default: 100.
+    bool setPatternInterval(double interval) { return assign("patternInterval", interval); }
+    double getPatternInterval() const { return _patternInterval; }
+    /// Of lines, and of dots their diameter, pixels, 0.1…100. Default: 1.
+    bool setPatternWidth(double pixels) { return assign("patternWidth", pixels); }
+    double getPatternWidth() const { return _patternWidth; }
+    /// Each so-manieth line is twice as wide, counted from the line at 0, 0…31; 0: none is. Dots have none. Default: 0.
+    bool setPatternIndex(int count) { return assign("patternIndex", count); }
+    int getPatternIndex() const { return _patternIndex; }
+    /// The direction of hatching, radians clockwise from the frame's y axis, −π…π. Default: 0.
+    bool setPatternAngle(double radians) { return assign("patternAngle", radians); }
+    double getPatternAngle() const { return _patternAngle; }
 
     /// 0…4, where 0 is black. Default: 1.
     bool setBrightness(double factor) { return assign("brightness", factor); }
@@ -149,6 +178,11 @@ private:
     double _rampHigh = 1.0;
     int _constantColor = 0xffffff;
     double _constantAlpha = 1.0;
+    int _pattern = NONE;
+    double _patternInterval = 100.0;
+    double _patternWidth = 1.0;
+    int _patternIndex = 0;
+    double _patternAngle = 0.0;
     double _brightness = 1.0;
     double _contrast = 1.0;
     double _saturation = 1.0;

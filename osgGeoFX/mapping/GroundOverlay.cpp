@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/mapping/GroundOverlay.h>
 
+#include <osgGeoFX/mapping/LayerWords.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -25,6 +27,7 @@ void GroundOverlay::setLook(ProjectiveMapping& mapping) const
     mapping.setEnabled(visible);
     mapping.setPixels(pixelsNone, pixelsFull);
     if (!layer || layer->getKind() == DataLayer::COLOR) return;
+    if (mapping.getLayer() && mapping.getLayer() != layer) LayerWords::copy(*layer, *mapping.getLayer());
     const osg::ref_ptr<ColorTransfer> transfer = new ColorTransfer;
     double low = lowest;
     double high = highest;

@@ -153,7 +153,21 @@ std::optional<double> LayerClock::parseDate(const std::string& text)
 
 LayerPlayer::LayerPlayer(LayerClock* clock) : _clock(clock ? clock : new LayerClock) {}
 
+LayerPlayer::LayerPlayer(const LayerPlayer& other, const osg::CopyOp& copy)
+    : osg::Object(other, copy), osg::Callback(other, copy), _clock(other._clock), _sequences(other._sequences)
+{
+}
+
 LayerPlayer::~LayerPlayer() = default;
+
+bool LayerPlayer::setClock(LayerClock* clock)
+{
+    if (!clock) return false;
+    _clock = clock;
+    for (const osg::ref_ptr<LayerSequence>& sequence : _sequences)
+        sequence->setClock(clock);
+    return true;
+}
 
 LayerPlayer* LayerPlayer::onto(osg::Node& node)
 {

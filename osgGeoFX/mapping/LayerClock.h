@@ -95,15 +95,23 @@ private:
     player->add([&](double time) { flood.setLevel(time); });
     scene->addUpdateCallback(player);
     @endcode
+    OSG's files have it with its node: the clock, and the sequences whose steps they can have (LayerSequence), but no actions.
     @ingroup mapping */
 class OSGGEOFX_EXPORT LayerPlayer : public osg::Callback
 {
 public:
     static constexpr double usualTime =
         20.0; ///< seconds that the kit's programs and scene files take for all of a range
+    LayerPlayer() : LayerPlayer(nullptr) {}
+    /// Null: a clock of its own.
     explicit LayerPlayer(LayerClock* clock);
+    /// With the same clock and sequences, and without the actions.
+    LayerPlayer(const LayerPlayer& other, const osg::CopyOp& copy = osg::CopyOp::SHALLOW_COPY);
+    META_Object(osgGeoFX, LayerPlayer);
 
     LayerClock* getClock() { return _clock.get(); }
+    /// All sequences get it, too. Null is refused: the result is false then.
+    bool setClock(LayerClock* clock);
     /** A sequence gets the player's clock. `wholeTime`: the seconds of the program that all of the clock's range takes then,
         unless somebody has set another speed; 0 leaves the speed as it is. False, with a warning, if faultOf() says why. */
     bool add(LayerSequence* sequence, double wholeTime = 0.0);
@@ -114,6 +122,7 @@ public:
     void add(Action action) { _actions.push_back(std::move(action)); }
     unsigned int getNumSequences() const { return static_cast<unsigned int>(_sequences.size()); }
     LayerSequence* getSequence(unsigned int i) { return _sequences[i].get(); }
+    const LayerSequence* getSequence(unsigned int i) const { return _sequences[i].get(); }
     /// The first player among a node's update callbacks; null if there is none.
     static LayerPlayer* of(osg::Node& node);
     /// The same; a new one where there is none.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -70,8 +71,29 @@ void blendColors(const unsigned char* a, const unsigned char* b, int share, std:
 
 } // namespace
 
-SequenceSteps::SequenceSteps() = default;
+struct SequenceSteps::Turns
+{
+    std::mutex mutex;
+    std::condition_variable news;
+    std::uint64_t next = 0, now = 0;
+};
+
+SequenceSteps::SequenceSteps() : _turns(std::make_unique<Turns>()) {}
 SequenceSteps::~SequenceSteps() = default;
+
+osg::ref_ptr<osg::Image> SequenceSteps::readInTurn(std::size_t step, std::string& error)
+{
+    {
+        std::unique_lock<std::mutex> lock(_turns->mutex);
+        const std::uint64_t own = _turns->next++;
+        _turns->news.wait(lock, [&] { return _turns->now == own; });
+    }
+    osg::ref_ptr<osg::Image> image = read(step, error);
+    const std::lock_guard<std::mutex> lock(_turns->mutex);
+    ++_turns->now;
+    _turns->news.notify_all();
+    return image;
+}
 
 ImageSteps::ImageSteps(std::vector<osg::ref_ptr<osg::Image>> images, std::vector<double> times,
                        DataLayer::Kind kind, bool dated)
@@ -165,7 +187,7 @@ private:
             _reading = step;
             lock.unlock();
             std::string error;
-            osg::ref_ptr<osg::Image> image = _steps.read(step, error);
+            osg::ref_ptr<osg::Image> image = _steps.readInTurn(step, error);
             if (image && _first && !isAlike(*image, *_first))
             {
                 error = "step " + std::to_string(step) + " of the sequence has " + formatOf(*image) +
@@ -200,9 +222,10 @@ private:
     std::thread _thread; ///< the last, since it uses the others
 };
 
-LayerSequence::LayerSequence(SequenceSteps* steps)
-    : _steps(steps), _layer(new DataLayer(new osg::Image)), _reader(std::make_unique<Reader>(*steps))
+LayerSequence::LayerSequence(SequenceSteps* steps, DataLayer* layer)
+    : _steps(steps), _layer(layer ? layer : new DataLayer), _reader(std::make_unique<Reader>(*steps))
 {
+    _layer->setImage(new osg::Image);
     _layer->setKind(steps->kind());
     setClock(new LayerClock);
 }

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/mapping/DataLayer.h>
 #include <osgGeoFX/mapping/LayerClock.h>
+#include <osgGeoFX/mapping/LayerSource.h>
 
 #include <osg/Image>
 #include <osg/Referenced>
@@ -31,9 +32,17 @@ public:
     virtual DataLayer::Kind kind() const = 0;
     /// The picture of a step. Null, with a sentence in `error`, if it cannot be read. One thread at a time calls it, any.
     virtual osg::ref_ptr<osg::Image> read(std::size_t step, std::string& error) = 0;
+    /// The same for several threads at once: each one waits for its turn, in the order in which they have come.
+    osg::ref_ptr<osg::Image> readInTurn(std::size_t step, std::string& error);
+    /// The file that they are read from, for OSG's files; nothing for steps that no file tells, which is the default.
+    virtual std::optional<LayerSource> source() const { return std::nullopt; }
 
 protected:
     ~SequenceSteps() override;
+
+private:
+    struct Turns;
+    std::unique_ptr<Turns> _turns;
 };
 
 /** Steps whose pictures are in memory.
@@ -50,6 +59,8 @@ public:
     bool dated() const override { return _dated; }
     DataLayer::Kind kind() const override { return _kind; }
     osg::ref_ptr<osg::Image> read(std::size_t step, std::string& error) override;
+    /// The image of a step; may be null.
+    const osg::Image* getImage(std::size_t step) const { return _images[step].get(); }
 
 protected:
     ~ImageSteps() override;
@@ -75,13 +86,14 @@ private:
 
     A few steps are in memory: those around the time, and those that come next, which a thread of its own reads. If a step is
     not there yet, the last picture stays. A step that cannot be read, or has another size or format than the first one, is said
-    once and shows the nearest one before it that can; without any, the first one that can. Files have the layer with its present picture, and not the sequence.
+    once and shows the nearest one before it that can; without any, the first one that can. OSG's files have a sequence with its player,
+    if its steps are ImageSteps or have a source(), which is opened again when they are read; of others they have the layer with its present picture alone.
     @ingroup mapping */
 class OSGGEOFX_EXPORT LayerSequence : public osg::Referenced
 {
 public:
-    /// `steps` must not be null.
-    explicit LayerSequence(SequenceSteps* steps);
+    /// `steps` must not be null. `layer`: the one that it writes, whose image it replaces; null for one of its own.
+    explicit LayerSequence(SequenceSteps* steps, DataLayer* layer = nullptr);
 
     SequenceSteps& steps() { return *_steps; }
     const SequenceSteps& steps() const { return *_steps; }

@@ -99,17 +99,19 @@ class PagedRaster::Work
     using Clock = std::chrono::steady_clock;
 
 public:
-    Work(RasterTiles* tiles, const Options& options, osg::Image* coarse)
-        : _extent{tiles->low(), tiles->high()}, _texel(tiles->texel()), _options(options),
+    Work(RasterTiles* tiles, const Options& options, osg::Image* coarse, ProjectiveMapping* mapping)
+        : _tiles(tiles), _extent{tiles->low(), tiles->high()}, _texel(tiles->texel()), _options(options),
+          _mapping(mapping ? mapping : new ProjectiveMapping),
           _most(static_cast<std::size_t>(std::max(8.0, shareInSight * options.megabytes / sizeShown))),
           _store(tiles, options.threads,
                  _most + static_cast<std::size_t>(shareOfOthers * options.megabytes / sizeInMemory))
     {
-        _mapping->setName(coarse->getFileName());
-        osg::ref_ptr<DataLayer> layer = new DataLayer(coarse);
+        if (!mapping) _mapping->setName(coarse->getFileName());
+        const osg::ref_ptr<DataLayer> layer = _mapping->getLayer() ? _mapping->getLayer() : new DataLayer;
+        layer->setImage(coarse);
         layer->setKind(tiles->kind());
         _mapping->setLayer(layer);
-        if (tiles->kind() == DataLayer::VALUE) setRange(*coarse);
+        if (!mapping && tiles->kind() == DataLayer::VALUE) setRange(*coarse);
         const osg::Vec2d half = (_extent.high - _extent.low) / 2.0;
         _mapping->setRectangle(_extent.low + half, half.x(), half.y());
         const int level = static_cast<int>(std::ceil(std::log2(2.0 * std::max(half.x(), half.y()))));
@@ -217,6 +219,26 @@ public:
         return all;
     }
 
+    Tile tileAt(const osg::Vec2d& place)
+    {
+        const PlaneBox at{place, place};
+        if (!at.overlaps(_extent)) return {};
+        for (int level = MappingPage::finest; level <= _rootLevel; ++level)
+        {
+            const double side = MappingPage::sideOf(level);
+            // The last of finer ones than the raster's pixels.
+            if (level < _rootLevel && 2.0 * side <= TileStore::side * _texel) continue;
+            const auto cell = [&](double metres)
+            {
+                return static_cast<std::int64_t>(std::floor(metres / side));
+            };
+            const MappingPage page{level, cell(place.x()), cell(place.y())};
+            const osg::ref_ptr<DataLayer> layer = _store.find(page);
+            if (layer) return {layer, page.square().low, page.square().high};
+        }
+        return {};
+    }
+
     /// With some room for parts of tiles.
     int pagesOf(int side) const
     {
@@ -225,6 +247,8 @@ public:
     }
 
     ProjectiveMapping* mapping() const { return _mapping; }
+    const Options& options() const { return _options; }
+    const RasterTiles& tiles() const { return *_tiles; }
     const PlaneBox& extent() const { return _extent; }
 
 private:
@@ -400,11 +424,12 @@ private:
         _statistics.settled = same && _statistics.waiting == 0 && !_pending;
     }
 
+    const osg::ref_ptr<RasterTiles> _tiles;
     const PlaneBox _extent;
     const double _texel;
     const Options _options;
+    const osg::ref_ptr<ProjectiveMapping> _mapping;
     const std::size_t _most;
-    const osg::ref_ptr<ProjectiveMapping> _mapping = new ProjectiveMapping;
     int _rootLevel = 0;
     TileStore _store;
 
@@ -421,7 +446,8 @@ private:
     Statistics _statistics;
 };
 
-osg::ref_ptr<PagedRaster> PagedRaster::create(RasterTiles* tiles, const Options& options, std::string& error)
+osg::ref_ptr<PagedRaster> PagedRaster::create(RasterTiles* tiles, const Options& options, std::string& error,
+                                              ProjectiveMapping* mapping)
 {
     const auto refuse = [&](const std::string& name, int value, int least, int most)
     {
@@ -449,13 +475,14 @@ osg::ref_ptr<PagedRaster> PagedRaster::create(RasterTiles* tiles, const Options&
     if (!coarse) return nullptr;
     error = TileStore::faultOf(*coarse, columns, rows, tiles->kind());
     if (!error.empty()) return nullptr;
-    osg::ref_ptr<PagedRaster> raster = new PagedRaster(tiles, options, coarse);
+    osg::ref_ptr<PagedRaster> raster = new PagedRaster(tiles, options, coarse, mapping);
     if (!raster->_work->start(error)) return nullptr;
     return raster;
 }
 
-PagedRaster::PagedRaster(RasterTiles* tiles, const Options& options, osg::Image* coarse)
-    : _work(std::make_unique<Work>(tiles, options, coarse))
+PagedRaster::PagedRaster(RasterTiles* tiles, const Options& options, osg::Image* coarse,
+                         ProjectiveMapping* mapping)
+    : _work(std::make_unique<Work>(tiles, options, coarse, mapping))
 {
 }
 
@@ -471,9 +498,24 @@ const ProjectiveMapping* PagedRaster::getMapping() const
     return _work->mapping();
 }
 
+const PagedRaster::Options& PagedRaster::getOptions() const
+{
+    return _work->options();
+}
+
+const RasterTiles& PagedRaster::tiles() const
+{
+    return _work->tiles();
+}
+
 PagedRaster::Statistics PagedRaster::statistics() const
 {
     return _work->statistics();
+}
+
+PagedRaster::Tile PagedRaster::tileAt(const osg::Vec2d& place) const
+{
+    return _work->tileAt(place);
 }
 
 osg::Vec2d PagedRaster::low() const

@@ -31,7 +31,7 @@ struct SeenGround;
     the GPU, and deformations count. If a view needs more than the memory holds, all of it is coarser.
 
     Values are greys from the lowest to the highest at first. The rectangle of the mapping must stay as it is, and a mask shows
-    nothing. Files have the mapping with its coarse picture, and not the raster.
+    nothing. OSG's files have the raster if its tiles have a source(), which is opened again when they are read; of others they have the mapping with its coarse picture alone.
 
     **Threads.** add and remove it between frames. Any number of cameras may see it; statistics() may be called from any thread.
     @ingroup mapping */
@@ -48,12 +48,25 @@ public:
         int tilesPerFrame = 6;
     };
 
-    /// Reads the coarse picture. Null, with a sentence in `error`, if it cannot be read, or if an option is out of range.
-    static osg::ref_ptr<PagedRaster> create(RasterTiles* tiles, const Options& options, std::string& error);
+    /// Reads the coarse picture. Null, with a sentence in `error`, if it cannot be read, or if an option is out of range. `mapping`: the one that
+    /// shall stand for it, which gets the layer's picture and the rectangle and keeps its look; null for one of its own.
+    static osg::ref_ptr<PagedRaster> create(RasterTiles* tiles, const Options& options, std::string& error,
+                                            ProjectiveMapping* mapping = nullptr);
+    const Options& getOptions() const;
+    const RasterTiles& tiles() const;
 
     /// Stands for the raster, and says how it looks. Never null.
     ProjectiveMapping* getMapping();
     const ProjectiveMapping* getMapping() const;
+
+    /// A part of the raster in memory.
+    struct Tile
+    {
+        osg::ref_ptr<DataLayer> layer; ///< not to be changed; null beyond the raster
+        osg::Vec2d low, high;          ///< what it covers, metres in the frame
+    };
+    /// The finest tile in memory at a place of the frame, metres; beside what was read there is always a coarse one. From any thread.
+    Tile tileAt(const osg::Vec2d& place) const;
 
     struct Statistics
     {
@@ -78,7 +91,7 @@ private:
     using Parts = std::vector<osg::ref_ptr<ProjectiveMapping>>;
     class Work;
 
-    PagedRaster(RasterTiles* tiles, const Options& options, osg::Image* coarse);
+    PagedRaster(RasterTiles* tiles, const Options& options, osg::Image* coarse, ProjectiveMapping* mapping);
     /// The part of the plane that the raster covers.
     osg::Vec2d low() const;
     osg::Vec2d high() const;

@@ -6,7 +6,9 @@
 #include <osg/BoundingBox>
 #include <osg/Depth>
 #include <osg/Geometry>
+#include <osg/LineWidth>
 #include <osg/Math>
+#include <osg/ValueObject>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +23,7 @@ namespace
 
 /// Sides of a tube.
 constexpr int sides = 10;
+constexpr double mostPixels = 10.0;
 /// Of a way, after it got more of them.
 constexpr std::size_t mostPlaces = 200000;
 
@@ -48,9 +51,19 @@ public:
             error = "The way \"" + _path.name + "\" has less than two places; give it more.";
             return false;
         }
+        if (!(_look.leastPixels >= 0.0 && _look.leastPixels <= mostPixels))
+        {
+            error = "The way \"" + _path.name + "\" shall be " + std::to_string(_look.leastPixels) +
+                    " pixels wide at least; give 0 to 10.";
+            return false;
+        }
+        _places = _path.places;
+        if (_path.altitude == RoutePath::ABOVE_GROUND)
+            for (osg::Vec3d& each : _places)
+                each.z() += groundAt(each, 0.0);
         osg::BoundingBoxd box;
         osg::Vec3d world;
-        for (const osg::Vec3d& each : _path.places)
+        for (const osg::Vec3d& each : _places)
         {
             if (!worldOf(each, world, error)) return false;
             box.expandBy(world);
@@ -65,7 +78,7 @@ public:
             Point point;
             osg::Vec3d above;
             if (!worldOf(each, point.place, error) ||
-                !worldOf({each.x(), each.y(), _look.foot}, point.foot, error) ||
+                !worldOf({each.x(), each.y(), groundAt(each, _look.foot)}, point.foot, error) ||
                 !worldOf({each.x(), each.y(), each.z() + 1.0}, above, error))
                 return false;
             point.up = above - point.place;
@@ -133,6 +146,7 @@ public:
         osg::ref_ptr<osg::MatrixTransform> node = new osg::MatrixTransform(osg::Matrixd::translate(_origin));
         node->setName(_path.name);
         node->addChild(geometry);
+        if (_look.leastPixels > 0.0 && _look.shape != PathRibbon::CURTAIN) node->addChild(line(*geometry));
         return node;
     }
 
@@ -148,14 +162,41 @@ private:
         return false;
     }
 
+    double groundAt(const osg::Vec3d& place, double otherwise) const
+    {
+        if (!_look.ground) return otherwise;
+        const double height = _look.ground(place.x(), place.y());
+        return std::isfinite(height) ? height : otherwise;
+    }
+
+    /// A line along the middle, which is seen where the shape is narrower.
+    osg::ref_ptr<osg::Geometry> line(const osg::Geometry& shape) const
+    {
+        const osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
+        const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+        for (const Point& point : _points)
+            vertices->push_back(osg::Vec3(point.place - _origin));
+        geometry->setUseDisplayList(false);
+        geometry->setUseVertexBufferObjects(true);
+        geometry->setVertexArray(vertices);
+        geometry->setColorArray(const_cast<osg::Array*>(shape.getColorArray()), osg::Array::BIND_OVERALL);
+        geometry->addPrimitiveSet(new osg::DrawArrays(GL_LINE_STRIP, 0, static_cast<int>(vertices->size())));
+        geometry->setName(_path.name);
+        geometry->setUserValue("geofx.thinLine", true);
+        const osg::ref_ptr<osg::StateSet> state = new osg::StateSet(*shape.getStateSet());
+        state->setAttributeAndModes(new osg::LineWidth(static_cast<float>(_look.leastPixels)));
+        geometry->setStateSet(state);
+        return geometry;
+    }
+
     /// The places with more between them: on great circles, at heights that grow evenly.
     std::vector<osg::Vec3d> denser(double step) const
     {
-        std::vector<osg::Vec3d> result = {_path.places.front()};
-        for (std::size_t i = 1; i < _path.places.size(); ++i)
+        std::vector<osg::Vec3d> result = {_places.front()};
+        for (std::size_t i = 1; i < _places.size(); ++i)
         {
             RoutePath leg;
-            leg.places = {_path.places[i - 1], _path.places[i]};
+            leg.places = {_places[i - 1], _places[i]};
             const std::vector<osg::Vec2d> way = leg.alongGreatCircles(step);
             for (std::size_t k = 1; k < way.size(); ++k)
             {
@@ -200,6 +241,7 @@ private:
     const PathRibbon& _look;
     const RoutePath& _path;
     const Georeference& _reference;
+    std::vector<osg::Vec3d> _places; ///< of the path, with heights above zero
     std::vector<Point> _points;
     osg::Vec3d _origin;
     double _width = 0.0;
@@ -218,9 +260,11 @@ osg::ref_ptr<osg::MatrixTransform> PathRibbon::make(const RoutePath& path, const
 }
 
 std::vector<osg::ref_ptr<osg::Node>> PathRibbon::nodesOf(const RoutePath& path, const RoutePath::Look& look,
-                                                         const Georeference& reference, std::string& error)
+                                                         const Georeference& reference, std::string& error,
+                                                         const Ground& ground)
 {
     PathRibbon ribbon;
+    ribbon.ground = ground;
     ribbon.color = look.style.color;
     ribbon.width = look.width;
     std::vector<osg::ref_ptr<osg::Node>> nodes;

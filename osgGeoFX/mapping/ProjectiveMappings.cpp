@@ -9,6 +9,7 @@
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/detail/CameraPages.h>
 #include <osgGeoFX/mapping/detail/GpuMappings.h>
+#include <osgGeoFX/mapping/detail/Graticule.h>
 
 #include <glm/glm.hpp>
 #include <osg/Math>
@@ -415,7 +416,11 @@ void ProjectiveMappings::removeMappings()
 
 bool ProjectiveMappings::addRaster(PagedRaster* raster)
 {
-    if (!addMapping(raster ? raster->getMapping() : nullptr)) return false;
+    ProjectiveMapping* const mapping = raster ? raster->getMapping() : nullptr;
+    const bool there = mapping && std::find(_mappings.begin(), _mappings.end(), mapping) != _mappings.end();
+    const bool shown = std::find(_rasters.begin(), _rasters.end(), raster) != _rasters.end();
+    // A raster that is shown is refused as its mapping is.
+    if ((!there || shown) && !addMapping(mapping)) return false;
     raster->reset();
     _rasters.emplace_back(raster);
     return true;
@@ -558,6 +563,10 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
         curve.set(globeFrame.curvature, globeFrame.scale, 0.0, 0.0);
     }
     setUniform(state, prefix + "globe", osg::Uniform::FLOAT_VEC4, osg::Vec4(globe));
+    const Graticule graticule(_origin, ellipsoid);
+    setUniform(state, prefix + "gridOrigin", osg::Uniform::FLOAT_VEC4, osg::Vec4(graticule.origin));
+    setUniform(state, prefix + "gridGlobe", osg::Uniform::FLOAT_VEC4, osg::Vec4(graticule.globe));
+    setUniform(state, prefix + "gridDrift", osg::Uniform::FLOAT, static_cast<float>(graticule.drift));
     setUniform(state, prefix + "curve", osg::Uniform::FLOAT_VEC4, osg::Vec4(curve));
     PageFrame& plane = camera.plane;
     camera.sees = true;

@@ -114,7 +114,7 @@ public:
     ProjectiveMapping* getMapping(unsigned int i) { return _mappings[i].get(); }
     const ProjectiveMapping* getMapping(unsigned int i) const { return _mappings[i].get(); }
     /// Shows a raster that is larger than memory, in the place of its mapping (PagedRaster::getMapping()), which is added as by
-    /// addMapping(). A null pointer and a raster that was added before are refused with a warning. One ProjectiveMappings may have a raster.
+    /// addMapping() unless it is there. A null pointer and a raster that was added before are refused with a warning. One ProjectiveMappings may have a raster.
     bool addRaster(PagedRaster* raster);
     /// Removes the raster and its mapping. Returns false if the raster is not there.
     bool removeRaster(PagedRaster* raster);

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <osgGeoFX/mapping/DataLayer.h>
+#include <osgGeoFX/mapping/LayerSource.h>
 
 #include <osg/Image>
 #include <osg/Referenced>
 #include <osg/Vec2d>
 
+#include <optional>
 #include <string>
 
 namespace osgGeoFX
@@ -33,6 +35,8 @@ public:
     /// threads call it at once.
     virtual osg::ref_ptr<osg::Image> read(const osg::Vec2d& from, const osg::Vec2d& to, int columns, int rows,
                                           std::string& error) = 0;
+    /// The file that it is read from, for OSG's files; nothing for one that no file tells, which is the default.
+    virtual std::optional<LayerSource> source() const { return std::nullopt; }
 
 protected:
     ~RasterTiles() override;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsLoader.h"
 
+#include <osgGeoFX/mapping/LayerWords.h>
 #include <osgGeoFX/mapping/PathRibbon.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 
@@ -160,6 +161,7 @@ private:
         if (!mapping.setRectangle(request.low + half, half.x(), half.y()))
             fail(each.place, "the rasters cover no area on the ground; check them with gdalinfo.");
         mapping.setLayer(sequence->getLayer());
+        LayerWords::setUnit(*sequence->getLayer(), request.unit);
         const bool plainColors = request.steps->kind() == DataLayer::COLOR && !mapping.getTable();
         if (!each.hasTransfer && !plainColors) setTransfer(mapping, request.lowest, request.highest);
         if (mapping.getName().empty()) mapping.setName(request.variable);

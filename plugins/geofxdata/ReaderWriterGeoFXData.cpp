@@ -21,12 +21,14 @@
 #include <osgGeoFX/geodata/SldColors.h>
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
+#include <osgGeoFX/geodata/TiledRaster.h>
 #include <osgGeoFX/labels/NameFile.h>
 #include <osgGeoFX/lines/LineFile.h>
 #include <osgGeoFX/map/OverlayFile.h>
 #include <osgGeoFX/map/RouteFile.h>
 #include <osgGeoFX/map/SequenceFile.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
+#include <serializers/LayerRequests.h>
 
 #include <osg/ValueObject>
 #include <osgDB/Registry>
@@ -71,6 +73,8 @@ public:
         if (name == "sceneOverlays" && options) return overlays<SceneOverlaysRequest>(*options);
         if (name == "sceneRoutes" && options) return routes<SceneRoutesRequest>(*options);
         if (name == "colors" && options) return colors(*options);
+        if (name == "layerSteps" && options) return layer<LayerStepsRequest>(*options);
+        if (name == "layerTiles" && options) return layer<LayerTilesRequest>(*options);
         if (name == "sources" && options) return sources(*options);
         return ReadResult::FILE_NOT_HANDLED;
     }
@@ -221,6 +225,36 @@ private:
         std::vector<std::string> files;
         if (!RouteVectors::read(request->file, request->layer, request->routes, error, &files)) return error;
         if constexpr (std::is_same_v<Request, RouteFile>) request->files = files;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
+    /// Opens again what OSG's files name. The answer is in the request.
+    template<typename Request>
+    static ReadResult layer(const Options& options)
+    {
+        std::string error = otherVersion(options);
+        if (!error.empty()) return error;
+        auto* request = static_cast<Request*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        const LayerSource& source = request->source;
+        MappingFrame frame;
+        frame.globe = source.globe;
+        frame.wkt = source.wkt;
+        frame.origin = source.origin;
+        if constexpr (std::is_same_v<Request, LayerTilesRequest>)
+        {
+            std::optional<DataLayer::Kind> kind;
+            if (source.kind) kind = static_cast<DataLayer::Kind>(*source.kind);
+            request->tiles = TiledRaster::open(source.file, frame, kind, error);
+            if (!request->tiles) return error;
+        }
+        else
+        {
+            const auto [file, variable] = SequenceRaster::parse(source.file);
+            const auto raster = SequenceRaster::open(file, frame, false, {variable, source.maxSide}, error);
+            if (!raster) return error;
+            request->steps = raster->steps;
+        }
         return ReadResult(ReadResult::FILE_LOADED);
     }
 

@@ -2,15 +2,20 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // Wrappers of the mappings and of what they are made of.
+#include "LayerRequests.h"
 #include "Wrappers.h"
 
 #include <osgGeoFX/mapping/LayerClock.h>
+#include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 
 #include <osg/Notify>
 
 #include <algorithm>
 #include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -32,11 +37,73 @@ void addMappingParts(osgDB::ObjectWrapper& wrapper)
     addPart<Self, ColorTransfer, &Self::getTransfer, &Self::setTransfer>(wrapper, "Transfer");
 }
 
+/// Those that name a file.
+std::vector<const PagedRaster*> rastersOf(const ProjectiveMappings& mappings)
+{
+    std::vector<const PagedRaster*> rasters;
+    for (unsigned int i = 0; i < mappings.getNumRasters(); ++i)
+        if (mappings.getRaster(i)->tiles().source()) rasters.push_back(mappings.getRaster(i));
+    return rasters;
+}
+
+bool hasRasters(const ProjectiveMappings& mappings)
+{
+    return !rastersOf(mappings).empty();
+}
+
+/// A mapping is one of those before, or one of its own in a file that somebody has changed. In XML, nothing but objects may
+/// follow an object.
+bool readRasters(osgDB::InputStream& stream, ProjectiveMappings& mappings)
+{
+    unsigned int count = 0;
+    stream >> count >> stream.BEGIN_BRACKET;
+    std::vector<std::pair<PagedRaster::Options, LayerTilesRequest>> heads;
+    for (unsigned int i = 0; i < count && !stream.getException(); ++i)
+    {
+        PagedRaster::Options options;
+        stream >> options.megabytes >> options.threads >> options.tilesPerFrame;
+        heads.emplace_back(options, LayerTilesRequest{readSource(stream), nullptr});
+    }
+    for (auto& [options, request] : heads)
+    {
+        if (stream.getException()) break;
+        const osg::ref_ptr<ProjectiveMapping> mapping = stream.readObjectOfType<ProjectiveMapping>();
+        if (stream.getException()) break;
+        std::string error;
+        osg::ref_ptr<PagedRaster> raster;
+        if (askForLayer("layerTiles", &request, error))
+            raster = PagedRaster::create(request.tiles, options, error, mapping);
+        if (raster)
+            mappings.addRaster(raster);
+        else
+            OSG_WARN << "osgGeoFX: A raster of a file stays coarse: " << error << std::endl;
+    }
+    stream >> stream.END_BRACKET;
+    return true;
+}
+
+bool writeRasters(osgDB::OutputStream& stream, const ProjectiveMappings& mappings)
+{
+    const std::vector<const PagedRaster*> rasters = rastersOf(mappings);
+    stream << static_cast<unsigned int>(rasters.size()) << stream.BEGIN_BRACKET << std::endl;
+    for (const PagedRaster* const raster : rasters)
+    {
+        const PagedRaster::Options& options = raster->getOptions();
+        stream << options.megabytes << options.threads << options.tilesPerFrame;
+        writeSource(stream, *raster->tiles().source());
+    }
+    for (const PagedRaster* const raster : rasters)
+        stream.writeObject(raster->getMapping());
+    stream << stream.END_BRACKET << std::endl;
+    return true;
+}
+
 void addMappings(osgDB::ObjectWrapper& wrapper)
 {
     using Self = ProjectiveMappings;
     addParts<Self, ProjectiveMapping, &Self::getNumMappings, &Self::getMapping, &Self::addMapping>(
         wrapper, "Mappings");
+    addOwn<Self>(wrapper, "Rasters", &hasRasters, &readRasters, &writeRasters);
 }
 
 constexpr const char* tableModes[] = {"LINEAR", "NEAREST", "EXACT", "STEPS"};

@@ -114,6 +114,69 @@ GEOFX_INLINE Number geofx_ramp(Number value, Number none, Number full)
     return clamp((value - none) / (full - none), Number(0), Number(1));
 }
 
+// The share of a pixel that is within a line, whose middle is so many pixels away.
+GEOFX_INLINE Number geofx_lineCover(Number away, Number width)
+{
+    return clamp(Number(0.5) * width + Number(0.5) - away, Number(0), min(width, Number(1)));
+}
+
+// Lines that lie closer together than twice their width are none, and from four times on all of it is there.
+GEOFX_INLINE Number geofx_lineRoom(Number spacing, Number width)
+{
+    return clamp(spacing / (2 * width) - 1, Number(0), Number(1));
+}
+
+// Lines at the multiples of `interval`, of something that changes by `across` and `up` to the next pixels. Each line that has a
+// number divisible by `index` is twice as wide; 0: none is.
+GEOFX_INLINE Number geofx_isolines(Number value, Number across, Number up, Number interval, Number width, Number index)
+{
+    Number slope = max(sqrt(across * across + up * up), interval * Number(1e-6)); // in a pixel
+    Number away = abs(value - interval * floor(value / interval + Number(0.5))) / slope;
+    Number cover = geofx_lineCover(away, width) * geofx_lineRoom(interval / slope, width);
+    if (index > 0)
+    {
+        Number coarse = interval * index;
+        Number beside = abs(value - coarse * floor(value / coarse + Number(0.5))) / slope;
+        cover = max(cover, geofx_lineCover(beside, 2 * width) * geofx_lineRoom(coarse / slope, 2 * width));
+    }
+    // Level ground has no lines, not even at their height.
+    return slope > interval * Number(2e-6) ? cover : Number(0);
+}
+
+// Discs of `width` pixels at the corners of squares, metres. `across` and `up` are the place's changes to the next pixels.
+GEOFX_INLINE Number geofx_dots(Vector2 place, Vector2 across, Vector2 up, Number interval, Number width)
+{
+    Vector2 d = place - interval * floor(place / interval + Number(0.5));
+    Number area = across.x * up.y - across.y * up.x;
+    Number size = max(abs(area), Number(1e-12) * interval * interval);
+    Vector2 pixels = Vector2(d.x * up.y - d.y * up.x, across.x * d.y - across.y * d.x) / size;
+    Number largest = sqrt(max(max(dot(across, across), dot(up, up)), Number(1e-24)));
+    return geofx_lineCover(length(pixels), width) * geofx_lineRoom(interval / largest, width);
+}
+
+// What turns places of a frame on an ellipsoid into degrees, about the frame's origin: the sine and cosine of its latitude, its distance
+// from the axis and the radius of its meridian's curve, metres, and how that grows to the north.
+struct geofx_Graticule
+{
+    Number sine;
+    Number cosine;
+    Length axis;
+    Length meridian;
+    Number drift;
+};
+
+// Degrees of longitude and latitude from the origin's. Exact in longitude; in latitude to a part in a million of what is asked for near the
+// origin, and to a tenth of a kilometre ten degrees away.
+GEOFX_INLINE Vector2 geofx_degrees(geofx_Graticule frame, Position position)
+{
+    Number axis = frame.axis + position.z * frame.cosine - position.y * frame.sine;
+    // Differences of large numbers would lose the metres.
+    Number bulge = position.x * position.x / max(sqrt(position.x * position.x + axis * axis) + axis, Number(1));
+    Number latitude = atan(position.y - frame.sine * bulge, frame.meridian + position.z + frame.cosine * bulge);
+    latitude -= frame.drift * latitude * latitude;
+    return Vector2(atan(position.x, axis), latitude) * Number(57.295779513082321);
+}
+
 // OpenGL's blend functions, numbered as osgGeoFX/mapping/ColorTransfer.h does.
 GEOFX_INLINE Rgb geofx_blendFactor(int factor, Rgba source, Rgba destination, Rgba constant)
 {

@@ -19,7 +19,7 @@
 #pragma import_defines(SLOT_TABLES, SLOT_MATRICES, SLOT_MASKS)
 #pragma import_defines(SLOT_PROJECTIVE, SLOT_PINHOLES, SLOT_SYMBOLS)
 #pragma import_defines(SLOT_FADES, SLOT_HEIGHTS, SLOT_BLENDS)
-#pragma import_defines(SLOT_RANGES, SLOT_NEAREST, SLOT_LINEAR, SLOT_IN_TURN)
+#pragma import_defines(SLOT_RANGES, SLOT_NEAREST, SLOT_PATTERNS, SLOT_LINEAR, SLOT_IN_TURN)
 // If a first turn is certain, a loop has its condition at the end, for the same reason: with the condition at the
 // start, those compilers run through a whole last turn that does nothing.
 
@@ -112,6 +112,36 @@ struct SLOT_Fragment
 vec3 SLOT_linear(vec3 color)
 {
     return mix(color / 12.92, pow((color + 0.055) / 1.055, vec3(2.4)), greaterThan(color, vec3(0.04045)));
+}
+#endif
+
+#ifdef SLOT_PATTERNS
+uniform vec4 SLOT_gridOrigin; // of the frame: longitude and latitude, degrees, or x and y, metres; each as a round number and the rest
+uniform vec4 SLOT_gridGlobe;  // geofx_Graticule without its last; 0 on a projected terrain
+uniform float SLOT_gridDrift; // its last
+
+vec2 SLOT_grid(vec3 position)
+{
+    if (SLOT_gridGlobe.z == 0.0) return position.xy;
+    return geofx_degrees(geofx_Graticule(SLOT_gridGlobe.x, SLOT_gridGlobe.y, SLOT_gridGlobe.z, SLOT_gridGlobe.w,
+                                         SLOT_gridDrift), position);
+}
+
+// `how`: interval, width, and the direction across hatching.
+float SLOT_pattern(uint kind, vec4 how, float index, SLOT_Fragment fragment)
+{
+    if (kind == 1u) return geofx_isolines(fragment.place.z, fragment.across.z, fragment.up.z, how.x, how.y, index);
+    if (kind == 3u)
+        return geofx_isolines(dot(fragment.place.xy, how.zw), dot(fragment.across.xy, how.zw), dot(fragment.up.xy, how.zw),
+                              how.x, how.y, index);
+    if (kind == 4u) return geofx_dots(fragment.place.xy, fragment.across.xy, fragment.up.xy, how.x, how.y);
+    vec2 at = SLOT_grid(SLOT_position);
+    vec2 across = SLOT_grid(SLOT_position + fragment.positionAcross) - at;
+    vec2 up = SLOT_grid(SLOT_position + fragment.positionUp) - at;
+    // So that lines have the numbers that people know, and floats enough digits.
+    at += mod(SLOT_gridOrigin.xz, how.x * max(index, 1.0)) + SLOT_gridOrigin.yw;
+    return max(geofx_isolines(at.x, across.x, up.x, how.x, how.y, index),
+               geofx_isolines(at.y, across.y, up.y, how.x, how.y, index));
 }
 #endif
 
@@ -484,6 +514,12 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 color, SLOT_Fragment fragment)
     if (alphaOf == 3u) source.a = geofx_ramp(grey, range.z, range.w);
 #endif
     strength *= found.cover;
+#ifdef SLOT_PATTERNS
+    uint pattern = (codes >> 16u) & 7u;
+    if (pattern != 0u)
+        source.a *= SLOT_pattern(pattern, uintBitsToFloat(texelFetch(SLOT_data, record + 13)), float((codes >> 19u) & 31u),
+                                 fragment);
+#endif
 
 #ifdef SLOT_BLENDS
     int equation = int((codes >> 8u) & 15u);

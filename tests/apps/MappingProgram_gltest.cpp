@@ -15,7 +15,10 @@
 #include <osgDB/WriteFile>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 using namespace geofx::test;
 
@@ -225,4 +228,60 @@ TEST_F(MappingProgram, WhatCannotBeShownIsToldInASentence)
     _folder.write("inner/doc.kml", kml(groundOverlay("../red.png", latLonBox(6.995, 44.995, 7.005, 45.005))));
     expectRefusal({"--mapping", "inner/doc.kml"}, "--allow-outside");
     EXPECT_GT(redOf({"--mapping", "inner/doc.kml", "--allow-outside"}).count, 2000);
+}
+
+// The middle of the picture lies at 7° east, 45° north.
+TEST_F(MappingProgram, ValuesAndSeriesOfAPixel)
+{
+    TestRaster raster(40, 40, 1, GDT_Float32);
+    raster.placed(6.98, 45.02, 0.001, 0.001)
+        .crs("EPSG:4326")
+        .fill([](int column, int row, int) { return 100.0 + column + 0.01 * row; });
+    raster.dataset().GetRasterBand(1)->SetUnitType("mm");
+    raster.write(_folder / "still.tif");
+    TestRaster bands(40, 40, 3, GDT_Float32);
+    bands.placed(6.98, 45.02, 0.001, 0.001)
+        .crs("EPSG:4326")
+        .fill([](int column, int, int band) { return 1000.0 * band + column; });
+    bands.write(_folder / "rain.tif");
+    const ProgramResult result = run({"--mapping", "still.tif", "--sequence", "rain.tif", "--values",
+                                      "100,75", "--values", "110,75", "--series", "rain.csv"});
+    ASSERT_EQ(result.exitCode, 0) << result.standardError;
+    double longitude = 0.0, latitude = 0.0, rain = 0.0, still = 0.0;
+    int pixels = 0;
+    std::istringstream lines(result.standardOutput);
+    std::string line;
+    for (; std::getline(lines, line);)
+    {
+        if (std::sscanf(line.c_str(), "%*[^:]: longitude %lf, latitude %lf", &longitude, &latitude) == 2)
+        {
+            ++pixels;
+            continue;
+        }
+        ASSERT_EQ(std::sscanf(line.c_str(), "  rain.tif: %lf", &rain), 1) << line;
+        ASSERT_TRUE(std::getline(lines, line));
+        ASSERT_EQ(std::sscanf(line.c_str(), "  still.tif: %lf mm", &still), 1) << line;
+        // Pixels of rasters have their values in their middles.
+        const double column = (longitude - 6.98) / 0.001 - 0.5, row = (45.02 - latitude) / 0.001 - 0.5;
+        EXPECT_NEAR(still, 100.0 + column + 0.01 * row, 0.05);
+        EXPECT_NEAR(rain, column, 0.05) << "the first step";
+    }
+    EXPECT_EQ(pixels, 2);
+    EXPECT_NEAR(longitude, 7.0023, 0.0003);
+    std::ifstream table(_folder / "rain.csv");
+    ASSERT_TRUE(std::getline(table, line));
+    EXPECT_EQ(line, "time (s),rain.tif");
+    double first = -1.0;
+    for (int step = 0; step < 3; ++step)
+    {
+        double time = -1.0, value = -1.0;
+        ASSERT_TRUE(std::getline(table, line));
+        ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf", &time, &value), 2) << line;
+        EXPECT_EQ(time, step);
+        if (step == 0) first = value;
+        EXPECT_NEAR(value, first + 1000.0 * step, 1e-3);
+    }
+    EXPECT_NEAR(first, 19.5, 0.5);
+    expectRefusal({"--values", "here"}, "--values here");
+    EXPECT_EQ(run({"--values", "100,75", "--series", "none.csv"}).exitCode, 2) << "no layer in time";
 }

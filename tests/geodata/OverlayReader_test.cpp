@@ -8,6 +8,7 @@
 #include <tools/KmlFiles.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
+#include <tools/TestServer.h>
 
 #include <cpl_string.h>
 #include <ogr_spatialref.h>
@@ -15,6 +16,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sys/resource.h>
@@ -256,6 +258,71 @@ TEST_F(OverlayReaderTest, TilesInAnMBTilesFileAreRead)
         EXPECT_NEAR(texelAt(_reader.overlays.at(0), placed(_reader, 0, {x, y}))[0], 255.0 * share, 6.0)
             << share;
     }
+}
+
+// A map of the world in tiles of the web, four by four at the level 2, from a server on this machine; each tile's color tells its number.
+TEST_F(OverlayReaderTest, TilesOfAWebServerAreRead)
+{
+    for (int z = 0; z <= 2; ++z)
+    {
+        for (int x = 0; x < 1 << z; ++x)
+        {
+            const std::filesystem::path column = _folder / "tiles" / std::to_string(z) / std::to_string(x);
+            std::filesystem::create_directories(column);
+            for (int y = 0; y < 1 << z; ++y)
+                writePicture((column / (std::to_string(y) + ".png")).string(), 256, 256,
+                             [&](int, int) {
+                                 return std::array<int, 4>{50 + 50 * x, 50 + 50 * y, 60 * z, 255};
+                             });
+        }
+    }
+    TestServer server(_folder / "tiles");
+    // What a file of the user's says of a service; GDAL's names.
+    _folder.write(
+        "map.xml",
+        "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://" + server.address() +
+            "/${z}/${x}/${y}.png</ServerUrl></Service><DataWindow><UpperLeftX>-20037508.34</UpperLeftX>"
+            "<UpperLeftY>20037508.34</UpperLeftY><LowerRightX>20037508.34</LowerRightX>"
+            "<LowerRightY>-20037508.34</LowerRightY><TileLevel>2</TileLevel><TileCountX>1</TileCountX>"
+            "<TileCountY>1</TileCountY><YOrigin>top</YOrigin></DataWindow><Projection>EPSG:3857</Projection>"
+            "<BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY><BandsCount>3</BandsCount></GDAL_WMS>");
+    ASSERT_TRUE(read((_folder / "map.xml").string()));
+    EXPECT_GT(server.requests().size(), 0u);
+    ASSERT_EQ(_reader.overlays.size(), 6u) << "it reaches around the globe";
+    // The middles of tiles: longitudes in steps of 90 degrees, latitudes by Mercator.
+    int found = 0;
+    for (int y = 0; y < 4; ++y)
+    {
+        for (int x = 0; x < 4; ++x)
+        {
+            const double mercator = osg::PI * (1.0 - 2.0 * (y + 0.5) / 4.0);
+            const osg::Vec2d degrees(-180.0 + 90.0 * (x + 0.5),
+                                     osg::RadiansToDegrees(std::atan(std::sinh(mercator))));
+            for (const GroundOverlay& overlay : _reader.overlays)
+            {
+                const LocalOrigin& origin = _reader.frames[overlay.frame];
+                const double east = osg::DegreesToRadians(degrees.x()) - origin.longitude;
+                const double north = osg::DegreesToRadians(degrees.y());
+                const double facing = std::sin(north) * std::sin(origin.latitude) +
+                                      std::cos(north) * std::cos(origin.latitude) * std::cos(east);
+                if (facing < 0.6) continue;
+                const std::array<int, 4> texel = texelAt(overlay, placed(_reader, overlay.frame, degrees));
+                if (texel[3] == 0) continue;
+                ++found;
+                EXPECT_NEAR(texel[0], 50 + 50 * x, 2) << degrees.x() << ", " << degrees.y();
+                EXPECT_NEAR(texel[1], 50 + 50 * y, 2) << degrees.x() << ", " << degrees.y();
+                EXPECT_NEAR(texel[2], 120, 2) << "the finest level";
+            }
+        }
+    }
+    EXPECT_GE(found, 16) << "each tile's middle lies in a part";
+    // A server that has nothing is told, and leaves no half map.
+    server.setFault(TestServer::Fault::Broken);
+    OverlayReader other;
+    std::string error;
+    std::filesystem::copy(_folder / "map.xml", _folder / "again.xml");
+    EXPECT_FALSE(other.read((_folder / "again.xml").string(), {}, error));
+    EXPECT_NE(error.find("again.xml"), std::string::npos) << error;
 }
 
 TEST_F(OverlayReaderTest, WhatIsNoPictureIsRefused)

@@ -231,3 +231,158 @@ TEST_F(PathRibbonTest, WaysOfNoLengthAreRefused)
     EXPECT_FALSE(PathRibbon().make(path, *reference, error));
     EXPECT_NE(error.find("at one spot"), std::string::npos) << error;
 }
+
+TEST_F(PathRibbonTest, HeightsAboveTheGroundAreThere)
+{
+    // A slope that rises by 100 m for each hundredth of a degree to the east.
+    const auto slope = [](double longitude, double)
+    {
+        return 300.0 + 1e4 * (longitude - 7.0);
+    };
+    RoutePath path = flight();
+    path.places = {{7.0, 45.0, 100.0}, {7.02, 45.0, 50.0}};
+    path.altitude = RoutePath::ABOVE_GROUND;
+    PathRibbon look;
+    look.ground = slope;
+    for (const PathRibbon::Shape shape : {PathRibbon::RIBBON, PathRibbon::CURTAIN})
+    {
+        look.shape = shape;
+        const std::vector<osg::Vec3d> places = placesOf(*make(look, path));
+        EXPECT_NEAR(places[1].z(), 400.0, 0.1);
+        EXPECT_NEAR(places.back().z(), 550.0, 0.1);
+        for (std::size_t i = 0; shape == PathRibbon::CURTAIN && i < places.size(); i += 2)
+            EXPECT_NEAR(places[i].z(), slope(places[i].x(), 45.0), 0.1) << "it ends at the ground";
+    }
+    // Where there is no ground, heights count from zero.
+    look.ground = [](double, double)
+    {
+        return std::nan("");
+    };
+    EXPECT_NEAR(placesOf(*make(look, path))[1].z(), 100.0, 0.1);
+}
+
+// A tube of a tenth of a pixel, from above.
+TEST_F(PathRibbonTest, ItIsNeverNarrowerThanItsPixels)
+{
+    _scene->removeEffect(_mappings);
+    RoutePath path = flight();
+    path.places = {{7.0, 45.0, 1000.0}, {7.04, 45.0, 1000.0}};
+    const GeographicLib::Geocentric& earth = GeographicLib::Geocentric::WGS84();
+    osg::Vec3d eye, at;
+    earth.Forward(45.0, 7.02, 13000.0, eye.x(), eye.y(), eye.z());
+    earth.Forward(45.0, 7.02, 0.0, at.x(), at.y(), at.z());
+    viewer().getCamera()->setViewMatrixAsLookAt(eye, at, {0, 0, 1});
+    viewer().getCamera()->setProjectionMatrixAsPerspective(40.0, 480.0 / 360.0, 10.0, 100000.0);
+    const auto count = [&](double least, double width)
+    {
+        PathRibbon look;
+        look.shape = PathRibbon::TUBE;
+        look.width = width;
+        look.leastPixels = least;
+        const osg::ref_ptr<osg::CoordinateSystemNode> node = globe();
+        node->addChild(make(look, path));
+        _scene->removeChildren(0, _scene->getNumChildren());
+        _scene->addChild(node);
+        const osg::ref_ptr<osg::Image> image = draw();
+        int found = 0;
+        for (int y = 0; y < 360; ++y)
+            for (int x = 0; x < 480; ++x)
+            {
+                const osg::Vec3d color = this->at(*image, osg::Vec2d(x + 0.5, y + 0.5));
+                found += color.x() > 0.5 && color.y() < 0.3 && color.z() > 0.5 ? 1 : 0;
+            }
+        return found;
+    };
+    // 3.15 km at 24.3 m for each pixel.
+    const double length = 0.04 * 111412.0 * std::cos(osg::DegreesToRadians(45.0)) /
+                          (2.0 * 12000.0 * std::tan(osg::DegreesToRadians(20.0)) / 360.0);
+    EXPECT_LT(count(0.0, 2.0), 0.6 * length) << "gaps";
+    EXPECT_NEAR(count(1.0, 2.0), length, 4.0);
+    EXPECT_NEAR(count(3.0, 2.0), 3.0 * length, 8.0);
+    // A wide one has its own width.
+    EXPECT_NEAR(count(3.0, 243.0), 10.0 * length, 0.5 * length);
+    std::string error;
+    PathRibbon look;
+    look.leastPixels = 11.0;
+    EXPECT_FALSE(look.make(path, *Georeference::create(globe(), error), error));
+    EXPECT_NE(error.find("give 0 to 10"), std::string::npos) << error;
+}
+
+// The same bend on the CPU: every vertex of a finer way is put where the deformation has it, and drawn without an effect.
+TEST_F(PathRibbonTest, ItsBentPictureIsThatOfAWayBentOnTheCpu)
+{
+    _scene->removeEffect(_mappings);
+    const GeographicLib::LocalCartesian frame(45.01, 7.01, 0.0);
+    const auto world = [&](double x, double y, double z)
+    {
+        osg::Vec3d place;
+        double latitude = 0.0, longitude = 0.0, height = 0.0;
+        frame.Reverse(x, y, z, latitude, longitude, height);
+        GeographicLib::Geocentric::WGS84().Forward(latitude, longitude, height, place.x(), place.y(),
+                                                   place.z());
+        return place;
+    };
+    const osg::Vec3d eye = world(0.0, -7000.0, 8000.0);
+    osg::Vec3d up = eye;
+    up.normalize();
+    viewer().getCamera()->setViewMatrixAsLookAt(eye, world(0.0, -2600.0, 0.0), up);
+    viewer().getCamera()->setProjectionMatrixAsPerspective(40.0, 480.0 / 360.0, 10.0, 100000.0);
+    const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+    bend->setHorizonLine(0.85);
+    bend->setFocusLine(0.35);
+    bend->setContextTilt(0.5);
+    _scene->addEffect(bend);
+    const auto drawn = [&](osg::Node* ribbon)
+    {
+        const osg::ref_ptr<osg::CoordinateSystemNode> node = globe();
+        node->addChild(ribbon);
+        _scene->removeChildren(0, _scene->getNumChildren());
+        _scene->addChild(node);
+        return draw();
+    };
+    for (const PathRibbon::Shape shape : {PathRibbon::RIBBON, PathRibbon::CURTAIN, PathRibbon::TUBE})
+    {
+        PathRibbon look;
+        look.shape = shape;
+        look.width = 150.0;
+        look.leastPixels = 0.0;
+        bend->setEnabled(true);
+        const osg::ref_ptr<osg::Image> bent = drawn(make(look));
+        look.step = 10.0;
+        const osg::ref_ptr<osg::MatrixTransform> fine = make(look);
+        const DeformedView view(*_scene, *viewer().getCamera());
+        auto& vertices = static_cast<osg::Vec3Array&>(*fine->getChild(0)->asGeometry()->getVertexArray());
+        double moved = 0.0;
+        for (osg::Vec3& vertex : vertices)
+        {
+            const osg::Vec3d place = osg::Vec3d(vertex) * fine->getMatrix();
+            const osg::Vec3d there = view.deform(place);
+            moved = std::max(moved, (there - place).length());
+            vertex = osg::Vec3(there - fine->getMatrix().getTrans());
+        }
+        EXPECT_GT(moved, 100.0) << "nothing is bent";
+        vertices.dirty();
+        fine->getChild(0)->dirtyBound();
+        bend->setEnabled(false);
+        const osg::ref_ptr<osg::Image> onCpu = drawn(fine);
+        int both = 0, one = 0;
+        for (int y = 0; y < 360; ++y)
+        {
+            for (int x = 0; x < 480; ++x)
+            {
+                const osg::Vec2d pixel(x + 0.5, y + 0.5);
+                const auto isWay = [&](const osg::Image& image)
+                {
+                    const osg::Vec3d color = this->at(image, pixel);
+                    return color.x() > color.y() + 0.15;
+                };
+                const bool a = isWay(*bent), b = isWay(*onCpu);
+                both += a && b ? 1 : 0;
+                one += a != b ? 1 : 0;
+            }
+        }
+        EXPECT_GT(both, 300) << shape;
+        // Pixels at its border: a coarse way is straight between its corners.
+        EXPECT_LT(one, 0.05 * both) << shape;
+    }
+}

@@ -5,9 +5,13 @@
 #include <osgGeoFX/map/SceneRoutes.h>
 
 #include <osg/CoordinateSystemNode>
+#include <osg/Geometry>
+#include <osg/Math>
+#include <osg/MatrixTransform>
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 using namespace osgGeoFX;
@@ -74,4 +78,81 @@ TEST_F(SceneRoutesTest, ThereIsAnEndOfThem)
     EXPECT_GT(shown, 1);
     EXPECT_LT(shown, 100);
     EXPECT_TRUE(contains(error, "too many places")) << error;
+}
+
+// A slope that rises by 100 m for each hundredth of a degree to the east.
+TEST_F(SceneRoutesTest, HeightsAboveTheGroundAreThoseOfTheScenesGround)
+{
+    const osg::EllipsoidModel earth;
+    const auto world = [&](double longitude, double latitude, double height)
+    {
+        osg::Vec3d place;
+        earth.convertLatLongHeightToXYZ(osg::DegreesToRadians(latitude), osg::DegreesToRadians(longitude),
+                                        height, place.x(), place.y(), place.z());
+        return place;
+    };
+    const auto slope = [](double longitude)
+    {
+        return 300.0 + 1e4 * (longitude - 7.0);
+    };
+    RoutePath route;
+    route.name = "drone";
+    route.altitude = RoutePath::ABOVE_GROUND;
+    route.extruded = true;
+    route.places = {{7.0, 45.0, 100.0}, {7.02, 45.0, 50.0}};
+    EXPECT_TRUE(contains(faultOf(route), "count from the ground, and there is none"));
+
+    const osg::Vec3d middle = world(7.0, 45.0, 0.0);
+    const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+    const osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
+    constexpr unsigned int cells = 30;
+    for (unsigned int y = 0; y <= cells; ++y)
+    {
+        for (unsigned int x = 0; x <= cells; ++x)
+        {
+            const double longitude = 6.97 + 0.08 * x / cells;
+            vertices->push_back(
+                osg::Vec3(world(longitude, 44.96 + 0.08 * y / cells, slope(longitude)) - middle));
+            if (x == cells || y == cells) continue;
+            const unsigned int corner = y * (cells + 1) + x;
+            for (const unsigned int index : {0u, 1u, cells + 2u, 0u, cells + 2u, cells + 1u})
+                triangles->push_back(corner + index);
+        }
+    }
+    const osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
+    ground->setVertexArray(vertices);
+    ground->addPrimitiveSet(triangles);
+    const osg::ref_ptr<osg::MatrixTransform> place =
+        new osg::MatrixTransform(osg::Matrixd::translate(middle));
+    place->addChild(ground);
+    _node->addChild(place);
+
+    SceneRoutes routes(*_node, *_scene);
+    std::string error;
+    ASSERT_TRUE(routes.add(route, {}, error)) << error;
+    ASSERT_TRUE(routes.add(route, {}, error)) << error; // The first one is no ground of the second.
+    int ways = 0;
+    for (unsigned int i = 0; i < _scene->getNumChildren(); ++i)
+    {
+        auto* const node = dynamic_cast<osg::MatrixTransform*>(_scene->getChild(i));
+        if (!node || node->getName() != "drone") continue;
+        ++ways;
+        double lowest = 1e9, highest = -1e9;
+        const auto& all =
+            static_cast<const osg::Vec3Array&>(*node->getChild(0)->asGeometry()->getVertexArray());
+        for (const osg::Vec3& vertex : all)
+        {
+            const osg::Vec3d at = osg::Vec3d(vertex) * node->getMatrix();
+            double latitude = 0.0, longitude = 0.0, height = 0.0;
+            earth.convertXYZToLatLongHeight(at.x(), at.y(), at.z(), latitude, longitude, height);
+            const double above = height - slope(osg::RadiansToDegrees(longitude));
+            lowest = std::min(lowest, above);
+            highest = std::max(highest, above);
+        }
+        // A tube of 8 m, and a curtain.
+        const bool curtain = all.size() < 500;
+        EXPECT_NEAR(lowest, curtain ? 0.0 : 46.0, 2.0);
+        EXPECT_NEAR(highest, curtain ? 100.0 : 104.0, 2.0);
+    }
+    EXPECT_EQ(ways, 4);
 }

@@ -4,6 +4,8 @@
 
 #include <osgGeoFX/effect/DeformationChain.h>
 
+#include <osg/ValueObject>
+
 #include <algorithm>
 
 namespace osgGeoFX
@@ -20,6 +22,13 @@ bool isTriangles(const osg::Drawable& drawable)
     return std::all_of(primitives.begin(), primitives.end(),
                        [](const osg::ref_ptr<osg::PrimitiveSet>& each)
                        { return each->getMode() >= GL_TRIANGLES && each->getMode() <= GL_POLYGON; });
+}
+
+/// A line that only keeps the triangles beside it visible from afar (PathRibbon::leastPixels); close-ups show these.
+bool isThinLine(const osg::Drawable& drawable)
+{
+    bool thin = false;
+    return !isTriangles(drawable) && drawable.getUserValue("geofx.thinLine", thin) && thin;
 }
 
 } // namespace
@@ -44,6 +53,7 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
     _touched.clear();
     _places.clear();
     _states.clear();
+    if (isThinLine(drawable)) return _states;
     for (const std::size_t item : _wanted)
     {
         if (_items[item].outside(box))

@@ -3,6 +3,7 @@
 #include <osgGeoFX/geodata/detail/FrameRaster.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/mapping/LayerWords.h>
 
 #include <cpl_string.h>
 #include <gdal_alg.h>
@@ -13,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace osgGeoFX
@@ -199,6 +201,19 @@ void FrameRaster::checkSize() const
     fail("it says that it has " + std::to_string(top().GetRasterXSize()) + " × " +
          std::to_string(top().GetRasterYSize()) + " pixels, which a " + format +
          " cannot be read in parts of; convert it to a tiled GeoTIFF, or give it overviews with gdaladdo");
+}
+
+void FrameRaster::giveWords(DataLayer& layer) const
+{
+    if (kind == DataLayer::COLOR) return;
+    GDALRasterBand& file = *_chain.front()->GetRasterBand(1);
+    if (kind == DataLayer::VALUE && file.GetUnitType()) LayerWords::setUnit(layer, file.GetUnitType());
+    if (kind != DataLayer::CLASS) return;
+    std::map<double, std::string> names;
+    const CPLStringList all(CSLDuplicate(file.GetCategoryNames()));
+    for (int i = 0; i < all.size(); ++i)
+        if (*all[i]) names[i] = all[i];
+    LayerWords::setNames(layer, names);
 }
 
 std::vector<double> FrameRaster::overviews() const

@@ -69,6 +69,8 @@ public:
     double offset = 0.0;
 
     [[noreturn]] void fail(const std::string& what) const;
+    /// Gives a layer of the raster's values their unit, and one of its classes their names (LayerWords).
+    void giveWords(DataLayer& layer) const;
     /// How many pixels of the file along a side are one of each of its overviews, in the file's order. (Virtual datasets on top of
     /// a file hide them where it has a mask.)
     std::vector<double> overviews() const;

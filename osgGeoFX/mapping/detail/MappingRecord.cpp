@@ -217,6 +217,7 @@ std::uint32_t MappingRecord::featuresOf(const Texel* record)
         return (kind & 7u) == 1u;
     };
     next(coarse(flags) || (masked && coarse(flags >> 17u)));
+    next((codes >> 16u & 7u) != 0);
     return result;
 }
 
@@ -228,11 +229,16 @@ void MappingRecord::write(const ProjectiveMapping& mapping, const std::optional<
     std::uint32_t flags = flagsOf(mapping, layer.has_value(), mask.has_value());
     writeProjector(mapping, mapping.getOpacity(), flags, record);
     record[2] = layer ? slot(*layer) : Texel{};
+    // A mask takes its place.
+    const ColorTransfer::Pattern pattern =
+        transfer.getAlpha() == ColorTransfer::FROM_MASK ? ColorTransfer::NONE : transfer.getPattern();
     const auto codes = static_cast<std::uint32_t>(transfer.getSourceFactor()) |
                        static_cast<std::uint32_t>(transfer.getDestinationFactor()) << 4u |
                        static_cast<std::uint32_t>(transfer.getEquation()) << 8u |
                        static_cast<std::uint32_t>(transfer.getSource()) << 12u |
-                       static_cast<std::uint32_t>(transfer.getAlpha()) << 14u;
+                       static_cast<std::uint32_t>(transfer.getAlpha()) << 14u |
+                       static_cast<std::uint32_t>(pattern) << 16u |
+                       static_cast<std::uint32_t>(transfer.getPatternIndex()) << 19u;
     record[2][3] = codes;
     record[3] = numbers(mapping.getLowest(), mapping.getHighest(), tableRow + 0.5);
     record[4] = numbers(transfer.getLowValue(), 1.0 / (transfer.getHighValue() - transfer.getLowValue()),
@@ -253,6 +259,9 @@ void MappingRecord::write(const ProjectiveMapping& mapping, const std::optional<
     record[12] = numbers(std::cos(mapping.getSlopeNone()), std::cos(mapping.getSlopeFull()),
                          mapping.getSizeInPixels(), mapping.getSoftness());
     record[13] = mask ? slot(*mask) : Texel{};
+    if (pattern != ColorTransfer::NONE)
+        record[13] = numbers(transfer.getPatternInterval(), transfer.getPatternWidth(),
+                             std::cos(transfer.getPatternAngle()), -std::sin(transfer.getPatternAngle()));
     if (mapping.getProjector() == ProjectiveMapping::PINHOLE) writePinhole(mapping.getCamera(), record);
     record[1][3] = flags;
 }

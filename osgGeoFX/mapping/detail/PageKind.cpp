@@ -34,6 +34,8 @@ PageKind pageKindOf(const ProjectiveMapping& mapping)
     const bool mixes = transfer.getSourceFactor() == ColorTransfer::SOURCE_ALPHA &&
                        transfer.getDestinationFactor() == ColorTransfer::ONE_MINUS_SOURCE_ALPHA &&
                        transfer.getEquation() == ColorTransfer::ADD;
+    // Lines are as wide as the view has them.
+    if (transfer.getPattern() != ColorTransfer::NONE) return PageKind::Exact;
     if (isLive(mapping.getLayer()) || isLive(mapping.getMask())) return PageKind::Exact;
     if (!mixes || !dependsOnPlaceAlone(mapping)) return PageKind::Exact;
     if (transfer.getSource() != ColorTransfer::SCENE) return PageKind::Page;
