@@ -17,6 +17,9 @@
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
 in float geofx_styleBlend;
+// Of a fragment of a line on the ground: metres along it, and to the left of its middle, where geofx_vertex() was.
+bool geofx_isLine = false;
+vec2 geofx_linePlace = vec2(0.0);
 #ifdef GEOFX_SHADOWED
 in vec3 geofx_shade;
 vec3 geofx_lightInShade()
@@ -76,6 +79,14 @@ float geofx_sunlight()
     float light = 1.0;
 GEOFX_LIGHT_CALLS
     return light;
+}
+
+// The same for a fragment of a line.
+float geofx_sunlightOfLine(vec2 place)
+{
+    geofx_isLine = true;
+    geofx_linePlace = place;
+    return geofx_sunlight();
 }
 
 vec2 geofx_pixel()

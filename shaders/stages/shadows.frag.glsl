@@ -37,10 +37,25 @@ float SLOT_lit(int map, vec3 place)
 float SLOT_sunlight()
 {
     // Before anything returns, since it needs the neighboring pixels.
-    vec3 face = cross(dFdx(SLOT_place), dFdy(SLOT_place));
+    vec3 right = dFdx(SLOT_place), above = dFdy(SLOT_place);
+    vec2 onwards = vec2(dFdx(geofx_linePlace.x), dFdy(geofx_linePlace.x));
     if (SLOT_towards.w == 0.0) return 1.0;
-    float size = length(face);
-    vec3 normal = size > 0.0 ? face / size : SLOT_towards.xyz;
+    vec3 up = SLOT_upward.w > 0.0 ? normalize(SLOT_place - SLOT_upward.xyz) : SLOT_upward.xyz;
+    vec3 ground = SLOT_place;
+    vec3 normal = cross(right, above);
+    float size = length(normal);
+    normal = size > 0.0 ? normal / size : up;
+    float clearance = 0.0;
+    if (geofx_isLine)
+    {
+        // All across the line has the place of its middle. The line lies near the ground, not on it.
+        vec3 along = right * onwards.x + above * onwards.y;
+        vec3 left = cross(up, along);
+        float turn = length(left);
+        if (turn > 0.0) ground += left * (geofx_linePlace.y / turn);
+        normal = up;
+        clearance = 0.5 + max(length(right), length(above));
+    }
     float facing = dot(normal, SLOT_towards.xyz);
     if (facing < 0.0) normal = -normal;
     // A surface must not shade itself: its place is raised by as much as a texel's neighbors rise above its plane.
@@ -50,7 +65,7 @@ float SLOT_sunlight()
     float open = 1.0; // the share that no map has answered for yet
     for (int i = 0; i < int(SLOT_cascades.x); ++i)
     {
-        vec3 raised = SLOT_place + normal * (SLOT_texels[i] * (0.3 + 2.0 * slant));
+        vec3 raised = ground + normal * (clearance + SLOT_texels[i] * (0.3 + 2.0 * slant));
         vec3 place = (SLOT_maps[i] * vec4(raised, 1.0)).xyz;
         vec3 room = 0.5 - abs(place - 0.5);
         float share = clamp(12.0 * min(room.x, room.y) - 0.25, 0.0, 1.0) * step(0.0, room.z);
@@ -61,7 +76,6 @@ float SLOT_sunlight()
         if (open <= 0.0) break;
     }
     // The Earth shades what the sun has not risen for.
-    vec3 up = SLOT_upward.w > 0.0 ? normalize(SLOT_place - SLOT_upward.xyz) : SLOT_upward.xyz;
     light *= smoothstep(0.0, 0.01, dot(up, SLOT_towards.xyz));
     return 1.0 - SLOT_cascades.w * (1.0 - light);
 }
