@@ -15,10 +15,10 @@ int main(int argc, char** argv)
     if (!terrain) return 1;
 
     const osg::ref_ptr<osgGeoFX::SunLight> sun = new osgGeoFX::SunLight; // light 0
-    sun->setPlace(-2.7553, 0.3755, osg::Matrixd());                      // radians; x east, y north, z up here
+    sun->setPlace(-2.7553, 0.3755, osg::Matrixd());                      // radians; x east, y north, z up
     sun->setTime(*osgGeoFX::readClockTime("2026-06-21T17:30:00-10:00"));
     const osg::ref_ptr<osgGeoFX::SunShadows> shadows = new osgGeoFX::SunShadows;
-    shadows->setMapSize(4096); // sharper, in a quarter of a gigabyte
+    shadows->setMapSize(4096); // sharper, in four times the memory
     const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
     scene->addEffect(shadows);
     scene->addEffect(new osgGeoFX::BirdsEyeView);

@@ -17,13 +17,15 @@ in vec2 geofx_linesDash;
 uniform vec4 geofx_linesColor;
 uniform vec3 geofx_linesDashes; // dash and gap, metres; the shortest dash, pixels
 
-// Lines have no light of their own. What lies in shadow is about as dark as level ground there.
+// Lines have no light of their own. What lies in shadow is darker, but not as dark as level ground there: maps have paler shadows, and
+// lines are to be read.
 vec3 shaded(vec3 color, vec2 metres)
 {
 #if defined(GEOFX_SHADOWED) && !defined(GEOFX_CORE)
     vec3 shade = gl_LightSource[0].ambient.rgb + gl_LightModel.ambient.rgb;
     vec3 all = shade + 0.5 * gl_LightSource[0].diffuse.rgb;
-    return color * mix(shade / max(all, vec3(1e-3)), vec3(1.0), geofx_sunlightOfLine(metres));
+    vec3 dark = mix(shade / max(all, vec3(1e-3)), vec3(1.0), 0.35);
+    return color * mix(dark, vec3(1.0), geofx_sunlightOfLine(metres));
 #else
     return color;
 #endif

@@ -45,6 +45,8 @@ float SLOT_sunlight()
     vec3 normal = cross(right, above);
     float size = length(normal);
     normal = size > 0.0 ? normal / size : up;
+    // The walls between tiles end at the ground, and bends open gaps of a pixel. There the wall is as light as the ground.
+    ground += up * (1.5 * min(length(right), length(above)));
     float clearance = 0.0;
     if (geofx_isLine)
     {
