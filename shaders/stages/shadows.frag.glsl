@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // SunShadows in the fragment stage. SLOT_ stands for the effect's prefix.
+#pragma import_defines(GEOFX_NORMAL_MAP)
 #define SLOT_COLUMNS 2 // of maps in the texture
 
 uniform mat4 SLOT_maps[6];    // from the view's eye space to each map: 0…1 across and along the sun's rays
@@ -45,8 +46,11 @@ float SLOT_sunlight()
     vec3 normal = cross(right, above);
     float size = length(normal);
     normal = size > 0.0 ? normal / size : up;
-    // The walls between tiles end at the ground, and bends open gaps of a pixel. There the wall is as light as the ground.
-    ground += up * (1.5 * min(length(right), length(above)));
+    // The walls between tiles end at the ground, and bends open gaps of some pixels. There the wall is as light as the ground.
+#ifdef GEOFX_NORMAL_MAP
+    float pixels = 1.0 + 6.0 * (1.0 - smoothstep(0.1, 0.3, abs(dot(normal, up))));
+    ground += up * (pixels * min(length(right), length(above)));
+#endif
     float clearance = 0.0;
     if (geofx_isLine)
     {
