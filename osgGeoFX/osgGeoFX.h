@@ -91,6 +91,7 @@
 
 #include <osgGeoFX/light/SunLight.h>
 #include <osgGeoFX/light/SunPosition.h>
+#include <osgGeoFX/light/SunShadows.h>
 
 #include <osgGeoFX/closeup/Anchor.h>
 #include <osgGeoFX/closeup/CloseUp.h>

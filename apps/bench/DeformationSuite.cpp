@@ -10,6 +10,7 @@
 #include "TerrainSuite.h"
 #include "TileCollector.h"
 #include "TownCulling.h"
+#include "TownShadows.h"
 #include "TownTerrain.h"
 #include "WorkFolder.h"
 
@@ -393,10 +394,11 @@ std::vector<Figure> run(const Settings& settings)
             if (settings.wants(each.name)) add(bench.measure(each));
         if (settings.wants("cull")) figures.push_back(bench.cullOfPagedScene(all.back()));
     }
-    if (settings.wants("town") || settings.wants("tables"))
+    if (settings.wants("town") || settings.wants("shadows") || settings.wants("tables"))
     {
         const std::filesystem::path town = townToDraw(settings, folder.path());
         if (settings.wants("town")) add(measureTownCulling(settings, town));
+        if (settings.wants("shadows")) add(measureTownShadows(settings, town));
         if (settings.wants("tables")) add(measurePaperTables(settings, town, folder.path()));
     }
     return figures;
@@ -408,9 +410,10 @@ Suite deformationSuite()
 {
     return {"deformation",
             "Draws Oahu bent and straight: frames, culling, picking (birdsEye, pedestrian, exaggeration, "
-            "liberty), the culling of the paged terrain (cull) and of a town of 16,000 buildings (town), and "
-            "the paper's two tables along paths over this town (tables)",
-            {"birdsEye", "pedestrian", "exaggeration", "liberty", "cull", "town", "tables"},
+            "liberty), the culling of the paged terrain (cull) and of a town of 16,000 buildings (town), "
+            "what the sun's shadows cost over this town (shadows), and the paper's two tables along paths "
+            "over it (tables)",
+            {"birdsEye", "pedestrian", "exaggeration", "liberty", "cull", "town", "shadows", "tables"},
             run};
 }
 

@@ -118,6 +118,8 @@ public:
         bool ofView = false;
         /// Companions of the drawables that a filter chooses, drawn with their states; null for none.
         const std::vector<DrawableCompanion*>* companions = nullptr;
+        /// Whether pagers are asked for tiles that the pass lacks. Without, it draws what is there.
+        bool asksForTiles = true;
     };
     /** Culls the scene again and draws what it finds. Compensation, paging and levels of detail are as for the scene
         itself. Near and far planes stay as they are. Everything that is passed must live until the frame has been

@@ -67,6 +67,9 @@ public:
     /// Whether the effect belongs to the ground's own look, so that it colors before all styles and all other surface effects,
     /// wherever it stands in the scene's list. False by default.
     virtual bool comesFirst() const { return false; }
+    /// Whether the fragment file has `float SLOT_sunlight()`. It returns the share of light 0 that reaches the fragment, diffuse and
+    /// specular, 0…1; of several effects the product counts. False by default.
+    virtual bool shadesLight() const { return false; }
 
     /** Puts everything that the shaders need into a camera's state: uniforms with the prefix, and textures on the
         view's units. False if there is nothing to draw. Several cameras' threads may call it at once. Each call gets

@@ -9,6 +9,7 @@
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/ground/GroundDetail.h>
+#include <osgGeoFX/light/SunShadows.h>
 #include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
@@ -59,6 +60,8 @@ constexpr Kind<Effect> effects[] = {
      "The ground from nearby: grass, crowns of trees, rock, sand, gardens and waves below the resolution of "
      "its "
      "colors, and sharp borders between them."},
+    {"sunShadows", make<Effect, SunShadows>,
+     "The shadows of the sun on terrain and buildings, those of the undeformed world on bent ground, too."},
     {"projectiveMappings", make<Effect, ProjectiveMappings>,
      "Rasters thrown onto the terrain and what stands on it, thousands at once. They lie in a frame whose "
      "origin is "

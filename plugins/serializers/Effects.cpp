@@ -8,6 +8,7 @@
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/ground/GroundDetail.h>
+#include <osgGeoFX/light/SunShadows.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/panorama/StrokeLines.h>
 
@@ -59,6 +60,7 @@ const Wrapper<VerticalExaggeration> verticalExaggeration("osgGeoFX::VerticalExag
 const Wrapper<RegionalLiberty> regionalLiberty("osgGeoFX::RegionalLiberty",
                                                deformation + " osgGeoFX::RegionalLiberty");
 const Wrapper<GroundDetail> groundDetail("osgGeoFX::GroundDetail", effect + " osgGeoFX::GroundDetail");
+const Wrapper<SunShadows> sunShadows("osgGeoFX::SunShadows", effect + " osgGeoFX::SunShadows");
 const Wrapper<PanoramaMap, addImagesAndLines> panoramaMap("osgGeoFX::PanoramaMap",
                                                           deformation + " osgGeoFX::PanoramaMap");
 

@@ -10,7 +10,7 @@
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_NORMAL_MAP)
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE)
 #pragma import_defines(GEOFX_HDR, GEOFX_RIGID)
-#pragma import_defines(GEOFX_PART, GEOFX_MIRROR)
+#pragma import_defines(GEOFX_PART, GEOFX_MIRROR, GEOFX_SHADOWED)
 
 // OpenGL bounds the colors of fragments where the frame buffer does, too (ARB_color_buffer_float).
 #ifdef GEOFX_HDR
@@ -41,6 +41,14 @@ vec3 geofx_ground(); // the undeformed place in eye space
 float geofx_normalSize(); // a normal's length in eye space
 vec3 geofx_turnedNormal(); // the texture's normal after the effects, of length 1
 #include "stages/fixed.light.glsl"
+#endif
+
+#if defined(GEOFX_SHADOWED) && defined(GEOFX_LIGHTS)
+#if (GEOFX_LIGHTS & 1) != 0
+#define GEOFX_SHADES
+float geofx_sunlight(); // the share of light 0 that reaches the fragment
+vec3 geofx_lightInShade(); // what the vertices have of the others
+#endif
 #endif
 
 // On terrain seen from its edge, coordinates change by more than the whole texture within a pixel, and go to infinity
@@ -107,6 +115,17 @@ void main()
 {
     vec4 primary = gl_Color;
     vec4 secondary = gl_SecondaryColor;
+#ifdef GEOFX_SHADES
+    float sunlight = geofx_sunlight();
+#ifdef GEOFX_LIT_HERE
+    sunShare = sunlight;
+#elif defined(GEOFX_TWO_SIDED)
+    if (gl_FrontFacing) primary.rgb = mix(geofx_lightInShade(), primary.rgb, sunlight);
+#else
+    primary.rgb = mix(geofx_lightInShade(), primary.rgb, sunlight);
+    secondary.rgb *= sunlight;
+#endif
+#endif
 #ifdef GEOFX_LIT_HERE
     vec3 normal = geofx_turnedNormal();
 #ifndef GEOFX_NORMALIZE

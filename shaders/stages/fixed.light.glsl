@@ -8,6 +8,8 @@
 #pragma import_defines(GEOFX_COLOR_MATERIAL, GEOFX_COLOR_SUM)
 
 #ifdef GEOFX_LIGHTS
+float sunShare = 1.0; // of light 0, that reaches the place
+
 struct Material
 {
     vec4 emission;
@@ -49,8 +51,9 @@ void shine(int lamp, vec3 position, vec3 normal, Material material, inout vec4 s
         strength *= spot < gl_LightSource[lamp].spotCosCutoff ? 0.0 : pow(max(spot, 0.0), gl_LightSource[lamp].spotExponent);
     }
     float facing = max(dot(normal, direction), 0.0);
+    float reaching = lamp == 0 ? sunShare : 1.0;
     sum += strength * (gl_LightSource[lamp].ambient * material.ambient +
-                       facing * gl_LightSource[lamp].diffuse * material.diffuse);
+                       reaching * facing * gl_LightSource[lamp].diffuse * material.diffuse);
 #ifdef GEOFX_SPECULAR
     if (facing > 0.0)
     {
@@ -61,7 +64,7 @@ void shine(int lamp, vec3 position, vec3 normal, Material material, inout vec4 s
 #endif
         float glance = max(dot(normal, normalize(direction + viewer)), 0.0);
         float lobe = material.shininess > 0.0 ? pow(glance, material.shininess) : 1.0;
-        glitter += strength * lobe * gl_LightSource[lamp].specular * material.specular;
+        glitter += reaching * strength * lobe * gl_LightSource[lamp].specular * material.specular;
     }
 #endif
 }

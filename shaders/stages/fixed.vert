@@ -11,7 +11,7 @@
 #pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)
 #pragma import_defines(GEOFX_TEXGEN_0, GEOFX_TEXGEN_1, GEOFX_TEXGEN_2, GEOFX_TEXGEN_3)
 #pragma import_defines(GEOFX_MAP, GEOFX_PAINTED, GEOFX_FADING, GEOFX_NORMAL_MAP)
-#pragma import_defines(GEOFX_NO_NORMAL)
+#pragma import_defines(GEOFX_NO_NORMAL, GEOFX_SHADOWED)
 
 // What is painted anew needs no light and no textures, unless the painting is only fading in.
 #if defined(GEOFX_PAINTED) && !defined(GEOFX_FADING)
@@ -36,6 +36,9 @@
 
 vec4 geofx_vertex(vec4 eyePosition);
 vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);
+#ifdef GEOFX_SHADOWED
+void geofx_setShade(vec3 color);
+#endif
 
 #include "stages/fixed.light.glsl"
 #include "stages/depth.glsl"
@@ -99,6 +102,12 @@ void main()
     vec4 primary = gl_Color;
     vec4 secondary = gl_SecondaryColor;
 #ifdef GEOFX_LIGHTS
+#ifdef GEOFX_SHADOWED
+    sunShare = 0.0;
+    illuminate(eye.xyz, normal, colored(gl_FrontMaterial), primary, secondary);
+    geofx_setShade(primary.rgb);
+    sunShare = 1.0;
+#endif
     illuminate(eye.xyz, normal, colored(gl_FrontMaterial), primary, secondary);
 #endif
     gl_FrontColor = primary;

@@ -6,12 +6,27 @@
 //
 //     vec4 geofx_fragment(vec4 color, vec4 map);    // `map`: what the context shows instead, or vec4(0.0)
 //
+// A shader that lights fragments may ask for the shadows of SunShadows:
+//
+//     float geofx_sunlight();    // the share of light 0 that reaches the fragment, 0…1
+//
 // EffectScene puts the code of its effects in the place of the words in capitals.
 #pragma import_defines(GEOFX_DEFORMATION)
 #pragma import_defines(GEOFX_NORMAL_MAP)
+#pragma import_defines(GEOFX_SHADOWED)
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
 in float geofx_styleBlend;
+// Of a fragment of a line on the ground: metres along it, and to the left of its middle, where geofx_vertex() was.
+bool geofx_isLine = false;
+vec2 geofx_linePlace = vec2(0.0);
+#ifdef GEOFX_SHADOWED
+in vec3 geofx_shade;
+vec3 geofx_lightInShade()
+{
+    return geofx_shade;
+}
+#endif
 // Where the fragment is in the camera's window, pixels. A pass may draw into a texture that begins elsewhere.
 vec2 geofx_pixel();
 #if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_NORMAL_MAP)
@@ -59,6 +74,21 @@ GEOFX_NORMAL_CALLS
     return geofx_directionInEye(normal);
 }
 #endif
+float geofx_sunlight()
+{
+    float light = 1.0;
+GEOFX_LIGHT_CALLS
+    return light;
+}
+
+// The same for a fragment of a line.
+float geofx_sunlightOfLine(vec2 place)
+{
+    geofx_isLine = true;
+    geofx_linePlace = place;
+    return geofx_sunlight();
+}
+
 vec2 geofx_pixel()
 {
     vec2 pixel = gl_FragCoord.xy;

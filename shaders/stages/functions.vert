@@ -19,6 +19,7 @@
 #pragma import_defines(GEOFX_NEARER)
 #pragma import_defines(GEOFX_NORMAL_MAP)
 #pragma import_defines(GEOFX_RIGID)
+#pragma import_defines(GEOFX_SHADOWED)
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
 #ifdef GEOFX_HOST_NORMAL
@@ -37,6 +38,13 @@ void geofx_texture(vec4 coordinates)
 layout(location = 13) in vec4 geofx_reference; // of the thing that the vertex belongs to: effect/RigidParts.h
 #endif
 out float geofx_styleBlend;
+#ifdef GEOFX_SHADOWED
+out vec3 geofx_shade; // the color without the sun, where vertices are lit
+void geofx_setShade(vec3 color)
+{
+    geofx_shade = color;
+}
+#endif
 #if defined(GEOFX_HOST_NORMAL) || defined(GEOFX_NORMAL_MAP)
 #define GEOFX_FRAGMENT_NORMAL // of which fragments take care
 out vec3 geofx_groundPlace;   // undeformed, in the view's eye space
@@ -63,6 +71,9 @@ GEOFX_EFFECT_FUNCTIONS
 vec4 geofx_vertex(vec4 eyePosition)
 {
     geofx_styleBlend = 0.0;
+#ifdef GEOFX_SHADOWED
+    geofx_shade = vec3(0.0);
+#endif
 #ifdef GEOFX_NORMAL_MAP
     geofx_normalPlace = (gl_TextureMatrix[2] * gl_MultiTexCoord0).xy;
 #endif

@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/TextureUnits.h>
 #include <osgGeoFX/ground/GroundDetail.h>
+#include <osgGeoFX/light/SunShadows.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
@@ -84,7 +85,7 @@ Row rowOf(const std::string& what, const std::string& className)
 TEST(IntegrationTable, HasTheUnitsAndBindingsThatTheSceneGives)
 {
     const TextureUnits::Effects effects = {new ProjectiveMappings, new PanoramaMap, new CloseUps,
-                                           new GroundDetail};
+                                           new GroundDetail, new SunShadows};
     const TextureUnits given = TextureUnits::of(effects);
     for (std::size_t i = 0; i < effects.size(); ++i)
     {

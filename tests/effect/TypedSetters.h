@@ -11,6 +11,7 @@
 #include <osgGeoFX/deformation/RegionalLiberty.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/ground/GroundDetail.h>
+#include <osgGeoFX/light/SunShadows.h>
 #include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>

@@ -375,7 +375,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"UnknownEffect", sceneWith("<effects>\n<fishEye/></effects>"),
                 "x.geofx:3: <fishEye>: this element is not known in <effects>",
                 "expected: <birdsEyeView> or <pedestrianView> or <blendedView> or <verticalExaggeration> or "
-                "<regionalLiberty> or <groundDetail> or "
+                "<regionalLiberty> or <groundDetail> or <sunShadows> or "
                 "<projectiveMappings> or <closeUps> or <panoramaMap>."},
         Mistake{"UnknownProperty", sceneWith("<effects>\n<verticalExaggeration power='2'/></effects>"),
                 "x.geofx:3: <verticalExaggeration>: the attribute \"power\" is not known here",

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <tools/InventedAerial.h>
 
+#include <osgGeoFX/town/detail/Scatter.h>
 #include <tools/OahuRaster.h>
 
 #include <algorithm>
@@ -23,20 +24,12 @@ namespace
 
 constexpr std::size_t CLASSES = 256;
 
-std::uint32_t mixed(std::uint32_t bits)
-{
-    bits ^= bits >> 16;
-    bits *= 0x7feb352du;
-    bits ^= bits >> 15;
-    bits *= 0x846ca68bu;
-    return bits ^ (bits >> 16);
-}
-
 /// -1 to 1 at each whole place.
 float corner(int x, int y, std::uint32_t seed)
 {
     const std::uint32_t bits =
-        mixed(static_cast<std::uint32_t>(x) * 0x9e3779b9u ^ mixed(static_cast<std::uint32_t>(y) + seed));
+        osgGeoFX::scatteredBits(static_cast<std::uint32_t>(x) * 0x9e3779b9u ^
+                                osgGeoFX::scatteredBits(static_cast<std::uint32_t>(y) + seed));
     return static_cast<float>(bits) * (2.0f / 4294967295.0f) - 1.0f;
 }
 

@@ -21,6 +21,7 @@ CompensatingCullVisitor::Task taskOf(const CompensatingCullVisitor::Task& scene,
     task.program = drawing.program;
     task.stage = drawing.stage;
     task.passState = drawing.state;
+    task.asksForTiles = drawing.asksForTiles;
     // What a filter looks at is drawn by the camera's chain. The pass' own tells its detail.
     if (drawing.chain && drawing.filter) task.placing = task.chain;
     if (drawing.chain) task.chain = drawing.chain;

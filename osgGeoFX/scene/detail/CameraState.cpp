@@ -170,6 +170,7 @@ bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const Effe
     bool any = false;
     bool repainted = false;
     bool fading = false;
+    bool shadowed = false;
     const osg::Viewport* viewport = outer.getViewport();
     const osg::FrameStamp* stamp = outer.getFrameStamp();
     for (std::size_t i = 0; i < effects.size(); ++i)
@@ -190,9 +191,11 @@ bool CameraState::fillSurfaces(const EffectProgram::Effects& effects, const Effe
         any = any || draws;
         repainted = repainted || (draws && surface->repaints());
         fading = fading || (draws && surface->repaints() && surface->fades());
+        shadowed = shadowed || (draws && surface->shadesLight());
     }
     setDefine(*_set, "GEOFX_PAINTED", repainted);
     setDefine(*_set, "GEOFX_FADING", fading);
+    setDefine(*_set, "GEOFX_SHADOWED", shadowed);
     return any;
 }
 

@@ -129,8 +129,8 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     setTraversalMode(outer.getTraversalMode());
     setTraversalMask(outer.getTraversalMask());
     setNodeMaskOverride(outer.getNodeMaskOverride());
-    setDatabaseRequestHandler(outer.getDatabaseRequestHandler());
-    setImageRequestHandler(outer.getImageRequestHandler());
+    setDatabaseRequestHandler(task.asksForTiles ? outer.getDatabaseRequestHandler() : nullptr);
+    setImageRequestHandler(task.asksForTiles ? outer.getImageRequestHandler() : nullptr);
     getNodePath() = outer.getNodePath();
     setUserDataContainer(outer.getUserDataContainer());
     setIdentifier(outer.getIdentifier());

@@ -84,6 +84,7 @@ public:
         osg::BoundingSphere bound;             ///< of the terrain, for this frustum
         double tileError = 0.0;                ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
+        bool asksForTiles = true;              ///< false: pagers hear nothing
         bool findsNearAndFar = true;           ///< false: the camera's stay as they are
         osgUtil::RenderStage* stage = nullptr; ///< where it draws; null for where `outer` does
         osg::StateSet* inPass =

@@ -38,7 +38,8 @@ std::string normalFile(const Deformation& deformation)
 /// What stands in the place of the words in capitals in stages/functions.*.
 struct Parts
 {
-    std::string imports, functions, locate, face, deform, normal, turn, first, color, move, finish, pixel;
+    std::string imports, functions, locate, face, deform, normal, turn, first, color, light, move, finish,
+        pixel;
 
     std::string fill(std::string text) const
     {
@@ -49,6 +50,7 @@ struct Parts
         text = replaced(std::move(text), "GEOFX_DEFORM_CALLS", deform);
         text = replaced(std::move(text), "GEOFX_NORMAL_CALLS", normal);
         text = replaced(std::move(text), "GEOFX_COLOR_CALLS", first + color);
+        text = replaced(std::move(text), "GEOFX_LIGHT_CALLS", light);
         text = replaced(std::move(text), "GEOFX_MOVE_CALLS", move);
         text = replaced(std::move(text), "GEOFX_PIXEL_CALLS", pixel);
         return replaced(std::move(text), "GEOFX_FINISH_CALLS", finish);
@@ -123,6 +125,8 @@ void addSurface(Parts& parts, const SurfaceEffect& surface, const std::string& p
     parts.locate += conditional("defined(" + define + ")", "    " + prefix + "locate(located);\n");
     const std::string color =
         conditional("defined(" + define + ")", "    result = " + prefix + "color(result);\n");
+    if (surface.shadesLight())
+        parts.light += conditional("defined(" + define + ")", "    light *= " + prefix + "sunlight();\n");
     if (surface.comesFirst())
         parts.first += color;
     else
@@ -196,6 +200,7 @@ std::vector<Handed> allVaryings(const EffectProgram::Effects& effects)
         if (const SurfaceEffect* surface = effects[i]->asSurfaceEffect()) add(surface->varyings(), i);
     }
     all.push_back({{"float", "geofx_styleBlend"}});
+    all.push_back({{"vec3", "geofx_shade"}, "GEOFX_SHADOWED"});
     all.push_back({{"vec2", "geofx_normalPlace"}, "GEOFX_NORMAL_MAP"});
     all.push_back({{"vec3", "geofx_groundPlace"}, "GEOFX_NORMAL_MAP"});
     return all;
@@ -299,7 +304,7 @@ std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary
     }
     std::string text = version + parts.imports;
     text += "#pragma import_defines(GEOFX_FOG, GEOFX_TWO_SIDED, GEOFX_COLOR_SUM, GEOFX_MAP)\n"
-            "#pragma import_defines(GEOFX_NORMAL_MAP)\n"
+            "#pragma import_defines(GEOFX_NORMAL_MAP, GEOFX_SHADOWED)\n"
             "#pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)\n" +
             joined(library, files, prefix);
     text = replaced(text, "GEOFX_VARYINGS\n", declarations);

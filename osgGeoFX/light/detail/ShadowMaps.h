@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <osgGeoFX/effect/ScenePass.h>
+#include <osgGeoFX/light/detail/ShadowCascades.h>
+
+#include <osg/FrameBufferObject>
+#include <osg/StateSet>
+#include <osg/Texture2D>
+#include <osg/Viewport>
+#include <osgUtil/RenderStage>
+
+#include <string>
+#include <vector>
+
+namespace osgGeoFX
+{
+
+/** The depths that the sun sees, of all cascades of one view, side by side in one texture: two in a row. One traversal of the
+    scene draws them all. For one traversal of one camera, until it has been drawn. */
+class ShadowMaps
+{
+public:
+    static constexpr int columns = 2;
+    static int rows(int count) { return (count + columns - 1) / columns; }
+
+    /// Draws the scene of a pass into the maps. `texels`: along the side of one.
+    void draw(const ScenePass& pass, const ShadowCascades& cascades, int texels);
+    osg::Texture2D* texture() const { return _texture; }
+
+    void resizeGLObjectBuffers(unsigned int size);
+    void releaseGLObjects(osg::State* state) const;
+
+private:
+    void resize(int count, int texels);
+    void makeProgram(const std::string& prefix);
+    osg::ref_ptr<osg::StateSet> makeState(int cascade, int texels, bool reversed) const;
+
+    int _count = 0, _texels = 0;
+    bool _reversed = false;
+    std::string _prefix;
+    osg::ref_ptr<osg::Texture2D> _texture;
+    osg::ref_ptr<osg::FrameBufferObject> _target;
+    osg::ref_ptr<osg::Viewport> _viewport;
+    osg::ref_ptr<osg::Program> _program;
+    osg::ref_ptr<osgUtil::RenderStage> _stage;
+    std::vector<osg::ref_ptr<osg::StateSet>> _states; ///< one for each cascade
+};
+
+} // namespace osgGeoFX

@@ -1,0 +1,519 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Pictures of SunShadows against rays from what picking finds at a pixel to the sun, through the formulas of the ground and of boxes.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/effect/LocalOrigin.h>
+#include <osgGeoFX/light/SunShadows.h>
+#include <osgGeoFX/scene/DeformedView.h>
+#include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/RigidReference.h>
+#include <tools/GlFixture.h>
+
+#include <osg/Geometry>
+#include <osg/LightModel>
+#include <osg/LightSource>
+#include <osg/Material>
+#include <osg/MatrixTransform>
+#include <osg/PagedLOD>
+#include <osgDB/DatabasePager>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace geofx::test;
+using namespace osgGeoFX;
+
+namespace
+{
+
+constexpr int WIDTH = 240, HEIGHT = 160;
+constexpr double HALF = 800.0; ///< metres, of the ground
+constexpr int CELLS = 64;      ///< across it
+constexpr double CELL = 2.0 * HALF / CELLS;
+constexpr double pi = 3.14159265358979;
+constexpr double rounding = 1e-3; ///< of colors that are mixed and those that are not, in the mean of 1/255
+
+struct Box
+{
+    osg::Vec3d low, high;
+};
+
+/// Towers and a wall, on the ground's level.
+const std::vector<Box> boxes = {{{-60.0, -250.0, -20.0}, {-30.0, -220.0, 90.0}},
+                                {{40.0, -300.0, -20.0}, {70.0, -270.0, 60.0}},
+                                {{-20.0, -330.0, -20.0}, {30.0, -326.0, 18.0}},
+                                {{150.0, -40.0, -20.0}, {230.0, 10.0, 120.0}},
+                                {{-220.0, 90.0, -20.0}, {-170.0, 150.0, 100.0}}};
+
+double hillAt(double x, double y)
+{
+    return 110.0 * std::exp(-((x - 120.0) * (x - 120.0) / 90000.0 + (y - 330.0) * (y - 330.0) / 4900.0)) +
+           3.0 * std::sin(x / 70.0) * std::cos(y / 50.0);
+}
+
+/// The height of the mesh, which has straight lines between the formula's posts.
+double groundAt(double x, double y)
+{
+    const double column = std::floor((x + HALF) / CELL), row = std::floor((y + HALF) / CELL);
+    const double left = column * CELL - HALF, low = row * CELL - HALF;
+    const double u = (x - left) / CELL, v = (y - low) / CELL;
+    static const std::vector<double> posts = []
+    {
+        std::vector<double> heights;
+        for (int i = 0; i < (CELLS + 1) * (CELLS + 1); ++i)
+            heights.push_back(hillAt(i % (CELLS + 1) * CELL - HALF, i / (CELLS + 1) * CELL - HALF));
+        return heights;
+    }();
+    const auto first = static_cast<std::size_t>(row * (CELLS + 1) + column);
+    const double a = posts[first], b = posts[first + 1], c = posts[first + CELLS + 1],
+                 d = posts[first + CELLS + 2];
+    return u > v ? a + u * (b - a) + v * (d - b) : a + v * (c - a) + u * (d - c);
+}
+
+osg::ref_ptr<osg::Geometry> meshOf(osg::Vec3Array* vertices, osg::Vec3Array* normals,
+                                   osg::DrawElements* triangles)
+{
+    osg::ref_ptr<osg::Geometry> mesh = new osg::Geometry;
+    mesh->setUseDisplayList(false);
+    mesh->setUseVertexBufferObjects(false);
+    mesh->setVertexArray(vertices);
+    mesh->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
+    osg::ref_ptr<osg::Vec4Array> white = new osg::Vec4Array(1);
+    white->front().set(1.0f, 1.0f, 1.0f, 1.0f);
+    mesh->setColorArray(white, osg::Array::BIND_OVERALL);
+    mesh->addPrimitiveSet(triangles);
+    return mesh;
+}
+
+osg::ref_ptr<osg::Geometry> makeGround()
+{
+    osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array, normals = new osg::Vec3Array;
+    osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
+    for (unsigned int i = 0; i < (CELLS + 1) * (CELLS + 1); ++i)
+    {
+        const unsigned int column = i % (CELLS + 1), row = i / (CELLS + 1);
+        const double x = column * CELL - HALF, y = row * CELL - HALF;
+        vertices->push_back(osg::Vec3d(x, y, hillAt(x, y)));
+        osg::Vec3d normal(hillAt(x - 1.0, y) - hillAt(x + 1.0, y), hillAt(x, y - 1.0) - hillAt(x, y + 1.0),
+                          2.0);
+        normal.normalize();
+        normals->push_back(normal);
+        if (column == CELLS || row == CELLS) continue;
+        for (const unsigned int corner : {i, i + 1, i + CELLS + 2, i, i + CELLS + 2, i + CELLS + 1})
+            triangles->push_back(corner);
+    }
+    return meshOf(vertices, normals, triangles);
+}
+
+osg::ref_ptr<osg::Geometry> makeBox(const Box& box)
+{
+    osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array, normals = new osg::Vec3Array;
+    osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
+    for (int face = 0; face < 6; ++face)
+    {
+        const int axis = face / 2;
+        const auto first = static_cast<unsigned int>(vertices->size());
+        osg::Vec3d normal;
+        normal[axis] = face % 2 ? 1.0 : -1.0;
+        for (int corner = 0; corner < 4; ++corner)
+        {
+            osg::Vec3d place;
+            place[axis] = face % 2 ? box.high[axis] : box.low[axis];
+            const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+            place[next] = corner & 1 ? box.high[next] : box.low[next];
+            place[last] = corner & 2 ? box.high[last] : box.low[last];
+            vertices->push_back(place);
+            normals->push_back(normal);
+        }
+        for (const unsigned int corner : {0u, 1u, 3u, 0u, 3u, 2u})
+            triangles->push_back(first + corner);
+    }
+    return meshOf(vertices, normals, triangles);
+}
+
+/// Whether a ray from a place to the sun meets anything.
+bool isHidden(const osg::Vec3d& place, const osg::Vec3d& towards)
+{
+    for (const Box& box : boxes)
+    {
+        double begin = 0.0, end = 1e9;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            double a = (box.low[axis] - place[axis]) / towards[axis];
+            double b = (box.high[axis] - place[axis]) / towards[axis];
+            if (a > b) std::swap(a, b);
+            begin = std::max(begin, a);
+            end = std::min(end, b);
+        }
+        if (end > begin) return true;
+    }
+    for (double way = 1.0; way < 1500.0; way += 1.0)
+    {
+        const osg::Vec3d at = place + towards * way;
+        if (std::max(std::abs(at.x()), std::abs(at.y())) >= HALF - CELL || at.z() > 130.0) return false;
+        if (at.z() < groundAt(at.x(), at.y())) return true;
+    }
+    return false;
+}
+
+osg::Vec3d toSun(double azimuth, double elevation)
+{
+    const double a = azimuth / 180.0 * pi, e = elevation / 180.0 * pi;
+    return {std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e)};
+}
+
+class SunShadowsTest : public GlFixture
+{
+protected:
+    SunShadowsTest() : GlFixture(WIDTH, HEIGHT) {}
+
+    void SetUp() override
+    {
+        GlFixture::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        viewer().setLightingMode(osg::View::NO_LIGHT);
+        osg::Camera& camera = *viewer().getCamera();
+        camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        camera.setClearColor({0.0f, 0.0f, 0.0f, 1.0f});
+        build(osg::Matrixd());
+    }
+
+    /// The world in a frame; buildings below references of their own where `rigid`.
+    void build(const osg::Matrixd& frame, bool rigid = false)
+    {
+        _frame = frame;
+        osg::ref_ptr<osg::MatrixTransform> world = new osg::MatrixTransform(frame);
+        world->addChild(makeGround());
+        for (const Box& box : boxes)
+        {
+            osg::ref_ptr<osg::Group> parent = world;
+            if (rigid)
+            {
+                const osg::Vec3d foot = (box.low + box.high) * 0.5;
+                osg::ref_ptr<RigidReference> reference = new RigidReference;
+                reference->setReference(osg::Vec3d(foot.x(), foot.y(), 0.0));
+                world->addChild(reference);
+                parent = reference;
+            }
+            parent->addChild(makeBox(box));
+        }
+        _world = world;
+        _scene = new EffectScene;
+        _scene->addEffect(_shadows);
+        _scene->addChild(world);
+        _root = new osg::Group;
+        _root->addChild(_scene);
+        _sun = new osg::LightSource;
+        _sun->getLight()->setAmbient({0.3f, 0.3f, 0.3f, 1.0f});
+        _sun->getLight()->setDiffuse({0.7f, 0.7f, 0.7f, 1.0f});
+        _sun->getLight()->setSpecular({0.0f, 0.0f, 0.0f, 1.0f});
+        _root->addChild(_sun);
+        osg::StateSet& state = *_root->getOrCreateStateSet();
+        state.setMode(GL_LIGHTING, osg::StateAttribute::ON);
+        state.setMode(GL_LIGHT0, osg::StateAttribute::ON);
+        osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
+        model->setAmbientIntensity({0.0f, 0.0f, 0.0f, 1.0f});
+        state.setAttribute(model);
+        osg::ref_ptr<osg::Material> material = new osg::Material;
+        material->setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
+        state.setAttribute(material);
+        _scene->setTerrainFrame(frame.isIdentity() ? EffectScene::PROJECTED : EffectScene::GEOCENTRIC);
+        shineFrom(215.0, 32.0);
+        look({-60.0, -620.0, 230.0}, {20.0, -120.0, 0.0});
+    }
+
+    void shineFrom(double azimuth, double elevation)
+    {
+        _towards = toSun(azimuth, elevation);
+        _sun->getLight()->setPosition(osg::Vec4d(osg::Matrixd::transform3x3(_towards, _frame), 0.0));
+    }
+
+    void look(const osg::Vec3d& eye, const osg::Vec3d& at)
+    {
+        osg::Camera& camera = *viewer().getCamera();
+        const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, 1.0), _frame);
+        camera.setViewMatrixAsLookAt(eye * _frame, at * _frame, up);
+        camera.setProjectionMatrixAsPerspective(42.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 20000.0);
+    }
+
+    osg::ref_ptr<BirdsEyeView> bend()
+    {
+        osg::ref_ptr<BirdsEyeView> view = new BirdsEyeView;
+        view->setFocusLine(0.3);
+        view->setHorizonLine(0.95);
+        _scene->addEffect(view);
+        return view;
+    }
+
+    osg::ref_ptr<osg::Image> draw() { return render(_root); }
+    osg::ref_ptr<osg::Image> drawWithout()
+    {
+        _shadows->setEnabled(false);
+        const osg::ref_ptr<osg::Image> image = draw();
+        _shadows->setEnabled(true);
+        return image;
+    }
+    osg::ref_ptr<osg::Image> drawUnlit()
+    {
+        const osg::Vec4 diffuse = _sun->getLight()->getDiffuse();
+        _sun->getLight()->setDiffuse({0.0f, 0.0f, 0.0f, 1.0f});
+        const osg::ref_ptr<osg::Image> image = draw();
+        _sun->getLight()->setDiffuse(diffuse);
+        return image;
+    }
+
+    static int redAt(const osg::Image& image, int x, int y)
+    {
+        return image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y))[0];
+    }
+    static double meanDifference(const osg::Image& a, const osg::Image& b)
+    {
+        double sum = 0.0;
+        for (int y = 0; y < HEIGHT; ++y)
+            for (int x = 0; x < WIDTH; ++x)
+                sum += std::abs(redAt(a, x, y) - redAt(b, x, y));
+        return sum / (WIDTH * HEIGHT);
+    }
+
+    /// The same without what light that changes slowly does to all of a face at once, where it is rounded.
+    static double changeOfShadows(const osg::Image& a, const osg::Image& b)
+    {
+        double sum = 0.0;
+        for (int y = 0; y < HEIGHT; ++y)
+            for (int x = 0; x < WIDTH; ++x)
+            {
+                const int change = std::abs(redAt(a, x, y) - redAt(b, x, y));
+                sum += change > 3 ? change : 0;
+            }
+        return sum / (WIDTH * HEIGHT);
+    }
+
+    /// Whether a place is in shadow; empty where another one within `margin` metres is not as it is.
+    std::optional<bool> hidden(const osg::Vec3d& place, const osg::Vec3d& normal, double margin) const
+    {
+        const bool here = isHidden(place + normal * 0.2, _towards);
+        const osg::Vec3d axis =
+            std::abs(normal.z()) < 0.9 ? osg::Vec3d(0.0, 0.0, 1.0) : osg::Vec3d(1.0, 0.0, 0.0);
+        osg::Vec3d right = axis ^ normal;
+        right.normalize();
+        const osg::Vec3d up = normal ^ right;
+        for (int i = 0; i < 8; ++i)
+        {
+            const double angle = i * pi / 4.0;
+            const osg::Vec3d moved =
+                place + right * (margin * std::cos(angle)) + up * (margin * std::sin(angle));
+            if (isHidden(moved + normal * 0.2, _towards) != here) return std::nullopt;
+        }
+        return here;
+    }
+
+    /// Every fifth pixel in each direction is as dark as the ray says: what it was without the sun, or with all of it.
+    void expectTheShadowsOfRays(double margin, int leastDark)
+    {
+        const osg::ref_ptr<osg::Image> lit = drawWithout(), unlit = drawUnlit(), drawn = draw();
+        const DeformedView view(*_scene, *viewer().getCamera());
+        const osg::Matrixd toLocal = osg::Matrixd::inverse(_frame);
+        int dark = 0, bright = 0, wrong = 0;
+        std::string where;
+        for (int y = 2; y < HEIGHT; y += 5)
+        {
+            for (int x = 2; x < WIDTH; x += 5)
+            {
+                const auto hit = view.pick(x + 0.5, y + 0.5);
+                if (!hit) continue;
+                const osg::Vec3d place = hit->world * toLocal;
+                const osg::Vec3d normal = osg::Matrixd::transform3x3(hit->normal, toLocal);
+                // What the sun hardly touches tells nothing.
+                if (redAt(*lit, x, y) - redAt(*unlit, x, y) < 25 || normal * _towards < 0.15) continue;
+                if (std::max(std::abs(place.x()), std::abs(place.y())) > HALF - 30.0) continue;
+                const std::optional<bool> expected = hidden(place, normal, margin);
+                if (!expected) continue;
+                const osg::Image& same = *expected ? *unlit : *lit;
+                const bool off = std::abs(redAt(*drawn, x, y) - redAt(same, x, y)) > 2;
+                (*expected ? dark : bright) += 1;
+                wrong += off ? 1 : 0;
+                if (off && where.size() < 300)
+                    where += " (" + std::to_string(x) + "," + std::to_string(y) + ") at " +
+                             std::to_string(place.x()) + " " + std::to_string(place.y()) + " " +
+                             std::to_string(place.z()) + (*expected ? " is lit" : " is dark");
+            }
+        }
+        EXPECT_GT(dark, leastDark);
+        EXPECT_GT(bright, 300);
+        EXPECT_LE(wrong, 1 + dark / 40) << "of " << dark + bright << ":" << where;
+    }
+
+    osg::ref_ptr<SunShadows> _shadows = new SunShadows;
+    osg::Matrixd _frame;
+    osg::Vec3d _towards;
+    osg::ref_ptr<osg::MatrixTransform> _world;
+    osg::ref_ptr<EffectScene> _scene;
+    osg::ref_ptr<osg::Group> _root;
+    osg::ref_ptr<osg::LightSource> _sun;
+};
+
+osg::Matrixd onGlobe()
+{
+    const osg::ref_ptr<osg::EllipsoidModel> earth = new osg::EllipsoidModel;
+    return LocalOrigin::onGlobe(-157.8 / 180.0 * pi, 21.3 / 180.0 * pi).toWorld(earth);
+}
+
+/// Asked for tiles, it notes their names and reads none.
+class NotingPager : public osgDB::DatabasePager
+{
+public:
+    void requestNodeFile(const std::string& file, osg::NodePath&, float, const osg::FrameStamp*,
+                         osg::ref_ptr<osg::Referenced>&, const osg::Referenced*) override
+    {
+        asked.insert(file);
+    }
+    std::set<std::string> asked;
+};
+
+} // namespace
+
+TEST_F(SunShadowsTest, LieWhereRaysSay)
+{
+    expectTheShadowsOfRays(2.5, 20);
+    // A low sun behind the camera, and one to the side.
+    shineFrom(300.0, 14.0);
+    expectTheShadowsOfRays(3.0, 100);
+    shineFrom(20.0, 55.0);
+    expectTheShadowsOfRays(2.5, 15);
+}
+
+TEST_F(SunShadowsTest, LieOnBentGroundWhereTheyLieOnPlainGround)
+{
+    const osg::ref_ptr<BirdsEyeView> view = bend();
+    const osg::ref_ptr<osg::Image> bent = draw();
+    expectTheShadowsOfRays(3.0, 20);
+    view->setEnabled(false);
+    EXPECT_GT(meanDifference(*bent, *draw()), 1.0) << "nothing was bent";
+}
+
+TEST_F(SunShadowsTest, OnAGlobeToo)
+{
+    build(onGlobe());
+    expectTheShadowsOfRays(2.5, 20);
+    bend();
+    expectTheShadowsOfRays(3.0, 20);
+}
+
+TEST_F(SunShadowsTest, AreThoseOfThingsThatKeepTheirShape)
+{
+    build(osg::Matrixd(), true);
+    bend();
+    // All of it stands a hundred metres higher.
+    const osg::ref_ptr<VerticalExaggeration> lift = new VerticalExaggeration;
+    lift->setFactor(1.5);
+    lift->setBaseHeight(-200.0);
+    _scene->addEffect(lift);
+    expectTheShadowsOfRays(3.0, 20);
+}
+
+TEST_F(SunShadowsTest, HaveTheirStrength)
+{
+    const osg::ref_ptr<osg::Image> lit = drawWithout(), full = draw();
+    _shadows->setStrength(0.5);
+    const osg::ref_ptr<osg::Image> half = draw();
+    for (int y = 0; y < HEIGHT; ++y)
+        for (int x = 0; x < WIDTH; ++x)
+            ASSERT_NEAR(redAt(*half, x, y), 0.5 * (redAt(*lit, x, y) + redAt(*full, x, y)), 1.5)
+                << x << " " << y;
+    EXPECT_GT(meanDifference(*lit, *full), 1.0);
+}
+
+TEST_F(SunShadowsTest, AreNotThereWithoutASun)
+{
+    _sun->getLight()->setDiffuse({0.0f, 0.0f, 0.0f, 1.0f});
+    EXPECT_LT(meanDifference(*drawWithout(), *draw()), rounding);
+    // A lamp on a mast has no direction that is everywhere the same.
+    _sun->getLight()->setDiffuse({0.7f, 0.7f, 0.7f, 1.0f});
+    _sun->getLight()->setPosition({0.0f, -200.0f, 400.0f, 1.0f});
+    EXPECT_LT(meanDifference(*drawWithout(), *draw()), rounding);
+}
+
+// From below the horizon a light would shine on walls through the ground.
+TEST_F(SunShadowsTest, TakeAllLightBelowTheHorizon)
+{
+    for (const bool globe : {false, true})
+    {
+        if (globe) build(onGlobe());
+        shineFrom(200.0, -8.0);
+        EXPECT_GT(meanDifference(*drawWithout(), *drawUnlit()), 0.5);
+        EXPECT_LT(meanDifference(*draw(), *drawUnlit()), rounding);
+    }
+}
+
+TEST_F(SunShadowsTest, DoNotShimmerWhileTheSunMoves)
+{
+    _shadows->setMapSize(1024);
+    for (const bool bent : {false, true})
+    {
+        if (bent) bend();
+        std::vector<double> steps;
+        osg::ref_ptr<osg::Image> former;
+        // Through the highest place, and a minute of the clock from step to step.
+        for (int i = 0; i <= 24; ++i)
+        {
+            shineFrom(177.0 + 0.25 * i, 38.0 + 0.002 * i * (24 - i));
+            const osg::ref_ptr<osg::Image> image = draw();
+            if (former) steps.push_back(changeOfShadows(*former, *image));
+            former = image;
+        }
+        std::vector<double> sorted = steps;
+        std::sort(sorted.begin(), sorted.end());
+        const double median = sorted[sorted.size() / 2];
+        EXPECT_GT(median, 0.01);
+        EXPECT_LT(sorted.back(), 2.0 * median);
+    }
+}
+
+// Rising from near the ground, the first map gives way to the next ones.
+TEST_F(SunShadowsTest, DoNotJumpWhileTheEyeRises)
+{
+    std::vector<double> steps;
+    osg::ref_ptr<osg::Image> former;
+    for (int i = 0; i <= 24; ++i)
+    {
+        const double height = 180.0 * std::exp(0.02 * i);
+        look({-60.0, -620.0, height}, {20.0, -120.0, 0.0});
+        const osg::ref_ptr<osg::Image> image = draw();
+        if (former) steps.push_back(meanDifference(*former, *image));
+        former = image;
+    }
+    std::vector<double> sorted = steps;
+    std::sort(sorted.begin(), sorted.end());
+    EXPECT_LT(sorted.back(), 2.0 * sorted[sorted.size() / 2]);
+}
+
+TEST_F(SunShadowsTest, OfWhatStandsBehindTheCameraFallIntoThePictureAndAskForNoTile)
+{
+    const osg::ref_ptr<NotingPager> pager = new NotingPager;
+    viewer().setDatabasePager(pager);
+    // Above the picture's left border and behind the eye, towards the sun.
+    osg::ref_ptr<osg::PagedLOD> tile = new osg::PagedLOD;
+    const Box tower{{-400.0, -1050.0, -20.0}, {-340.0, -990.0, 600.0}};
+    const osg::ref_ptr<osg::Image> before = draw();
+    tile->addChild(makeBox(tower), 0.0f, 1e6f);
+    tile->setFileName(1, "finer.osgb");
+    tile->setRange(1, 0.0f, 1e6f);
+    tile->setCenterMode(osg::LOD::USER_DEFINED_CENTER);
+    tile->setCenter((tower.low + tower.high) * 0.5);
+    tile->setRadius(330.0f);
+    _world->addChild(tile);
+    const osg::ref_ptr<osg::Image> after = draw();
+    EXPECT_GT(meanDifference(*before, *after), 1.0);
+    EXPECT_TRUE(pager->asked.empty()) << *pager->asked.begin();
+    // In the picture it is asked for, as without shadows.
+    look({-370.0, -1900.0, 330.0}, {-370.0, -1000.0, 300.0});
+    draw();
+    EXPECT_EQ(pager->asked.count("finer.osgb"), 1u);
+}
