@@ -79,7 +79,7 @@ TEST_P(Picking, PixelToGroundToPixel)
     if (!oahu) return;
     CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
     const int cameras = fullTest() ? GetParam().many : GetParam().few;
-    const int pixels = fullTest() ? 20 : 8;
+    const int pixels = 20;
     int checked = 0;
     int inZone = 0;
     int sky = 0;
