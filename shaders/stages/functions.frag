@@ -8,7 +8,7 @@
 //
 // A shader that lights fragments may ask for the shadows of SunShadows:
 //
-//     float geofx_sunlight();    // the share of light 0 that reaches the fragment, 0…1
+//     float geofx_sunlight();    // the share of light 0 that reaches the fragment, 0 to 1
 //
 // EffectScene puts the code of its effects in the place of the words in capitals.
 #pragma import_defines(GEOFX_DEFORMATION)

@@ -5,7 +5,7 @@
 #pragma import_defines(GEOFX_NORMAL_MAP)
 #define SLOT_COLUMNS 2 // of maps in the texture
 
-uniform mat4 SLOT_maps[6];    // from the view's eye space to each map: 0…1 across and along the sun's rays
+uniform mat4 SLOT_maps[6];    // from the view's eye space to each map: 0 to 1 across and along the sun's rays
 uniform float SLOT_texels[6]; // metres of a texel of each
 uniform vec4 SLOT_cascades;   // how many, the texels along a side, how much the first one counts, the strength
 uniform vec4 SLOT_towards;    // the sun, in the view's eye space; w: whether there is one

@@ -329,7 +329,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:2: <rasters>: ", "expected: only one of <database>, <rasters>, <engine>."},
         Mistake{"UnknownElement", sceneWith("<panorama/>"),
                 "x.geofx:2: <panorama>: this element is not known in <geofx>",
-                "expected: <terrain>, <homeView>, <sun>, <background>, <effects>, <map>."},
+                "expected: <terrain>, <homeView>, <sun>, <background>, <effects>, <presets>, <map>."},
         Mistake{"UnknownElementBelow", rastersWith("", "<dem file='a'/><bathymetry/>"),
                 "x.geofx:3: <bathymetry>: this element is not known in <rasters>",
                 "expected: <dem> or <imagery> or <landCover> or <treeCover>."},
