@@ -128,6 +128,7 @@
 #include <osgGeoFX/viewer/CameraPath.h>
 #include <osgGeoFX/viewer/ClickAndFly.h>
 #include <osgGeoFX/viewer/Compass.h>
+#include <osgGeoFX/viewer/CornerOverlay.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <osgGeoFX/viewer/EffectKeys.h>

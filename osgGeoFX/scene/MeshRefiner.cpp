@@ -2,79 +2,32 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/MeshRefiner.h>
 
-#include <osgGeoFX/effect/RigidParts.h>
-#include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectScene.h>
-#include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/detail/GeometryRefinement.h>
-#include <osgGeoFX/scene/detail/OwnPrograms.h>
+#include <osgGeoFX/scene/detail/PlainGeometry.h>
 
-#include <osg/Billboard>
-#include <osg/Camera>
 #include <osg/Geometry>
-#include <osg/NodeVisitor>
 #include <osg/Notify>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <typeinfo>
 
 namespace osgGeoFX
 {
 
 /// Finds the geometries to split, each once, with the matrix that makes its edges the longest.
-class MeshRefiner::Visitor : public osg::NodeVisitor
+class MeshRefiner::Visitor : public PlainGeometry
 {
 public:
-    Visitor() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
-
-    void apply(osg::Node& node) override { descend(node); }
-    void apply(osg::Billboard&) override {}
-    void apply(osg::Camera&) override {}
-    void apply(osg::Projection&) override {}
-    void apply(osg::Group& group) override
-    {
-        if (!dynamic_cast<const RigidReference*>(&group)) descend(group);
-    }
-    void apply(osg::Transform& transform) override
-    {
-        // Those that follow the eye have no matrix of their own; the kit's tiles have vertices enough.
-        osg::Matrixd matrix = _matrix;
-        if (TileInfo::isTile(transform) || transform.getReferenceFrame() != osg::Transform::RELATIVE_RF ||
-            transform.className() == std::string("AutoTransform") ||
-            !transform.computeLocalToWorldMatrix(matrix, this))
-            return;
-        std::swap(matrix, _matrix);
-        descend(transform);
-        _matrix = matrix;
-    }
-    void apply(osg::Drawable&) override {}
-    void apply(osg::Geometry& geometry) override
-    {
-        DeformationSwitch state = _state;
-        state.meet(geometry.getStateSet());
-        if (!state.on || _programs.isStranger(state.program) || typeid(geometry) != typeid(osg::Geometry) ||
-            geometry.getDataVariance() == osg::Object::DYNAMIC || RigidParts::of(geometry))
-            return;
-        const auto [entry, isNew] = found.try_emplace(&geometry, _matrix);
-        if (!isNew && largestScale(_matrix) > largestScale(entry->second)) entry->second = _matrix;
-    }
-
     std::map<osg::ref_ptr<osg::Geometry>, osg::Matrixd> found;
 
 private:
-    void descend(osg::Node& node)
+    void meet(osg::Geometry& geometry, const osg::Matrixd& matrix) override
     {
-        const DeformationSwitch former = _state;
-        _state.meet(node.getStateSet());
-        traverse(node);
-        _state = former;
+        const auto [entry, isNew] = found.try_emplace(&geometry, matrix);
+        if (!isNew && largestScale(matrix) > largestScale(entry->second)) entry->second = matrix;
     }
-
-    osg::Matrixd _matrix;
-    DeformationSwitch _state;
-    OwnPrograms _programs;
 };
 
 MeshRefiner::MeshRefiner(double longestEdge) : _longestEdge(longestEdge)

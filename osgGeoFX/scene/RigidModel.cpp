@@ -4,22 +4,18 @@
 
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/detail/DrawableTriangles.h>
-#include <osgGeoFX/paging/TerrainInfo.h>
-#include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/detail/ConnectedThings.h>
-#include <osgGeoFX/scene/detail/OwnPrograms.h>
+#include <osgGeoFX/scene/detail/PlainGeometry.h>
 
-#include <osg/Billboard>
 #include <osg/BoundingBox>
-#include <osg/Camera>
 #include <osg/Geometry>
-#include <osg/NodeVisitor>
 #include <osg/Notify>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <typeinfo>
+#include <set>
+#include <utility>
 #include <vector>
 
 namespace osgGeoFX
@@ -35,60 +31,22 @@ bool scales(const osg::Matrixd& matrix)
            std::abs(largestScale(osg::Matrixd::inverse(matrix)) - 1.0) > slack;
 }
 
-/// Finds the geometries whose things keep their shape, each once, with its matrix.
-class Finder : public osg::NodeVisitor
+/// Finds the geometries whose things keep their shape, each once, with its matrix, in the order of the traversal.
+class Finder : public PlainGeometry
 {
 public:
-    Finder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
-
-    void apply(osg::Node& node) override { descend(node); }
-    void apply(osg::Billboard&) override {}
-    void apply(osg::Camera&) override {}
-    void apply(osg::Projection&) override {}
-    void apply(osg::Group& group) override
-    {
-        if (!dynamic_cast<const RigidReference*>(&group)) descend(group);
-    }
-    void apply(osg::Transform& transform) override
-    {
-        osg::Matrixd matrix = _matrix;
-        if (TileInfo::isTile(transform) || transform.getReferenceFrame() != osg::Transform::RELATIVE_RF ||
-            transform.className() == std::string("AutoTransform") ||
-            !transform.computeLocalToWorldMatrix(matrix, this) || scales(matrix))
-            return;
-        std::swap(matrix, _matrix);
-        descend(transform);
-        _matrix = matrix;
-    }
-    void apply(osg::Drawable&) override {}
-    void apply(osg::Geometry& geometry) override
-    {
-        DeformationSwitch state = _state;
-        state.meet(geometry.getStateSet());
-        const auto* const vertices = dynamic_cast<const osg::Vec3Array*>(geometry.getVertexArray());
-        if (!state.on || _programs.isStranger(state.program) || typeid(geometry) != typeid(osg::Geometry) ||
-            geometry.getDataVariance() == osg::Object::DYNAMIC || RigidParts::of(geometry) || !vertices ||
-            vertices->empty() || DrawableTriangles::instanced(geometry))
-            return;
-        if (_known.try_emplace(&geometry, true).second) found.emplace_back(&geometry, _matrix);
-    }
-
-    std::vector<std::pair<osg::ref_ptr<osg::Geometry>, osg::Matrixd>>
-        found; ///< in the order of the traversal
+    std::vector<std::pair<osg::ref_ptr<osg::Geometry>, osg::Matrixd>> found;
 
 private:
-    void descend(osg::Node& node)
+    bool enters(const osg::Matrixd& matrix) const override { return !scales(matrix); }
+    void meet(osg::Geometry& geometry, const osg::Matrixd& matrix) override
     {
-        const DeformationSwitch former = _state;
-        _state.meet(node.getStateSet());
-        traverse(node);
-        _state = former;
+        const auto* const vertices = dynamic_cast<const osg::Vec3Array*>(geometry.getVertexArray());
+        if (!vertices || vertices->empty() || DrawableTriangles::instanced(geometry)) return;
+        if (_known.insert(&geometry).second) found.emplace_back(&geometry, matrix);
     }
 
-    osg::Matrixd _matrix;
-    DeformationSwitch _state;
-    OwnPrograms _programs;
-    std::map<const osg::Geometry*, bool> _known;
+    std::set<const osg::Geometry*> _known;
 };
 
 /// What is known of one thing.

@@ -325,11 +325,10 @@ void BendHandles::show(osgViewer::View& view)
             shapes.polygon({foot - half, foot + half, tip}, color);
         }
         // A dark plate below the words, on the side where there is room.
-        const double width = 0.56 * text * static_cast<double>(labels[i].size()) + 0.9 * text;
+        const double width = shapes.widthOf(labels[i], text) + 0.9 * text;
         const bool left = knob.x() + 1.4 * text + width > port.width();
         const double from = left ? knob.x() - 1.4 * text - width : knob.x() + 1.4 * text;
-        shapes.box({from, knob.y() - 0.75 * text}, {from + width, knob.y() + 0.75 * text},
-                   overlay::background);
+        shapes.box(PixelBox{from, knob.y() - 0.75 * text, width, 1.5 * text}, overlay::background);
         shapes.text(labels[i], {from + 0.5 * width, knob.y() - 0.36 * text}, text, color);
     }
     _overlay->removeChildren(0, _overlay->getNumChildren());

@@ -15,9 +15,6 @@ namespace osgGeoFX
 namespace
 {
 
-using Event = osgGA::GUIEventAdapter;
-
-constexpr int key = 'o';
 const osg::Vec4 north(0.96f, 0.36f, 0.30f, 1.0f);
 const std::array<osg::Vec4, 3> partColors = {overlay::bright, overlay::warm, overlay::cold};
 
@@ -126,45 +123,20 @@ void Compass::Content::setGround(const ViewOrientation& view, const Layout& layo
 }
 
 Compass::Compass(EffectScene& scene, const Georeference* reference, osgText::Font* font)
-    : _scene(&scene), _reference(reference), _font(font)
+    : CornerOverlay('o', "Toggle the compass, and how steeply the ground is seen"), _scene(&scene),
+      _reference(reference), _font(font)
 {
 }
 
 Compass::~Compass() = default;
 
-void Compass::getUsage(osg::ApplicationUsage& usage) const
-{
-    usage.addKeyboardMouseBinding(std::string(1, static_cast<char>(key)),
-                                  "Toggle the compass, and how steeply the ground is seen");
-}
-
 std::string Compass::text() const
 {
-    if (!_shown || !_drawn || _drawn->headingText.empty()) return {};
+    if (!shown() || !_drawn || _drawn->headingText.empty()) return {};
     std::string result = _drawn->headingText + " " + _drawn->pitchText;
     for (const std::string& angle : _drawn->seen)
         if (!angle.empty()) result += " " + angle;
     return result;
-}
-
-void Compass::setShown(bool shown)
-{
-    _shown = shown;
-    if (!_shown && _overlay) _overlay->setNodeMask(0u);
-}
-
-bool Compass::handle(const Event& event, osgGA::GUIActionAdapter& action)
-{
-    if (event.getEventType() == Event::KEYDOWN && event.getKey() == key)
-    {
-        setShown(!_shown);
-        action.requestRedraw();
-        return true;
-    }
-    auto* const view = dynamic_cast<osgViewer::View*>(&action);
-    if (event.getEventType() == Event::FRAME && _shown && view && view->getCamera()->getViewport())
-        show(*view);
-    return false;
 }
 
 void Compass::show(osgViewer::View& view)

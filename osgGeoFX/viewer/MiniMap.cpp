@@ -20,9 +20,6 @@ namespace osgGeoFX
 namespace
 {
 
-using Event = osgGA::GUIEventAdapter;
-
-constexpr int key = 'i';
 constexpr double fieldOfView = 20.0; ///< vertical, degrees: from afar, so that heights hardly move places
 constexpr double usualLens = 30.0;   ///< vertical, degrees
 constexpr double pixelErrors = 2.0;  ///< as many as in the window
@@ -105,43 +102,22 @@ void MiniMap::Content::fill(const ViewOrientation& view, const osg::Camera& came
 }
 
 MiniMap::MiniMap(EffectScene& scene, const Georeference* reference, const std::optional<TerrainInfo>& terrain)
-    : _scene(&scene), _reference(reference), _terrain(terrain)
+    : CornerOverlay('i', "Toggle the small map with the parts of the bend"), _scene(&scene),
+      _reference(reference), _terrain(terrain)
 {
 }
 
 MiniMap::~MiniMap() = default;
 
-void MiniMap::getUsage(osg::ApplicationUsage& usage) const
+void MiniMap::hide()
 {
-    usage.addKeyboardMouseBinding(std::string(1, static_cast<char>(key)),
-                                  "Toggle the small map with the parts of the bend");
-}
-
-void MiniMap::setShown(bool shown)
-{
-    _shown = shown;
-    if (_shown) return;
-    if (_overlay) _overlay->setNodeMask(0u);
+    CornerOverlay::hide();
     if (_map) _map->setNodeMask(0u);
-}
-
-bool MiniMap::handle(const Event& event, osgGA::GUIActionAdapter& action)
-{
-    if (event.getEventType() == Event::KEYDOWN && event.getKey() == key)
-    {
-        setShown(!_shown);
-        action.requestRedraw();
-        return true;
-    }
-    auto* const view = dynamic_cast<osgViewer::View*>(&action);
-    if (event.getEventType() == Event::FRAME && _shown && view && view->getCamera()->getViewport())
-        show(*view);
-    return false;
 }
 
 std::optional<osg::Vec2d> MiniMap::pixelOf(const osg::Vec3d& world) const
 {
-    if (!_shown || !_drawn || !(_drawn->metres > 0.0)) return std::nullopt;
+    if (!shown() || !_drawn || !(_drawn->metres > 0.0)) return std::nullopt;
     const osg::Vec3d place = world * _toMap;
     const osg::Vec2d pixel = _drawn->eye + osg::Vec2d(place.x(), place.y()) / _drawn->metres;
     for (int axis = 0; axis < 2; ++axis)
@@ -153,12 +129,7 @@ void MiniMap::show(osgViewer::View& view)
 {
     const bool fresh = showOverlay(view, _overlay, 5);
     const auto orientation = ViewOrientation::of(*_scene, *view.getCamera(), _reference.get());
-    if (!orientation)
-    {
-        _overlay->setNodeMask(0u);
-        if (_map) _map->setNodeMask(0u);
-        return;
-    }
+    if (!orientation) return hide();
     const osg::Viewport& port = *_overlay->getViewport();
     const double text = overlayTextSize(port.height());
     Content content;

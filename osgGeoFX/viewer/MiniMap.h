@@ -5,11 +5,8 @@
 #include <osgGeoFX/Export.h>
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
+#include <osgGeoFX/viewer/CornerOverlay.h>
 #include <osgGeoFX/viewer/ViewOrientation.h>
-
-#include <osg/Camera>
-#include <osgGA/GUIEventHandler>
-#include <osgViewer/View>
 
 #include <memory>
 #include <optional>
@@ -24,9 +21,9 @@ namespace osgGeoFX
     the error that the window has, so it asks the pager for little, and as a rule for nothing that the window has not. Its
     middle lies ahead of the camera; its width follows the bend, or the eye's height without one.
 
-    The key i shows and hides it; at first it is hidden. One handler serves one view, in its event traversal.
+    The key i shows and hides it.
     @ingroup viewer */
-class OSGGEOFX_EXPORT MiniMap : public osgGA::GUIEventHandler
+class OSGGEOFX_EXPORT MiniMap : public CornerOverlay
 {
 public:
     /// `reference`: for true north on a projected terrain; null for the grid's. `terrain`: of a database of osggeofx_build, for its
@@ -34,11 +31,6 @@ public:
     explicit MiniMap(EffectScene& scene, const Georeference* reference = nullptr,
                      const std::optional<TerrainInfo>& terrain = std::nullopt);
 
-    bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action) override;
-    void getUsage(osg::ApplicationUsage& usage) const override;
-
-    void setShown(bool shown);
-    bool shown() const { return _shown; }
     /// The width of the ground on the map, metres; 0, the default, lets the bend or the eye's height decide.
     void setWidth(double metres) { _width = metres > 0.0 ? metres : 0.0; }
     double getWidth() const { return _width; }
@@ -53,18 +45,17 @@ protected:
 
 private:
     struct Content;
-    void show(osgViewer::View& view);
+    void show(osgViewer::View& view) override;
+    void hide() override;
     void place(osgViewer::View& view, const Content& content, const ViewOrientation& orientation);
     void draw(const Content& content);
 
     osg::ref_ptr<EffectScene> _scene;
     osg::ref_ptr<const Georeference> _reference;
     std::optional<TerrainInfo> _terrain;
-    osg::ref_ptr<osg::Camera> _map;     ///< the ground
-    osg::ref_ptr<osg::Camera> _overlay; ///< what is drawn over it
-    osg::Matrixd _toMap; ///< from the children's frame to metres east and north of the eye's foot
+    osg::ref_ptr<osg::Camera> _map; ///< the ground, below the overlay
+    osg::Matrixd _toMap;            ///< from the children's frame to metres east and north of the eye's foot
     double _width = 0.0;
-    bool _shown = false;
     std::unique_ptr<Content> _drawn;
 };
 

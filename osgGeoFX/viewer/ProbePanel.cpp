@@ -25,12 +25,9 @@ namespace
 using Event = osgGA::GUIEventAdapter;
 using Text = osgText::Text;
 
-const osg::Vec4 background(0.06f, 0.07f, 0.09f, 0.88f);
 const osg::Vec4 field(0.13f, 0.15f, 0.19f, 0.9f);
 const osg::Vec4 button(0.20f, 0.42f, 0.70f, 0.9f);
 const osg::Vec4 grid(0.30f, 0.33f, 0.38f, 0.9f);
-const osg::Vec4 bright(0.95f, 0.95f, 0.95f, 1.0f);
-const osg::Vec4 dim(0.62f, 0.64f, 0.67f, 1.0f);
 const osg::Vec4 clockColor(0.45f, 0.68f, 0.95f, 1.0f);
 
 constexpr std::size_t mostLines = 12;
@@ -61,66 +58,65 @@ std::string fileNameOf(const std::string& name)
     return file.empty() ? "series" : file;
 }
 
-void drawPlot(OverlayPainter& painter, const SeriesGraph& graph, const std::vector<std::string>& lines,
+void drawPlot(OverlayShapes& shapes, const SeriesGraph& graph, const std::vector<std::string>& lines,
               double time)
 {
     const double thin = std::max(std::round(graph.text / 12.0), 1.0);
     const PixelBox& area = graph.graph;
-    painter.box(graph.panel, background);
-    painter.box(area, field);
+    shapes.box(graph.panel, overlay::background);
+    shapes.box(area, field);
     for (const SeriesGraph::Tick& tick : graph.values)
     {
         const double y = std::round(graph.placeOf(graph.begin, tick.at).y());
-        painter.box({area.left, y, area.width, 1.0}, grid);
-        painter.text(tick.text, area.left - 0.5 * graph.text, y - 0.36 * graph.text, Text::RIGHT_BASE_LINE,
-                     dim);
+        shapes.box(PixelBox{area.left, y, area.width, 1.0}, grid);
+        shapes.text(tick.text, {area.left - 0.5 * graph.text, y - 0.36 * graph.text}, graph.text,
+                    overlay::dim, Text::RIGHT_BASE_LINE);
     }
     for (const SeriesGraph::Tick& tick : graph.times)
     {
         const double x = std::round(graph.placeOf(tick.at, graph.low).x());
-        painter.box({x, area.bottom, 1.0, area.height}, grid);
-        painter.text(tick.text, x, area.bottom - 1.3 * graph.text, Text::CENTER_BASE_LINE, dim);
+        shapes.box(PixelBox{x, area.bottom, 1.0, area.height}, grid);
+        shapes.text(tick.text, {x, area.bottom - 1.3 * graph.text}, graph.text, overlay::dim);
     }
     for (const SeriesGraph::Curve& curve : graph.curves)
     {
         for (const std::vector<osg::Vec2d>& line : curve.lines)
         {
-            for (std::size_t i = 1; i < line.size(); ++i)
-                painter.line(line[i - 1], line[i], 2.0 * thin, curve.color);
+            shapes.line(line, 2.0 * thin, curve.color);
             // A single value between gaps has no line.
             for (const osg::Vec2d& place : line)
-                painter.disc(place, line.size() == 1 ? 2.0 * thin : thin, curve.color);
+                shapes.disc(place, line.size() == 1 ? 2.0 * thin : thin, curve.color);
         }
     }
     if (time >= graph.begin && time <= graph.end)
     {
         const double x = std::round(graph.placeOf(time, graph.low).x());
-        painter.box({x - thin, area.bottom, 2.0 * thin, area.height}, clockColor);
+        shapes.box(PixelBox{x - thin, area.bottom, 2.0 * thin, area.height}, clockColor);
         if (const std::optional<double> value = graph.valueAt(time))
-            painter.disc(graph.placeOf(time, *value), 0.35 * graph.text, clockColor);
+            shapes.disc(graph.placeOf(time, *value), 0.35 * graph.text, clockColor);
     }
     const double left = graph.panel.left + graph.margin;
     double base = graph.close.bottom + 0.4 * graph.text;
     for (const std::string& each : lines)
     {
-        painter.text(each, left, base, Text::LEFT_BASE_LINE, base > area.top() + graph.line ? bright : dim);
+        shapes.text(each, {left, base}, graph.text,
+                    base > area.top() + graph.line ? overlay::bright : overlay::dim, Text::LEFT_BASE_LINE);
         base -= graph.line;
     }
-    painter.box(graph.save, button);
-    painter.text("Save", graph.save.left + 0.5 * graph.save.width, graph.save.bottom + 0.36 * graph.text,
-                 Text::CENTER_BASE_LINE, bright);
-    painter.box(graph.close, button);
-    painter.text("×", graph.close.left + 0.5 * graph.close.width, graph.close.bottom + 0.36 * graph.text,
-                 Text::CENTER_BASE_LINE, bright);
+    for (const auto& [box, words] : {std::pair(graph.save, "Save"), std::pair(graph.close, "×")})
+    {
+        shapes.box(box, button);
+        shapes.text(words, {box.middle().x(), box.bottom + 0.36 * graph.text}, graph.text, overlay::bright);
+    }
 }
 
-void drawValues(OverlayPainter& painter, const std::vector<std::string>& lines, const osg::Vec2d& pointer,
+void drawValues(OverlayShapes& shapes, const std::vector<std::string>& lines, const osg::Vec2d& pointer,
                 const osg::Vec2d& size, double text)
 {
     const double line = std::round(1.5 * text), margin = std::round(0.6 * text);
     PixelBox box;
     for (const std::string& each : lines)
-        box.width = std::max(box.width, painter.widthOf(each));
+        box.width = std::max(box.width, shapes.widthOf(each, text));
     box.width = std::ceil(box.width) + 2.0 * margin;
     box.height = line * static_cast<double>(lines.size()) + margin;
     // Beside the pointer, where there is room.
@@ -131,11 +127,11 @@ void drawValues(OverlayPainter& painter, const std::vector<std::string>& lines, 
     box.bottom = pointer.y() - away - box.height;
     if (box.bottom < 0.0) box.bottom = pointer.y() + away;
     box.bottom = std::round(std::clamp(box.bottom, 0.0, std::max(0.0, size.y() - box.height)));
-    painter.box(box, background);
+    shapes.box(box, overlay::background);
     double base = box.top() - 0.5 * margin - line + 0.4 * text;
     for (const std::string& each : lines)
     {
-        painter.text(each, box.left + margin, base, Text::LEFT_BASE_LINE, bright);
+        shapes.text(each, {box.left + margin, base}, text, overlay::bright, Text::LEFT_BASE_LINE);
         base -= line;
     }
 }
@@ -370,22 +366,22 @@ void ProbePanel::show(osgViewer::View& view)
     const bool fresh = showOverlay(view, _overlay, 11);
     if (!fresh && _drawn && *_drawn == now) return;
     const osg::Vec2d size(_overlay->getViewport()->width(), _overlay->getViewport()->height());
-    const double text = std::clamp(std::round(size.y() / 50.0), 11.0, 22.0);
+    const double text = overlayTextSize(size.y());
     _overlay->removeChildren(0, _overlay->getNumChildren());
     if (_series)
     {
         LayerSequence& sequence = _series->sequence();
         const SeriesGraph graph(size.x(), size.y(), _series->points(), *sequence.getClock(),
                                 sequence.steps().kind() == DataLayer::CLASS);
-        OverlayPainter painter(text, _font);
-        drawPlot(painter, graph, now.plot, now.time);
-        _overlay->addChild(painter.take());
+        OverlayShapes shapes(_font);
+        drawPlot(shapes, graph, now.plot, now.time);
+        _overlay->addChild(shapes.group());
     }
     if (!now.lines.empty())
     {
-        OverlayPainter painter(text, _font);
-        drawValues(painter, now.lines, now.pointer, size, text);
-        _overlay->addChild(painter.take());
+        OverlayShapes shapes(_font);
+        drawValues(shapes, now.lines, now.pointer, size, text);
+        _overlay->addChild(shapes.group());
     }
     _drawn = std::make_unique<Content>(std::move(now));
 }

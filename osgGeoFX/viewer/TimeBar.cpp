@@ -3,9 +3,7 @@
 #include <osgGeoFX/viewer/TimeBar.h>
 
 #include <osgGeoFX/viewer/Overlay.h>
-
-#include <osg/Geometry>
-#include <osgText/Text>
+#include <osgGeoFX/viewer/detail/OverlayShapes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +17,8 @@ namespace
 
 using Event = osgGA::GUIEventAdapter;
 
-const osg::Vec4 background(0.06f, 0.07f, 0.09f, 0.85f);
 const osg::Vec4 field(0.28f, 0.31f, 0.36f, 0.95f);
 const osg::Vec4 past(0.95f, 0.72f, 0.30f, 1.0f);
-const osg::Vec4 bright(0.95f, 0.95f, 0.95f, 1.0f);
 constexpr double mostSpeed = 1e9;
 
 /// What a second of the program brings: "6 h/s".
@@ -48,30 +44,21 @@ std::string speedText(double speed)
 /// Where everything is, pixels from the window's lower left corner.
 struct TimeBar::Layout
 {
-    struct Box
-    {
-        double left = 0.0, bottom = 0.0, right = 0.0, top = 0.0;
-        bool has(double x, double y) const { return x >= left && x <= right && y >= bottom && y <= top; }
-    };
-
     Layout(double width, double height)
     {
-        text = std::clamp(std::round(height / 50.0), 11.0, 22.0);
+        text = overlayTextSize(height);
         const double reach = std::min(width - 2.0 * text, 52.0 * text);
-        const double low = std::round(1.2 * text);
-        panel = {std::round(0.5 * (width - reach)), low, std::round(0.5 * (width + reach)), low + 3.4 * text};
-        button = {panel.left + 0.5 * text, panel.bottom + 0.6 * text, panel.left + 2.5 * text,
-                  panel.top - 0.6 * text};
-        track = {button.right + text, panel.bottom + 0.75 * text, panel.right - text,
-                 panel.bottom + 1.15 * text};
+        panel = {std::round(0.5 * (width - reach)), std::round(1.2 * text), std::round(reach), 3.4 * text};
+        button = {panel.left + 0.5 * text, panel.bottom + 0.6 * text, 2.0 * text, 2.2 * text};
+        const double begin = button.right() + text;
+        track = {begin, panel.bottom + 0.75 * text, panel.right() - text - begin, 0.4 * text};
         // Easier to hit than to see.
-        reachOfTrack = {track.left - 0.5 * text, panel.bottom, track.right + 0.5 * text,
-                        panel.bottom + 1.7 * text};
-        loop = {panel.right - 16.0 * text, reachOfTrack.top, panel.right, panel.top};
+        reachOfTrack = {track.left - 0.5 * text, panel.bottom, track.width + text, 1.7 * text};
+        loop = {panel.right() - 16.0 * text, reachOfTrack.top(), 16.0 * text, 1.7 * text};
     }
 
     double text;
-    Box panel, button, track, reachOfTrack, loop;
+    PixelBox panel, button, track, reachOfTrack, loop;
 };
 
 struct TimeBar::Content
@@ -151,26 +138,25 @@ void TimeBar::letGo()
 
 void TimeBar::drag(double x, const Layout& layout)
 {
-    const double share =
-        std::clamp((x - layout.track.left) / (layout.track.right - layout.track.left), 0.0, 1.0);
+    const double share = std::clamp((x - layout.track.left) / layout.track.width, 0.0, 1.0);
     _clock->setTime(_clock->getBegin() + share * (_clock->getEnd() - _clock->getBegin()));
 }
 
 bool TimeBar::push(const Event& event, double x, double y, const Layout& layout)
 {
-    if (!layout.panel.has(x, y)) return false;
+    if (!layout.panel.has({x, y})) return false;
     if (event.getButton() == Event::RIGHT_MOUSE_BUTTON) _clock->setSpeed(-_clock->getSpeed());
     if (event.getButton() != Event::LEFT_MOUSE_BUTTON) return true;
-    if (layout.button.has(x, y))
+    if (layout.button.has({x, y}))
         _clock->setPlaying(!_clock->getPlaying());
-    else if (layout.reachOfTrack.has(x, y))
+    else if (layout.reachOfTrack.has({x, y}))
     {
         _dragged = true;
         _plays = _clock->getPlaying();
         _clock->setPlaying(false);
         drag(x, layout);
     }
-    else if (layout.loop.has(x, y))
+    else if (layout.loop.has({x, y}))
         _clock->setLoop(!_clock->getLoop());
     return true;
 }
@@ -206,7 +192,7 @@ bool TimeBar::handle(const Event& event, osgGA::GUIActionAdapter& action)
         return held;
     }
     case Event::SCROLL:
-        return layout.panel.has(x, y);
+        return layout.panel.has({x, y});
     case Event::FRAME:
         show(*view);
         return false;
@@ -224,66 +210,28 @@ void TimeBar::show(osgViewer::View& view)
     const Content now = content();
     if (!fresh && _drawn && *_drawn == now) return;
     const Layout layout(_overlay->getViewport()->width(), _overlay->getViewport()->height());
-    osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
-    const auto triangle =
-        [&](const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c, const osg::Vec4& color)
-    {
-        for (const osg::Vec2d& corner : {a, b, c})
-        {
-            corners->push_back(osg::Vec3(osg::Vec3d(corner.x(), corner.y(), 0.0)));
-            colors->push_back(color);
-        }
-    };
-    const auto box = [&](double left, double bottom, double right, double top, const osg::Vec4& color)
-    {
-        triangle({left, bottom}, {right, bottom}, {right, top}, color);
-        triangle({left, bottom}, {right, top}, {left, top}, color);
-    };
-    const Layout::Box& panel = layout.panel;
-    const Layout::Box& track = layout.track;
-    const Layout::Box& button = layout.button;
-    box(panel.left, panel.bottom, panel.right, panel.top, background);
-    box(track.left, track.bottom, track.right, track.top, field);
-    const double at = track.left + now.share * (track.right - track.left);
-    box(track.left, track.bottom, at, track.top, past);
-    const double thumb = 0.3 * layout.text;
-    box(at - thumb, track.bottom - thumb, at + thumb, track.top + thumb, bright);
-    const double width = button.right - button.left;
+    const PixelBox &panel = layout.panel, &track = layout.track, &button = layout.button;
+    OverlayShapes shapes(_font);
+    shapes.box(panel, overlay::background);
+    shapes.box(track, field);
+    // These move by less than a pixel.
+    const double at = track.left + now.share * track.width, thumb = 0.3 * layout.text;
+    shapes.box({track.left, track.bottom}, {at, track.top()}, past);
+    shapes.box({at - thumb, track.bottom - thumb}, {at + thumb, track.top() + thumb}, overlay::bright);
     if (now.playing)
-    {
-        box(button.left, button.bottom, button.left + 0.35 * width, button.top, bright);
-        box(button.right - 0.35 * width, button.bottom, button.right, button.top, bright);
-    }
+        for (const double left : {button.left, button.right() - 0.35 * button.width})
+            shapes.box(PixelBox{left, button.bottom, 0.35 * button.width, button.height}, overlay::bright);
     else
-        triangle({button.left, button.bottom}, {button.right, 0.5 * (button.bottom + button.top)},
-                 {button.left, button.top}, bright);
-    osg::ref_ptr<osg::Geometry> shapes = new osg::Geometry;
-    shapes->setVertexArray(corners);
-    shapes->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
-    shapes->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, static_cast<int>(corners->size())));
-    shapes->getOrCreateStateSet()->setMode(GL_BLEND, osg::StateAttribute::ON);
-    osg::ref_ptr<osg::Group> group = new osg::Group;
-    group->getOrCreateStateSet()->setRenderBinDetails(0, "TraversalOrderBin");
-    group->addChild(shapes);
-    const auto write = [&](const std::string& words, double x, osgText::Text::AlignmentType alignment)
-    {
-        osg::ref_ptr<osgText::Text> text = new osgText::Text;
-        if (_font) text->setFont(_font);
-        text->setCharacterSize(static_cast<float>(layout.text));
-        const auto resolution = static_cast<unsigned int>(std::clamp(layout.text * 1.5, 16.0, 96.0));
-        text->setFontResolution(resolution, resolution);
-        text->setAlignment(alignment);
-        text->setColor(bright);
-        text->setPosition(osg::Vec3(
-            osg::Vec3d(std::round(x), std::round(layout.reachOfTrack.top + 0.35 * layout.text), 0.0)));
-        text->setText(osgText::String(words, osgText::String::ENCODING_UTF8));
-        group->addChild(text);
-    };
-    write(now.time, track.left, osgText::Text::LEFT_BASE_LINE);
-    write(now.speed, track.right, osgText::Text::RIGHT_BASE_LINE);
+        shapes.polygon({{button.left, button.bottom},
+                        {button.right(), button.middle().y()},
+                        {button.left, button.top()}},
+                       overlay::bright);
+    const double base = layout.reachOfTrack.top() + 0.35 * layout.text;
+    shapes.text(now.time, {track.left, base}, layout.text, overlay::bright, osgText::Text::LEFT_BASE_LINE);
+    shapes.text(now.speed, {track.right(), base}, layout.text, overlay::bright,
+                osgText::Text::RIGHT_BASE_LINE);
     _overlay->removeChildren(0, _overlay->getNumChildren());
-    _overlay->addChild(group);
+    _overlay->addChild(shapes.group());
     _drawn = std::make_unique<Content>(now);
 }
 

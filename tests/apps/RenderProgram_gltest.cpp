@@ -6,6 +6,7 @@
 #include <tools/GlFixture.h>
 #include <tools/ImageComparison.h>
 #include <tools/PagedScene.h>
+#include <tools/PixelsApart.h>
 #include <tools/RunProgram.h>
 #include <tools/TempDir.h>
 
@@ -237,17 +238,9 @@ TEST_F(RenderProgram, CitiesKeepTheirShape)
     const osg::ref_ptr<osg::Image> without = draw("without.png", {}),
                                    rigid = draw("nodes.png", {"--city", "nodes.osgb"}),
                                    found = draw("city.png", {"--city", "city.osgb"});
-    const auto apart = [](const osg::Image& a, const osg::Image& b)
-    {
-        int count = 0;
-        for (unsigned int y = 0; y < 240; ++y)
-            for (unsigned int x = 0; x < 320; ++x)
-                count += (a.getColor(x, y) - b.getColor(x, y)).length() > 0.03f ? 1 : 0;
-        return count;
-    };
-    const int seen = apart(*rigid, *without);
+    const int seen = geofx::test::pixelsApart(*rigid, *without);
     EXPECT_GT(seen, 2000);
-    EXPECT_LE(apart(*found, *rigid), seen / 50);
+    EXPECT_LE(geofx::test::pixelsApart(*found, *rigid), seen / 50);
 }
 
 // A print is the picture in tiles, with its resolution.

@@ -10,6 +10,7 @@
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <tools/GlFixture.h>
+#include <tools/PlainView.h>
 #include <tools/SmoothTexture.h>
 
 #include <osg/Geometry>
@@ -75,10 +76,8 @@ protected:
     {
         GlFixture::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        viewer().setLightingMode(osg::View::NO_LIGHT);
+        usePlainView(viewer());
         osg::Camera& camera = *viewer().getCamera();
-        camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-        camera.setClearColor({0.0f, 0.0f, 0.0f, 1.0f});
         camera.setViewMatrixAsLookAt(osg::Vec3d(0.0, -1900.0, 700.0), osg::Vec3d(0.0, -700.0, 0.0),
                                      osg::Vec3d(0, 0, 1));
         camera.setProjectionMatrixAsPerspective(50.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 20000.0);

@@ -10,6 +10,7 @@
 #include <osgGeoFX/scene/RigidReference.h>
 #include <tools/BentGround.h>
 #include <tools/ImageComparison.h>
+#include <tools/PixelsApart.h>
 #include <tools/RandomSamples.h>
 
 using namespace osgGeoFX;
@@ -87,16 +88,6 @@ protected:
         return boxes;
     }
 
-    /// How many pixels have clearly another color: constant colors may be rounded otherwise where vertices are.
-    static int apart(const osg::Image& a, const osg::Image& b)
-    {
-        int count = 0;
-        for (unsigned int y = 0; y < HEIGHT; ++y)
-            for (unsigned int x = 0; x < WIDTH; ++x)
-                count += (a.getColor(x, y) - b.getColor(x, y)).length() > 0.03f ? 1 : 0;
-        return count;
-    }
-
     static osg::ref_ptr<EffectScene> sceneOf(int kind, const osg::ref_ptr<osg::Node>& child)
     {
         osg::ref_ptr<EffectScene> scene = new EffectScene;
@@ -133,12 +124,13 @@ TEST_F(RigidPartsTest, AreDrawnAsIfEachHadANode)
         const osg::ref_ptr<osg::Image> actual = render(sceneOf(kind, makeParts(boxes)));
         EXPECT_GT(covered(*expected), 800);
         // Floats instead of matrices of doubles: edges may fall to the other pixel.
-        EXPECT_LE(apart(*actual, *expected), covered(*expected) / 50);
+        EXPECT_LE(pixelsApart(*actual, *expected), covered(*expected) / 50);
         // Without the references they lean.
         osg::ref_ptr<osg::Geometry> soft = makeParts(boxes);
         soft->setStateSet(nullptr);
         soft->setVertexAttribArray(RigidParts::attribute, nullptr);
-        EXPECT_GT(apart(*render(sceneOf(kind, soft)), *expected), 5 * apart(*actual, *expected) + 10);
+        EXPECT_GT(pixelsApart(*render(sceneOf(kind, soft)), *expected),
+                  5 * pixelsApart(*actual, *expected) + 10);
     }
 }
 

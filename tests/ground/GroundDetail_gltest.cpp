@@ -11,6 +11,7 @@
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <tools/GlFixture.h>
+#include <tools/PlainView.h>
 #include <tools/RandomSamples.h>
 #include <tools/SmoothTexture.h>
 
@@ -126,10 +127,7 @@ protected:
     {
         GlFixture::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        viewer().setLightingMode(osg::View::NO_LIGHT);
-        osg::Camera& camera = *viewer().getCamera();
-        camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-        camera.setClearColor({0.0f, 0.0f, 0.0f, 1.0f});
+        usePlainView(viewer());
         paint();
         build(osg::Matrixd());
         look({-300.0, -900.0, 260.0}, {0.0, -300.0, 0.0});

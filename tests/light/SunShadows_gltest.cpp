@@ -10,6 +10,7 @@
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <tools/GlFixture.h>
+#include <tools/PlainView.h>
 
 #include <osg/Geometry>
 #include <osg/LightModel>
@@ -178,10 +179,7 @@ protected:
     {
         GlFixture::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        viewer().setLightingMode(osg::View::NO_LIGHT);
-        osg::Camera& camera = *viewer().getCamera();
-        camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-        camera.setClearColor({0.0f, 0.0f, 0.0f, 1.0f});
+        usePlainView(viewer());
         build(osg::Matrixd());
     }
 

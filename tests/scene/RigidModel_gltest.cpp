@@ -7,6 +7,7 @@
 #include <osgGeoFX/scene/RigidModel.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <tools/BentGround.h>
+#include <tools/PixelsApart.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 
@@ -110,14 +111,6 @@ protected:
         }
         return group;
     }
-    static int apart(const osg::Image& a, const osg::Image& b)
-    {
-        int count = 0;
-        for (unsigned int y = 0; y < HEIGHT; ++y)
-            for (unsigned int x = 0; x < WIDTH; ++x)
-                count += (a.getColor(x, y) - b.getColor(x, y)).length() > 0.03f ? 1 : 0;
-        return count;
-    }
 };
 
 osg::Vec4 referenceOf(const osg::Geometry& geometry, std::size_t vertex)
@@ -136,11 +129,11 @@ TEST_F(RigidModelTest, HousesAreDrawnAsIfEachHadANode)
     const osg::ref_ptr<osg::Node> models[] = {makeModel(houses), makeScattered(houses)};
     for (const osg::ref_ptr<osg::Node>& model : models)
     {
-        const int soft = apart(*render(makeScene({model})), *expected);
+        const int soft = pixelsApart(*render(makeScene({model})), *expected);
         const osg::ref_ptr<RigidModel> rigid = new RigidModel;
         rigid->prepare(*model);
         EXPECT_EQ(rigid->things(), houses.size());
-        const int left = apart(*render(makeScene({model})), *expected);
+        const int left = pixelsApart(*render(makeScene({model})), *expected);
         // Floats instead of matrices of doubles: edges may fall to the other pixel.
         EXPECT_LE(left, covered(*expected) / 50);
         EXPECT_GT(soft, 5 * left + 10);

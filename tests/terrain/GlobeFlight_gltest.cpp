@@ -6,6 +6,7 @@
 #include <osgGeoFX/paging/PagerMonitor.h>
 #include <tools/GlFixture.h>
 #include <tools/OahuScene.h>
+#include <tools/PixelsApart.h>
 #include <tools/RandomSamples.h>
 
 #include <osg/Math>
@@ -196,14 +197,7 @@ TEST_F(GlobeFlight, NoDepthsFight)
         _scene->effects->setDepthConvention({DepthConvention::LOGARITHMIC_BY_FRAGMENT, 1e8});
         const osg::ref_ptr<osg::Image> fine = render(_scene->node);
         _scene->effects->setDepthConvention({});
-        int fighting = 0;
-        for (int i = 0; i < 4 * WIDTH * HEIGHT; i += 4)
-        {
-            int most = 0;
-            for (int c = 0; c < 3; ++c)
-                most = std::max(most, std::abs(image->data()[i + c] - fine->data()[i + c]));
-            fighting += most > 4 ? 1 : 0;
-        }
+        const int fighting = pixelsApart(*image, *fine);
         std::cout << "step " << step << ": " << fighting << " pixels\n";
         EXPECT_LE(fighting, WIDTH * HEIGHT / 1000) << "step " << step;
     }

@@ -55,6 +55,12 @@ void OverlayShapes::box(const osg::Vec2d& low, const osg::Vec2d& high, const osg
     triangle(low, high, left, color, color, color);
 }
 
+void OverlayShapes::box(const PixelBox& box, const osg::Vec4& color)
+{
+    this->box({std::round(box.left), std::round(box.bottom)},
+              {std::round(box.right()), std::round(box.top())}, color);
+}
+
 void OverlayShapes::polygon(const OverlayPoints& corners, const osg::Vec4& color)
 {
     const std::size_t count = corners.size();
@@ -141,18 +147,30 @@ void OverlayShapes::ring(const osg::Vec2d& center, double radius, double width, 
     line(points, width, color);
 }
 
-void OverlayShapes::text(const std::string& words, const osg::Vec2d& place, double size,
-                         const osg::Vec4& color, osgText::Text::AlignmentType alignment)
+osg::ref_ptr<osgText::Text> OverlayShapes::makeText(const std::string& words, double size) const
 {
-    const osg::ref_ptr<osgText::Text> text = new osgText::Text;
+    osg::ref_ptr<osgText::Text> text = new osgText::Text;
     if (_font) text->setFont(_font);
     text->setCharacterSize(static_cast<float>(size));
     const auto resolution = static_cast<unsigned int>(std::clamp(size * 1.5, 16.0, 96.0));
     text->setFontResolution(resolution, resolution);
+    text->setText(osgText::String(words, osgText::String::ENCODING_UTF8));
+    return text;
+}
+
+double OverlayShapes::widthOf(const std::string& words, double size) const
+{
+    const osg::BoundingBox bounds = makeText(words, size)->getBoundingBox();
+    return bounds.valid() ? static_cast<double>(bounds.xMax()) : 0.0;
+}
+
+void OverlayShapes::text(const std::string& words, const osg::Vec2d& place, double size,
+                         const osg::Vec4& color, osgText::Text::AlignmentType alignment)
+{
+    const osg::ref_ptr<osgText::Text> text = makeText(words, size);
     text->setAlignment(alignment);
     text->setColor(color);
     text->setPosition(osg::Vec3(osg::Vec3d(std::round(place.x()), std::round(place.y()), 0.0)));
-    text->setText(osgText::String(words, osgText::String::ENCODING_UTF8));
     _texts.push_back(text);
 }
 

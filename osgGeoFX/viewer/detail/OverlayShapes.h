@@ -17,6 +17,20 @@ namespace osgGeoFX
 
 using OverlayPoints = std::vector<osg::Vec2d>;
 
+/// A rectangle of the viewport, pixels, y up.
+struct PixelBox
+{
+    double left = 0.0, bottom = 0.0, width = 0.0, height = 0.0;
+
+    double right() const { return left + width; }
+    double top() const { return bottom + height; }
+    osg::Vec2d middle() const { return {left + 0.5 * width, bottom + 0.5 * height}; }
+    bool has(const osg::Vec2d& place) const
+    {
+        return place.x() >= left && place.y() >= bottom && place.x() < right() && place.y() < top();
+    }
+};
+
 /** Collects what an overlay draws: flat shapes with smooth edges, and texts over them. Places are pixels. Colors with alpha. */
 class OverlayShapes
 {
@@ -24,6 +38,8 @@ public:
     explicit OverlayShapes(osgText::Font* font) : _font(font) {}
 
     void box(const osg::Vec2d& low, const osg::Vec2d& high, const osg::Vec4& color);
+    /// The same, at whole pixels.
+    void box(const PixelBox& box, const osg::Vec4& color);
     /// A convex polygon, whichever way round.
     void polygon(const OverlayPoints& corners, const osg::Vec4& color);
     void line(const OverlayPoints& points, double width, const osg::Vec4& color);
@@ -33,9 +49,14 @@ public:
     void text(const std::string& words, const osg::Vec2d& place, double size, const osg::Vec4& color,
               osgText::Text::AlignmentType alignment = osgText::Text::CENTER_BASE_LINE);
 
+    /// How wide a text of this size is.
+    double widthOf(const std::string& words, double size) const;
+
+    /// All of it: the shapes in their order, and the texts over them.
     osg::ref_ptr<osg::Group> group() const;
 
 private:
+    osg::ref_ptr<osgText::Text> makeText(const std::string& words, double size) const;
     void triangle(const osg::Vec2d& a, const osg::Vec2d& b, const osg::Vec2d& c, const osg::Vec4& colorA,
                   const osg::Vec4& colorB, const osg::Vec4& colorC);
 

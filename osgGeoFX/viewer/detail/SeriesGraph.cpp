@@ -37,7 +37,7 @@ SeriesGraph::SeriesGraph(double width, double height, const std::vector<LayerSer
                          const LayerClock& clock, bool classes)
     : _points(points), _classes(classes)
 {
-    text = std::clamp(std::round(height / 50.0), 11.0, 22.0);
+    text = overlayTextSize(height);
     line = std::round(1.5 * text);
     margin = std::round(0.8 * text);
     panel.left = margin;

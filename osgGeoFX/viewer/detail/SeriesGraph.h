@@ -4,7 +4,7 @@
 
 #include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/LayerSeries.h>
-#include <osgGeoFX/viewer/detail/OverlayPainter.h>
+#include <osgGeoFX/viewer/detail/OverlayShapes.h>
 
 #include <osg/Vec4>
 
