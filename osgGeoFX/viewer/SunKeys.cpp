@@ -53,7 +53,7 @@ SunKeys::SunKeys(osg::Node& scene)
 
 void SunKeys::getUsage(osg::ApplicationUsage& usage) const
 {
-    usage.addKeyboardMouseBinding("u and U", "Move the sun by half an hour, on and back");
+    usage.addKeyboardMouseBinding("j and J", "Move the sun by half an hour, on and back");
 }
 
 std::string SunKeys::text() const
@@ -75,10 +75,10 @@ bool SunKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapte
         return false;
     }
     if (event.getEventType() != osgGA::GUIEventAdapter::KEYDOWN ||
-        (event.getKey() != 'u' && event.getKey() != 'U'))
+        (event.getKey() != 'j' && event.getKey() != 'J'))
         return false;
     ClockTime time = _sun->getTime();
-    time.time += event.getKey() == 'u' ? step : -step;
+    time.time += event.getKey() == 'j' ? step : -step;
     _sun->setTime(time);
     char line[128];
     std::snprintf(line, sizeof line, "%s  sun %.0f° high, at %.0f°", textOf(time).c_str(),

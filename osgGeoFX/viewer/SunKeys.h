@@ -14,7 +14,7 @@
 namespace osgGeoFX
 {
 
-/** Keys that move the sun of a scene: u goes half an hour on, U half an hour back. For two seconds the picture tells the time
+/** Keys that move the sun of a scene: j goes half an hour on, J half an hour back. For two seconds the picture tells the time
     and where the sun stands. It handles no key if the scene has no SunLight.
     @ingroup viewer */
 class OSGGEOFX_EXPORT SunKeys : public osgGA::GUIEventHandler

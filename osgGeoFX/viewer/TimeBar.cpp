@@ -80,7 +80,7 @@ void TimeBar::getUsage(osg::ApplicationUsage& usage) const
 {
     usage.addKeyboardMouseBinding("F3", "Toggle the bar of the layers' time: drag it, click its button");
     usage.addKeyboardMouseBinding("y", "Let the layers' time go on, or pause it");
-    usage.addKeyboardMouseBinding("< and >", "Halve and double the speed of the layers' time");
+    usage.addKeyboardMouseBinding("x and X", "Double and halve the speed of the layers' time");
 }
 
 TimeBar::Content TimeBar::content() const
@@ -118,10 +118,10 @@ bool TimeBar::key(int code)
     case 'y':
         _clock->setPlaying(!_clock->getPlaying());
         return true;
-    case '<':
+    case 'X':
         scale(0.5);
         return true;
-    case '>':
+    case 'x':
         scale(2.0);
         return true;
     default:

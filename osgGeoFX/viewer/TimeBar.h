@@ -20,7 +20,7 @@ namespace osgGeoFX
 /** A bar for the time of a scene's layers (LayerClock) along the lower edge of the window.
 
     F3 hides and shows it; at first it is shown. The left button drags the time, and pauses the clock where it goes on; the button
-    at the left end, or the key y, plays and pauses. `<` and `>` halve and double the speed, the right button on the bar turns the
+    at the left end, or the key y, plays and pauses. `x` and `X` double and halve the speed, the right button on the bar turns the
     direction round, and a click on the text at the right end switches the loop. Keys work while the bar is hidden, too. One bar
     serves one view, in its event traversal.
     @ingroup viewer */

@@ -3,7 +3,9 @@
 // What osggeofx_viewer puts into its viewer: the keys, the page that tells them, the manipulators and their home.
 #include <osgGeoFX/closeup/CloseUpHandler.h>
 #include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/light/SunLight.h>
 #include <osgGeoFX/map/MapContents.h>
+#include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/panorama/PanoramaComposer.h>
 #include <osgGeoFX/panorama/PanoramaManipulator.h>
 #include <osgGeoFX/viewer/CurvePanel.h>
@@ -198,6 +200,16 @@ protected:
         contents.lines = {{"river", "", {{-6378137.0, 0.0, 0.0}, {-6378137.0, 100.0, 0.0}}}};
         _scene->node = contents.addTo(*_scene->effects, *_scene->node);
         viewer().setSceneData(_scene->node);
+    }
+
+    /// What has keys of its own where it is there: names and lines, a sun with a time, and layers in time.
+    void addAll()
+    {
+        addMap();
+        const osg::ref_ptr<SunLight> sun = new SunLight;
+        sun->setTime(*readClockTime("2026-06-21T07:30:00-10:00"));
+        _scene->effects->addChild(sun);
+        LayerPlayer::onto(*_scene->effects);
     }
 
     void press(int key)
@@ -695,7 +707,7 @@ TEST_F(ViewerKeys, NamesAndLinesAreHiddenAndShown)
 
 TEST_F(ViewerKeys, EachKeyThatAHandlerKnowsStandsOnAPage)
 {
-    addMap();
+    addAll();
     ASSERT_NO_FATAL_FAILURE(setUpViewer());
     const std::vector<std::string> own = bindings('h');
     const std::vector<std::string> others = bindings('H');
@@ -754,8 +766,10 @@ TEST_F(ViewerKeys, EachKeyThatAHandlerKnowsStandsOnAPage)
     EXPECT_TRUE(stands(own, "Ctrl + left button"));
     EXPECT_TRUE(stands(own, "Shift + left button"));
     EXPECT_TRUE(stands(own, "left button"));
-    // The page's own.
+    // The page's own, on the last one.
     press('h');
+    for (std::size_t page = 1; page < _page->pages(); ++page)
+        press('h');
     const auto texts = shownTexts();
     EXPECT_TRUE(std::any_of(texts.begin(), texts.end(),
                             [](const auto& text)
@@ -764,7 +778,7 @@ TEST_F(ViewerKeys, EachKeyThatAHandlerKnowsStandsOnAPage)
 
 TEST_F(ViewerKeys, NoKeyHasTwoMeanings)
 {
-    addMap();
+    addAll();
     ASSERT_NO_FATAL_FAILURE(setUpViewer());
     std::map<std::string, std::string> owners;
     const auto add = [&](const std::string& key, const std::string& owner)

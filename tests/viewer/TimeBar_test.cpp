@@ -103,10 +103,10 @@ TEST_F(TimeBarTest, ButtonsAndKeys)
     EXPECT_TRUE(_clock->getPlaying());
     EXPECT_TRUE(press('y'));
     EXPECT_FALSE(_clock->getPlaying());
-    EXPECT_TRUE(press('>'));
+    EXPECT_TRUE(press('x'));
     EXPECT_EQ(_clock->getSpeed(), 2.0);
-    EXPECT_TRUE(press('<'));
-    EXPECT_TRUE(press('<'));
+    EXPECT_TRUE(press('X'));
+    EXPECT_TRUE(press('X'));
     EXPECT_EQ(_clock->getSpeed(), 0.5);
     EXPECT_TRUE(click(onTrack(0.5), Event::RIGHT_MOUSE_BUTTON));
     EXPECT_EQ(_clock->getSpeed(), -0.5);

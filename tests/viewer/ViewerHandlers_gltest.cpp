@@ -157,15 +157,15 @@ TEST_F(ViewerHandlers, KeysMoveTheSun)
     viewer().frame();
     const osg::Vec4 before = sun->getLight()->getPosition();
     EXPECT_EQ(keys->text(), "");
-    viewer().getEventQueue()->keyPress('u');
+    viewer().getEventQueue()->keyPress('j');
     viewer().frame();
     EXPECT_EQ(keys->text().substr(0, 25), "2026-06-21T08:00:00-10:00");
     EXPECT_NE(sun->getLight()->getPosition(), before);
     for (int i = 0; i < 2; ++i)
-        viewer().getEventQueue()->keyPress('U');
+        viewer().getEventQueue()->keyPress('J');
     viewer().frame();
     EXPECT_EQ(keys->text().substr(0, 25), "2026-06-21T07:00:00-10:00");
-    viewer().getEventQueue()->keyPress('u');
+    viewer().getEventQueue()->keyPress('j');
     viewer().frame();
     EXPECT_EQ(sun->getLight()->getPosition(), before);
     // The text goes by itself.
