@@ -113,7 +113,7 @@ TEST_F(TimeBarTest, ButtonsAndKeys)
     const osg::BoundingBoxd panel = rectangle(0);
     EXPECT_TRUE(click({panel.xMax() - 30.0, panel.yMax() - 8.0}));
     EXPECT_FALSE(_clock->getLoop());
-    EXPECT_FALSE(press('x'));
+    EXPECT_FALSE(press('q'));
 }
 
 TEST_F(TimeBarTest, IsHiddenByItsKey)
