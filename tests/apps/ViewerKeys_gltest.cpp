@@ -177,6 +177,8 @@ protected:
         char name[] = "osggeofx_viewer";
         char* argv[] = {name, nullptr};
         osg::ArgumentParser arguments(&argc, argv);
+        // Handlers of another set-up would answer the same keys, for manipulators that nobody has any more.
+        viewer().getEventHandlers().clear();
         _manipulators = geofx::viewer::makeManipulators(arguments);
         geofx::viewer::addPanorama(*_manipulators, *_scene->effects);
         geofx::viewer::addHandlers(viewer(), *_scene, *_manipulators, _file);
