@@ -51,6 +51,7 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
                                                         const osg::Matrixd& modelView, bool ownProgram)
 {
     _touched.clear();
+    _beyond.clear();
     _places.clear();
     _states.clear();
     if (isThinLine(drawable)) return _states;
@@ -58,7 +59,7 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
     {
         if (_items[item].outside(box))
         {
-            if (!_culls) _touched.push_back(item);
+            if (!_culls) _beyond.push_back(item);
             continue;
         }
         _touched.push_back(item);
@@ -73,11 +74,14 @@ const std::vector<osg::StateSet*>& RegionFilter::states(const osg::Drawable& dra
                 std::max(region.longestEdge, largestScale(modelView) * _copies.longestEdge(*geometry));
         region.ground.push_back({&drawable, modelView * osg::Matrixd::inverse(_items[item].regionToEye())});
     }
-    if (_touched.empty()) return _states;
-    found.touches += static_cast<unsigned int>(_touched.size());
+    if (_touched.empty() && _beyond.empty()) return _states;
+    found.touches += static_cast<unsigned int>(_touched.size() + _beyond.size());
     ++found.drawables;
     if (ownProgram || !isTriangles(drawable)) found.foreign = true;
+    // Each kind has draws of its own: which triangles share a draw can change the last bit of a pixel (Mesa draws all of
+    // them another way where one must be clipped), and culling must not.
     _statesOf(_touched, _states);
+    _statesOf(_beyond, _states);
     found.count += static_cast<unsigned int>(_states.size());
     return _states;
 }

@@ -69,6 +69,7 @@ private:
     bool _patches;
     StatesOf _statesOf;
     std::vector<std::size_t> _touched;
+    std::vector<std::size_t> _beyond; ///< what it does not touch and is drawn for, since nothing is culled
     std::vector<TriangleCopies::Region> _places;
     std::vector<osg::StateSet*> _states;
 };

@@ -115,8 +115,10 @@ void RegionPass::draw(const VisibleCloseUp& visible, std::size_t which, const De
     osg::StateSet* const state = &traversal.states.layer(visible.item, which);
     const RegionSurvey drawn = run(
         {visible.item},
-        [&](const std::vector<std::size_t>&, std::vector<osg::StateSet*>& states)
-        { states.push_back(state); },
+        [&](const std::vector<std::size_t>& touched, std::vector<osg::StateSet*>& states)
+        {
+            if (!touched.empty()) states.push_back(state);
+        },
         visible.stages[which], &chain, which == 0);
     found.lowest = std::min(found.lowest, drawn.contents[visible.item].lowest);
     found.highest = std::max(found.highest, drawn.contents[visible.item].highest);
