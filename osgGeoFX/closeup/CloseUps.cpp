@@ -4,8 +4,8 @@
 
 #include <osgGeoFX/closeup/detail/CloseUpCamera.h>
 #include <osgGeoFX/effect/PerCamera.h>
+#include <osgGeoFX/scene/detail/GpuLimits.h>
 
-#include <osg/GLExtensions>
 #include <osg/Notify>
 
 #include <algorithm>
@@ -54,21 +54,6 @@ private:
     Statistics _statistics;
     std::set<std::string> _said;
 };
-
-namespace
-{
-
-/// Texels along the side of a texture, and of a picture; before the context has drawn what those with OpenGL 4 have.
-int gpuTexels(osgUtil::CullVisitor& outer)
-{
-    constexpr int usual = 16384;
-    const osg::State* state = outer.getRenderInfo().getState();
-    const osg::GLExtensions* extensions =
-        state ? osg::GLExtensions::Get(state->getContextID(), false) : nullptr;
-    return extensions && extensions->maxTextureSize > 0 ? extensions->maxTextureSize : usual;
-}
-
-} // namespace
 
 CloseUps::CloseUps() : _drawing(std::make_unique<Drawing>()) {}
 
@@ -187,7 +172,7 @@ void CloseUps::cull(const ScenePass& pass)
     // A layer is a part of the picture, but the GPU's viewport is as large as all of it.
     const double side =
         std::max({pass.outer.getViewport()->width(), pass.outer.getViewport()->height(), 1.0});
-    const int limit = gpuTexels(pass.outer);
+    const int limit = GpuLimits::of(pass.outer).textureSide;
     const int samples = std::clamp(static_cast<int>(limit / side), 1, _supersampling);
     std::string fewer;
     if (samples < _supersampling)

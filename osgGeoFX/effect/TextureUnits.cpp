@@ -20,7 +20,7 @@ struct Wish
 {
     const char* property;
     int wanted, preferred;
-    bool everywhere, ofTerrain;
+    bool everywhere, ofTerrain, optional;
 };
 using Wishes = std::vector<std::vector<Wish>>; ///< of each effect
 
@@ -73,14 +73,20 @@ public:
                 else
                     refuse(effect, wish);
             });
-        eachWish(
-            [&](std::size_t effect, const Wish& wish, int& number)
-            {
-                if (number < 0) choose(effect, wish, number);
-            });
+        for (const bool optional : {false, true})
+        {
+            eachWish(
+                [&](std::size_t effect, const Wish& wish, int& number)
+                {
+                    if (number < 0 && wish.optional == optional) choose(effect, wish, number);
+                });
+        }
+        std::vector<bool> complete(_effects.size(), true);
+        eachWish([&](std::size_t effect, const Wish& wish, int& number)
+                 { complete[effect] = complete[effect] && (number >= 0 || wish.optional); });
         for (std::size_t i = 0; i < _effects.size(); ++i)
         {
-            if (std::find(_given[i].begin(), _given[i].end(), -1) != _given[i].end()) leaveOut(i);
+            if (!complete[i]) leaveOut(i);
         }
         return _given;
     }
@@ -210,9 +216,10 @@ TextureUnits TextureUnits::of(const Effects& effects, const Units& choice, int l
         const auto* user = dynamic_cast<const TextureUser*>(effects[i].get());
         if (!user) continue;
         for (const TextureUnitWish& wish : user->textureUnits())
-            units[i].push_back({wish.property, wish.unit, wish.preferred, wish.everywhere, wish.ofTerrain});
+            units[i].push_back(
+                {wish.property, wish.unit, wish.preferred, wish.everywhere, wish.ofTerrain, wish.optional});
         for (const UniformBlockWish& wish : user->uniformBlocks())
-            blocks[i].push_back({wish.property, wish.binding, wish.preferred, true, false});
+            blocks[i].push_back({wish.property, wish.binding, wish.preferred, true, false, false});
     }
     std::stable_partition(order.begin(), order.end(),
                           [&](std::size_t i) { return effects[i]->getEnabled(); });

@@ -24,6 +24,9 @@ struct TextureUnitWish
     bool everywhere = true;
     /// Whether the terrain itself has its texture on this unit, so that no other unit would do.
     bool ofTerrain = false;
+    /// Whether the effect draws without this unit, too, in another way. Such requests are met after all others, and a
+    /// unit of −1 tells that there is none left.
+    bool optional = false;
 };
 
 /// A request of an effect for the binding point of one uniform block.
@@ -61,8 +64,8 @@ protected:
     on the ground. The scene gives none of them to an effect that does not ask for it.
 
     Requests for a certain unit come first. Enabled effects come before those that are switched off. Then all other
-    requests follow in the same order: each gets the unit that it prefers, or else the lowest free unit. Binding points
-    are given out in the same way. Every effect has its own ones.
+    requests follow in the same order: each gets the unit that it prefers, or else the lowest free unit. What effects can
+    do without comes last. Binding points are given out in the same way. Every effect has its own ones.
 
     @ingroup effect */
 struct OSGGEOFX_EXPORT TextureUnits

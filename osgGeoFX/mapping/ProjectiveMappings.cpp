@@ -330,8 +330,13 @@ std::vector<TextureUnitWish> ProjectiveMappings::textureUnits() const
     std::vector<TextureUnitWish> wishes = {
         {"dataUnit", _dataUnit, 8}, {"layerUnit", _layerUnit, 9}, {"tableUnit", _tableUnit, 10}};
     if (_caching == OFF) return wishes;
-    wishes.push_back({"pageUnit", _pageUnit, 16});
-    wishes.push_back({"pageTableUnit", _pageTableUnit, 17});
+    for (TextureUnitWish wish :
+         {TextureUnitWish{"pageUnit", _pageUnit, 16}, TextureUnitWish{"pageTableUnit", _pageTableUnit, 17}})
+    {
+        // Without pages, fragments go through the mappings themselves.
+        wish.optional = true;
+        wishes.push_back(wish);
+    }
     return wishes;
 }
 
@@ -601,6 +606,8 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     task.anisotropy = _anisotropy;
     task.megabytes = _cacheSize;
     task.pagesPerFrame = _pagesPerFrame;
+    if (view.units.size() < 5 || view.units[3] < 0 || view.units[4] < 0)
+        task.obstacle = "the scene has no texture units left for pages";
     if (_wholeList) task.obstacle = "wholeList is on";
     if (_linear) task.obstacle = "linear is on";
     camera.pages.begin(std::move(task), state, prefix);

@@ -234,6 +234,33 @@ TEST(TextureUnits, WhoGetsNoneIsToldAndIsNotDrawn)
               "put the mappings of several sets into one.");
 }
 
+TEST(TextureUnits, WhatEffectsCanDoWithoutComesLast)
+{
+    Effects effects;
+    for (int i = 0; i < 9; ++i)
+    {
+        const osg::ref_ptr<ProjectiveMappings> mappings = new ProjectiveMappings;
+        mappings->setCaching(ProjectiveMappings::AUTOMATIC);
+        effects.push_back(mappings);
+        const TextureUnits given = TextureUnits::of(effects);
+        EXPECT_EQ(std::count(given.complete.begin(), given.complete.end(), false), 0) << i;
+        EXPECT_TRUE(given.sentences.empty()) << i;
+        std::set<int> taken;
+        for (std::size_t k = 0; k < effects.size(); ++k)
+        {
+            const Units& units = given.ofEffects[k];
+            ASSERT_EQ(units.size(), 5u);
+            for (std::size_t j = 0; j < 5; ++j)
+            {
+                EXPECT_TRUE(units[j] >= 4 || j >= 3) << i;
+                EXPECT_TRUE(units[j] < 0 || taken.insert(units[j]).second) << i;
+            }
+        }
+        // Of 27 units, those that are left go to pages.
+        EXPECT_EQ(taken.size(), std::min(std::size_t{27}, 5 * effects.size())) << i;
+    }
+}
+
 TEST(TextureUnits, AnyEffectsWithAnyUnits)
 {
     for (int i = 0; i < sampleCount() / 10; ++i)

@@ -327,6 +327,39 @@ TEST_F(MappingPages, OfAMappingThatMovesKeepItsOrder)
     EXPECT_EQ(exactFrames(), frames);
 }
 
+TEST_F(MappingPages, AreShownThoughSomethingMovesFromTheFirstFrameOn)
+{
+    addSome(6.0);
+    const osg::ref_ptr<ProjectiveMapping> mover =
+        makePicture({0.0, 0.0}, 120.0, makeImage(40, 40, [](double u, double v) { return waves(u, v); }));
+    add(mover);
+    look({0.0, -300.0, 200.0}, {0.0, 0.0, 0.0});
+    std::uint64_t paged = 0;
+    for (int i = 0; i < 200 && paged < 5; ++i)
+    {
+        mover->setCenter({1.0 * i - 60.0, 0.5 * i});
+        const osg::ref_ptr<osg::Image> image = draw();
+        const std::uint64_t now = _mappings->cacheStatistics().pagedFrames;
+        if (now > paged)
+        {
+            EXPECT_TRUE(right(*image, *drawExactly())) << i;
+        }
+        paged = now;
+    }
+    EXPECT_EQ(paged, 5u) << _mappings->cacheStatistics().reason;
+}
+
+TEST_F(MappingPages, AreDoneWithoutWhereNoTextureUnitsAreLeft)
+{
+    addSome();
+    ASSERT_TRUE(_scene->setFirstTextureUnit(28)) << "four are left, and mappings need three";
+    EXPECT_TRUE(same(*draw(), *drawExactly()));
+    EXPECT_NE(_mappings->cacheStatistics().reason.find("texture units"), std::string::npos)
+        << _mappings->cacheStatistics().reason;
+    ASSERT_TRUE(_scene->setFirstTextureUnit(27));
+    EXPECT_TRUE(right(*drawSettled(), *drawExactly()));
+}
+
 TEST_F(MappingPages, LeaveLargeChangesToTheMappings)
 {
     addSome(6.0);

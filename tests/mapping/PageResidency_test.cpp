@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // Which pages have a slot, what of them is drawn, and what shows until then.
+#include <osgGeoFX/mapping/detail/PageDrawing.h>
 #include <osgGeoFX/mapping/detail/PageResidency.h>
 #include <osgGeoFX/mapping/detail/PageTable.h>
 
@@ -103,6 +104,46 @@ TEST(PageResidency, DrawsChangesInTheSameFrameOrNot)
     // What lies elsewhere stays.
     residency.change({{500.0, 500.0}, {501.0, 501.0}});
     EXPECT_TRUE(residency.plan(cut, plenty).pieces.empty());
+}
+
+TEST(PageResidency, SettlesThoughSomethingMovesFromTheFirstFrameOn)
+{
+    PageResidency residency(200);
+    const std::vector<MappingPage> cut = square(3, 8);
+    PageResidency::Budget budget{4 * page, 2 * page, false};
+    PageResidency::Frame frame;
+    int frames = 0;
+    for (; !frame.settled && frames < 100; ++frames)
+    {
+        const double at = 3.0 + 0.1 * frames;
+        residency.change({{at, 3.0}, {at + 9.0, 9.0}});
+        frame = residency.plan(cut, budget);
+        // Nothing is drawn in vain before the pages can be shown.
+        if (!frame.settled)
+        {
+            EXPECT_LE(frame.pieces.size(), 2u) << frames;
+        }
+    }
+    EXPECT_TRUE(frame.settled);
+    EXPECT_LT(frames, 45);
+}
+
+TEST(PageDrawing, KeepsToTheMemoryAndToTheLargestTexture)
+{
+    for (const int megabytes : {1, 7, 64, 512})
+    {
+        for (const int side : {1024, 4096, 8192, 16384})
+        {
+            const PageDrawing drawing(megabytes, side);
+            EXPECT_LE(drawing.side(), side) << megabytes;
+            EXPECT_LE(drawing.slots(), std::max(4, 4 * megabytes)) << side;
+            EXPECT_GE(drawing.slots(), 4) << side;
+            EXPECT_EQ(drawing.texture()->getTextureWidth(), drawing.columns() * MappingPage::side);
+            EXPECT_EQ(drawing.texture()->getTextureHeight(), drawing.rows() * MappingPage::side);
+        }
+    }
+    EXPECT_EQ(PageDrawing(512, 16384).slots(), 2048);
+    EXPECT_EQ(PageDrawing(512, 4096).slots(), 256);
 }
 
 TEST(PageResidency, LetsGoOfThePagesThatWereNeededLongestAgo)

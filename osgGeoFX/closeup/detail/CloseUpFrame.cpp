@@ -7,8 +7,7 @@
 #include <osgGeoFX/closeup/detail/CloseUpExtent.h>
 #include <osgGeoFX/closeup/detail/MultiPass.h>
 #include <osgGeoFX/closeup/detail/SinglePass.h>
-
-#include <osg/GLExtensions>
+#include <osgGeoFX/scene/detail/GpuLimits.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,29 +17,6 @@ namespace osgGeoFX
 
 namespace
 {
-
-/// Any GPU with OpenGL 3 has at least so many layers.
-constexpr int layersOfAll = 256;
-
-/// What the context can do; null before it has drawn.
-const osg::GLExtensions* extensionsOf(osgUtil::CullVisitor& outer)
-{
-    const osg::State* state = outer.getRenderInfo().getState();
-    return state ? osg::GLExtensions::Get(state->getContextID(), false) : nullptr;
-}
-
-bool canTessellate(osgUtil::CullVisitor& outer)
-{
-    const osg::GLExtensions* extensions = extensionsOf(outer);
-    return extensions && extensions->glVersion >= 4.0f;
-}
-
-/// The largest number of layers of a texture array in this context.
-int gpuLayers(osgUtil::CullVisitor& outer)
-{
-    const osg::GLExtensions* extensions = extensionsOf(outer);
-    return extensions && extensions->maxLayerCount > 0 ? extensions->maxLayerCount : layersOfAll;
-}
 
 std::vector<CloseUpItem> itemsOf(const ScenePass& pass, const CloseUpTask& task)
 {
@@ -54,7 +30,7 @@ std::vector<CloseUpItem> itemsOf(const ScenePass& pass, const CloseUpTask& task)
 
 bool tessellates(const ScenePass& pass, const CloseUpTask& task, const std::vector<CloseUpItem>& items)
 {
-    return task.tessellation > 1 && canTessellate(pass.outer) &&
+    return task.tessellation > 1 && GpuLimits::of(pass.outer).version >= 4.0f &&
            std::any_of(items.begin(), items.end(),
                        [](const CloseUpItem& item) { return item.wantsVertices(); });
 }
@@ -73,7 +49,7 @@ osg::Vec3d sunOf(const CloseUp& closeUp)
 CloseUpFrame::CloseUpFrame(const ScenePass& pass, const CloseUpTask& task, CloseUpTraversal& traversal,
                            CloseUpCompositor& compositor)
     : _pass(pass), _task(task), _traversal(traversal), _compositor(compositor), _items(itemsOf(pass, task)),
-      _perArray(std::max(2, std::min(task.maxLayers, gpuLayers(pass.outer)) / 2 * 2)),
+      _perArray(std::max(2, std::min(task.maxLayers, GpuLimits::of(pass.outer).textureLayers) / 2 * 2)),
       _regions(pass, task, traversal, _items, tessellates(pass, task, _items))
 {
 }

@@ -3,6 +3,7 @@
 #include <osgGeoFX/mapping/detail/CameraPages.h>
 
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/scene/detail/GpuLimits.h>
 
 #include <algorithm>
 
@@ -110,9 +111,10 @@ const char* CameraPages::obstacle(const ScenePass& pass, const std::vector<SeenG
 /// Tells the pages what has changed since the last frame.
 void CameraPages::applyChanges(const ScenePass& pass)
 {
-    if (!_drawing || _drawing->megabytes() != _task->megabytes)
+    const int most = GpuLimits::of(pass.outer).textureSide;
+    if (!_drawing || _drawing->megabytes() != _task->megabytes || _drawing->side() > most)
     {
-        _drawing = std::make_unique<PageDrawing>(_task->megabytes);
+        _drawing = std::make_unique<PageDrawing>(_task->megabytes, most);
         _residency = std::make_unique<PageResidency>(_drawing->slots());
         _showed = false;
     }
@@ -164,7 +166,8 @@ bool CameraPages::plan(const ScenePass& pass, PageResidency::Frame& frame)
         return false;
     }
     PageResidency::Budget budget;
-    budget.changes = _showed ? pagesOfChanges * texelsOfPage : 0;
+    budget.changes = pagesOfChanges * texelsOfPage;
+    budget.shown = _showed;
     budget.others = (_showed ? 1 : hurry) * _task->pagesPerFrame * texelsOfPage;
     frame = _residency->plan(*cut, budget);
     _drawing->draw(pass, frame.pieces, blank);

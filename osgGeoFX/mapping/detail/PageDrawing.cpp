@@ -65,14 +65,15 @@ private:
     mutable std::atomic<unsigned int> _count{0};
 };
 
-PageDrawing::PageDrawing(int megabytes) : _megabytes(megabytes), _drawn(new Count)
+PageDrawing::PageDrawing(int megabytes, int side) : _megabytes(megabytes), _drawn(new Count)
 {
     const int slots = std::max(4, static_cast<int>(std::int64_t{megabytes} * 1048576 / bytesOfPage));
-    _columns = std::min(mostColumns, slots);
+    const int along = std::max(2, side / MappingPage::side);
+    _columns = std::min({mostColumns, along, slots});
     // As square as can be.
     while (_columns > 2 && _columns * _columns / 2 >= slots)
         _columns /= 2;
-    _rows = std::min(mostRows, slots / _columns);
+    _rows = std::min({mostRows, along, slots / _columns});
     const int width = _columns * MappingPage::side, height = _rows * MappingPage::side;
     _texture = new osg::Texture2D;
     _texture->setTextureSize(width, height);

@@ -12,6 +12,7 @@
 #include <osg/Viewport>
 #include <osgUtil/RenderStage>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -27,13 +28,15 @@ namespace osgGeoFX
 class PageDrawing
 {
 public:
-    /// A texture of at most so many mebibytes; at least 4 pages.
-    explicit PageDrawing(int megabytes);
+    /// A texture of at most so many mebibytes and of at most so many texels along its sides; at least 4 pages.
+    PageDrawing(int megabytes, int side);
     ~PageDrawing();
     PageDrawing(const PageDrawing&) = delete;
     PageDrawing& operator=(const PageDrawing&) = delete;
 
     int megabytes() const { return _megabytes; }
+    /// Texels along its longer side.
+    int side() const { return std::max(_columns, _rows) * MappingPage::side; }
     int columns() const { return _columns; }
     int rows() const { return _rows; }
     int slots() const { return _columns * _rows; }

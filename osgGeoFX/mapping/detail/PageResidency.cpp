@@ -128,16 +128,20 @@ PageResidency::Frame PageResidency::plan(const std::vector<MappingPage>& cut, co
     }
     // What has changed below pages that are shown is drawn at once, or the pages are not shown.
     std::vector<Entry> changed;
-    std::int64_t texels = 0;
+    std::int64_t texels = 0, missing = 0;
     for (const MappingPage& page : cut)
     {
         const Entry known = _pages.find(page);
-        if (known == _pages.end() || !known->second.drawn || !known->second.stale) continue;
-        changed.push_back(known);
-        texels += texelsOf(page, *known->second.stale);
+        if (known == _pages.end() || !known->second.drawn)
+            missing += texelsOf(page, page.whole());
+        else if (known->second.stale)
+        {
+            changed.push_back(known);
+            texels += texelsOf(page, *known->second.stale);
+        }
     }
     std::int64_t left = budget.changes;
-    if (texels <= budget.changes)
+    if (texels <= budget.changes && (budget.shown || missing <= budget.others))
     {
         for (const Entry entry : changed)
             draw(entry, frame, left);

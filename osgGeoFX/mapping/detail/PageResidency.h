@@ -26,6 +26,8 @@ public:
         std::int64_t changes =
             0; ///< where mappings have changed below pages that are shown; all of them or none
         std::int64_t others = 0; ///< at least one page
+        /// Whether changes are followed while pages are missing, too: where pages are shown, coarser ones stand in.
+        bool shown = true;
     };
     /// A part of a page to draw.
     struct Piece

@@ -32,28 +32,28 @@ std::int64_t floorTo(std::int64_t value, int bits)
 class PageTable::Upload : public osg::Texture2D::SubloadCallback
 {
 public:
-    explicit Upload(const PageTable& table) : _table(table) {}
+    explicit Upload(std::shared_ptr<const Image> image) : _image(std::move(image)) {}
 
     void load(const osg::Texture2D&, osg::State& state) const override
     {
         begin(state);
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, _table._cells, _table._cells, 0, GL_RGBA, reversedBytes,
-                     _table._words.data());
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, _image->cells, _image->cells, 0, GL_RGBA, reversedBytes,
+                     _image->words.data());
         _first = _last = 0;
-        _loaded = _table._cells;
+        _loaded = _image->cells;
     }
     void subload(const osg::Texture2D& texture, osg::State& state) const override
     {
-        if (_loaded != _table._cells)
+        if (_loaded != _image->cells)
         {
             load(texture, state);
             return;
         }
         if (_first >= _last) return;
         begin(state);
-        const auto width = static_cast<std::size_t>(_table._cells);
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, _first, _table._cells, _last - _first, GL_RGBA, reversedBytes,
-                        _table._words.data() + static_cast<std::size_t>(_first) * width);
+        const auto width = static_cast<std::size_t>(_image->cells);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, _first, _image->cells, _last - _first, GL_RGBA, reversedBytes,
+                        _image->words.data() + static_cast<std::size_t>(_first) * width);
         _first = _last = 0;
     }
 
@@ -73,16 +73,16 @@ private:
         glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     }
 
-    const PageTable& _table;
+    const std::shared_ptr<const Image> _image;
     mutable int _first = 0, _last = 0; ///< rows
     mutable int _loaded = 0;           ///< cells along the sides
 };
 
-PageTable::PageTable()
+PageTable::PageTable() : _image(std::make_shared<Image>())
 {
     for (std::size_t i = 0; i < _textures.size(); ++i)
     {
-        _uploads[i] = new Upload(*this);
+        _uploads[i] = new Upload(_image);
         osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
         texture->setInternalFormat(GL_RGBA8);
         texture->setSourceFormat(GL_RGBA);
@@ -110,7 +110,7 @@ void PageTable::set(const Rectangle& rectangle, std::uint32_t word)
     const auto column = static_cast<std::ptrdiff_t>(rectangle.x - _x);
     const auto row = static_cast<std::ptrdiff_t>(rectangle.y - _y);
     for (std::ptrdiff_t y = row; y < row + rectangle.size; ++y)
-        std::fill_n(_words.begin() + y * _cells + column, rectangle.size, word);
+        std::fill_n(_image->words.begin() + y * _image->cells + column, rectangle.size, word);
     markRows(static_cast<int>(row), static_cast<int>(row) + rectangle.size);
 }
 
@@ -148,19 +148,21 @@ bool PageTable::write(const std::vector<PageResidency::Source>& sources, int col
     // A ring of blank squares, for what lies beyond.
     const std::int64_t least = std::max(highX - lowX, highY - lowY) + 2;
     if (least > mostCells) return false;
-    const bool fits = _cells > 0 && _level == finest && lowX > _x && lowY > _y && highX < _x + _cells &&
-                      highY < _y + _cells && powerOfTwo(least) * 4 >= _cells;
+    const bool fits = _image->cells > 0 && _level == finest && lowX > _x && lowY > _y &&
+                      highX < _x + _image->cells && highY < _y + _image->cells &&
+                      powerOfTwo(least) * 4 >= _image->cells;
     bool changes = !fits;
     if (!fits)
     {
         // Room for moves to all sides.
         _level = finest;
-        _cells = std::min(mostCells, powerOfTwo(least + least / 2));
-        _x = (lowX + highX - _cells) / 2;
-        _y = (lowY + highY - _cells) / 2;
-        _words.assign(static_cast<std::size_t>(_cells) * static_cast<std::size_t>(_cells), 0);
+        _image->cells = std::min(mostCells, powerOfTwo(least + least / 2));
+        _x = (lowX + highX - _image->cells) / 2;
+        _y = (lowY + highY - _image->cells) / 2;
+        _image->words.assign(
+            static_cast<std::size_t>(_image->cells) * static_cast<std::size_t>(_image->cells), 0);
         _rectangles.clear();
-        markRows(0, _cells);
+        markRows(0, _image->cells);
     }
     for (const auto& [place, rectangle] : _rectangles)
     {

@@ -42,12 +42,12 @@ public:
     double inverseCell() const { return 1.0 / MappingPage::sideOf(_level); }
     /// The table's first square, counted from there; and the number of squares along its sides.
     std::pair<int, int> corner() const { return _corner; }
-    int cells() const { return _cells; }
+    int cells() const { return _image->cells; }
     /// The word of a square, for tests.
     std::uint32_t word(int column, int row) const
     {
-        return _words[static_cast<std::size_t>(row) * static_cast<std::size_t>(_cells) +
-                      static_cast<std::size_t>(column)];
+        return _image->words[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells()) +
+                             static_cast<std::size_t>(column)];
     }
 
     /// The texture with what was written last. Another one after each change, since OSG does not apply anew what it has
@@ -58,6 +58,12 @@ public:
 
 private:
     class Upload;
+    /// The textures keep it: a frame that is still being drawn may outlive the table.
+    struct Image
+    {
+        int cells = 0; ///< along the sides
+        std::vector<std::uint32_t> words;
+    };
     struct Rectangle
     {
         std::int64_t x = 0, y = 0; ///< squares of the finest page
@@ -72,12 +78,11 @@ private:
     void markRows(int first, int last);
 
     int _level = 0;
-    int _cells = 0;
     std::int64_t _x = 0, _y = 0; ///< of the table's first square
     osg::Vec2d _anchor;
     std::pair<int, int> _corner;
     std::map<std::pair<std::int64_t, std::int64_t>, Rectangle> _rectangles;
-    std::vector<std::uint32_t> _words;
+    std::shared_ptr<Image> _image;
     std::array<osg::ref_ptr<osg::Texture2D>, 2> _textures;
     std::array<osg::ref_ptr<Upload>, 2> _uploads;
     std::size_t _turn = 0;
