@@ -11,6 +11,7 @@
 #include <osg/Transform>
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 #include <utility>
 
@@ -135,6 +136,7 @@ public:
     }
 
     void cull(const ScenePass& pass) override;
+    Statistics statistics() const { return {_drawn, _kept}; }
     void resizeGLObjectBuffers(unsigned int size) override { _cameras.resizeGLObjectBuffers(size); }
     void releaseGLObjects(osg::State* state) const override { _cameras.releaseGLObjects(state); }
 
@@ -168,6 +170,7 @@ private:
     };
 
     const SunShadows& _shadows;
+    std::atomic<std::uint64_t> _drawn{0}, _kept{0}; ///< maps
     PerCamera<Looks> _cameras;
     PerCamera<ShadowGrid, osg::Camera>
         _grids; ///< one for all cull visitors of a camera, or they would drift apart
@@ -185,9 +188,10 @@ void SunShadows::Pass::cull(const ScenePass& pass)
     const int texels = _shadows._mapSize;
     const ShadowCascades cascades(pass.view, grid, *towards, _shadows._nearest, _shadows._cascades, texels);
     ShadowMaps& maps = _cameras.of(pass.outer, pass.scene).next(pass.frame);
-    maps.draw(pass, cascades, texels);
-
     const auto count = static_cast<int>(cascades.all().size());
+    const int drawn = maps.draw(pass, cascades, texels);
+    _drawn += static_cast<std::uint64_t>(drawn);
+    _kept += static_cast<std::uint64_t>(count - drawn);
     pass.state.setTextureAttribute(static_cast<unsigned int>(pass.units.front()), maps.texture());
     osg::Uniform& matrices =
         *pass.state.getOrCreateUniform(pass.prefix + "maps", osg::Uniform::FLOAT_MAT4, ShadowCascades::most);
@@ -247,6 +251,11 @@ const Properties& SunShadows::properties() const
 std::vector<TextureUnitWish> SunShadows::textureUnits() const
 {
     return {{"mapUnit", _mapUnit, 19}};
+}
+
+SunShadows::Statistics SunShadows::statistics() const
+{
+    return _pass->statistics();
 }
 
 bool SunShadows::fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view)

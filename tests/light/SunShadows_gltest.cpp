@@ -23,9 +23,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace geofx::test;
@@ -514,4 +516,161 @@ TEST_F(SunShadowsTest, OfWhatStandsBehindTheCameraFallIntoThePictureAndAskForNoT
     look({-370.0, -1900.0, 330.0}, {-370.0, -1000.0, 300.0});
     draw();
     EXPECT_EQ(pager->asked.count("finer.osgb"), 1u);
+}
+
+TEST_F(SunShadowsTest, StayAsTheyAreWhereNothingChanges)
+{
+    const auto maps = static_cast<std::uint64_t>(_shadows->getCascades());
+    for (const bool globe : {false, true})
+    {
+        if (globe) build(onGlobe());
+        // Two visitors may cull in turn.
+        draw();
+        const osg::ref_ptr<osg::Image> first = draw();
+        const SunShadows::Statistics before = _shadows->statistics();
+        EXPECT_GE(before.drawn, maps);
+        for (int i = 0; i < 4; ++i)
+            EXPECT_EQ(meanDifference(*draw(), *first), 0.0) << i;
+        EXPECT_EQ(_shadows->statistics().drawn, before.drawn);
+        EXPECT_EQ(_shadows->statistics().kept, before.kept + 4 * maps);
+        // A bend changes nothing of the undeformed world.
+        bend();
+        draw();
+        EXPECT_EQ(_shadows->statistics().drawn, before.drawn);
+        // A new context has none of them.
+        withContext([&](osg::State& state) { _scene->releaseGLObjects(&state); });
+        const osg::ref_ptr<osg::Image> bent = draw();
+        EXPECT_EQ(_shadows->statistics().drawn, before.drawn + maps);
+        EXPECT_EQ(meanDifference(*bent, *draw()), 0.0);
+    }
+}
+
+TEST_F(SunShadowsTest, FollowWhatChanges)
+{
+    build(osg::Matrixd(), true);
+    // The maps of another effect, which knows no earlier frame.
+    const auto drawAnew = [&]
+    {
+        const osg::ref_ptr<SunShadows> kept = _shadows;
+        _scene->removeEffect(kept);
+        _scene->addEffect(new SunShadows);
+        const osg::ref_ptr<osg::Image> image = draw();
+        _scene->removeEffect(_scene->getEffect(_scene->getNumEffects() - 1));
+        _scene->addEffect(kept);
+        return image;
+    };
+    const osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform;
+    const osg::ref_ptr<osg::Geometry> box = makeBox({{-60.0, -160.0, -20.0}, {-30.0, -130.0, 90.0}});
+    const osg::ref_ptr<osg::Geometry> mast = makeBox({{-100.0, -260.0, -20.0}, {-95.0, -255.0, 70.0}});
+    const auto raise = [&](float height)
+    {
+        auto& vertices = static_cast<osg::Vec3Array&>(*box->getVertexArray());
+        for (osg::Vec3& vertex : vertices)
+            vertex.z() = vertex.z() > 0.0f ? height : vertex.z();
+        vertices.dirty();
+        box->dirtyBound();
+    };
+    const std::vector<std::pair<const char*, std::function<void()>>> changes = {
+        {"a thing comes",
+         [&]
+         {
+             _world->addChild(place);
+             place->addChild(box);
+         }},
+        {"it moves",
+         [&]
+         {
+             place->setMatrix(osg::Matrixd::translate(40.0, 30.0, 0.0));
+         }},
+        {"its vertices change",
+         [&]
+         {
+             raise(40.0f);
+         }},
+        {"other vertices",
+         [&]
+         {
+             const osg::ref_ptr<osg::Vec3Array> copy =
+                 new osg::Vec3Array(static_cast<osg::Vec3Array&>(*box->getVertexArray()));
+             box->setVertexArray(copy);
+             raise(70.0f);
+         }},
+        {"half of it sinks, within the same box",
+         [&]
+         {
+             auto& vertices = static_cast<osg::Vec3Array&>(*box->getVertexArray());
+             for (osg::Vec3& vertex : vertices)
+                 if (vertex.x() < -45.0f) vertex.z() = -20.0f;
+             vertices.dirty();
+             box->dirtyBound();
+         }},
+        {"fewer triangles",
+         [&]
+         {
+             static_cast<osg::DrawElementsUInt&>(*box->getPrimitiveSet(0)).resize(18);
+             box->getPrimitiveSet(0)->dirty();
+         }},
+        {"another thing in its place",
+         [&]
+         {
+             place->removeChild(box);
+             place->addChild(mast);
+         }},
+        {"a house goes",
+         [&]
+         {
+             _world->removeChild(1, 1);
+         }},
+        {"the sun moves",
+         [&]
+         {
+             shineFrom(190.0, 40.0);
+         }},
+        {"the eye flies",
+         [&]
+         {
+             look({60.0, -560.0, 230.0}, {20.0, -120.0, 0.0});
+         }},
+        {"it creeps",
+         [&]
+         {
+             look({60.5, -560.0, 230.0}, {20.0, -120.0, 0.0});
+         }},
+        {"it goes", [&]
+         {
+             place->removeChildren(0, place->getNumChildren());
+         }}};
+    draw();
+    osg::ref_ptr<osg::Image> former = draw();
+    for (const auto& [what, change] : changes)
+    {
+        const std::uint64_t before = _shadows->statistics().drawn;
+        change();
+        const osg::ref_ptr<osg::Image> image = draw();
+        EXPECT_GT(meanDifference(*image, *former), 0.05) << what;
+        // The near maps alone, where the eye moves by less than a texel of the wide ones.
+        EXPECT_GE(_shadows->statistics().drawn, before + (std::string(what) == "it creeps" ? 0 : 1)) << what;
+        // A sun that moves turns the texels of this effect alone.
+        EXPECT_LT(meanDifference(*image, *drawAnew()), 0.04) << what;
+        former = image;
+        draw();
+    }
+}
+
+TEST_F(SunShadowsTest, AreDrawnAnewNearbyOnlyWhileTheEyeMoves)
+{
+    draw();
+    const SunShadows::Statistics before = _shadows->statistics();
+    constexpr int steps = 40;
+    for (int i = 1; i <= steps; ++i)
+    {
+        look({-60.0 + 3.0 * i, -620.0, 230.0}, {20.0, -120.0, 0.0});
+        draw();
+    }
+    const SunShadows::Statistics after = _shadows->statistics();
+    const double drawn = static_cast<double>(after.drawn - before.drawn);
+    const double kept = static_cast<double>(after.kept - before.kept);
+    EXPECT_EQ(drawn + kept, 5.0 * steps);
+    EXPECT_GT(drawn, 0.1 * steps);
+    EXPECT_LT(drawn, 3.0 * steps);
 }

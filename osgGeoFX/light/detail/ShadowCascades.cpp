@@ -55,15 +55,15 @@ void ShadowGrid::turn(const osg::Vec3d& towards, const osg::Vec3d& here)
     _known = true;
 }
 
-osg::Vec3d ShadowGrid::snapped(const osg::Vec3d& place, double texel) const
+osg::Vec3d ShadowGrid::snapped(const osg::Vec3d& place, double step, double along) const
 {
     const osg::Vec3d way = place - _origin;
-    const auto rest = [&](const osg::Vec3d& axis)
+    const auto rest = [&](const osg::Vec3d& axis, double size)
     {
         const double at = way * axis;
-        return at - std::floor(at / texel) * texel;
+        return at - std::floor(at / size) * size;
     };
-    return place - _right * rest(_right) - _up * rest(_up);
+    return place - _right * rest(_right, step) - _up * rest(_up, step) - _towards * rest(_towards, along);
 }
 
 ShadowCascades::ShadowCascades(const ViewGeometry& view, ShadowGrid& grid, const osg::Vec3d& towards,
@@ -93,9 +93,10 @@ ShadowCascades::ShadowCascades(const ViewGeometry& view, ShadowGrid& grid, const
         ShadowCascade cascade;
         cascade.radius = radius;
         cascade.texel = 2.0 * radius / texels;
-        cascade.depth = radius * length + height;
+        const double along = 0.25 * radius;
+        cascade.depth = (std::ceil((radius * length + height) / along) + 1.0) * along;
         const osg::Vec3d place = forward * (ahead * radius) - view.up * (0.5 * height);
-        cascade.center = grid.snapped(place * toWorld, cascade.texel) * view.modelView;
+        cascade.center = grid.snapped(place * toWorld, stride * cascade.texel, along) * view.modelView;
         const auto row = [&](int column, const osg::Vec3d& axis, double half)
         {
             for (int j = 0; j < 3; ++j)

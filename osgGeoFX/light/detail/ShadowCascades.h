@@ -26,8 +26,9 @@ public:
     const osg::Vec3d& towards() const { return _towards; }
     const osg::Vec3d& right() const { return _right; }
     const osg::Vec3d& up() const { return _up; }
-    /// A place moved across the rays to a corner of the lattice, by less than a texel along each axis.
-    osg::Vec3d snapped(const osg::Vec3d& place, double texel) const;
+    /// A place moved to a corner of the lattice, across the rays by less than `step` along each axis, along them by less than
+    /// `along`; both in metres.
+    osg::Vec3d snapped(const osg::Vec3d& place, double step, double along) const;
 
 private:
     bool _known = false;
@@ -48,13 +49,15 @@ struct ShadowCascade
 /** The maps of one view, the sharpest first, each four times as wide as the one before it.
 
     Their widths are powers of 4, and their places follow the eye and where it looks to along the ground, so they do not
-    depend on what is in the picture: a bend shows ground that the plain picture does not have. */
+    depend on what is in the picture: a bend shows ground that the plain picture does not have. They follow in steps of some texels,
+    so that a map can stay as it is for some frames. */
 class ShadowCascades
 {
 public:
     static constexpr int most = 6;
     static constexpr double step = 4.0;
     static constexpr double smallest = 64.0; ///< metres, the least radius that an eye's height leads to
+    static constexpr int stride = 8;         ///< texels by which a map moves
 
     /// `towards`: to the sun, in the view's eye space. `nearest`: the radius of the first one; 0 goes by the eye's height.
     /// `count`: 1…most. `texels`: along the side of a map.

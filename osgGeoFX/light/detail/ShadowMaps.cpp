@@ -11,7 +11,10 @@
 #include <osg/ColorMask>
 #include <osg/Depth>
 #include <osg/PolygonMode>
+#include <osg/Scissor>
 
+#include <algorithm>
+#include <atomic>
 #include <utility>
 
 namespace osgGeoFX
@@ -36,9 +39,12 @@ std::string withPrefix(std::string text, const std::string& prefix)
 class Casters final : public PassFilter
 {
 public:
-    Casters(const ShadowCascades& cascades, const std::vector<osg::ref_ptr<osg::StateSet>>& states)
-        : _cascades(cascades), _all(states)
+    Casters(const ShadowCascades& cascades, const std::vector<osg::ref_ptr<osg::StateSet>>& states,
+            const osg::Matrixd& toWorld)
+        : found(cascades.all().size()), _cascades(cascades), _all(states)
     {
+        for (std::size_t i = 0; i < found.size(); ++i)
+            found[i].begin(cascades.all()[i], toWorld);
     }
     bool outside(const Ball& ball) const override
     {
@@ -46,8 +52,8 @@ public:
             if (!_cascades.outside(i, ball)) return false;
         return true;
     }
-    const std::vector<osg::StateSet*>& states(const osg::Drawable&, const EyeBox& box, const osg::Matrixd&,
-                                              bool ownProgram) override
+    const std::vector<osg::StateSet*>& states(const osg::Drawable& drawable, const EyeBox& box,
+                                              const osg::Matrixd&, bool ownProgram) override
     {
         _wanted.clear();
         // A program of an application puts its vertices where it likes.
@@ -56,11 +62,14 @@ public:
         for (std::size_t i = 0; i < _cascades.all().size(); ++i)
         {
             // What is smaller than half a texel falls between them.
-            if (4.0 * ball.radius > _cascades.all()[i].texel && !_cascades.outside(i, ball))
-                _wanted.push_back(_all[i].get());
+            if (!(4.0 * ball.radius > _cascades.all()[i].texel) || _cascades.outside(i, ball)) continue;
+            _wanted.push_back(_all[i].get());
+            found[i].add(drawable, box);
         }
         return _wanted;
     }
+
+    std::vector<ShadowCasters> found; ///< of each map
 
 private:
     const ShadowCascades& _cascades;
@@ -70,12 +79,59 @@ private:
 
 } // namespace
 
+/// Clears the part of the target that its state's scissors leave, and counts how often.
+class ShadowMaps::Clearing : public osg::Drawable
+{
+public:
+    Clearing()
+    {
+        setUseDisplayList(false);
+        setCullingActive(false);
+    }
+    osg::Object* cloneType() const override { return nullptr; }
+    osg::Object* clone(const osg::CopyOp&) const override { return nullptr; }
+    const char* className() const override { return "ShadowMaps::Clearing"; }
+    const char* libraryName() const override { return "osgGeoFX"; }
+
+    void drawImplementation(osg::RenderInfo&) const override
+    {
+        glClearDepth(1.0);
+        glClear(GL_DEPTH_BUFFER_BIT);
+        ++_count;
+    }
+    unsigned int count() const { return _count; }
+
+protected:
+    ~Clearing() override = default;
+
+private:
+    mutable std::atomic<unsigned int> _count{0};
+};
+
+ShadowMaps::ShadowMaps() : _clearing(new Clearing) {}
+
+ShadowMaps::~ShadowMaps() = default;
+
 void ShadowMaps::resize(int count, int texels)
 {
     if (_texture && count == _count && texels == _texels) return;
     _count = count;
     _texels = texels;
     _states.clear();
+    _clears.clear();
+    _casters.clear();
+    constexpr auto on =
+        osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE | osg::StateAttribute::PROTECTED;
+    for (int i = 0; i < count; ++i)
+    {
+        const osg::ref_ptr<osg::StateSet> clear = new osg::StateSet;
+        clear->setAttributeAndModes(
+            new osg::Scissor(i % columns * texels, i / columns * texels, texels, texels), on);
+        clear->setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, true), on);
+        // Before all that is drawn.
+        clear->setRenderBinDetails(-1, "RenderBin", osg::StateSet::OVERRIDE_PROTECTED_RENDERBIN_DETAILS);
+        _clears.push_back(clear);
+    }
     const int width = columns * texels, height = rows(count) * texels;
     _texture = new osg::Texture2D;
     _texture->setTextureSize(width, height);
@@ -99,6 +155,7 @@ void ShadowMaps::makeProgram(const std::string& prefix)
     if (_program && _prefix == prefix) return;
     _prefix = prefix;
     _states.clear();
+    _casters.clear();
     const ShaderLibrary library;
     _program = new ProfileProgram;
     _program->setName("osgGeoFX shadow maps");
@@ -132,7 +189,42 @@ osg::ref_ptr<osg::StateSet> ShadowMaps::makeState(int cascade, int texels, bool 
     return state;
 }
 
-void ShadowMaps::draw(const ScenePass& pass, const ShadowCascades& cascades, int texels)
+/// Whether the texture has all that was to be drawn into it.
+bool ShadowMaps::holds(const ScenePass& pass) const
+{
+    const osg::State* const state = pass.outer.getState();
+    return _clearing->count() == _expected && state && state->getContextID() == _context;
+}
+
+/// Which maps must be drawn. What stands in them is remembered.
+std::vector<bool> ShadowMaps::changes(const ScenePass& pass, std::vector<ShadowCasters>& casters)
+{
+    const bool known = _casters.size() == casters.size() && holds(pass);
+    std::vector<bool> changed(casters.size(), true);
+    for (std::size_t i = 0; i < casters.size(); ++i)
+        changed[i] = !known || !casters[i].same(_casters[i]);
+    if (!known) _casters.resize(casters.size());
+    // A map that stays was drawn with what is remembered; small differences must not add up.
+    for (std::size_t i = 0; i < casters.size(); ++i)
+        if (changed[i]) _casters[i] = std::move(casters[i]);
+    return changed;
+}
+
+/// Takes what the maps that stay would be drawn with out of the stage.
+void ShadowMaps::leaveOut(const std::vector<bool>& changed)
+{
+    auto& graphs = _stage->getStateGraphList();
+    const auto stays = [&](const osgUtil::StateGraph* graph)
+    {
+        for (; graph; graph = graph->_parent)
+            for (std::size_t i = 0; i < changed.size(); ++i)
+                if (!changed[i] && graph->getStateSet() == _states[i]) return true;
+        return false;
+    };
+    graphs.erase(std::remove_if(graphs.begin(), graphs.end(), stays), graphs.end());
+}
+
+int ShadowMaps::draw(const ScenePass& pass, const ShadowCascades& cascades, int texels)
 {
     const auto count = static_cast<int>(cascades.all().size());
     resize(count, texels);
@@ -151,18 +243,30 @@ void ShadowMaps::draw(const ScenePass& pass, const ShadowCascades& cascades, int
 
     if (!_stage) _stage = createStage();
     startStage(*_stage, pass.outer, pass.depth, osg::Vec4());
-    _stage->setClearMask(GL_DEPTH_BUFFER_BIT);
-    _stage->setClearDepth(1.0);
+    _stage->setClearMask(0);
     _stage->setViewport(_viewport);
     _stage->setFrameBufferObject(_target);
-    pass.outer.getCurrentRenderBin()->getStage()->addPreRenderStage(_stage, shadowOrder);
-    Casters casters(cascades, _states);
+    Casters casters(cascades, _states, osg::Matrixd::inverse(pass.view.modelView));
     ScenePass::Drawing drawing;
     drawing.program = _program;
     drawing.stage = _stage;
     drawing.filter = &casters;
     drawing.asksForTiles = false;
     pass.draw(drawing);
+
+    const std::vector<bool> changed = changes(pass, casters.found);
+    std::vector<ScenePass::Piece> clearing;
+    for (std::size_t i = 0; i < changed.size(); ++i)
+        if (changed[i]) clearing.push_back({_clearing, osg::Matrixd(), _clears[i]});
+    if (clearing.empty()) return 0;
+    leaveOut(changed);
+    ScenePass::Drawing clears;
+    clears.stage = _stage;
+    pass.draw(clearing, clears);
+    pass.outer.getCurrentRenderBin()->getStage()->addPreRenderStage(_stage, shadowOrder);
+    _expected = _clearing->count() + static_cast<unsigned int>(clearing.size());
+    _context = pass.outer.getState() ? pass.outer.getState()->getContextID() : 0;
+    return static_cast<int>(clearing.size());
 }
 
 void ShadowMaps::resizeGLObjectBuffers(unsigned int size)
@@ -174,6 +278,8 @@ void ShadowMaps::resizeGLObjectBuffers(unsigned int size)
 
 void ShadowMaps::releaseGLObjects(osg::State* state) const
 {
+    // What was drawn is lost.
+    _expected = _clearing->count() - 1;
     if (_texture) _texture->releaseGLObjects(state);
     if (_target) _target->releaseGLObjects(state);
     if (_program) _program->releaseGLObjects(state);
