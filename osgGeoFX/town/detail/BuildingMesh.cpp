@@ -378,7 +378,9 @@ void BuildingMesh::face(const std::vector<osg::Vec3d>& corners, const osg::Vec3d
     const auto first = static_cast<unsigned int>(_places.size());
     for (const osg::Vec3d& corner : corners)
     {
-        const double shade = shades({corner.x(), corner.y()}, normal, {corner.z()}, true).front();
+        // As if it were level: two slopes that meet have one shade there.
+        const double shade =
+            shades({corner.x(), corner.y()}, osg::Vec3d(0.0, 0.0, 1.0), {corner.z()}, true).front();
         vertex(corner, normal, color * shade, plain.x(), plain.y());
     }
     for (unsigned int i = 2; i < corners.size(); ++i)

@@ -7,7 +7,6 @@
 #include <osg/Math>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace osgGeoFX
@@ -32,10 +31,12 @@ std::uint64_t keyOf(std::int32_t x, std::int32_t y)
 /// Where a half plane meets a building's wall.
 struct Crossing
 {
+    int plane; ///< the half plane's number
     double distance, top;
     bool front; ///< it faces the place; else the building is left through it
     bool operator<(const Crossing& other) const
     {
+        if (plane != other.plane) return plane < other.plane;
         return distance != other.distance ? distance < other.distance : top < other.top;
     }
 };
@@ -129,8 +130,22 @@ void Openness::at(const osg::Vec2d& place, const osg::Vec3d& normal, double grou
                   double* results, std::size_t count, std::size_t except) const
 {
     // Azimuths are counted from the normal's, so that a wall looks the same whichever way it faces.
-    const double facing = normal.x() != 0.0 || normal.y() != 0.0 ? std::atan2(normal.y(), normal.x()) : 0.0;
     const double across = std::sqrt(normal.x() * normal.x() + normal.y() * normal.y());
+    const osg::Vec2d facing =
+        across > 0.0 ? osg::Vec2d(normal.x(), normal.y()) / across : osg::Vec2d(1.0, 0.0);
+    const bool upright = normal.z() < 1e-9; // and so what is behind it does not matter
+    static const std::vector<osg::Vec2d> ways = []
+    {
+        std::vector<osg::Vec2d> result;
+        for (int k = 0; k < azimuths; ++k)
+            result.emplace_back(std::cos((k + 0.5) * STEP), std::sin((k + 0.5) * STEP));
+        return result;
+    }();
+    const auto turned = [&](const osg::Vec2d& from)
+    {
+        const osg::Vec2d to = from - place;
+        return osg::Vec2d(to * facing, facing.x() * to.y() - facing.y() * to.x());
+    };
     const double lowest = *std::min_element(heights, heights + count);
     std::vector<std::uint32_t> near;
     for (std::int32_t y = cellOf(place.y() - reach); y <= cellOf(place.y() + reach); ++y)
@@ -141,27 +156,27 @@ void Openness::at(const osg::Vec2d& place, const osg::Vec3d& normal, double grou
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
 
-    std::array<std::vector<Crossing>, azimuths> planes;
+    std::vector<Crossing> crossings;
     const auto cross = [&](const osg::Vec2d& a, const osg::Vec2d& b, double top)
     {
+        if (upright && a.x() <= 0.0 && b.x() <= 0.0) return;
         const osg::Vec2d side = b - a;
         const double area = a.x() * side.y() - a.y() * side.x();
         if (area == 0.0 || a.length2() == 0.0 || b.length2() == 0.0) return;
         // The solid is on its left. Seen from outside, from a to b is clockwise.
         const bool front = area < 0.0;
         const osg::Vec2d& start = front ? b : a;
-        const double first = (std::atan2(start.y(), start.x()) - facing) / STEP - 0.5;
+        const double first = std::atan2(start.y(), start.x()) / STEP - 0.5;
         const double turn = std::atan2(std::abs(area), a * b) / STEP;
         for (double k = std::ceil(first); k <= first + turn; k += 1.0)
         {
-            const double angle = facing + (k + 0.5) * STEP;
-            const osg::Vec2d way(std::cos(angle), std::sin(angle));
+            const int plane = ((static_cast<int>(k) % azimuths) + azimuths) % azimuths;
+            const osg::Vec2d& way = ways[static_cast<std::size_t>(plane)];
             const double along = way.x() * side.y() - way.y() * side.x();
             if (along == 0.0) continue;
             const double distance = area / along;
             if (!(distance > 0.0)) continue;
-            const int plane = ((static_cast<int>(k) % azimuths) + azimuths) % azimuths;
-            planes[static_cast<std::size_t>(plane)].push_back({distance, top, front});
+            crossings.push_back({plane, distance, top, front});
         }
     };
     double shut = -HUGE_VAL; // the top of what stands over the place
@@ -178,18 +193,28 @@ void Openness::at(const osg::Vec2d& place, const osg::Vec3d& normal, double grou
             shut = prism.top;
         for (const Ring& ring : prism.rings)
             for (std::size_t i = 0; i < ring.size(); ++i)
-                cross(ring[i] - place, ring[(i + 1) % ring.size()] - place, prism.top);
+                cross(turned(ring[i]), turned(ring[(i + 1) % ring.size()]), prism.top);
     }
-    for (auto& plane : planes)
-        std::sort(plane.begin(), plane.end());
+    // Most roofs: nothing is higher.
+    if (crossings.empty() && across < 1e-9)
+    {
+        for (std::size_t i = 0; i < count; ++i)
+            results[i] = heights[i] < shut ? 0.0 : 1.0;
+        return;
+    }
+    std::sort(crossings.begin(), crossings.end());
 
     for (std::size_t i = 0; i < count; ++i)
     {
         const double above = heights[i] - ground;
         double sum = 0.0, whole = 0.0;
+        std::size_t next = 0;
         for (int k = 0; k < azimuths; ++k)
         {
-            const HalfPlane half{across * std::cos((k + 0.5) * STEP), normal.z()};
+            const std::size_t first = next;
+            while (next < crossings.size() && crossings[next].plane == k)
+                ++next;
+            const HalfPlane half{across * ways[static_cast<std::size_t>(k)].x(), upright ? 0.0 : normal.z()};
             // The elevations above the surface.
             if (half.up <= 0.0 && half.across <= 0.0) continue;
             const double from = half.up > 1e-9 ? std::atan(-half.across / half.up) : -0.5 * osg::PI;
@@ -197,15 +222,19 @@ void Openness::at(const osg::Vec2d& place, const osg::Vec3d& normal, double grou
             whole += half.open(from, zenith);
             if (heights[i] < shut) continue;
             double done = from; // the skyline so far
-            for (const Crossing& each : planes[static_cast<std::size_t>(k)])
+            double slope = upright ? -HUGE_VAL : std::tan(from);
+            for (std::size_t c = first; c < next; ++c)
             {
-                const double top = std::atan2(each.top - heights[i], each.distance);
-                if (top <= done) continue;
+                const Crossing& each = crossings[c];
+                const double rise = (each.top - heights[i]) / each.distance;
+                if (rise <= slope || (!each.front && rise >= 0.0)) continue;
+                const double top = std::atan(rise);
+                slope = rise;
                 if (!each.front)
                 {
                     // Its roof, seen from above up to here.
-                    if (top < 0.0) sum += half.level(heights[i] - each.top, reach, done, top);
-                    if (top < 0.0) done = top;
+                    sum += half.level(heights[i] - each.top, reach, done, top);
+                    done = top;
                     continue;
                 }
                 const double foot = -std::atan2(above, each.distance);
