@@ -119,6 +119,10 @@ int main(int argc, char** argv)
                    "The unit of heights that do not say theirs: m (the default) or ft")
         ->needs(buildings)
         ->transform(CLI::CheckedTransformer(heightUnits).description("m|ft"));
+    app.add_flag(
+           "!--no-ambient-occlusion", town.ambientOcclusion,
+           "Without it, walls and roofs are darker where neighbours, courtyards or the ground shut them in")
+        ->needs(buildings);
     auto* globe =
         app.add_flag("--geocentric", geocentric, "Curved, in geocentric WGS 84 coordinates (the default)");
     app.add_option("--srs", srs, "Flat, in a projected CRS: EPSG:N")->excludes(globe)->type_name("EPSG:N");

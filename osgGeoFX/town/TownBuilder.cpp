@@ -192,7 +192,7 @@ TownSummary buildTown(const TownOptions& options, const TownProgress& progress)
     }
     putBack(folder);
     const WorkFolder next(folder / NEXT);
-    TownCells cells(grid, *terrain, *root, folder.string(), next.path.string());
+    TownCells cells(grid, *terrain, *root, folder.string(), next.path.string(), options.ambientOcclusion);
     {
         readBuildings(options, grid, root->getCoordinateSystem(), summary, progress,
                       [&](Building&& building)

@@ -348,6 +348,77 @@ TEST(TownBuilder, TheSameBytesAndTheTilesStay)
     EXPECT_EQ(root.value<double>("geofx.buildings"), 1.0);
 }
 
+// A row of houses across all borders of cells and files, with and without towers in front of their eastern walls.
+TEST(TownBuilder, NeighboursDarkenWallsAcrossAllBorders)
+{
+    const TempDir folder;
+    const double y = NORTH - 0.04, metre = 1.0 / 76000.0; // of a longitude here
+    std::vector<Feature> alone, beside;
+    const int count = 60;
+    for (int i = 0; i < count; ++i)
+    {
+        const double x = WEST + 0.02 + 80.0 * metre * i;
+        alone.push_back({rectangle(x, y, 10.0 * metre, 1.5e-4), {"8"}});
+        beside.push_back(alone.back());
+        beside.push_back({rectangle(x + 18.0 * metre, y, 10.0 * metre, 3e-4), {"40"}});
+    }
+    /// The mean green of the eastern walls of houses, by their reference; those of towers are left out.
+    const auto eastern = [&](const std::string& database, const std::string& level)
+    {
+        std::map<std::pair<long, long>, std::pair<double, int>> result;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(
+                 std::filesystem::path(database) / "buildings" / level))
+            if (entry.is_regular_file())
+                forEachGeometry(
+                    entry.path(),
+                    [&](const osg::Geometry& geometry, const osg::Matrixd& toWorld)
+                    {
+                        const osg::Vec4Array& references = *osgGeoFX::RigidParts::of(geometry);
+                        const auto& vertices = static_cast<const osg::Vec3Array&>(*geometry.getVertexArray());
+                        const auto& normals = static_cast<const osg::Vec3bArray&>(*geometry.getNormalArray());
+                        const auto& colors = static_cast<const osg::Vec4ubArray&>(*geometry.getColorArray());
+                        std::map<osg::Vec4, float> tops;
+                        for (std::size_t i = 0; i < vertices.size(); ++i)
+                            tops[references[i]] =
+                                std::max(tops[references[i]], vertices[i].z() - references[i].z());
+                        for (std::size_t i = 0; i < vertices.size(); ++i)
+                        {
+                            if (normals[i].x() < 120 || tops[references[i]] > 20.0f) continue;
+                            const osg::Vec3d at =
+                                osg::Vec3d(references[i].x(), references[i].y(), references[i].z()) * toWorld;
+                            auto& [sum, many] = result[{std::lround(at.x()), std::lround(at.y())}];
+                            sum += colors[i].g();
+                            ++many;
+                        }
+                    });
+        return result;
+    };
+    TownOptions options = optionsOf(copyOfTerrain(folder, "alone"),
+                                    writeFeatures(folder / "alone.gpkg", {"height:real"}, alone));
+    buildTown(options);
+    TownOptions withTowers = optionsOf(copyOfTerrain(folder, "beside"),
+                                       writeFeatures(folder / "beside.gpkg", {"height:real"}, beside));
+    buildTown(withTowers);
+    for (const std::string level : {"single", "detail"})
+    {
+        SCOPED_TRACE(level);
+        const auto bright = eastern(options.database, level), dark = eastern(withTowers.database, level);
+        ASSERT_EQ(bright.size(), static_cast<std::size_t>(count));
+        ASSERT_EQ(dark.size(), bright.size());
+        for (const auto& [place, found] : bright)
+        {
+            ASSERT_EQ(dark.count(place), 1u);
+            const auto& shaded = dark.at(place);
+            EXPECT_LT(shaded.first / shaded.second, 0.93 * found.first / found.second);
+        }
+    }
+    // Without it, towers darken nothing.
+    options.ambientOcclusion = withTowers.ambientOcclusion = false;
+    buildTown(options);
+    buildTown(withTowers);
+    EXPECT_EQ(eastern(options.database, "detail"), eastern(withTowers.database, "detail"));
+}
+
 TEST(TownBuilder, BadInput)
 {
     const TempDir folder;

@@ -3,6 +3,7 @@
 #include <osgGeoFX/town/detail/BuildingMesh.h>
 
 #include <osgGeoFX/effect/RigidParts.h>
+#include <osgGeoFX/town/detail/Openness.h>
 #include <osgGeoFX/town/detail/Scatter.h>
 #include <osgGeoFX/town/detail/WindowPicture.h>
 
@@ -11,6 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -41,6 +44,11 @@ Measures measuresOf(BuildingUse use)
     }
     return {3.0, 3.0};
 }
+
+/// What a place that is wholly shut in loses of its color. The sun's light is darkened, too, so it is less than all.
+constexpr double DARKENING = 0.6;
+/// A place on a wall is asked for so far in front of it and, at a corner, so far along it, metres.
+constexpr double BEFORE = 0.05, BESIDE = 0.5;
 
 /// One of a building's numbers that look random, 0 to 1.
 double chance(std::uint32_t seed, std::uint32_t which)
@@ -215,13 +223,38 @@ unsigned int BuildingMesh::vertex(const osg::Vec3d& place, const osg::Vec3d& nor
     return static_cast<unsigned int>(_places.size() - 1);
 }
 
-void BuildingMesh::quad(const osg::Vec3d (&corners)[4], const osg::Vec3d& normal, const osg::Vec3d& lower,
-                        const osg::Vec3d& upper, const osg::Vec2d& from, const osg::Vec2d& to)
+double roofRise(const PlacedBuilding& building)
 {
-    const unsigned int first = vertex(corners[0], normal, lower, from.x(), from.y());
-    vertex(corners[1], normal, lower, to.x(), from.y());
-    vertex(corners[2], normal, upper, to.x(), to.y());
-    vertex(corners[3], normal, upper, from.x(), to.y());
+    if (!building.gabled || !isRectangle(building.rings)) return 0.0;
+    const Ring& ring = building.rings.front();
+    const double narrow = std::min((ring[1] - ring[0]).length(), (ring[2] - ring[1]).length());
+    return std::min(0.36 * narrow, 0.45 * (building.top - building.reference.z()));
+}
+
+std::vector<double> BuildingMesh::shades(const osg::Vec2d& place, const osg::Vec3d& normal,
+                                         const std::vector<double>& heights, bool roof) const
+{
+    std::vector<double> result(heights.size(), 1.0);
+    if (!_openness) return result;
+    const double ground = static_cast<double>(_reference.z());
+    const osg::Vec3d there = osg::Vec3d(place, ground) * _toOpenness;
+    std::vector<double> asked;
+    for (const double height : heights)
+        asked.push_back(there.z() + std::max(height - ground, 0.0));
+    _openness->at({there.x(), there.y()}, osg::Matrixd::transform3x3(normal, _toOpenness), there.z(),
+                  asked.data(), result.data(), asked.size(), roof ? _number : Openness::none);
+    for (double& each : result)
+        each = 1.0 - DARKENING * (1.0 - each);
+    return result;
+}
+
+void BuildingMesh::quad(const osg::Vec3d (&corners)[4], const osg::Vec3d& normal,
+                        const osg::Vec3d (&colors)[4], const osg::Vec2d& from, const osg::Vec2d& to)
+{
+    const unsigned int first = vertex(corners[0], normal, colors[0], from.x(), from.y());
+    vertex(corners[1], normal, colors[1], to.x(), from.y());
+    vertex(corners[2], normal, colors[2], to.x(), to.y());
+    vertex(corners[3], normal, colors[3], from.x(), to.y());
     for (const unsigned int corner : {0u, 1u, 2u, 0u, 2u, 3u})
         _triangles.push_back(first + corner);
 }
@@ -234,17 +267,45 @@ void BuildingMesh::wall(const PlacedBuilding& building, const osg::Vec2d& a, con
     if (!(length > 0.0)) return;
     const osg::Vec3d normal(along.y() / length, -along.x() / length, 0.0);
     const double base = building.reference.z(), bottom = building.foot - _depth;
-    // Walls are a little darker near the ground, where less of the sky lights them.
-    const auto shaded = [&](double z)
+    // The ground darkens a wall's foot only, so the shades of a high wall need a corner there.
+    const bool high = _openness && eaves - base > 2.0 * Openness::groundReach;
+    std::vector<double> heights = {base, eaves};
+    if (high) heights.insert(heights.begin() + 1, base + Openness::groundReach);
+    const osg::Vec2d inward = along * (std::min(BESIDE, 0.25 * length) / length),
+                     before = osg::Vec2d(normal.x(), normal.y()) * BEFORE;
+    const std::vector<double> left = shades(a + inward + before, normal, heights, false),
+                              right = shades(b - inward + before, normal, heights, false);
+    const auto shaded = [&](const std::vector<double>& shades, double z)
     {
-        return look.wall * (0.84 + 0.16 * std::clamp((z - base) / std::max(eaves - base, 1e-3), 0.0, 1.0));
+        // Without the openness, walls are a little darker near the ground, where less of the sky lights them.
+        if (!_openness)
+            return look.wall *
+                   (0.84 + 0.16 * std::clamp((z - base) / std::max(eaves - base, 1e-3), 0.0, 1.0));
+        std::size_t i = high && z > heights[1] ? 1 : 0;
+        const double share =
+            std::clamp((z - heights[i]) / std::max(heights[i + 1] - heights[i], 1e-3), 0.0, 1.0);
+        return look.wall * (shades[i] + share * (shades[i + 1] - shades[i]));
     };
-    const auto part = [&](double from, double to, const osg::Vec2d& texelFrom, const osg::Vec2d& texelTo)
+    const auto piece = [&](double from, double to, const osg::Vec2d& texelFrom, const osg::Vec2d& texelTo)
     {
         if (!(to > from)) return;
         const osg::Vec3d corners[4] = {
             {a.x(), a.y(), from}, {b.x(), b.y(), from}, {b.x(), b.y(), to}, {a.x(), a.y(), to}};
-        quad(corners, normal, shaded(from), shaded(to), texelFrom, texelTo);
+        const osg::Vec3d colors[4] = {shaded(left, from), shaded(right, from), shaded(right, to),
+                                      shaded(left, to)};
+        quad(corners, normal, colors, texelFrom, texelTo);
+    };
+    const auto part = [&](double from, double to, const osg::Vec2d& texelFrom, const osg::Vec2d& texelTo)
+    {
+        if (!high || !(from < heights[1] && heights[1] < to))
+        {
+            piece(from, to, texelFrom, texelTo);
+            return;
+        }
+        const double middle =
+            texelFrom.y() + (texelTo.y() - texelFrom.y()) * (heights[1] - from) / (to - from);
+        piece(from, heights[1], texelFrom, {texelTo.x(), middle});
+        piece(heights[1], to, {texelFrom.x(), middle}, texelTo);
     };
     // Shorter ones have no room for a window.
     if (!windows || length < 0.6 * look.window)
@@ -255,7 +316,7 @@ void BuildingMesh::wall(const PlacedBuilding& building, const osg::Vec2d& a, con
     const double count = std::max(1.0, std::round(length / look.window));
     const double first = std::floor(
         WindowPicture::columns * chance(building.seed, 5 + static_cast<std::uint32_t>(std::lround(length))));
-    const double left = first / WindowPicture::columns, right = (first + count) / WindowPicture::columns;
+    const double start = first / WindowPicture::columns, end = (first + count) / WindowPicture::columns;
     const auto row = [&](double storeys)
     {
         return WindowPicture::storey(building.use, storeys);
@@ -267,8 +328,8 @@ void BuildingMesh::wall(const PlacedBuilding& building, const osg::Vec2d& a, con
     while (from < eaves)
     {
         const double to = std::min(eaves, base + (done + WindowPicture::above) * look.storey);
-        part(from, to, {left, row((from - base) / look.storey - done)},
-             {right, row((to - base) / look.storey - done)});
+        part(from, to, {start, row((from - base) / look.storey - done)},
+             {end, row((to - base) / look.storey - done)});
         from = to;
         done += WindowPicture::above;
     }
@@ -279,6 +340,13 @@ void BuildingMesh::flatRoof(const std::vector<Ring>& rings, double z, const osg:
     const osg::Vec3d up(0.0, 0.0, 1.0);
     const osg::Vec2d plain = WindowPicture::plain();
     const std::vector<osg::Vec2d> triangles = triangulate(rings);
+    std::map<std::pair<double, double>, double> known;
+    const auto corner = [&](const osg::Vec2d& place)
+    {
+        const auto [found, isNew] = known.try_emplace({place.x(), place.y()}, 1.0);
+        if (isNew) found->second = shades(place, up, {z}, true).front();
+        return vertex({place.x(), place.y(), z}, up, color * found->second, plain.x(), plain.y());
+    };
     // The corners of a square serve both triangles.
     std::vector<unsigned int> corners;
     if (rings.size() == 1 && triangles.size() == 6 && rings.front().size() == 4)
@@ -293,13 +361,13 @@ void BuildingMesh::flatRoof(const std::vector<Ring>& rings, double z, const osg:
     {
         const auto first = static_cast<unsigned int>(_places.size());
         for (const osg::Vec2d& place : rings.front())
-            vertex({place.x(), place.y(), z}, up, color, plain.x(), plain.y());
-        for (const unsigned int corner : corners)
-            _triangles.push_back(first + corner);
+            corner(place);
+        for (const unsigned int each : corners)
+            _triangles.push_back(first + each);
         return;
     }
     for (const osg::Vec2d& place : triangles)
-        _triangles.push_back(vertex({place.x(), place.y(), z}, up, color, plain.x(), plain.y()));
+        _triangles.push_back(corner(place));
 }
 
 void BuildingMesh::face(const std::vector<osg::Vec3d>& corners, const osg::Vec3d& color)
@@ -309,7 +377,12 @@ void BuildingMesh::face(const std::vector<osg::Vec3d>& corners, const osg::Vec3d
     const osg::Vec2d plain = WindowPicture::plain();
     const auto first = static_cast<unsigned int>(_places.size());
     for (const osg::Vec3d& corner : corners)
-        vertex(corner, normal, color, plain.x(), plain.y());
+    {
+        // As if it were level: two slopes that meet have one shade there.
+        const double shade =
+            shades({corner.x(), corner.y()}, osg::Vec3d(0.0, 0.0, 1.0), {corner.z()}, true).front();
+        vertex(corner, normal, color * shade, plain.x(), plain.y());
+    }
     for (unsigned int i = 2; i < corners.size(); ++i)
         _triangles.insert(_triangles.end(), {first, first + i - 1, first + i});
 }
@@ -332,22 +405,15 @@ void BuildingMesh::gable(const PlacedBuilding& building, double eaves, const Loo
     face({corner(3), corner(0), start}, look.wall);
 }
 
-void BuildingMesh::add(const PlacedBuilding& building, BuildingLevel level)
+void BuildingMesh::add(const PlacedBuilding& building, BuildingLevel level, std::size_t number)
 {
     if (building.rings.empty() || building.rings.front().size() < 3) return;
     _reference = osg::Vec3(building.reference);
+    _number = number;
     const bool detail = level == BuildingLevel::DETAIL;
-    const double height = building.top - building.reference.z();
-    const bool gabled = building.gabled && isRectangle(building.rings);
-    double eaves = building.top;
-    if (gabled)
-    {
-        const Ring& ring = building.rings.front();
-        const double narrow = std::min((ring[1] - ring[0]).length(), (ring[2] - ring[1]).length());
-        const double rise = std::min(0.36 * narrow, 0.45 * height);
-        // A prism as high as the house is on average.
-        eaves -= detail ? rise : 0.5 * rise;
-    }
+    const double rise = roofRise(building);
+    const bool gabled = rise > 0.0;
+    const double eaves = detail ? building.top - rise : meanTop(building);
     Look look;
     look.wall = wallColor(building.use, building.seed);
     look.roof = roofColor(building.use, building.gabled, building.seed);

@@ -5,11 +5,14 @@
 #include <osgGeoFX/town/detail/Building.h>
 
 #include <osg/Geometry>
+#include <osg/Matrixd>
 
 #include <vector>
 
 namespace osgGeoFX
 {
+
+class Openness;
 
 /// A level of detail of a building.
 enum class BuildingLevel
@@ -27,9 +30,15 @@ enum class BuildingLevel
 class BuildingMesh
 {
 public:
-    explicit BuildingMesh(double depth) : _depth(depth) {}
+    /// With `openness`, what is shut in is darker. `toOpenness`: from this frame to that of its places; both are upright.
+    explicit BuildingMesh(double depth, const Openness* openness = nullptr,
+                          const osg::Matrixd& toOpenness = {})
+        : _depth(depth), _openness(openness), _toOpenness(toOpenness)
+    {
+    }
 
-    void add(const PlacedBuilding& building, BuildingLevel level);
+    /// `number`: of the building in the openness.
+    void add(const PlacedBuilding& building, BuildingLevel level, std::size_t number = 0);
     bool empty() const { return _triangles.empty(); }
     /// All that was added, as one geometry; null if nothing was.
     osg::ref_ptr<osg::Geometry> create() const;
@@ -41,13 +50,19 @@ private:
     /// Corners counter-clockwise from outside, with their texture coordinates and shades.
     void wall(const PlacedBuilding& building, const osg::Vec2d& a, const osg::Vec2d& b, double eaves,
               const Look& look, bool windows);
-    void quad(const osg::Vec3d (&corners)[4], const osg::Vec3d& normal, const osg::Vec3d& lower,
-              const osg::Vec3d& upper, const osg::Vec2d& from, const osg::Vec2d& to);
+    void quad(const osg::Vec3d (&corners)[4], const osg::Vec3d& normal, const osg::Vec3d (&colors)[4],
+              const osg::Vec2d& from, const osg::Vec2d& to);
+    /// What is left of the color at some heights of a vertical.
+    std::vector<double> shades(const osg::Vec2d& place, const osg::Vec3d& normal,
+                               const std::vector<double>& heights, bool roof) const;
     void flatRoof(const std::vector<Ring>& rings, double z, const osg::Vec3d& color);
     void gable(const PlacedBuilding& building, double eaves, const Look& look);
     void face(const std::vector<osg::Vec3d>& corners, const osg::Vec3d& color);
 
     const double _depth;
+    const Openness* const _openness;
+    const osg::Matrixd _toOpenness;
+    std::size_t _number = 0; ///< of the building in it
     std::vector<osg::Vec3> _places, _normals, _references;
     std::vector<osg::Vec4ub> _colors;
     std::vector<osg::Vec2> _texels;
@@ -60,5 +75,14 @@ std::vector<osg::Vec2d> triangulate(const std::vector<Ring>& rings);
 
 /// Whether an outline is a rectangle, about, and so can have a gabled roof.
 bool isRectangle(const std::vector<Ring>& rings);
+
+/// From a gabled roof's eaves to its ridge, metres; 0 for a flat roof.
+double roofRise(const PlacedBuilding& building);
+
+/// The top of a prism that is as high as the building is on average.
+inline double meanTop(const PlacedBuilding& building)
+{
+    return building.top - 0.5 * roofRise(building);
+}
 
 } // namespace osgGeoFX

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -63,9 +64,9 @@ struct TownCells::Standing
 };
 
 TownCells::TownCells(const TownGrid& grid, const TerrainInfo& terrain, const osg::Node& root,
-                     std::string folder, std::string output)
+                     std::string folder, std::string output, bool ambientOcclusion)
     : _grid(grid), _root(&root), _folder(std::move(folder)), _output(std::move(output)),
-      _spool(std::make_unique<BuildingSpool>(_output + "/outlines"))
+      _ambientOcclusion(ambientOcclusion), _spool(std::make_unique<BuildingSpool>(_output + "/outlines"))
 {
     const osg::Vec2d metres = grid.metres(0.5 * (grid.south() + grid.north()));
     _cell.set(SMALLEST_CELL / metres.x(), SMALLEST_CELL / metres.y());
@@ -226,6 +227,38 @@ osg::ref_ptr<osg::Node> TownCells::cellNode(const osg::Matrixd& frame, osg::Geom
     return lod;
 }
 
+void TownCells::addNeighbours(DrawnGround& ground, std::size_t index, const osg::Matrixd& toUnit,
+                              Openness& openness) const
+{
+    const Unit& unit = _units[index];
+    // One of the smallest cells around the unit's: the reach, and half of a building.
+    const int side = FINER * _across, west = unit.x * side - 1, south = unit.y * side - 1;
+    static_assert(SMALLEST_CELL > 2.0 * Openness::reach);
+    for (int y = unit.y - 1; y <= unit.y + 1; ++y)
+        for (int x = unit.x - 1; x <= unit.x + 1; ++x)
+        {
+            if (x == unit.x && y == unit.y) continue;
+            const auto found = std::find_if(_units.begin(), _units.end(),
+                                            [&](const Unit& each) { return each.x == x && each.y == y; });
+            if (found == _units.end()) continue;
+            for (std::size_t i = found->first; i < found->last; ++i)
+            {
+                const Entry& entry = _entries[i];
+                if (entry.x < west || entry.x > west + side + 1 || entry.y < south ||
+                    entry.y > south + side + 1)
+                    continue;
+                const Building building = _spool->read(entry.place);
+                Standing standing;
+                standing.reference = ringMiddle(building.rings.front());
+                const std::optional<double> height = ground.at(standing.reference);
+                if (!height) continue;
+                standing.base = standing.lowest = *height;
+                standing.top = *height + building.height;
+                openness.add(place(building, standing, toUnit));
+            }
+        }
+}
+
 void TownCells::write(const osg::Node& node, const std::string& kind, int x, int y) const
 {
     writeNodeAtomically(node, _output + "/buildings/" + fileOf(kind, x, y));
@@ -244,6 +277,27 @@ void TownCells::build(int worker, std::size_t index)
     const osg::Matrixd frame = _grid.frameAt(middleOf(unit.x, unit.y, FINER));
     const osg::Matrixd toUnit = osg::Matrixd::inverse(frame);
     std::vector<PlacedBuilding> all;
+    // All of the unit stand before any is drawn, for one darkens another.
+    std::vector<std::optional<Standing>> standings(unit.last - unit.first);
+    Openness openness;
+    for (std::size_t i = unit.first; i < unit.last; ++i)
+    {
+        const Building building = _spool->read(_entries[i].place);
+        Standing standing;
+        if (!stand(*ground, building, standing))
+        {
+            ++_outside;
+            continue;
+        }
+        ++_buildings;
+        for (std::size_t bit = 0; bit < _notes.size(); ++bit)
+            if (building.notes & (1u << bit)) ++_notes[bit];
+        standings[i - unit.first] = standing;
+        all.push_back(place(building, standing, toUnit));
+        if (_ambientOcclusion) openness.add(all.back());
+    }
+    if (_ambientOcclusion) addNeighbours(*ground, index, toUnit, openness);
+    std::size_t number = 0;
     osg::BoundingBoxd box;
     osg::ref_ptr<osg::Group> singles = new osg::Group;
     for (std::size_t first = unit.first; first < unit.last;)
@@ -254,23 +308,17 @@ void TownCells::build(int worker, std::size_t index)
             ++last;
         const osg::Matrixd cellFrame = _grid.frameAt(middleOf(x, y, 1)),
                            toCell = osg::Matrixd::inverse(cellFrame);
-        BuildingMesh detail(_detail.depth), single(_single.depth);
+        const osg::Matrixd fromCell = cellFrame * toUnit;
+        const Openness* around = _ambientOcclusion ? &openness : nullptr;
+        BuildingMesh detail(_detail.depth, around, fromCell), single(_single.depth, around, fromCell);
         for (std::size_t i = first; i < last; ++i)
         {
-            const Building building = _spool->read(_entries[i].place);
-            Standing standing;
-            if (!stand(*ground, building, standing))
-            {
-                ++_outside;
-                continue;
-            }
-            ++_buildings;
-            for (std::size_t bit = 0; bit < _notes.size(); ++bit)
-                if (building.notes & (1u << bit)) ++_notes[bit];
-            all.push_back(place(building, standing, toUnit));
-            const PlacedBuilding placed = place(building, standing, toCell);
-            detail.add(placed, BuildingLevel::DETAIL);
-            single.add(simplified(placed, 1.0), BuildingLevel::SINGLE);
+            const std::optional<Standing>& standing = standings[i - unit.first];
+            if (!standing) continue;
+            const PlacedBuilding placed = place(_spool->read(_entries[i].place), *standing, toCell);
+            detail.add(placed, BuildingLevel::DETAIL, number);
+            single.add(simplified(placed, 1.0), BuildingLevel::SINGLE, number);
+            ++number;
         }
         first = last;
         const osg::ref_ptr<osg::Geometry> fine = detail.create(), coarse = single.create();
@@ -293,13 +341,18 @@ void TownCells::build(int worker, std::size_t index)
         return;
     }
     write(*singles, "single", unit.x, unit.y);
-    BuildingMesh mesh(_blocks.depth);
-    for (const PlacedBuilding& block : makeBlocks(all))
-        mesh.add(block, BuildingLevel::SINGLE);
-    const osg::ref_ptr<osg::Geometry> blocks = mesh.create();
-    if (blocks) expand(box, blocks->getBoundingBox(), osg::Matrixd());
+    const std::vector<PlacedBuilding> blocks = makeBlocks(all);
+    Openness ofBlocks;
+    if (_ambientOcclusion)
+        for (const PlacedBuilding& block : blocks)
+            ofBlocks.add(block);
+    BuildingMesh mesh(_blocks.depth, _ambientOcclusion ? &ofBlocks : nullptr);
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+        mesh.add(blocks[i], BuildingLevel::SINGLE, i);
+    const osg::ref_ptr<osg::Geometry> geometry = mesh.create();
+    if (geometry) expand(box, geometry->getBoundingBox(), osg::Matrixd());
     const osg::ref_ptr<osg::Node> node =
-        cellNode(frame, blocks, box, "../../" + fileOf("single", unit.x, unit.y), _single.range);
+        cellNode(frame, geometry, box, "../../" + fileOf("single", unit.x, unit.y), _single.range);
     _made[index] = node;
     finishUnit(index);
 }

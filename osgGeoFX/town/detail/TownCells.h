@@ -5,6 +5,7 @@
 #include <osgGeoFX/town/detail/Building.h>
 #include <osgGeoFX/town/detail/BuildingSpool.h>
 #include <osgGeoFX/town/detail/DrawnGround.h>
+#include <osgGeoFX/town/detail/Openness.h>
 #include <osgGeoFX/town/detail/TownFrame.h>
 
 #include <osg/BoundingBox>
@@ -37,7 +38,7 @@ class TownCells
 public:
     /// `folder`: of the database, whose ground is read; the town's files are written below `output`.
     TownCells(const TownGrid& grid, const TerrainInfo& terrain, const osg::Node& root, std::string folder,
-              std::string output);
+              std::string output, bool ambientOcclusion);
     ~TownCells();
 
     /// False if it stands outside of the terrain's extent.
@@ -87,6 +88,9 @@ private:
     /// Writes the file of a unit's large cell if it was the last one of it, and lets its blocks go.
     void finishUnit(std::size_t index);
     osg::Vec2d middleOf(int x, int y, int size) const;
+    /// Adds the buildings of other units that may stand within the openness' reach.
+    void addNeighbours(DrawnGround& ground, std::size_t index, const osg::Matrixd& toUnit,
+                       Openness& openness) const;
     bool stand(DrawnGround& ground, const Building& building, Standing& standing) const;
     PlacedBuilding place(const Building& building, const Standing& standing,
                          const osg::Matrixd& toLocal) const;
@@ -98,6 +102,7 @@ private:
     const TownGrid& _grid;
     const osg::ref_ptr<const osg::Node> _root;
     const std::string _folder, _output;
+    const bool _ambientOcclusion;
     osg::Vec2d _cell; ///< the size of the smallest cells that there can be, in the grid's units
     int _across = 1;  ///< of these, along a cell of the smallest grid that there is
     Level _detail, _single, _blocks;
