@@ -57,7 +57,9 @@ void describe(osg::ApplicationUsage& usage)
                                "Add a city model of others, in the scene's coordinates; each building keeps "
                                "its shape in bends.");
     usage.addCommandLineOption("--mapping <file>",
-                               "Put a raster onto the ground: KML, KMZ, or any raster with a georeference.");
+                               "Put a file onto the ground: KML, KMZ, any raster with a georeference, or vector "
+                               "data; FILE or FILE:LAYER.");
+    usage.addCommandLineOption("--mapping-style <file>", "How vector data on the ground look: an SLD file.");
     usage.addCommandLineOption(
         "--sequence <file>", "Rasters in time: NetCDF, GRIB, Zarr, bands or a folder; FILE, FILE:VARIABLE or "
                              "FOLDER.");
@@ -147,6 +149,7 @@ int main(int argc, char** argv)
         mappingOptions.files.push_back(text);
     while (arguments.read("--sequence", text))
         mappingOptions.sequences.push_back(text);
+    arguments.read("--mapping-style", mappingOptions.style);
     arguments.read("--colors", mappingOptions.colors);
     while (arguments.read("--route", text))
         mappingOptions.routes.push_back(text);

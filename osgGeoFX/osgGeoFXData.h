@@ -22,6 +22,7 @@
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 #include <osgGeoFX/geodata/TiledRaster.h>
+#include <osgGeoFX/geodata/TiledVectors.h>
 
 #include <osgGeoFX/terrain/BuilderCode.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>

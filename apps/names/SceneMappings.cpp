@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <stdexcept>
 #include <tuple>
 
@@ -19,8 +20,9 @@ namespace geofx::mappings
 void addOptions(CLI::App& app, Options& options)
 {
     app.add_option("--mapping", options.files,
-                   "A raster to put onto the ground: KML or KMZ with ground overlays, or any raster with a "
-                   "georeference that GDAL reads. As often as wanted, the later ones on top")
+                   "What to put onto the ground: KML or KMZ with ground overlays, any raster with a "
+                   "georeference, or the areas, lines and points of any vector data that GDAL reads; FILE or "
+                   "FILE:LAYER. As often as wanted, the later ones on top")
         ->expected(1)
         ->allow_extra_args(false)
         ->type_name("FILE")
@@ -45,6 +47,10 @@ void addOptions(CLI::App& app, Options& options)
                    "Width of the ways' lines, metres (default: by their extent)")
         ->type_name("M")
         ->check(CLI::PositiveNumber);
+    app.add_option("--mapping-style", options.style,
+                   "How the vector data of --mapping look: an SLD file, as QGIS and GeoServer write them "
+                   "(default: NAME.sld beside NAME.EXT, or the file's own styles, or plain colors)")
+        ->type_name("FILE");
     app.add_option("--colors", options.colors,
                    "The colors of values that --mapping and --sequence show: a color table of gdaldem "
                    "color-relief, GMT (.cpt) or "
@@ -78,6 +84,8 @@ void showRasters(Options& options, bool allowOutside, osgGeoFX::Scene& scene,
 {
     if (options.files.empty() && options.sequences.empty() && !options.colors.empty())
         throw std::runtime_error("--colors is for values; give some with --mapping or --sequence.");
+    if (options.files.empty() && !options.style.empty())
+        throw std::runtime_error("--mapping-style is for vector data; give some with --mapping.");
     if (options.files.empty()) return;
     osgGeoFX::SceneOverlays overlays(*scene.node, *scene.effects);
     osgGeoFX::SceneOverlays::Options how;
@@ -85,8 +93,13 @@ void showRasters(Options& options, bool allowOutside, osgGeoFX::Scene& scene,
     how.colors = options.colors;
     how.paged = options.paged;
     std::string error;
-    for (const std::string& file : options.files)
+    how.style = options.style;
+    for (const std::string& each : options.files)
+    {
+        std::string file;
+        std::tie(file, how.layer) = names::fileAndLayer(each);
         if (!overlays.add(file, how, notices, error)) throw std::runtime_error("--mapping: " + error);
+    }
     options.linked.insert(options.linked.end(), overlays.files().begin(), overlays.files().end());
 }
 
@@ -114,7 +127,12 @@ std::string agesOf(const Options& options)
 {
     std::string ages;
     for (const std::string& file : options.files)
-        ages += "; on the ground " + file + names::ageOf(file);
+    {
+        // A style that is found beside the file counts, too.
+        const std::string name = names::fileAndLayer(file).first;
+        const std::string style = std::filesystem::path(name).replace_extension(".sld").string();
+        ages += "; on the ground " + file + names::ageOf(name) + names::ageOf(style);
+    }
     for (const std::string& file : options.sequences)
         ages += "; in time " + file + names::ageOf(names::fileAndLayer(file).first);
     for (const std::string& file : options.routes)
@@ -122,6 +140,7 @@ std::string agesOf(const Options& options)
     for (const std::string& file : options.linked)
         ages += "; " + file + names::ageOf(file);
     if (options.routeWidth > 0.0) ages += " " + std::to_string(options.routeWidth);
+    if (!options.style.empty()) ages += "; " + options.style + names::ageOf(options.style);
     return ages + (options.colors.empty() ? "" : "; " + options.colors + names::ageOf(options.colors));
 }
 

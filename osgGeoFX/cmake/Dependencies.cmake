@@ -27,6 +27,8 @@ if(GEOFX_BUILD_DATA)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(GeographicLib REQUIRED IMPORTED_TARGET geographiclib)
   pkg_check_modules(Deflate REQUIRED IMPORTED_TARGET libdeflate)
+  # Draws vector data with smooth edges.
+  pkg_check_modules(Cairo REQUIRED IMPORTED_TARGET cairo)
   # Not by pkg-config: the file of Debian's package names folders that are not there.
   find_library(GEOFX_SQUISH_LIBRARY squish REQUIRED)
   find_path(GEOFX_SQUISH_INCLUDE squish.h REQUIRED)

@@ -29,6 +29,13 @@ const char* const remedy =
     "put it beside the KML file or below; or, if you trust the file, start the program with "
     "--allow-outside.";
 
+/// A file without a fault.
+class NoOverlays : public BuildError
+{
+public:
+    using BuildError::BuildError;
+};
+
 /// A document and all that it links, the coarse ones first.
 class Collector
 {
@@ -50,7 +57,7 @@ public:
                                  " ground overlays; split it, or make one raster of them with gdalbuildvrt.");
         }
         if (_found.empty())
-            throw BuildError(_file +
+            throw NoOverlays(_file +
                              ": it has no ground overlays; its lines are read with --route or --lines, its "
                              "points with --labels.");
         std::stable_sort(_found.begin(), _found.end(),
@@ -138,9 +145,11 @@ private:
 } // namespace
 
 bool KmlOverlays::read(const std::string& file, bool allowOutside, std::vector<KmlOverlay>& overlays,
-                       std::vector<std::string>& notices, std::string& error, std::vector<std::string>* files)
+                       std::vector<std::string>& notices, std::string& error, std::vector<std::string>* files,
+                       bool* isNone)
 {
     initialiseGdal();
+    if (isNone) *isNone = false;
     try
     {
         Collector collector(file, allowOutside, notices);
@@ -158,6 +167,12 @@ bool KmlOverlays::read(const std::string& file, bool allowOutside, std::vector<K
         overlays.insert(overlays.end(), std::make_move_iterator(found.begin()),
                         std::make_move_iterator(found.end()));
         return true;
+    }
+    catch (const NoOverlays& failure)
+    {
+        error = failure.what();
+        if (isNone) *isNone = true;
+        return false;
     }
     catch (const BuildError& failure)
     {

@@ -479,6 +479,18 @@ std::optional<GroundReach> OverlayRaster::reachOf(const std::string& file, std::
     }
 }
 
+std::function<std::optional<osg::Vec2d>(const osg::Vec2d&)> OverlayRaster::placer(const MappingFrame& frame,
+                                                                                  const std::string& file)
+{
+    const auto transformation = std::make_shared<FrameTransformation>(crsOf(frame, file), file);
+    return [transformation](const osg::Vec2d& degrees) -> std::optional<osg::Vec2d>
+    {
+        std::vector<osg::Vec2d> places = {degrees};
+        if (!transformation->toFrame(places)) return std::nullopt;
+        return places[0];
+    };
+}
+
 bool OverlayRaster::moveToMiddle(const GroundReach& reach, const std::string& file, MappingFrame& frame,
                                  std::string& error)
 {

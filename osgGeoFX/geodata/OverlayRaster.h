@@ -7,6 +7,7 @@
 #include <osgGeoFX/geodata/MappingRaster.h>
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -54,6 +55,9 @@ struct OSGGEOFXDATA_EXPORT OverlayRaster
                                               std::string& error);
     /// The same of a raster with a georeference.
     static std::optional<GroundReach> reachOf(const std::string& file, std::string& error);
+    /// From degrees to metres in a frame; nothing of what has no place there. Throws BuildError, naming `file`, where the frame has no coordinate system.
+    static std::function<std::optional<osg::Vec2d>(const osg::Vec2d&)> placer(const MappingFrame& frame,
+                                                                              const std::string& file);
     /// Moves a frame's origin to a reach's middle. Returns false, with a sentence in `error` that names `file`, if a projected
     /// terrain has no place for it.
     static bool moveToMiddle(const GroundReach& reach, const std::string& file, MappingFrame& frame,

@@ -8,6 +8,7 @@
 #include <osgGeoFX/geodata/OverlayRaster.h>
 #include <osgGeoFX/geodata/SldColors.h>
 #include <osgGeoFX/geodata/TiledRaster.h>
+#include <osgGeoFX/geodata/TiledVectors.h>
 #include <osgGeoFX/geodata/detail/CubeFace.h>
 #include <osgGeoFX/raster/ColorRampFile.h>
 
@@ -54,10 +55,21 @@ public:
 
     void read()
     {
-        if (KmlOverlays::isKml(_file))
-            readKml();
-        else
-            readRaster();
+        if (!_options.layer.empty()) return readVectors();
+        bool isNone = false;
+        try
+        {
+            if (KmlOverlays::isKml(_file))
+                readKml(isNone);
+            else
+                readRaster();
+        }
+        catch (const BuildError&)
+        {
+            const bool mayBeVectors = isNone || !KmlOverlays::isKml(_file);
+            if (!mayBeVectors || !TiledVectors::isVectors(_file)) throw;
+            readVectors();
+        }
     }
 
 private:
@@ -135,11 +147,12 @@ private:
         overlays.push_back(std::move(overlay));
     }
 
-    void readKml()
+    /// `isNone`: whether it has no overlays, and no other fault.
+    void readKml(bool& isNone)
     {
         std::vector<KmlOverlay> found;
         std::string error;
-        if (!KmlOverlays::read(_file, _options.allowOutside, found, notices, error, &files))
+        if (!KmlOverlays::read(_file, _options.allowOutside, found, notices, error, &files, &isNone))
             throw BuildError(error);
         const OverlayRaster::Options options{_options.maxSide, _options.allowOutside};
         std::size_t done = 0;
@@ -254,6 +267,107 @@ private:
         giveColors(before);
     }
 
+    void readVectors()
+    {
+        std::string error;
+        const std::optional<TiledVectors> vectors =
+            TiledVectors::read(_file, {_options.layer, _options.style, _options.allowOutside}, error);
+        if (!vectors) throw BuildError(error);
+        notices.insert(notices.end(), vectors->notices().begin(), vectors->notices().end());
+        const GroundReach reach{vectors->middle(), vectors->radius(), vectors->texel()};
+        if (!_globe && frames.empty()) frames.push_back(originFor(*vectors));
+        if (vectors->hasShapes())
+        {
+            GroundOverlay overlay;
+            overlay.name = std::filesystem::path(_file).filename().string();
+            const auto take =
+                [&](const MappingFrame& frame, const std::optional<MappingRaster::Window>& window)
+            {
+                overlay.tiles = vectors->tiles(frame, window, error);
+                if (!overlay.tiles) throw BuildError(error);
+                setCoarse(overlay);
+            };
+            addParts(reach, _file, overlay, take);
+        }
+        for (const TiledVectors::Symbol& symbol : vectors->symbols())
+            addSymbol(symbol, reach);
+    }
+
+    /// On a plane: the middle of what its projection has a place for.
+    LocalOrigin originFor(const TiledVectors& vectors) const
+    {
+        std::string error;
+        MappingFrame frame = frameOf(0);
+        if (vectors.hasShapes())
+        {
+            const osg::ref_ptr<RasterTiles> tiles = vectors.tiles(frame, std::nullopt, error);
+            if (!tiles) throw BuildError(error);
+            return LocalOrigin::onPlane((tiles->low() + tiles->high()) / 2.0);
+        }
+        const GroundReach reach{vectors.middle(), vectors.radius(), vectors.texel()};
+        if (!OverlayRaster::moveToMiddle(reach, _file, frame, error)) throw BuildError(error);
+        return frame.origin;
+    }
+
+    static void setCoarse(GroundOverlay& overlay)
+    {
+        constexpr int coarse = 512;
+        const osg::Vec2d low = overlay.tiles->low(), high = overlay.tiles->high();
+        const osg::Vec2d size = high - low;
+        const double texel = std::max(size.x(), size.y()) / coarse;
+        const auto texels = [&](double metres)
+        {
+            return std::clamp(static_cast<int>(std::lround(metres / texel)), 1, coarse);
+        };
+        std::string error;
+        const osg::ref_ptr<osg::Image> image =
+            overlay.tiles->read(low, high, texels(size.x()), texels(size.y()), error);
+        if (!image) throw BuildError(error);
+        overlay.layer = new DataLayer(image);
+        overlay.corners = {low, osg::Vec2d(high.x(), low.y()), high, osg::Vec2d(low.x(), high.y())};
+    }
+
+    void addSymbol(const TiledVectors::Symbol& symbol, const GroundReach& reach)
+    {
+        GroundOverlay overlay;
+        overlay.name = symbol.name.empty() ? std::filesystem::path(_file).filename().string() : symbol.name;
+        overlay.layer = symbol.layer;
+        overlay.symbol =
+            GroundOverlay::Symbol{symbol.longitude, symbol.latitude, symbol.height, symbol.pixels};
+        const osg::Vec2d degrees(symbol.longitude, symbol.latitude);
+        if (isTooLarge(reach))
+        {
+            LocalOrigin nearest;
+            double least = 1e30;
+            for (const LocalOrigin& origin : CubeFace::origins())
+            {
+                const osg::Vec2d there(osg::RadiansToDegrees(origin.longitude),
+                                       osg::RadiansToDegrees(origin.latitude));
+                const double distance = arc(there, degrees);
+                if (distance >= least) continue;
+                least = distance;
+                nearest = origin;
+            }
+            overlay.frame = frameAt(nearest, _file);
+        }
+        else
+            overlay.frame = frameFor(reach, _file);
+        const std::optional<osg::Vec2d> place = placeIn(overlay.frame, degrees);
+        if (!place) return;
+        const double half = symbol.side / 2.0;
+        overlay.corners = {*place + osg::Vec2d(-half, -half), *place + osg::Vec2d(half, -half),
+                           *place + osg::Vec2d(half, half), *place + osg::Vec2d(-half, half)};
+        overlays.push_back(std::move(overlay));
+    }
+
+    /// Of degrees in a frame, metres.
+    std::optional<osg::Vec2d> placeIn(std::size_t frame, const osg::Vec2d& degrees)
+    {
+        if (_placers.size() <= frame) _placers.resize(frame + 1);
+        if (!_placers[frame]) _placers[frame] = OverlayRaster::placer(frameOf(frame), _file);
+        return _placers[frame](degrees);
+    }
+
     /// Null for a raster that is small enough. With tiles, a coarse picture is enough for the rest.
     osg::ref_ptr<RasterTiles> tilesIn(const MappingFrame& frame, int& maxSide)
     {
@@ -301,6 +415,7 @@ private:
     }
 
     double _texels = 0.0;
+    std::vector<std::function<std::optional<osg::Vec2d>(const osg::Vec2d&)>> _placers; ///< of frames
 };
 
 } // namespace

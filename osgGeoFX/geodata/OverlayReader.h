@@ -12,8 +12,9 @@
 namespace osgGeoFX
 {
 
-/** Reads whatever lies on the ground as a raster: the ground overlays of a KML or KMZ file (KmlOverlays), or any raster with
-    a georeference that GDAL opens (MappingRaster), also MBTiles files and descriptions of WMTS and XYZ services.
+/** Reads whatever lies on the ground: the ground overlays of a KML or KMZ file (KmlOverlays), any raster with
+    a georeference that GDAL opens (MappingRaster), also MBTiles files and descriptions of WMTS and XYZ services, and the areas, lines
+    and points of any vector data (TiledVectors), also of KML files without ground overlays. Areas and lines always have tiles; points are symbols.
 
     On a globe, rasters near each other share a frame. A raster gets a frame of its own where its texels are too small for the
     distance (float has 24 bits) or where it lies more than 60° of arc away; there are at most seven frames. So corners lie
@@ -34,6 +35,8 @@ public:
         /// Whether a raster with a georeference that has more pixels than `maxSide` along a side gives its tiles, too
         /// (GroundOverlay::tiles); its layer is a coarse picture then.
         bool paged = false;
+        std::string layer; ///< of vector data: one layer, and a raster is refused; empty: all
+        std::string style; ///< of vector data: an SLD file; empty: what TiledVectors says
         /// Of a file's overlays together; those that come later are left out, with a notice. 2^27 texels have 512 MiB.
         double maxTexels = 134217728.0;
     };

@@ -35,6 +35,7 @@ public:
                                             frame.wkt,
                                             frame.origin,
                                             options.maxSide,
+                                            std::nullopt,
                                             std::nullopt}
     {
         const std::unique_ptr<FrameRaster> first = _steps->step(0);

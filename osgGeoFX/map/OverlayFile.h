@@ -12,7 +12,7 @@
 namespace osgGeoFX
 {
 
-/** The rasters of a file, for mappings, read by the plugin `osgdb_geofxdata`, so that a program which draws needs no GDAL. Programs that
+/** The rasters, or the areas, lines and points, of a file, for mappings, read by the plugin `osgdb_geofxdata`, so that a program which draws needs no GDAL. Programs that
     link osgGeoFXData may call OverlayReader themselves, which says what is read.
     @ingroup map */
 struct OSGGEOFXMAPS_EXPORT OverlayFile
@@ -20,6 +20,7 @@ struct OSGGEOFXMAPS_EXPORT OverlayFile
     std::string file;
     bool allowOutside = false; ///< whether a KML file may name files outside of its folder, and addresses
     std::string colors;        ///< of values: an SLD file, or one that ColorRampFile reads; empty: none
+    std::string layer, style;  ///< of vector data: one layer, and an SLD file; either may be empty
     int maxSide = 2048;        ///< texels along the longer side of a raster, 1…16384
     bool paged = false;        ///< OverlayReader::Options::paged
     bool globe = true;         ///< the terrain is one

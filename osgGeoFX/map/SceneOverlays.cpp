@@ -4,13 +4,17 @@
 
 #include <osgGeoFX/map/OverlayFile.h>
 #include <osgGeoFX/map/detail/SceneCrs.h>
+#include <osgGeoFX/panorama/TerrainRelief.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 namespace osgGeoFX
 {
 
-SceneOverlays::SceneOverlays(osg::Node& node, EffectScene& scene) : _scene(&scene)
+SceneOverlays::SceneOverlays(osg::Node& node, EffectScene& scene) : _node(node), _scene(&scene)
 {
     if (!scene.ground().ellipsoid) _wkt = crsOfScene(node);
 }
@@ -22,6 +26,8 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
     request.file = file;
     request.allowOutside = options.allowOutside;
     request.colors = options.colors;
+    request.layer = options.layer;
+    request.style = options.style;
     request.maxSide = options.maxSide;
     request.paged = options.paged;
     request.globe = _scene->ground().ellipsoid.valid();
@@ -30,27 +36,37 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
         request.frames.push_back(effect->getLocalOrigin());
     if (!request.read(error)) return false;
 
-    std::vector<std::pair<std::size_t, osg::ref_ptr<ProjectiveMapping>>> mappings;
-    std::vector<std::pair<std::size_t, osg::ref_ptr<PagedRaster>>> rasters;
+    giveHeights(request);
+    // The parts of one file share its memory.
+    const auto tiled = std::count_if(request.overlays.begin(), request.overlays.end(),
+                                     [](const GroundOverlay& overlay) { return overlay.tiles.valid(); });
+    PagedRaster::Options paging = options.paging;
+    paging.megabytes = std::max(32, paging.megabytes / std::max(1, static_cast<int>(tiled)));
+    struct Part
+    {
+        osg::ref_ptr<ProjectiveMapping> mapping;
+        osg::ref_ptr<PagedRaster> raster; ///< in its place
+        std::size_t frame = 0;
+    };
+    std::vector<Part> parts;
     for (const GroundOverlay& overlay : request.overlays)
     {
+        Part part{nullptr, nullptr, overlay.frame};
         if (overlay.tiles)
         {
-            const osg::ref_ptr<PagedRaster> raster =
-                PagedRaster::create(overlay.tiles, options.paging, error);
-            if (!raster) return false;
-            overlay.setLook(*raster->getMapping());
-            rasters.emplace_back(overlay.frame, raster);
-            continue;
+            part.raster = PagedRaster::create(overlay.tiles, paging, error);
+            if (!part.raster) return false;
+            overlay.setLook(*part.raster->getMapping());
         }
-        const osg::ref_ptr<ProjectiveMapping> mapping = overlay.makeMapping();
-        if (!mapping)
+        else
+            part.mapping = overlay.makeMapping();
+        if (!part.raster && !part.mapping)
         {
             error = file + ": the overlay \"" + overlay.name +
                     "\" covers no area on the ground; correct its corners.";
             return false;
         }
-        mappings.emplace_back(overlay.frame, mapping);
+        parts.push_back(part);
     }
     while (_effects.size() < request.frames.size())
     {
@@ -60,13 +76,38 @@ bool SceneOverlays::add(const std::string& file, const Options& options, std::ve
         _scene->addEffect(effect);
         _effects.push_back(effect);
     }
-    for (const auto& [frame, mapping] : mappings)
-        _effects[frame]->addMapping(mapping);
-    for (const auto& [frame, raster] : rasters)
-        _effects[frame]->addRaster(raster);
+    for (const Part& part : parts)
+    {
+        if (part.raster)
+            _effects[part.frame]->addRaster(part.raster);
+        else
+            _effects[part.frame]->addMapping(part.mapping);
+    }
     _files.insert(_files.end(), request.files.begin(), request.files.end());
     notices.insert(notices.end(), request.notices.begin(), request.notices.end());
     return true;
+}
+
+void SceneOverlays::giveHeights(OverlayFile& request) const
+{
+    const bool any =
+        std::any_of(request.overlays.begin(), request.overlays.end(),
+                    [](const GroundOverlay& each) { return each.symbol && !each.symbol->height; });
+    if (!any) return;
+    constexpr int cells = 512;
+    std::string error;
+    const std::optional<TerrainRelief> relief =
+        TerrainRelief::read(_node, _scene->ground().ellipsoid, cells, error);
+    if (!relief) return;
+    for (GroundOverlay& each : request.overlays)
+    {
+        if (!each.symbol || each.symbol->height) continue;
+        osg::Vec2d place(each.symbol->longitude, each.symbol->latitude);
+        if (!relief->geocentric)
+            place = (each.corners[0] + each.corners[2]) / 2.0 + request.frames[each.frame].place();
+        const double height = relief->heightAt(place.x(), place.y());
+        if (std::isfinite(height)) each.symbol->height = height;
+    }
 }
 
 } // namespace osgGeoFX

@@ -15,7 +15,9 @@
 namespace osgGeoFX
 {
 
-/** Puts the rasters of files onto a scene: KML and KMZ ground overlays, and any raster with a georeference.
+struct OverlayFile;
+
+/** Puts files onto the ground of a scene: KML and KMZ ground overlays, any raster with a georeference, and the areas, lines and points of any vector data.
 
     @code
     osgGeoFX::SceneOverlays overlays(*scene.node, *scene.effects);
@@ -40,6 +42,9 @@ public:
         bool allowOutside = false;
         /// Colors of values: an SLD file, or one that ColorRampFile reads. Empty: greys from the lowest to the highest value.
         std::string colors;
+        std::string layer; ///< of vector data: one layer; empty: all, and the file may be a raster
+        std::string
+            style; ///< of vector data: an SLD file; empty: the one beside the file, the features' own, or plain colors
         int maxSide = 2048; ///< texels along the longer side of a raster, 1…16384
         /// Whether a raster with more pixels than that, and a georeference, is read in tiles as it is needed (PagedRaster).
         bool paged = false;
@@ -57,6 +62,10 @@ public:
     const std::vector<std::string>& files() const { return _files; }
 
 private:
+    /// Symbols without a height stand on the ground.
+    void giveHeights(OverlayFile& request) const;
+
+    osg::Node& _node;
     osg::ref_ptr<EffectScene> _scene;
     std::string _wkt; ///< of a projected scene
     std::vector<osg::ref_ptr<ProjectiveMappings>> _effects;

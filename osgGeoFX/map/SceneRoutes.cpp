@@ -169,6 +169,14 @@ bool SceneRoutes::add(const RoutePath& route, const Options& options, std::strin
 {
     Way way;
     if (!placeOf(route, way, error)) return false;
+    if (options.onGround && !addMappings(route, way, options, error)) return false;
+    if (route.altitude == RoutePath::CLAMPED || !options.ribbons) return true;
+    return addRibbons(route, options, error);
+}
+
+bool SceneRoutes::addMappings(const RoutePath& route, const Way& way, const Options& options,
+                              std::string& error)
+{
     ProjectiveMappings* const effect = effectFor(way, error);
     if (!effect) return false;
     std::vector<osg::Vec2d> places;
@@ -191,8 +199,7 @@ bool SceneRoutes::add(const RoutePath& route, const Options& options, std::strin
                 "\" is out of range, or it has more than 20000 way points; give another width, or a track.";
         return false;
     }
-    if (route.altitude == RoutePath::CLAMPED || !options.ribbons) return true;
-    return addRibbons(route, options, error);
+    return true;
 }
 
 bool SceneRoutes::addRibbons(const RoutePath& route, const Options& options, std::string& error)

@@ -39,6 +39,8 @@ public:
     {
         std::string layer; ///< one layer; empty: all
         RoutePath::Look look;
+        bool onGround =
+            true; ///< whether ways lie on the ground; without it there is what `ribbons` says alone
         bool ribbons =
             true; ///< whether ways with heights are also drawn in the air (PathRibbon): as tubes, extruded ones with a curtain
     };
@@ -59,6 +61,7 @@ private:
     };
     bool placeOf(const RoutePath& route, Way& way, std::string& error);
     ProjectiveMappings* effectFor(const Way& way, std::string& error);
+    bool addMappings(const RoutePath& route, const Way& way, const Options& options, std::string& error);
     bool addRibbons(const RoutePath& route, const Options& options, std::string& error);
 
     class Heights;

@@ -26,6 +26,12 @@ void GroundOverlay::setLook(ProjectiveMapping& mapping) const
     mapping.setOpacity(opacity);
     mapping.setEnabled(visible);
     mapping.setPixels(pixelsNone, pixelsFull);
+    if (symbol)
+    {
+        mapping.setSizeInPixels(symbol->pixels);
+        mapping.setTurned(symbol->pixels > 0.0);
+        mapping.setHeight(symbol->height.value_or(0.0));
+    }
     if (!layer || layer->getKind() == DataLayer::COLOR) return;
     if (mapping.getLayer() && mapping.getLayer() != layer) LayerWords::copy(*layer, *mapping.getLayer());
     const osg::ref_ptr<ColorTransfer> transfer = new ColorTransfer;

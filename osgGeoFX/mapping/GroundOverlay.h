@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace osgGeoFX
@@ -30,6 +31,16 @@ struct OSGGEOFX_EXPORT GroundOverlay
 
     /// All of the raster, for a PagedRaster, where the layer has only a coarse picture of it; null where the layer is all there is.
     osg::ref_ptr<RasterTiles> tiles;
+
+    /// A point of vector data, whose symbol the layer is.
+    struct Symbol
+    {
+        double longitude = 0.0, latitude = 0.0; ///< degrees
+        std::optional<double> height; ///< metres; nothing: whoever shows it gives it that of the ground
+        double pixels =
+            0.0; ///< its size on the screen, upright towards the eye; 0: it lies on the ground in metres
+    };
+    std::optional<Symbol> symbol;
 
     /// A mapping of it, of order 0. Null, with a warning, if the corners span no area.
     osg::ref_ptr<ProjectiveMapping> makeMapping() const;

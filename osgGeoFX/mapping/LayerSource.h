@@ -21,6 +21,14 @@ struct LayerSource
     LocalOrigin origin;      ///< the same
     int maxSide = 1024;      ///< of sequences: texels along the longer side
     std::optional<int> kind; ///< of tiles: a DataLayer::Kind; nothing if the file decides
+
+    /// How vector data become tiles, as TiledVectors::Options has it.
+    struct Vectors
+    {
+        std::string layer, style;
+        bool allowOutside = false;
+    };
+    std::optional<Vectors> vectors; ///< nothing for rasters
 };
 
 } // namespace osgGeoFX

@@ -287,6 +287,17 @@ osg::Vec2d TerrainRelief::size() const
     return {(east - west) / unit.x(), (north - south) / unit.y()};
 }
 
+double TerrainRelief::heightAt(double x, double y) const
+{
+    if (geocentric && x < west) x += 360.0;
+    if (geocentric && x > east) x -= 360.0;
+    const double column = std::floor((x - west) / (east - west) * columns);
+    const double row = std::floor((y - south) / (north - south) * rows);
+    if (!(column >= 0.0 && column < columns && row >= 0.0 && row < rows))
+        return std::numeric_limits<double>::quiet_NaN();
+    return static_cast<double>(heights[index(static_cast<int>(column), static_cast<int>(row))]);
+}
+
 TerrainRelief TerrainRelief::coarser(int factor) const
 {
     TerrainRelief result = *this;

@@ -57,6 +57,8 @@ struct OSGGEOFX_EXPORT TerrainRelief
         return {west + (column + 0.5) * (east - west) / columns,
                 south + (row + 0.5) * (north - south) / rows};
     }
+    /// Of the cell at a place of the extent, metres; not a number beside the extent. A longitude may be a full turn off.
+    double heightAt(double x, double y) const;
     /// The same terrain with fewer cells. Each takes the highest of its cells' heights, and is water if most of them are.
     TerrainRelief coarser(int factor) const;
 };

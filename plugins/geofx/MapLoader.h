@@ -18,6 +18,19 @@ struct MapRequest
     bool done = false;
 };
 
+/// What osgdb_geofxmaps is asked for under the name "wayInAir": a way whose heights or curtain count from the ground. The scene gets its nodes.
+struct WayInAirRequest
+{
+    RoutePath path;
+    RoutePath::Look look;
+    EffectScene* scene = nullptr; ///< with its terrain
+    bool done = false;
+};
+
+/// Puts such a way into the scene. Throws SceneFailure.
+void loadWayInAir(const ScenePlace& place, const RoutePath& path, const RoutePath::Look& look,
+                  EffectScene& scene);
+
 /// Puts the lines of a scene file into the scene. The node of its names, to stand beside the scene; null if there are none. Throws
 /// SceneFailure.
 osg::ref_ptr<osg::Node> loadMap(const SceneMap& map, EffectScene& scene);

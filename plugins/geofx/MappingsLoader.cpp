@@ -2,8 +2,12 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "MappingsLoader.h"
 
+#include "MapLoader.h"
+
 #include <osgGeoFX/mapping/LayerWords.h>
+#include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/PathRibbon.h>
+#include <osgGeoFX/panorama/TerrainRelief.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 
 #include <osg/Math>
@@ -186,6 +190,8 @@ private:
         request.globe = _ellipsoid != nullptr;
         request.wkt = _terrain.frame().wkt;
         request.maxSide = overlay.maxSide;
+        request.layer = overlay.layer;
+        if (overlay.style) request.style = overlay.style->path;
         if (_hasOrigin) request.frames.push_back(_effect.getLocalOrigin());
         const std::string fault =
             SceneTerrain::ask(overlay.place, "sceneOverlays", &request, "use a <layer> with a <mapping>");
@@ -198,15 +204,44 @@ private:
                  "<projectiveMappings> of their own, or split the file.");
         _effect.setLocalOrigin(request.frames[0]);
         _hasOrigin = true;
+        giveHeights(request);
         for (const GroundOverlay& each : request.overlays)
         {
-            const osg::ref_ptr<ProjectiveMapping> mapping = each.makeMapping();
+            std::string error;
+            const osg::ref_ptr<PagedRaster> raster =
+                each.tiles ? PagedRaster::create(each.tiles, {}, error) : nullptr;
+            if (each.tiles && !raster) fail(overlay.place, error);
+            if (raster) each.setLook(*raster->getMapping());
+            const osg::ref_ptr<ProjectiveMapping> mapping =
+                raster ? osg::ref_ptr<ProjectiveMapping>(raster->getMapping()) : each.makeMapping();
             if (!mapping)
                 fail(overlay.place,
                      "the overlay \"" + each.name + "\" covers no area on the ground; correct it.");
             mapping->setOpacity(mapping->getOpacity() * overlay.opacity);
             mapping->setOrder(overlay.order);
-            _effect.addMapping(mapping);
+            if (raster)
+                _effect.addRaster(raster);
+            else
+                _effect.addMapping(mapping);
+        }
+    }
+
+    /// Symbols without a height stand on the ground.
+    void giveHeights(SceneOverlaysRequest& request) const
+    {
+        constexpr int cells = 512;
+        std::string error;
+        std::optional<TerrainRelief> relief;
+        for (GroundOverlay& each : request.overlays)
+        {
+            if (!each.symbol || each.symbol->height) continue;
+            if (!relief) relief = TerrainRelief::read(_terrain.node(), _ellipsoid, cells, error);
+            if (!relief) return;
+            osg::Vec2d place(each.symbol->longitude, each.symbol->latitude);
+            if (!relief->geocentric)
+                place = (each.corners[0] + each.corners[2]) / 2.0 + request.frames[each.frame].place();
+            const double height = relief->heightAt(place.x(), place.y());
+            if (std::isfinite(height)) each.symbol->height = height;
         }
     }
 
@@ -237,7 +272,12 @@ private:
             }
             if (!path.showOn(_effect, places, route.look))
                 fail(route.place, "the route cannot be drawn with this width and order; give others.");
-            if (path.altitude != RoutePath::ABSOLUTE || !route.inAir) continue;
+            if (path.altitude == RoutePath::CLAMPED || !route.inAir) continue;
+            if (path.altitude == RoutePath::ABOVE_GROUND)
+            {
+                loadWayInAir(route.place, path, route.look, _node);
+                continue;
+            }
             std::string error;
             const osg::ref_ptr<Georeference> reference = _terrain.reference(error);
             if (!reference) fail(route.place, error);

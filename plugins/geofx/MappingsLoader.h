@@ -27,6 +27,7 @@ struct SceneOverlaysRequest
     bool globe = true;
     std::string wkt;
     std::string colors;
+    std::string layer, style; ///< of vector data
     int maxSide = 0;
     std::vector<LocalOrigin> frames; ///< those that there are; grows
     std::vector<GroundOverlay> overlays;

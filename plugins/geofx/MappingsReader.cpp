@@ -79,9 +79,15 @@ private:
 
     void readOverlays(xmlNode* node)
     {
-        _result.overlays.push_back({_xml.place(node), _xml.path(node, "file"),
-                                    SceneXml::integer(node, "maxSide"), SceneXml::real(node, "opacity"),
-                                    SceneXml::integer(node, "order")});
+        SceneOverlay overlay{_xml.place(node),
+                             _xml.path(node, "file"),
+                             attributeOf(node, "layer"),
+                             std::nullopt,
+                             SceneXml::integer(node, "maxSide"),
+                             SceneXml::real(node, "opacity"),
+                             SceneXml::integer(node, "order")};
+        if (isGiven(node, "style")) overlay.style = _xml.path(node, "style");
+        _result.overlays.push_back(overlay);
     }
 
     void readRoute(xmlNode* node)

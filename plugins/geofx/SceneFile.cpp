@@ -345,7 +345,10 @@ std::vector<ScenePath> filesOf(const SceneFile& scene)
         for (const SceneSequence& sequence : mappings.sequences)
             paths.push_back(sequence.file);
         for (const SceneOverlay& overlay : mappings.overlays)
+        {
             paths.push_back(overlay.file);
+            if (overlay.style) paths.push_back(*overlay.style);
+        }
         for (const SceneRoute& route : mappings.routes)
         {
             if (route.file) paths.push_back(*route.file);

@@ -123,11 +123,13 @@ struct SceneMapping
     std::optional<Raster> raster;
 };
 
-/// The rasters of a KML file, or any raster, as mappings of the effect.
+/// The rasters of a KML file, any raster, or any vector data, as mappings of the effect.
 struct SceneOverlay
 {
     ScenePlace place;
     ScenePath file;
+    std::string layer;              ///< of vector data; empty: all
+    std::optional<ScenePath> style; ///< the same
     int maxSide = 0;
     double opacity = 1.0;
     int order = 0;
@@ -155,7 +157,7 @@ struct SceneRoute
     RoutePath path;    ///< the way points; without a file
     RoutePath::Look look;
     std::optional<osg::Vec4> color;
-    bool inAir = true; ///< whether one with absolute heights is drawn there, too
+    bool inAir = true; ///< whether one with heights is drawn there, too
 };
 
 /// An effect with mappings. The mappings are in the effect, with all that needs no file and no terrain.

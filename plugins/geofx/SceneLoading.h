@@ -54,6 +54,7 @@ public:
     {
     }
 
+    const osg::Node& node() const { return _terrain; }
     /// Null on a projected terrain.
     const osg::EllipsoidModel* ellipsoid() const { return _ellipsoid; }
     /// Of degrees; on a projected terrain by its georeference.

@@ -22,6 +22,7 @@
 #include <osgGeoFX/geodata/StrokeVectors.h>
 #include <osgGeoFX/geodata/SurfaceRaster.h>
 #include <osgGeoFX/geodata/TiledRaster.h>
+#include <osgGeoFX/geodata/TiledVectors.h>
 #include <osgGeoFX/labels/NameFile.h>
 #include <osgGeoFX/lines/LineFile.h>
 #include <osgGeoFX/map/OverlayFile.h>
@@ -206,6 +207,8 @@ private:
         }
         how.colors = request->colors;
         how.maxSide = request->maxSide;
+        how.layer = request->layer;
+        how.style = request->style;
         if (!reader.read(request->file, how, error)) return error;
         request->frames = reader.frames;
         if constexpr (std::is_same_v<Request, OverlayFile>) request->files = reader.files;
@@ -245,7 +248,8 @@ private:
         {
             std::optional<DataLayer::Kind> kind;
             if (source.kind) kind = static_cast<DataLayer::Kind>(*source.kind);
-            request->tiles = TiledRaster::open(source.file, frame, kind, error);
+            request->tiles = source.vectors ? TiledVectors::open(source, error)
+                                            : TiledRaster::open(source.file, frame, kind, error);
             if (!request->tiles) return error;
         }
         else

@@ -5,6 +5,7 @@
 // needs no Pango.
 #include <geofx/MapLoader.h>
 #include <osgGeoFX/map/MapReader.h>
+#include <osgGeoFX/map/SceneRoutes.h>
 
 #include <osgDB/Registry>
 
@@ -26,12 +27,13 @@ public:
 
     ReadResult readObject(const std::string& name, const Options* options) const override
     {
-        if (name != "map" || !options) return ReadResult::FILE_NOT_HANDLED;
+        if ((name != "map" && name != "wayInAir") || !options) return ReadResult::FILE_NOT_HANDLED;
         // Requests are C++ objects, which both plugins must lay out alike.
         if (options->getPluginStringData("version") != GEOFX_VERSION)
             return std::string(
                 "The OSG plugins osgdb_geofx and osgdb_geofxmaps are of different versions; put the "
                 "folder of one osgGeoFX on OSG_LIBRARY_PATH.");
+        if (name == "wayInAir") return wayInAir(*options);
         auto* const request = static_cast<MapRequest*>(const_cast<void*>(options->getPluginData("request")));
         if (!request) return ReadResult::FILE_NOT_HANDLED;
         std::string error;
@@ -41,6 +43,21 @@ public:
     }
 
 private:
+    static ReadResult wayInAir(const Options& options)
+    {
+        auto* const request =
+            static_cast<WayInAirRequest*>(const_cast<void*>(options.getPluginData("request")));
+        if (!request) return ReadResult::FILE_NOT_HANDLED;
+        SceneRoutes routes(*request->scene, *request->scene);
+        SceneRoutes::Options how;
+        how.look = request->look;
+        how.onGround = false;
+        std::string error;
+        request->done = routes.add(request->path, how, error);
+        if (!request->done) return error;
+        return ReadResult(ReadResult::FILE_LOADED);
+    }
+
     static bool answer(MapRequest& request, std::string& error)
     {
         const SceneMap& map = *request.map;

@@ -20,6 +20,14 @@
 namespace osgGeoFX
 {
 
+namespace
+{
+
+/// Stands for vector data where a raster has its kind.
+constexpr int vectorKind = 100;
+
+} // namespace
+
 bool askForLayer(const std::string& service, void* request, std::string& error)
 {
     addPluginFolder();
@@ -43,7 +51,13 @@ void writeSource(osgDB::OutputStream& stream, const LayerSource& source)
 {
     stream.writeWrappedString(source.file);
     stream.writeWrappedString(source.wkt);
-    stream << source.globe << source.maxSide << source.kind.value_or(-1);
+    stream << source.globe << source.maxSide << (source.vectors ? vectorKind : source.kind.value_or(-1));
+    if (source.vectors)
+    {
+        stream.writeWrappedString(source.vectors->layer);
+        stream.writeWrappedString(source.vectors->style);
+        stream << source.vectors->allowOutside;
+    }
     for (const double number :
          {source.origin.x, source.origin.y, source.origin.longitude, source.origin.latitude})
         stream << exactText(number);
@@ -58,6 +72,13 @@ LayerSource readSource(osgDB::InputStream& stream)
     stream.readWrappedString(source.wkt);
     stream >> source.globe >> source.maxSide >> kind;
     if (kind >= DataLayer::COLOR && kind <= DataLayer::CLASS) source.kind = kind;
+    if (kind == vectorKind)
+    {
+        source.vectors = LayerSource::Vectors();
+        stream.readWrappedString(source.vectors->layer);
+        stream.readWrappedString(source.vectors->style);
+        stream >> source.vectors->allowOutside;
+    }
     for (double* const number :
          {&source.origin.x, &source.origin.y, &source.origin.longitude, &source.origin.latitude})
         *number = readNumber(stream, "LayerSource");

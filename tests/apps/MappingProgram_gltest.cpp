@@ -80,10 +80,10 @@ protected:
         osgDB::writeNodeFile(*node, (_folder / "ground.osgt").string());
     }
 
-    ProgramResult run(std::vector<std::string> arguments) const
+    ProgramResult run(std::vector<std::string> arguments, const std::string& scene = "ground.osgt") const
     {
         const std::vector<std::string> usual = {builtProgram("osggeofx_render"),
-                                                "ground.osgt",
+                                                scene,
                                                 "--size",
                                                 std::to_string(width) + "x" + std::to_string(height),
                                                 "--view",
@@ -103,9 +103,9 @@ protected:
         int left = width, right = -1, top = height, bottom = -1, count = 0;
         double middleX() const { return (left + right) / 2.0; }
     };
-    Red redOf(const std::vector<std::string>& arguments) const
+    Red redOf(const std::vector<std::string>& arguments, const std::string& from = "ground.osgt") const
     {
-        const ProgramResult result = run(arguments);
+        const ProgramResult result = run(arguments, from);
         EXPECT_EQ(result.exitCode, 0) << result.standardError;
         EXPECT_EQ(result.standardError, "");
         const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile((_folder / "out.png").string());
@@ -213,6 +213,81 @@ TEST_F(MappingProgram, WaysAreInThePicture)
                 red.count, 40);
     // By default a 120th of its extent: less than a pixel.
     EXPECT_LT(redOf({"--route", "way.kml"}).count, red.count / 5);
+}
+
+// Areas, lines and points of vector data: where they lie, by a style file beside them, by one of the option, and in a scene file.
+TEST_F(MappingProgram, VectorDataAreInThePicture)
+{
+    const double pixel = 2.0 * 5000.0 * std::tan(osg::DegreesToRadians(15.0)) / height;
+    const auto feature = [](const std::string& type, const std::string& coordinates, const std::string& kind)
+    {
+        return R"({"type":"Feature","properties":{"kind":")" + kind + R"("},"geometry":{"type":")" + type +
+               R"(","coordinates":)" + coordinates + "}}";
+    };
+    const auto collection = [](const std::string& features)
+    {
+        return R"({"type":"FeatureCollection","features":[)" + features + "]}";
+    };
+    const auto sld = [](const std::string& rules)
+    {
+        return R"(<StyledLayerDescriptor xmlns="http://www.opengis.net/sld" xmlns:ogc="http://www.opengis.net/ogc"><NamedLayer><UserStyle>
+        <FeatureTypeStyle>)" +
+               rules + "</FeatureTypeStyle></UserStyle></NamedLayer></StyledLayerDescriptor>";
+    };
+    const std::string red = "<Fill><CssParameter name=\"fill\">#ff0000</CssParameter></Fill>";
+    const std::string area = "<Rule><PolygonSymbolizer>" + red + "</PolygonSymbolizer></Rule>";
+    // 0.01 degrees a side, with a hole of half of that in its middle.
+    _folder.write(
+        "area.geojson",
+        collection(
+            feature("Polygon",
+                    "[[[6.995,44.995],[7.005,44.995],[7.005,45.005],[6.995,45.005],[6.995,44.995]],"
+                    "[[6.9975,44.9975],[7.0025,44.9975],[7.0025,45.0025],[6.9975,45.0025],[6.9975,44.9975]]]",
+                    "a")));
+    EXPECT_EQ(redOf({"--mapping", "area.geojson"}).count, 0) << "plain colors";
+    _folder.write("area.sld", sld(area));
+    const Red ring = redOf({"--mapping", "area.geojson"});
+    const double metresX = 788.5, metresY = 1111.3;
+    EXPECT_NEAR(ring.right - ring.left + 1.0, metresX / pixel, 1.0);
+    EXPECT_NEAR(ring.bottom - ring.top + 1.0, metresY / pixel, 1.0);
+    EXPECT_NEAR(ring.middleX(), width / 2 - 0.5, 0.6);
+    EXPECT_NEAR((ring.top + ring.bottom) / 2.0, height / 2 - 0.5, 0.6);
+    EXPECT_NEAR(ring.count, 0.75 * metresX * metresY / pixel / pixel, 70);
+    // A line of 60 m and a point of 20 pixels, of one file of two kinds.
+    _folder.write("both.geojson", collection(feature("LineString", "[[6.99,45.003],[7.01,45.003]]", "line") +
+                                             "," + feature("Point", "[7.0,44.997]", "point")));
+    const std::string filter =
+        "<ogc:Filter><ogc:PropertyIsEqualTo><ogc:PropertyName>kind</ogc:PropertyName><ogc:Literal>";
+    const std::string end = "</ogc:Literal></ogc:PropertyIsEqualTo></ogc:Filter>";
+    _folder.write(
+        "line.sld",
+        sld("<Rule>" + filter + "line" + end +
+            "<LineSymbolizer uom=\"http://www.opengeospatial.org/se/units/metre\"><Stroke><CssParameter "
+            "name=\"stroke\">#ff0000</CssParameter><CssParameter "
+            "name=\"stroke-width\">100</CssParameter></Stroke>"
+            "</LineSymbolizer></Rule>"));
+    const Red line = redOf({"--mapping", "both.geojson", "--mapping-style", "line.sld"});
+    EXPECT_NEAR((line.top + line.bottom) / 2.0, height / 2 - 0.5 - 333.4 / pixel, 1.0);
+    EXPECT_NEAR(line.bottom - line.top + 1.0, 100.0 / pixel, 1.1);
+    EXPECT_NEAR(line.right - line.left + 1.0, 1577.0 / pixel, 2.0);
+    _folder.write("point.sld", sld("<Rule>" + filter + "point" + end +
+                                   "<PointSymbolizer><Graphic><Mark><WellKnownName>square</WellKnownName>" +
+                                   red + "</Mark><Size>20</Size></Graphic></PointSymbolizer></Rule>"));
+    const Red point = redOf({"--mapping", "both.geojson", "--mapping-style", "point.sld"});
+    EXPECT_NEAR(point.middleX(), width / 2 - 0.5, 1.0);
+    EXPECT_NEAR((point.top + point.bottom) / 2.0, height / 2 - 0.5 + 333.4 / pixel, 1.0);
+    EXPECT_NEAR(point.right - point.left + 1.0, 20.0, 2.0);
+    EXPECT_NEAR(point.bottom - point.top + 1.0, 20.0, 2.0);
+    expectRefusal({"--mapping", "both.geojson:roads", "--mapping-style", "point.sld"}, "no layer \"roads\"");
+    expectRefusal({"--mapping-style", "point.sld"}, "--mapping-style is for vector data");
+    // The same in a scene file.
+    _folder.write(
+        "scene.geofx",
+        "<geofx version=\"1\"><terrain><database file=\"ground.osgt\"/></terrain><effects><projectiveMappings><overlays "
+        "file=\"both.geojson\" style=\"point.sld\"/><overlays file=\"area.geojson\" layer=\"area\"/>"
+        "</projectiveMappings></effects></geofx>");
+    const Red scene = redOf({}, "scene.geofx");
+    EXPECT_NEAR(scene.count, ring.count + point.count, 12);
 }
 
 TEST_F(MappingProgram, WhatCannotBeShownIsToldInASentence)

@@ -10,6 +10,7 @@
 #include <tools/TestRasters.h>
 #include <tools/TestServer.h>
 
+#include <cpl_conv.h>
 #include <cpl_string.h>
 #include <ogr_spatialref.h>
 #include <osg/Math>
@@ -323,6 +324,111 @@ TEST_F(OverlayReaderTest, TilesOfAWebServerAreRead)
     std::filesystem::copy(_folder / "map.xml", _folder / "again.xml");
     EXPECT_FALSE(other.read((_folder / "again.xml").string(), {}, error));
     EXPECT_NE(error.find("again.xml"), std::string::npos) << error;
+}
+
+// A service as it tells of itself (WMTS 1.0.0, RESTful), three by three kilometres at the finest level around 7° east; GDAL's driver reads the document.
+TEST_F(OverlayReaderTest, AWmtsServiceIsReadByItsCapabilities)
+{
+    CPLSetConfigOption("GDAL_DEFAULT_WMS_CACHE_PATH", (_folder / "cache").c_str());
+    constexpr int finest = 14;
+    constexpr double half = 20037508.342789244; // metres of Web Mercator
+    const auto sideOf = [](int level)
+    {
+        return 2.0 * half / std::pow(2.0, level);
+    };
+    const osg::Vec2d middle(osg::DegreesToRadians(7.0) * 6378137.0,
+                            6378137.0 * std::log(std::tan(osg::PI_4 + osg::DegreesToRadians(45.0) / 2.0)));
+    const int column = static_cast<int>((middle.x() + half) / sideOf(finest));
+    const int row = static_cast<int>((half - middle.y()) / sideOf(finest));
+    std::string matrices;
+    for (int level = 10; level <= finest; ++level)
+    {
+        matrices += "<TileMatrix><ows:Identifier>" + std::to_string(level) +
+                    "</ows:Identifier><ScaleDenominator>" +
+                    CPLSPrintf("%.10f", sideOf(level) / 256.0 / 0.00028) +
+                    "</ScaleDenominator><TopLeftCorner>-20037508.342789 20037508.342789</TopLeftCorner>"
+                    "<TileWidth>256</TileWidth><TileHeight>256</TileHeight><MatrixWidth>" +
+                    std::to_string(1 << level) + "</MatrixWidth><MatrixHeight>" + std::to_string(1 << level) +
+                    "</MatrixHeight></TileMatrix>";
+        const int shift = finest - level;
+        for (int x = (column - 1) >> shift; x <= (column + 1) >> shift; ++x)
+        {
+            for (int y = (row - 1) >> shift; y <= (row + 1) >> shift; ++y)
+            {
+                const std::filesystem::path folder =
+                    _folder / "served" / std::to_string(level) / std::to_string(x);
+                std::filesystem::create_directories(folder);
+                writePicture((folder / (std::to_string(y) + ".png")).string(), 256, 256,
+                             [&](int, int) {
+                                 return std::array<int, 4>{50 + 50 * (x - column + 1),
+                                                           50 + 50 * (y - row + 1), 10 * level, 255};
+                             });
+            }
+        }
+    }
+    TestServer server(_folder / "served");
+    const auto cornerOf = [&](int x, int y)
+    {
+        return osg::Vec2d(
+            osg::RadiansToDegrees((sideOf(finest) * x - half) / 6378137.0),
+            osg::RadiansToDegrees(std::atan(std::sinh((half - sideOf(finest) * y) / 6378137.0))));
+    };
+    const osg::Vec2d low = cornerOf(column - 1, row + 2), high = cornerOf(column + 2, row - 1);
+    const auto document = [&](const std::string& more)
+    {
+        return R"(<?xml version="1.0"?><Capabilities xmlns="http://www.opengis.net/wmts/1.0" version="1.0.0"
+ xmlns:ows="http://www.opengis.net/ows/1.1" xmlns:xlink="http://www.w3.org/1999/xlink"><Contents><Layer><ows:Title>Test</ows:Title>
+ <ows:Identifier>test</ows:Identifier><ows:WGS84BoundingBox><ows:LowerCorner>)" +
+               std::string(CPLSPrintf("%.9f %.9f</ows:LowerCorner><ows:UpperCorner>%.9f %.9f", low.x(),
+                                      low.y(), high.x(), high.y())) +
+               R"(</ows:UpperCorner></ows:WGS84BoundingBox><Style isDefault="true"><ows:Identifier>default</ows:Identifier></Style>
+ <Format>image/png</Format><TileMatrixSetLink><TileMatrixSet>web</TileMatrixSet></TileMatrixSetLink><ResourceURL format="image/png"
+ resourceType="tile" template="http://)" +
+               server.address() +
+               R"(/{TileMatrix}/{TileCol}/{TileRow}.png"/></Layer><TileMatrixSet><ows:Identifier>web</ows:Identifier>
+ <ows:SupportedCRS>urn:ogc:def:crs:EPSG::3857</ows:SupportedCRS>)" +
+               matrices + "</TileMatrixSet></Contents>" + more + "</Capabilities>";
+    };
+    const std::string saved = _folder.write("service.xml", document(""));
+    _folder.write("served/caps.xml", document(""));
+    // By the address, and as a document that a person has saved.
+    for (const std::string& file : {"WMTS:http://" + server.address() + "/caps.xml", saved})
+    {
+        SCOPED_TRACE(file);
+        _reader = OverlayReader();
+        server.forgetRequests();
+        ASSERT_TRUE(read(file));
+        ASSERT_EQ(_reader.overlays.size(), 1u);
+        for (int y = -1; y <= 1; ++y)
+        {
+            for (int x = -1; x <= 1; ++x)
+            {
+                const osg::Vec2d corner = cornerOf(column + x, row + y),
+                                 next = cornerOf(column + x + 1, row + y + 1);
+                // A tenth of a tile from the corner, and the middle.
+                for (const double share : {0.1, 0.5, 0.9})
+                {
+                    const std::array<int, 4> texel =
+                        texelAt(_reader.overlays[0], placed(_reader, 0, corner + (next - corner) * share));
+                    EXPECT_NEAR(texel[0], 100 + 50 * x, 2) << x << " " << y;
+                    EXPECT_NEAR(texel[1], 100 + 50 * y, 2) << x << " " << y;
+                    EXPECT_NEAR(texel[2], 10 * finest, 2);
+                    EXPECT_EQ(texel[3], 255);
+                }
+            }
+        }
+    }
+    EXPECT_FALSE(std::filesystem::exists("gdalwmscache")) << "in the folder that the program runs in";
+    // What is wrong is told with the name; nothing of it is shown.
+    _reader = OverlayReader();
+    const std::string address = "WMTS:http://" + server.address();
+    EXPECT_TRUE(contains(faultOf(address + "/none.xml"), "none.xml: ")) << "404";
+    _folder.write("served/broken.xml", document("<a>"));
+    EXPECT_TRUE(contains(faultOf(address + "/broken.xml"), "broken.xml: "));
+    EXPECT_TRUE(contains(faultOf(_folder.write("cut.xml", document("").substr(0, 900))), "cut.xml: "));
+    server.stop();
+    EXPECT_TRUE(contains(faultOf(address + "/caps.xml"), "caps.xml: ")) << "nobody answers";
+    CPLSetConfigOption("GDAL_DEFAULT_WMS_CACHE_PATH", nullptr);
 }
 
 TEST_F(OverlayReaderTest, WhatIsNoPictureIsRefused)

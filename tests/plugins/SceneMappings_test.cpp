@@ -5,6 +5,7 @@
 #include <plugins/SceneFixture.h>
 
 #include <osgGeoFX/mapping/LayerSequence.h>
+#include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/raster/LayerPixels.h>
 #include <tools/KmlFiles.h>
 #include <tools/TestRasters.h>
@@ -13,6 +14,7 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 #include <osg/CoordinateSystemNode>
+#include <osg/Geometry>
 #include <osg/Group>
 #include <osg/Math>
 #include <osg/MatrixTransform>
@@ -713,6 +715,93 @@ TEST_F(SceneMappingsPlugin, OverlaysAndRoutesLieWhereTheirFilesSay)
         GeographicLib::Geocentric::WGS84().Forward(21.3, -157.995, 950.0, foot.x(), foot.y(), foot.z());
         EXPECT_LT((osg::Vec3d(tube->getBound().center()) - foot).length(), 10.0);
     }
+}
+
+// A plane 500 m above the ellipsoid, over which a way keeps its height, whatever its own is called.
+TEST_F(SceneMappingsPlugin, WaysAboveTheGroundAreAboveTheScenesGround)
+{
+    const osg::ref_ptr<osg::CoordinateSystemNode> terrain = terrainOf(0);
+    const auto at = [](double longitude, double latitude, double height)
+    {
+        osg::Vec3d place;
+        GeographicLib::Geocentric::WGS84().Forward(latitude, longitude, height, place.x(), place.y(),
+                                                   place.z());
+        return place;
+    };
+    const osg::Vec3d middle = at(-158.0, 21.3, 0.0);
+    const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+    const osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
+    constexpr unsigned int cells = 20;
+    for (unsigned int i = 0; i < (cells + 1) * (cells + 1); ++i)
+    {
+        const unsigned int x = i % (cells + 1), y = i / (cells + 1);
+        vertices->push_back(
+            osg::Vec3(at(-158.02 + 0.04 * x / cells, 21.28 + 0.04 * y / cells, 500.0) - middle));
+        if (x == cells || y == cells) continue;
+        for (const unsigned int corner : {0u, 1u, cells + 2u, 0u, cells + 2u, cells + 1u})
+            triangles->push_back(i + corner);
+    }
+    const osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
+    ground->setVertexArray(vertices);
+    ground->addPrimitiveSet(triangles);
+    const osg::ref_ptr<osg::MatrixTransform> place =
+        new osg::MatrixTransform(osg::Matrixd::translate(middle));
+    place->addChild(ground);
+    terrain->addChild(place);
+    saveTerrain(*terrain);
+    _folder.write("flight.kml",
+                  geofx::test::kml("<Placemark><name>flight</name><LineString><altitudeMode>relativeToGround"
+                                   "</altitudeMode><coordinates>-158,21.3,100 -157.99,21.3,100</coordinates>"
+                                   "</LineString></Placemark>"));
+    auto* const effect = effectOf<ProjectiveMappings>(sceneWith("<route file='flight.kml'/>"));
+    ASSERT_TRUE(effect);
+    EXPECT_GT(effect->getNumMappings(), 0u) << "it lies on the ground, too";
+    const osg::Group& group = *_scene->asGroup();
+    ASSERT_EQ(group.getNumChildren(), 2u) << "the terrain and a tube";
+    const auto* const tube = dynamic_cast<const osg::MatrixTransform*>(group.getChild(1));
+    ASSERT_TRUE(tube);
+    EXPECT_LT((osg::Vec3d(tube->getBound().center()) - at(-157.995, 21.3, 600.0)).length(), 3.0);
+    ASSERT_EQ(dynamic_cast<osgGeoFX::EffectScene&>(*_scene).getNumEffects(), 1u) << "and it lies there once";
+    // Without ground there is no height above it.
+    setTerrain(0);
+    EXPECT_NE(
+        messageOf(_folder.write("x.geofx", sceneWith("<route file='flight.kml'/>"))).find("there is none"),
+        std::string::npos);
+}
+
+// Vector data with their look, in an effect of the scene.
+TEST_F(SceneMappingsPlugin, VectorDataAreOverlays)
+{
+    setTerrain(0);
+    _folder.write(
+        "areas.geojson",
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon",
+"coordinates":[[[-158,21.3],[-157.99,21.3],[-157.99,21.31],[-158,21.3]]]}},{"type":"Feature","properties":{},"geometry":{"type":"Point",
+"coordinates":[-158,21.3]}}]})");
+    _folder.write(
+        "look.sld",
+        "<FeatureTypeStyle><Rule><PolygonSymbolizer><Fill/></PolygonSymbolizer></Rule></FeatureTypeStyle>");
+    auto* effect =
+        effectOf<ProjectiveMappings>(sceneWith("<overlays file='areas.geojson' opacity='.5' order='3'/>"));
+    ASSERT_TRUE(effect);
+    ASSERT_EQ(effect->getNumMappings(), 2u);
+    ASSERT_EQ(effect->getNumRasters(), 1u);
+    EXPECT_EQ(effect->getMapping(0), effect->getRaster(0)->getMapping()) << "symbols lie on top";
+    EXPECT_EQ(effect->getMapping(0)->getOpacity(), 0.5);
+    EXPECT_EQ(effect->getMapping(1)->getOrder(), 3);
+    EXPECT_GT(effect->getMapping(1)->getSizeInPixels(), 0.0);
+    effect = effectOf<ProjectiveMappings>(
+        sceneWith("<overlays file='areas.geojson' style='look.sld' layer='areas'/>"));
+    ASSERT_TRUE(effect);
+    EXPECT_EQ(effect->getNumMappings(), 1u) << "the style has no points";
+    const auto expectFault = [&](const std::string& inside, const std::string& word)
+    {
+        const std::string message = messageOf(_folder.write("x.geofx", sceneWith(inside)));
+        EXPECT_NE(message.find(word), std::string::npos) << message;
+    };
+    expectFault("<overlays file='areas.geojson' style='none.sld'/>", "none.sld");
+    expectFault("<overlays file='areas.geojson' style='../look.sld'/>", "leads out of the scene's folder");
+    expectFault("<overlays file='areas.geojson' layer='roads'/>", "no layer \"roads\"");
 }
 
 TEST_F(SceneMappingsPlugin, OverlaysAndRoutesAreRefusedInASentence)

@@ -4,6 +4,7 @@
 // Layers in time and rasters that are larger than memory, through OSG's files: they go on where they were, and from their own files.
 #include <osgGeoFX/geodata/SequenceRaster.h>
 #include <osgGeoFX/geodata/TiledRaster.h>
+#include <osgGeoFX/geodata/TiledVectors.h>
 #include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <plugins/SerializerFixture.h>
@@ -232,4 +233,49 @@ TEST_F(SerializersLayers, APagedRasterIsOpenedAgainInItsPlace)
     EXPECT_EQ(read->getNumRasters(), 0u);
     EXPECT_EQ(read->getNumMappings(), 3u) << "with its coarse picture";
     EXPECT_TRUE(read->getMapping(1)->getLayer()->getImage());
+}
+
+// Areas of a file are drawn again from the file, by the same style.
+TEST_F(SerializersLayers, VectorDataAreOpenedAgain)
+{
+    const std::string file = _folder.write(
+        "areas.geojson",
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":{"type":"Polygon",
+"coordinates":[[[7,45],[7.01,45],[7.01,45.01],[7,45]]]}}]})");
+    const std::string style = _folder.write(
+        "look.sld",
+        "<FeatureTypeStyle><Rule><PolygonSymbolizer><Fill><CssParameter name='fill'>#00ff00</CssParameter>"
+        "</Fill></PolygonSymbolizer></Rule></FeatureTypeStyle>");
+    std::string error;
+    const std::optional<TiledVectors> vectors = TiledVectors::read(file, {"areas", style, false}, error);
+    ASSERT_TRUE(vectors) << error;
+    MappingFrame frame;
+    frame.origin = LocalOrigin::onGlobe(osg::DegreesToRadians(7.0), osg::DegreesToRadians(45.0));
+    const osg::ref_ptr<RasterTiles> tiles = vectors->tiles(frame, std::nullopt, error);
+    ASSERT_TRUE(tiles) << error;
+    const osg::ref_ptr<PagedRaster> raster = PagedRaster::create(tiles, {}, error);
+    ASSERT_TRUE(raster) << error;
+    const osg::ref_ptr<ProjectiveMappings> effect = new ProjectiveMappings;
+    effect->addRaster(raster);
+    for (const std::string& format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<ProjectiveMappings> read = throughFile(*effect, format);
+        ASSERT_TRUE(read);
+        ASSERT_EQ(read->getNumRasters(), 1u);
+        const RasterTiles& back = read->getRaster(0)->tiles();
+        EXPECT_EQ(back.low(), tiles->low());
+        ASSERT_TRUE(back.source()->vectors);
+        EXPECT_EQ(back.source()->vectors->style, style);
+        EXPECT_EQ(back.source()->vectors->layer, "areas");
+        const PagedRaster::Tile tile = read->getRaster(0)->tileAt({600.0, 300.0});
+        ASSERT_TRUE(tile.layer);
+        const osg::Image& image = *tile.layer->getImage();
+        const osg::Vec2d share((600.0 - tile.low.x()) / (tile.high.x() - tile.low.x()),
+                               (300.0 - tile.low.y()) / (tile.high.y() - tile.low.y()));
+        const unsigned char* const texel = image.data(static_cast<unsigned int>(share.x() * image.s()),
+                                                      static_cast<unsigned int>(share.y() * image.t()));
+        EXPECT_EQ(texel[1], 255);
+        EXPECT_EQ(texel[3], 255);
+    }
 }

@@ -5,6 +5,7 @@
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/mapping/LayerWords.h>
 
+#include <cpl_conv.h>
 #include <cpl_string.h>
 #include <gdal_alg.h>
 #include <gdal_utils.h>
@@ -13,6 +14,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <utility>
@@ -112,6 +115,63 @@ VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file)
     return target;
 }
 
+namespace
+{
+
+/// GDAL puts the tiles of WMTS and XYZ services into the folder that a program happens to run in, unless it is told another one.
+void chooseTileCache()
+{
+    constexpr const char* option = "GDAL_DEFAULT_WMS_CACHE_PATH";
+    if (CPLGetConfigOption(option, nullptr)) return;
+    const char* const cache = std::getenv("XDG_CACHE_HOME");
+    const char* const home = std::getenv("HOME");
+    std::filesystem::path folder;
+    if (cache && std::filesystem::path(cache).is_absolute())
+        folder = cache;
+    else if (home && *home)
+        folder = std::filesystem::path(home) / ".cache";
+    else
+        return;
+    CPLSetConfigOption(option, (folder / "osgGeoFX" / "services").string().c_str());
+}
+
+/// The first failure on this thread, for GDAL's warper tells of it in no other way. A tile that a service does not have, at the border of its layer, is none, though
+/// GDAL says that its copy in the cache, a name of 32 digits, is not there.
+class WarpErrors
+{
+public:
+    WarpErrors() { CPLPushErrorHandlerEx(&handle, this); }
+    ~WarpErrors() { CPLPopErrorHandler(); }
+    WarpErrors(const WarpErrors&) = delete;
+    WarpErrors& operator=(const WarpErrors&) = delete;
+
+    std::string message;
+
+private:
+    bool _missing = false; ///< that was the last failure
+
+    static bool isMissingTile(const std::string& text)
+    {
+        const std::string end = ": No such file or directory";
+        constexpr std::size_t digits = 32;
+        if (text.size() < end.size() + digits + 1) return false;
+        const std::size_t name = text.size() - end.size() - digits;
+        return text.compare(name + digits, end.size(), end) == 0 && text[name - 1] == '/' &&
+               text.find_first_not_of("0123456789abcdef", name) == name + digits;
+    }
+    static void CPL_STDCALL handle(CPLErr severity, CPLErrorNum, const char* text)
+    {
+        auto* const errors = static_cast<WarpErrors*>(CPLGetErrorHandlerUserData());
+        if (severity < CE_Failure || !errors->message.empty()) return;
+        const bool wasMissing = std::exchange(errors->_missing, isMissingTile(text));
+        // GDAL says this of the same tile next.
+        const bool isSame = wasMissing && std::string(text) == "GDALWMS: Unable to open downloaded block.";
+        if (!errors->_missing && !isSame) errors->message = text;
+    }
+};
+
+} // namespace
+
 FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed,
                          Formats formats, int overview)
     : _file(std::move(file))
@@ -128,6 +188,7 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
     }
     else
     {
+        chooseTileCache();
         CPLStringList options;
         if (overview >= 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(overview).c_str());
         _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr,
@@ -347,12 +408,12 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
     else
         arguments.insert(arguments.end(), {"-ot", "Float64", "-dstnodata", "nan"});
     if (_hasMask) arguments.emplace_back("-srcalpha");
-    GdalErrorScope errors;
+    const WarpErrors errors;
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(listOf(arguments).List(), nullptr);
     GDALDatasetH source = GDALDataset::ToHandle(_chain.back().get());
     DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
     GDALWarpAppOptionsFree(options);
-    if (!result || errors.failed()) failToRead(errors);
+    if (!result || !errors.message.empty()) failToRead(errors.message);
     return result;
 }
 
@@ -491,8 +552,12 @@ void FrameRaster::readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) cons
 
 void FrameRaster::failToRead(const GdalErrorScope& errors) const
 {
-    fail("its pixels cannot be read (" + errors.message() +
-         "); the file may be cut short: copy or export it again");
+    failToRead(errors.message());
+}
+
+void FrameRaster::failToRead(const std::string& message) const
+{
+    fail("its pixels cannot be read (" + message + "); the file may be cut short: copy or export it again");
 }
 
 void FrameRaster::TransformerDestroyer::operator()(void* transformer) const

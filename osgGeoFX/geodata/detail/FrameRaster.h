@@ -126,6 +126,7 @@ private:
     GDALDataset& top() const { return *_chain.back(); }
     GDALRasterBand& band() const { return *top().GetRasterBand(1); }
     [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
+    [[noreturn]] void failToRead(const std::string& message) const;
     void prepare(std::optional<DataLayer::Kind> wanted, bool placed);
     void checkPlace() const;
     void checkSize() const;
