@@ -10,6 +10,7 @@ streams as lines alone, as wide as they are, and not as rows of cells. Then shor
 
 Needs Debian's python3-gdal and python3-numpy. Thinning is Zhang and Suen's (1984)."""
 import json
+import math
 import sys
 
 import numpy
@@ -117,6 +118,39 @@ def without_lines(classes):
     return ground
 
 
+def joined(lines, gap, least):
+    """Canals go on below roads: joins ends, in degrees, that are nearer than `gap` cells and look at each other, nearest ones first,
+    and leaves out what is still shorter than `least` cells."""
+    lines = [list(line) for line in lines]
+
+    def way(a, b):
+        return (b[0] - a[0]) * 3600 * 0.93, (b[1] - a[1]) * 3600
+
+    def cosine(v, w):
+        return (v[0] * w[0] + v[1] * w[1]) / max(math.hypot(*v) * math.hypot(*w), 1e-9)
+
+    while True:
+        best = None
+        for i, one in enumerate(lines):
+            for j in range(i + 1, len(lines)):
+                for first in (one, one[::-1]):
+                    for second in (lines[j], lines[j][::-1]):
+                        across = way(first[-1], second[0])
+                        away = math.hypot(*across)
+                        if away > gap or (best and away >= best[0]):
+                            continue
+                        ahead, onward = way(first[-2], first[-1]), way(second[0], second[1])
+                        if cosine(ahead, onward) > 0.3 and (away == 0 or min(cosine(ahead, across),
+                                                                             cosine(across, onward)) > 0.3):
+                            best = away, i, j, first + second[1 if away == 0 else 0:]
+        if not best:
+            break
+        _, i, j, line = best
+        lines = lines[:i] + [line] + lines[i + 1:j] + lines[j + 1:]
+    return [line for line in lines
+            if sum(math.hypot(*way(a, b)) for a, b in zip(line, line[1:])) >= least]
+
+
 def main(source, target, ground=None):
     sys.setrecursionlimit(100000)
     data = gdal.Open(source)
@@ -133,6 +167,8 @@ def main(source, target, ground=None):
                 continue
             points = simplify(smooth(line), 0.4)
             lines.append([[round(left + wide * (c + 0.5), 5), round(top + high * (r + 0.5), 5)] for r, c in points])
+        if (value, style, least) in CANALS:
+            lines = joined(lines, 4.5, 4)
         # Many short lines take less as one.
         kinds = [("MultiLineString", lines)] if ground else [("LineString", line) for line in lines]
         features += [{"type": "Feature", "properties": {"style": style}, "geometry": {"type": kind, "coordinates": each}}
