@@ -283,7 +283,8 @@ TEST_F(MappingProgram, VectorDataAreInThePicture)
     // The same in a scene file.
     _folder.write(
         "scene.geofx",
-        "<geofx version=\"1\"><terrain><database file=\"ground.osgt\"/></terrain><effects><projectiveMappings><overlays "
+        "<geofx version=\"1\"><terrain><database "
+        "file=\"ground.osgt\"/></terrain><effects><projectiveMappings><overlays "
         "file=\"both.geojson\" style=\"point.sld\"/><overlays file=\"area.geojson\" layer=\"area\"/>"
         "</projectiveMappings></effects></geofx>");
     const Red scene = redOf({}, "scene.geofx");
