@@ -56,9 +56,9 @@ void describe(osg::ApplicationUsage& usage)
     usage.addCommandLineOption("--city <file>",
                                "Add a city model of others, in the scene's coordinates; each building keeps "
                                "its shape in bends.");
-    usage.addCommandLineOption("--mapping <file>",
-                               "Put a file onto the ground: KML, KMZ, any raster with a georeference, or vector "
-                               "data; FILE or FILE:LAYER.");
+    usage.addCommandLineOption(
+        "--mapping <file>", "Put a file onto the ground: KML, KMZ, any raster with a georeference, or vector "
+                            "data; FILE or FILE:LAYER.");
     usage.addCommandLineOption("--mapping-style <file>", "How vector data on the ground look: an SLD file.");
     usage.addCommandLineOption(
         "--sequence <file>", "Rasters in time: NetCDF, GRIB, Zarr, bands or a folder; FILE, FILE:VARIABLE or "

@@ -18,14 +18,14 @@ namespace geofx::mappings
 
 struct Options
 {
-    std::vector<std::string> files;     ///< KML, KMZ, any raster with a georeference, vector data, or FILE:LAYER
+    std::vector<std::string> files; ///< KML, KMZ, any raster with a georeference, vector data, or FILE:LAYER
     std::vector<std::string> sequences; ///< rasters in time: files, FILE:VARIABLE, or folders
     bool paged = true;                  ///< whether large rasters are read in tiles as they are needed
     std::vector<std::string> routes;    ///< GPX, KML or other vector data with lines, or FILE:LAYER
     double routeWidth = 0.0;            ///< metres; 0: by their extent
     std::string colors;                 ///< a color table's file, for values; empty: greys
-    std::string style;                  ///< an SLD file, for vector data; empty: the one beside each file, or its own look
-    std::vector<std::string> linked;    ///< what show() has read of KML files, with what they link
+    std::string style; ///< an SLD file, for vector data; empty: the one beside each file, or its own look
+    std::vector<std::string> linked; ///< what show() has read of KML files, with what they link
 };
 
 /// Adds them to a program.

@@ -38,7 +38,7 @@ struct OSGGEOFX_EXPORT GroundOverlay
         double longitude = 0.0, latitude = 0.0; ///< degrees
         std::optional<double> height; ///< metres; nothing: whoever shows it gives it that of the ground
         double pixels =
-            0.0; ///< its size on the screen, upright towards the eye; 0: it lies on the ground in metres
+            0.0; ///< its size on the screen, turned towards the eye; 0: it lies on the ground in metres
     };
     std::optional<Symbol> symbol;
 
