@@ -110,7 +110,7 @@ void writeNoise(const std::filesystem::path& raster)
 }
 
 /// One raster beside the other, until samples × samples are covered.
-void writeNoiseEverywhere(int samples, const std::filesystem::path& vrt)
+void writeNoiseEverywhere(int samples, double metres, const std::filesystem::path& vrt)
 {
     std::ostringstream text;
     text << header({0, 0, COLUMNS, ROWS}, samples) << "  <VRTRasterBand dataType=\"Float32\" band=\"1\">\n";
@@ -127,8 +127,8 @@ void writeNoiseEverywhere(int samples, const std::filesystem::path& vrt)
                  << "\"/>\n"
                  << "      <DstRect xOff=\"" << column << "\" yOff=\"" << row << "\" xSize=\"" << columns
                  << "\" ySize=\"" << rows << "\"/>\n"
-                 << "      <ScaleOffset>-20</ScaleOffset>\n"
-                 << "      <ScaleRatio>1</ScaleRatio>\n"
+                 << "      <ScaleOffset>" << -metres << "</ScaleOffset>\n"
+                 << "      <ScaleRatio>" << metres / 20.0 << "</ScaleRatio>\n"
                  << "    </ComplexSource>\n";
         }
     }
@@ -149,12 +149,13 @@ void writeWindowOfOahu(const std::filesystem::path& elevation, int samples, cons
     write(elevation, {WINDOW_COLUMN + margin, WINDOW_ROW + margin, samples, samples}, samples, "", vrt);
 }
 
-void writeNoisyOahu(const std::filesystem::path& elevation, int samples, const std::filesystem::path& vrt)
+void writeNoisyOahu(const std::filesystem::path& elevation, int samples, double metres,
+                    const std::filesystem::path& vrt)
 {
     const std::filesystem::path folder = vrt.parent_path();
     writeResampledOahu(elevation, samples, folder / "smooth.vrt");
     writeNoise(folder / "noise");
-    writeNoiseEverywhere(samples, folder / "noise.vrt");
+    writeNoiseEverywhere(samples, metres, folder / "noise.vrt");
     std::string text = header({0, 0, COLUMNS, ROWS}, samples) +
                        "  <VRTRasterBand dataType=\"Float32\" band=\"1\" subClass=\"VRTDerivedRasterBand\">\n"
                        "    <PixelFunctionType>sum</PixelFunctionType>\n";

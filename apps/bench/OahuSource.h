@@ -19,8 +19,9 @@ void writeResampledOahu(const std::filesystem::path& elevation, int samples,
 /// sides.
 void writeWindowOfOahu(const std::filesystem::path& elevation, int samples, const std::filesystem::path& vrt);
 
-/// The whole raster on samples × samples posts, with ±20 m of noise that differs from post to post within 2,048 posts. Writes
+/// The whole raster on samples × samples posts, with noise of ±`metres` that differs from post to post within 2,048 posts. Writes
 /// the files `noise`, `noise.hdr`, `noise.vrt`, `smooth.vrt` beside the VRT.
-void writeNoisyOahu(const std::filesystem::path& elevation, int samples, const std::filesystem::path& vrt);
+void writeNoisyOahu(const std::filesystem::path& elevation, int samples, double metres,
+                    const std::filesystem::path& vrt);
 
 } // namespace geofx::bench

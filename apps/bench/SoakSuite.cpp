@@ -46,8 +46,10 @@ constexpr int FRAMES_A_SAMPLE = 100;     ///< of memory
 constexpr double WEST = -158.35, EAST = -157.55, SOUTH = 21.15, NORTH = 21.8; ///< where they fly, degrees
 constexpr double METRES_PER_RADIAN = 6371000.0;
 
+// Metres, up and down. With 20 m no post can be left out of coarse tiles, either, and a frame takes many times as long.
+constexpr double NOISE = 0.5;
 // A noisy build's work files and database together, and the database alone; measured, with a margin.
-constexpr double DISK_BYTES_PER_SAMPLE = 30.0, DATABASE_BYTES_PER_SAMPLE = 8.0;
+constexpr double DISK_BYTES_PER_SAMPLE = 45.0, DATABASE_BYTES_PER_SAMPLE = 24.0;
 
 struct Extent
 {
@@ -292,7 +294,7 @@ std::filesystem::path build(const Settings& settings, const std::filesystem::pat
         std::min(gigabytes * 1e9 / DATABASE_BYTES_PER_SAMPLE, 0.8 * room / DISK_BYTES_PER_SAMPLE);
     const int side = static_cast<int>(std::sqrt(samples));
     const std::filesystem::path source = folder / "noisy.vrt", database = folder / "database";
-    writeNoisyOahu(settings.data / "oahu" / "elevation.tif", side, source);
+    writeNoisyOahu(settings.data / "oahu" / "elevation.tif", side, NOISE, source);
     announce("building " + std::to_string(side) + " x " + std::to_string(side) +
              " samples of noise over Oahu");
     runChild(builderCommand(settings, source, database, 2));
