@@ -3,8 +3,8 @@
 #include <osgGeoFX/geodata/SldColors.h>
 
 #include <osgGeoFX/geodata/BuildError.h>
+#include <osgGeoFX/geodata/detail/SldDocument.h>
 
-#include <libxml/parser.h>
 #include <libxml/tree.h>
 
 #include <algorithm>
@@ -13,9 +13,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -24,15 +22,6 @@ namespace osgGeoFX
 
 namespace
 {
-
-struct DocumentFreer
-{
-    void operator()(xmlDoc* document) const { xmlFreeDoc(document); }
-};
-struct ParserFreer
-{
-    void operator()(xmlParserCtxt* parser) const { xmlFreeParserCtxt(parser); }
-};
 
 /// The first element of a name, in the text's order.
 xmlNode* findElement(xmlNode* node, const char* name)
@@ -73,23 +62,7 @@ public:
 
     osg::ref_ptr<ColorTable> read()
     {
-        constexpr std::uintmax_t largest = 32u << 20;
-        std::error_code fault;
-        const std::uintmax_t size = std::filesystem::file_size(_file, fault);
-        if (fault || size > largest)
-            throw BuildError(_file +
-                             ": the color map cannot be read, or has more than 32 MiB; give an SLD file.");
-        // No entities, no network, nothing on the terminal.
-        const std::unique_ptr<xmlParserCtxt, ParserFreer> parser(xmlNewParserCtxt());
-        const std::unique_ptr<xmlDoc, DocumentFreer> document(xmlCtxtReadFile(
-            parser.get(), _file.c_str(), nullptr, XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
-        if (!document)
-        {
-            std::string reason = parser->lastError.message ? parser->lastError.message : "unknown fault";
-            reason.erase(reason.find_last_not_of(" \r\n") + 1);
-            throw BuildError(_file + ":" + std::to_string(parser->lastError.line) + ": it is not XML (" +
-                             reason + "); export the style as SLD again.");
-        }
+        const SldDocument document = readSldDocument(_file, "the color map");
         xmlNode* const map = findElement(xmlDocGetRootElement(document.get()), "ColorMap");
         if (!map)
             throw BuildError(_file + ": it has no ColorMap; export the style of a raster layer as SLD.");

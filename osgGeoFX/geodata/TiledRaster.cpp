@@ -53,11 +53,7 @@ public:
     DataLayer::Kind kind() const override { return _kind; }
     std::optional<LayerSource> source() const override
     {
-        LayerSource source;
-        source.file = _file;
-        source.globe = _frame.globe;
-        source.wkt = _frame.wkt;
-        source.origin = _frame.origin;
+        LayerSource source = sourceOf(_file, _frame);
         if (_wanted) source.kind = *_wanted;
         return source;
     }

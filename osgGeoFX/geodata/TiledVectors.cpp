@@ -92,11 +92,7 @@ public:
     DataLayer::Kind kind() const override { return DataLayer::COLOR; }
     std::optional<LayerSource> source() const override
     {
-        LayerSource source;
-        source.file = _shapes->file;
-        source.globe = _frame.globe;
-        source.wkt = _frame.wkt;
-        source.origin = _frame.origin;
+        LayerSource source = sourceOf(_shapes->file, _frame);
         source.vectors = LayerSource::Vectors{_options.layer, _options.style, _options.allowOutside};
         return source;
     }

@@ -3,6 +3,7 @@
 //
 // Which ways a scene takes, and what it says of the others.
 #include <osgGeoFX/map/SceneRoutes.h>
+#include <tools/HeightMesh.h>
 
 #include <osg/CoordinateSystemNode>
 #include <osg/Geometry>
@@ -103,25 +104,13 @@ TEST_F(SceneRoutesTest, HeightsAboveTheGroundAreThoseOfTheScenesGround)
     EXPECT_TRUE(contains(faultOf(route), "count from the ground, and there is none"));
 
     const osg::Vec3d middle = world(7.0, 45.0, 0.0);
-    const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
-    const osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
-    constexpr unsigned int cells = 30;
-    for (unsigned int y = 0; y <= cells; ++y)
-    {
-        for (unsigned int x = 0; x <= cells; ++x)
-        {
-            const double longitude = 6.97 + 0.08 * x / cells;
-            vertices->push_back(
-                osg::Vec3(world(longitude, 44.96 + 0.08 * y / cells, slope(longitude)) - middle));
-            if (x == cells || y == cells) continue;
-            const unsigned int corner = y * (cells + 1) + x;
-            for (const unsigned int index : {0u, 1u, cells + 2u, 0u, cells + 2u, cells + 1u})
-                triangles->push_back(corner + index);
-        }
-    }
-    const osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
-    ground->setVertexArray(vertices);
-    ground->addPrimitiveSet(triangles);
+    const auto ground =
+        geofx::test::makeMesh(30,
+                              [&](double east, double north)
+                              {
+                                  const double longitude = 6.97 + 0.08 * east;
+                                  return world(longitude, 44.96 + 0.08 * north, slope(longitude)) - middle;
+                              });
     const osg::ref_ptr<osg::MatrixTransform> place =
         new osg::MatrixTransform(osg::Matrixd::translate(middle));
     place->addChild(ground);

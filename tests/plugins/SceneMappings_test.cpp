@@ -7,6 +7,7 @@
 #include <osgGeoFX/mapping/LayerSequence.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/raster/LayerPixels.h>
+#include <tools/HeightMesh.h>
 #include <tools/KmlFiles.h>
 #include <tools/TestRasters.h>
 
@@ -729,21 +730,9 @@ TEST_F(SceneMappingsPlugin, WaysAboveTheGroundAreAboveTheScenesGround)
         return place;
     };
     const osg::Vec3d middle = at(-158.0, 21.3, 0.0);
-    const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
-    const osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
-    constexpr unsigned int cells = 20;
-    for (unsigned int i = 0; i < (cells + 1) * (cells + 1); ++i)
-    {
-        const unsigned int x = i % (cells + 1), y = i / (cells + 1);
-        vertices->push_back(
-            osg::Vec3(at(-158.02 + 0.04 * x / cells, 21.28 + 0.04 * y / cells, 500.0) - middle));
-        if (x == cells || y == cells) continue;
-        for (const unsigned int corner : {0u, 1u, cells + 2u, 0u, cells + 2u, cells + 1u})
-            triangles->push_back(i + corner);
-    }
-    const osg::ref_ptr<osg::Geometry> ground = new osg::Geometry;
-    ground->setVertexArray(vertices);
-    ground->addPrimitiveSet(triangles);
+    const auto ground =
+        geofx::test::makeMesh(20, [&](double east, double north)
+                              { return at(-158.02 + 0.04 * east, 21.28 + 0.04 * north, 500.0) - middle; });
     const osg::ref_ptr<osg::MatrixTransform> place =
         new osg::MatrixTransform(osg::Matrixd::translate(middle));
     place->addChild(ground);

@@ -11,6 +11,29 @@
 namespace geofx::test
 {
 
+/// A mesh of so many cells along each side. `at`: the place of a share of the way to the east and to the north.
+inline osg::ref_ptr<osg::Geometry> makeMesh(int cells, const std::function<osg::Vec3d(double, double)>& at)
+{
+    const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+    const osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
+    const auto row = static_cast<unsigned int>(cells + 1);
+    for (int j = 0; j <= cells; ++j)
+    {
+        for (int i = 0; i <= cells; ++i)
+        {
+            vertices->push_back(at(1.0 * i / cells, 1.0 * j / cells));
+            if (i == cells || j == cells) continue;
+            const auto a = static_cast<unsigned int>(vertices->size()) - 1;
+            for (const unsigned int index : {a, a + 1, a + row + 1, a, a + row + 1, a + row})
+                triangles->push_back(index);
+        }
+    }
+    osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
+    geometry->setVertexArray(vertices);
+    geometry->addPrimitiveSet(triangles);
+    return geometry;
+}
+
 /// A terrain of 20 × 20 km on a plane, around the origin, of which the heights are a formula.
 struct HeightMesh
 {
@@ -19,25 +42,12 @@ struct HeightMesh
     /// So many cells along each side.
     osg::ref_ptr<osg::Geometry> mesh(int cells) const
     {
-        const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
-        const osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
-        const auto row = static_cast<unsigned int>(cells + 1);
-        for (int j = 0; j <= cells; ++j)
-        {
-            for (int i = 0; i <= cells; ++i)
-            {
-                const double x = -1e4 + 2e4 * i / cells, y = -1e4 + 2e4 * j / cells;
-                vertices->push_back(osg::Vec3d(x, y, heightAt(x, y)));
-                if (i == cells || j == cells) continue;
-                const auto a = static_cast<unsigned int>(vertices->size()) - 1;
-                for (const unsigned int index : {a, a + 1, a + row + 1, a, a + row + 1, a + row})
-                    triangles->push_back(index);
-            }
-        }
-        osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
-        geometry->setVertexArray(vertices);
-        geometry->addPrimitiveSet(triangles);
-        return geometry;
+        return makeMesh(cells,
+                        [this](double east, double north)
+                        {
+                            const double x = -1e4 + 2e4 * east, y = -1e4 + 2e4 * north;
+                            return osg::Vec3d(x, y, heightAt(x, y));
+                        });
     }
 
     osgGeoFX::TerrainRelief relief(int cells) const

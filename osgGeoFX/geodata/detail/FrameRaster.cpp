@@ -78,6 +78,16 @@ private:
 
 } // namespace
 
+LayerSource sourceOf(const std::string& file, const MappingFrame& frame)
+{
+    LayerSource source;
+    source.file = file;
+    source.globe = frame.globe;
+    source.wkt = frame.wkt;
+    source.origin = frame.origin;
+    return source;
+}
+
 FrameCrs crsOf(const MappingFrame& frame, const std::string& file)
 {
     FrameCrs crs;

@@ -7,6 +7,7 @@
 #include <osgGeoFX/geodata/detail/GdalSupport.h>
 
 #include <osgGeoFX/geodata/MappingRaster.h>
+#include <osgGeoFX/mapping/LayerSource.h>
 
 #include <osg/Vec2d>
 
@@ -30,6 +31,9 @@ struct FrameCrs
     osg::Vec2d fromFrame(const osg::Vec2d& place) const { return (place + origin) / metresPerUnit; }
 };
 
+/// Where tiles of a file in this frame come from.
+LayerSource sourceOf(const std::string& file, const MappingFrame& frame);
+
 /// Throws BuildError, naming `file`, where a projected terrain's coordinate system is none.
 FrameCrs crsOf(const MappingFrame& frame, const std::string& file);
 
@@ -39,6 +43,9 @@ struct VectorTarget
     OGRSpatialReference crs;
     double metresPerUnit = 1.0;
 };
+
+/// Where tiles of a file in this frame come from.
+LayerSource sourceOf(const std::string& file, const MappingFrame& frame);
 
 /// Throws BuildError, naming `file`, where a projected terrain's coordinate system is none.
 VectorTarget vectorTargetOf(const MappingFrame& frame, const std::string& file);

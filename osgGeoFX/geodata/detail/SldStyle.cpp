@@ -4,8 +4,8 @@
 
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/geodata/detail/KmlFolder.h>
+#include <osgGeoFX/geodata/detail/SldDocument.h>
 
-#include <libxml/parser.h>
 #include <libxml/tree.h>
 
 #include <algorithm>
@@ -21,16 +21,6 @@ namespace osgGeoFX
 
 namespace
 {
-
-struct DocumentFreer
-{
-    void operator()(xmlDoc* document) const { xmlFreeDoc(document); }
-};
-struct ParserFreer
-{
-    void operator()(xmlParserCtxt* parser) const { xmlFreeParserCtxt(parser); }
-};
-using Document = std::unique_ptr<xmlDoc, DocumentFreer>;
 
 const char* nameOf(const xmlNode* node)
 {
@@ -81,28 +71,11 @@ std::string attributeOf(xmlNode* node, const char* name)
     return result;
 }
 
-Document parse(const std::string& file)
-{
-    constexpr std::uintmax_t largest = 32u << 20;
-    std::error_code fault;
-    const std::uintmax_t size = std::filesystem::file_size(file, fault);
-    if (fault || size > largest)
-        throw BuildError(file + ": the style cannot be read, or has more than 32 MiB; give an SLD file.");
-    // No entities, no network, nothing on the terminal.
-    const std::unique_ptr<xmlParserCtxt, ParserFreer> parser(xmlNewParserCtxt());
-    Document document(xmlCtxtReadFile(parser.get(), file.c_str(), nullptr,
-                                      XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING));
-    if (document) return document;
-    std::string reason = parser->lastError.message ? parser->lastError.message : "unknown fault";
-    reason.erase(reason.find_last_not_of(" \r\n") + 1);
-    throw BuildError(file + ":" + std::to_string(parser->lastError.line) + ": it is not XML (" + reason +
-                     "); export the style as SLD again.");
-}
-
 class Reader
 {
 public:
-    Reader(const std::string& file, bool allowOutside) : _document(parse(file)), _allowOutside(allowOutside)
+    Reader(const std::string& file, bool allowOutside)
+        : _document(readSldDocument(file, "the style")), _allowOutside(allowOutside)
     {
         _style.file = file;
     }
@@ -496,7 +469,7 @@ private:
         take("escapeChar", filter.escape);
     }
 
-    const Document _document;
+    const SldDocument _document;
     const bool _allowOutside;
     FeatureStyle _style;
     std::set<std::string> _notices;

@@ -73,20 +73,6 @@ void collect(const OGRGeometry& geometry, std::vector<std::vector<Ring>>& outlin
             collect(*part, outlines);
 }
 
-/// Whether a place lies within a ring.
-bool contains(const Ring& ring, const osg::Vec2d& place)
-{
-    bool inside = false;
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
-    {
-        const osg::Vec2d &a = ring[i], &b = ring[j];
-        if ((a.y() > place.y()) != (b.y() > place.y()) &&
-            place.x() < (b.x() - a.x()) * (place.y() - a.y()) / (b.y() - a.y()) + a.x())
-            inside = !inside;
-    }
-    return inside;
-}
-
 /// Blocks of the low buildings of a cell.
 void addBlocks(const std::vector<const PlacedBuilding*>& buildings, std::vector<PlacedBuilding>& blocks)
 {
@@ -108,7 +94,7 @@ void addBlocks(const std::vector<const PlacedBuilding*>& buildings, std::vector<
         for (std::size_t i = 0; i < buildings.size(); ++i)
         {
             const PlacedBuilding& each = *buildings[i];
-            if (taken[i] || !contains(rings.front(), {each.reference.x(), each.reference.y()})) continue;
+            if (taken[i] || !isWithin({rings.front()}, {each.reference.x(), each.reference.y()})) continue;
             taken[i] = 1;
             block.foot = area > 0.0 ? std::min(block.foot, each.foot) : each.foot;
             area += each.area;

@@ -87,4 +87,19 @@ inline osg::Vec2d ringMiddle(const Ring& ring)
     return ring[0] + (twice != 0.0 ? sum / (3.0 * twice) : mean);
 }
 
+/// Whether a place lies within rings: an outline and its courtyards, by the even-odd rule.
+inline bool isWithin(const std::vector<Ring>& rings, const osg::Vec2d& place)
+{
+    bool inside = false;
+    for (const Ring& ring : rings)
+        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
+        {
+            const osg::Vec2d &a = ring[i], &b = ring[j];
+            if ((a.y() > place.y()) != (b.y() > place.y()) &&
+                place.x() < (b.x() - a.x()) * (place.y() - a.y()) / (b.y() - a.y()) + a.x())
+                inside = !inside;
+        }
+    return inside;
+}
+
 } // namespace osgGeoFX

@@ -91,20 +91,6 @@ struct HalfPlane
 
 } // namespace
 
-bool isWithin(const std::vector<Ring>& rings, const osg::Vec2d& place)
-{
-    bool inside = false;
-    for (const Ring& ring : rings)
-        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
-        {
-            const osg::Vec2d &a = ring[i], &b = ring[j];
-            if ((a.y() > place.y()) != (b.y() > place.y()) &&
-                place.x() < (b.x() - a.x()) * (place.y() - a.y()) / (b.y() - a.y()) + a.x())
-                inside = !inside;
-        }
-    return inside;
-}
-
 std::size_t Openness::add(const PlacedBuilding& building)
 {
     Prism prism;

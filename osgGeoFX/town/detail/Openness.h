@@ -51,7 +51,4 @@ private:
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> _cells;
 };
 
-/// Whether a place lies within rings: an outline and its courtyards.
-bool isWithin(const std::vector<Ring>& rings, const osg::Vec2d& place);
-
 } // namespace osgGeoFX

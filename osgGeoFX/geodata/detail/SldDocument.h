@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+#pragma once
+
+#include <memory>
+#include <string>
+
+struct _xmlDoc;
+
+namespace osgGeoFX
+{
+
+struct SldDocumentFreer
+{
+    void operator()(_xmlDoc* document) const;
+};
+/// A document of libxml2.
+using SldDocument = std::unique_ptr<_xmlDoc, SldDocumentFreer>;
+
+/// Reads an SLD file, without entities and without the network. Throws BuildError, with a sentence that names the file, where
+/// it cannot be read, has more than 32 MiB, or is not XML. `what`: what people have in it, such as "the style".
+SldDocument readSldDocument(const std::string& file, const std::string& what);
+
+} // namespace osgGeoFX
