@@ -124,6 +124,9 @@ public:
     virtual bool hides(const Ball&, const osg::Vec2d&) const { return false; }
     /// The same for a box. Override it where a box allows a better answer than its bounding sphere.
     virtual bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const { return hides(box.ball(), room); }
+    /// Whether the ground at a position lies beyond the end of what the deformation shows, in the pictures of all cameras. A
+    /// RigidReference that stands there is not drawn. False by default.
+    virtual bool isBeyond(const osg::Vec3d&) const { return false; }
     /// Whether hides() or complaint() can ever give an answer. Where this is false, culling need not ask them and tests
     /// fewer boxes. True by default.
     virtual bool looksAtBoxes() const { return true; }

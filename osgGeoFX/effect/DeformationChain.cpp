@@ -147,6 +147,17 @@ bool DeformationChain::hides(const EyeBox& box, const osg::Vec2d& room) const
     return false;
 }
 
+bool DeformationChain::isBeyond(const osg::Vec3d& position) const
+{
+    osg::Vec3d at = position;
+    for (const auto& snapshot : _snapshots)
+    {
+        if (snapshot->isBeyond(at)) return true;
+        at = snapshot->deform(at);
+    }
+    return false;
+}
+
 double DeformationChain::lodLimit(const osg::LOD& node, const Ball& ball) const
 {
     if (_tileEdge <= 0.0 || _snapshots.empty()) return HUGE_VAL;

@@ -55,6 +55,8 @@ public:
     /// Whether nothing within a sphere or box needs to be drawn. `room` is that of DeformationSnapshot::hides().
     bool hides(const Ball& ball, const osg::Vec2d& room) const;
     bool hides(const EyeBox& box, const osg::Vec2d& room) const;
+    /// Whether a position lies beyond the end of what one of the deformations shows (DeformationSnapshot::isBeyond()).
+    bool isBeyond(const osg::Vec3d& position) const;
     /// Whether hides() or a frame's complaint() can ever give an answer.
     bool looksAtBoxes() const { return _looksAtBoxes; }
     /// A bounding sphere of a deformed sphere.

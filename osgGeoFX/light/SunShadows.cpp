@@ -207,11 +207,12 @@ void SunShadows::Pass::cull(const ScenePass& pass)
         {double(count), double(texels), cascades.firstShare(), _shadows._strength});
 }
 
-SunShadows::SunShadows() : _pass(new Pass(*this)) {}
+SunShadows::SunShadows() : _noMaps(ShadowMaps::makeTexture(1, 1)), _pass(new Pass(*this)) {}
 
 SunShadows::SunShadows(const SunShadows& other, const osg::CopyOp& copy)
     : SurfaceEffect(other, copy), TextureUser(other), _strength(other._strength), _cascades(other._cascades),
-      _mapSize(other._mapSize), _nearest(other._nearest), _mapUnit(other._mapUnit), _pass(new Pass(*this))
+      _mapSize(other._mapSize), _nearest(other._nearest), _mapUnit(other._mapUnit),
+      _noMaps(ShadowMaps::makeTexture(1, 1)), _pass(new Pass(*this))
 {
 }
 
@@ -261,6 +262,8 @@ SunShadows::Statistics SunShadows::statistics() const
 bool SunShadows::fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view)
 {
     state.getOrCreateUniform(prefix + "depths", osg::Uniform::SAMPLER_2D_SHADOW)->set(view.units.front());
+    // A shader that compares depths must find depths, even where it does not look at them.
+    state.setTextureAttribute(static_cast<unsigned int>(view.units.front()), _noMaps);
     // Where no light is found while the scene is culled, none is taken away.
     set(state, prefix + "cascades", {0.0, 1.0, 1.0, _strength});
     set(state, prefix + "towards", {0.0, 0.0, 0.0, 0.0});
@@ -270,11 +273,13 @@ bool SunShadows::fill(osg::StateSet& state, const std::string& prefix, const Sur
 
 void SunShadows::resizeGLObjectBuffers(unsigned int size)
 {
+    _noMaps->resizeGLObjectBuffers(size);
     _pass->resizeGLObjectBuffers(size);
 }
 
 void SunShadows::releaseGLObjects(osg::State* state) const
 {
+    _noMaps->releaseGLObjects(state);
     _pass->releaseGLObjects(state);
 }
 

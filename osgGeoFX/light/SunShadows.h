@@ -102,6 +102,7 @@ private:
     int _mapSize = 2048;
     double _nearest = 0.0;
     int _mapUnit = -1;
+    osg::ref_ptr<osg::Texture2D> _noMaps; ///< in their place while none is drawn
     osg::ref_ptr<Pass> _pass;
 };
 

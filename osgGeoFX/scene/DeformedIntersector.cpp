@@ -276,8 +276,9 @@ void DeformedIntersectionVisitor::applyRigid(RigidReference& node)
     const Scope scope(*this, node);
     const osg::Matrixd view = _view;
     const osg::Matrixd here = modelView();
-    const osg::Matrixd placement =
-        rigidPlacement(definedChain(), node.referencePoint() * here, node.getTurn());
+    const osg::Vec3d reference = node.referencePoint() * here;
+    if (definedChain().isBeyond(reference)) return;
+    const osg::Matrixd placement = rigidPlacement(definedChain(), reference, node.getTurn());
     // Places on it are told as it stands, undeformed: only the view is moved.
     _view = _view * placement;
     _chain = _nothing;

@@ -47,7 +47,8 @@ public:
     void setTurn(bool turn) { _turn = turn; }
     bool getTurn() const { return _turn; }
 
-    /// The reference point that is used.
+    /// The reference point that is used. Where it lies beyond the end of what a deformation shows, as behind the far end of a
+    /// panorama map, the object is not drawn and not picked.
     osg::Vec3d referencePoint() const
     {
         return _useBoundCenter ? osg::Vec3d(getBound().center()) : _reference;

@@ -96,8 +96,17 @@ void geofx_moveHost()
 #ifdef GEOFX_HOST_VERTEX
     if (geofx_isGiven(written)) eye = gl_ModelViewMatrix * gl_Vertex;
 #endif
-#ifndef GEOFX_HOST_CLIPS
-    gl_ClipVertex = eye; // clip planes cut the ground as it lies
+    // Clip planes cut the ground as it lies.
+#if !defined(GEOFX_HOST_CLIPS) && defined(GEOFX_EVALUATION)
+    // NVIDIA's compiler knows no gl_ClipVertex in this stage. A plane that is off cuts nothing.
+    gl_ClipDistance[0] = dot(gl_ClipPlane[0], eye);
+    gl_ClipDistance[1] = dot(gl_ClipPlane[1], eye);
+    gl_ClipDistance[2] = dot(gl_ClipPlane[2], eye);
+    gl_ClipDistance[3] = dot(gl_ClipPlane[3], eye);
+    gl_ClipDistance[4] = dot(gl_ClipPlane[4], eye);
+    gl_ClipDistance[5] = dot(gl_ClipPlane[5], eye);
+#elif !defined(GEOFX_HOST_CLIPS)
+    gl_ClipVertex = eye;
 #endif
 #ifdef GEOFX_HOST_TEXTURE
     geofx_texture(gl_TexCoord[0]);

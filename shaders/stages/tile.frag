@@ -45,6 +45,14 @@ vec2 tame(vec2 place)
     return all(lessThan(fwidth(place), vec2(4.0))) ? place : clamp(place, 0.0, 1.0);
 }
 
+// The distance along the view, from the fragment's own depth: not every driver's fixed functions hand over gl_FogFragCoord.
+float away()
+{
+    mat4 p = gl_ProjectionMatrix;
+    return p[2][3] != 0.0 ? abs((1.0 / gl_FragCoord.w - p[3][3]) / p[2][3])
+                          : abs((2.0 * gl_FragCoord.z - 1.0 - p[3][2]) / p[2][2]);
+}
+
 void main()
 {
     vec4 color = gl_Color;
@@ -60,7 +68,7 @@ void main()
     bool linear = gl_Fog.start != 0.0 || gl_Fog.end != 1.0;
     if (linear || gl_Fog.density != 1.0 || gl_Fog.color != vec4(0.0))
     {
-        float clear = linear ? (gl_Fog.end - gl_FogFragCoord) * gl_Fog.scale : exp(-gl_Fog.density * gl_FogFragCoord);
+        float clear = linear ? (gl_Fog.end - away()) * gl_Fog.scale : exp(-gl_Fog.density * away());
         color.rgb = mix(gl_Fog.color.rgb, color.rgb, clamp(clear, 0.0, 1.0));
     }
     gl_FragColor = color;

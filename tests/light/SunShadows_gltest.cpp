@@ -440,6 +440,36 @@ TEST_F(SunShadowsTest, AreNotThereWithoutASun)
     EXPECT_LT(meanDifference(*drawWithout(), *draw()), rounding);
 }
 
+// OpenGL leaves open what a shader that compares depths does with another texture, even where it does not look.
+TEST_F(SunShadowsTest, HaveDepthsToCompareWithAlsoWithoutASun)
+{
+    class Looks : public osg::Drawable::DrawCallback
+    {
+    public:
+        void drawImplementation(osg::RenderInfo& info, const osg::Drawable* drawable) const override
+        {
+            drawable->drawImplementation(info);
+            info.getState()->setActiveTextureUnit(unit);
+            glGetTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE_ARB, &compares);
+            glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &width);
+        }
+        const unsigned int unit = 5;
+        mutable GLint compares = 0, width = 0;
+    };
+    const osg::ref_ptr<Looks> looks = new Looks;
+    const osg::ref_ptr<osg::Geometry> last = makeBox(boxes[0]);
+    last->setDrawCallback(looks);
+    _scene->addChild(last);
+    _shadows->setMapUnit(static_cast<int>(looks->unit));
+    draw();
+    EXPECT_EQ(looks->compares, GL_COMPARE_R_TO_TEXTURE_ARB);
+    EXPECT_GT(looks->width, 1);
+    _sun->getLight()->setDiffuse({0.0f, 0.0f, 0.0f, 1.0f});
+    looks->compares = 0;
+    draw();
+    EXPECT_EQ(looks->compares, GL_COMPARE_R_TO_TEXTURE_ARB);
+}
+
 // From below the horizon a light would shine on walls through the ground.
 TEST_F(SunShadowsTest, TakeAllLightBelowTheHorizon)
 {

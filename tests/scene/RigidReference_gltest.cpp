@@ -3,6 +3,8 @@
 // What keeps its shape: where it is drawn, and that culling knows.
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
+#include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <tools/BentGround.h>
 #include <tools/ImageComparison.h>
@@ -224,4 +226,95 @@ TEST_F(RigidReferenceTest, IsNotCulledWronglyFarFromItsReference)
         some += covered(*expected) > 0 ? 1 : 0;
     }
     EXPECT_GT(some, count / 10);
+}
+
+/// Towers below a map's projection.
+class RigidTowers : public RigidReferenceTest
+{
+protected:
+    void SetUp() override
+    {
+        RigidReferenceTest::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        viewer().getCamera()->setProjectionMatrixAsPerspective(35.0, static_cast<double>(WIDTH) / HEIGHT, 1.0,
+                                                               1e6);
+        _map->setPaint(false);
+        _map->setStrokes(false);
+        _map->setWater(false);
+        _map->setSky(false);
+        _scene->addEffect(_map);
+    }
+
+    static osg::ref_ptr<osg::MatrixTransform> makeTower(const osg::Vec2d& place, double size)
+    {
+        osg::ref_ptr<osg::MatrixTransform> site =
+            new osg::MatrixTransform(osg::Matrix::translate(place.x(), place.y(), 0.0));
+        site->addChild(makeRigid(makeBox(static_cast<float>(size))));
+        return site;
+    }
+
+    void lookNorth(double height, double down)
+    {
+        viewer().getCamera()->setViewMatrixAsLookAt({0, 0, height},
+                                                    {0, std::cos(down), height - std::sin(down)}, {0, 0, 1});
+    }
+
+    osg::ref_ptr<EffectScene> _scene = new EffectScene;
+    osg::ref_ptr<PanoramaMap> _map = new PanoramaMap;
+};
+
+TEST_F(RigidTowers, BeyondTheEndOfAMapAreNotThere)
+{
+    _map->setViewRadius(1000);
+    lookNorth(300, 0.3);
+    const auto seen = [&](double y)
+    {
+        _scene->removeChildren(0, _scene->getNumChildren());
+        _scene->addChild(makeTower({0, y}, 200));
+        return covered(*render(_scene));
+    };
+    EXPECT_GT(seen(800), 50);
+    EXPECT_EQ(seen(20000), 0);
+    // Nor can they be picked.
+    const DeformedView view(*_scene, *viewer().getCamera());
+    for (int row = 0; row < HEIGHT; ++row)
+        EXPECT_FALSE(view.pick(WIDTH / 2.0, row + 0.5)) << row;
+    // Without a projection they stand far away.
+    _scene->removeEffect(_map);
+    EXPECT_GT(covered(*render(_scene)), 0);
+}
+
+TEST_F(RigidTowers, AreNotCulledWronglyInAMap)
+{
+    osg::Camera& camera = *viewer().getCamera();
+    const osg::CullSettings::CullingMode culling =
+        camera.getCullingMode() & ~osg::CullSettings::SMALL_FEATURE_CULLING;
+    const int count = fullTest() ? 2000 : 200;
+    int some = 0;
+    for (int i = 0; i < count; ++i)
+    {
+        SCOPED_TRACE("sample " + std::to_string(i));
+        Random random(static_cast<std::uint64_t>(i));
+        const double radius = random.logarithmic(500, 20000);
+        _map->setViewRadius(radius);
+        // A village anywhere, also beyond the end of the map, with the highest towers that stand there.
+        const osg::Vec2d middle(random.uniform(-2, 2) * radius, random.logarithmic(0.1, 30) * radius);
+        const osg::ref_ptr<osg::Group> village = new osg::Group;
+        for (int house = 0; house < 6; ++house)
+        {
+            const double size = random.logarithmic(0.01, 0.3) * radius;
+            village->addChild(
+                makeTower(middle + osg::Vec2d(random.uniform(-1, 1), random.uniform(-1, 1)) * radius, size));
+        }
+        _scene->removeChildren(0, _scene->getNumChildren());
+        _scene->addChild(village);
+        lookNorth(random.logarithmic(0.02, 1.0) * radius, random.uniform(0.05, 0.8));
+        camera.setCullingMode(culling);
+        const osg::ref_ptr<osg::Image> actual = render(_scene);
+        camera.setCullingMode(osg::CullSettings::NO_CULLING);
+        const osg::ref_ptr<osg::Image> expected = render(_scene);
+        EXPECT_TRUE(same(*actual, *expected));
+        some += covered(*expected) > 0 ? 1 : 0;
+    }
+    EXPECT_GT(some, count / 5);
 }

@@ -149,7 +149,7 @@ bool same(const osg::Matrixd& one, const osg::Matrixd& other)
     return true;
 }
 
-osg::ref_ptr<osg::Geometry> geometryOf(osg::Vec3Array* vertices, osg::Vec2Array* shares,
+osg::ref_ptr<osg::Geometry> geometryOf(osg::Vec3Array* vertices, osg::Array* shares,
                                        osg::PrimitiveSet* primitives)
 {
     osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
@@ -214,8 +214,10 @@ void ContourFence::build(const RegionOfInterest& region, const std::vector<Groun
     osg::ref_ptr<osg::Vec2Array> wallShares = new osg::Vec2Array;
     osg::ref_ptr<osg::DrawElementsUInt> wallIndices = new osg::DrawElementsUInt(GL_TRIANGLES);
     osg::ref_ptr<osg::Vec3Array> line = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec2Array> lineShares = new osg::Vec2Array;
-    osg::ref_ptr<osg::DrawElementsUInt> lineIndices = new osg::DrawElementsUInt(GL_LINES);
+    // A band: each point twice, with its neighbours. OpenGL's own lines are at most ten pixels wide with many drivers.
+    osg::ref_ptr<osg::Vec3Array> lineShares = new osg::Vec3Array, before = new osg::Vec3Array,
+                                 after = new osg::Vec3Array;
+    osg::ref_ptr<osg::DrawElementsUInt> lineIndices = new osg::DrawElementsUInt(GL_TRIANGLES);
     std::size_t first = 0;
     for (const Contour& contour : contours)
     {
@@ -231,28 +233,38 @@ void ContourFence::build(const RegionOfInterest& region, const std::vector<Groun
             osg::Vec3d point = points[kept[i]];
             const bool known = point.z() > unknown;
             if (!known) point.z() = 0.0;
+            // The line ends where no ground is known.
+            const auto neighbour = [&](std::size_t other)
+            {
+                const osg::Vec3d& place = points[kept[other % kept.size()]];
+                return osg::Vec3(place.z() > unknown ? place : point);
+            };
             const auto at = static_cast<unsigned int>(line->size());
             for (const float share : {0.0f, 1.0f})
             {
                 wall->push_back(osg::Vec3(point));
                 wallShares->push_back(osg::Vec2(share, 0.0f));
+                line->push_back(osg::Vec3(point));
+                lineShares->push_back(osg::Vec3(0.0f, 1.0f, 2.0f * share - 1.0f));
+                before->push_back(neighbour(i + kept.size() - 1));
+                after->push_back(neighbour(i + 1));
             }
-            line->push_back(osg::Vec3(point));
-            lineShares->push_back(osg::Vec2(0.0f, 1.0f));
             // There is no wall without ground, for example beyond the terrain's border.
             const std::size_t following = (i + 1) % kept.size();
             if (!known || !(points[kept[following]].z() > unknown)) continue;
-            const unsigned int next = start + static_cast<unsigned int>(following);
-            for (const unsigned int index :
-                 {2 * at, 2 * next, 2 * at + 1, 2 * at + 1, 2 * next, 2 * next + 1})
+            const unsigned int next = start + 2 * static_cast<unsigned int>(following);
+            for (const unsigned int index : {at, next, at + 1, at + 1, next, next + 1})
+            {
                 wallIndices->push_back(index);
-            lineIndices->push_back(at);
-            lineIndices->push_back(next);
+                lineIndices->push_back(index);
+            }
         }
         first += contour.size();
     }
     _wall = geometryOf(wall, wallShares, wallIndices);
     _line = geometryOf(line, lineShares, lineIndices);
+    _line->setTexCoordArray(1, before, osg::Array::BIND_PER_VERTEX);
+    _line->setTexCoordArray(2, after, osg::Array::BIND_PER_VERTEX);
 }
 
 void ContourFence::resizeGLObjectBuffers(unsigned int size)

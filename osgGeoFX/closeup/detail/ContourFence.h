@@ -14,8 +14,8 @@ namespace osgGeoFX
 {
 
 /** The wall between a region's border on the ground and the border of its close-up, and the line on the ground. It is
-    geometry in the region's frame. Its first texture coordinate says how far a vertex goes up
-    (stages/closeup.fence.vert).
+    geometry in the region's frame. Its first texture coordinate says how far a vertex goes up. The line is a band, which
+    the vertex stage makes as wide as it is wanted (stages/closeup.fence.vert).
 
     Heights are those of the triangles that the camera sees there. Points of the border are left out as long as the
     line stays within a tenth of a texel of the mask. An object belongs to one camera and one close-up. */

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/closeup/detail/RegionPass.h>
 
-#include <osg/LineWidth>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -144,8 +142,10 @@ void RegionPass::drawFence(const VisibleCloseUp& visible, const RegionContents& 
         state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF | osg::StateAttribute::OVERRIDE |
                                         osg::StateAttribute::PROTECTED);
         state.setMode(GL_DEPTH_TEST, on);
-        if (which == 1)
-            state.setAttributeAndModes(new osg::LineWidth(static_cast<float>(width * _task.samples)), on);
+        const osg::Viewport& window = *pass.outer.getViewport();
+        const double pixels = std::max(width, 1.0 / _task.samples);
+        state.getOrCreateUniform(pass.prefix + "band", osg::Uniform::FLOAT_VEC2)
+            ->set(osg::Vec2(osg::Vec2d(pixels / window.width(), pixels / window.height())));
         pieces.push_back({geometry, item.regionToEye(), &state});
     };
     if (item.fenced()) add(fence.wall(), 0);

@@ -112,6 +112,23 @@ ShadowMaps::ShadowMaps() : _clearing(new Clearing) {}
 
 ShadowMaps::~ShadowMaps() = default;
 
+osg::ref_ptr<osg::Texture2D> ShadowMaps::makeTexture(int width, int height)
+{
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+    texture->setTextureSize(width, height);
+    texture->setInternalFormat(GL_DEPTH_COMPONENT24);
+    texture->setSourceFormat(GL_DEPTH_COMPONENT);
+    texture->setSourceType(GL_UNSIGNED_INT);
+    texture->setShadowComparison(true);
+    texture->setShadowCompareFunc(osg::Texture::LEQUAL);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
+    texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
+    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
+    texture->setResizeNonPowerOfTwoHint(false);
+    return texture;
+}
+
 void ShadowMaps::resize(int count, int texels)
 {
     if (_texture && count == _count && texels == _texels) return;
@@ -133,18 +150,7 @@ void ShadowMaps::resize(int count, int texels)
         _clears.push_back(clear);
     }
     const int width = columns * texels, height = rows(count) * texels;
-    _texture = new osg::Texture2D;
-    _texture->setTextureSize(width, height);
-    _texture->setInternalFormat(GL_DEPTH_COMPONENT24);
-    _texture->setSourceFormat(GL_DEPTH_COMPONENT);
-    _texture->setSourceType(GL_UNSIGNED_INT);
-    _texture->setShadowComparison(true);
-    _texture->setShadowCompareFunc(osg::Texture::LEQUAL);
-    _texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
-    _texture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
-    _texture->setWrap(osg::Texture::WRAP_S, osg::Texture::CLAMP_TO_EDGE);
-    _texture->setWrap(osg::Texture::WRAP_T, osg::Texture::CLAMP_TO_EDGE);
-    _texture->setResizeNonPowerOfTwoHint(false);
+    _texture = makeTexture(width, height);
     _target = new osg::FrameBufferObject;
     _target->setAttachment(osg::Camera::DEPTH_BUFFER, osg::FrameBufferAttachment(_texture));
     _viewport = new osg::Viewport(0, 0, width, height);

@@ -33,6 +33,8 @@ public:
     static constexpr int columns = 2;
     static int rows(int count) { return (count + columns - 1) / columns; }
 
+    /// Depths that shaders compare with.
+    static osg::ref_ptr<osg::Texture2D> makeTexture(int width, int height);
     /// Draws the scene of a pass into the maps. `texels`: along the side of one. Returns how many of them are drawn.
     int draw(const ScenePass& pass, const ShadowCascades& cascades, int texels);
     osg::Texture2D* texture() const { return _texture; }

@@ -459,11 +459,22 @@ bool PanoramaSnapshot::isAroundTheEarth(const Ball& ball, const osg::Vec2d& room
     const double height = std::abs(distance - 1.0 / k) + ball.radius + std::abs(_view.base) + bulge;
     const double before =
         (std::abs(_view.lift) * height + room.y()) / (_view.along * glsl::geofx_panoramaSlope(_view, 0.0));
-    const double along = std::max(2.0 * _view.end - _view.horizon, before) + _view.cylinder.ring;
+    const double along = std::max(faded(), before) + _view.cylinder.ring;
     const double shown = std::hypot((beside + room.x()) / _view.across, along) * k * (1.0 + flat);
     // Nearer, what is beside the picture and what is behind it count each for itself: a triangle may reach from one to the other.
     const double promised = osg::PI / 3.0;
     return least > std::max(shown, promised);
+}
+
+double PanoramaSnapshot::faded() const
+{
+    return 2.0 * _view.end - _view.horizon;
+}
+
+bool PanoramaSnapshot::isBeyond(const osg::Vec3d& position) const
+{
+    if (isAroundTheEarth({position, 0.0}, {})) return true;
+    return !(_view.plain > 0.0) && glsl::geofx_panoramaPlace(_view, toGlm(position)).y > faded();
 }
 
 bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
@@ -474,7 +485,7 @@ bool PanoramaSnapshot::hides(const Ball& ball, const osg::Vec2d& room) const
     const Extent extent = extentOf(ball);
     const double nearS = extent.place.y - extent.reach;
     const double farS = extent.place.y + extent.reach;
-    if (nearS > 2.0 * _view.end - _view.horizon) return true;
+    if (nearS > faded()) return true;
     // A ball with known x and s is beside or below the picture as its ground is. Its bounds in eye space may not tell
     // this, since everything is stretched there.
     if (extent.turned > mostTurned || farS > _view.end) return false;
@@ -517,7 +528,7 @@ bool PanoramaSnapshot::hidesBox(const EyeBox& box, const osg::Vec2d& room) const
         low = glm::min(low, place - bent);
         high = glm::max(high, place + bent);
     }
-    if (low.y > 2.0 * _view.end - _view.horizon) return true;
+    if (low.y > faded()) return true;
     if (high.y > _view.end) return false;
     const double middle = _view.cylinder.ring * _view.cylinder.middle;
     const double side =

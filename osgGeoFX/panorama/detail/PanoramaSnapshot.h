@@ -50,6 +50,7 @@ public:
     Sag sag(const Ball& ball, const osg::Vec3d& edge) const override;
     double longestEdge(const Ball& ball, double tolerance) const override;
     bool hides(const Ball& ball, const osg::Vec2d& room) const override;
+    bool isBeyond(const osg::Vec3d& position) const override;
     bool hidesBox(const EyeBox& box, const osg::Vec2d& room) const override;
     std::optional<double> viewDistance(const Ball& ball) const override;
     std::string complaint(const EyeBox& box) const override;
@@ -67,6 +68,8 @@ private:
     /// Whether a ball lies farther around the Earth than anything that the picture shows, and more than 60 degrees of arc
     /// away, where places on the ground no longer tell left from right.
     bool isAroundTheEarth(const Ball& ball, const osg::Vec2d& room) const;
+    /// From this distance on, along the ground, nothing is left of a place's height or its way to the side.
+    double faded() const;
     struct Extent;
     Extent extentOf(const Ball& ball) const;
     double ownStretch(const Extent& extent) const;

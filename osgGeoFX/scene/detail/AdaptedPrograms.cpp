@@ -263,6 +263,7 @@ void ProgramAdaptation::addMain(const Stage& last, const std::string& main, Frag
         if (on) defines += std::string("#define ") + name + '\n';
     };
     define(!vertices, "GEOFX_LATER_STAGE");
+    define(last.type == osg::Shader::TESSEVALUATION, "GEOFX_EVALUATION");
     // The names behind OSG's vertex attribute aliasing, which programs for a core profile may write themselves.
     define(vertices && (last.names("gl_Vertex") || last.names("ftransform") || last.names("osg_Vertex")),
            "GEOFX_HOST_VERTEX");

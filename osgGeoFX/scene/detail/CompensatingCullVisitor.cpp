@@ -422,8 +422,13 @@ void CompensatingCullVisitor::apply(RigidReference& node)
     meet(node.getStateSet());
     const osg::Matrixd& modelView = *getModelViewMatrix();
     const DeformationChain& placing = _task.placing && _mode.deformation.on ? *_task.placing : definedChain();
-    osg::Matrixd placement =
-        rigidPlacement(placing, inView(osg::Vec3d(node.referencePoint())), node.getTurn());
+    const osg::Vec3d reference = inView(osg::Vec3d(node.referencePoint()));
+    if (placing.isBeyond(reference))
+    {
+        _mode = former;
+        return;
+    }
+    osg::Matrixd placement = rigidPlacement(placing, reference, node.getTurn());
     _mode.unplaced = osg::Matrixd::inverse(placement);
     if (_task.image) placement = _task.image->toView * placement * _task.image->toEye;
     pushModelViewMatrix(createOrReuseMatrix(modelView * placement), osg::Transform::RELATIVE_RF);
