@@ -5,6 +5,8 @@
 #include <osgGeoFX/effect/SurfaceEffect.h>
 #include <osgGeoFX/effect/TextureUnits.h>
 
+#include <osg/Texture2D>
+
 #include <cstdint>
 #include <memory>
 
