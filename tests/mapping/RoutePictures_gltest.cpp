@@ -77,6 +77,7 @@ protected:
     void build()
     {
         const osg::ref_ptr<RouteMapping> first = add({{-700, -300}, {0, -300}}, {0.9, 0.1, 0.1, 1.0});
+        draw(); // so that the GPU has it before what comes later
         const osg::ref_ptr<ProjectiveMapping> plain = makeSolid({0, -300}, 250.0, {0.1, 0.8, 0.3});
         plain->setOrder(2);
         _mappings->addMapping(plain);
