@@ -112,8 +112,9 @@ RouteMapping::RouteMapping(const RouteMapping& other, const osg::CopyOp& copy) :
 {
     setName(other.getName());
     setDataVariance(other.getDataVariance());
-    if (const osg::UserDataContainer* data = other.getUserDataContainer())
-        setUserDataContainer(osg::clone(data, copy));
+    if (auto* data = const_cast<osg::UserDataContainer*>(other.getUserDataContainer()))
+        setUserDataContainer(copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_USERDATA ? osg::clone(data, copy)
+                                                                                   : data);
     for (const Property& property : RouteMapping::properties())
         property.put(*this, property.get(other));
     _way = other._way;
