@@ -5,7 +5,9 @@
 #include "BenchError.h"
 #include "LiveLayers.h"
 #include "OffscreenView.h"
+#include "PatternLayers.h"
 
+#include <osgGeoFX/mapping/LayerProbe.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/EffectScene.h>
 
@@ -318,6 +320,9 @@ public:
         std::vector<Figure> figures = {figure};
         for (const Figure& each : edits(*many))
             figures.push_back(each);
+        few->setEnabled(false);
+        many->setEnabled(true);
+        figures.push_back(probe(times[1]));
         return figures;
     }
 
@@ -365,6 +370,13 @@ public:
         show(61756, *none);
         _scene->removeEffect(none);
         return liveLayers(*_view, *_scene, settings);
+    }
+    std::vector<Figure> patterns(const Settings& settings)
+    {
+        const osg::ref_ptr<ProjectiveMappings> none = new ProjectiveMappings;
+        show(61756, *none);
+        _scene->removeEffect(none);
+        return patternLayers(*_view, *_scene, settings);
     }
     std::vector<Figure> paged(const Settings& settings)
     {
@@ -521,6 +533,30 @@ private:
         return figure;
     }
 
+    /// Reads all layers below pixels, as a pointer that moves does.
+    Figure probe(double frame)
+    {
+        announce("reading 10,000 mappings below pixels");
+        std::vector<double> times;
+        std::size_t readings = 0;
+        const int count = _smoke ? 3 : 60;
+        for (int i = 0; i < count; ++i)
+        {
+            const double x = _size.width * (0.2 + 0.6 * i / count),
+                         y = _size.height * (0.5 - 0.4 * i / count);
+            const auto start = Clock::now();
+            const auto found = osgGeoFX::LayerProbe::under(*_scene, _view->camera(), x, y);
+            times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+            if (found) readings += found->readings.size();
+        }
+        Figure figure{"probe",
+                      "time to read all layers below a pixel, of 10,000 mappings, over that of a frame", ""};
+        figure.measured = median(times) / frame;
+        figure.remark = milliseconds("", median(times)) + milliseconds(", a frame ", frame) + "; " +
+                        std::to_string(readings) + " layers below " + std::to_string(count) + " pixels";
+        return figure;
+    }
+
     void show(int vertices, ProjectiveMappings& mappings)
     {
         while (_scene->getNumEffects() > 0)
@@ -639,6 +675,7 @@ std::vector<Figure> run(const Settings& settings)
     if (settings.wants("many")) add(bench.many());
     if (settings.wants("pages")) add(bench.manyCached());
     if (settings.wants("huge")) add(bench.huge());
+    if (settings.wants("patterns")) add(bench.patterns(settings));
     if (settings.wants("live")) add(bench.live(settings));
     if (settings.wants("paged")) add(bench.paged(settings));
     return figures;
@@ -651,10 +688,11 @@ Suite mappingSuite()
     return {"mapping",
             "Draws projective mappings: the paper's Table 1 and its loop against the grid (table), 10,000 "
             "against 100 "
-            "and edits (many), the same by pages, one that moves and a flight (pages), 100,000 (huge), a "
+            "and edits and the probe (many), the same by pages, one that moves and a flight (pages), 100,000 "
+            "(huge), contour lines and other patterns (patterns), a "
             "layer that changes in each frame (live), a raster of "
             "60,000² pixels (paged)",
-            {"table", "many", "pages", "huge", "live", "paged"},
+            {"table", "many", "pages", "huge", "patterns", "live", "paged"},
             run};
 }
 

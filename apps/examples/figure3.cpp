@@ -5,6 +5,7 @@
 // figure3 TERRAIN DATA_FOLDER A|B|C|D|E|F PICTURE [EFFECT...]
 #include "figure3/Figures.h"
 
+#include <osgGeoFX/mapping/RouteMapping.h>
 #include <osgGeoFX/offscreen/SceneRenderer.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Overlay.h>
@@ -80,7 +81,10 @@ void draw(const Arguments& arguments)
     const osg::ref_ptr<osgDB::Options> quality = new osgDB::Options("JPEG_QUALITY 87");
     if (!osgDB::writeImageFile(*image, arguments.picture, quality))
         throw std::runtime_error(arguments.picture + " cannot be written.");
-    std::cout << arguments.picture << ": " << island.mappings->getNumMappings() << " mappings\n";
+    std::size_t count = island.mappings->getNumMappings();
+    for (unsigned int i = 0; i < island.mappings->getNumRoutes(); ++i)
+        count += island.mappings->getRoute(i)->getNumMappings();
+    std::cout << arguments.picture << ": " << count << " mappings\n";
 }
 
 } // namespace

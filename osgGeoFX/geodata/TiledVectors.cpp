@@ -97,12 +97,18 @@ public:
         return source;
     }
 
+    bool hasLengthsInPixels() const override { return true; }
     osg::ref_ptr<osg::Image> read(const osg::Vec2d& from, const osg::Vec2d& to, int columns, int rows,
                                   std::string& error) override
     {
+        return readCoarser(from, to, columns, rows, 1.0, error);
+    }
+    osg::ref_ptr<osg::Image> readCoarser(const osg::Vec2d& from, const osg::Vec2d& to, int columns, int rows,
+                                         double coarseness, std::string& error) override
+    {
         try
         {
-            ShapePainter painter(from, to, columns, rows);
+            ShapePainter painter(from, to, columns, rows, coarseness);
             const double texel = (to.x() - from.x()) / columns;
             for (const std::uint32_t i : itemsWithin(from, to, reachOf(texel)))
                 painter.draw(_placed[_shapes->items[i].shape], _shapes->paints[_shapes->items[i].paint]);

@@ -23,7 +23,7 @@ struct VectorShapes;
     PointSymbolizer, by rules with filters (comparisons, And, Or, Not, ElseFilter) and scales. Its values may be fields and sums of such. Without it the file `NAME.sld` beside `NAME.EXT` is
     taken; else the features' own styles (OGR's feature style strings, as of KML, DXF and MapInfo); else plain colors. Texts are left out.
 
-    Lengths in pixels are about those of the picture's pixels for areas and lines, since a tile is seen from many distances; of symbols they are exact. With `uom` of metres they are on the ground.
+    Lengths in pixels are about those of the picture's pixels for areas and lines, since a tile is seen from many distances: a third more at most, in bends, too, and down to a quarter where a tile is seen near and far. Of symbols they are exact. With `uom` of metres they are on the ground.
 
     Rings that cross themselves are filled by the even-odd rule. In degrees, lines go the short way across the antimeridian, and areas must be cut there (RFC 7946). More than
     ten million vertices or 100,000 symbols are refused.

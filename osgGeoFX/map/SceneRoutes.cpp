@@ -107,7 +107,7 @@ bool SceneRoutes::placeOf(const RoutePath& route, Way& way, std::string& error)
                 "\" has no place, or one that is none; give degrees of longitude and latitude, and metres.";
         return false;
     }
-    for (const osg::Vec2d& place : route.alongGreatCircles())
+    for (const osg::Vec2d& place : route.alongGeodesics())
     {
         osg::Vec3d world;
         if (!worldOf(place.x(), place.y(), world))
@@ -179,27 +179,21 @@ bool SceneRoutes::addMappings(const RoutePath& route, const Way& way, const Opti
 {
     ProjectiveMappings* const effect = effectFor(way, error);
     if (!effect) return false;
-    std::vector<osg::Vec2d> places;
-    for (const osg::Vec3d& world : way.world)
-    {
-        const osg::Vec3d place = effect->placeOf(world, _ellipsoid);
-        places.emplace_back(place.x(), place.y());
-    }
     std::size_t mappings = 0;
     for (const osg::ref_ptr<ProjectiveMappings>& each : _effects)
-        mappings += each->getNumMappings();
+    {
+        for (unsigned int i = 0; i < each->getNumRoutes(); ++i)
+            mappings += each->getRoute(i)->getNumMappings();
+    }
     if (mappings >= mostMappings)
     {
         error = "the ways have too many places to be shown together; simplify them, or show fewer.";
         return false;
     }
-    if (!route.showOn(*effect, places, options.look))
-    {
-        error = "the look of the way \"" + route.name +
-                "\" is out of range, or it has more than 20000 way points; give another width, or a track.";
-        return false;
-    }
-    return true;
+    std::string fault;
+    if (route.showOn(*effect, _ellipsoid, _reference, options.look, fault)) return true;
+    error = "the way \"" + route.name + "\" cannot be shown: " + fault;
+    return false;
 }
 
 bool SceneRoutes::addRibbons(const RoutePath& route, const Options& options, std::string& error)

@@ -8,7 +8,16 @@ namespace osgGeoFX
 {
 
 MappingPool::MappingPool(ProjectiveMappings& host, Prepare prepare)
-    : _host(&host), _prepare(std::move(prepare))
+    : MappingPool([keep = osg::ref_ptr<ProjectiveMappings>(&host)](ProjectiveMapping& mapping, std::size_t)
+                  { keep->addMapping(&mapping); },
+                  [keep = osg::ref_ptr<ProjectiveMappings>(&host)](ProjectiveMapping& mapping, std::size_t)
+                  { keep->removeMapping(&mapping); },
+                  std::move(prepare))
+{
+}
+
+MappingPool::MappingPool(Put add, Put remove, Prepare prepare)
+    : _add(std::move(add)), _remove(std::move(remove)), _prepare(std::move(prepare))
 {
 }
 
@@ -23,7 +32,7 @@ ProjectiveMapping& MappingPool::next()
     {
         osg::ref_ptr<ProjectiveMapping> mapping = new ProjectiveMapping;
         _prepare(*mapping);
-        _host->addMapping(mapping);
+        _add(*mapping, _used);
         _mappings.push_back(mapping);
     }
     return *_mappings[_used++];
@@ -32,7 +41,7 @@ ProjectiveMapping& MappingPool::next()
 void MappingPool::trim()
 {
     for (; _mappings.size() > _used; _mappings.pop_back())
-        _host->removeMapping(_mappings.back());
+        _remove(*_mappings.back(), _mappings.size() - 1);
 }
 
 void MappingPool::clear()
@@ -44,6 +53,11 @@ void MappingPool::clear()
 void MappingPool::prepareAll(Prepare prepare)
 {
     _prepare = std::move(prepare);
+    prepareAll();
+}
+
+void MappingPool::prepareAll()
+{
     for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
         _prepare(*mapping);
 }

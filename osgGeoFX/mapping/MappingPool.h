@@ -10,7 +10,7 @@
 namespace osgGeoFX
 {
 
-/** A pool of mappings that one maker, for instance a RouteMapping, keeps in a ProjectiveMappings. The pool reuses its
+/** A pool of mappings that one maker, for instance a LensMapping, keeps in a ProjectiveMappings. The pool reuses its
     mappings, so that a small change uploads little. The destructor removes all of them.
 
     @code
@@ -28,6 +28,9 @@ public:
 
     /// `prepare` is called once for each new mapping, before the mapping is added.
     MappingPool(ProjectiveMappings& host, Prepare prepare);
+    /// Puts mappings where a program wants them: each is given with its number in the pool.
+    using Put = std::function<void(ProjectiveMapping&, std::size_t)>;
+    MappingPool(Put add, Put remove, Prepare prepare);
     ~MappingPool();
     MappingPool(const MappingPool&) = delete;
     MappingPool& operator=(const MappingPool&) = delete;
@@ -40,21 +43,16 @@ public:
     void trim();
     /// Removes all mappings.
     void clear();
-    /// Forgets all mappings, which stay in the ProjectiveMappings.
-    void leave()
-    {
-        _mappings.clear();
-        _used = 0;
-    }
     /// Calls `prepare` for all mappings of the pool, and later for each new one in place of the former `prepare`.
     void prepareAll(Prepare prepare);
+    /// Calls the present one again for all mappings.
+    void prepareAll();
 
     std::size_t size() const { return _mappings.size(); }
     ProjectiveMapping& at(std::size_t i) const { return *_mappings[i]; }
-    ProjectiveMappings& host() const { return *_host; }
 
 private:
-    osg::ref_ptr<ProjectiveMappings> _host;
+    Put _add, _remove;
     Prepare _prepare;
     std::vector<osg::ref_ptr<ProjectiveMapping>> _mappings;
     std::size_t _used = 0;

@@ -172,6 +172,7 @@ public:
         ++_time;
         const bool look = _revision != _mapping->revision();
         collect();
+        _store.setCoarseness(std::pow(coarserBy, _coarser));
         _store.want(missing());
         const auto now = Clock::now();
         const std::chrono::duration<double, std::milli> frame = now - _updated;
@@ -306,7 +307,7 @@ private:
     {
         _wanted.clear();
         _above.clear();
-        bool coarser = false;
+        int coarser = mostCoarser + 1, most = 0;
         for (auto demand = _demands.begin(); demand != _demands.end();)
         {
             if (demand->second.time + patience < _time)
@@ -315,7 +316,8 @@ private:
                 continue;
             }
             _wanted.insert(demand->second.pages.begin(), demand->second.pages.end());
-            coarser = coarser || demand->second.coarser > 0;
+            coarser = std::min(coarser, demand->second.coarser);
+            most = std::max(most, demand->second.coarser);
             ++demand;
         }
         for (const MappingPage& page : _wanted)
@@ -325,7 +327,9 @@ private:
                 if (!_above.insert(page.above(level - page.level)).second) break;
             }
         }
-        _statistics.coarser = coarser;
+        _statistics.coarser = most > 0;
+        // While nobody looks, tiles stay as they are. Of several cameras the finest one counts: in the others lines are wider.
+        if (!_demands.empty()) _coarser = coarser;
     }
 
     /// What is wanted, with some coarser tiles, the coarsest first.
@@ -419,7 +423,7 @@ private:
         // Coarser ones, too: they show where a finer one cannot be read.
         for (const MappingPage& page : missing())
         {
-            if (!_store.find(page) && !_store.hasFailed(page)) ++_statistics.waiting;
+            if (!_store.isDone(page)) ++_statistics.waiting;
         }
         _statistics.settled = same && _statistics.waiting == 0 && !_pending;
     }
@@ -443,6 +447,7 @@ private:
     Clock::time_point _updated;
     bool _pending = false;
     double _shownMegabytes = 0.0;
+    int _coarser = 0; ///< the steps for which tiles are read
     Statistics _statistics;
 };
 
@@ -550,5 +555,11 @@ bool PagedRaster::update(Parts& parts)
 
 RasterTiles::RasterTiles() = default;
 RasterTiles::~RasterTiles() = default;
+
+osg::ref_ptr<osg::Image> RasterTiles::readCoarser(const osg::Vec2d& from, const osg::Vec2d& to, int columns,
+                                                  int rows, double, std::string& error)
+{
+    return read(from, to, columns, rows, error);
+}
 
 } // namespace osgGeoFX

@@ -189,7 +189,7 @@ private:
         return geometry;
     }
 
-    /// The places with more between them: on great circles, at heights that grow evenly.
+    /// The places with more between them: on geodesics, at heights that grow evenly.
     std::vector<osg::Vec3d> denser(double step) const
     {
         std::vector<osg::Vec3d> result = {_places.front()};
@@ -197,7 +197,7 @@ private:
         {
             RoutePath leg;
             leg.places = {_places[i - 1], _places[i]};
-            const std::vector<osg::Vec2d> way = leg.alongGreatCircles(step);
+            const std::vector<osg::Vec2d> way = leg.alongGeodesics(step);
             for (std::size_t k = 1; k < way.size(); ++k)
             {
                 const double share = static_cast<double>(k) / static_cast<double>(way.size() - 1);

@@ -50,7 +50,7 @@ struct OSGGEOFX_EXPORT PathRibbon
     osg::Vec4 color = {0.13f, 0.45f, 0.95f,
                        1.0f}; ///< the way's own goes before it; a curtain is a third as opaque
 
-    /** The node to add to a scene. Between places it follows great circles, at heights that change evenly: those of a way above the
+    /** The node to add to a scene. Between places it follows geodesics, at heights that change evenly: those of a way above the
         ground, too, which has its heights above the ground at its own places. Null, with a sentence in `error`, if it has less than two places, or leaves the terrain's
         projection. */
     osg::ref_ptr<osg::MatrixTransform> make(const RoutePath& path, const Georeference& reference,

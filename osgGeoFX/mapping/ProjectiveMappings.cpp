@@ -7,9 +7,11 @@
 #include <osgGeoFX/effect/PerCamera.h>
 #include <osgGeoFX/effect/detail/GlobeFrame.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
+#include <osgGeoFX/mapping/RouteMapping.h>
 #include <osgGeoFX/mapping/detail/CameraPages.h>
 #include <osgGeoFX/mapping/detail/GpuMappings.h>
 #include <osgGeoFX/mapping/detail/Graticule.h>
+#include <osgGeoFX/mapping/detail/RankOfRoute.h>
 
 #include <glm/glm.hpp>
 #include <osg/Math>
@@ -21,7 +23,7 @@
 #include <iterator>
 #include <map>
 #include <mutex>
-#include <unordered_set>
+#include <unordered_map>
 
 namespace osgGeoFX
 {
@@ -101,6 +103,8 @@ public:
         _last = std::make_shared<GpuMappings>();
         for (const osg::ref_ptr<ProjectiveMapping>& mapping : mappings)
             _last->add(*mapping);
+        for (const auto& [rank, mapping] : ranked)
+            _last->add(*mapping, rank);
         for (const auto& [whole, parts] : _parts)
             _last->setParts(*whole, parts, {});
         _grounds.push_back({radii, _last});
@@ -150,7 +154,10 @@ public:
 
     PerCamera<Camera, osg::StateSet> cameras;
     std::mutex rasters; ///< what one camera takes from them is shown before another one asks
-    std::unordered_set<const ProjectiveMapping*> all; ///< to be found faster than in the list
+    /// To be found faster than in the list, with the ranks of those of routes, else 0.
+    std::unordered_map<const ProjectiveMapping*, std::uint64_t> all;
+    std::map<std::uint64_t, osg::ref_ptr<ProjectiveMapping>> ranked; ///< of routes
+    std::uint64_t routes = 0;                                        ///< that were added
 
 private:
     struct Ground
@@ -261,6 +268,8 @@ ProjectiveMappings::ProjectiveMappings(const ProjectiveMappings& other, const os
     const bool deep = (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS) != 0;
     for (const osg::ref_ptr<ProjectiveMapping>& mapping : other._mappings)
         addMapping(deep ? osg::clone(mapping.get(), copy) : mapping.get());
+    for (const osg::ref_ptr<RouteMapping>& route : other._routes)
+        addRoute(osg::clone(route.get(), copy));
 }
 
 ProjectiveMappings::~ProjectiveMappings()
@@ -383,7 +392,7 @@ bool ProjectiveMappings::addMapping(ProjectiveMapping* mapping)
     }
     _mappings.emplace_back(mapping);
     mapping->addListener(*this);
-    _drawing->all.insert(mapping);
+    _drawing->all[mapping] = 0;
     _drawing->each([&](GpuMappings& gpu) { gpu.add(*mapping); });
     touch();
     return true;
@@ -413,6 +422,12 @@ void ProjectiveMappings::removeMappings()
     for (const osg::ref_ptr<PagedRaster>& raster : _rasters)
         _drawing->setParts(raster->getMapping(), {});
     _rasters.clear();
+    for (const auto& [rank, mapping] : _drawing->ranked)
+        mapping->removeListener(*this);
+    for (const osg::ref_ptr<RouteMapping>& route : _routes)
+        route->forget();
+    _routes.clear();
+    _drawing->ranked.clear();
     _drawing->all.clear();
     _drawing->each([](GpuMappings& gpu) { gpu.clear(); });
     _mappings.clear();
@@ -437,6 +452,62 @@ bool ProjectiveMappings::removeRaster(PagedRaster* raster)
     return found && removeMapping(raster->getMapping());
 }
 
+bool ProjectiveMappings::addRoute(RouteMapping* route)
+{
+    if (!route || route->_host)
+    {
+        OSG_WARN << "osgGeoFX: ProjectiveMappings::addRoute got "
+                 << (route ? "a route that is in a ProjectiveMappings already" : "no route")
+                 << "; nothing changes." << std::endl;
+        return false;
+    }
+    if (_routes.empty()) _drawing->routes = 0;
+    _routes.emplace_back(route);
+    route->show(this, _drawing->routes++);
+    touch();
+    return true;
+}
+
+bool ProjectiveMappings::removeRoute(RouteMapping* route)
+{
+    const auto found = std::find(_routes.begin(), _routes.end(), route);
+    if (found == _routes.end()) return false;
+    route->show(nullptr, 0);
+    _routes.erase(found);
+    touch();
+    return true;
+}
+
+RouteMapping* ProjectiveMappings::routeOf(const ProjectiveMapping& mapping) const
+{
+    const auto found = _drawing->all.find(&mapping);
+    if (found == _drawing->all.end() || found->second == 0) return nullptr;
+    for (const osg::ref_ptr<RouteMapping>& route : _routes)
+        if (RankOfRoute::routeOf(found->second) == route->_number) return route;
+    return nullptr;
+}
+
+void ProjectiveMappings::addRanked(ProjectiveMapping& mapping, std::uint64_t rank)
+{
+    _drawing->ranked[rank] = &mapping;
+    mapping.addListener(*this);
+    _drawing->all[&mapping] = rank;
+    _drawing->each([&](GpuMappings& gpu) { gpu.add(mapping, rank); });
+    touch();
+}
+
+void ProjectiveMappings::removeRanked(std::uint64_t rank)
+{
+    const auto found = _drawing->ranked.find(rank);
+    if (found == _drawing->ranked.end()) return;
+    const osg::ref_ptr<ProjectiveMapping> mapping = found->second;
+    mapping->removeListener(*this);
+    _drawing->all.erase(mapping);
+    _drawing->each([&](GpuMappings& gpu) { gpu.remove(*mapping); });
+    _drawing->ranked.erase(found);
+    touch();
+}
+
 /// Shows what has been read since.
 void ProjectiveMappings::updateRasters()
 {
@@ -456,15 +527,19 @@ void ProjectiveMappings::propertyChanged(PropertyHolder& mapping)
 std::vector<ProjectiveMapping*> ProjectiveMappings::mappingsAt(const osg::Vec2d& place) const
 {
     std::vector<ProjectiveMapping*> found;
-    for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
+    const auto look = [&](ProjectiveMapping* mapping)
     {
-        if (!mapping->getEnabled()) continue;
+        if (!mapping->getEnabled()) return;
         const glm::dvec3 raster = mapping->placeToRaster() * glm::dvec3(place.x(), place.y(), 1.0);
         const double u = raster.x / raster.z;
         const double v = raster.y / raster.z;
         const bool within = u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0;
         if (within && mapping->getProjector() == ProjectiveMapping::PLANE) found.push_back(mapping);
-    }
+    };
+    for (const osg::ref_ptr<ProjectiveMapping>& mapping : _mappings)
+        look(mapping);
+    for (const auto& [rank, mapping] : _drawing->ranked)
+        look(mapping);
     std::reverse(found.begin(), found.end());
     std::stable_sort(found.begin(), found.end(),
                      [](const ProjectiveMapping* a, const ProjectiveMapping* b)
@@ -504,7 +579,7 @@ void ProjectiveMappings::update(const osg::EllipsoidModel* ellipsoid)
 
 bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, const SurfaceView& view)
 {
-    if (_mappings.empty() || _opacity <= 0.0) return false;
+    if ((_mappings.empty() && _drawing->ranked.empty()) || _opacity <= 0.0) return false;
     const osg::EllipsoidModel* ellipsoid = view.geometry.ground.ellipsoid.get();
     const osg::Matrixd frameToEye = frameToWorld(ellipsoid) * view.modelView;
     const osg::Matrixd eyeToFrame = osg::Matrixd::inverse(frameToEye);

@@ -18,6 +18,7 @@ namespace osgGeoFX
 {
 
 class PagedRaster;
+class RouteMapping;
 struct MappingSettings;
 
 /** Projects any number of georeferenced rasters onto everything below its EffectScene, in one pass and at run time.
@@ -104,12 +105,14 @@ public:
     /// The position of a place, in the frame, metres. It is the inverse of the shader's computation.
     osg::Vec3d positionOf(const osg::Vec3d& place, const osg::EllipsoidModel* ellipsoid) const;
 
-    /// Adds a mapping on top of all mappings of its order. A null pointer and a mapping that was added before are
+    /// Adds a mapping on top of all mappings of its order but those of routes. A null pointer and a mapping that was added before are
     /// refused with a warning.
     bool addMapping(ProjectiveMapping* mapping);
     /// Returns false if the mapping is not in the list.
     bool removeMapping(ProjectiveMapping* mapping);
+    /// Removes all mappings, rasters and routes.
     void removeMappings();
+    /// The mappings that were added; those of routes are not among them.
     unsigned int getNumMappings() const { return static_cast<unsigned int>(_mappings.size()); }
     ProjectiveMapping* getMapping(unsigned int i) { return _mappings[i].get(); }
     const ProjectiveMapping* getMapping(unsigned int i) const { return _mappings[i].get(); }
@@ -121,7 +124,16 @@ public:
     unsigned int getNumRasters() const { return static_cast<unsigned int>(_rasters.size()); }
     PagedRaster* getRaster(unsigned int i) { return _rasters[i].get(); }
     const PagedRaster* getRaster(unsigned int i) const { return _rasters[i].get(); }
-    /// All enabled mappings of the projector PLANE whose rasters contain this place, the topmost first. Fades are
+    /// Shows a route. Null, and a route that this or another ProjectiveMappings has, are refused with a warning.
+    bool addRoute(RouteMapping* route);
+    /// Returns false if the route is not there.
+    bool removeRoute(RouteMapping* route);
+    unsigned int getNumRoutes() const { return static_cast<unsigned int>(_routes.size()); }
+    RouteMapping* getRoute(unsigned int i) { return _routes[i].get(); }
+    const RouteMapping* getRoute(unsigned int i) const { return _routes[i].get(); }
+    /// The route whose mapping this is, one of mappingsAt() for instance. Null for other mappings.
+    RouteMapping* routeOf(const ProjectiveMapping& mapping) const;
+    /// All enabled mappings, those of routes among them, of the projector PLANE whose rasters contain this place, the topmost first. Fades are
     /// ignored, and so are sizes in pixels and turned symbols.
     std::vector<ProjectiveMapping*> mappingsAt(const osg::Vec2d& place) const;
 
@@ -228,10 +240,14 @@ protected:
     std::string inconsistency() const override;
 
 private:
+    friend class RouteMapping;
     class Drawing;
     class Pages;
     using Mappings = std::vector<osg::ref_ptr<ProjectiveMapping>>;
     void propertyChanged(PropertyHolder& mapping) override;
+    /// Of routes. `rank`: its place among the mappings of its order.
+    void addRanked(ProjectiveMapping& mapping, std::uint64_t rank);
+    void removeRanked(std::uint64_t rank);
     void updateRasters();
     osg::Vec3d placeOfPosition(const osg::Vec3d& position, const osg::EllipsoidModel* ellipsoid) const;
     MappingSettings settings(const osg::EllipsoidModel* ellipsoid) const;
@@ -250,6 +266,7 @@ private:
     int _pageUnit = -1, _pageTableUnit = -1;
     Mappings _mappings;
     std::vector<osg::ref_ptr<PagedRaster>> _rasters;
+    std::vector<osg::ref_ptr<RouteMapping>> _routes;
     std::unique_ptr<Drawing> _drawing;
     osg::ref_ptr<Pages> _pages;
 };

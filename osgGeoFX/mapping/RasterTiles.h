@@ -35,6 +35,12 @@ public:
     /// threads call it at once.
     virtual osg::ref_ptr<osg::Image> read(const osg::Vec2d& from, const osg::Vec2d& to, int columns, int rows,
                                           std::string& error) = 0;
+    /// The same for a picture whose texels will be seen so many times larger than as a rule, for the memory does not hold finer ones: a raster that draws itself may
+    /// divide lengths in pixels by that. By default they are those of read().
+    virtual osg::ref_ptr<osg::Image> readCoarser(const osg::Vec2d& from, const osg::Vec2d& to, int columns,
+                                                 int rows, double coarseness, std::string& error);
+    /// Whether readCoarser() gives something else than read(), so that tiles are read again when this changes. Default: false.
+    virtual bool hasLengthsInPixels() const { return false; }
     /// The file that it is read from, for OSG's files; nothing for one that no file tells, which is the default.
     virtual std::optional<LayerSource> source() const { return std::nullopt; }
 

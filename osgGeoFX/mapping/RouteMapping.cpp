@@ -3,11 +3,14 @@
 #include <osgGeoFX/mapping/RouteMapping.h>
 
 #include <osgGeoFX/mapping/MarkImages.h>
+#include <osgGeoFX/mapping/detail/RankOfRoute.h>
+#include <osgGeoFX/mapping/detail/RouteGround.h>
 
 #include <osg/Notify>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace osgGeoFX
 {
@@ -25,16 +28,6 @@ double distanceToLeg(const osg::Vec2d& place, const osg::Vec2d& from, const osg:
     return (place - from - along * share).length();
 }
 
-/// A pool whose mappings lie that much above the route's lowest.
-MappingPool::Prepare prepared(int order, ColorTransfer* transfer)
-{
-    return [order, keep = osg::ref_ptr<ColorTransfer>(transfer)](ProjectiveMapping& mapping)
-    {
-        mapping.setOrder(order);
-        if (keep) mapping.setTransfer(keep);
-    };
-}
-
 osg::ref_ptr<ColorTransfer> makeTransfer(ColorTransfer::Source source, ColorTransfer::Alpha alpha)
 {
     osg::ref_ptr<ColorTransfer> transfer = new ColorTransfer;
@@ -48,153 +41,366 @@ bool within(double value, double low, double high)
     return value >= low && value <= high;
 }
 
-bool makesSense(const RouteMapping::Style& style)
+/// So that strips have a length.
+constexpr double nearest = 1e-3;
+constexpr double farthest = 5e7;
+constexpr double longest = 1e7;
+constexpr std::size_t mostLegs = 1000000;
+
+bool isPlace(const osg::Vec2d& place)
 {
-    for (const osg::Vec4& color : {style.color, style.casingColor, style.highlightColor})
-    {
-        for (int i = 0; i < 4; ++i)
-        {
-            if (!within(static_cast<double>(color[i]), 0.0, 1.0)) return false;
-        }
-    }
-    const double lengths[] = {style.halfWidth,   style.casing,       style.dash,     style.gap,
-                              style.pointRadius, style.surroundings, style.softness, style.contextReach};
-    return std::all_of(std::begin(lengths), std::end(lengths),
-                       [](double length) { return within(length, 0.0, 1e7); }) &&
-           within(style.pointPixels, 0.0, 1e4) && within(style.brightness, 0.0, 4.0) &&
-           within(style.saturation, 0.0, 4.0);
+    return within(place.x(), -farthest, farthest) && within(place.y(), -farthest, farthest);
+}
+
+osg::Vec4d colorOf(int rgb, double alpha)
+{
+    return {unpackedColor(rgb), alpha};
+}
+
+int packed(const osg::Vec4d& color)
+{
+    return packedColor({color.r(), color.g(), color.b()});
 }
 
 } // namespace
 
-RouteMapping::RouteMapping(ProjectiveMappings& mappings, int order)
-    : _disc(new DataLayer(makeDisc(256, {1, 1, 1, 1}, {1, 1, 1, 1}, 1.0))), _mark(new DataLayer),
+bool RouteMapping::Context::operator==(const Context& other) const
+{
+    return on == other.on && surroundings == other.surroundings && softness == other.softness &&
+           reach == other.reach && line == other.line;
+}
+
+MappingPool RouteMapping::makePool(Role role, int above, ColorTransfer* transfer)
+{
+    return {[this, role](ProjectiveMapping& mapping, std::size_t index)
+            {
+                if (_host) _host->addRanked(mapping, RankOfRoute::of(_number, role, index));
+            },
+            [this, role](ProjectiveMapping&, std::size_t index)
+            {
+                if (_host) _host->removeRanked(RankOfRoute::of(_number, role, index));
+            },
+            [this, above, transfer](ProjectiveMapping& mapping)
+            {
+                mapping.setName(getName());
+                mapping.setOrder(_order + above);
+                mapping.setOpacity(_opacity);
+                if (transfer && mapping.getTransfer() != transfer) mapping.setTransfer(transfer);
+            }};
+}
+
+RouteMapping::RouteMapping()
+    : _color(packed(_style.color)), _casingColor(packed(_style.casingColor)),
+      _highlightColor(packed(_style.highlightColor)), _colorAlpha(_style.color.a()),
+      _casingAlpha(_style.casingColor.a()), _highlightAlpha(_style.highlightColor.a()),
+      _disc(new DataLayer(makeDisc(256, {1, 1, 1, 1}, {1, 1, 1, 1}, 1.0))), _mark(new DataLayer),
       _distances(new DataLayer),
       _contextTransfer(makeTransfer(ColorTransfer::SCENE, ColorTransfer::FROM_MASK)),
       _beyondTransfer(makeTransfer(ColorTransfer::SCENE, ColorTransfer::OPAQUE)),
       _casingTransfer(makeTransfer(ColorTransfer::CONSTANT, ColorTransfer::FROM_SOURCE)),
       _lineTransfer(makeTransfer(ColorTransfer::CONSTANT, ColorTransfer::FROM_SOURCE)),
       _highlightTransfer(makeTransfer(ColorTransfer::CONSTANT, ColorTransfer::FROM_SOURCE)),
-      _pools{{{mappings, prepared(order, _contextTransfer)},
-              {mappings, prepared(order, _beyondTransfer)},
-              {mappings, prepared(order + 1, _casingTransfer)},
-              {mappings, prepared(order + 2, _lineTransfer)},
-              {mappings, prepared(order + 3, _highlightTransfer)},
-              {mappings, prepared(order + 5, nullptr)}}}
+      _pools{{makePool(CONTEXT_MASKED, 0, _contextTransfer), makePool(CONTEXT_BEYOND, 0, _beyondTransfer),
+              makePool(CASING, 1, _casingTransfer), makePool(LINE, 2, _lineTransfer),
+              makePool(LINE_HIGHLIGHTED, 3, _highlightTransfer), makePool(POINTS, 5, nullptr)}}
 {
     _distances->setKind(DataLayer::VALUE);
-    makeColors();
+    addListener(*this);
+}
+
+RouteMapping::RouteMapping(const RouteMapping& other, const osg::CopyOp& copy) : RouteMapping()
+{
+    setName(other.getName());
+    setDataVariance(other.getDataVariance());
+    if (auto* data = const_cast<osg::UserDataContainer*>(other.getUserDataContainer()))
+        setUserDataContainer(copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_USERDATA ? osg::clone(data, copy)
+                                                                                   : data);
+    for (const Property& property : RouteMapping::properties())
+        property.put(*this, property.get(other));
+    _way = other._way;
+    _legs = other._legs;
+    const bool deep = (copy.getCopyFlags() & osg::CopyOp::DEEP_COPY_OBJECTS) != 0;
+    _ownMark = deep && other._ownMark ? osg::clone(other._ownMark.get(), copy) : other._ownMark.get();
 }
 
 RouteMapping::~RouteMapping() = default;
 
+const Properties& RouteMapping::properties() const
+{
+    using Self = RouteMapping;
+    const auto metres = [](const char* name, const char* what)
+    {
+        return Property::number(name, what, 0.0, longest, "m");
+    };
+    const auto alpha = [](const char* name, const char* what)
+    {
+        return Property::number(name, what, 0.0, 1.0);
+    };
+    static const Properties all = withDefaultsOf(
+        new Self,
+        {
+            Property::flag("enabled", "whether it is drawn").of<&Self::_enabled>(),
+            Property::integer("order", "the order of its lowest mappings", -1000, 995).of<&Self::_order>(),
+            Property::number("opacity", "the opacity of all of it", 0.0, 1.0)
+                .of<&Self::_opacity>()
+                .turnedBy(0.05),
+            metres("halfWidth", "half the width of the line; 0 is no line")
+                .of<&Self::_style, &Style::halfWidth>(),
+            metres("casing", "the width of the outline on each side; 0 is none")
+                .of<&Self::_style, &Style::casing>(),
+            Property::color("color", "the color of the line").of<&Self::_color>(),
+            alpha("colorAlpha", "the alpha of the line").of<&Self::_colorAlpha>(),
+            Property::color("casingColor", "the color of the outline").of<&Self::_casingColor>(),
+            alpha("casingAlpha", "the alpha of the outline").of<&Self::_casingAlpha>(),
+            Property::color("highlightColor", "the color of the highlighted leg")
+                .of<&Self::_highlightColor>(),
+            alpha("highlightAlpha", "the alpha of the highlighted leg").of<&Self::_highlightAlpha>(),
+            Property::integer("highlightedLeg", "the highlighted leg, counted from 0; -1 is none", -1,
+                              1000000)
+                .of<&Self::_highlighted>(),
+            metres("dash", "the length of a dash; 0 is no gaps").of<&Self::_style, &Style::dash>(),
+            metres("gap", "the length of a gap between dashes; 0 is no gaps")
+                .of<&Self::_style, &Style::gap>(),
+            metres("pointRadius", "the radius of the marks at way points; 0 is no marks")
+                .of<&Self::_style, &Style::pointRadius>(),
+            Property::number("pointPixels", "the size of the marks on the screen; 0 is their size in metres",
+                             0.0, 1e4, "px")
+                .of<&Self::_style, &Style::pointPixels>(),
+            Property::flag("context", "whether the surroundings lose brightness and saturation")
+                .of<&Self::_style, &Style::context>(),
+            metres("surroundings", "the distance from the route up to which nothing changes")
+                .of<&Self::_style, &Style::surroundings>(),
+            metres("softness", "the width of the transition beyond the surroundings")
+                .of<&Self::_style, &Style::softness>(),
+            Property::number("brightness", "the brightness beyond the transition", 0.0, 4.0)
+                .of<&Self::_style, &Style::brightness>(),
+            Property::number("saturation", "the saturation beyond the transition", 0.0, 4.0)
+                .of<&Self::_style, &Style::saturation>(),
+            metres("contextReach", "how far the context reaches around the route")
+                .of<&Self::_style, &Style::contextReach>(),
+        });
+    return all;
+}
+
+bool RouteMapping::setStyle(const Style& style)
+{
+    return assign({{"halfWidth", style.halfWidth},
+                   {"casing", style.casing},
+                   {"color", packed(style.color)},
+                   {"colorAlpha", style.color.a()},
+                   {"casingColor", packed(style.casingColor)},
+                   {"casingAlpha", style.casingColor.a()},
+                   {"highlightColor", packed(style.highlightColor)},
+                   {"highlightAlpha", style.highlightColor.a()},
+                   {"dash", style.dash},
+                   {"gap", style.gap},
+                   {"pointRadius", style.pointRadius},
+                   {"pointPixels", style.pointPixels},
+                   {"context", style.context ? 1.0 : 0.0},
+                   {"surroundings", style.surroundings},
+                   {"softness", style.softness},
+                   {"brightness", style.brightness},
+                   {"saturation", style.saturation},
+                   {"contextReach", style.contextReach}});
+}
+
+RouteMapping::Style RouteMapping::getStyle() const
+{
+    Style style = _style;
+    style.color = colorOf(_color, _colorAlpha);
+    style.casingColor = colorOf(_casingColor, _casingAlpha);
+    style.highlightColor = colorOf(_highlightColor, _highlightAlpha);
+    return style;
+}
+
 bool RouteMapping::setWayPoints(const std::vector<osg::Vec2d>& places)
 {
-    std::vector<osg::Vec2d> points;
+    Way way;
     for (const osg::Vec2d& place : places)
     {
-        if (!within(place.x(), -5e7, 5e7) || !within(place.y(), -5e7, 5e7))
-        {
-            OSG_WARN << "osgGeoFX: RouteMapping got a way point at " << place.x() << ", " << place.y()
-                     << "; the route stays as it is." << std::endl;
-            return false;
-        }
-        if (points.empty() || (place - points.back()).length() > 1e-3) points.push_back(place);
+        // What is no place goes on to its refusal.
+        if (!way.line.empty() && (place - way.line.back()).length() <= nearest) continue;
+        way.wayPoints.push_back(static_cast<unsigned int>(way.line.size()));
+        way.line.push_back(place);
     }
-    _points = points;
-    makeContext();
-    make();
+    return setWay(way);
+}
+
+std::vector<osg::Vec2d> RouteMapping::getWayPoints() const
+{
+    std::vector<osg::Vec2d> places;
+    for (const unsigned int i : _way.wayPoints)
+        places.push_back(_way.line[i]);
+    return places;
+}
+
+bool RouteMapping::setGeographicWayPoints(const std::vector<osg::Vec2d>& degrees,
+                                          const osg::EllipsoidModel* ellipsoid, const Georeference* reference,
+                                          std::string& error)
+{
+    Way way;
+    if (!_host)
+        error =
+            "a route with geographic way points must be in a ProjectiveMappings, whose frame they are in; "
+            "add it first.";
+    else if (RouteGround(*_host, ellipsoid, reference).lay(degrees, way, error) && setWay(way))
+        return true;
+    if (error.empty()) error = "it lies too far from its frame's origin; give another one.";
+    return false;
+}
+
+bool RouteMapping::setWay(const Way& way)
+{
+    std::string fault;
+    std::vector<std::size_t> legs;
+    for (std::size_t i = 0; i < way.line.size(); ++i)
+    {
+        if (!isPlace(way.line[i]))
+            fault =
+                "a way point at " + std::to_string(way.line[i].x()) + ", " + std::to_string(way.line[i].y());
+        else if (i > 0 && (way.line[i] - way.line[i - 1]).length() <= nearest)
+            fault = "two neighbours at one place";
+    }
+    const std::vector<unsigned int>& points = way.wayPoints;
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+        if (points[i] >= way.line.size() || (i > 0 && points[i] <= points[i - 1]))
+            fault = "way points that are not on its line in their order";
+        else if (i > 0)
+            legs.resize(points[i], i - 1);
+    }
+    if (way.line.empty() != points.empty() ||
+        (fault.empty() && !points.empty() && (points.front() != 0 || points.back() + 1 != way.line.size())))
+        fault = "a line that does not go from the first way point to the last one";
+    if (!way.degrees.empty() && way.degrees.size() != points.size())
+        fault = "another number of geographic way points";
+    if (!fault.empty())
+    {
+        OSG_WARN << "osgGeoFX: RouteMapping got " << fault << "; the route stays as it is." << std::endl;
+        return false;
+    }
+    _way = way;
+    _legs = std::move(legs);
+    touch();
     return true;
 }
 
 double RouteMapping::length() const
 {
     double sum = 0.0;
-    for (std::size_t i = 0; i < legs(); ++i)
-        sum += (_points[i + 1] - _points[i]).length();
+    for (std::size_t i = 0; i < _legs.size(); ++i)
+        sum += (_way.line[i + 1] - _way.line[i]).length();
     return sum;
-}
-
-bool RouteMapping::setStyle(const Style& style)
-{
-    if (!makesSense(style))
-    {
-        OSG_WARN
-            << "osgGeoFX: RouteMapping got a style with lengths, colors or factors out of range; the former "
-               "one stays."
-            << std::endl;
-        return false;
-    }
-    _style = style;
-    makeColors();
-    makeContext();
-    make();
-    return true;
 }
 
 void RouteMapping::setPointLayer(DataLayer* layer)
 {
+    if (_ownMark == layer) return;
     _ownMark = layer;
-    make();
+    touch();
 }
 
 void RouteMapping::highlight(std::optional<std::size_t> leg)
 {
-    _highlighted = leg;
-    make();
+    setHighlightedLeg(leg ? static_cast<int>(std::min(*leg, mostLegs)) : -1);
+}
+
+std::optional<std::size_t> RouteMapping::highlighted() const
+{
+    if (_highlighted < 0) return std::nullopt;
+    return static_cast<std::size_t>(_highlighted);
 }
 
 std::optional<std::size_t> RouteMapping::legAt(const osg::Vec2d& place) const
 {
-    std::optional<std::size_t> nearest;
+    std::optional<std::size_t> nearestLeg;
     double least = _style.halfWidth + _style.casing;
-    for (std::size_t i = 0; i < legs(); ++i)
+    for (std::size_t i = 0; i < _legs.size(); ++i)
     {
-        const double distance = distanceToLeg(place, _points[i], _points[i + 1]);
+        const double distance = distanceToLeg(place, _way.line[i], _way.line[i + 1]);
         if (distance > least) continue;
         least = distance;
-        nearest = i;
+        nearestLeg = _legs[i];
     }
-    return nearest;
+    return nearestLeg;
 }
 
-void RouteMapping::leave(const std::string& name)
+std::size_t RouteMapping::getNumMappings() const
 {
+    std::size_t count = 0;
+    for (const MappingPool& each : _pools)
+        count += each.size();
+    return count;
+}
+
+void RouteMapping::show(ProjectiveMappings* host, std::uint64_t number)
+{
+    // From the former one.
     for (MappingPool& each : _pools)
-    {
-        for (std::size_t i = 0; i < each.size(); ++i)
-            each.at(i).setName(name);
-        each.leave();
-    }
-    _points.clear();
+        each.clear();
+    _context.reset();
+    _host = host;
+    _number = number;
+    make();
+}
+
+void RouteMapping::forget()
+{
+    _host = nullptr;
+    show(nullptr, 0);
+}
+
+void RouteMapping::propertyChanged(PropertyHolder&)
+{
+    make();
+}
+
+void RouteMapping::make()
+{
+    if (!_host) return;
+    for (MappingPool& each : _pools)
+        each.prepareAll();
+    makeColors();
+    makeContext();
+    makeLine();
+    makePoints();
 }
 
 void RouteMapping::makeColors()
 {
-    _casingTransfer->setConstant(_style.casingColor);
-    _lineTransfer->setConstant(_style.color);
-    _highlightTransfer->setConstant(_style.highlightColor);
+    const Style style = getStyle();
+    _casingTransfer->setConstant(style.casingColor);
+    _lineTransfer->setConstant(style.color);
+    _highlightTransfer->setConstant(style.highlightColor);
     for (ColorTransfer* transfer : {_contextTransfer.get(), _beyondTransfer.get()})
     {
-        transfer->setBrightness(_style.brightness);
-        transfer->setSaturation(_style.saturation);
+        transfer->setBrightness(style.brightness);
+        transfer->setSaturation(style.saturation);
     }
     // Distances, metres: nothing to be seen of the context near the route, all of it far away.
-    _contextTransfer->setRamp(_style.surroundings, _style.surroundings + _style.softness);
-    _mark->setImage(makeDisc(128, _style.casingColor, _style.color, 0.62));
+    _contextTransfer->setRamp(style.surroundings, style.surroundings + style.softness);
+    const std::pair<osg::Vec4d, osg::Vec4d> mark(style.casingColor, style.color);
+    if (_marked == mark) return;
+    _marked = mark;
+    _mark->setImage(makeDisc(128, osg::Vec4(mark.first), osg::Vec4(mark.second), 0.62));
 }
 
 void RouteMapping::makeContext()
 {
-    if (_points.empty() || !_style.context)
+    const Context now{_way.line, _enabled && _style.context, _style.surroundings, _style.softness,
+                      _style.contextReach};
+    if (_context == now) return;
+    _context = now;
+    const std::vector<osg::Vec2d>& line = _way.line;
+    if (line.empty() || !now.on)
     {
         pool(CONTEXT_MASKED).clear();
         pool(CONTEXT_BEYOND).clear();
         return;
     }
-    osg::Vec2d low = _points.front();
+    osg::Vec2d low = line.front();
     osg::Vec2d high = low;
-    for (const osg::Vec2d& point : _points)
+    for (const osg::Vec2d& point : line)
     {
         low.set(std::min(low.x(), point.x()), std::min(low.y(), point.y()));
         high.set(std::max(high.x(), point.x()), std::max(high.y(), point.y()));
@@ -252,15 +458,15 @@ void RouteMapping::drawDistances(const osg::Vec2d& low, double texel)
             }
         }
     };
-    if (_points.size() == 1) draw(_points[0], _points[0]);
-    for (std::size_t i = 0; i < legs(); ++i)
+    if (_way.line.size() == 1) draw(_way.line[0], _way.line[0]);
+    for (std::size_t i = 0; i < _legs.size(); ++i)
     {
         // In short parts: slanting ones have large boxes.
-        const osg::Vec2d leg = _points[i + 1] - _points[i];
+        const osg::Vec2d leg = _way.line[i + 1] - _way.line[i];
         const int parts = static_cast<int>(std::ceil(leg.length() / (2.0 * reach)));
         for (int part = 0; part < parts; ++part)
-            draw(_points[i] + leg * (part / static_cast<double>(parts)),
-                 _points[i] + leg * ((part + 1) / static_cast<double>(parts)));
+            draw(_way.line[i] + leg * (part / static_cast<double>(parts)),
+                 _way.line[i] + leg * ((part + 1) / static_cast<double>(parts)));
     }
     image.dirty();
 }
@@ -272,24 +478,24 @@ std::vector<RouteMapping::Piece> RouteMapping::pieces() const
     const double period = _style.dash + _style.gap;
     const bool dashed = _style.dash > 0.0 && _style.gap > 0.0 && length() / period < 1e5;
     double phase = 0.0; // metres into the period
-    for (std::size_t i = 0; i < legs(); ++i)
+    for (std::size_t i = 0; i < _legs.size(); ++i)
     {
-        const osg::Vec2d leg = _points[i + 1] - _points[i];
+        const osg::Vec2d leg = _way.line[i + 1] - _way.line[i];
         const double legLength = leg.length();
-        const bool more = i + 1 < legs();
+        const bool more = i + 1 < _legs.size();
         if (!dashed)
         {
-            result.push_back({i, _points[i], _points[i + 1], more});
+            result.push_back({_legs[i], _way.line[i], _way.line[i + 1], more});
             continue;
         }
         const auto at = [&](double metres)
         {
-            return _points[i] + leg * (std::clamp(metres, 0.0, legLength) / legLength);
+            return _way.line[i] + leg * (std::clamp(metres, 0.0, legLength) / legLength);
         };
         for (double start = -phase; start < legLength; start += period)
         {
             const double end = start + _style.dash;
-            if (end > 1e-6) result.push_back({i, at(start), at(end), more && end > legLength});
+            if (end > 1e-6) result.push_back({_legs[i], at(start), at(end), more && end > legLength});
         }
         phase = std::fmod(phase + legLength, period);
     }
@@ -312,48 +518,53 @@ void RouteMapping::addDisc(Role role, const osg::Vec2d& center, double radius)
     mapping.setRectangle(center, radius / markReach, radius / markReach);
 }
 
-void RouteMapping::make()
+void RouteMapping::makeLine()
 {
-    for (const Role role : {CASING, LINE, LINE_HIGHLIGHTED, POINTS})
+    for (const Role role : {CASING, LINE, LINE_HIGHLIGHTED})
         pool(role).rewind();
     const double outer = _style.halfWidth + _style.casing;
-    if (_style.halfWidth > 0.0)
+    if (_enabled && _style.halfWidth > 0.0)
     {
         const std::vector<Piece> all = pieces();
+        const auto roleOf = [&](const Piece& piece)
+        {
+            return highlighted() == piece.leg ? LINE_HIGHLIGHTED : LINE;
+        };
         for (const Piece& piece : all)
         {
-            const Role role = _highlighted == piece.leg ? LINE_HIGHLIGHTED : LINE;
-            addStrip(role, piece.from, piece.to, _style.halfWidth);
-            if (piece.join) addDisc(role, piece.to, _style.halfWidth);
+            addStrip(roleOf(piece), piece.from, piece.to, _style.halfWidth);
+            if (piece.join) addDisc(roleOf(piece), piece.to, _style.halfWidth);
         }
-        for (std::size_t i = 0; i < legs() && _style.casing > 0.0; ++i)
-            addStrip(CASING, _points[i], _points[i + 1], outer);
+        for (std::size_t i = 0; i < _legs.size() && _style.casing > 0.0; ++i)
+            addStrip(CASING, _way.line[i], _way.line[i + 1], outer);
         // Both ends are round, too.
-        for (std::size_t i = 0; i < _points.size() && legs() > 0; ++i)
-        {
-            if (_style.casing > 0.0) addDisc(CASING, _points[i], outer);
-        }
+        for (std::size_t i = 0; i < _way.line.size() && !_legs.empty() && _style.casing > 0.0; ++i)
+            addDisc(CASING, _way.line[i], outer);
         if (!all.empty())
         {
-            const auto cap = [&](const Piece& piece, const osg::Vec2d& place)
-            {
-                addDisc(_highlighted == piece.leg ? LINE_HIGHLIGHTED : LINE, place, _style.halfWidth);
-            };
-            cap(all.front(), all.front().from);
-            if ((all.back().to - _points.back()).length() < 1e-6) cap(all.back(), all.back().to);
+            addDisc(roleOf(all.front()), all.front().from, _style.halfWidth);
+            if ((all.back().to - _way.line.back()).length() < 1e-6)
+                addDisc(roleOf(all.back()), all.back().to, _style.halfWidth);
         }
     }
-    for (std::size_t i = 0; i < _points.size() && _style.pointRadius > 0.0; ++i)
+    for (const Role role : {CASING, LINE, LINE_HIGHLIGHTED})
+        pool(role).trim();
+}
+
+void RouteMapping::makePoints()
+{
+    pool(POINTS).rewind();
+    const double half = _style.pointRadius / markReach;
+    for (std::size_t i = 0; i < _way.wayPoints.size() && _enabled && half > 0.0; ++i)
     {
         ProjectiveMapping& mapping = pool(POINTS).next();
         DataLayer* mark = _ownMark ? _ownMark.get() : _mark.get();
         if (mapping.getLayer() != mark) mapping.setLayer(mark);
-        mapping.setRectangle(_points[i], _style.pointRadius / markReach, _style.pointRadius / markReach);
+        mapping.setRectangle(_way.line[_way.wayPoints[i]], half, half);
         mapping.setSizeInPixels(_style.pointPixels);
         mapping.setTurned(_ownMark.valid());
     }
-    for (const Role role : {CASING, LINE, LINE_HIGHLIGHTED, POINTS})
-        pool(role).trim();
+    pool(POINTS).trim();
 }
 
 } // namespace osgGeoFX

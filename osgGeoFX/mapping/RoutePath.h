@@ -8,6 +8,7 @@
 #include <osg/Vec3d>
 #include <osg/Vec4>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,8 +36,12 @@ struct OSGGEOFX_EXPORT RoutePath
     bool wayPoints = false;
     std::optional<osg::Vec4> color; ///< the file's own, 0…1
 
-    /// The places' longitudes and latitudes, degrees, with more of them on great circles where two are farther apart than so many metres.
-    std::vector<osg::Vec2d> alongGreatCircles(double longest = 20000.0) const;
+    /// The places' longitudes and latitudes, degrees, with more of them on geodesics of WGS 84, the shortest ways, where two are farther apart than
+    /// so many metres: evenly, within 1 m of GeographicLib's for up to 10 000 km. Between places that lie nearly opposite each other on the
+    /// globe there are many such ways, and this takes one that is about as long.
+    std::vector<osg::Vec2d> alongGeodesics(double longest = 20000.0) const;
+    /// Between two places, degrees: metres on a sphere, within 1 % of the geodesic's length.
+    static double distance(const osg::Vec2d& from, const osg::Vec2d& to);
 
     /// How showOn() draws a way.
     struct Look
@@ -47,13 +52,17 @@ struct OSGGEOFX_EXPORT RoutePath
         /// Enlarged so that the line has the width. The way's own color goes before its color. By default the surroundings keep
         /// their colors.
         RouteMapping::Style style = plainStyle();
+        /// Properties of the RouteMapping that go before all of these, not enlarged.
+        std::map<std::string, double> properties;
     };
     /// The look of RouteMapping without a darkened context.
     static RouteMapping::Style plainStyle();
-    /** Draws the way on the ground, as RouteMapping does; its mappings stay in the effect, named after the way. `places`: the way in the effect's
-        frame, metres. Way points get marks, the points of tracks none; these are simplified to an eighth of the width. False, with
-        a warning, if a place or the look is out of range, or if there are more than 20000 way points. */
-    bool showOn(ProjectiveMappings& effect, const std::vector<osg::Vec2d>& places, const Look& look) const;
+    /** Draws the way on the ground: adds a RouteMapping of the way's name to the effect, with the way as geographic way points (see
+        RouteMapping::setGeographicWayPoints() for `ellipsoid` and `reference`). Way points get marks, the points of tracks none;
+        these are simplified to an eighth of the width. False, with a sentence in `error`, if a place or the look is out of
+        range, or if there are more than 20 000 way points. */
+    bool showOn(ProjectiveMappings& effect, const osg::EllipsoidModel* ellipsoid,
+                const Georeference* reference, const Look& look, std::string& error) const;
 };
 
 } // namespace osgGeoFX

@@ -12,6 +12,7 @@
 #include <osgGeoFX/light/SunShadows.h>
 #include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/mapping/RouteMapping.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
 #include <cctype>
@@ -77,6 +78,8 @@ constexpr Kind<Effect> effects[] = {
 /// What mappings and close-ups are made of.
 constexpr Kind<PropertyHolder> parts[] = {
     {"projectiveMapping", make<PropertyHolder, ProjectiveMapping>, "A raster on the terrain."},
+    {"routeMapping", make<PropertyHolder, RouteMapping>,
+     "A route on the terrain, with marks at its way points."},
     {"dataLayer", make<PropertyHolder, DataLayer>, "The raster that a mapping shows."},
     {"layerClock", make<PropertyHolder, LayerClock>, "The time of layers that change with it."},
     {"colorTransfer", make<PropertyHolder, ColorTransfer>,
@@ -179,7 +182,7 @@ std::string whyItDrawsNothing(const Effect& effect)
                "region into "
                "a .geofx scene, or call CloseUps::addCloseUp() in a program.";
     const auto* mappings = dynamic_cast<const ProjectiveMappings*>(&effect);
-    if (mappings && mappings->getNumMappings() == 0)
+    if (mappings && mappings->getNumMappings() + mappings->getNumRoutes() == 0)
         return "projectiveMappings draws nothing, because it has no mapping; write it with a <raster> or "
                "<mapping> for "
                "each into a .geofx scene, or call ProjectiveMappings::addMapping() in a program.";

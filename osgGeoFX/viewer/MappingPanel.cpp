@@ -3,6 +3,7 @@
 #include <osgGeoFX/viewer/MappingPanel.h>
 
 #include <osgGeoFX/mapping/PointerPlace.h>
+#include <osgGeoFX/mapping/RouteMapping.h>
 #include <osgGeoFX/scene/EffectScene.h>
 
 #include <osgDB/FileNameUtils>
@@ -20,7 +21,6 @@ namespace
 using Event = osgGA::GUIEventAdapter;
 
 constexpr double opacitySteps = 20.0;
-constexpr int mostOrder = 1000;
 const PanelWords words = {"Mappings",
                           "name",
                           "order",
@@ -89,6 +89,12 @@ std::string nameOf(const ProjectiveMapping& mapping, unsigned int number)
 
 } // namespace
 
+void MappingPanel::set(const Entry& entry, const char* property, double value)
+{
+    std::string none; // what is in range is taken
+    entry.item->setProperty(property, value, none);
+}
+
 MappingPanel::MappingPanel(EffectScene& scene, osgText::Font* font)
     : ListPanel(Event::KEY_F9, words, PanelPicture::RIGHT, font), _scene(&scene)
 {
@@ -115,7 +121,7 @@ bool MappingPanel::hasEffect() const
 
 ProjectiveMapping* MappingPanel::selected()
 {
-    return shown() ? _selected.get() : nullptr;
+    return shown() ? dynamic_cast<ProjectiveMapping*>(_selected.get()) : nullptr;
 }
 
 std::vector<std::string> MappingPanel::lines() const
@@ -152,7 +158,7 @@ bool MappingPanel::changed()
     for (std::size_t i = std::min(checkedInAFrame, _entries.size()); i > 0; --i)
     {
         _checked = (_checked + 1) % _entries.size();
-        if (_entries[_checked].mapping->getOrder() != _entries[_checked].order) return true;
+        if (_entries[_checked].orderNow() != _entries[_checked].order) return true;
     }
     return false;
 }
@@ -165,10 +171,16 @@ void MappingPanel::collect()
     {
         _listed.emplace_back(effect, effect->revision());
         const auto begin = static_cast<std::ptrdiff_t>(_entries.size());
+        // Routes lie above mappings of their order.
+        for (unsigned int i = effect->getNumRoutes(); i-- > 0;)
+        {
+            RouteMapping* route = effect->getRoute(i);
+            _entries.push_back({route, nullptr, effect, i, route->getOrder()});
+        }
         for (unsigned int i = effect->getNumMappings(); i-- > 0;)
         {
             ProjectiveMapping* mapping = effect->getMapping(i);
-            _entries.push_back({mapping, effect, i, mapping->getOrder()});
+            _entries.push_back({mapping, mapping, effect, i, mapping->getOrder()});
         }
         std::stable_sort(_entries.begin() + begin, _entries.end(),
                          [](const Entry& a, const Entry& b) { return a.order > b.order; });
@@ -179,33 +191,40 @@ void MappingPanel::list()
 {
     collect();
     const auto found = std::find_if(_entries.begin(), _entries.end(),
-                                    [&](const Entry& entry) { return entry.mapping == _selected.get(); });
+                                    [&](const Entry& entry) { return entry.item == _selected.get(); });
     if (found != _entries.end())
         _cursor.row = static_cast<std::size_t>(found - _entries.begin());
     else
         // The one that took the place of what was removed.
         _cursor.row = _entries.empty() ? 0 : std::min(_cursor.row, _entries.size() - 1);
-    _selected = _entries.empty() ? nullptr : _entries[_cursor.row].mapping.get();
+    _selected = _entries.empty() ? nullptr : _entries[_cursor.row].item.get();
     _cursor.first = std::min(_cursor.first, _entries.size() - std::min(_entries.size(), PanelPicture::rows));
 }
 
 void MappingPanel::choose(std::size_t number)
 {
     ListPanel::choose(number);
-    _selected = _entries.empty() ? nullptr : _entries[_cursor.row].mapping.get();
+    _selected = _entries.empty() ? nullptr : _entries[_cursor.row].item.get();
 }
 
 PanelPage::Row MappingPanel::row(std::size_t number) const
 {
     const Entry& entry = _entries[number];
-    const ProjectiveMapping& mapping = *entry.mapping;
-    const std::size_t mode = blendModeOf(*mapping.getTransfer());
-    return {mapping.getEnabled(),
-            mapping.getEnabled() && entry.effect->getEnabled(),
-            nameOf(mapping, entry.number),
-            std::to_string(mapping.getOrder()),
-            std::to_string(std::lround(mapping.getOpacity() * 100.0)) + " %",
-            mode < blendModes.size() ? blendModes[mode].name : "custom"};
+    std::string name = entry.item->getName(), note = "route";
+    if (entry.mapping)
+    {
+        const std::size_t mode = blendModeOf(*entry.mapping->getTransfer());
+        name = nameOf(*entry.mapping, entry.number);
+        note = mode < blendModes.size() ? blendModes[mode].name : "custom";
+    }
+    else if (name.empty())
+        name = "route " + std::to_string(entry.number + 1);
+    return {entry.enabled(),
+            entry.enabled() && entry.effect->getEnabled(),
+            name,
+            std::to_string(entry.orderNow()),
+            std::to_string(std::lround(entry.item->getProperty("opacity") * 100.0)) + " %",
+            note};
 }
 
 void MappingPanel::forget()
@@ -216,17 +235,20 @@ void MappingPanel::forget()
 
 bool MappingPanel::change(int code, int)
 {
-    ProjectiveMapping& mapping = *_entries[_cursor.row].mapping;
+    const Entry& entry = _entries[_cursor.row];
     const auto raise = [&](int step)
     {
-        mapping.setOrder(std::clamp(mapping.getOrder() + step, -mostOrder, mostOrder));
+        const Property& order = *entry.item->property("order");
+        set(entry, "order",
+            std::clamp(entry.orderNow() + static_cast<double>(step), order.minimum, order.maximum));
         list();
         choose(_cursor.row);
     };
     const auto fade = [&](double step)
     {
-        const double wanted = std::round(mapping.getOpacity() * opacitySteps + step) / opacitySteps;
-        mapping.setOpacity(std::clamp(wanted, 0.0, 1.0));
+        const double wanted =
+            std::round(entry.item->getProperty("opacity") * opacitySteps + step) / opacitySteps;
+        set(entry, "opacity", std::clamp(wanted, 0.0, 1.0));
     };
     switch (code)
     {
@@ -251,7 +273,7 @@ bool MappingPanel::change(int code, int)
         return true;
     case ',':
     case '.':
-        turnBlendMode(*mapping.getTransfer(), code == '.');
+        if (entry.mapping) turnBlendMode(*entry.mapping->getTransfer(), code == '.');
         return true;
     default:
         return false;
@@ -260,8 +282,7 @@ bool MappingPanel::change(int code, int)
 
 void MappingPanel::pressBox(std::size_t number)
 {
-    ProjectiveMapping& mapping = *_entries[number].mapping;
-    mapping.setEnabled(!mapping.getEnabled());
+    set(_entries[number], "enabled", _entries[number].enabled() ? 0.0 : 1.0);
 }
 
 bool MappingPanel::pushBeside(const Event& event, osgViewer::View& view)
@@ -277,8 +298,10 @@ bool MappingPanel::pushBeside(const Event& event, osgViewer::View& view)
         if (!place) return false;
         const std::vector<ProjectiveMapping*> there = effect->mappingsAt({place->x(), place->y()});
         if (there.empty()) continue;
-        const auto found = std::find_if(_entries.begin(), _entries.end(),
-                                        [&](const Entry& entry) { return entry.mapping == there.front(); });
+        const RouteMapping* const route = effect->routeOf(*there.front());
+        const auto found = std::find_if(
+            _entries.begin(), _entries.end(),
+            [&](const Entry& entry) { return route ? entry.item == route : entry.mapping == there.front(); });
         if (found != _entries.end()) choose(static_cast<std::size_t>(found - _entries.begin()));
         return true;
     }

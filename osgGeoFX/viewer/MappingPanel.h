@@ -24,7 +24,7 @@ class EffectScene;
     blending. A blending that is none of the usual kinds is named "custom". The blending belongs to the mapping's
     ColorTransfer, so mappings that share one change together.
 
-    A mapping is listed by its name, else by the name of its layer or the file name of the layer's image, else by its
+    A route (RouteMapping) is one row, of the note "route" in the place of the blending. A mapping is listed by its name, else by the name of its layer or the file name of the layer's image, else by its
     number in its effect.
 
     If there are thousands of mappings and a program changes an order, the list shows the new order some frames later.
@@ -39,7 +39,7 @@ public:
 
     /// Whether the scene has a ProjectiveMappings effect.
     bool hasEffect() const;
-    /// The selected mapping. Null if there is none, and while the list is hidden.
+    /// The selected mapping. Null if there is none or a route, and while the list is hidden.
     ProjectiveMapping* selected();
     /// The text shown, UTF-8: "3 of 120", then for each row "on" or "off", name, order, opacity and blending,
     /// separated by tabs. Names are not shortened here. Empty while the list is hidden.
@@ -51,10 +51,14 @@ protected:
 private:
     struct Entry
     {
-        osg::ref_ptr<ProjectiveMapping> mapping;
+        osg::ref_ptr<PropertyHolder> item; ///< a mapping or a route
+        ProjectiveMapping* mapping;        ///< null for a route
         const ProjectiveMappings* effect;
         unsigned int number; ///< index in the effect
         int order;           ///< when the list was sorted
+
+        int orderNow() const { return static_cast<int>(item->getProperty("order")); }
+        bool enabled() const { return item->getProperty("enabled") > 0.0; }
     };
 
     bool hasRows() const override { return hasEffect(); }
@@ -68,6 +72,7 @@ private:
     void pressBox(std::size_t number) override;
     bool pushBeside(const Event& event, osgViewer::View& view) override;
 
+    static void set(const Entry& entry, const char* property, double value);
     std::vector<ProjectiveMappings*> effects() const;
     void collect();
 
@@ -76,7 +81,7 @@ private:
     std::vector<Entry> _entries;                                                    ///< topmost first
     std::vector<std::pair<osg::ref_ptr<ProjectiveMappings>, unsigned int>> _listed; ///< with their revisions
     std::size_t _checked = 0;
-    osg::observer_ptr<ProjectiveMapping> _selected;
+    osg::observer_ptr<PropertyHolder> _selected;
 };
 
 } // namespace osgGeoFX

@@ -262,16 +262,14 @@ private:
         {
             if (route.color) path.color = route.color;
             if (!route.path.name.empty()) path.name = route.path.name;
-            std::vector<osg::Vec2d> places;
-            for (const osg::Vec2d& degrees : path.alongGreatCircles())
-            {
-                const osg::Vec3d world = _terrain.worldOf(route.place, degrees.x(), degrees.y());
-                setOrigin(_ellipsoid ? degrees : osg::Vec2d(world.x(), world.y()));
-                _hasOrigin = true;
-                places.push_back(placeOf(route.place, world));
-            }
-            if (!path.showOn(_effect, places, route.look))
-                fail(route.place, "the route cannot be drawn with this width and order; give others.");
+            if (path.places.empty()) continue;
+            const osg::Vec2d degrees(path.places[0].x(), path.places[0].y());
+            const osg::Vec3d world = _terrain.worldOf(route.place, degrees.x(), degrees.y());
+            setOrigin(_ellipsoid ? degrees : osg::Vec2d(world.x(), world.y()));
+            _hasOrigin = true;
+            std::string fault;
+            const osg::ref_ptr<Georeference> ground = _ellipsoid ? nullptr : _terrain.reference(fault);
+            if (!path.showOn(_effect, _ellipsoid, ground, route.look, fault)) fail(route.place, fault);
             if (path.altitude == RoutePath::CLAMPED || !route.inAir) continue;
             if (path.altitude == RoutePath::ABOVE_GROUND)
             {

@@ -107,6 +107,7 @@ private:
         route.look.order = SceneXml::integer(node, "order");
         route.look.style.context =
             attributeOf(node, "context") == "true" || attributeOf(node, "context") == "1";
+        readLook(node, route);
         route.inAir = attributeOf(node, "inAir") == "true" || attributeOf(node, "inAir") == "1";
         for (xmlNode* point = SceneXml::child(node, "wayPoint"); point;
              point = SceneXml::next(point->next, "wayPoint"))
@@ -115,6 +116,20 @@ private:
         if (route.file.has_value() == !route.path.places.empty())
             return _xml.fail(node, "a route has either a file or <wayPoint> elements; give it one of them.");
         _result.routes.push_back(route);
+    }
+
+    /// The properties of a RouteMapping that are given, in metres as they are; the width enlarges the others.
+    void readLook(xmlNode* node, SceneRoute& route) const
+    {
+        const osg::ref_ptr<RouteMapping> sample = new RouteMapping;
+        _xml.set(*sample, node, {"name", "file", "layer", "width", "color", "inAir", "context", "order"});
+        for (const Property& property : sample->properties())
+        {
+            const bool own =
+                property.name == "color" || property.name == "context" || property.name == "order";
+            if (!own && isGiven(node, property.name.c_str()))
+                route.look.properties[property.name] = property.get(*sample);
+        }
     }
 
     void readMapping(xmlNode* node, bool isRaster)

@@ -8,6 +8,7 @@
 #include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/mapping/RouteMapping.h>
 
 #include <osg/Notify>
 
@@ -98,12 +99,63 @@ bool writeRasters(osgDB::OutputStream& stream, const ProjectiveMappings& mapping
     return true;
 }
 
+/// The places of the line, with 1 where they are way points, and then these in degrees.
+bool writeWay(osgDB::OutputStream& stream, const RouteMapping& route)
+{
+    const RouteMapping::Way& way = route.getWay();
+    stream << static_cast<unsigned int>(way.line.size()) << static_cast<unsigned int>(way.degrees.size())
+           << stream.BEGIN_BRACKET << std::endl;
+    for (std::size_t i = 0; i < way.line.size(); ++i)
+    {
+        const bool marked = std::binary_search(way.wayPoints.begin(), way.wayPoints.end(), i);
+        stream << exactText(way.line[i].x()) << exactText(way.line[i].y()) << exactText(marked ? 1.0 : 0.0)
+               << std::endl;
+    }
+    for (const osg::Vec2d& place : way.degrees)
+        stream << exactText(place.x()) << exactText(place.y()) << std::endl;
+    stream << stream.END_BRACKET << std::endl;
+    return true;
+}
+
+bool readWay(osgDB::InputStream& stream, RouteMapping& route)
+{
+    constexpr const char* self = "RouteMapping";
+    RouteMapping::Way way;
+    unsigned int lineCount = 0, degreesCount = 0;
+    stream >> lineCount >> degreesCount >> stream.BEGIN_BRACKET;
+    const auto readPlace = [&]
+    {
+        const double x = readNumber(stream, self);
+        return osg::Vec2d(x, readNumber(stream, self));
+    };
+    for (unsigned int i = 0; i < lineCount && !stream.getException(); ++i)
+    {
+        way.line.push_back(readPlace());
+        if (readNumber(stream, self) > 0.0) way.wayPoints.push_back(i);
+    }
+    for (unsigned int i = 0; i < degreesCount && !stream.getException(); ++i)
+        way.degrees.push_back(readPlace());
+    stream >> stream.END_BRACKET;
+    // A refusal has its own warning, and the rest of the file is fine.
+    if (!stream.getException()) route.setWay(way);
+    return true;
+}
+
+void addRouteParts(osgDB::ObjectWrapper& wrapper)
+{
+    using Self = RouteMapping;
+    addOwn<Self>(
+        wrapper, "Way", [](const Self& route) { return !route.getWay().line.empty(); }, &readWay, &writeWay);
+    addPart<Self, DataLayer, &Self::getPointLayer, &Self::setPointLayer>(wrapper, "PointLayer");
+}
+
 void addMappings(osgDB::ObjectWrapper& wrapper)
 {
     using Self = ProjectiveMappings;
     addParts<Self, ProjectiveMapping, &Self::getNumMappings, &Self::getMapping, &Self::addMapping>(
         wrapper, "Mappings");
     addOwn<Self>(wrapper, "Rasters", &hasRasters, &readRasters, &writeRasters);
+    addParts<Self, RouteMapping, &Self::getNumRoutes, &Self::getRoute, &Self::addRoute>(wrapper, "Routes");
 }
 
 constexpr const char* tableModes[] = {"LINEAR", "NEAREST", "EXACT", "STEPS"};
@@ -187,6 +239,8 @@ const Wrapper<DataLayer, addPicture> layerWrapper("osgGeoFX::DataLayer", "osg::O
 const Wrapper<LayerClock> clockWrapper("osgGeoFX::LayerClock", "osg::Object osgGeoFX::LayerClock");
 const Wrapper<ColorTransfer> transferWrapper("osgGeoFX::ColorTransfer",
                                              "osg::Object osgGeoFX::ColorTransfer");
+const Wrapper<RouteMapping, addRouteParts> routeWrapper("osgGeoFX::RouteMapping",
+                                                        "osg::Object osgGeoFX::RouteMapping");
 const Wrapper<ProjectiveMapping, addMappingParts> mappingWrapper("osgGeoFX::ProjectiveMapping",
                                                                  "osg::Object osgGeoFX::ProjectiveMapping");
 const Wrapper<ProjectiveMappings, addMappings>

@@ -14,6 +14,7 @@
 #include <osgGeoFX/light/SunShadows.h>
 #include <osgGeoFX/mapping/LayerClock.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/mapping/RouteMapping.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 
 #include <type_traits>
@@ -243,6 +244,67 @@ inline TypedSetters regionSetters()
     };
 }
 
+inline TypedSetters routeSetters()
+{
+    using Self = osgGeoFX::RouteMapping;
+    using Style = Self::Style;
+    const auto number = [](double Style::*member)
+    {
+        return component(&Self::setStyle, &Self::getStyle,
+                         [=](Style& style) -> double& { return style.*member; });
+    };
+    const auto alpha = [](osg::Vec4d Style::*member)
+    {
+        return component(&Self::setStyle, &Self::getStyle,
+                         [=](Style& style) -> double& { return (style.*member).w(); });
+    };
+    const auto color = [](osg::Vec4d Style::*member)
+    {
+        return Typed{[=](osgGeoFX::PropertyHolder& holder, double value)
+                     {
+                         auto& route = static_cast<Self&>(holder);
+                         Style style = route.getStyle();
+                         style.*member = osg::Vec4d(colorOf(value), (style.*member).w());
+                         return route.setStyle(style);
+                     },
+                     [=](const osgGeoFX::PropertyHolder& holder)
+                     {
+                         const osg::Vec4d c = static_cast<const Self&>(holder).getStyle().*member;
+                         return static_cast<double>(osgGeoFX::packedColor({c.x(), c.y(), c.z()}));
+                     }};
+    };
+    return {
+        {"halfWidth", number(&Style::halfWidth)},
+        {"casing", number(&Style::casing)},
+        {"color", color(&Style::color)},
+        {"colorAlpha", alpha(&Style::color)},
+        {"casingColor", color(&Style::casingColor)},
+        {"casingAlpha", alpha(&Style::casingColor)},
+        {"highlightColor", color(&Style::highlightColor)},
+        {"highlightAlpha", alpha(&Style::highlightColor)},
+        {"dash", number(&Style::dash)},
+        {"gap", number(&Style::gap)},
+        {"pointRadius", number(&Style::pointRadius)},
+        {"pointPixels", number(&Style::pointPixels)},
+        {"context", Typed{[](osgGeoFX::PropertyHolder& holder, double value)
+                          {
+                              auto& route = static_cast<Self&>(holder);
+                              Style style = route.getStyle();
+                              style.context = value > 0.0;
+                              return route.setStyle(style);
+                          },
+                          [](const osgGeoFX::PropertyHolder& holder)
+                          {
+                              return static_cast<const Self&>(holder).getStyle().context ? 1.0 : 0.0;
+                          }}},
+        {"surroundings", number(&Style::surroundings)},
+        {"softness", number(&Style::softness)},
+        {"brightness", number(&Style::brightness)},
+        {"saturation", number(&Style::saturation)},
+        {"contextReach", number(&Style::contextReach)},
+    };
+}
+
 inline TypedSetters clockSetters()
 {
     using Self = osgGeoFX::LayerClock;
@@ -340,6 +402,7 @@ inline const TypedSetters& typedSetters(const std::string& kind)
             {"projectiveMappings", mappingsSetters()},
             {"projectiveMapping", mappingSetters()},
             {"dataLayer", layerSetters()},
+            {"routeMapping", routeSetters()},
             {"layerClock", clockSetters()},
             {"colorTransfer", transferSetters()},
             {"regionalLiberty", libertySetters()},

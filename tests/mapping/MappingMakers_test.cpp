@@ -3,7 +3,6 @@
 // What the makers of mappings put where, what they change when they are changed, and that they leave nothing behind.
 #include <osgGeoFX/mapping/GeometrySwap.h>
 #include <osgGeoFX/mapping/RouteMapping.h>
-#include <osgGeoFX/mapping/RoutePath.h>
 #include <osgGeoFX/mapping/SymbolMapping.h>
 #include <tools/NotifyWatch.h>
 #include <tools/RandomSamples.h>
@@ -67,6 +66,13 @@ class Makers : public ::testing::Test
 {
 protected:
     osg::ref_ptr<ProjectiveMappings> _mappings = new ProjectiveMappings;
+
+    osg::ref_ptr<RouteMapping> add()
+    {
+        const osg::ref_ptr<RouteMapping> route = new RouteMapping;
+        _mappings->addRoute(route);
+        return route;
+    }
 };
 
 using Route = Makers;
@@ -84,25 +90,12 @@ bool refused(const std::function<bool()>& set)
 
 } // namespace
 
-TEST_F(Route, ofAFileMayHaveMarksAloneAndHasAnEnd)
-{
-    RoutePath path;
-    RoutePath::Look look;
-    look.style.halfWidth = 0.0; // no line; this was a tolerance that never grew
-    std::vector<osg::Vec2d> zigzag;
-    for (int i = 0; i < 20001; ++i)
-        zigzag.emplace_back(i * 1.0, i % 2 * 5000.0);
-    EXPECT_TRUE(path.showOn(*_mappings, zigzag, look));
-    path.wayPoints = true;
-    EXPECT_FALSE(path.showOn(*_mappings, zigzag, look)) << "too many";
-    EXPECT_FALSE(path.showOn(*_mappings, {}, look));
-}
-
 TEST_F(Route, hasAStripForEachLegAndADiscForEachPoint)
 {
     {
-        osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings, 10);
-        EXPECT_EQ(_mappings->getNumMappings(), 0u);
+        osg::ref_ptr<RouteMapping> route = add();
+        route->setOrder(10);
+        EXPECT_EQ(route->getNumMappings(), 0u);
         ASSERT_TRUE(route->setWayPoints(zigzag));
         EXPECT_EQ(route->legs(), 3u);
         EXPECT_NEAR(route->length(), 1000 + 800 + std::hypot(800, 700), 1e-9);
@@ -112,7 +105,8 @@ TEST_F(Route, hasAStripForEachLegAndADiscForEachPoint)
         // Strips, joins at two corners and caps at two ends; the casing's joins are at all four points.
         EXPECT_EQ(route->mappings(RouteMapping::LINE).size(), 3u + 2u + 2u);
         EXPECT_EQ(route->mappings(RouteMapping::CASING).size(), 3u + 4u);
-        EXPECT_EQ(_mappings->getNumMappings(), 1u + 4u + 4u + 7u + 7u);
+        EXPECT_EQ(route->getNumMappings(), 1u + 4u + 4u + 7u + 7u);
+        EXPECT_EQ(_mappings->getNumMappings(), 0u) << "these are the route's own";
         // From below: the context, the casing, the line, the points.
         EXPECT_EQ(route->mappings(RouteMapping::CONTEXT_MASKED).at(0).getOrder(), 10);
         EXPECT_EQ(_mappings->mappingsAt({0, 0}).front(), &route->mappings(RouteMapping::POINTS).at(0));
@@ -121,13 +115,17 @@ TEST_F(Route, hasAStripForEachLegAndADiscForEachPoint)
         EXPECT_EQ(found[0]->getTransfer(), route->mappings(RouteMapping::LINE).at(0).getTransfer());
         EXPECT_EQ(found[1]->getTransfer(), route->mappings(RouteMapping::CASING).at(0).getTransfer());
         EXPECT_EQ(found[2], &route->mappings(RouteMapping::CONTEXT_MASKED).at(0));
+        for (const ProjectiveMapping* mapping : found)
+            EXPECT_EQ(_mappings->routeOf(*mapping), route);
+        EXPECT_TRUE(_mappings->removeRoute(route));
+        EXPECT_EQ(route->getNumMappings(), 0u);
     }
-    EXPECT_EQ(_mappings->getNumMappings(), 0u);
+    EXPECT_TRUE(_mappings->mappingsAt({500, 0}).empty());
 }
 
 TEST_F(Route, linesAreAsWideAsTheyShould)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
+    const osg::ref_ptr<RouteMapping> route = add();
     RouteMapping::Style style;
     style.halfWidth = 10.0;
     style.casing = 4.0;
@@ -165,7 +163,7 @@ TEST_F(Route, linesAreAsWideAsTheyShould)
 
 TEST_F(Route, contextIsMaskedByTheDistanceAndHasNoGapsBeyond)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
+    const osg::ref_ptr<RouteMapping> route = add();
     RouteMapping::Style style;
     style.surroundings = 120.0;
     style.softness = 60.0;
@@ -210,7 +208,7 @@ TEST_F(Route, contextIsMaskedByTheDistanceAndHasNoGapsBeyond)
 
 TEST_F(Route, dashesGoOnRoundCorners)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
+    const osg::ref_ptr<RouteMapping> route = add();
     RouteMapping::Style style;
     style.halfWidth = 1.0;
     style.casing = 0.0;
@@ -231,18 +229,18 @@ TEST_F(Route, dashesGoOnRoundCorners)
     }
     // Ten dashes, one of which is in two parts with a join, and a cap at the beginning.
     EXPECT_EQ(line.size(), 10u + 1u + 1u + 1u);
-    EXPECT_EQ(_mappings->getNumMappings(), line.size());
+    EXPECT_EQ(route->getNumMappings(), line.size());
 }
 
 TEST_F(Route, changesAreSmall)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
+    const osg::ref_ptr<RouteMapping> route = add();
     route->setWayPoints(zigzag);
-    const unsigned int all = _mappings->getNumMappings();
+    const std::size_t all = route->getNumMappings();
     ProjectiveMapping* first = &route->mappings(RouteMapping::CASING).at(0);
     const unsigned int before = first->revision();
     route->highlight(1);
-    EXPECT_EQ(_mappings->getNumMappings(), all);
+    EXPECT_EQ(route->getNumMappings(), all);
     EXPECT_EQ(route->mappings(RouteMapping::LINE_HIGHLIGHTED).size(), 2u); // the strip and the join behind it
     EXPECT_TRUE(covers(route->mappings(RouteMapping::LINE_HIGHLIGHTED).at(0), {1000, 400}));
     EXPECT_EQ(first->revision(), before);
@@ -253,27 +251,129 @@ TEST_F(Route, changesAreSmall)
     route->setWayPoints({{0, 0}, {1000, 0}, {1000, 800}, {300, 1500}});
     EXPECT_EQ(&route->mappings(RouteMapping::CASING).at(0), first);
     EXPECT_EQ(first->revision(), before);
-    EXPECT_EQ(_mappings->getNumMappings(), all);
+    EXPECT_EQ(route->getNumMappings(), all);
     route->setWayPoints({{0, 0}});
-    EXPECT_EQ(_mappings->getNumMappings(), 1u + 4u + 1u);
+    EXPECT_EQ(route->getNumMappings(), 1u + 4u + 1u);
     route->setWayPoints({});
-    EXPECT_EQ(_mappings->getNumMappings(), 0u);
+    EXPECT_EQ(route->getNumMappings(), 0u);
 }
 
 TEST_F(Route, refusesWhatMakesNoSense)
 {
-    osg::ref_ptr<RouteMapping> route = new RouteMapping(*_mappings);
+    const osg::ref_ptr<RouteMapping> route = add();
     ASSERT_TRUE(route->setWayPoints({{0, 0}, {0, 0}, {100, 0}}));
     EXPECT_EQ(route->legs(), 1u);
-    EXPECT_TRUE(refused([&] { return static_cast<bool>(route->setWayPoints({{0, 0}, {std::nan(""), 0}})); }));
+    EXPECT_TRUE(refused([&] { return route->setWayPoints({{0, 0}, {std::nan(""), 0}}); }));
     EXPECT_EQ(route->legs(), 1u);
     RouteMapping::Style style;
     style.softness = -1.0;
-    EXPECT_TRUE(refused([&] { return static_cast<bool>(route->setStyle(style)); }));
+    EXPECT_TRUE(refused([&] { return route->setStyle(style); }));
     style.softness = 10.0;
     style.color.x() = 1.5f;
-    EXPECT_TRUE(refused([&] { return static_cast<bool>(route->setStyle(style)); }));
+    EXPECT_TRUE(refused([&] { return route->setStyle(style); }));
     EXPECT_EQ(route->getStyle().softness, RouteMapping::Style().softness);
+}
+
+TEST_F(Route, isInOneEffectAtATime)
+{
+    const osg::ref_ptr<RouteMapping> route = add();
+    route->setWayPoints(zigzag);
+    const osg::ref_ptr<ProjectiveMappings> other = new ProjectiveMappings;
+    EXPECT_TRUE(refused([&] { return other->addRoute(route); }));
+    EXPECT_TRUE(refused([&] { return _mappings->addRoute(route); }));
+    EXPECT_TRUE(refused([&] { return _mappings->addRoute(nullptr); }));
+    EXPECT_TRUE(refused([&] { return _mappings->addMapping(&route->mappings(RouteMapping::LINE).at(0)); }));
+    EXPECT_FALSE(_mappings->removeMapping(&route->mappings(RouteMapping::LINE).at(0)));
+    EXPECT_FALSE(other->removeRoute(route));
+    EXPECT_EQ(_mappings->getNumRoutes(), 1u);
+    const std::size_t count = route->getNumMappings();
+    _mappings->removeMappings();
+    EXPECT_EQ(_mappings->getNumRoutes(), 0u);
+    EXPECT_EQ(route->getNumMappings(), 0u);
+    EXPECT_TRUE(other->addRoute(route));
+    EXPECT_EQ(route->getNumMappings(), count);
+    EXPECT_TRUE(other->removeRoute(route));
+    // The effect goes, the route stays, and another one may have it.
+    osg::ref_ptr<ProjectiveMappings> brief = new ProjectiveMappings;
+    EXPECT_TRUE(brief->addRoute(route));
+    brief = nullptr;
+    EXPECT_EQ(route->getNumMappings(), 0u);
+    EXPECT_EQ(route->getWayPoints(), zigzag);
+    EXPECT_TRUE(_mappings->addRoute(route));
+    EXPECT_EQ(route->getNumMappings(), count);
+}
+
+TEST_F(Route, liesAboveMappingsOfItsOrderAndBelowLaterRoutes)
+{
+    const osg::ref_ptr<RouteMapping> lower = add();
+    const osg::ref_ptr<RouteMapping> upper = add();
+    const osg::ref_ptr<ProjectiveMapping> plain = new ProjectiveMapping;
+    plain->setRectangle({500, 0}, 2000.0, 2000.0);
+    plain->setOrder(2); // the order of lines
+    _mappings->addMapping(plain);
+    RouteMapping::Style style;
+    style.context = false;
+    style.casing = style.pointRadius = 0.0;
+    upper->setStyle(style);
+    lower->setStyle(style);
+    upper->setWayPoints({{0, 0}, {1000, 0}});
+    // Made after all others.
+    lower->setWayPoints(zigzag);
+    const auto found = _mappings->mappingsAt({500, 0});
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(_mappings->routeOf(*found[0]), upper);
+    EXPECT_EQ(_mappings->routeOf(*found[1]), lower);
+    EXPECT_EQ(found[2], plain);
+    EXPECT_FALSE(_mappings->routeOf(*plain));
+}
+
+TEST_F(Route, isCopiedWithItsEffect)
+{
+    const osg::ref_ptr<RouteMapping> route = add();
+    route->setName("hike");
+    route->setWayPoints(zigzag);
+    route->setPointLayer(someLayer());
+    route->highlight(1);
+    for (const osg::CopyOp::CopyFlags flags : {osg::CopyOp::CopyFlags(osg::CopyOp::SHALLOW_COPY),
+                                               osg::CopyOp::CopyFlags(osg::CopyOp::DEEP_COPY_ALL)})
+    {
+        const osg::ref_ptr<ProjectiveMappings> copy = osg::clone(_mappings.get(), osg::CopyOp(flags));
+        ASSERT_EQ(copy->getNumRoutes(), 1u);
+        RouteMapping& other = *copy->getRoute(0);
+        EXPECT_NE(&other, route);
+        EXPECT_EQ(other.getName(), "hike");
+        EXPECT_EQ(other.getWayPoints(), zigzag);
+        EXPECT_EQ(other.highlighted(), 1u);
+        EXPECT_EQ(other.getNumMappings(), route->getNumMappings());
+        EXPECT_EQ(other.getPointLayer() == route->getPointLayer(), flags == osg::CopyOp::SHALLOW_COPY);
+        other.setWayPoints({});
+        EXPECT_EQ(route->getWayPoints(), zigzag) << "each has its own";
+    }
+}
+
+TEST_F(Route, takesNoLineThatMakesNoSense)
+{
+    using Way = RouteMapping::Way;
+    const osg::ref_ptr<RouteMapping> route = add();
+    // A leg of two strips.
+    ASSERT_TRUE(route->setWay({{{0, 0}, {500, 100}, {1000, 0}, {1000, 800}}, {0, 2, 3}, {}}));
+    EXPECT_EQ(route->legs(), 2u);
+    EXPECT_EQ(route->mappings(RouteMapping::POINTS).size(), 3u) << "no mark within a leg";
+    EXPECT_EQ(route->legAt({500, 100}), 0u);
+    EXPECT_EQ(route->legAt({900, 20}), 0u);
+    EXPECT_EQ(route->legAt({1000, 400}), 1u);
+    route->highlight(0);
+    EXPECT_EQ(route->mappings(RouteMapping::LINE_HIGHLIGHTED).size(), 2u + 2u + 1u)
+        << "strips, joins and a cap";
+    const Way good = route->getWay();
+    for (const Way& bad : {Way{{{0, 0}, {1, 0}}, {0}, {}}, Way{{{0, 0}, {1, 0}}, {1, 1}, {}},
+                           Way{{{0, 0}, {1, 0}}, {0, 2}, {}}, Way{{}, {0}, {}}, Way{{{0, 0}}, {}, {}},
+                           Way{{{0, 0}, {0, 0}}, {0, 1}, {}}, Way{{{0, 0}, {1, 0}}, {0, 1}, {{7, 45}}},
+                           Way{{{0, 0}, {6e7, 0}}, {0, 1}, {}}})
+    {
+        EXPECT_TRUE(refused([&] { return route->setWay(bad); }));
+        EXPECT_EQ(route->getWay().line, good.line);
+    }
 }
 
 TEST_F(Symbols, imagesFadeIntoEachOther)

@@ -6,6 +6,7 @@
 
 #include <osgGeoFX/mapping/LayerSequence.h>
 #include <osgGeoFX/mapping/PagedRaster.h>
+#include <osgGeoFX/mapping/RouteMapping.h>
 #include <osgGeoFX/raster/LayerPixels.h>
 #include <tools/HeightMesh.h>
 #include <tools/KmlFiles.h>
@@ -36,6 +37,7 @@ using osgGeoFX::DataLayer;
 using osgGeoFX::parseScene;
 using osgGeoFX::ProjectiveMapping;
 using osgGeoFX::ProjectiveMappings;
+using osgGeoFX::RouteMapping;
 using osgGeoFX::SceneMapping;
 using osgGeoFX::SceneMappings;
 using osgGeoFX::SceneResult;
@@ -679,21 +681,19 @@ TEST_F(SceneMappingsPlugin, OverlaysAndRoutesLieWhereTheirFilesSay)
     frame.Forward(21.31, -157.99, 0.0, x, y, z);
     EXPECT_NEAR(overlay.outline()->corners[2].x(), x, 0.1);
     EXPECT_NEAR(overlay.outline()->corners[2].y(), y, 0.1);
-    int plans = 0, strips = 0;
-    for (unsigned int i = 1; i < effect->getNumMappings(); ++i)
-    {
-        const ProjectiveMapping& mapping = *effect->getMapping(i);
-        plans += mapping.getName() == "plan" ? 1 : 0;
-        // The line of the way points: from the origin to the east, 20 m wide.
-        if (mapping.getName() != "plan" || mapping.getOrder() != 9 || mapping.getLayer()) continue;
-        ++strips;
-        frame.Forward(21.3, -157.99, 0.0, x, y, z);
-        EXPECT_NEAR(mapping.getCenter().x(), x / 2.0, 0.1);
-        EXPECT_NEAR(mapping.getV().length(), x / 2.0, 0.1);
-        EXPECT_NEAR(mapping.getU().length(), 10.0, 1e-6);
-    }
-    EXPECT_EQ(strips, 1);
-    EXPECT_EQ(plans, 8) << "line and outline, two caps each, and two marks";
+    EXPECT_EQ(effect->getNumMappings(), 1u) << "routes have mappings of their own";
+    ASSERT_EQ(effect->getNumRoutes(), 2u);
+    RouteMapping& plan = *effect->getRoute(1);
+    EXPECT_EQ(plan.getName(), "plan");
+    EXPECT_EQ(plan.getNumMappings(), 8u) << "line and outline, two caps each, and two marks";
+    EXPECT_EQ(plan.getGeographicWayPoints(), (std::vector<osg::Vec2d>{{-158.0, 21.3}, {-157.99, 21.3}}));
+    // The line of the way points: from the origin to the east, 20 m wide.
+    const ProjectiveMapping& strip = plan.mappings(RouteMapping::LINE).at(0);
+    frame.Forward(21.3, -157.99, 0.0, x, y, z);
+    EXPECT_NEAR(strip.getCenter().x(), x / 2.0, 0.1);
+    EXPECT_NEAR(strip.getV().length(), x / 2.0, 0.1);
+    EXPECT_NEAR(strip.getU().length(), 10.0, 1e-6);
+    EXPECT_EQ(strip.getOrder(), 9);
     EXPECT_TRUE(effect->mappingsAt({0.0, 500.0}).size() > 1) << "the way to the north";
     EXPECT_EQ(_scene->asGroup()->getNumChildren(), 1u) << "these ways have no heights";
     for (const bool inAir : {true, false})
@@ -716,6 +716,50 @@ TEST_F(SceneMappingsPlugin, OverlaysAndRoutesLieWhereTheirFilesSay)
         GeographicLib::Geocentric::WGS84().Forward(21.3, -157.995, 950.0, foot.x(), foot.y(), foot.z());
         EXPECT_LT((osg::Vec3d(tube->getBound().center()) - foot).length(), 10.0);
     }
+}
+
+TEST_F(SceneMappingsPlugin, ARouteTakesThePropertiesOfItsClass)
+{
+    setTerrain(0);
+    auto* const effect = effectOf<ProjectiveMappings>(sceneWith(
+        "<route color='#ff800080' width='48' order='-900' dash='300' gap='90' casingColor='#102030' "
+        "pointRadius='60' "
+        "highlightedLeg='1' enabled='false' context='true' softness='77'>"
+        "<wayPoint longitude='-158' latitude='21.3'/><wayPoint longitude='-157.99' latitude='21.3'/>"
+        "<wayPoint longitude='-157.98' latitude='21.31'/></route>",
+        "longitude='-158' latitude='21.3'"));
+    ASSERT_TRUE(effect);
+    ASSERT_EQ(effect->getNumRoutes(), 1u);
+    RouteMapping& route = *effect->getRoute(0);
+    const RouteMapping::Style style = route.getStyle();
+    EXPECT_EQ(style.halfWidth, 24.0);
+    EXPECT_EQ(style.casing, 10.0) << "twice the usual one, as the line is";
+    EXPECT_EQ(style.pointRadius, 60.0) << "as it says";
+    EXPECT_EQ(style.dash, 300.0);
+    EXPECT_EQ(style.gap, 90.0);
+    EXPECT_EQ(style.softness, 77.0);
+    EXPECT_TRUE(style.context);
+    EXPECT_EQ(osgGeoFX::packedColor({style.color.x(), style.color.y(), style.color.z()}), 0xff8000);
+    EXPECT_NEAR(style.color.w(), 128.0 / 255.0, 1e-6);
+    EXPECT_EQ(osgGeoFX::packedColor({style.casingColor.x(), style.casingColor.y(), style.casingColor.z()}),
+              0x102030);
+    EXPECT_EQ(route.highlighted(), 1u);
+    EXPECT_EQ(route.getOrder(), -900);
+    EXPECT_FALSE(route.getEnabled());
+    EXPECT_EQ(route.getNumMappings(), 0u) << "it is switched off";
+    route.setEnabled(true);
+    EXPECT_GT(route.getNumMappings(), 8u);
+    const auto expectFault = [&](const char* attributes, const char* part)
+    {
+        const std::string said = messageOf(
+            _folder.write("x.geofx", sceneWith(std::string("<route ") + attributes +
+                                               "><wayPoint longitude='-158' latitude='21.3'/><wayPoint "
+                                               "longitude='20' latitude='-21'/></route>")));
+        EXPECT_NE(said.find(part), std::string::npos) << said;
+    };
+    expectFault("", "other side of the globe");
+    expectFault("dash='-1'", "dash");
+    expectFault("order='901'", "order");
 }
 
 // A plane 500 m above the ellipsoid, over which a way keeps its height, whatever its own is called.
@@ -744,7 +788,7 @@ TEST_F(SceneMappingsPlugin, WaysAboveTheGroundAreAboveTheScenesGround)
                                    "</LineString></Placemark>"));
     auto* const effect = effectOf<ProjectiveMappings>(sceneWith("<route file='flight.kml'/>"));
     ASSERT_TRUE(effect);
-    EXPECT_GT(effect->getNumMappings(), 0u) << "it lies on the ground, too";
+    EXPECT_EQ(effect->getNumRoutes(), 1u) << "it lies on the ground, too";
     const osg::Group& group = *_scene->asGroup();
     ASSERT_EQ(group.getNumChildren(), 2u) << "the terrain and a tube";
     const auto* const tube = dynamic_cast<const osg::MatrixTransform*>(group.getChild(1));

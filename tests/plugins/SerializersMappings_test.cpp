@@ -3,6 +3,7 @@
 //
 // What mappings have beside properties, through files and copies: layers, tables, and who shares what.
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/mapping/RouteMapping.h>
 #include <plugins/SerializerFixture.h>
 #include <plugins/SerializerSamples.h>
 #include <tools/RandomSamples.h>
@@ -27,6 +28,7 @@ using osgGeoFX::ColorTransfer;
 using osgGeoFX::DataLayer;
 using osgGeoFX::ProjectiveMapping;
 using osgGeoFX::ProjectiveMappings;
+using osgGeoFX::RouteMapping;
 using SerializersMappings = geofx::test::Serializers;
 
 void expectSameLayer(DataLayer* actual, DataLayer* expected)
@@ -182,6 +184,77 @@ TEST_F(SerializersMappings, MappingsComeBackInTheirOrderAndShareWhatTheyShared)
     const osg::ref_ptr<ProjectiveMappings> deep = osg::clone(mappings.get(), osg::CopyOp::DEEP_COPY_ALL);
     expectSameMappings(*deep, *mappings);
     EXPECT_NE(deep->getMapping(0), mappings->getMapping(0));
+}
+
+void expectSameRoute(RouteMapping& actual, RouteMapping& expected)
+{
+    EXPECT_EQ(actual.getName(), expected.getName());
+    expectSame(actual, expected);
+    EXPECT_EQ(actual.getWay().line, expected.getWay().line);
+    EXPECT_EQ(actual.getWay().wayPoints, expected.getWay().wayPoints);
+    EXPECT_EQ(actual.getWay().degrees, expected.getWay().degrees);
+    expectSameLayer(actual.getPointLayer(), expected.getPointLayer());
+    EXPECT_EQ(actual.getNumMappings(), expected.getNumMappings());
+}
+
+TEST_F(SerializersMappings, RoutesComeBackWithAllThatTheyHaveAndMakeTheirMappingsAnew)
+{
+    const osg::ref_ptr<ProjectiveMappings> mappings = threeMappings();
+    mappings->setGeodeticOrigin(0.5, 0.7);
+    const osg::EllipsoidModel earth;
+    const osg::ref_ptr<RouteMapping> hike = new RouteMapping;
+    mappings->addRoute(hike);
+    hike->setName("a hike");
+    alter(*hike);
+    std::string error;
+    ASSERT_TRUE(hike->setProperties({{"enabled", 1.0}, {"highlightedLeg", 1.0}}, error)) << error;
+    ASSERT_TRUE(hike->setGeographicWayPoints({{27.1, 40.2}, {28.123456789012345, 40.0}, {33.0, 41.0}}, &earth,
+                                             nullptr, error))
+        << error;
+    hike->setPointLayer(mappings->getMapping(0)->getLayer());
+    const osg::ref_ptr<RouteMapping> plain = new RouteMapping;
+    mappings->addRoute(plain);
+    plain->setWayPoints({{0, 1.0 / 3.0}, {1000, 0}, {1000, 800}});
+    mappings->addRoute(new RouteMapping);
+    ASSERT_GT(hike->getNumMappings(), 10u);
+    ASSERT_GT(hike->getWay().line.size(), 3u) << "legs of several strips";
+    for (const std::string& format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<ProjectiveMappings> read = throughFile(*mappings, format);
+        ASSERT_TRUE(read);
+        expectSameMappings(*read, *mappings);
+        ASSERT_EQ(read->getNumRoutes(), 3u);
+        for (unsigned int i = 0; i < 3; ++i)
+            expectSameRoute(*read->getRoute(i), *mappings->getRoute(i));
+        EXPECT_EQ(read->getRoute(0)->getPointLayer(), read->getMapping(0)->getLayer())
+            << "one layer, as before";
+        // It can be edited.
+        EXPECT_TRUE(read->getRoute(1)->setWayPoints({{0, 0}, {50, 50}}));
+        EXPECT_EQ(read->getRoute(1)->mappings(RouteMapping::POINTS).size(), 2u);
+        // Mappings are not written: the files has three and no more.
+        const std::string content = contentOf(_folder / ("object" + format));
+        std::size_t count = 0;
+        const std::string name = "osgGeoFX::ProjectiveMapping";
+        for (std::size_t at = content.find(name); at != std::string::npos; at = content.find(name, at + 1))
+            count += content.compare(at, name.size() + 1, name + "s") != 0;
+        // In XML at the end, too.
+        if (format != ".osgx")
+        {
+            EXPECT_EQ(count, 3u);
+        }
+    }
+    // A file that somebody has spoilt has the rest.
+    _watch.messagesOf(
+        [&]
+        {
+            const auto spoilt =
+                fromLines("osgGeoFX::RouteMapping", "  Dash 5\n  Way 2 0 {\n    0 0 1\n    6e7 0 1\n  }\n");
+            ASSERT_TRUE(spoilt);
+            const auto& route = dynamic_cast<RouteMapping&>(*spoilt);
+            EXPECT_EQ(route.getStyle().dash, 5.0);
+            EXPECT_TRUE(route.getWayPoints().empty());
+        });
 }
 
 TEST_F(SerializersMappings, TwoEffectsMayHaveOneMapping)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The list of mappings, with events made by hand, in a viewer that never draws.
+#include <osgGeoFX/mapping/RouteMapping.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/viewer/MappingPanel.h>
 #include <tools/NotifyWatch.h>
@@ -517,4 +518,41 @@ TEST_F(MappingPanelTest, DrawsInsideItsBoxAndOnlyWhatIsNew)
     frame();
     EXPECT_NE(overlay().getNodeMask(), 0u);
     EXPECT_EQ(_viewer.getNumSlaves(), 1u);
+}
+
+TEST_F(MappingPanelTest, RoutesAreRowsAboveMappingsOfTheirOrder)
+{
+    showThree();
+    const osg::ref_ptr<RouteMapping> route = new RouteMapping;
+    route->setWayPoints({{-300, 100}, {300, 100}});
+    _mappings->addRoute(route);
+    press(Event::KEY_Home);
+    const auto rowOf = [&]
+    {
+        for (const std::string& line : _panel->lines())
+            if (line.find("\troute") != std::string::npos) return line;
+        return std::string();
+    };
+    ASSERT_EQ(_panel->lines().size(), 5u) << "a row, and none for its mappings";
+    EXPECT_EQ(_panel->lines()[1], "on\troute 1\t0\t100 %\troute");
+    EXPECT_FALSE(_panel->selected()) << "it is no mapping";
+    press(Event::KEY_Return);
+    EXPECT_FALSE(route->getEnabled());
+    EXPECT_EQ(route->getNumMappings(), 0u);
+    press(Event::KEY_Return);
+    press(Event::KEY_Left);
+    press('.');
+    EXPECT_EQ(route->getOpacity(), 0.95);
+    press('-');
+    EXPECT_EQ(route->getOrder(), -1);
+    route->setName("hike");
+    EXPECT_EQ(rowOf(), "on\thike\t-1\t95 %\troute");
+    EXPECT_EQ(_panel->lines()[4], rowOf()) << "the lowest now";
+    // A click on its line, above the mappings.
+    route->setOrder(0);
+    press(Event::KEY_End);
+    EXPECT_TRUE(_panel->selected());
+    EXPECT_TRUE(click(640.0, 460.0, Event::MODKEY_ALT));
+    press(Event::KEY_Return);
+    EXPECT_FALSE(route->getEnabled());
 }

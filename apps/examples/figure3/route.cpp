@@ -127,7 +127,8 @@ Shot route(Island& island)
         simplify(way, 0, way.size() - 1, 45.0, points);
     }
 
-    RouteMapping* route = island.keep(new RouteMapping(*island.mappings));
+    const osg::ref_ptr<RouteMapping> route = new RouteMapping;
+    island.mappings->addRoute(route);
     RouteMapping::Style style;
     style.halfWidth = 48.0;
     style.casing = 22.0;

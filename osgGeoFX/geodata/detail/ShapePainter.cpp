@@ -138,9 +138,10 @@ void spread(osg::Image& image)
 class ShapePainter::Work
 {
 public:
-    Work(const osg::Vec2d& low, const osg::Vec2d& high, int columns, int rows)
-        : _low(low), _scale(columns / (high.x() - low.x()), rows / (high.y() - low.y())), _columns(columns),
-          _rows(rows), _surface(makeSurface(columns, rows)), _context(cairo_create(_surface.get()))
+    Work(const osg::Vec2d& low, const osg::Vec2d& high, int columns, int rows, double coarseness)
+        : _texelsOfPixel(texelsOfPixel / coarseness), _low(low),
+          _scale(columns / (high.x() - low.x()), rows / (high.y() - low.y())), _columns(columns), _rows(rows),
+          _surface(makeSurface(columns, rows)), _context(cairo_create(_surface.get()))
     {
         cairo_set_fill_rule(_context.get(), CAIRO_FILL_RULE_EVEN_ODD);
         cairo_set_tolerance(_context.get(), 0.05);
@@ -149,7 +150,7 @@ public:
     void draw(const VectorShape& shape, const ShapePaint& paint)
     {
         const double scale = std::sqrt(_scale.x() * _scale.y());
-        const double pixel = texelsOfPixel / scale / 0.00028;
+        const double pixel = _texelsOfPixel / scale / 0.00028;
         if (pixel < paint.leastScale || pixel >= paint.mostScale) return;
         const bool fills = paint.fill && shape.area;
         if (fills && !paint.stroke && addTiny(shape, *paint.fill)) return;
@@ -157,7 +158,7 @@ public:
         for (const Line& part : shape.parts)
             parts.push_back(inTexels(part));
         if (fills && !addTiny(shape, *paint.fill)) fill(parts, *paint.fill);
-        if (paint.stroke) stroke(parts, shape.area, *paint.stroke, paint.metres ? scale : texelsOfPixel);
+        if (paint.stroke) stroke(parts, shape.area, *paint.stroke, paint.metres ? scale : _texelsOfPixel);
     }
 
     osg::ref_ptr<osg::Image> finish()
@@ -322,6 +323,7 @@ private:
         cairo_stroke(_context.get());
     }
 
+    const double _texelsOfPixel;
     const osg::Vec2d _low, _scale; ///< metres; texels in a metre
     const int _columns, _rows;
     const Surface _surface;
@@ -329,8 +331,9 @@ private:
     std::vector<osg::Vec4> _tiny; ///< of the texels, rows from above, colors times alpha
 };
 
-ShapePainter::ShapePainter(const osg::Vec2d& low, const osg::Vec2d& high, int columns, int rows)
-    : _work(std::make_unique<Work>(low, high, columns, rows))
+ShapePainter::ShapePainter(const osg::Vec2d& low, const osg::Vec2d& high, int columns, int rows,
+                           double coarseness)
+    : _work(std::make_unique<Work>(low, high, columns, rows, coarseness))
 {
 }
 

@@ -20,8 +20,9 @@ public:
     /// A tile's texel is a pixel of the screen where the tile is seen the nearest, or down to half of one: lengths in pixels are those in the middle.
     static constexpr double texelsOfPixel = 1.41;
 
-    /// The rectangle of the plane that the picture shows, metres. Throws BuildError where there is no memory.
-    ShapePainter(const osg::Vec2d& low, const osg::Vec2d& high, int columns, int rows);
+    /// The rectangle of the plane that the picture shows, metres. `coarseness`: RasterTiles::readCoarser(). Throws BuildError where there is no memory.
+    ShapePainter(const osg::Vec2d& low, const osg::Vec2d& high, int columns, int rows,
+                 double coarseness = 1.0);
     ~ShapePainter();
     ShapePainter(const ShapePainter&) = delete;
     ShapePainter& operator=(const ShapePainter&) = delete;

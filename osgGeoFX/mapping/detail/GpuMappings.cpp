@@ -26,10 +26,10 @@ MappingRecords::Sources sourcesOf(ProjectiveMapping& mapping)
 
 } // namespace
 
-void GpuMappings::add(ProjectiveMapping& mapping)
+void GpuMappings::add(ProjectiveMapping& mapping, std::uint64_t rank)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    _records.add(mapping);
+    _records.add(mapping, rank);
 }
 
 void GpuMappings::remove(ProjectiveMapping& mapping)

@@ -50,7 +50,8 @@ public:
     using PositionOf = MappingRecords::PositionOf;
     using Wanted = MappingRecords::Wanted;
 
-    void add(ProjectiveMapping& mapping);
+    /// `rank`: see MappingRecords::add().
+    void add(ProjectiveMapping& mapping, std::uint64_t rank = 0);
     void remove(ProjectiveMapping& mapping);
     void clear();
     void change(ProjectiveMapping& mapping);

@@ -40,11 +40,11 @@ MappingRecords::MappingRecords(MappingChanges& changes, const LayerResidency& la
 {
 }
 
-void MappingRecords::add(ProjectiveMapping& mapping)
+void MappingRecords::add(ProjectiveMapping& mapping, std::uint64_t rank)
 {
     Item& item = _items[&mapping];
     item.mapping = &mapping;
-    item.sequence = _sequence += mostParts;
+    item.sequence = rank > 0 ? rank : _sequence += mostParts;
     _changes.mappings.insert(&mapping);
 }
 

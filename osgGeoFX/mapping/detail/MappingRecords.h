@@ -42,7 +42,8 @@ public:
     /// All three must outlive this object.
     MappingRecords(MappingChanges& changes, const LayerResidency& layers, const TableRows& tables);
 
-    void add(ProjectiveMapping& mapping);
+    /// `rank`: its place among the mappings of its order, from 2^47 on (RankOfRoute); 0: above those that were added so before.
+    void add(ProjectiveMapping& mapping, std::uint64_t rank = 0);
     /// Adds a mapping that is drawn in the place of another one, which was added; with others, in no order. The other one shows
     /// again when the last of its parts is removed. False if it has too many.
     bool addPart(ProjectiveMapping& part, ProjectiveMapping& whole);

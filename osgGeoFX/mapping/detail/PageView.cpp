@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace osgGeoFX
@@ -25,6 +26,27 @@ void include(const osg::Vec3d& point, osg::Vec3d& low, osg::Vec3d& high)
         high[i] = std::max(high[i], point[i]);
     }
 }
+
+/// The least distance from the eye of what is in a ball, as it is drawn, metres: one at which a plain view shows it no smaller. It is that of
+/// DeformationChain::lodDistance() without the factors of Deformation::detail(), which are for meshes.
+double leastDistance(const DeformationChain& chain, const Ball& ball, const osg::Vec3d& eye)
+{
+    Ball current = ball;
+    double stretch = 1.0;
+    for (const auto& snapshot : chain.snapshots())
+    {
+        if (snapshot->reach(current) == DeformationSnapshot::Reach::Identity) continue;
+        if (const std::optional<double> distance = snapshot->viewDistance(current))
+            return std::max(*distance, 0.0) / stretch;
+        stretch *= snapshot->lipschitz(current);
+        current = snapshot->bound(current);
+    }
+    return std::max((current.center - eye).length() - current.radius, 0.0) / stretch;
+}
+
+/// Balls so much smaller than their distance tell it well enough.
+constexpr double smallBall = 0.1;
+constexpr int mostCuts = 10;
 
 } // namespace
 
@@ -134,12 +156,35 @@ bool PageView::shows(const SeenGround& ground)
     return !_visibility.outOfSight(_pass.chain, eyeBox(low, high), _visibility.all());
 }
 
+void PageView::approach(const osg::Vec3d& low, const osg::Vec3d& high, int cuts, double& least) const
+{
+    // A large box's ball reaches far beyond it, and comes much nearer.
+    const Ball ball = eyeBox(low, high).ball();
+    const double distance = leastDistance(_pass.chain, ball, _eye);
+    if (distance >= least) return;
+    if (cuts == 0 || ball.radius <= smallBall * distance)
+    {
+        least = distance;
+        return;
+    }
+    const osg::Vec3d size = high - low;
+    const int axis = size.x() >= size.y() && size.x() >= size.z() ? 0 : size.y() >= size.z() ? 1 : 2;
+    osg::Vec3d end = high, start = low;
+    end[axis] = start[axis] = (low[axis] + high[axis]) / 2.0;
+    // The nearer half first, which may spare the other one.
+    const bool firstIsNearer = leastDistance(_pass.chain, eyeBox(low, end).ball(), _eye) <
+                               leastDistance(_pass.chain, eyeBox(start, high).ball(), _eye);
+    if (firstIsNearer) approach(low, end, cuts - 1, least);
+    approach(start, high, cuts - 1, least);
+    if (!firstIsNearer) approach(low, end, cuts - 1, least);
+}
+
 double PageView::texel(const SeenGround& ground)
 {
     if (_frame.pixel <= 0.0) return _frame.pixelAnywhere;
     osg::Vec3d low, high;
     bound(ground, low, high);
-    double distance = 0.0;
+    double distance = DBL_MAX;
     if (_pass.chain.empty())
     {
         const osg::Vec3d eye = _eye * _frame.fromEye;
@@ -149,10 +194,7 @@ double PageView::texel(const SeenGround& ground)
         distance = to.length();
     }
     else
-    {
-        const Ball ball = eyeBox(low, high).ball();
-        distance = _pass.chain.lodDistance(ball, _eye) - ball.radius;
-    }
+        approach(low, high, mostCuts, distance);
     return std::max(distance, nearest) * _frame.pixel + _frame.pixelAnywhere;
 }
 

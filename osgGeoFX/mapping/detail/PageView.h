@@ -74,6 +74,8 @@ private:
     /// A box in the frame around a part of the ground.
     void bound(const SeenGround& ground, osg::Vec3d& low, osg::Vec3d& high) const;
     EyeBox eyeBox(const osg::Vec3d& low, const osg::Vec3d& high) const;
+    /// Lowers a distance to the least one of a box as it is drawn, cut in halves so many times at most.
+    void approach(const osg::Vec3d& low, const osg::Vec3d& high, int cuts, double& least) const;
 
     const PlaneBox _mapped;
     const IsEmpty _isEmpty;

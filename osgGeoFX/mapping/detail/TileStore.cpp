@@ -11,7 +11,8 @@
 namespace osgGeoFX
 {
 
-TileStore::TileStore(RasterTiles* tiles, int threads, std::size_t most) : _tiles(tiles), _most(most)
+TileStore::TileStore(RasterTiles* tiles, int threads, std::size_t most)
+    : _tiles(tiles), _remakes(tiles->hasLengthsInPixels()), _most(most)
 {
     for (int i = 0; i < threads; ++i)
         _threads.emplace_back([this] { work(); });
@@ -41,10 +42,11 @@ std::string TileStore::faultOf(const osg::Image& image, int columns, int rows, D
            "; RasterTiles::read() must make it so.";
 }
 
-osg::ref_ptr<DataLayer> TileStore::read(const MappingPage& page, std::string& error) const
+osg::ref_ptr<DataLayer> TileStore::read(const MappingPage& page, double coarseness, std::string& error) const
 {
     const PlaneBox square = page.square();
-    const osg::ref_ptr<osg::Image> image = _tiles->read(square.low, square.high, side, side, error);
+    const osg::ref_ptr<osg::Image> image =
+        _tiles->readCoarser(square.low, square.high, side, side, coarseness, error);
     if (!image) return nullptr;
     error = faultOf(*image, side, side, _tiles->kind());
     if (!error.empty()) return nullptr;
@@ -55,7 +57,7 @@ osg::ref_ptr<DataLayer> TileStore::read(const MappingPage& page, std::string& er
 
 osg::ref_ptr<DataLayer> TileStore::readNow(const MappingPage& page, std::string& error)
 {
-    const osg::ref_ptr<DataLayer> layer = read(page, error);
+    const osg::ref_ptr<DataLayer> layer = read(page, 1.0, error);
     if (!layer) return nullptr;
     const std::lock_guard<std::mutex> lock(_mutex);
     Tile& tile = _all[page];
@@ -72,13 +74,16 @@ void TileStore::want(const std::vector<MappingPage>& pages)
         ++_time;
         _queue.clear();
         _wanted = std::set<MappingPage>(pages.begin(), pages.end());
-        for (auto page = pages.rbegin(); page != pages.rend(); ++page)
+        for (const bool again : {true, false})
         {
-            const auto found = _all.find(*page);
-            if (found == _all.end())
-                _queue.push_back(*page);
-            else
-                found->second.used = _time;
+            for (auto page = pages.rbegin(); page != pages.rend(); ++page)
+            {
+                const auto found = _all.find(*page);
+                if (found != _all.end()) found->second.used = _time;
+                if (again ? found != _all.end() && found->second.layer && isStale(found->second)
+                          : found == _all.end())
+                    _queue.push_back(*page);
+            }
         }
     }
     _news.notify_all();
@@ -93,11 +98,18 @@ osg::ref_ptr<DataLayer> TileStore::find(const MappingPage& page)
     return found->second.layer;
 }
 
-bool TileStore::hasFailed(const MappingPage& page) const
+void TileStore::setCoarseness(double coarseness)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _coarseness = coarseness;
+}
+
+bool TileStore::isDone(const MappingPage& page) const
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     const auto found = _all.find(page);
-    return found != _all.end() && found->second.failed;
+    if (found == _all.end()) return false;
+    return found->second.failed || (found->second.layer && !isStale(found->second));
 }
 
 TileStore::Count TileStore::count() const
@@ -121,17 +133,23 @@ void TileStore::work()
         const MappingPage page = _queue.back();
         _queue.pop_back();
         const auto [entry, isNew] = _all.try_emplace(page);
-        if (!isNew) continue; // another thread reads it
+        if (entry->second.reading || (!isNew && !isStale(entry->second))) continue; // another thread reads it
         entry->second.used = _time;
+        entry->second.reading = true;
+        const double coarseness = _coarseness;
         lock.unlock();
         std::string error;
-        const osg::ref_ptr<DataLayer> layer = read(page, error);
+        const osg::ref_ptr<DataLayer> layer = read(page, coarseness, error);
         lock.lock();
         Tile& tile = _all[page];
-        tile.layer = layer;
+        tile.coarseness = coarseness;
+        tile.reading = false;
         if (layer)
+        {
+            tile.layer = layer;
             ++_read;
-        else
+        }
+        else if (!tile.layer)
         {
             tile.failed = true;
             if (_failed++ == 0) OSG_WARN << "osgGeoFX: PagedRaster: " << error << std::endl;

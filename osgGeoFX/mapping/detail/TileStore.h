@@ -38,6 +38,9 @@ public:
 
     /// Reads a tile now, and keeps it for good. Null, with a sentence in `error`, if it cannot.
     osg::ref_ptr<DataLayer> readNow(const MappingPage& page, std::string& error);
+    /// From now on tiles are read for this (RasterTiles::readCoarser()). Of a raster that has lengths in pixels, those in memory are read again
+    /// where they are wanted, after all that are missing, and stay until then.
+    void setCoarseness(double coarseness);
     /// From now on these are read, the first ones first, and those that were wanted before are not.
     void want(const std::vector<MappingPage>& pages);
     /// A tile that is in memory; null for others. What is asked for stays longer.
@@ -49,22 +52,26 @@ public:
         std::size_t read = 0;
     };
     Count count() const;
-    /// Whether a tile cannot be read.
-    bool hasFailed(const MappingPage& page) const;
+    /// Whether a tile is in memory as it should be, or cannot be read.
+    bool isDone(const MappingPage& page) const;
 
 private:
     struct Tile
     {
-        osg::ref_ptr<DataLayer> layer; ///< null while it is read, and if it has failed
+        osg::ref_ptr<DataLayer> layer; ///< null while it is read for the first time, and if it has failed
+        double coarseness = 1.0;       ///< for which it was read
+        bool reading = false;
         std::uint64_t used = 0;
         bool kept = false;
         bool failed = false;
     };
-    osg::ref_ptr<DataLayer> read(const MappingPage& page, std::string& error) const;
+    osg::ref_ptr<DataLayer> read(const MappingPage& page, double coarseness, std::string& error) const;
+    bool isStale(const Tile& tile) const { return tile.coarseness != _coarseness && _remakes; }
     void work();
     void evict();
 
     const osg::ref_ptr<RasterTiles> _tiles;
+    const bool _remakes; ///< tiles when the coarseness changes
     const std::size_t _most;
     mutable std::mutex _mutex;
     std::condition_variable _news;
@@ -73,6 +80,7 @@ private:
     std::set<MappingPage> _wanted;
     std::map<MappingPage, Tile> _all;
     std::uint64_t _time = 0;
+    double _coarseness = 1.0;
     std::size_t _read = 0;
     int _failed = 0;
     std::vector<std::thread> _threads;
