@@ -4,6 +4,9 @@
 
 #include <osgGeoFX/effect/Deformation.h>
 
+#include <osg/Geometry>
+#include <osg/observer_ptr>
+
 #include <atomic>
 #include <string>
 
@@ -69,6 +72,25 @@ public:
 
 protected:
     ~TessellatedSnapshot() = default;
+};
+
+/** What a scene puts into the render graph in the place of a geometry whose triangles are divided. It shares all arrays, and has
+    no parents. Whoever reads render graphs asks originalOf().
+    @ingroup effect */
+class OSGGEOFX_EXPORT PatchGeometry : public osg::Geometry
+{
+public:
+    /// Without primitives yet.
+    explicit PatchGeometry(osg::Geometry& original);
+
+    /// The geometry that a drawable of the render graph stands for; the drawable itself as a rule.
+    static osg::Drawable& originalOf(osg::Drawable& drawable);
+
+protected:
+    ~PatchGeometry() override;
+
+private:
+    osg::observer_ptr<osg::Geometry> _original;
 };
 
 } // namespace osgGeoFX

@@ -3,6 +3,7 @@
 #include <osgGeoFX/scene/detail/PatchTwins.h>
 
 #include <osgGeoFX/effect/RigidParts.h>
+#include <osgGeoFX/effect/Tessellation.h>
 
 #include <iterator>
 #include <typeinfo>
@@ -45,15 +46,12 @@ bool PatchTwins::mayHave(const osg::Drawable& drawable)
     return geometry->getNumPrimitiveSets() > 0;
 }
 
-osg::ref_ptr<osg::Geometry> PatchTwins::make(const osg::Geometry& geometry)
+osg::ref_ptr<osg::Geometry> PatchTwins::make(osg::Geometry& geometry)
 {
     if (!mayHave(geometry)) return nullptr;
     const DrawableTriangles mesh(geometry);
     if (mesh.positions().empty() || mesh.setEnds().size() != geometry.getNumPrimitiveSets()) return nullptr;
-    osg::ref_ptr<osg::Geometry> twin = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
-    // The arrays belong to another geometry, which may be drawing them. Their buffers stay as they are.
-    twin->setUseDisplayList(false);
-    twin->removePrimitiveSet(0, twin->getNumPrimitiveSets());
+    osg::ref_ptr<osg::Geometry> twin = new PatchGeometry(geometry);
     // One for each of the geometry's, since arrays may have a value for each.
     std::size_t corner = 0;
     for (const std::size_t end : mesh.setEnds())

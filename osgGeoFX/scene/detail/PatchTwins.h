@@ -38,7 +38,7 @@ private:
         osg::ref_ptr<osg::Geometry> twin; ///< null where there is none
         unsigned int idle = 0;            ///< frames without use
     };
-    static osg::ref_ptr<osg::Geometry> make(const osg::Geometry& geometry);
+    static osg::ref_ptr<osg::Geometry> make(osg::Geometry& geometry);
 
     std::unordered_map<const osg::Geometry*, Entry> _entries;
 };
