@@ -89,7 +89,7 @@ public:
     /// contexts all must have OpenGL 4; else finer levels are drawn, as without. The first frame of a context is drawn without.
     bool setTessellation(bool on) { return assign("tessellation", on ? 1.0 : 0.0); }
     bool getTessellation() const { return _tessellation; }
-    /// How far a divided triangle may be from the curve, pixels, 0.1…16. Default: 0.5. An edge has 64 parts at most.
+    /// How far a divided triangle may be from the curve, pixels, 0.1…16. Default: 0.5. An edge has 15 parts at most.
     bool setTessellationPixels(double pixels) { return assign("tessellationPixels", pixels); }
     double getTessellationPixels() const { return _tessellationPixels; }
 

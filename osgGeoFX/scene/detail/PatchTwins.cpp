@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/Tessellation.h>
 
+#include <algorithm>
 #include <iterator>
 #include <typeinfo>
 
@@ -16,6 +17,15 @@ namespace
 
 /// After so many frames without use a twin is made anew when it is wanted.
 constexpr unsigned int mostIdle = 300;
+
+bool hasValuesOfSets(const osg::Geometry& geometry)
+{
+    osg::Geometry::ArrayList arrays;
+    geometry.getArrayList(arrays);
+    return std::any_of(arrays.begin(), arrays.end(),
+                       [](const auto& each)
+                       { return each && each->getBinding() == osg::Array::BIND_PER_PRIMITIVE_SET; });
+}
 
 bool isOfTriangles(GLenum mode)
 {
@@ -39,7 +49,7 @@ bool PatchTwins::mayHave(const osg::Drawable& drawable)
 {
     const osg::Geometry* geometry = drawable.asGeometry();
     if (!geometry || typeid(*geometry) != typeid(osg::Geometry) || geometry->getDrawCallback() ||
-        DrawableTriangles::instanced(*geometry) || RigidParts::of(drawable))
+        DrawableTriangles::instanced(*geometry) || RigidParts::of(drawable) || hasValuesOfSets(*geometry))
         return false;
     for (unsigned int i = 0; i < geometry->getNumPrimitiveSets(); ++i)
         if (!isOfTriangles(geometry->getPrimitiveSet(i)->getMode())) return false;
@@ -50,21 +60,14 @@ osg::ref_ptr<osg::Geometry> PatchTwins::make(osg::Geometry& geometry)
 {
     if (!mayHave(geometry)) return nullptr;
     const DrawableTriangles mesh(geometry);
-    if (mesh.positions().empty() || mesh.setEnds().size() != geometry.getNumPrimitiveSets()) return nullptr;
+    if (mesh.positions().empty()) return nullptr;
     osg::ref_ptr<osg::Geometry> twin = new PatchGeometry(geometry);
-    // One for each of the geometry's, since arrays may have a value for each.
-    std::size_t corner = 0;
-    for (const std::size_t end : mesh.setEnds())
-    {
-        const auto from = mesh.corners().begin() + static_cast<std::ptrdiff_t>(corner);
-        const auto to = mesh.corners().begin() + static_cast<std::ptrdiff_t>(end);
-        corner = end;
-        const osg::ref_ptr<osg::DrawElementsUInt> indices = new osg::DrawElementsUInt(GL_PATCHES, from, to);
-        twin->addPrimitiveSet(indices);
-        // OSG gives the buffer to the next twin of the same size.
-        if (osg::ElementBufferObject* buffer = indices->getElementBufferObject())
-            buffer->setUsage(GL_DYNAMIC_DRAW);
-    }
+    const osg::ref_ptr<osg::DrawElementsUInt> indices =
+        new osg::DrawElementsUInt(GL_PATCHES, mesh.corners().begin(), mesh.corners().end());
+    twin->addPrimitiveSet(indices);
+    // OSG gives the buffer to the next twin of the same size.
+    if (osg::ElementBufferObject* buffer = indices->getElementBufferObject())
+        buffer->setUsage(GL_DYNAMIC_DRAW);
     return twin;
 }
 

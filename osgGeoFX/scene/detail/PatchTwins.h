@@ -19,7 +19,7 @@ class PatchTwins
 {
 public:
     /// Whether a drawable can have a twin: an osg::Geometry and no other class, of nothing but triangles (strips, fans and quads are
-    /// some), without instances, draw callbacks or things that keep their shape (RigidParts).
+    /// some), without instances, draw callbacks, values for each primitive set, or things that keep their shape (RigidParts).
     static bool mayHave(const osg::Drawable& drawable);
 
     /// Null where there is none.
