@@ -66,7 +66,7 @@ int DividedTriangles::parts(const DeformationChain& chain, osg::Vec3d from, osg:
     }
     if (!(sag.x() > 0.0 || sag.y() > 0.0)) return 1;
     constexpr double share = 1e-4, most = 15.0,
-                     sliding = 4.0; // as stages/tessellation.tesc.glsl and bendview.sag.glsl have them
+                     sliding = 2.0; // as stages/tessellation.tesc.glsl and bendview.sag.glsl have them
     const double near = std::min(from.length(), to.length()), far = std::max(from.length(), to.length());
     const double allowed = share * std::max({near - sag.x() - sag.y(), 0.05 * far, 1e-3});
     return static_cast<int>(std::ceil(
