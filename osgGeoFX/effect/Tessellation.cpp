@@ -11,6 +11,8 @@ PatchGeometry::PatchGeometry(osg::Geometry& original)
     // The arrays belong to another geometry, which may be drawing them. Their buffers stay as they are.
     setUseDisplayList(false);
     removePrimitiveSet(0, getNumPrimitiveSets());
+    // Whoever draws it takes the original's, which may change.
+    setStateSet(nullptr);
 }
 
 PatchGeometry::~PatchGeometry() = default;

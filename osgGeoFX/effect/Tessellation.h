@@ -75,7 +75,7 @@ protected:
 };
 
 /** What a scene puts into the render graph in the place of a geometry whose triangles are divided. It shares all arrays, and has
-    no parents. Whoever reads render graphs asks originalOf().
+    no parents and no state set. Whoever reads render graphs asks originalOf().
     @ingroup effect */
 class OSGGEOFX_EXPORT PatchGeometry : public osg::Geometry
 {

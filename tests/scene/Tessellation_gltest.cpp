@@ -14,6 +14,7 @@
 
 #include <tools/SmoothTexture.h>
 
+#include <osg/ColorMask>
 #include <osg/Fog>
 #include <osg/Geometry>
 #include <osg/Material>
@@ -631,6 +632,14 @@ TEST_F(Tessellation, GeometryThatChangesIsDividedAsItIs)
     EXPECT_FALSE(imagesMatch(*whole, *half, {}));
     // As if it had been so from the beginning.
     EXPECT_TRUE(imagesMatch(*half, *render(makeScene(bend, ground)), {}));
+    for (unsigned int row = 0; row < ground->getNumChildren(); ++row)
+        ground->getChild(row)->getOrCreateStateSet()->setAttribute(
+            new osg::ColorMask(true, false, true, true));
+    const osg::ref_ptr<osg::Image> masked = render(scene);
+    EXPECT_FALSE(imagesMatch(*half, *masked, {}));
+    scene->setCompensation(false);
+    EXPECT_TRUE(imagesMatch(*masked, *render(scene), {}));
+    EXPECT_TRUE(imagesMatch(*masked, *render(makeScene(bend, ground)), {}));
 }
 
 TEST_F(Tessellation, PickingFindsWhatIsDrawn)

@@ -591,11 +591,14 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
             look = _looks.lookFor(drawable, *_currentStateGraph);
         if (!look) look = _looks.followingOf(_mode.deformation.program);
         if (look) pushStateSet(look);
-        const osg::StateSet* own = drawable.getStateSet();
+        osg::StateSet* const ofTwin = twin ? drawable.getStateSet() : nullptr;
+        if (ofTwin) pushStateSet(ofTwin);
+        const osg::StateSet* own = twin ? nullptr : drawable.getStateSet();
         const osgUtil::StateGraph* graph = own ? _currentStateGraph->find_or_insert(own) : _currentStateGraph;
         const bool empty = graph->leaves_empty();
         CullVisitor::apply(twin ? *twin : drawable);
         if (empty && !graph->leaves_empty()) _ownGraphs.push_back(graph);
+        if (ofTwin) popStateSet();
         if (look) popStateSet();
         if (twin) popStateSet();
         drawCompanions(drawable, getModelViewMatrix(), 0.0);
@@ -630,10 +633,10 @@ void CompensatingCullVisitor::beginPatches(osg::Program& program, const osg::Vie
 
 osg::Geometry* CompensatingCullVisitor::divided(osg::Drawable& drawable, osg::StateSet*& look)
 {
-    if (!_task.tessellating || _mode.chain->empty() || _mode.nearer != 1.0 || !PatchTwins::mayHave(drawable))
-        return nullptr;
+    if (!_task.tessellating || _mode.chain->empty() || _mode.nearer != 1.0) return nullptr;
     const osg::BoundingBox& bounds = drawable.getBoundingBox();
-    if (!bounds.valid() || !DividedTriangles::within(*_mode.chain, EyeBox::of(bounds, viewMatrix())))
+    if (!bounds.valid() || !DividedTriangles::within(*_mode.chain, EyeBox::of(bounds, viewMatrix())) ||
+        !PatchTwins::mayHave(drawable))
         return nullptr;
     osg::Geometry* const twin = _twins.of(*drawable.asGeometry());
     // Without a look an own program draws it.
