@@ -38,6 +38,7 @@
 #include <osgGeoFX/effect/ScenePass.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/SurfaceEffect.h>
+#include <osgGeoFX/effect/Tessellation.h>
 #include <osgGeoFX/effect/TextureUnits.h>
 #include <osgGeoFX/effect/ViewGeometry.h>
 

@@ -14,6 +14,7 @@
 #include "TownTerrain.h"
 #include "WorkFolder.h"
 
+#include <osgGeoFX/deformation/PerspectiveBend.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
@@ -171,6 +172,52 @@ public:
         for (const Figure& figure : sameTiles(each, *effect, *tiles))
             figures.push_back(figure);
         return figures;
+    }
+
+    /// Finer levels in the zone, as they are without OpenGL 4, against levels that are none the finer, and divided triangles.
+    Figure tessellation(const Case& each)
+    {
+        announce(std::string("dividing the triangles of the ") + each.what);
+        std::string error;
+        const osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::parseEffect(each.effect, error);
+        auto* bend = dynamic_cast<osgGeoFX::PerspectiveBend*>(effect.get());
+        if (!bend) throw BenchError(error);
+        osg::Matrixd matrix;
+        if (!each.place.viewMatrix(*_scene.reference, matrix))
+            throw BenchError("The terrain database has no place for the views; take one that covers Oahu.");
+        _view->look(matrix);
+        const auto divide = [&](bool on)
+        {
+            bend->setTessellation(on);
+            bend->setTransitionDetail(on ? 1.0 : 2.0);
+        };
+        _scene.effects->addEffect(bend);
+        divide(false);
+        const OffscreenView::Drawn finer = settled(each, "finer-levels");
+        divide(true);
+        const OffscreenView::Drawn divided = settled(each, "tessellated");
+        const Pair frames = _view->takeTurns(
+            _rounds, Part::ALL, [&] { divide(false); }, [&] { divide(true); });
+        const Pair culls = _view->takeTurns(
+            _rounds, Part::CULL, [&] { divide(false); }, [&] { divide(true); });
+        _scene.effects->removeEffect(bend);
+        Figure figure{
+            std::string("tessellation-") + each.name,
+            std::string("time of a frame with tessellation over one with finer levels: ") + each.what, ""};
+        figure.measured = frames.second / frames.first;
+        char remark[200];
+        std::snprintf(
+            remark, sizeof remark,
+            "finer levels %.1f ms, %.0f thousand triangles, culled in %.2f ms; tessellation %.1f ms, "
+            "%.0f thousand before they are divided, %.2f ms",
+            frames.first, static_cast<double>(finer.triangles) * 1e-3, culls.first, frames.second,
+            static_cast<double>(divided.triangles) * 1e-3, culls.second);
+        figure.remark = remark;
+        figure.details = {{"finerMilliseconds", frames.first},
+                          {"tessellatedMilliseconds", frames.second},
+                          {"finerTriangles", finer.triangles},
+                          {"undividedTriangles", divided.triangles}};
+        return figure;
     }
 
     Figure cullOfPagedScene(const Case& each)
@@ -387,12 +434,14 @@ std::vector<Figure> run(const Settings& settings)
     };
     const std::vector<Case> all = cases();
     if (std::any_of(all.begin(), all.end(), [&](const Case& each) { return settings.wants(each.name); }) ||
-        settings.wants("cull"))
+        settings.wants("cull") || settings.wants("tessellation"))
     {
         Bench bench(terrainToDraw(settings, folder), settings);
         for (const Case& each : all)
             if (settings.wants(each.name)) add(bench.measure(each));
         if (settings.wants("cull")) figures.push_back(bench.cullOfPagedScene(all.back()));
+        for (std::size_t i = 0; i < 2 && settings.wants("tessellation"); ++i)
+            figures.push_back(bench.tessellation(all[i]));
     }
     if (settings.wants("town") || settings.wants("shadows") || settings.wants("tables"))
     {
@@ -408,13 +457,16 @@ std::vector<Figure> run(const Settings& settings)
 
 Suite deformationSuite()
 {
-    return {"deformation",
-            "Draws Oahu bent and straight: frames, culling, picking (birdsEye, pedestrian, exaggeration, "
-            "liberty), the culling of the paged terrain (cull) and of a town of 16,000 buildings (town), "
-            "what the sun's shadows cost over this town (shadows), and the paper's two tables along paths "
-            "over it (tables)",
-            {"birdsEye", "pedestrian", "exaggeration", "liberty", "cull", "town", "shadows", "tables"},
-            run};
+    return {
+        "deformation",
+        "Draws Oahu bent and straight: frames, culling, picking (birdsEye, pedestrian, exaggeration, "
+        "liberty), divided triangles against finer levels (tessellation), the culling of the paged terrain "
+        "(cull) and of a town of 16,000 buildings (town), "
+        "what the sun's shadows cost over this town (shadows), and the paper's two tables along paths "
+        "over it (tables)",
+        {"birdsEye", "pedestrian", "exaggeration", "liberty", "tessellation", "cull", "town", "shadows",
+         "tables"},
+        run};
 }
 
 } // namespace geofx::bench

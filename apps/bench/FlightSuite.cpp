@@ -11,6 +11,7 @@
 #include "TerrainSuite.h"
 #include "WorkFolder.h"
 
+#include <osgGeoFX/effect/Tessellation.h>
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
 #include <osgGeoFX/paging/MemoryBudget.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
@@ -87,7 +88,8 @@ private:
     }
     void add(const osgUtil::RenderLeaf& leaf) const
     {
-        const osg::Geometry* mesh = leaf._drawable ? leaf._drawable->asGeometry() : nullptr;
+        const osg::Geometry* mesh =
+            leaf._drawable ? osgGeoFX::PatchGeometry::originalOf(*leaf._drawable).asGeometry() : nullptr;
         const osg::Transform* tile = mesh ? osgGeoFX::TileInfo::tileOf(*mesh) : nullptr;
         int level = 0, x = 0, y = 0;
         if (tile && std::sscanf(tile->getName().c_str(), "tile %d/%d/%d", &level, &x, &y) == 3)

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include "TileCollector.h"
 
+#include <osgGeoFX/effect/Tessellation.h>
+
 #include <osg/CoordinateSystemNode>
 #include <osgUtil/SceneView>
 #include <osgViewer/Renderer>
@@ -63,10 +65,12 @@ void TileCollector::add(const osgUtil::RenderBin& bin, const osg::Matrixd& toWor
     {
         for (const auto& leaf : graph->_leaves)
         {
-            if (!leaf->_modelview || (_filter && !_filter(*leaf->_drawable))) continue;
+            if (!leaf->_modelview) continue;
+            osg::Drawable& drawable = osgGeoFX::PatchGeometry::originalOf(*leaf->_drawable);
+            if (_filter && !_filter(drawable)) continue;
             osg::ref_ptr<osg::MatrixTransform> tile = new osg::MatrixTransform(*leaf->_modelview * toWorld);
-            tile->addChild(leaf->_drawable);
-            below(stateAbove(*leaf->_drawable, _scene)).addChild(tile);
+            tile->addChild(&drawable);
+            below(stateAbove(drawable, _scene)).addChild(tile);
         }
     }
     for (const auto& inner : bin.getRenderBinList())

@@ -14,8 +14,9 @@ int main(int argc, char** argv)
     if (!terrain) return 1;
 
     const osg::ref_ptr<osgGeoFX::BirdsEyeView> view = new osgGeoFX::BirdsEyeView;
-    view->setFocusLine(0.35);   // below this line of the picture a map
-    view->setHorizonLine(0.85); // here the skyline, wherever the camera looks
+    view->setFocusLine(0.35);    // below this line of the picture a map
+    view->setHorizonLine(0.85);  // here the skyline, wherever the camera looks
+    view->setTessellation(true); // with OpenGL 4, a smooth bend however coarse the terrain is
     const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
     scene->addEffect(view);
     scene->addChild(terrain);

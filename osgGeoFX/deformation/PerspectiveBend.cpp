@@ -17,7 +17,7 @@ namespace
 /// Within this share of the curve's radius nothing folds.
 constexpr double foldMargin = 0.9;
 
-class BendSnapshot : public DeformationSnapshot
+class BendSnapshot : public DeformationSnapshot, public TessellatedSnapshot
 {
 public:
     struct Look
@@ -26,6 +26,7 @@ public:
         osg::Vec4d context; ///< saturation, brightness, whether there is a map, blocks
         osg::Vec4d focus;   ///< saturation, brightness, whether the map is there
         bool foldPossible;  ///< the heights of what stands in the zone are not known for sure
+        double allowed;     ///< pixels that divided triangles may be off; 0 if none is divided
     };
 
     BendSnapshot(const glsl::geofx_BendView& view, const Look& look) : _view(view), _look(look)
@@ -125,7 +126,8 @@ public:
     }
     double longestEdge(const Ball& ball, double tolerance) const override
     {
-        if (reach(ball) != Reach::Curved) return HUGE_VAL;
+        // The GPU divides what is too long.
+        if (reach(ball) != Reach::Curved || _look.allowed > 0.0) return HUGE_VAL;
         const Ball bent = bound(ball);
         const double gap = std::max(0.0, bent.center.length() - bent.radius);
         return std::sqrt(8.0 * tolerance * gap / (_look.transitionDetail * std::max(_curvature, 1e-30)));
@@ -154,13 +156,37 @@ public:
     Uniforms uniforms() const override
     {
         const glsl::geofx_Bend& bend = _view.bend;
-        return {{"plane", {toOsg(_view.normal), _view.height}},
-                {"forward", {toOsg(_view.forward), _view.start}},
-                {"bend", {bend.size, bend.angle, bend.slope, bend.arc}},
-                {"angle", {bend.direction.x, bend.direction.y, bend.bisector.x, bend.bisector.y}},
-                {"end", {bend.end.x, bend.end.y, 0.0, 0.0}},
-                {"look", _look.context},
-                {"focusLook", _look.focus}};
+        Uniforms result = {{"plane", {toOsg(_view.normal), _view.height}},
+                           {"forward", {toOsg(_view.forward), _view.start}},
+                           {"bend", {bend.size, bend.angle, bend.slope, bend.arc}},
+                           {"angle", {bend.direction.x, bend.direction.y, bend.bisector.x, bend.bisector.y}},
+                           {"end", {bend.end.x, bend.end.y, 0.0, 0.0}},
+                           {"look", _look.context},
+                           {"focusLook", _look.focus}};
+        if (_look.allowed > 0.0)
+        {
+            const glm::dvec4 rates = this->rates();
+            result.insert(result.end(), {{"rates", {rates.x, rates.y, rates.z, rates.w}},
+                                         {"allowed", {1.0 / _look.allowed, 0.0, 0.0, 0.0}}});
+        }
+        return result;
+    }
+    bool dividesTriangles() const override { return _look.allowed > 0.0; }
+    bool divides(const EyeBox& box) const override
+    {
+        if (!dividesTriangles()) return false;
+        const Extent extent = extentOf(box);
+        // Of floats, whose places in eye space are rounded, and the numbers of the bend, too.
+        constexpr double rounding = 1e-5;
+        const double room =
+            rounding * (box.center.length() + extent.along + std::abs(_view.start) + _view.bend.size);
+        return extent.middle.x + extent.along > -room &&
+               extent.middle.x - extent.along < _view.bend.size + room;
+    }
+    osg::Vec2d edgeSag(const osg::Vec3d& from, const osg::Vec3d& to) const override
+    {
+        const glm::dvec2 sag = glsl::geofx_bendViewSag(_view, rates(), toGlm(from), toGlm(to));
+        return {sag.x, sag.y};
     }
 
 private:
@@ -282,6 +308,15 @@ private:
         return position + toOsg(_view.forward * offset.x + _view.normal * offset.y);
     }
 
+    /// As geofx_bendViewSag() has them.
+    glm::dvec4 rates() const
+    {
+        const glsl::geofx_Bend& bend = _view.bend;
+        const double jump =
+            bend.curve == glsl::GEOFX_CURVE_ARC_LENGTH ? std::abs(1.0 - bend.arc * bend.bisector.x) : 0.0;
+        return {_curvature, _turnChange + _turnRate * _turnRate, _turnRate, jump};
+    }
+
     static constexpr std::size_t boxCorners = 8;
     static constexpr std::size_t tableCells = 32;
     struct TableEntry
@@ -313,9 +348,10 @@ private:
 } // namespace
 
 PerspectiveBend::PerspectiveBend(const PerspectiveBend& other, const osg::CopyOp& copy)
-    : Deformation(other, copy), _curve(other._curve), _planeHeight(other._planeHeight),
+    : Deformation(other, copy), Tessellator(other), _curve(other._curve), _planeHeight(other._planeHeight),
       _planeReference(other._planeReference), _tallest(other._tallest),
       _transitionDetail(other._transitionDetail), _contextDetail(other._contextDetail),
+      _tessellation(other._tessellation), _tessellationPixels(other._tessellationPixels),
       _contextSaturation(other._contextSaturation), _contextBrightness(other._contextBrightness),
       _contextBlocks(other._contextBlocks), _focusSaturation(other._focusSaturation),
       _focusBrightness(other._focusBrightness), _mapUnit(other._mapUnit), _coverMap(other._coverMap),
@@ -353,6 +389,15 @@ Properties PerspectiveBend::bendProperties()
         Property::number("contextDetail", "how many times finer the level of detail is in the context", 0.1,
                          16.0)
             .of<&Self::_contextDetail>(),
+        Property::flag(
+            "tessellation",
+            "whether the GPU divides the triangles of the transition zone, with OpenGL 4; the terrain is "
+            "not refined there for the bend's sake then")
+            .of<&Self::_tessellation>(),
+        Property::number("tessellationPixels",
+                         "how far a triangle that the GPU has divided may be from the curve, pixels", 0.1,
+                         16.0)
+            .of<&Self::_tessellationPixels>(),
         Property::number("contextSaturation", "the saturation of the context; 0 is grey", 0.0, 2.0)
             .of<&Self::_contextSaturation>(),
         Property::number("contextBrightness", "the brightness of the context; 0 is black", 0.0, 2.0)
@@ -451,7 +496,8 @@ osg::ref_ptr<const DeformationSnapshot> PerspectiveBend::snapshot(const ViewGeom
         _contextDetail,
         {_contextSaturation, _contextBrightness, _mapUnit < 0 && !_coverMap ? 0.0 : 1.0, _contextBlocks},
         {_focusSaturation, _focusBrightness, _mapPlace == FOCUS ? 1.0 : 0.0, 0.0},
-        foldPossible};
+        foldPossible,
+        tessellates() ? _tessellationPixels : 0.0};
     return new BendSnapshot(bend, look);
 }
 

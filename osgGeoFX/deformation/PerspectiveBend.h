@@ -3,6 +3,7 @@
 #pragma once
 
 #include <osgGeoFX/effect/Deformation.h>
+#include <osgGeoFX/effect/Tessellation.h>
 
 #include <optional>
 
@@ -40,7 +41,7 @@ struct OSGGEOFX_EXPORT BendPlacement
     them may act at once. What stands behind the bend in the scene's list, such as the mappings of a route, keeps
     its colors everywhere. Where a camera has no bend, it has no styles.
     @ingroup deformation */
-class OSGGEOFX_EXPORT PerspectiveBend : public Deformation
+class OSGGEOFX_EXPORT PerspectiveBend : public Deformation, public Tessellator
 {
 public:
     enum Curve
@@ -81,6 +82,16 @@ public:
     /// The same factor for the context, 0.1…16. A value below 1 loads less from the disk. Default: 1.
     bool setContextDetail(double factor) { return assign("contextDetail", factor); }
     double getContextDetail() const { return _contextDetail; }
+
+    /// Whether the GPU divides the triangles of the transition zone, so that a coarse mesh is drawn as the curve that it lies on, where
+    /// OpenGL 4 with the compatibility profile is at hand. Tiles are then not refined for the curve's sake. Default: false. What has a
+    /// program of its own, rigid things, and what effects draw again (close-ups) keep their triangles. Of several graphics
+    /// contexts all must have OpenGL 4; else finer levels are drawn, as without. The first frame of a context is drawn without.
+    bool setTessellation(bool on) { return assign("tessellation", on ? 1.0 : 0.0); }
+    bool getTessellation() const { return _tessellation; }
+    /// How far a divided triangle may be from the curve, pixels, 0.1…16. Default: 0.5. An edge has 15 parts at most.
+    bool setTessellationPixels(double pixels) { return assign("tessellationPixels", pixels); }
+    double getTessellationPixels() const { return _tessellationPixels; }
 
     /// Saturation of the context, 0…2: 0 is grey and 1, the default, leaves it unchanged.
     bool setContextSaturation(double factor) { return assign("contextSaturation", factor); }
@@ -134,6 +145,8 @@ public:
     bool isProjection() const override { return true; }
     std::string vertexFile() const override { return "stages/bendview.glsl"; }
     bool carriesThings() const override { return true; }
+    std::string tessellationFile() const override { return "stages/bendview.sag.glsl"; }
+    bool wantsTessellation() const override { return _tessellation; }
     /// Empty if focus and context have no styles.
     std::string fragmentFile() const override;
     std::string constants() const override;
@@ -168,6 +181,8 @@ private:
     double _tallest = -1.0;
     double _transitionDetail = 2.0;
     double _contextDetail = 1.0;
+    bool _tessellation = false;
+    double _tessellationPixels = 0.5;
     double _contextSaturation = 1.0;
     double _contextBrightness = 1.0;
     double _contextBlocks = 0.0;

@@ -5,11 +5,14 @@
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/detail/DrawableTriangles.h>
 #include <osgGeoFX/scene/RigidReference.h>
+#include <osgGeoFX/scene/detail/DividedTriangles.h>
+#include <osgGeoFX/scene/detail/PatchTwins.h>
 #include <osgGeoFX/scene/detail/UndeformedParts.h>
 
 #include <osg/PagedLOD>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace osgGeoFX
@@ -43,6 +46,44 @@ Meeting meet(const osg::Vec3d& origin, const osg::Vec3d& direction, const osg::V
     constexpr double tolerance = 1e-9;
     if (u < -tolerance || v < -tolerance || u + v > 1.0 + tolerance) return {};
     return {(ac * q) / determinant, u, v};
+}
+
+/// Where a ray meets the parts of a triangle that the GPU divides, each deformed by itself; the shares are those of the whole triangle.
+std::vector<Meeting> meetParts(const osg::Vec3d& origin, const osg::Vec3d& direction,
+                               const DeformationChain& chain, int parts,
+                               const std::array<osg::Vec3d, 3>& corners)
+{
+    const auto row = [&](int j)
+    {
+        std::vector<osg::Vec3d> places;
+        for (int i = 0; i + j <= parts; ++i)
+            places.push_back(chain.deform(corners[0] + (corners[1] - corners[0]) * (1.0 * i / parts) +
+                                          (corners[2] - corners[0]) * (1.0 * j / parts)));
+        return places;
+    };
+    std::vector<Meeting> all;
+    const auto add = [&](Meeting met, double u, double v)
+    {
+        met.u = u / parts;
+        met.v = v / parts;
+        if (met.distance >= 0.0) all.push_back(met);
+    };
+    std::vector<osg::Vec3d> lower = row(0);
+    for (int j = 0; j < parts; ++j)
+    {
+        const std::vector<osg::Vec3d> upper = row(j + 1);
+        for (std::size_t i = 0; i + 1 < lower.size(); ++i)
+        {
+            const auto at = static_cast<double>(i);
+            const Meeting one = meet(origin, direction, lower[i], lower[i + 1], upper[i]);
+            add(one, at + one.u, j + one.v);
+            if (i + 1 == upper.size()) continue;
+            const Meeting other = meet(origin, direction, lower[i + 1], upper[i + 1], upper[i]);
+            add(other, at + 1.0 - other.v, j + other.u + other.v);
+        }
+        lower = upper;
+    }
+    return all;
 }
 
 } // namespace
@@ -155,14 +196,16 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
                                       : _chain->deform(eye));
     }
 
-    for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
+    const auto* ours = dynamic_cast<const DeformedIntersectionVisitor*>(&visitor);
+    const bool divides = ours && !OwnPrograms::isOwn(ours->_deformation.program) &&
+                         PatchTwins::mayHave(*drawable) &&
+                         DividedTriangles::within(*_chain, EyeBox::of(bounds, _modelView));
+    const auto note = [&](std::size_t i, const Meeting& met)
     {
         const unsigned int* corner = &mesh.corners()[i];
-        const Meeting met =
-            meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]);
         // Nothing is seen at the eye itself, where a cylindrical map gathers what lies opposite of its picture.
         const double size = deformed[corner[0]].length() + deformed[corner[1]].length();
-        if (!(met.distance >= 0.0) || (_origin == osg::Vec3d() && met.distance <= 1e-9 * size)) continue;
+        if (!(met.distance >= 0.0) || (_origin == osg::Vec3d() && met.distance <= 1e-9 * size)) return;
         Intersection hit;
         hit.distance = met.distance;
         hit.deformed = _origin + _direction * met.distance;
@@ -186,6 +229,30 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         hit.normal.normalize();
         root()->_found.push_back(hit);
         root()->_sorted = false;
+    };
+    for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
+    {
+        const unsigned int* corner = &mesh.corners()[i];
+        if (divides)
+        {
+            const osg::Vec3d* first = mesh.positions().data();
+            const std::array<osg::Vec3d, 3> flat = {
+                first[corner[0]] * _modelView, first[corner[1]] * _modelView, first[corner[2]] * _modelView};
+            Ball ball = {(flat[0] + flat[1] + flat[2]) / 3.0, 0.0};
+            int parts = 1;
+            for (std::size_t k = 0; k < 3; ++k)
+                ball.radius = std::max(ball.radius, (flat[k] - ball.center).length());
+            if (!meets(_chain->bound(ball))) continue;
+            for (std::size_t k = 0; k < 3; ++k)
+                parts = std::max(parts, DividedTriangles::parts(*_chain, flat[k], flat[(k + 1) % 3]));
+            if (parts > 1)
+            {
+                for (const Meeting& met : meetParts(_origin, _direction, *_chain, parts, flat))
+                    note(i, met);
+                continue;
+            }
+        }
+        note(i, meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]));
     }
 }
 

@@ -258,8 +258,7 @@ void EffectScene::traverse(osg::NodeVisitor& visitor)
 
 void EffectScene::resizeGLObjectBuffers(unsigned int size)
 {
-    for (const osg::ref_ptr<osg::Program>& program : _drawing->programs.all())
-        program->resizeGLObjectBuffers(size);
+    _drawing->resizeGLObjectBuffers(size);
     for (const osg::ref_ptr<Effect>& effect : _effects)
         effect->resizeGLObjectBuffers(size);
     osg::Group::resizeGLObjectBuffers(size);
@@ -267,8 +266,7 @@ void EffectScene::resizeGLObjectBuffers(unsigned int size)
 
 void EffectScene::releaseGLObjects(osg::State* state) const
 {
-    for (const osg::ref_ptr<osg::Program>& program : _drawing->programs.all())
-        program->releaseGLObjects(state);
+    _drawing->releaseGLObjects(state);
     for (const osg::ref_ptr<Effect>& effect : _effects)
     {
         effect->releaseGLObjects(state);

@@ -76,6 +76,27 @@ GEOFX_INLINE Vector3 geofx_bendViewTurn(geofx_BendView view, Position position, 
     return offset + change.x * view.forward + change.y * view.normal;
 }
 
+// How far, at most, the image of a straight edge departs from a straight line, metres: by the bend's curvature, and by its jumps
+// where the zone begins and ends: of its speed, and above and below T of its turn rate. Both are 0 outside of the zone. `rates` are what the bend has at most: the curvature; the
+// change of the turn rate and its square; the turn rate; the jump of speed. The same for both directions, to the last bit.
+GEOFX_INLINE Vector2 geofx_bendViewSag(geofx_BendView view, Row rates, Position from, Position to)
+{
+    Profile a = geofx_bendViewProfile(view, from);
+    Profile b = geofx_bendViewProfile(view, to);
+    Length first = min(a.x, b.x);
+    Length last = max(a.x, b.x);
+    if (!(last > 0) || !(first < view.bend.size))
+    {
+        return Vector2(0, 0);
+    }
+    // P = C(s) + h N(s); its second derivative along the edge.
+    Vector2 edge = abs(b - a);
+    Length height = max(abs(a.y), abs(b.y));
+    Length curve = edge.x * (edge.x * (rates.x + height * rates.y) + 2 * edge.y * rates.z);
+    bool jumps = first < 0 || last > view.bend.size;
+    return Vector2(curve / 8, jumps ? edge.x * (rates.w + height * rates.z) / 4 : Number(0));
+}
+
 // q, the paper's value for blending styles: 0 in the focus, 1 in the context.
 GEOFX_INLINE Number geofx_bendViewStyle(geofx_BendView view, Position position)
 {

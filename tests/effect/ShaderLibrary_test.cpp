@@ -173,6 +173,10 @@ void expectProgramAccepted(const EffectProgram::Effects& effects, Random& random
     EffectProgram::addFunctions(*program, effects);
     EXPECT_EQ(program->getNumShaders(), 8u);
     expectProgramAccepted(program, random, share);
+    const osg::ref_ptr<osg::Program> tessellating = EffectProgram::createTessellating(effects);
+    ASSERT_TRUE(tessellating);
+    EXPECT_EQ(tessellating->getNumShaders(), 6u);
+    expectProgramAccepted(tessellating, random, share);
 }
 
 /// What CloseUps draws with: triangles as they are, copied into layers, divided and copied, and anchors' walls and lines.

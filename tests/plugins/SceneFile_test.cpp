@@ -214,7 +214,7 @@ TEST(SceneFile, ReadsEffectsInTheirOrder)
           <birdsEyeView focusLine="0.1" horizonLine="0.2"/>
         </blendedView>
         <pedestrianView focusDistance="-5.5" zoneWidth="750" contextSaturation="0" contextBrightness="2"
-                        tallest="40" transitionDetail="4" contextDetail="0.5"/>
+                        tallest="40" transitionDetail="4" contextDetail="0.5" tessellation="true" tessellationPixels="2.5"/>
         <verticalExaggeration/>)");
     ASSERT_EQ(scene.effects.size(), 5u);
     const auto value = [&](std::size_t i, const char* name)
@@ -250,6 +250,8 @@ TEST(SceneFile, ReadsEffectsInTheirOrder)
     EXPECT_EQ(value(3, "tallest"), 40.0);
     EXPECT_EQ(value(3, "transitionDetail"), 4.0);
     EXPECT_EQ(value(3, "contextDetail"), 0.5);
+    EXPECT_EQ(value(3, "tessellation"), 1.0);
+    EXPECT_EQ(value(3, "tessellationPixels"), 2.5);
     EXPECT_EQ(value(4, "factor"), 1.0);
     EXPECT_TRUE(withEffects("").effects.empty());
     EXPECT_TRUE(parsed(sceneWith("")).effects.empty());

@@ -82,10 +82,18 @@ protected:
         _scene->getChild(0)->getOrCreateStateSet()->setTextureAttribute(7, cover);
     }
 
+    /// Whose zone lies in the picture.
+    static osg::ref_ptr<BirdsEyeView> tessellated()
+    {
+        osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+        bend->setTessellation(true);
+        return bend;
+    }
     std::vector<std::pair<const char*, std::vector<osg::ref_ptr<Effect>>>> all()
     {
         return {{"no effect", {}},
                 {"bend", {new BirdsEyeView}},
+                {"bend with tessellation", {tessellated()}},
                 {"mappings", {makeMappings(0.0)}},
                 {"two sets of mappings", {makeMappings(-300.0), makeMappings(200.0)}},
                 {"close-ups", {_closeUps}},

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <tools/CullHarness.h>
 
+#include <osgGeoFX/effect/Tessellation.h>
+
 #include <osg/GLObjects>
 #include <osg/TriangleFunctor>
 #include <osgDB/ReadFile>
@@ -22,7 +24,8 @@ void collect(const osgUtil::RenderBin& bin, std::vector<Culled::Leaf>& leaves)
 {
     const auto take = [&](const osgUtil::RenderLeaf& leaf)
     {
-        if (leaf._modelview) leaves.push_back({leaf._drawable, *leaf._modelview});
+        if (leaf._modelview)
+            leaves.push_back({&osgGeoFX::PatchGeometry::originalOf(*leaf._drawable), *leaf._modelview});
     };
     for (const osgUtil::RenderLeaf* leaf : bin.getRenderLeafList())
         take(*leaf);

@@ -27,6 +27,7 @@ void randomizeBend(PerspectiveBend& bend, Random& random)
     bend.setPlaneHeight(random.integer(0, 2) == 0 ? random.uniform(-100.0, 800.0) : 0.0);
     bend.setTransitionDetail(random.uniform(1.0, 4.0));
     bend.setContextDetail(random.uniform(0.5, 1.5));
+    bend.setTessellation(bend.getTransitionDetail() < 2.5);
 }
 
 osg::ref_ptr<BirdsEyeView> randomBirdsEye(Random& random)

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/offscreen/detail/DrawnLeaves.h>
 
+#include <osgGeoFX/effect/Tessellation.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 
 #include <osg/Drawable>
@@ -85,11 +86,11 @@ private:
 
     void add(const osgUtil::RenderLeaf& leaf)
     {
-        const osg::Drawable* drawable = leaf.getDrawable();
-        if (!drawable) return;
+        if (!leaf._drawable) return;
+        const osg::Drawable& drawable = PatchGeometry::originalOf(*leaf._drawable);
         ++_drawables;
-        drawable->accept(_triangles);
-        addTile(*drawable);
+        drawable.accept(_triangles);
+        addTile(drawable);
     }
 
     void addTile(const osg::Node& node)

@@ -5,9 +5,11 @@
 #include <osgGeoFX/effect/DrawableCompanion.h>
 #include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/detail/CullVisitorAccess.h>
+#include <osgGeoFX/scene/detail/DividedTriangles.h>
 #include <osgGeoFX/scene/detail/OpenCulling.h>
 
 #include <osg/OcclusionQueryNode>
+#include <osg/PatchParameter>
 #include <osg/Projection>
 
 #include <algorithm>
@@ -113,6 +115,7 @@ void CompensatingCullVisitor::startFrame(osgUtil::CullVisitor& outer)
     _nearerUsed = 0;
     _programs.startFrame();
     _drawables.purge();
+    _twins.startFrame();
 }
 
 void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& task)
@@ -123,6 +126,7 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     _programs.setHost(task.shaderHost);
     _looks.begin(task.program, task.following, task.mapUnit, task.normals);
     _looks.setHost(task.shaderHost, task.hostAddition);
+    if (task.tessellating) beginPatches(*task.tessellating, *outer.getViewport());
 
     setFrameStamp(const_cast<osg::FrameStamp*>(outer.getFrameStamp()));
     setTraversalNumber(outer.getTraversalNumber());
@@ -584,15 +588,24 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     if (_mode.stranger) noteStranger();
     if (!_task.compensate)
     {
-        osg::StateSet* look = _looks.lookFor(drawable, *_currentStateGraph);
+        osg::StateSet* look = nullptr;
+        osg::Geometry* const twin = divided(drawable, look);
+        if (twin)
+            pushStateSet(_ofPatches);
+        else
+            look = _looks.lookFor(drawable, *_currentStateGraph);
         if (!look) look = _looks.followingOf(_mode.deformation.program);
         if (look) pushStateSet(look);
-        const osg::StateSet* own = drawable.getStateSet();
+        osg::StateSet* const ofTwin = twin ? drawable.getStateSet() : nullptr;
+        if (ofTwin) pushStateSet(ofTwin);
+        const osg::StateSet* own = twin ? nullptr : drawable.getStateSet();
         const osgUtil::StateGraph* graph = own ? _currentStateGraph->find_or_insert(own) : _currentStateGraph;
         const bool empty = graph->leaves_empty();
-        CullVisitor::apply(drawable);
+        CullVisitor::apply(twin ? *twin : drawable);
         if (empty && !graph->leaves_empty()) _ownGraphs.push_back(graph);
+        if (ofTwin) popStateSet();
         if (look) popStateSet();
+        if (twin) popStateSet();
         drawCompanions(drawable, getModelViewMatrix(), 0.0);
         _mode = former;
         return;
@@ -609,6 +622,31 @@ void CompensatingCullVisitor::apply(osg::Drawable& drawable)
     }
     place(drawable);
     _mode = former;
+}
+
+void CompensatingCullVisitor::beginPatches(osg::Program& program, const osg::Viewport& viewport)
+{
+    _dividedLooks.begin(&program, nullptr, _task.mapUnit, _task.normals);
+    if (!_ofPatches)
+    {
+        _ofPatches = new osg::StateSet;
+        _ofPatches->setAttribute(new osg::PatchParameter(3));
+    }
+    _ofPatches->getOrCreateUniform("geofx_halfPicture", osg::Uniform::FLOAT_VEC2)
+        ->set(osg::Vec2f(osg::Vec2d(0.5 * viewport.width(), 0.5 * viewport.height())));
+}
+
+osg::Geometry* CompensatingCullVisitor::divided(osg::Drawable& drawable, osg::StateSet*& look)
+{
+    if (!_task.tessellating || _mode.chain->empty() || _mode.nearer != 1.0) return nullptr;
+    const osg::BoundingBox& bounds = drawable.getBoundingBox();
+    if (!bounds.valid() || !DividedTriangles::within(*_mode.chain, EyeBox::of(bounds, viewMatrix())) ||
+        !PatchTwins::mayHave(drawable))
+        return nullptr;
+    osg::Geometry* const twin = _twins.of(*drawable.asGeometry());
+    // Without a look an own program draws it.
+    if (twin) look = _dividedLooks.lookFor(drawable, *_currentStateGraph);
+    return look ? twin : nullptr;
 }
 
 void CompensatingCullVisitor::drawCompanions(osg::Drawable& drawable, osg::RefMatrix* modelView, double depth)

@@ -8,6 +8,7 @@
 #include <osgGeoFX/scene/detail/DrawableSight.h>
 #include <osgGeoFX/scene/detail/LookCache.h>
 #include <osgGeoFX/scene/detail/OwnPrograms.h>
+#include <osgGeoFX/scene/detail/PatchTwins.h>
 #include <osgGeoFX/scene/detail/UndeformedParts.h>
 #include <osgGeoFX/scene/detail/Visibility.h>
 
@@ -61,6 +62,8 @@ public:
         osg::ref_ptr<const DeformationChain> placing;
         osg::StateSet* state = nullptr; ///< uniforms and defines of the effects; null where they draw nothing
         osg::Program* program = nullptr; ///< for what has none
+        osg::Program* tessellating =
+            nullptr; ///< for patches of what has none; null where no triangle is divided
         FollowingPrograms* following =
             nullptr; ///< for what has one of the application's with the effects' functions
         osg::StateSet* untouched = nullptr; ///< takes the deformation away
@@ -112,6 +115,10 @@ public:
 
     /// What is to be said once, from the last run; empty as a rule.
     const std::string& complaint() const { return _drawables.complaint(); }
+
+    /// What was made for tessellation.
+    const PatchTwins& twins() const { return _twins; }
+    PatchTwins& twins() { return _twins; }
 
     /// Whether a node at the current matrix is out of sight; nothing of it has been culled then.
     bool leavesOut(const osg::Node& node);
@@ -196,6 +203,8 @@ protected:
     void addLeaf(osg::Drawable& drawable, osg::StateSet* own, osg::StateSet* look, double depth);
     /// As the base class does it, and remembers that it was done here.
     void addLeaf(osg::Drawable& drawable, osg::RefMatrix* matrix, double depth);
+    /// What is drawn in the place of a drawable whose triangles are to be divided, and its look; null where they are not.
+    osg::Geometry* divided(osg::Drawable& drawable, osg::StateSet*& look);
     /// Draws what effects draw together with a drawable. `modelView`: to the camera's eye space.
     void drawCompanions(osg::Drawable& drawable, osg::RefMatrix* modelView, double depth);
     static void put(osgUtil::RenderBin& bin, osgUtil::StateGraph& from, osgUtil::StateGraph& to,
@@ -204,7 +213,7 @@ protected:
     Task _task;
     Mode _mode;
     osg::ref_ptr<const DeformationChain> _nothing;
-    LookCache _looks;
+    LookCache _looks, _dividedLooks;
 
 private:
     /// For as long as a node is visited: the matrices that it may cull by. Those of nodes that come with OSG are the picture's. Others
@@ -267,6 +276,7 @@ private:
     static std::size_t graphsIn(osgUtil::RenderBin& bin);
     bool isForeign(const osgUtil::StateGraph& graph) const;
     void setVisibility(const osgUtil::CullVisitor& outer);
+    void beginPatches(osg::Program& program, const osg::Viewport& viewport);
     void pushMatrices(osgUtil::CullVisitor& outer);
     /// Where everything is above the horizon, for those who look for the view point.
     osg::Vec3 raisedViewPoint() const;
@@ -343,6 +353,8 @@ private:
     std::set<std::pair<const osg::Drawable*, const osg::RefMatrix*>> _adoptedPlaces;
     osg::ref_ptr<osg::StateSet> _lightPoints; ///< the modes that osgSim's light points set themselves
     osgUtil::StateGraph* _entry = nullptr;    ///< the outer visitor's, where our state begins
+    PatchTwins _twins;
+    osg::ref_ptr<osg::StateSet> _ofPatches; ///< above their looks
     unsigned int _frame = 0;
     unsigned int _order = 0;
 };

@@ -92,7 +92,15 @@ void CompensatingCullVisitor::place(osg::Drawable& drawable)
     const bool ofEngine = _task.open && !_mode.chain->empty() && !comesWithOsg(&drawable);
     const DrawableSight::Place where = {*_mode.chain, matrix, _scale, _mode.planes, _mode.tile, !ofEngine};
     if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
-    addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
+    osg::StateSet* look = nullptr;
+    if (osg::Geometry* const twin = divided(drawable, look))
+    {
+        pushStateSet(_ofPatches);
+        addLeaf(*twin, drawable.getStateSet(), look, depth);
+        popStateSet();
+    }
+    else
+        addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
     drawCompanions(drawable, getModelViewMatrix(), depth);
 }
 

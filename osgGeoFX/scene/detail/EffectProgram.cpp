@@ -6,6 +6,7 @@
 #include <osgGeoFX/effect/NormalTurner.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/SurfaceEffect.h>
+#include <osgGeoFX/effect/Tessellation.h>
 #include <osgGeoFX/effect/detail/ProfileProgram.h>
 
 #include <osg/Notify>
@@ -281,14 +282,15 @@ std::string copyOf(const Varying& varying, const Relay& relay)
     return to + " = w.x * " + from + "[0] + w.y * " + from + "[1] + w.z * " + from + "[2];";
 }
 
-/// The main function of a stage between vertices and fragments.
-std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary& library,
-                      const PassShaders& pass, const std::vector<std::string>& files,
-                      const std::string& prefix, const Relay& relay, const char* version)
+constexpr const char* laterVersion = "#version 400 compatibility\n";
+constexpr Relay toControl = {"_vertex", "_control", "[]", "[]", "GEOFX_COPY(gl_InvocationID)"};
+
+/// The main function of a stage between vertices and fragments: its text with all that is handed on.
+std::string relayText(const Parts& parts, const std::vector<Handed>& handed, const std::string& main,
+                      const Relay& relay, const char* version)
 {
-    const Parts parts = partsOf(effects, library, true);
     std::string declarations, copies;
-    for (const Handed& each : varyingsFor(effects, pass))
+    for (const Handed& each : handed)
     {
         const Varying& varying = each.varying;
         const std::string qualifier = varying.flat ? "flat " : "";
@@ -306,34 +308,142 @@ std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary
     text += "#pragma import_defines(GEOFX_FOG, GEOFX_TWO_SIDED, GEOFX_COLOR_SUM, GEOFX_MAP)\n"
             "#pragma import_defines(GEOFX_NORMAL_MAP, GEOFX_SHADOWED)\n"
             "#pragma import_defines(GEOFX_TEXTURE_0, GEOFX_TEXTURE_1, GEOFX_TEXTURE_2, GEOFX_TEXTURE_3)\n" +
-            joined(library, files, prefix);
+            main;
     text = replaced(text, "GEOFX_VARYINGS\n", declarations);
     return replaced(text, relay.place, copies);
-}
-
-std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary& library,
-                      const PassShaders& pass, const std::string& prefix, osg::Shader::Type stage)
-{
-    constexpr const char* version = "#version 330 compatibility\n";
-    constexpr const char* later = "#version 400 compatibility\n";
-    if (stage == osg::Shader::GEOMETRY)
-    {
-        return relayText(effects, library, pass, pass.geometry, prefix,
-                         {"_in", "", "[]", "", "GEOFX_COPY(i)"}, version);
-    }
-    if (stage == osg::Shader::TESSCONTROL)
-    {
-        return relayText(effects, library, pass, pass.tessellationControl, prefix,
-                         {"_vertex", "_control", "[]", "[]", "GEOFX_COPY(gl_InvocationID)"}, later);
-    }
-    return relayText(effects, library, pass, pass.tessellationEvaluation, prefix,
-                     {"_control", "_in", "[]", "", "GEOFX_COPY(w)"}, later);
 }
 
 const std::vector<std::string>& relayFiles(const PassShaders& pass, osg::Shader::Type stage)
 {
     if (stage == osg::Shader::GEOMETRY) return pass.geometry;
     return stage == osg::Shader::TESSCONTROL ? pass.tessellationControl : pass.tessellationEvaluation;
+}
+
+std::string relayText(const EffectProgram::Effects& effects, const ShaderLibrary& library,
+                      const PassShaders& pass, const std::string& prefix, osg::Shader::Type stage)
+{
+    constexpr const char* version = "#version 330 compatibility\n";
+    const Parts parts = partsOf(effects, library, true);
+    const std::vector<Handed> handed = varyingsFor(effects, pass);
+    const std::string main = joined(library, relayFiles(pass, stage), prefix);
+    if (stage == osg::Shader::GEOMETRY)
+        return relayText(parts, handed, main, {"_in", "", "[]", "", "GEOFX_COPY(i)"}, version);
+    if (stage == osg::Shader::TESSCONTROL) return relayText(parts, handed, main, toControl, laterVersion);
+    return relayText(parts, handed, main, {"_control", "_in", "[]", "", "GEOFX_COPY(w)"}, laterVersion);
+}
+
+/// What the evaluation stage of a tessellating program does not find out itself, from the deformations.
+std::vector<Handed> handedByTessellation(const EffectProgram::Effects& effects)
+{
+    std::vector<Handed> handed = allVaryings(effects);
+    const auto drop = [&](const std::string& name)
+    {
+        handed.erase(std::remove_if(handed.begin(), handed.end(),
+                                    [&](const Handed& each) { return each.varying.name == name; }),
+                     handed.end());
+    };
+    drop("geofx_styleBlend");
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        const Deformation* deformation = effects[i]->asDeformation();
+        for (const Varying& each : deformation ? deformation->varyings() : std::vector<Varying>())
+            drop(EffectProgram::prefix(i) + each.name);
+    }
+    return handed;
+}
+
+/// The deformations alone, for a tessellation stage.
+Parts tessellationParts(const EffectProgram::Effects& effects, const ShaderLibrary& library,
+                        osg::Shader::Type stage, std::string& sags)
+{
+    Parts parts;
+    for (std::size_t i = 0; i < effects.size(); ++i)
+    {
+        const Deformation* deformation = effects[i]->asDeformation();
+        if (!deformation) continue;
+        const std::string prefix = EffectProgram::prefix(i);
+        const std::string define = EffectProgram::define(i);
+        parts.imports += "#pragma import_defines(" + define + ")\n";
+        std::string text = deformation->constants() + library.read(deformation->vertexFile());
+        const auto* tessellator = dynamic_cast<const Tessellator*>(deformation);
+        if (stage == osg::Shader::TESSCONTROL)
+        {
+            // It has no such outputs.
+            for (const Varying& each : deformation->varyings())
+            {
+                const std::string declaration = each.type + " SLOT_" + each.name + ";";
+                text = replaced(text, "flat out " + declaration, declaration);
+                text = replaced(text, "out " + declaration, declaration);
+            }
+            if (tessellator) text += library.read(tessellator->tessellationFile());
+            std::string call;
+            if (tessellator) call += "    sag = max(sag, " + prefix + "sag(from, to));\n";
+            for (const char* end : {"from", "to"})
+                call.append("    ")
+                    .append(end)
+                    .append(" = ")
+                    .append(prefix)
+                    .append("deform(")
+                    .append(end)
+                    .append(");\n");
+            sags += conditional("defined(" + define + ")", call);
+        }
+        parts.functions += replaced(text, "SLOT_", prefix);
+        addDeformation(parts, *deformation, prefix, define);
+    }
+    parts.functions = replaced(parts.functions, "gl_MultiTexCoord0", "geofx_textureCoordinates");
+    return parts;
+}
+
+/// OpenGL's own variables, but for the position, in a tessellation stage.
+std::string builtIns(osg::Shader::Type stage)
+{
+    const auto copy = [stage](const std::string& condition, const std::string& name)
+    {
+        const std::string text = stage == osg::Shader::TESSCONTROL
+                                     ? "gl_out[gl_InvocationID]." + name + " = gl_in[gl_InvocationID]." + name
+                                     : name + " = w.x * gl_in[0]." + name + " + w.y * gl_in[1]." + name +
+                                           " + w.z * gl_in[2]." + name;
+        return condition.empty() ? "    " + text + ";\n" : conditional(condition, "    " + text + ";\n");
+    };
+    std::string all = copy("", "gl_FrontColor");
+    all += copy("defined(GEOFX_COLOR_SUM)", "gl_FrontSecondaryColor");
+    all += copy("defined(GEOFX_TWO_SIDED)", "gl_BackColor");
+    all += copy("defined(GEOFX_TWO_SIDED) && defined(GEOFX_COLOR_SUM)", "gl_BackSecondaryColor");
+    all += copy("defined(GEOFX_TEXTURE_0) || defined(GEOFX_MAP)", "gl_TexCoord[0]");
+    for (const char* unit : {"1", "2", "3"})
+        all += copy(std::string("defined(GEOFX_TEXTURE_") + unit + ")",
+                    std::string("gl_TexCoord[") + unit + "]");
+    return all + copy("defined(GEOFX_FOG)", "gl_FogFragCoord");
+}
+
+/// A tessellation stage of the program that divides triangles.
+std::string tessellationText(const EffectProgram::Effects& effects, const ShaderLibrary& library,
+                             osg::Shader::Type stage)
+{
+    const bool control = stage == osg::Shader::TESSCONTROL;
+    const std::string file = control ? "stages/tessellation.tesc.glsl" : "stages/tessellation.tese.glsl";
+    std::string sags;
+    const Parts parts = tessellationParts(effects, library, stage, sags);
+    std::string main = replaced(library.read(file), "GEOFX_BUILT_INS\n", builtIns(stage));
+    main = parts.fill(replaced(main, "GEOFX_SAG_CALLS\n", sags));
+    const Relay fromControl = {"_control", "", "[]", "", "GEOFX_COPY(w)"};
+    return library.assemble(relayText(parts, handedByTessellation(effects), main,
+                                      control ? toControl : fromControl, laterVersion),
+                            file);
+}
+
+/// The functions of its vertex stage, which hands on what it finds, and the undeformed place.
+std::string tessellatedVertexText(const EffectProgram::Effects& effects, const ShaderLibrary& library)
+{
+    const std::string file = fileOf(osg::Shader::VERTEX);
+    Parts parts = partsOf(effects, library, true);
+    for (const Handed& each : allVaryings(effects))
+        parts.imports += "#define " + each.varying.name + " " + each.varying.name + "_vertex\n";
+    parts.functions += "out vec3 geofx_undeformed_vertex;\nout vec4 geofx_coordinates_vertex;\n";
+    parts.move = "    geofx_undeformed_vertex = eyePosition.xyz / eyePosition.w;\n"
+                 "    geofx_coordinates_vertex = gl_MultiTexCoord0;\n";
+    return library.assemble(parts.fill(library.read(file)), file);
 }
 
 std::string withoutVersion(std::string text)
@@ -531,6 +641,29 @@ osg::ref_ptr<osg::Program> EffectProgram::create(const Effects& effects, const P
             program->addBindUniformBlock(prefix + name, binding);
         for (const auto& [name, binding] : pass.within ? pass.within->blocks : PassShaders().blocks)
             program->addBindUniformBlock(pass.withinPrefix + name, binding);
+        return program;
+    }
+    catch (const ShaderError& error)
+    {
+        OSG_WARN << "osgGeoFX: " << error.what() << std::endl;
+        return nullptr;
+    }
+}
+
+osg::ref_ptr<osg::Program> EffectProgram::createTessellating(const Effects& effects)
+{
+    try
+    {
+        const ShaderLibrary library;
+        osg::ref_ptr<osg::Program> program = new ProfileProgram;
+        program->setName("osgGeoFX tessellation");
+        program->addShader(library.createShader(osg::Shader::VERTEX, "stages/fixed.vert"));
+        program->addShader(functionShader(osg::Shader::VERTEX, tessellatedVertexText(effects, library)));
+        for (const osg::Shader::Type stage : {osg::Shader::TESSCONTROL, osg::Shader::TESSEVALUATION})
+            program->addShader(ProfileProgram::createShader(stage, tessellationText(effects, library, stage),
+                                                            "tessellation"));
+        program->addShader(library.createShader(osg::Shader::FRAGMENT, "stages/fixed.frag"));
+        program->addShader(functionShader(osg::Shader::FRAGMENT, functions(effects, osg::Shader::FRAGMENT)));
         return program;
     }
     catch (const ShaderError& error)

@@ -51,6 +51,8 @@ public:
     /// A program for geometry that has none. A new one each time, since one that is in use must not change. Null, after a
     /// warning, where a shader file is missing.
     static osg::ref_ptr<osg::Program> create(const Effects& effects);
+    /// The same for patches of triangles, which it divides where a Tessellator asks for it. It needs OpenGL 4.
+    static osg::ref_ptr<osg::Program> createTessellating(const Effects& effects);
 
     /// The same with what the effect of that prefix draws a pass with; the text of a `stage` that the pass has
     /// not is empty.

@@ -48,6 +48,17 @@ osg::ref_ptr<osg::Program> ProgramCache::programOf(const Effects& effects)
     return _program;
 }
 
+osg::ref_ptr<osg::Program> ProgramCache::tessellatingProgramOf(const Effects& effects)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    // Without a key a shader file is missing.
+    if (_key.empty() || _key == _tessellatingKey) return _tessellating;
+    _tessellatingKey = _key;
+    retire(_tessellating);
+    _tessellating = EffectProgram::createTessellating(effects);
+    return _tessellating;
+}
+
 osg::ref_ptr<osg::StateSet> ProgramCache::tell(ShaderHost& host, const Effects& effects)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
@@ -123,6 +134,7 @@ std::vector<osg::ref_ptr<osg::Program>> ProgramCache::all()
     const std::lock_guard<std::mutex> lock(_mutex);
     std::vector<osg::ref_ptr<osg::Program>> programs = _following.programs();
     if (_program) programs.push_back(_program);
+    if (_tessellating) programs.push_back(_tessellating);
     for (const auto& [key, pass] : _passes)
     {
         if (pass.program) programs.push_back(pass.program);

@@ -27,6 +27,8 @@ public:
 
     /// The program for geometry that has none. Null, after a warning, if a shader file is missing.
     osg::ref_ptr<osg::Program> programOf(const Effects& effects);
+    /// The same for patches of triangles (EffectProgram::createTessellating()). After programOf().
+    osg::ref_ptr<osg::Program> tessellatingProgramOf(const Effects& effects);
     /// Gives the texts of the effects to a host that has other ones. After programOf(). Returns the state with its addition;
     /// null if it has none.
     osg::ref_ptr<osg::StateSet> tell(ShaderHost& host, const Effects& effects);
@@ -70,6 +72,8 @@ private:
     osg::ref_ptr<osg::StateSet> _addition;
     bool _made = false;
     osg::ref_ptr<osg::Program> _program;
+    std::string _tessellatingKey; ///< the key of what the next one was made for
+    osg::ref_ptr<osg::Program> _tessellating;
     std::map<std::string, PassProgram> _passes;
     std::vector<osg::observer_ptr<osg::Program>> _retired;
     FollowingPrograms _following;

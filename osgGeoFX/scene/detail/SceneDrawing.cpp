@@ -4,10 +4,13 @@
 
 #include <osgGeoFX/effect/PassEffect.h>
 #include <osgGeoFX/effect/SurfaceEffect.h>
+#include <osgGeoFX/effect/Tessellation.h>
 #include <osgGeoFX/scene/CameraEffects.h>
 #include <osgGeoFX/scene/TilePrefetch.h>
 #include <osgGeoFX/scene/detail/AdaptedPrograms.h>
 #include <osgGeoFX/scene/detail/CameraRoles.h>
+#include <osgGeoFX/scene/detail/DividedTriangles.h>
+#include <osgGeoFX/scene/detail/GpuLimits.h>
 #include <osgGeoFX/scene/detail/TargetFormat.h>
 
 #include <osg/Notify>
@@ -62,6 +65,17 @@ bool lookAtNormals(const SceneDrawing::Effects& effects)
                            const SurfaceEffect* surface = each->asSurfaceEffect();
                            return each->isActive() && surface && surface->looksAtNormals();
                        });
+}
+
+/// Tells those that divide triangles what the camera's context can do.
+void tellContext(const SceneDrawing::Effects& effects, osgUtil::CullVisitor& outer)
+{
+    for (const auto& each : effects)
+    {
+        const auto* tessellator = dynamic_cast<const Tessellator*>(each.get());
+        if (tessellator && tessellator->wantsTessellation())
+            tessellator->meetContext(GpuLimits::of(outer).version);
+    }
 }
 
 /// In their own frame, whatever the node does.
@@ -200,6 +214,20 @@ void SceneDrawing::warnOf(const CompensatingCullVisitor::Stranger& stranger)
              << std::endl;
 }
 
+void SceneDrawing::resizeGLObjectBuffers(unsigned int size)
+{
+    for (const osg::ref_ptr<osg::Program>& program : programs.all())
+        program->resizeGLObjectBuffers(size);
+    _cameras.resizeGLObjectBuffers(size);
+}
+
+void SceneDrawing::releaseGLObjects(osg::State* state)
+{
+    for (const osg::ref_ptr<osg::Program>& program : programs.all())
+        program->releaseGLObjects(state);
+    _cameras.releaseGLObjects(state);
+}
+
 void SceneDrawing::Camera::startFrame(osgUtil::CullVisitor& outer)
 {
     used = 0;
@@ -259,9 +287,15 @@ void SceneDrawing::Traversal::drawScene(Camera& own, Task task, const CameraPass
 {
     FollowingPrograms& following = _drawing.programs.following();
     osg::ref_ptr<osg::StateSet> hostAddition;
+    osg::ref_ptr<osg::Program> tessellating;
     if (draws)
     {
         task.program = _drawing.programs.programOf(_listed);
+        if (task.program && DividedTriangles::wanted(*task.chain))
+        {
+            tessellating = _drawing.programs.tessellatingProgramOf(_listed);
+            task.tessellating = tessellating;
+        }
         task.following = &following;
         if (ShaderHost* host = _scene.getShaderHost())
         {
@@ -368,6 +402,7 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
         return false;
     }
     if (scene.getCompensation()) completeBounds(scene, top, outer.getFrameStamp());
+    tellContext(shown, outer);
     const ViewGeometry view = viewOf(outer, *role, ground.find(scene, top, outer.getNodePath()));
     if (prefetch) prefetch->note(outer, top, view, shown, scene.getCompensation() && deforms(shown));
     return Traversal(*this, scene, effects, shown, outer, view, depth, boundOfChildren(top), traverse).run();

@@ -39,6 +39,9 @@ public:
     /// says nothing of its children.
     static void computeBoundsBelow(const osg::Group& top);
 
+    void resizeGLObjectBuffers(unsigned int size);
+    void releaseGLObjects(osg::State* state);
+
     GroundFinder ground;
     ProgramCache programs;
 
@@ -53,6 +56,8 @@ private:
         std::size_t used = 0;
 
         void startFrame(osgUtil::CullVisitor& outer);
+        void resizeGLObjectBuffers(unsigned int size) { visitor->twins().resizeGLObjectBuffers(size); }
+        void releaseGLObjects(osg::State* state) const { visitor->twins().releaseGLObjects(state); }
         CameraState& nextState(const Effects& effects, int mapUnit,
                                const std::shared_ptr<const TextureUnits>& units);
     };
