@@ -9,6 +9,9 @@
 // GEOFX_HOST_NORMAL, it reads gl_Normal; GEOFX_HOST_CLIPS, it writes what clip planes cut; GEOFX_HOST_LOG, it works with logarithms;
 // GEOFX_HOST_DEPTH, its fragments have a depth of their own; GEOFX_HOST_TEXTURE, it writes gl_TexCoord in a later stage.
 #include "stages/depth.glsl"
+#ifdef GEOFX_EVALUATION
+#include "stages/planes.glsl"
+#endif
 vec4 geofx_vertex(vec4 eyePosition);
 vec3 geofx_normal(vec4 eyePosition, vec3 eyeNormal);
 #ifdef GEOFX_LATER_STAGE
@@ -98,13 +101,7 @@ void geofx_moveHost()
 #endif
     // Clip planes cut the ground as it lies.
 #if !defined(GEOFX_HOST_CLIPS) && defined(GEOFX_EVALUATION)
-    // NVIDIA's compiler knows no gl_ClipVertex in this stage. A plane that is off cuts nothing.
-    gl_ClipDistance[0] = dot(gl_ClipPlane[0], eye);
-    gl_ClipDistance[1] = dot(gl_ClipPlane[1], eye);
-    gl_ClipDistance[2] = dot(gl_ClipPlane[2], eye);
-    gl_ClipDistance[3] = dot(gl_ClipPlane[3], eye);
-    gl_ClipDistance[4] = dot(gl_ClipPlane[4], eye);
-    gl_ClipDistance[5] = dot(gl_ClipPlane[5], eye);
+    GEOFX_CUT_BY_PLANES(eye);
 #elif !defined(GEOFX_HOST_CLIPS)
     gl_ClipVertex = eye;
 #endif

@@ -14,6 +14,7 @@ GEOFX_VARYINGS
 out float geofx_styleBlend;
 #include "stages/view.glsl"
 #include "stages/depth.glsl"
+#include "stages/planes.glsl"
 
 vec4 geofx_textureCoordinates = vec4(0.0); // the vertex' gl_MultiTexCoord0, for the functions of effects
 GEOFX_EFFECT_FUNCTIONS
@@ -37,7 +38,7 @@ GEOFX_DEFORM_CALLS
     if (w.x == 1.0) gl_Position = gl_in[0].gl_Position;
     if (w.y == 1.0) gl_Position = gl_in[1].gl_Position;
     if (w.z == 1.0) gl_Position = gl_in[2].gl_Position;
-    gl_ClipVertex = vec4(eye, 1.0);
+    GEOFX_CUT_BY_PLANES(vec4(eye, 1.0));
 GEOFX_BUILT_INS
 #ifdef GEOFX_FOG
     if (GEOFX_FOG < 4) gl_FogFragCoord = abs(deformed.z);

@@ -14,6 +14,7 @@
 
 #include <tools/SmoothTexture.h>
 
+#include <osg/ClipNode>
 #include <osg/ColorMask>
 #include <osg/Fog>
 #include <osg/Geometry>
@@ -411,6 +412,26 @@ TEST_F(Tessellation, TheOutlineOfACoarseGridIsThatOfOneSixteenTimesFiner)
     EXPECT_GE(coarseDiffers, count / 6);
     EXPECT_GT(dividedParts, count);
     EXPECT_GT(wholeParts, count / 2);
+}
+
+TEST_F(Tessellation, ClipPlanesCutTheGroundWhereItLies)
+{
+    Random random(7);
+    const std::vector<double> heights = randomHeights(random);
+    look(random);
+    const auto distances = [&](unsigned int parts, bool divided, bool cut)
+    {
+        const osg::ref_ptr<PerspectiveBend> bend = bendOf(0);
+        bend->setTessellation(divided);
+        const osg::ref_ptr<osg::ClipNode> clip = new osg::ClipNode;
+        if (cut) clip->addClipPlane(new osg::ClipPlane(0, 0.8, 0.6, 0.0, -0.35 * LONG));
+        clip->addChild(makeGround(heights, parts));
+        return distancesOf(makeScene(bend, clip));
+    };
+    const std::vector<double> fine = distances(16, false, true);
+    EXPECT_EQ(apart(distances(1, true, true), fine).outlines, 0);
+    EXPECT_GT(leaves().divided, 0);
+    EXPECT_GT(apart(distances(1, true, false), fine).outlines, 1000);
 }
 
 TEST_F(Tessellation, NoCrackOpens)
