@@ -6,11 +6,6 @@
 #ifdef GEOFX_CORE
 #define GEOFX_CUT_BY_PLANES(eye)
 #else
-#define GEOFX_CUT_BY_PLANES(eye)                     \
-    gl_ClipDistance[0] = dot(gl_ClipPlane[0], eye);  \
-    gl_ClipDistance[1] = dot(gl_ClipPlane[1], eye);  \
-    gl_ClipDistance[2] = dot(gl_ClipPlane[2], eye);  \
-    gl_ClipDistance[3] = dot(gl_ClipPlane[3], eye);  \
-    gl_ClipDistance[4] = dot(gl_ClipPlane[4], eye);  \
-    gl_ClipDistance[5] = dot(gl_ClipPlane[5], eye)
+#define GEOFX_PLANE(i, eye) gl_ClipDistance[i] = dot(gl_ClipPlane[i], eye)
+#define GEOFX_CUT_BY_PLANES(eye) GEOFX_PLANE(0, eye); GEOFX_PLANE(1, eye); GEOFX_PLANE(2, eye); GEOFX_PLANE(3, eye); GEOFX_PLANE(4, eye); GEOFX_PLANE(5, eye)
 #endif
