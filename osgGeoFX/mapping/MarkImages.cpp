@@ -13,6 +13,7 @@ osg::ref_ptr<osg::Image> makeMark(int side, const MarkColor& color)
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(side, side, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     const double texel = 2.0 / (side * markReach);
+    unsigned char* byte = image->data();
     for (int row = 0; row < side; ++row)
     {
         for (int column = 0; column < side; ++column)
@@ -20,10 +21,7 @@ osg::ref_ptr<osg::Image> makeMark(int side, const MarkColor& color)
             const osg::Vec4 rgba =
                 color((column + 0.5 - side / 2.0) * texel, (row + 0.5 - side / 2.0) * texel, texel);
             for (int i = 0; i < 4; ++i)
-            {
-                image->data(column, row)[i] =
-                    static_cast<unsigned char>(std::lround(std::clamp(rgba[i], 0.0f, 1.0f) * 255.0f));
-            }
+                *byte++ = static_cast<unsigned char>(std::lround(std::clamp(rgba[i], 0.0f, 1.0f) * 255.0f));
         }
     }
     return image;

@@ -62,6 +62,13 @@ int packed(const osg::Vec4d& color)
     return packedColor({color.r(), color.g(), color.b()});
 }
 
+/// All routes have the same.
+osg::Image* whiteDisc()
+{
+    static const osg::ref_ptr<osg::Image> disc = makeDisc(256, {1, 1, 1, 1}, {1, 1, 1, 1}, 1.0);
+    return disc;
+}
+
 } // namespace
 
 bool RouteMapping::Context::operator==(const Context& other) const
@@ -93,8 +100,7 @@ RouteMapping::RouteMapping()
     : _color(packed(_style.color)), _casingColor(packed(_style.casingColor)),
       _highlightColor(packed(_style.highlightColor)), _colorAlpha(_style.color.a()),
       _casingAlpha(_style.casingColor.a()), _highlightAlpha(_style.highlightColor.a()),
-      _disc(new DataLayer(makeDisc(256, {1, 1, 1, 1}, {1, 1, 1, 1}, 1.0))), _mark(new DataLayer),
-      _distances(new DataLayer),
+      _disc(new DataLayer(whiteDisc())), _mark(new DataLayer), _distances(new DataLayer),
       _contextTransfer(makeTransfer(ColorTransfer::SCENE, ColorTransfer::FROM_MASK)),
       _beyondTransfer(makeTransfer(ColorTransfer::SCENE, ColorTransfer::OPAQUE)),
       _casingTransfer(makeTransfer(ColorTransfer::CONSTANT, ColorTransfer::FROM_SOURCE)),

@@ -424,7 +424,7 @@ TEST_F(Tessellation, ClipPlanesCutTheGroundWhereItLies)
         const osg::ref_ptr<PerspectiveBend> bend = bendOf(0);
         bend->setTessellation(divided);
         const osg::ref_ptr<osg::ClipNode> clip = new osg::ClipNode;
-        if (cut) clip->addClipPlane(new osg::ClipPlane(0, 0.8, 0.6, 0.0, -0.35 * LONG));
+        if (cut) clip->addClipPlane(new osg::ClipPlane(0, 0.8, -0.6, 0.0, 0.25 * LONG));
         clip->addChild(makeGround(heights, parts));
         return distancesOf(makeScene(bend, clip));
     };
