@@ -203,7 +203,8 @@ TEST_P(EverythingAtOnce, IsThePictureWithoutCulling)
             // OSG leaves out what is smaller than two pixels, on purpose: a sign at the horizon is one of them.
             harness->camera().setSmallFeatureCullingPixelSize(0.0f);
         }
-        addEffects(random);
+        // Most of the time goes into the programs of new effects, so that two cameras have the same, but where all are asked for.
+        if (fullTest() || i % 2 == 0 || i % 12 == 0 || i == cameras.first) addEffects(random);
         if (HasFatalFailure()) return;
         // A part of the tiles, for the time that so many cameras take.
         harness->camera().setLODScale(i % 32 == 0 ? 2.5f : i % 4 == 0 ? 5.0f : 10.0f);
