@@ -613,6 +613,27 @@ TEST_F(MappingRasterValues, ByControlPointsAndOfTheWholeEarth)
     EXPECT_NEAR(valueAt(half, osg::Vec2d(x, y)), 229.5 + 1000.0 * 49.5, 100.0);
 }
 
+// As GMT writes them: degrees along both axes, and no datum.
+TEST_F(MappingRasterValues, ByAxesInDegreesAreThoseOfWgs84)
+{
+    TestRaster named(6, 4), bare(6, 4);
+    for (TestRaster* each : {&named, &bare})
+        each->placed(10.0, 50.0, 0.01, 0.01)
+            .fill([](int column, int row, int) { return column + 10.0 * row; });
+    named.crs("EPSG:4326");
+    const MappingFrame frame = globeAt(10.03, 49.98);
+    EXPECT_NE(messageOf(bare.write(_folder / "none.tif"), frame), "");
+    bare.dataset().SetMetadataItem("lon#units", "degrees_east");
+    EXPECT_NE(messageOf(bare.write(_folder / "half.tif"), frame), "");
+    bare.dataset().SetMetadataItem("lat#units", "degrees_north");
+    const MappingRaster expected = readGood(named.write(_folder / "named.tif"), frame, {}),
+                        actual = readGood(bare.write(_folder / "bare.tif"), frame, {});
+    EXPECT_EQ(actual.low, expected.low);
+    EXPECT_EQ(actual.high, expected.high);
+    EXPECT_EQ(actual.lowest, expected.lowest);
+    EXPECT_EQ(actual.highest, expected.highest);
+}
+
 TEST_F(MappingRasterValues, OfNoUseAreToldWithFileAndMend)
 {
     const auto holds = [](const std::string& message, const std::string& words)

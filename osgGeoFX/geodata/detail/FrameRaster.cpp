@@ -228,6 +228,7 @@ void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
     if (top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
     checkSize();
+    if (placed) assumeDegrees();
     if (placed) checkPlace();
     if (GDALDataTypeIsComplex(band().GetRasterDataType()))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
@@ -237,6 +238,24 @@ void FrameRaster::prepare(std::optional<DataLayer::Kind> wanted, bool placed)
         makeColors();
     else
         makeValues();
+}
+
+void FrameRaster::assumeDegrees()
+{
+    const OGRSpatialReference* srs = top().GetSpatialRef();
+    if ((srs && !srs->IsEmpty()) || top().GetGCPCount() > 0) return;
+    const auto hasAxis = [this](const std::string& unit)
+    {
+        char** items = top().GetMetadata();
+        for (; items && *items; ++items)
+        {
+            const std::string item = *items, end = "#units=" + unit;
+            if (item.size() > end.size() && item.compare(item.size() - end.size(), end.size(), end) == 0)
+                return true;
+        }
+        return false;
+    };
+    if (hasAxis("degrees_east") && hasAxis("degrees_north")) translate({"-a_srs", "EPSG:4326"});
 }
 
 void FrameRaster::checkPlace() const

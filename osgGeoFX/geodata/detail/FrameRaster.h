@@ -135,6 +135,8 @@ private:
     [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
     [[noreturn]] void failToRead(const std::string& message) const;
     void prepare(std::optional<DataLayer::Kind> wanted, bool placed);
+    /// Files after the CF conventions that have degrees along their axes need not name a datum. It is taken to be WGS 84.
+    void assumeDegrees();
     void checkPlace() const;
     void checkSize() const;
     void readNumbers(osg::Image& image, GDALRasterIOExtraArg& how) const;
