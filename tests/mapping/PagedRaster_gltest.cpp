@@ -88,18 +88,7 @@ protected:
         ASSERT_TRUE(_raster) << error;
         ASSERT_TRUE(_mappings->addRaster(_raster));
     }
-    osg::ref_ptr<osg::Image> drawSettled()
-    {
-        for (int i = 0; i < 2000; ++i)
-        {
-            const osg::ref_ptr<osg::Image> image = draw();
-            // What the last frame saw is known to the next one.
-            if (i >= 2 && _raster->statistics().settled) return image;
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        ADD_FAILURE() << "never settled";
-        return draw();
-    }
+    osg::ref_ptr<osg::Image> drawSettled() { return MappingStage::drawSettled(*_raster); }
     /// How many pixels of ground are off from the raster's own color by more than some shades.
     int wrong(const osg::Image& image, double opacity = 1.0, double shades = 4.0, int top = 240)
     {

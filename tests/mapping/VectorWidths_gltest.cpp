@@ -13,11 +13,9 @@
 #include <GeographicLib/TransverseMercator.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <thread>
 
 using namespace geofx::test;
 using namespace osgGeoFX;
@@ -95,17 +93,7 @@ protected:
         ASSERT_TRUE(_mappings->addRaster(_raster));
     }
 
-    osg::ref_ptr<osg::Image> drawSettled()
-    {
-        for (int i = 0; i < 2000; ++i)
-        {
-            const osg::ref_ptr<osg::Image> image = draw();
-            if (i >= 2 && _raster->statistics().settled) return image;
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        ADD_FAILURE() << "never settled";
-        return draw();
-    }
+    osg::ref_ptr<osg::Image> drawSettled() { return MappingStage::drawSettled(*_raster); }
 
     double whiteAt(const osg::Image& image, const osg::Vec2d& pixel) const
     {

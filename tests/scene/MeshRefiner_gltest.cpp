@@ -9,7 +9,7 @@
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/scene/MeshRefiner.h>
-#include <tools/GlFixture.h>
+#include <tools/DistancePicture.h>
 #include <tools/RandomSamples.h>
 
 #include <osg/Geometry>
@@ -108,67 +108,11 @@ osg::ref_ptr<Effect> makeEffect(const std::string& kind, Random& random)
     return blended;
 }
 
-class MeshRefinerPicture : public GlFixture
+class MeshRefinerPicture : public DistancePictures
 {
 protected:
-    MeshRefinerPicture() : GlFixture(WIDTH, HEIGHT) {}
-
-    /// Distances before the eye, metres; HUGE_VAL where nothing is drawn.
-    std::vector<double> distancesOf(osg::Node* node)
-    {
-        const osg::ref_ptr<ImageCapture> capture =
-            ImageCapture::attach(viewer().getCamera(), ImageCapture::Format::DepthFloat);
-        capture->request();
-        render(node);
-        const osg::ref_ptr<osg::Image> image = capture->take();
-        capture->detach(viewer().getCamera());
-        std::vector<double> distances;
-        for (int i = 0; i < WIDTH * HEIGHT; ++i)
-        {
-            const auto depth = static_cast<double>(reinterpret_cast<const float*>(image->data())[i]);
-            const double ndc = 2.0 * depth - 1.0;
-            distances.push_back(depth >= 1.0 ? HUGE_VAL
-                                             : 2.0 * FAR_PLANE * NEAR_PLANE /
-                                                   (FAR_PLANE + NEAR_PLANE - ndc * (FAR_PLANE - NEAR_PLANE)));
-        }
-        return distances;
-    }
-
-    /// Pixels of one picture of which nothing like it lies within a pixel in the other.
-    struct Strangers
-    {
-        int shapes = 0; ///< ground where the other has none, or none where it has ground
-        int depths = 0;
-    };
-    static Strangers strangers(const std::vector<double>& picture, const std::vector<double>& other)
-    {
-        Strangers result;
-        for (int y = 1; y + 1 < HEIGHT; ++y)
-        {
-            for (int x = 1; x + 1 < WIDTH; ++x)
-            {
-                const double here = picture[static_cast<std::size_t>(y * WIDTH + x)];
-                double low = HUGE_VAL, high = 0.0;
-                bool open = false;
-                for (int i = 0; i < 9; ++i)
-                {
-                    const double there =
-                        other[static_cast<std::size_t>((y + i / 3 - 1) * WIDTH + x + i % 3 - 1)];
-                    open = open || there == HUGE_VAL;
-                    if (there == HUGE_VAL) continue;
-                    low = std::min(low, there);
-                    high = std::max(high, there);
-                }
-                // A 24-bit depth buffer tells distances of 100 km to a metre. Where the ground ends, farther ground may show for
-                // less than a pixel.
-                if (here == HUGE_VAL ? !open : low == HUGE_VAL)
-                    ++result.shapes;
-                else if (here < HUGE_VAL && !(here >= low * 0.999 && (open || here <= high * 1.001)))
-                    ++result.depths;
-            }
-        }
-        return result;
-    }
+    // A 24-bit depth buffer tells distances of 100 km to a metre.
+    MeshRefinerPicture() : DistancePictures(WIDTH, HEIGHT, NEAR_PLANE, FAR_PLANE, 0.001) {}
 
     void compare(const std::string& kind, int sample)
     {
@@ -228,7 +172,7 @@ protected:
         for (const std::size_t finer : {0u, 1u})
         {
             const Strangers found = strangers(pictures[finer], pictures[1 - finer]);
-            EXPECT_EQ(found.shapes, 0) << "a crack or an outline, of " << triangles[finer] << " triangles";
+            EXPECT_EQ(found.outlines, 0) << "a crack or an outline, of " << triangles[finer] << " triangles";
             // Behind a ridge ground may show for less than a pixel, in one of the two.
             EXPECT_LE(found.depths, 3) << "of " << triangles[finer] << " triangles";
         }
@@ -267,5 +211,5 @@ TEST_F(MeshRefinerPicture, IsNotThatOfTheCoarseMesh)
     const osg::ref_ptr<MeshRefiner> refiner = new MeshRefiner(500.0);
     refiner->refine(*ground);
     const Strangers found = strangers(coarse, distancesOf(scene));
-    EXPECT_GT(found.shapes + found.depths, WIDTH * HEIGHT / 50);
+    EXPECT_GT(found.outlines + found.depths, WIDTH * HEIGHT / 50);
 }

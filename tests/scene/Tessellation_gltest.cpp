@@ -8,7 +8,7 @@
 #include <osgGeoFX/effect/Tessellation.h>
 #include <osgGeoFX/scene/DeformedView.h>
 #include <osgGeoFX/scene/EffectScene.h>
-#include <tools/GlFixture.h>
+#include <tools/DistancePicture.h>
 #include <tools/ImageComparison.h>
 #include <tools/RandomSamples.h>
 
@@ -185,14 +185,14 @@ osg::ref_ptr<PerspectiveBend> makeBend(int kind, Random& random)
     return result;
 }
 
-class Tessellation : public GlFixture
+class Tessellation : public DistancePictures
 {
 protected:
-    Tessellation() : GlFixture(WIDTH, HEIGHT) {}
+    Tessellation() : DistancePictures(WIDTH, HEIGHT, NEAR_PLANE, FAR_PLANE, PIXEL) {}
 
     void SetUp() override
     {
-        GlFixture::SetUp();
+        DistancePictures::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
         viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
         viewer().setLightingMode(osg::View::NO_LIGHT);
@@ -218,68 +218,6 @@ protected:
         scene->addEffect(bend);
         scene->addChild(ground);
         return scene;
-    }
-
-    /// Distances before the eye, metres; HUGE_VAL where nothing is drawn.
-    std::vector<double> distancesOf(osg::Node* node)
-    {
-        const osg::ref_ptr<ImageCapture> capture =
-            ImageCapture::attach(viewer().getCamera(), ImageCapture::Format::DepthFloat);
-        capture->request();
-        render(node);
-        const osg::ref_ptr<osg::Image> image = capture->take();
-        capture->detach(viewer().getCamera());
-        std::vector<double> distances;
-        for (int i = 0; i < WIDTH * HEIGHT; ++i)
-        {
-            const auto depth = static_cast<double>(reinterpret_cast<const float*>(image->data())[i]);
-            const double ndc = 2.0 * depth - 1.0;
-            distances.push_back(depth >= 1.0 ? HUGE_VAL
-                                             : 2.0 * FAR_PLANE * NEAR_PLANE /
-                                                   (FAR_PLANE + NEAR_PLANE - ndc * (FAR_PLANE - NEAR_PLANE)));
-        }
-        return distances;
-    }
-
-    /// Pixels of one picture of which nothing like it lies within a pixel in the other.
-    struct Strangers
-    {
-        int outlines = 0; ///< ground where the other has none, or none where it has ground
-        int depths = 0;
-    };
-    static Strangers strangers(const std::vector<double>& picture, const std::vector<double>& other)
-    {
-        Strangers result;
-        for (int y = 1; y + 1 < HEIGHT; ++y)
-        {
-            for (int x = 1; x + 1 < WIDTH; ++x)
-            {
-                const double here = picture[static_cast<std::size_t>(y * WIDTH + x)];
-                double low = HUGE_VAL, high = 0.0;
-                bool open = false;
-                for (int i = 0; i < 9; ++i)
-                {
-                    const double there =
-                        other[static_cast<std::size_t>((y + i / 3 - 1) * WIDTH + x + i % 3 - 1)];
-                    open = open || there == HUGE_VAL;
-                    if (there == HUGE_VAL) continue;
-                    low = std::min(low, there);
-                    high = std::max(high, there);
-                }
-                if (here == HUGE_VAL ? !open : low == HUGE_VAL)
-                    ++result.outlines;
-                else if (here < HUGE_VAL &&
-                         !(here >= low * (1.0 - PIXEL) && (open || here <= high * (1.0 + PIXEL))))
-                    ++result.depths;
-            }
-        }
-        return result;
-    }
-    /// In either direction.
-    static Strangers apart(const std::vector<double>& one, const std::vector<double>& other)
-    {
-        const Strangers a = strangers(one, other), b = strangers(other, one);
-        return {a.outlines + b.outlines, a.depths + b.depths};
     }
 
     /// How many leaves of the last frame are divided, and how many are not.

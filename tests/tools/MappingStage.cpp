@@ -5,7 +5,9 @@
 #include <tools/ImageComparison.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 using namespace osgGeoFX;
 
@@ -181,6 +183,19 @@ int MappingStage::differing(const osg::Image& a, const osg::Image& b)
             count += alike(at(a, x, y), at(b, x, y)) ? 0 : 1;
     }
     return count;
+}
+
+osg::ref_ptr<osg::Image> MappingStage::drawSettled(const osgGeoFX::PagedRaster& raster)
+{
+    for (int i = 0; i < 2000; ++i)
+    {
+        const osg::ref_ptr<osg::Image> image = draw();
+        // What the last frame saw is known to the next one.
+        if (i >= 2 && raster.statistics().settled) return image;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ADD_FAILURE() << "never settled";
+    return draw();
 }
 
 } // namespace geofx::test

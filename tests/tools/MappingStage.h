@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/mapping/PagedRaster.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <tools/GlFixture.h>
@@ -49,6 +50,8 @@ protected:
     bool inside(const osg::Vec2d& pixel, double border = 0.0) const;
 
     osg::ref_ptr<osg::Image> draw() { return render(_scene); }
+    /// When a raster has all tiles that the picture needs.
+    osg::ref_ptr<osg::Image> drawSettled(const osgGeoFX::PagedRaster& raster);
     static osg::Vec3d at(const osg::Image& image, int x, int y);
     static osg::Vec3d at(const osg::Image& image, const osg::Vec2d& pixel);
     /// The largest difference of a channel.
