@@ -108,7 +108,8 @@ private:
 
     /// Whether a tile is so far beyond the horizon of a panorama map that all of it is one point there. It has no end of detail
     /// otherwise: behind and beside the picture at once, where the map tells least, tile after tile would come.
-    static bool isBeyondPanoramas(const EffectScene& scene, const osg::Node& tile, osg::NodeVisitor& visitor)
+    static bool isBeyondPanoramas(const EffectScene& scene, bool globe, const osg::Node& tile,
+                                  osg::NodeVisitor& visitor)
     {
         osgUtil::CullVisitor* cull = visitor.asCullVisitor();
         const osg::Camera* camera = cull ? cull->getCurrentCamera() : nullptr;
@@ -121,7 +122,7 @@ private:
         if (!camera || !map) return false;
         const osg::Vec3d eye = camera->getInverseViewMatrix().getTrans();
         const osg::Matrixd& projection = camera->getProjectionMatrix();
-        const double height = eye.length() - osg::WGS_84_RADIUS_POLAR;
+        const double height = globe ? eye.length() - osg::WGS_84_RADIUS_POLAR : eye.z();
         const double shown = (projection(3, 3) == 0.0 ? height : 1.0) / std::abs(projection(0, 0));
         const double radius = map->getViewRadius() > 0.0 ? map->getViewRadius() : shown;
         // Heights and widths fade within half of the distance to the horizon. High mountains before the base may rise into sight.
@@ -130,7 +131,9 @@ private:
         const osg::BoundingSphere& bound = tile.getBound();
         const osg::Vec3d center(bound.center());
         const double turn = std::acos(std::clamp(eye * center / (eye.length() * center.length()), -1.0, 1.0));
-        return turn * osg::WGS_84_RADIUS_EQUATOR - 1.6 * static_cast<double>(bound.radius()) > reach;
+        const double away = globe ? turn * osg::WGS_84_RADIUS_EQUATOR
+                                  : std::hypot(center.x() - eye.x(), center.y() - eye.y());
+        return away - 1.6 * static_cast<double>(bound.radius()) > reach;
     }
 
     /// The engine's own levels go by distances and by a frustum that contains all that is shown.
@@ -139,10 +142,11 @@ private:
         osgEarth::TerrainEngine* engine = map.getTerrainEngine();
         if (!engine) return;
         const osg::observer_ptr<const EffectScene> effects = &scene;
-        const auto isNeeded = [effects](const osg::Node& tile, osg::NodeVisitor& visitor)
+        const bool globe = map.isGeocentric();
+        const auto isNeeded = [effects, globe](const osg::Node& tile, osg::NodeVisitor& visitor)
         {
             osg::ref_ptr<const EffectScene> known;
-            if (effects.lock(known) && isBeyondPanoramas(*known, tile, visitor)) return false;
+            if (effects.lock(known) && isBeyondPanoramas(*known, globe, tile, visitor)) return false;
             return !isTileOutOfSight(tile, visitor);
         };
         engine->setComputeTileRangeCallback([isNeeded](osg::Node* tile, osg::NodeVisitor& visitor)

@@ -7,11 +7,11 @@
 #include <tools/TestRasters.h>
 
 #include <gtest/gtest.h>
-#include <osg/CoordinateSystemNode>
 #include <osg/Math>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 #include <osgEarth/GLUtils>
+#include <osgEarth/GeoData>
 #include <osgEarth/Registry>
 #include <osgEarth/weejobs.h>
 
@@ -166,8 +166,9 @@ bool EarthMaps::startViewer()
 bool EarthMaps::show(const std::string& geofx, const std::string& terrainOptions)
 {
     _file = (_folder->path() / "map.earth").string();
-    std::ofstream(_file) << "<map name=\"hills\" version=\"3\">\n<options><terrain " << terrainOptions
-                         << " color=\"#7f9f5f\"/></options>\n"
+    const std::string profile = _profile.empty() ? "" : "<profile>" + _profile + "</profile>";
+    std::ofstream(_file) << "<map name=\"hills\" version=\"3\">\n<options>" << profile << "<terrain "
+                         << terrainOptions << " color=\"#7f9f5f\"/></options>\n"
                          << "<GDALImage name=\"picture\"><url>picture.tif</url></GDALImage>\n"
                          << "<GDALElevation name=\"hills\"><url>hills.tif</url></GDALElevation>\n"
                          << geofx << "\n</map>\n";
@@ -205,8 +206,8 @@ osg::ref_ptr<osg::Image> EarthMaps::draw(double longitude, double latitude, doub
                                          double pitch)
 {
     osg::Matrixd ground;
-    osg::EllipsoidModel().computeLocalToWorldTransformFromLatLongHeight(
-        osg::DegreesToRadians(latitude), osg::DegreesToRadians(longitude), height, ground);
+    const osgEarth::GeoPoint place(osgEarth::SpatialReference::get("wgs84"), longitude, latitude, height);
+    if (!place.transform(_map->getMapSRS()).createLocalToWorld(ground)) ADD_FAILURE() << "no place";
     const osg::Matrixd turn =
         osg::Matrixd::rotate(osg::DegreesToRadians(90.0 + pitch), osg::Vec3d(1.0, 0.0, 0.0)) *
         osg::Matrixd::rotate(-osg::DegreesToRadians(heading), osg::Vec3d(0.0, 0.0, 1.0));

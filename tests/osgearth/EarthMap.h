@@ -18,7 +18,7 @@ namespace geofx::test
 class TempDir;
 
 /** Maps of osgEarth in an OpenGL context without a window: hills of 1 degree at the equator, 0…1000 m high, in several
-    colors and without light, on a globe. */
+    colors and without light, on a globe or in a projection. */
 class EarthMaps : public testing::Test
 {
 protected:
@@ -28,6 +28,8 @@ protected:
     ~EarthMaps() override;
     void SetUp() override;
 
+    /// The profile of the maps that are shown from now on; "" for a globe.
+    void setProfile(const std::string& name) { _profile = name; }
     /// Writes an .earth file with an extension's element, and shows it. False, after a failure, if it cannot be read.
     bool show(const std::string& geofx, const std::string& terrainOptions = "skirt_ratio=\"0.05\"");
     /// What scene files have in <effects>, as an extension.
@@ -51,7 +53,7 @@ private:
     bool startViewer();
 
     std::unique_ptr<TempDir> _folder;
-    std::string _file;
+    std::string _file, _profile;
     osg::ref_ptr<osgEarth::MapNode> _map;
     osg::ref_ptr<osg::Group> _root;
     osg::ref_ptr<osgViewer::Viewer> _viewer;
