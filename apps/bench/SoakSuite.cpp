@@ -38,7 +38,7 @@ namespace
 
 using osgGeoFX::ViewPoint;
 
-constexpr OffscreenView::Size SIZE = {192, 120};
+constexpr OffscreenView::Size SIZE = {96, 60}; ///< small, for so many frames; what is loaded goes by it, too
 const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
 constexpr double FRAMES_A_SECOND = 30.0; ///< of the flights' own clock
 constexpr int FRAMES_A_FLIGHT = 400;     ///< then another one begins elsewhere, with other effects
