@@ -16,6 +16,7 @@
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/viewer/Scene.h>
@@ -38,7 +39,7 @@ namespace
 
 using osgGeoFX::ViewPoint;
 
-constexpr OffscreenView::Size SIZE = {96, 60}; ///< small, for so many frames; what is loaded goes by it, too
+constexpr OffscreenView::Size SIZE = {192, 120}; ///< small, for so many frames
 const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
 constexpr double FRAMES_A_SECOND = 30.0; ///< of the flights' own clock
 constexpr int FRAMES_A_FLIGHT = 400;     ///< then another one begins elsewhere, with other effects
@@ -227,13 +228,15 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
     std::string error;
     const std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(terrain.string(), error);
     if (!scene) throw BenchError(error);
-    if (!scene->reference || !scene->reference->isGeocentric())
+    if (!scene->reference || !scene->reference->isGeocentric() || !scene->terrain)
         throw BenchError(terrain.string() + ": it is no globe; name a database of Oahu with --terrain FILE.");
     const osg::ref_ptr<MessageCount> messages = new MessageCount;
     Log log;
     {
         OffscreenView view(SIZE, FIELD_OF_VIEW, scene->node);
-        view.camera().setLODScale(scene->lodScale(SIZE.height, FIELD_OF_VIEW));
+        // As coarse as so small a picture may be, within a pixel's error.
+        view.camera().setLODScale(static_cast<float>(scene->terrain->pixelsPerRadian /
+                                                     osgGeoFX::pixelsPerRadian(SIZE.height, FIELD_OF_VIEW)));
         Dice dice;
         Flight flight{};
         const int sampled = settings.smoke ? FRAMES_A_SAMPLE / 5 : FRAMES_A_SAMPLE;
