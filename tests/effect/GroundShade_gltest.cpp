@@ -155,8 +155,7 @@ TEST_F(GroundShadeTest, TakesItsShareOfTheGroundWhereverThatIs)
         const osg::ref_ptr<osg::Group> town = new osg::Group;
         town->getOrCreateStateSet()->setDefine(RigidParts::define);
         town->addChild(makeShade(BROAD, 0.4f));
-        const Counts counts =
-            compare(*ground, *picture(town), *picture(makeMark(BROAD)), 0.4);
+        const Counts counts = compare(*ground, *picture(town), *picture(makeMark(BROAD)), 0.4);
         EXPECT_GT(counts.marked, 2000);
         // Some of it is behind waves of the ground.
         EXPECT_GT(counts.shaded, counts.marked * 97 / 100);
