@@ -189,10 +189,10 @@ TEST(ContactShadeTest, IsWiderForATallBuilding)
     {
         return ContactShade::width(building({box({0.0, 0.0}, 20.0, 12.0, 0.0)}, 30.0, height));
     };
-    EXPECT_GT(widthOf(12.0), 1.5 * widthOf(5.0));
-    EXPECT_GT(widthOf(25.0), 1.5 * widthOf(12.0));
+    EXPECT_GT(widthOf(10.0), 1.4 * widthOf(5.0));
+    EXPECT_GT(widthOf(20.0), 1.5 * widthOf(10.0));
     EXPECT_GE(widthOf(1.0), 2.0);
-    EXPECT_LE(widthOf(400.0), 30.0);
+    EXPECT_LE(widthOf(400.0), 15.0);
 }
 
 // Long sides follow the ground.

@@ -59,7 +59,7 @@ struct ContactShade::Corner
 
 double ContactShade::width(const PlacedBuilding& building)
 {
-    return std::clamp(0.8 * (meanTop(building) - building.reference.z()) + 1.5, 3.0, 24.0);
+    return std::clamp(0.5 * (meanTop(building) - building.reference.z()) + 2.0, 3.0, 12.0);
 }
 
 unsigned int ContactShade::vertex(const osg::Vec2d& place, double share, double grain)
