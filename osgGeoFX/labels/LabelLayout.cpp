@@ -227,6 +227,8 @@ std::vector<PlacedLabel> LabelLayout::place(const std::vector<LabelCandidate>& c
             {
                 const auto isOff = [&](const osg::Vec2d& offset)
                 {
+                    // Names of summits stand in the sky, and the ways behind them are hidden.
+                    if (label.manner == LabelCandidate::LEADER) return true;
                     const Box box = boxOf(label.anchor + offset, label.size);
                     return std::none_of(bands.begin(), bands.end(),
                                         [&](const LabelBand& band) { return meets(band, box); });

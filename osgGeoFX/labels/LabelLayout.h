@@ -86,7 +86,7 @@ public:
 
     /// The names of the next picture, of `width` × `height` pixels, at a time in seconds, in the order of the candidates. A name
     /// that is no candidate any more fades out where it was.
-    /// A name that comes takes the first place that is off all `bands`, or else the first one.
+    /// A name beside its place takes the first place that is off all `bands` when it comes, or else the first one.
     std::vector<PlacedLabel> place(const std::vector<LabelCandidate>& candidates, double width, double height,
                                    double time, const std::vector<LabelBand>& bands = {});
     /// The same for a single picture: nothing fades, and former pictures do not count.

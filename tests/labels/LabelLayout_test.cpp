@@ -215,4 +215,8 @@ TEST(LabelLayout, KeepsOffWaysWhereThereIsRoom)
     // A way that passes by changes nothing, and ways everywhere neither.
     EXPECT_EQ(cornerOf({{{860.0, 500.0}, {1000.0, 500.0}, 3.0}}), usual);
     EXPECT_EQ(cornerOf({{{0.0, 450.0}, {1600.0, 450.0}, 400.0}}), usual);
+    // Summits' names stand in the sky.
+    town.manner = LabelCandidate::LEADER;
+    const osg::Vec2d above = cornerOf({});
+    EXPECT_EQ(cornerOf({{{700.0, 470.0}, {900.0, 470.0}, 6.0}}), above);
 }
