@@ -119,9 +119,10 @@ int main(int argc, char** argv)
                    "The unit of heights that do not say theirs: m (the default) or ft")
         ->needs(buildings)
         ->transform(CLI::CheckedTransformer(heightUnits).description("m|ft"));
-    app.add_flag(
-           "!--no-ambient-occlusion", town.ambientOcclusion,
-           "Without it, walls and roofs are darker where neighbours, courtyards or the ground shut them in")
+    app.add_flag("!--no-ambient-occlusion", town.ambientOcclusion,
+                 "Without it, walls and roofs are darker where neighbours, courtyards or the ground shut "
+                 "them in, and "
+                 "the ground around buildings")
         ->needs(buildings);
     auto* globe =
         app.add_flag("--geocentric", geocentric, "Curved, in geocentric WGS 84 coordinates (the default)");

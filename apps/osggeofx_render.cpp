@@ -57,6 +57,7 @@ struct Arguments
     geofx::web::Options web;
     geofx::print::Options print;
     bool inset = false;
+    std::string insetCorner = "lower-right";
     bool sky = false;
     bool noCull = false;
     geofx::render::Values values;
@@ -148,7 +149,12 @@ void addOptions(CLI::App& app, Arguments& arguments)
     geofx::web::addOptions(app, arguments.web);
     geofx::print::addOptions(app, arguments.print);
     app.add_flag("--inset", arguments.inset,
-                 "Put the same view without effects, a quarter as wide, into the lower right corner");
+                 "Put the same view without effects, a quarter as wide, into a corner");
+    app.add_option("--inset-corner", arguments.insetCorner,
+                   "Which corner: lower-right, lower-left, upper-left or upper-right")
+        ->check(CLI::IsMember({"lower-right", "lower-left", "upper-left", "upper-right"}))
+        ->needs("--inset")
+        ->capture_default_str();
     app.add_flag("--sky", arguments.sky,
                  "Put a sky around the Earth in place of the plain background (geocentric scenes)");
     app.add_flag("--no-compensation", arguments.noCompensation,
@@ -221,9 +227,9 @@ void addEffects(const Arguments& arguments, osgGeoFX::EffectScene& scene)
     scene.setDebugBounds(arguments.debugBounds);
 }
 
-/// The picture of a camera without effects, small, in the corner of the one with them.
-void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const geofx::render::Camera& camera,
-              unsigned int frame, osgGeoFX::EffectScene& scene)
+/// The picture of a camera without effects, small, in a corner of the one with them.
+void addInset(const std::string& corner, osg::Image& image, osgGeoFX::SceneRenderer& renderer,
+              const geofx::render::Camera& camera, unsigned int frame, osgGeoFX::EffectScene& scene)
 {
     std::vector<bool> enabled;
     for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
@@ -244,8 +250,11 @@ void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const geofx:
     straight->scaleImage(width, height, 1);
     const int margin = std::max(image.s() / 80, 1);
     const int frameWidth = std::max(image.s() / 600, 1);
-    const int left = std::max(image.s() - width - margin, 0);
-    for (int y = margin - frameWidth; y < margin + height + frameWidth; ++y)
+    const int left =
+        corner.find("left") != std::string::npos ? margin : std::max(image.s() - width - margin, 0);
+    const int low =
+        corner.find("upper") != std::string::npos ? std::max(image.t() - height - margin, 0) : margin;
+    for (int y = low - frameWidth; y < low + height + frameWidth; ++y)
     {
         for (int x = left - frameWidth; x < left + width + frameWidth; ++x)
         {
@@ -254,7 +263,7 @@ void addInset(osg::Image& image, osgGeoFX::SceneRenderer& renderer, const geofx:
                            static_cast<unsigned int>(y));
         }
     }
-    image.copySubImage(left, margin, 0, straight);
+    image.copySubImage(left, low, 0, straight);
 }
 
 /// What a print shows, for its metadata: JSON with the scene, its effects, and the camera, in world coordinates and, where the scene has
@@ -405,7 +414,8 @@ public:
                     {
                         if (_page) _page->setPicture(plain);
                     });
-        if (_arguments.inset) addInset(*image, *_renderer, _camera, frame, *_scene.effects);
+        if (_arguments.inset)
+            addInset(_arguments.insetCorner, *image, *_renderer, _camera, frame, *_scene.effects);
         if (!_files.write(*image, frame)) throw Failure(badInput, _files.error());
         _statistics->add(figures);
     }

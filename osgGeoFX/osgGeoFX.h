@@ -27,6 +27,7 @@
 #include <osgGeoFX/effect/DrawableCompanion.h>
 #include <osgGeoFX/effect/Effect.h>
 #include <osgGeoFX/effect/GlslFunctions.h>
+#include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/LocalOrigin.h>
 #include <osgGeoFX/effect/NormalTurner.h>
 #include <osgGeoFX/effect/PassEffect.h>

@@ -105,6 +105,42 @@ def simplify(points, tolerance):
     return numpy.vstack([simplify(points[:at + 1], tolerance)[:-1], simplify(points[at:], tolerance)])
 
 
+def closed(cells):
+    """With the gaps between lanes, ramps and pieces, up to two cells wide."""
+    around = [(0, 0)] + AROUND
+    wide = numpy.any([shifted(cells, *way) for way in around], axis=0)
+    return numpy.all([shifted(wide, *way) for way in around], axis=0)
+
+
+def without_stubs(lines, least):
+    """Leaves out what is shorter than `least` cells and leads from another line to nowhere: corners of wide crossings."""
+    ends = {}
+    for line in lines:
+        for end in (line[0], line[-1]):
+            ends[end] = ends.get(end, 0) + 1
+    return [line for line in lines
+            if len(line) >= least or min(ends[line[0]], ends[line[-1]]) > 1 or max(ends[line[0]], ends[line[-1]]) < 3]
+
+
+def ashore(points, sea):
+    """A line of water without what is within a cell and a half of the sea, so that its round end is not in it."""
+    def near(point):
+        r, c = int(round(point[0])), int(round(point[1]))
+        return sea[max(r - 1, 0):r + 2, max(c - 1, 0):c + 2].any()
+
+    points = [tuple(each) for each in points]
+    for _ in (0, 1):
+        while len(points) > 1 and near(points[-1]):
+            (r, c), (r0, c0) = points[-1], points[-2]
+            length = math.hypot(r - r0, c - c0)
+            if length <= 0.5:
+                points.pop()
+            else:
+                points[-1] = (r - 0.5 * (r - r0) / length, c - 0.5 * (c - c0) / length)
+        points.reverse()
+    return numpy.array(points)
+
+
 def without_lines(classes):
     """The land cover with the class beside them in the cells of lines, ring by ring from their borders."""
     ground = classes.copy()
@@ -160,12 +196,17 @@ def main(source, target, ground=None):
     for value, style, least in KINDS + (CANALS if ground else []):
         cells = classes == value
         # Streams flow below roads, and roads end at crossings with larger ones.
-        cells = thin(cells)
+        cells = thin(closed(cells) if ground and style == "motorway" else cells)
         lines = []
-        for line in trace(cells):
+        traced = trace(cells)
+        for line in without_stubs(traced, 5) if ground and style in ("motorway", "secondary") else traced:
             if len(line) < (2 if ground else least):
                 continue
             points = simplify(smooth(line), 0.4)
+            if ground and style in ("river", "canal"):
+                points = ashore(points, classes == 1)
+                if len(points) < 2:
+                    continue
             lines.append([[round(left + wide * (c + 0.5), 5), round(top + high * (r + 0.5), 5)] for r, c in points])
         if (value, style, least) in CANALS:
             lines = joined(lines, 4.5, 4)

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/labels/FinestGround.h>
 
+#include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/RigidParts.h>
 
 #include <osg/Math>
@@ -59,7 +60,8 @@ public:
     using osgUtil::IntersectionVisitor::IntersectionVisitor;
     void apply(osg::Drawable& drawable) override
     {
-        if (!RigidParts::of(drawable)) osgUtil::IntersectionVisitor::apply(drawable);
+        if (!RigidParts::of(drawable) && !GroundShade::is(drawable))
+            osgUtil::IntersectionVisitor::apply(drawable);
     }
 };
 

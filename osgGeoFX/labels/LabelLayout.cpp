@@ -151,6 +151,27 @@ std::vector<osg::Vec2d> offsetsOf(const LabelCandidate& label, const LabelLayout
     return offsets;
 }
 
+/// Whether a line comes nearer to a box than it is wide.
+bool meets(const LabelBand& band, const Box& inner)
+{
+    const Box box = inner.grown(band.halfWidth);
+    // The part of the line between the box's sides (Liang and Barsky 1984).
+    double first = 0.0, last = 1.0;
+    for (int axis = 0; axis < 2; ++axis)
+    {
+        const double way = band.to[axis] - band.from[axis], low = box.low[axis] - band.from[axis],
+                     high = box.high[axis] - band.from[axis];
+        if (way == 0.0)
+        {
+            if (low > 0.0 || high < 0.0) return false;
+            continue;
+        }
+        first = std::max(first, std::min(low / way, high / way));
+        last = std::min(last, std::max(low / way, high / way));
+    }
+    return first <= last;
+}
+
 bool isWhole(const Box& box, double width, double height)
 {
     return box.low.x() >= 0.0 && box.low.y() >= 0.0 && box.high.x() <= width && box.high.y() <= height;
@@ -159,7 +180,7 @@ bool isWhole(const Box& box, double width, double height)
 } // namespace
 
 std::vector<PlacedLabel> LabelLayout::place(const std::vector<LabelCandidate>& candidates, double width,
-                                            double height, double time)
+                                            double height, double time, const std::vector<LabelBand>& bands)
 {
     // A clock that goes back, or has stood for long, tells nothing of what was seen before.
     const double passed = _time < 0.0 ? 0.0 : std::clamp(time - _time, 0.0, 1.0);
@@ -204,12 +225,21 @@ std::vector<PlacedLabel> LabelLayout::place(const std::vector<LabelCandidate>& c
             // A name that is still to be seen must be gone before it shows elsewhere.
             if (!placed && shown.alpha <= 0.0)
             {
+                const auto isOff = [&](const osg::Vec2d& offset)
+                {
+                    // Names of summits stand in the sky, and the ways behind them are hidden.
+                    if (label.manner == LabelCandidate::LEADER) return true;
+                    const Box box = boxOf(label.anchor + offset, label.size);
+                    return std::none_of(bands.begin(), bands.end(),
+                                        [&](const LabelBand& band) { return meets(band, box); });
+                };
                 for (const osg::Vec2d& offset : offsetsOf(label, _rules))
                 {
                     if (!free(offset, _rules.room)) continue;
-                    shown.offset = offset;
+                    const bool off = isOff(offset);
+                    if (!placed || off) shown.offset = offset;
                     placed = true;
-                    break;
+                    if (off) break;
                 }
             }
         }
@@ -270,12 +300,13 @@ std::vector<PlacedLabel> LabelLayout::place(const std::vector<LabelCandidate>& c
 }
 
 std::vector<PlacedLabel> LabelLayout::placeOnce(const std::vector<LabelCandidate>& candidates, double width,
-                                                double height, const Rules& rules)
+                                                double height, const Rules& rules,
+                                                const std::vector<LabelBand>& bands)
 {
     Rules once = rules;
     once.fading = once.patience = 0.0;
     LabelLayout layout(once);
-    return layout.place(candidates, width, height, 0.0);
+    return layout.place(candidates, width, height, 0.0, bands);
 }
 
 } // namespace osgGeoFX

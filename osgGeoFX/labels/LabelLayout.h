@@ -48,6 +48,14 @@ struct PlacedLabel
     bool leader = false;
 };
 
+/// A line in a picture, such as a way, that names keep off where there is room. Pixels, with y upwards.
+/// @ingroup labels
+struct LabelBand
+{
+    osg::Vec2d from, to;
+    double halfWidth = 0.0;
+};
+
 /** Places names in one view's pictures, one after the other, so that no two overlap and nothing jumps.
 
     Names come in the order of the candidates: the first one gets the best place. A name that is shown keeps its place beside
@@ -78,11 +86,13 @@ public:
 
     /// The names of the next picture, of `width` × `height` pixels, at a time in seconds, in the order of the candidates. A name
     /// that is no candidate any more fades out where it was.
+    /// A name beside its place takes the first place that is off all `bands` when it comes, or else the first one.
     std::vector<PlacedLabel> place(const std::vector<LabelCandidate>& candidates, double width, double height,
-                                   double time);
+                                   double time, const std::vector<LabelBand>& bands = {});
     /// The same for a single picture: nothing fades, and former pictures do not count.
     static std::vector<PlacedLabel> placeOnce(const std::vector<LabelCandidate>& candidates, double width,
-                                              double height, const Rules& rules);
+                                              double height, const Rules& rules,
+                                              const std::vector<LabelBand>& bands = {});
     /// Forgets all former pictures.
     void clear() { _shown.clear(); }
 

@@ -3,6 +3,7 @@
 #include <osgGeoFX/labels/LabelPicture.h>
 
 #include <osgGeoFX/labels/detail/CairoRows.h>
+#include <osgGeoFX/labels/detail/WayBands.h>
 
 #include <cairo.h>
 
@@ -28,12 +29,12 @@ LabelPicture::LabelPicture(NameSet& names, EffectScene& scene, const osg::Camera
                            const LabelLayout::Rules& rules, std::size_t most)
     : _names(&names), _width(camera.getViewport()->width()), _height(camera.getViewport()->height())
 {
-    const std::vector<NameSet::Seen> seen =
-        names.inPicture(DeformedView(scene, camera), _width, _height, most);
+    const DeformedView view(scene, camera);
+    const std::vector<NameSet::Seen> seen = names.inPicture(view, _width, _height, most);
     std::vector<bool> visible;
     for (const NameSet::Seen& each : seen)
         visible.push_back(depths.empty() || NameSet::isShown(each, NameSet::placesShown(each, depths)));
-    place(seen, visible, rules);
+    place(seen, visible, rules, bandsOfWays(scene, view, names, seen));
 }
 
 LabelPicture::LabelPicture(NameSet& names, const std::vector<NameSet::Seen>& seen,
@@ -41,11 +42,11 @@ LabelPicture::LabelPicture(NameSet& names, const std::vector<NameSet::Seen>& see
                            const LabelLayout::Rules& rules)
     : _names(&names), _width(width), _height(height)
 {
-    place(seen, visible, rules);
+    place(seen, visible, rules, {});
 }
 
 void LabelPicture::place(const std::vector<NameSet::Seen>& seen, const std::vector<bool>& visible,
-                         const LabelLayout::Rules& rules)
+                         const LabelLayout::Rules& rules, const std::vector<LabelBand>& bands)
 {
     std::vector<LabelCandidate> candidates;
     for (std::size_t i = 0; i < seen.size(); ++i)
@@ -57,7 +58,7 @@ void LabelPicture::place(const std::vector<NameSet::Seen>& seen, const std::vect
     LabelLayout::Rules scaled = rules;
     scaled.gap *= _names->getScale();
     scaled.room *= _names->getScale();
-    for (const PlacedLabel& label : LabelLayout::placeOnce(candidates, _width, _height, scaled))
+    for (const PlacedLabel& label : LabelLayout::placeOnce(candidates, _width, _height, scaled, bands))
     {
         _placed.push_back({seen[label.id].name, label, seen[label.id].label.curve});
         _placed.back().label.id = seen[label.id].name;

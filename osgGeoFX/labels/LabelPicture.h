@@ -32,7 +32,8 @@ public:
     };
 
     /// `camera`: of the whole picture, with its viewport. `depths`: of the frame, from the cameras that drew the picture or its
-    /// parts (DepthReader::pictures()); what they show to be hidden gets no name. Empty: nothing counts as hidden.
+    /// parts (DepthReader::pictures()); what they show to be hidden gets no name. Empty: nothing counts as hidden. Names keep off ways on a globe (RouteMapping)
+    /// where there is room.
     LabelPicture(NameSet& names, EffectScene& scene, const osg::Camera& camera,
                  const std::vector<std::shared_ptr<const DepthPicture>>& depths,
                  const LabelLayout::Rules& rules = {}, std::size_t most = usualMost);
@@ -60,7 +61,7 @@ public:
 
 private:
     void place(const std::vector<NameSet::Seen>& seen, const std::vector<bool>& visible,
-               const LabelLayout::Rules& rules);
+               const LabelLayout::Rules& rules, const std::vector<LabelBand>& bands);
 
     osg::ref_ptr<NameSet> _names;
     double _width;

@@ -58,12 +58,14 @@ struct View
 {
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     osg::ref_ptr<osg::Uniform> viewport = new osg::Uniform(osg::Uniform::FLOAT_VEC4, "geofx_linesViewport");
+    osg::ref_ptr<osg::Uniform> upward = new osg::Uniform(osg::Uniform::FLOAT_VEC4, "geofx_linesUpward");
     bool reversed = false;
 
     View()
     {
         state->setDataVariance(osg::Object::DYNAMIC);
         state->addUniform(viewport);
+        state->addUniform(upward);
         setDepth();
     }
     void setDepth()
@@ -75,6 +77,15 @@ struct View
     void releaseGLObjects(osg::State* target) const { state->releaseGLObjects(target); }
     void resizeGLObjectBuffers(unsigned int size) { state->resizeGLObjectBuffers(size); }
 };
+
+/// Whether the scene above a node has a globe for its ground.
+bool isOnGlobe(const osg::NodePath& path)
+{
+    for (const osg::Node* each : path)
+        if (const auto* scene = dynamic_cast<const EffectScene*>(each))
+            return scene->ground().ellipsoid.valid();
+    return false;
+}
 
 /// A drawable in the making: parts of lines of one style, near each other.
 class Cell
@@ -274,6 +285,12 @@ void MapLines::traverse(osg::NodeVisitor& visitor)
     if (!(size.x() > 0.0 && size.y() > 0.0)) return;
     View& view = _drawing->views.of(*cull);
     view.viewport->set(osg::Vec4(osg::Vec4d(size.x(), size.y(), 1.0 / size.x(), 1.0 / size.y())));
+    const osg::Matrixd& modelView = *cull->getModelViewMatrix();
+    if (isOnGlobe(visitor.getNodePath()))
+        view.upward->set(osg::Vec4(osg::Vec4d(modelView.getTrans(), 1.0)));
+    else
+        view.upward->set(
+            osg::Vec4(osg::Vec4d(osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, 1.0), modelView), 0.0)));
     const bool reversed = cull->getProjectionMatrix() && CameraDepth::reverses(*cull->getProjectionMatrix());
     if (reversed != view.reversed)
     {

@@ -22,6 +22,7 @@ namespace osgGeoFX
     in close-ups. Their widths are pixels of the picture, by the distance. What lies before a line hides it. Lines write no depth, so they
     hide nothing, and neither picking nor DepthReader meets them. In a panorama map they keep their colors.
 
+    A line is a strip before the eye with the depth of its middle, but of level ground where that is nearer, so that no side of a wide line is hidden.
     The terrain's triangles may be coarser than the line, so lines are drawn nearer by a small share of their distance (`setNearer`), and one
     close behind a ridge shows through.
 

@@ -151,6 +151,7 @@ ProjectiveMappings* SceneRoutes::effectFor(const Way& way, std::string& error)
     }
     osg::ref_ptr<ProjectiveMappings> effect = new ProjectiveMappings;
     effect->setName("routes");
+    effect->setGroundOnly(true); // a wall beside a way is no part of it
     if (_ellipsoid)
     {
         double longitude = 0.0, latitude = 0.0, height = 0.0;

@@ -26,7 +26,7 @@ namespace osgGeoFX
 
     A way lies on the ground, whatever its altitude mode is, and one with heights is in the air, too (`ribbons`): above the sea, or above the ground of
     the scene, as fine as its database has it. It follows geodesics between its places. Way points get marks,
-    the points of tracks none. Each is a RouteMapping, which stays in the scene when this object is gone: they are in effects named "routes", behind the scene's
+    the points of tracks none. Buildings of a town (RigidParts) stand on ways, and do not show them. Each is a RouteMapping, which stays in the scene when this object is gone: they are in effects named "routes", behind the scene's
     other effects, one for each part of the globe of 45° of arc. The plugin osgdb_geofxdata reads the files. One thread at a time, between frames.
     @ingroup map */
 class OSGGEOFXMAPS_EXPORT SceneRoutes

@@ -302,6 +302,8 @@ const Properties& ProjectiveMappings::properties() const
             Property::flag("linear",
                            "whether colors are made linear, for scenes that are lit in linear light")
                 .of<&Self::_linear>(),
+            Property::flag("groundOnly", "whether things that keep their shape, as buildings, show none")
+                .of<&Self::_groundOnly>(),
             TextureUnits::property("dataUnit", "the texture unit of the parameters").of<&Self::_dataUnit>(),
             TextureUnits::property("layerUnit", "the texture unit of the rasters").of<&Self::_layerUnit>(),
             TextureUnits::property("tableUnit", "the texture unit of the color tables")
@@ -632,6 +634,7 @@ bool ProjectiveMappings::fill(osg::StateSet& state, const std::string& prefix, c
     // The paper's loop works out each mapping in its turn, too.
     define("IN_TURN", _wholeList || frame.longestList > longList);
     define("LINEAR", _linear);
+    define("GROUND_ONLY", _groundOnly);
     setUniform(state, prefix + "quality", osg::Uniform::FLOAT_VEC3,
                osg::Vec3(static_cast<float>(_anisotropy), 1.0f / static_cast<float>(frame.store->pageSide()),
                          1.0f / GpuStore::tableWidth));

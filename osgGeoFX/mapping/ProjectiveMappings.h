@@ -167,6 +167,9 @@ public:
     /// The largest number of pages, 1…2048. The GPU may allow fewer. Default: 64, which are 1.4 GB.
     bool setMaxPages(int pages) { return assign("maxPages", pages); }
     int getMaxPages() const { return _maxPages; }
+    /// Whether things that keep their shape (RigidParts), such as the buildings of a town, show no mappings. Default: false.
+    bool setGroundOnly(bool only) { return assign("groundOnly", only); }
+    bool getGroundOnly() const { return _groundOnly; }
     /// The largest memory for the parameters of the mappings and for their grid, MiB, 0.001…32000. The GPU may allow
     /// less. Default: 2048.
     bool setMaxDataSize(double megabytes) { return assign("maxDataSize", megabytes); }
@@ -260,6 +263,7 @@ private:
     int _dataUnit = -1, _layerUnit = -1, _tableUnit = -1;
     int _pageSide = 2048, _maxPages = 64;
     double _maxDataSize = 2048.0;
+    bool _groundOnly = false;
     int _caching = OFF;
     int _cacheSize = 128;
     int _pagesPerFrame = 2;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/DeformedIntersector.h>
 
+#include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/detail/DrawableTriangles.h>
 #include <osgGeoFX/scene/RigidReference.h>
@@ -397,6 +398,7 @@ void DeformedIntersectionVisitor::apply(osg::PagedLOD& node)
 
 void DeformedIntersectionVisitor::apply(osg::Drawable& drawable)
 {
+    if (GroundShade::is(drawable)) return;
     const Scope scope(*this, drawable);
     IntersectionVisitor::apply(drawable);
 }

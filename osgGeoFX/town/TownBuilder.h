@@ -36,8 +36,9 @@ struct TownOptions
     std::string roofField;
     /// The unit of heights that do not say theirs ("12 m", "40 ft").
     HeightUnit unit = HeightUnit::METRES;
-    /// Walls and roofs are darker where neighbours, courtyards or the ground shut them in. It is in the colors of vertices: it
-    /// costs nothing when the town is drawn, and belongs to the town before any effect bends it.
+    /// Walls and roofs are darker where neighbours, courtyards or the ground shut them in, and the ground around buildings
+    /// (GroundShade). It is in the colors of vertices, and belongs to the town before any effect bends it. For walls and roofs it
+    /// costs nothing when the town is drawn; for the ground, one more drawable for each cell.
     bool ambientOcclusion = true;
     int threads = 0; ///< worker threads; 0 for one for each core
 };

@@ -10,7 +10,7 @@
 #pragma import_defines(GEOFX_LIGHTS, GEOFX_TWO_SIDED, GEOFX_NORMAL_MAP)
 #pragma import_defines(GEOFX_NORMALIZE, GEOFX_RESCALE)
 #pragma import_defines(GEOFX_HDR, GEOFX_RIGID)
-#pragma import_defines(GEOFX_PART, GEOFX_MIRROR, GEOFX_SHADOWED)
+#pragma import_defines(GEOFX_PART, GEOFX_MIRROR, GEOFX_SHADOWED, GEOFX_GROUND_SHADE)
 
 // OpenGL bounds the colors of fragments where the frame buffer does, too (ARB_color_buffer_float).
 #ifdef GEOFX_HDR
@@ -107,6 +107,9 @@ vec4 fogged(vec4 color)
     if ((GEOFX_FOG & 3) == 1) clear = (gl_Fog.end - distance) * gl_Fog.scale;
     if ((GEOFX_FOG & 3) == 2) clear = exp(-gl_Fog.density * distance);
     if ((GEOFX_FOG & 3) == 3) clear = exp(-gl_Fog.density * gl_Fog.density * distance * distance);
+#ifdef GEOFX_GROUND_SHADE
+    color.a *= clamp(clear, 0.0, 1.0); // fog is not darkened
+#endif
     return vec4(mix(gl_Fog.color.rgb, bounded(color.rgb), clamp(clear, 0.0, 1.0)), color.a);
 }
 #endif
@@ -174,7 +177,7 @@ void main()
     color = fogged(color);
 #endif
 #if defined(GEOFX_PART) && !defined(GEOFX_MIRROR)
-#if GEOFX_PART == GEOFX_PART_NOTHING
+#if GEOFX_PART == GEOFX_PART_NOTHING || defined(GEOFX_GROUND_SHADE)
     discard;
 #elif GEOFX_PART == GEOFX_PART_BLACK || GEOFX_PART == GEOFX_PART_WHITE
     color.rgb = vec3(GEOFX_PART == GEOFX_PART_WHITE ? 1.0 : 0.0);
@@ -184,4 +187,7 @@ void main()
 #endif
     gl_FragColor = color;
     GEOFX_PUT_FRAGMENT_DEPTH;
+#if defined(GEOFX_GROUND_SHADE) && defined(GEOFX_LOG_DEPTH_OF_FRAGMENTS)
+    gl_FragDepth -= 4.0 * fwidth(gl_FragDepth); // osgGeoFX/effect/GroundShade.cpp
+#endif
 }

@@ -17,9 +17,7 @@
 GEOFX_IMPORTED_EFFECTS
 #include "stages/view.glsl"
 in float geofx_styleBlend;
-// Of a fragment of a line on the ground: metres along it, and to the left of its middle, where geofx_vertex() was.
-bool geofx_isLine = false;
-vec2 geofx_linePlace = vec2(0.0);
+bool geofx_isLine = false; // whether it is a fragment of a line on the ground
 #ifdef GEOFX_SHADOWED
 in vec3 geofx_shade;
 vec3 geofx_lightInShade()
@@ -82,10 +80,9 @@ GEOFX_LIGHT_CALLS
 }
 
 // The same for a fragment of a line.
-float geofx_sunlightOfLine(vec2 place)
+float geofx_sunlightOfLine()
 {
     geofx_isLine = true;
-    geofx_linePlace = place;
     return geofx_sunlight();
 }
 

@@ -8,7 +8,7 @@
 #include "lib/lines.glsl"
 
 vec4 geofx_fragment(vec4 color, vec4 map);
-float geofx_sunlightOfLine(vec2 place);
+float geofx_sunlightOfLine();
 
 in vec4 geofx_linesPlace;
 flat in float geofx_linesLength;
@@ -19,13 +19,13 @@ uniform vec3 geofx_linesDashes; // dash and gap, metres; the shortest dash, pixe
 
 // Lines have no light of their own. What lies in shadow is darker, but not as dark as level ground there: maps have paler shadows, and
 // lines are to be read.
-vec3 shaded(vec3 color, vec2 metres)
+vec3 shaded(vec3 color)
 {
 #if defined(GEOFX_SHADOWED) && !defined(GEOFX_CORE)
     vec3 shade = gl_LightSource[0].ambient.rgb + gl_LightModel.ambient.rgb;
     vec3 all = shade + 0.5 * gl_LightSource[0].diffuse.rgb;
     vec3 dark = mix(shade / max(all, vec3(1e-3)), vec3(1.0), 0.35);
-    return color * mix(dark, vec3(1.0), geofx_sunlightOfLine(metres));
+    return color * mix(dark, vec3(1.0), geofx_sunlightOfLine());
 #else
     return color;
 #endif
@@ -33,7 +33,7 @@ vec3 shaded(vec3 color, vec2 metres)
 
 void main()
 {
-    vec3 color = shaded(geofx_linesColor.rgb, geofx_linesPlace.xy / (geofx_linesPlace.w * geofx_linesDash.y));
+    vec3 color = shaded(geofx_linesColor.rgb);
     vec3 place = geofx_linesPlace.xyz / geofx_linesPlace.w; // along, across, half the width
     float away = length(vec2(place.x - clamp(place.x, 0.0, geofx_linesLength), place.y));
     float cover = clamp(place.z + 0.5 - away, 0.0, 1.0) * min(2.0 * place.z, 1.0);

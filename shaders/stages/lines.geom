@@ -20,17 +20,49 @@ out vec2 geofx_linesDash;                // metres from the beginning; pixels fo
 
 uniform vec4 geofx_linesViewport; // width and height in pixels, and one over each
 uniform vec4 geofx_linesWidth;    // metres; the least and the most pixels; the casing's pixels on each side
+uniform vec4 geofx_linesUpward;  // the ground's upward direction in eye space, 0; on a globe, its center there, 1
 uniform vec2 geofx_linesNearer;   // the share of the distance by which lines are nearer than the ground; the hand's pressure
 
-// An end in clip coordinates. The ground's triangles need not be as fine as the line, so it comes nearer, but stays at its pixel.
-vec4 placed(int end)
+// A place in clip coordinates. The ground's triangles need not be as fine as the line, so it comes nearer, but stays at its pixel.
+vec4 placed(vec4 eye)
 {
-    vec4 position = geofx_vertex(geofx_linesEye[end]);
+    vec4 position = geofx_vertex(eye);
     if (gl_ProjectionMatrix[3][3] == 0.0)
         position.xyz *= 1.0 - geofx_linesNearer.x;
     else
         position.z += geofx_linesNearer.x * abs(position.z);
     return gl_ProjectionMatrix * position;
+}
+
+// The way across the line on level ground, of length 1, in eye space; 0 where there is none.
+vec3 across(int end)
+{
+    vec3 eye = geofx_linesEye[end].xyz;
+    vec3 upward = geofx_linesUpward.w > 0.5 ? normalize(eye - geofx_linesUpward.xyz) : geofx_linesUpward.xyz;
+    vec3 way = cross(geofx_linesEye[1].xyz - geofx_linesEye[0].xyz, upward);
+    float size = length(way);
+    return size > 1e-9 ? way / size : vec3(0.0);
+}
+
+// What becomes of a metre of it.
+vec4 metreAcross(int end, vec4 clip)
+{
+    vec3 eye = geofx_linesEye[end].xyz;
+    float metres = max(1.0, 0.002 * length(eye));
+    return (placed(vec4(eye + metres * across(end), 1.0)) - clip) / metres;
+}
+
+// The place on level ground of a corner of a line's picture, `shift` from its end in normalized coordinates: the share of the
+// segment along it, and metres across. 0 where level ground is seen too much from the edge to tell.
+vec2 onGround(vec4 clip, vec4 along, vec4 sideward, vec2 shift)
+{
+    vec2 there = clip.xy / clip.w + shift, goal = shift * clip.w;
+    vec2 a = along.xy - there * along.w, b = sideward.xy - there * sideward.w;
+    float size = a.x * b.y - a.y * b.x;
+    if (size == 0.0) return vec2(0.0);
+    vec2 way = vec2(goal.x * b.y - goal.y * b.x, a.x * goal.y - a.y * goal.x) / size;
+    float w = clip.w + way.x * along.w + way.y * sideward.w;
+    return abs(w - clip.w) < 0.25 * clip.w ? way : vec2(0.0);
 }
 
 float perMetre(vec4 clip)
@@ -41,9 +73,12 @@ float perMetre(vec4 clip)
 void main()
 {
     const float least = 1e-3;
-    vec4 from = placed(0), to = placed(1);
+    vec4 from = placed(geofx_linesEye[0]), to = placed(geofx_linesEye[1]);
     float alongFrom = geofx_linesAlong[0], alongTo = geofx_linesAlong[1];
     if (from.w < least && to.w < least) return;
+    vec4 sidewardFrom = metreAcross(0, from), sidewardTo = metreAcross(1, to);
+    // A segment that begins behind the eye is cut, and its ends are not where the line's are.
+    bool whole = from.w >= least && to.w >= least;
     float share = (least - from.w) / (to.w - from.w);
     if (from.w < least)
     {
@@ -59,7 +94,7 @@ void main()
     vec2 way = 0.5 * geofx_linesViewport.xy * to.xy / to.w - first;
     float size = length(way);
     vec2 along = size > 1e-4 ? way / size : vec2(1.0, 0.0);
-    vec2 across = vec2(-along.y, along.x);
+    vec2 leftward = vec2(-along.y, along.x);
     for (int corner = 0; corner < 4; ++corner)
     {
         bool last = corner > 1;
@@ -69,10 +104,18 @@ void main()
                               geofx_linePressure(at, geofx_linesNearer.y, metre) +
                           geofx_linesWidth.w;
         float room = halfWidth + 1.0, side = (corner & 1) == 0 ? -1.0 : 1.0;
-        geofx_vertex(geofx_linesEye[last ? 1 : 0]); // its variables for this vertex
-        vec2 pixels = (last ? room : -room) * along + side * room * across;
-        gl_Position = clip + vec4(2.0 * pixels * geofx_linesViewport.zw * clip.w, 0.0, 0.0);
+        vec2 pixels = (last ? room : -room) * along + side * room * leftward;
+        vec2 shift = 2.0 * pixels * geofx_linesViewport.zw;
+        vec4 sideward = last ? sidewardTo : sidewardFrom;
+        vec2 beside = whole ? onGround(clip, to - from, sideward, shift) : vec2(0.0);
+        vec4 ground = clip + (to - from) * beside.x + sideward * beside.y;
+        // A line is a strip before the eye, but one side of it lies on ground that is nearer than its middle, and would be hidden there.
+        float depth = geofx_nearest(ground.z / ground.w, clip.z / clip.w);
+        gl_Position = vec4(clip.xy + shift * clip.w, depth * clip.w, clip.w);
         GEOFX_PUT_DEPTH(gl_Position);
+        vec4 eye = geofx_linesEye[last ? 1 : 0];
+        eye.xyz += (geofx_linesEye[1].xyz - geofx_linesEye[0].xyz) * beside.x + across(last ? 1 : 0) * beside.y;
+        geofx_vertex(eye); // its variables for this vertex
         gl_ClipVertex = geofx_linesEye[last ? 1 : 0];
         geofx_linesPlace = clip.w * vec4(last ? size + room : -room, side * room, halfWidth, 1.0);
         geofx_linesLength = size;

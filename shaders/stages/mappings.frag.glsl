@@ -20,6 +20,7 @@
 #pragma import_defines(SLOT_PROJECTIVE, SLOT_PINHOLES, SLOT_SYMBOLS)
 #pragma import_defines(SLOT_FADES, SLOT_HEIGHTS, SLOT_BLENDS)
 #pragma import_defines(SLOT_RANGES, SLOT_NEAREST, SLOT_PATTERNS, SLOT_LINEAR, SLOT_IN_TURN)
+#pragma import_defines(SLOT_GROUND_ONLY, GEOFX_RIGID)
 // If a first turn is certain, a loop has its condition at the end, for the same reason: with the condition at the
 // start, those compilers run through a whole last turn that does nothing.
 
@@ -53,6 +54,9 @@ uniform float SLOT_baseStrength;
 
 vec4 SLOT_color(vec4 color)
 {
+#if defined(SLOT_GROUND_ONLY) && defined(GEOFX_RIGID)
+    return color; // a building
+#endif
     // The other side of the globe has the same places once more.
     if (SLOT_curve.x * SLOT_position.z < -1.0) return color;
     vec2 p = SLOT_place.xy * SLOT_pageFrame.z + SLOT_pageFrame.xy;
@@ -544,6 +548,9 @@ vec4 SLOT_apply(SLOT_Mapping mapping, vec4 color, SLOT_Fragment fragment)
 
 vec4 SLOT_color(vec4 color)
 {
+#if defined(SLOT_GROUND_ONLY) && defined(GEOFX_RIGID)
+    return color; // a building
+#endif
     SLOT_Fragment fragment = SLOT_Fragment(SLOT_place, dFdx(SLOT_place), dFdy(SLOT_place), dFdx(SLOT_position),
                                            dFdy(SLOT_position), SLOT_toFrame[3].xyz);
     uint list = SLOT_start.y != 0 ? uint(SLOT_start.y) : SLOT_find(SLOT_place.xy);

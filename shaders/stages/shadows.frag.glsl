@@ -39,7 +39,6 @@ float SLOT_sunlight()
 {
     // Before anything returns, since it needs the neighboring pixels.
     vec3 right = dFdx(SLOT_place), above = dFdy(SLOT_place);
-    vec2 onwards = vec2(dFdx(geofx_linePlace.x), dFdy(geofx_linePlace.x));
     if (SLOT_towards.w == 0.0) return 1.0;
     vec3 up = SLOT_upward.w > 0.0 ? normalize(SLOT_place - SLOT_upward.xyz) : SLOT_upward.xyz;
     vec3 ground = SLOT_place;
@@ -54,11 +53,7 @@ float SLOT_sunlight()
     float clearance = 0.0;
     if (geofx_isLine)
     {
-        // All across the line has the place of its middle. The line lies near the ground, not on it.
-        vec3 along = right * onwards.x + above * onwards.y;
-        vec3 left = cross(up, along);
-        float turn = length(left);
-        if (turn > 0.0) ground += left * (geofx_linePlace.y / turn);
+        // The line lies near the ground, not on it.
         normal = up;
         clearance = 0.5 + max(length(right), length(above));
     }

@@ -317,3 +317,37 @@ TEST_F(RenderProgram, NothingIsLeftOnAFullDisk)
     for (const auto& entry : fs::directory_iterator(_folder.path()))
         EXPECT_EQ(entry.path().filename().string().find("out.png"), std::string::npos) << entry.path();
 }
+
+TEST_F(RenderProgram, InsetsStandInTheCornerThatIsAskedFor)
+{
+    PagedScene::write(_folder.path(), PagedScene::Kind::Geocentric);
+    const std::vector<std::string> picture = {
+        "terrain.osgb", "-o", "a.png", "--size", "320x240", "--view", "-157.8,21.4,8100,0,-90"};
+    // The frame's lower left pixel and its upper right one: a white pixel around an 80 × 60 picture, 4 pixels from the border.
+    struct Corner
+    {
+        const char* name;
+        int left, low;
+    };
+    for (const Corner& corner :
+         {Corner{"", 235, 3}, Corner{"lower-right", 235, 3}, Corner{"lower-left", 3, 3},
+          Corner{"upper-left", 3, 175}, Corner{"upper-right", 235, 175}})
+    {
+        SCOPED_TRACE(corner.name);
+        std::vector<std::string> arguments = picture;
+        arguments.emplace_back("--inset");
+        if (*corner.name) arguments.insert(arguments.end(), {"--inset-corner", corner.name});
+        expectPicture(arguments);
+        const osg::ref_ptr<osg::Image> found = image("a.png");
+        ASSERT_TRUE(found);
+        const osg::Vec3i white(255, 255, 255);
+        EXPECT_EQ(pixel(*found, corner.left, corner.low), white);
+        EXPECT_EQ(pixel(*found, corner.left + 81, corner.low + 61), white);
+        EXPECT_NE(pixel(*found, corner.left + 40, corner.low + 30), white);
+        EXPECT_NE(pixel(*found, 320 - 4 - corner.left - 40, 240 - 5 - corner.low - 30), white);
+    }
+    std::vector<std::string> wrong = picture;
+    wrong[2] = "out.png";
+    wrong.insert(wrong.end(), {"--inset", "--inset-corner", "middle"});
+    expectRefusal(wrong, "--inset-corner");
+}

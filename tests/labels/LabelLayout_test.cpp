@@ -179,3 +179,44 @@ TEST(LabelLayout, IsPatient)
     EXPECT_LT(fading, 1.0);
     EXPECT_EQ(after(0.5, false), 0.0);
 }
+
+// A way beside a place: its name stands on the other side, and where ways are all around, where it would have stood without.
+TEST(LabelLayout, KeepsOffWaysWhereThereIsRoom)
+{
+    LabelCandidate town;
+    town.manner = LabelCandidate::BESIDE;
+    town.anchor.set(800.0, 450.0);
+    town.size.set(120.0, 20.0);
+    const auto cornerOf = [&](const std::vector<LabelBand>& bands)
+    {
+        const std::vector<PlacedLabel> placed = LabelLayout::placeOnce({town}, width, height, {}, bands);
+        EXPECT_EQ(placed.size(), 1u);
+        return placed.empty() ? osg::Vec2d() : placed.front().corner;
+    };
+    const osg::Vec2d usual = cornerOf({});
+    EXPECT_GT(usual.x(), 800.0);
+    // Across the text, along it within its width, and with its ends far outside.
+    for (const LabelBand& band :
+         {LabelBand{{860.0, 300.0}, {860.0, 600.0}, 3.0}, LabelBand{{815.0, 463.0}, {1200.0, 463.0}, 6.0},
+          LabelBand{{700.0, 340.0}, {1000.0, 540.0}, 1.0}})
+    {
+        const osg::Vec2d other = cornerOf({band});
+        EXPECT_NE(other, usual);
+        // No place of the text is nearer to the way than it is wide.
+        const osg::Vec2d way = band.to - band.from;
+        for (int i = 0; i <= 120; ++i)
+            for (int k = 0; k <= 20; ++k)
+            {
+                const osg::Vec2d to = other + osg::Vec2d(i, k) - band.from;
+                const double share = std::clamp((to * way) / way.length2(), 0.0, 1.0);
+                EXPECT_GE((to - way * share).length(), band.halfWidth - 1e-9);
+            }
+    }
+    // A way that passes by changes nothing, and ways everywhere neither.
+    EXPECT_EQ(cornerOf({{{860.0, 500.0}, {1000.0, 500.0}, 3.0}}), usual);
+    EXPECT_EQ(cornerOf({{{0.0, 450.0}, {1600.0, 450.0}, 400.0}}), usual);
+    // Summits' names stand in the sky.
+    town.manner = LabelCandidate::LEADER;
+    const osg::Vec2d above = cornerOf({});
+    EXPECT_EQ(cornerOf({{{700.0, 470.0}, {900.0, 470.0}, 6.0}}), above);
+}

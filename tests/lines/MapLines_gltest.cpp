@@ -10,6 +10,7 @@
 #include <osgGeoFX/lines/MapLines.h>
 #include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/DeformedView.h>
+#include <tools/BentGround.h>
 #include <tools/CloseUpStage.h>
 #include <tools/CoreView.h>
 #include <tools/RandomSamples.h>
@@ -19,6 +20,7 @@
 #include <osg/ShapeDrawable>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -411,4 +413,51 @@ TEST_F(MapLinesTest, AreThereInOtherContextsAndDepths)
     EXPECT_TRUE(core.errors.empty()) << core.errors.front();
     EXPECT_LT(strays(*image, *inCore, 1), 0.01);
     EXPECT_LT(strays(*inCore, *image, 1), 0.01);
+}
+
+namespace
+{
+
+class WideLines : public BentGround
+{
+};
+
+} // namespace
+
+// The ground hides no side of a line that is wider than the ground's triangles: as if there was no ground.
+TEST_F(WideLines, AreWhole)
+{
+    std::map<std::string, LineStyle> styles;
+    styles[""].color.set(1.0f, 0.0f, 1.0f, 1.0f);
+    styles[""].ground = 16.0;
+    styles[""].width = 90.0;
+    styles[""].hand = 0.0;
+    std::vector<MapLine> lines;
+    for (const double y : {-80.0, -20.0, 60.0})
+    {
+        MapLine line;
+        for (double x = -60.0; x <= 60.0; x += 4.0)
+            line.places.emplace_back(x, y, std::sin(x / 13) * std::cos(y / 17));
+        lines.push_back(line);
+    }
+    std::vector<osg::ref_ptr<EffectScene>> kept; // or buffers of one would serve the next
+    for (const bool bent : {false, true})
+    {
+        SCOPED_TRACE(bent ? "bent" : "straight");
+        std::array<int, 2> counts{};
+        for (const bool ground : {false, true})
+        {
+            const osg::ref_ptr<EffectScene> scene = new EffectScene;
+            kept.push_back(scene);
+            if (bent) scene->addEffect(makeBend());
+            if (ground) scene->addChild(makeGround());
+            scene->addChild(new MapLines(lines, styles));
+            const osg::ref_ptr<osg::Image> image = render(scene);
+            for (int i = 0; i < image->s() * image->t(); ++i)
+                counts[ground ? 1 : 0] += isMagenta(image->data() + 4 * i) ? 1 : 0;
+        }
+        EXPECT_GT(counts[0], 800);
+        // The ground's waves are a metre high.
+        EXPECT_GT(counts[1], counts[0] * 97 / 100);
+    }
 }

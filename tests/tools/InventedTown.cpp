@@ -12,10 +12,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -39,8 +43,14 @@ enum Cover
     MARSH = 5,
     TOWN = 15,
     URBAN = 16,
-    INDUSTRIAL = 17
+    INDUSTRIAL = 17,
+    PAVED = 18,
+    ROAD = 19,
+    SUBURB = 25 ///< of ground.csv: houses with gardens
 };
+
+/// From a street's middle to the houses, and the shortest street, metres.
+constexpr double STREET_ROOM = 6.0, LEAST_STREET = 45.0;
 
 /// Numbers that look random, the same for the same seed on any machine.
 class Dice
@@ -82,7 +92,20 @@ struct House
     double height = 0.0;
     const char *roof = "flat", *use = "house";
     double rank = 0.0;
+    std::size_t block = 0;
 };
+
+/// Houses between four streets.
+struct Block
+{
+    std::size_t district = 0;
+    int row = 0, column = 0;
+    osg::Vec2d middle, along, across;
+    char kind = 't'; ///< of its lots
+};
+
+// Of a block with its streets, metres.
+constexpr double BLOCK_LENGTH = 118.0, BLOCK_WIDTH = 76.0;
 
 /// Where streets have one direction.
 struct District
@@ -96,6 +119,96 @@ struct Center
 {
     osg::Vec2d middle;
     double width, share, tallest;
+};
+
+double awayFrom(const osg::Vec2d& place, const osg::Vec2d& from, const osg::Vec2d& to)
+{
+    const osg::Vec2d side = to - from;
+    const double share =
+        side.length2() > 0.0 ? std::clamp(((place - from) * side) / side.length2(), 0.0, 1.0) : 0.0;
+    return (place - from - side * share).length();
+}
+
+/// Things by the cells of a grid.
+template<typename T>
+class Grid
+{
+public:
+    void add(const osg::Vec2d& low, const osg::Vec2d& high, const T& thing)
+    {
+        for (int y = cell(low.y()); y <= cell(high.y()); ++y)
+            for (int x = cell(low.x()); x <= cell(high.x()); ++x)
+                _cells[{y, x}].push_back(thing);
+    }
+    const std::vector<T>& at(const osg::Vec2d& place) const
+    {
+        static const std::vector<T> none;
+        const auto found = _cells.find({cell(place.y()), cell(place.x())});
+        return found == _cells.end() ? none : found->second;
+    }
+
+private:
+    static int cell(double value) { return static_cast<int>(std::floor(value / 64.0)); }
+    std::map<std::pair<int, int>, std::vector<T>> _cells;
+};
+
+/// The lines of data/oahu/streets.geojson: freeways, roads, railroads, streams and canals, as wide as they are.
+class OahuLines
+{
+public:
+    OahuLines()
+    {
+        GDALAllRegister();
+        const std::string file = std::string(GEOFX_SOURCE_DIR) + "/data/oahu/streets.geojson";
+        const std::unique_ptr<GDALDataset> data(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
+        if (!data || data->GetLayerCount() == 0) throw std::runtime_error(file + " cannot be read.");
+        for (const auto& feature : data->GetLayer(0))
+        {
+            const std::string style = feature->GetFieldAsString("style");
+            const double half = style == "motorway"    ? 15.0
+                                : style == "canal"     ? 18.0
+                                : style == "secondary" ? 6.5
+                                                       : 4.5;
+            for (const OGRLineString* line : *feature->GetGeometryRef()->toMultiLineString())
+                for (int i = 0; i + 1 < line->getNumPoints(); ++i)
+                    add(place(line->getX(i), line->getY(i)), place(line->getX(i + 1), line->getY(i + 1)),
+                        half, style == "secondary");
+        }
+    }
+    /// Whether one of them is nearer than this to a place, but for those that streets meet if these are not `all`.
+    bool isNear(const osg::Vec2d& at, double metres, bool all) const
+    {
+        for (const Line& line : _lines.at(at))
+            if ((all || !line.street) && awayFrom(at, line.from, line.to) < line.half + metres) return true;
+        return false;
+    }
+    /// Whether a house would stand on one of them.
+    bool reaches(const std::vector<osg::Vec2d>& outline) const
+    {
+        for (std::size_t i = 0; i < outline.size(); ++i)
+        {
+            const osg::Vec2d side = outline[(i + 1) % outline.size()] - outline[i];
+            for (int part = 0; part < 4; ++part)
+                if (isNear(outline[i] + side * (0.25 * part), 3.0, true)) return true;
+        }
+        return false;
+    }
+
+private:
+    struct Line
+    {
+        osg::Vec2d from, to;
+        double half; ///< metres
+        bool street;
+    };
+    void add(const osg::Vec2d& from, const osg::Vec2d& to, double half, bool street)
+    {
+        const osg::Vec2d room(half + 20.0, half + 20.0);
+        const osg::Vec2d low(std::min(from.x(), to.x()), std::min(from.y(), to.y())),
+            high(std::max(from.x(), to.x()), std::max(from.y(), to.y()));
+        _lines.add(low - room, high + room, {from, to, half, street});
+    }
+    Grid<Line> _lines;
 };
 
 /// The most from a district's middle to one of its blocks, metres.
@@ -131,12 +244,20 @@ public:
                     {place(-157.8370, 21.2900), 700.0, 0.30, 100.0}};
     }
 
-    std::vector<House> houses()
+    /// At most so many; 0: all.
+    std::vector<House> houses(int count)
     {
         for (std::size_t i = 0; i < _districts.size(); ++i)
             addDistrict(i);
+        std::stable_sort(_houses.begin(), _houses.end(),
+                         [](const House& a, const House& b) { return a.rank < b.rank; });
+        if (count > 0 && static_cast<std::size_t>(count) < _houses.size())
+            _houses.resize(static_cast<std::size_t>(count));
         return std::move(_houses);
     }
+    const std::vector<Block>& blocks() const { return _blocks; }
+    const OahuRaster<unsigned char>& cover() const { return _cover; }
+    const OahuLines& lines() const { return _lines; }
 
 private:
     /// Those that may be nearer to a block of a district than its own middle.
@@ -154,14 +275,13 @@ private:
         const District& district = _districts[index];
         const osg::Vec2d along(std::cos(district.turn), std::sin(district.turn)),
             across(-along.y(), along.x());
-        constexpr double length = 118.0, width = 76.0; // of a block with its streets, metres
         constexpr int reach = 24;
         const std::vector<osg::Vec2d> others = beside(index);
         for (int row = -reach; row <= reach; ++row)
             for (int column = -reach; column <= reach; ++column)
             {
                 const osg::Vec2d middle =
-                    district.middle + along * (column * length) + across * (row * width);
+                    district.middle + along * (column * BLOCK_LENGTH) + across * (row * BLOCK_WIDTH);
                 const double own = (middle - district.middle).length();
                 if (own > REACH ||
                     std::any_of(others.begin(), others.end(),
@@ -169,7 +289,8 @@ private:
                     continue;
                 Dice dice(index, static_cast<std::uint64_t>(row + 1000),
                           static_cast<std::uint64_t>(column + 1000));
-                addBlock(middle, along, across, length, width, dice);
+                _blocks.push_back({index, row, column, middle, along, across});
+                addBlock(middle, along, across, BLOCK_LENGTH, BLOCK_WIDTH, dice);
             }
     }
 
@@ -196,6 +317,7 @@ private:
     void addRows(const osg::Vec2d& middle, const osg::Vec2d& along, const osg::Vec2d& across,
                  const Lots& lots, Dice& dice)
     {
+        _blocks.back().kind = lots.kind;
         const double inner = lots.length - lots.street, deep = (lots.width - lots.street) / lots.rows;
         const int count = std::max(1, static_cast<int>(inner / lots.lot));
         const double wide = inner / count;
@@ -301,7 +423,7 @@ private:
         if (dice.chance(0.25)) house.roof = "gabled";
     }
 
-    /// Keeps a house that stands on built land, on no road and not on a cliff.
+    /// Keeps a house that stands on built land, on no road and in no water, and not on a cliff.
     void keep(House& house, const osg::Vec2d& at)
     {
         const auto built = [&](const osg::Vec2d& corner)
@@ -310,7 +432,7 @@ private:
             return kind == TOWN || kind == URBAN || kind == INDUSTRIAL;
         };
         double low = 1e300, high = -1e300;
-        if (!built(at)) return;
+        if (!built(at) || _lines.reaches(house.outline)) return;
         for (const osg::Vec2d& corner : house.outline)
         {
             if (!built(corner)) return;
@@ -329,13 +451,16 @@ private:
             nearest = std::min(nearest, (at - line[i] - side * share).length());
         }
         house.rank = nearest;
+        house.block = _blocks.size() - 1;
         _houses.push_back(std::move(house));
     }
 
     const OahuRaster<unsigned char> _cover;
     const OahuRaster<float> _ground;
+    const OahuLines _lines;
     std::vector<District> _districts;
     std::vector<Center> _centers;
+    std::vector<Block> _blocks;
     std::vector<House> _houses;
 };
 
@@ -409,16 +534,179 @@ private:
 
 int inventTown(const std::string& file, int count)
 {
-    std::vector<House> houses = Inventor().houses();
-    std::stable_sort(houses.begin(), houses.end(),
-                     [](const House& a, const House& b) { return a.rank < b.rank; });
-    if (count > 0 && static_cast<std::size_t>(count) < houses.size())
-        houses.resize(static_cast<std::size_t>(count));
+    const std::vector<House> houses = Inventor().houses(count);
     TownFile town(file);
     for (const House& house : houses)
         town.add(house);
     town.finish();
     return static_cast<int>(houses.size());
+}
+
+int inventStreets(const std::string& file, int count)
+{
+    Inventor inventor;
+    const std::vector<House> houses = inventor.houses(count);
+    Grid<const House*> near;
+    std::vector<char> lived(inventor.blocks().size(), 0);
+    for (const House& house : houses)
+    {
+        lived[house.block] = 1;
+        osg::Vec2d low(1e300, 1e300), high(-1e300, -1e300);
+        for (const osg::Vec2d& corner : house.outline)
+        {
+            low.set(std::min(low.x(), corner.x()), std::min(low.y(), corner.y()));
+            high.set(std::max(high.x(), corner.x()), std::max(high.y(), corner.y()));
+        }
+        const osg::Vec2d room(STREET_ROOM, STREET_ROOM);
+        near.add(low - room, high + room, &house);
+    }
+    const auto isFree = [&](const osg::Vec2d& at)
+    {
+        const int kind = valueAt(inventor.cover(), at);
+        if (kind != TOWN && kind != URBAN && kind != INDUSTRIAL && kind != PAVED && kind != ROAD)
+            return false;
+        if (inventor.lines().isNear(at, 4.0, false)) return false;
+        for (const House* house : near.at(at))
+            for (std::size_t i = 0; i < house->outline.size(); ++i)
+                if (awayFrom(at, house->outline[i], house->outline[(i + 1) % house->outline.size()]) <
+                    STREET_ROOM)
+                    return false;
+        return true;
+    };
+    // Sides of blocks, by their line: the district, whether it runs across, and its number; and by their place on it.
+    struct Side
+    {
+        osg::Vec2d from, to;
+    };
+    std::map<std::tuple<std::size_t, bool, int>, std::map<int, Side>> lines;
+    for (std::size_t i = 0; i < lived.size(); ++i)
+    {
+        if (!lived[i]) continue;
+        const Block& block = inventor.blocks()[i];
+        const osg::Vec2d a = block.along * (0.5 * BLOCK_LENGTH), b = block.across * (0.5 * BLOCK_WIDTH);
+        for (const int end : {0, 1})
+        {
+            const double sign = end == 0 ? -1.0 : 1.0;
+            lines[{block.district, false, block.row + end}][block.column] = {block.middle - a + b * sign,
+                                                                             block.middle + a + b * sign};
+            lines[{block.district, true, block.column + end}][block.row] = {block.middle - b + a * sign,
+                                                                            block.middle + b + a * sign};
+        }
+    }
+    std::ofstream out(file);
+    out << "{\"type\": \"FeatureCollection\", \"features\": "
+           "[\n{\"type\":\"Feature\",\"properties\":{\"style\":"
+           "\"residential\"},\"geometry\":{\"type\":\"MultiLineString\",\"coordinates\":[";
+    int made = 0;
+    const auto write = [&](const osg::Vec2d& from, const osg::Vec2d& to)
+    {
+        if ((to - from).length() < LEAST_STREET) return;
+        char text[128];
+        std::snprintf(text, sizeof text, "%s[[%.5f,%.5f],[%.5f,%.5f]]", made > 0 ? ",\n" : "\n",
+                      LONGITUDE + from.x() / METRES_X, LATITUDE + from.y() / METRES_Y,
+                      LONGITUDE + to.x() / METRES_X, LATITUDE + to.y() / METRES_Y);
+        out << text;
+        ++made;
+    };
+    for (const auto& [key, sides] : lines)
+    {
+        // As long as they are free, and one side follows the other.
+        osg::Vec2d start, last;
+        bool open = false;
+        int former = 0;
+        for (const auto& [number, side] : sides)
+        {
+            if (open && number != former + 1)
+            {
+                write(start, last);
+                open = false;
+            }
+            former = number;
+            const int steps = static_cast<int>((side.to - side.from).length() / 4.0);
+            for (int step = 0; step <= steps; ++step)
+            {
+                const osg::Vec2d at = side.from + (side.to - side.from) * (double(step) / steps);
+                const bool free = isFree(at);
+                if (free && !open) start = at;
+                if (!free && open) write(start, last);
+                open = free;
+                last = at;
+            }
+        }
+        if (open) write(start, last);
+    }
+    out << "\n]}}\n]}\n";
+    if (!out) throw std::runtime_error(file + " cannot be written.");
+    return made;
+}
+
+int inventGardens(const std::string& source, const std::string& file)
+{
+    Inventor inventor;
+    const std::vector<House> houses = inventor.houses(0);
+    GDALAllRegister();
+    const std::unique_ptr<GDALDataset> data(GDALDataset::Open(source.c_str()));
+    double transform[6];
+    if (!data || data->GetGeoTransform(transform) != CE_None)
+        throw std::runtime_error(source + " cannot be read.");
+    const int columns = data->GetRasterXSize(), rows = data->GetRasterYSize();
+    std::vector<unsigned char> cells(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    if (data->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, columns, rows, cells.data(), columns, rows, GDT_Byte,
+                                         0, 0) != CE_None)
+        throw std::runtime_error(source + " cannot be read.");
+    const auto at = [&](int column, int row) -> unsigned char&
+    {
+        return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                     static_cast<std::size_t>(column)];
+    };
+    std::vector<char> lived(inventor.blocks().size(), 0);
+    for (const House& house : houses)
+        lived[house.block] = 1;
+    for (std::size_t i = 0; i < lived.size(); ++i)
+    {
+        const Block& block = inventor.blocks()[i];
+        if (!lived[i] || block.kind != 't') continue;
+        const osg::Vec2d degrees(LONGITUDE + block.middle.x() / METRES_X,
+                                 LATITUDE + block.middle.y() / METRES_Y);
+        const int column = static_cast<int>((degrees.x() - transform[0]) / transform[1]),
+                  row = static_cast<int>((degrees.y() - transform[3]) / transform[5]);
+        for (int r = std::max(row - 3, 0); r <= std::min(row + 3, rows - 1); ++r)
+            for (int c = std::max(column - 3, 0); c <= std::min(column + 3, columns - 1); ++c)
+            {
+                const osg::Vec2d way =
+                    place(transform[0] + (c + 0.5) * transform[1], transform[3] + (r + 0.5) * transform[5]) -
+                    block.middle;
+                unsigned char& cell = at(c, r);
+                if (std::abs(way * block.along) <= 0.5 * BLOCK_LENGTH &&
+                    std::abs(way * block.across) <= 0.5 * BLOCK_WIDTH && (cell == TOWN || cell == URBAN))
+                    cell = SUBURB;
+            }
+    }
+    // What lies between two of them belongs to them.
+    for (int pass = 0; pass < 2; ++pass)
+    {
+        const std::vector<unsigned char> former = cells;
+        for (int r = 1; r + 1 < rows; ++r)
+            for (int c = 1; c + 1 < columns; ++c)
+            {
+                if (at(c, r) != TOWN && at(c, r) != URBAN) continue;
+                int around = 0;
+                for (int dy = -1; dy <= 1; ++dy)
+                    for (int dx = -1; dx <= 1; ++dx)
+                        around +=
+                            former[static_cast<std::size_t>(r + dy) * static_cast<std::size_t>(columns) +
+                                   static_cast<std::size_t>(c + dx)] == SUBURB;
+                if (around >= 5) at(c, r) = SUBURB;
+            }
+    }
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    const char* options[] = {"COMPRESS=DEFLATE", "TILED=YES", nullptr};
+    const std::unique_ptr<GDALDataset> copy(
+        driver->CreateCopy(file.c_str(), data.get(), FALSE, const_cast<char**>(options), nullptr, nullptr));
+    if (!copy || copy->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, cells.data(), columns, rows,
+                                                  GDT_Byte, 0, 0) != CE_None)
+        throw std::runtime_error(file + " cannot be written.");
+    return static_cast<int>(std::count(cells.begin(), cells.end(), static_cast<unsigned char>(SUBURB)));
 }
 
 int inventCrowd(const std::string& file, int count)

@@ -316,6 +316,70 @@ TEST(TownBuilder, StandsOnTheDrawnGround)
     }
 }
 
+// The shade around buildings lies on the ground as it is drawn from nearby, and each level has it, but not where it is not wanted.
+TEST(TownBuilder, TheShadeAroundBuildingsLiesOnTheDrawnGround)
+{
+    const TempDir folder;
+    const std::string database = copyOfTerrain(folder);
+    TownOptions options =
+        optionsOf(database, writeFeatures(folder / "town.gpkg", {"height:real", "roof"}, someBuildings(60)));
+    buildTown(options);
+    const DatabaseRoot root(database);
+    const GroundIndex ground(groundOf(database));
+    const auto filesOf = [&](const std::string& level)
+    {
+        std::vector<std::filesystem::path> files;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(
+                 std::filesystem::path(database) / "buildings" / level))
+            if (entry.is_regular_file()) files.push_back(entry.path());
+        return files;
+    };
+    for (const auto& [level, tolerance] :
+         {std::pair<std::string, double>{"detail", 0.15}, {"single", 0.55}, {"blocks", 2.1}})
+    {
+        SCOPED_TRACE(level);
+        int geometries = 0, shades = 0, checked = 0;
+        double off = 0.0;
+        for (const auto& file : filesOf(level))
+        {
+            forEachGeometry(file, [&](const osg::Geometry&, const osg::Matrixd&) { ++geometries; });
+            forEachGeometry(
+                file,
+                [&](const osg::Geometry& geometry, const osg::Matrixd& toWorld)
+                {
+                    ++shades;
+                    for (const osg::Vec3& vertex :
+                         static_cast<const osg::Vec3Array&>(*geometry.getVertexArray()))
+                    {
+                        const osg::Vec3d place = root.fromWorld(osg::Vec3d(vertex) * toWorld);
+                        double height = 0.0;
+                        for (const Triangle* triangle : ground.at(place))
+                            if (triangle->finest && triangle->heightAt(place.x(), place.y(), height))
+                            {
+                                off = std::max(off, std::abs(height - place.z()));
+                                ++checked;
+                                break;
+                            }
+                    }
+                },
+                true);
+        }
+        // One more drawable for each.
+        EXPECT_GT(geometries, 5);
+        EXPECT_EQ(shades, geometries);
+        EXPECT_GT(checked, 300);
+        EXPECT_LT(off, tolerance);
+    }
+    options.ambientOcclusion = false;
+    buildTown(options);
+    int shades = 0;
+    for (const std::string level : {"detail", "single", "blocks"})
+        for (const auto& file : filesOf(level))
+            forEachGeometry(
+                file, [&](const osg::Geometry&, const osg::Matrixd&) { ++shades; }, true);
+    EXPECT_EQ(shades, 0);
+}
+
 TEST(TownBuilder, TheSameBytesAndTheTilesStay)
 {
     const TempDir folder;

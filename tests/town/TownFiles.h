@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #pragma once
 
+#include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/RigidParts.h>
 
 #include <gdal_priv.h>
@@ -103,22 +104,26 @@ struct TownBuilding
     double lowest = 1e300, highest = -1e300; ///< of the vertices, above the reference, metres
 };
 
-/// Hands out the geometries of a town's file, each with its matrix to the world. It loads no other files.
+/// Hands out the geometries of a town's file, each with its matrix to the world: its buildings, or the shade around them. It loads no
+/// other files.
 inline void forEachGeometry(const std::filesystem::path& file,
-                            const std::function<void(const osg::Geometry&, const osg::Matrixd&)>& take)
+                            const std::function<void(const osg::Geometry&, const osg::Matrixd&)>& take,
+                            bool shades = false)
 {
     struct Visitor : osg::NodeVisitor
     {
-        explicit Visitor(const std::function<void(const osg::Geometry&, const osg::Matrixd&)>& function)
-            : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), take(function)
+        Visitor(const std::function<void(const osg::Geometry&, const osg::Matrixd&)>& function, bool wanted)
+            : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), take(function), shades(wanted)
         {
         }
         void apply(osg::Geometry& geometry) override
         {
-            take(geometry, osg::computeLocalToWorld(getNodePath()));
+            if (osgGeoFX::GroundShade::is(geometry) == shades)
+                take(geometry, osg::computeLocalToWorld(getNodePath()));
         }
         const std::function<void(const osg::Geometry&, const osg::Matrixd&)>& take;
-    } visitor(take);
+        const bool shades;
+    } visitor(take, shades);
     const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file.string());
     if (!node) throw std::runtime_error(file.string() + " cannot be read.");
     node->accept(visitor);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/light/detail/ShadowMaps.h>
 
+#include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/PassFilter.h>
 #include <osgGeoFX/effect/ShaderLibrary.h>
 #include <osgGeoFX/effect/detail/ProfileProgram.h>
@@ -57,7 +58,7 @@ public:
     {
         _wanted.clear();
         // A program of an application puts its vertices where it likes.
-        if (ownProgram) return _wanted;
+        if (ownProgram || GroundShade::is(drawable)) return _wanted;
         const Ball ball = box.ball();
         for (std::size_t i = 0; i < _cascades.all().size(); ++i)
         {

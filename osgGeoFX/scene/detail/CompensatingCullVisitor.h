@@ -355,6 +355,7 @@ private:
     osgUtil::StateGraph* _entry = nullptr;    ///< the outer visitor's, where our state begins
     PatchTwins _twins;
     osg::ref_ptr<osg::StateSet> _ofPatches; ///< above their looks
+    osg::ref_ptr<osg::StateSet> _ofShades;  ///< above GroundShades where depths are reversed
     unsigned int _frame = 0;
     unsigned int _order = 0;
 };

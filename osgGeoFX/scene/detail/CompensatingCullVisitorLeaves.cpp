@@ -5,6 +5,8 @@
 // alone matters.
 #include <osgGeoFX/scene/detail/CompensatingCullVisitor.h>
 
+#include <osgGeoFX/effect/GroundShade.h>
+
 #include <osg/Billboard>
 #include <osg/ClearNode>
 #include <osg/ClipNode>
@@ -93,6 +95,9 @@ void CompensatingCullVisitor::place(osg::Drawable& drawable)
     const DrawableSight::Place where = {*_mode.chain, matrix, _scale, _mode.planes, _mode.tile, !ofEngine};
     if (!_drawables.inSight(drawable, where, depth) || !std::isfinite(depth)) return;
     osg::StateSet* look = nullptr;
+    const bool shade = _task.depth.reversed() && GroundShade::is(drawable);
+    if (shade && !_ofShades) _ofShades = GroundShade::createReversed();
+    if (shade) pushStateSet(_ofShades);
     if (osg::Geometry* const twin = divided(drawable, look))
     {
         pushStateSet(_ofPatches);
@@ -102,6 +107,7 @@ void CompensatingCullVisitor::place(osg::Drawable& drawable)
     else
         addLeaf(drawable, drawable.getStateSet(), _looks.lookFor(drawable, *_currentStateGraph), depth);
     drawCompanions(drawable, getModelViewMatrix(), depth);
+    if (shade) popStateSet();
 }
 
 void CompensatingCullVisitor::noteStranger()

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/PatchTwins.h>
 
+#include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/effect/Tessellation.h>
 
@@ -49,7 +50,8 @@ bool PatchTwins::mayHave(const osg::Drawable& drawable)
 {
     const osg::Geometry* geometry = drawable.asGeometry();
     if (!geometry || typeid(*geometry) != typeid(osg::Geometry) || geometry->getDrawCallback() ||
-        DrawableTriangles::instanced(*geometry) || RigidParts::of(drawable) || hasValuesOfSets(*geometry))
+        DrawableTriangles::instanced(*geometry) || RigidParts::of(drawable) || GroundShade::is(drawable) ||
+        hasValuesOfSets(*geometry))
         return false;
     for (unsigned int i = 0; i < geometry->getNumPrimitiveSets(); ++i)
         if (!isOfTriangles(geometry->getPrimitiveSet(i)->getMode())) return false;

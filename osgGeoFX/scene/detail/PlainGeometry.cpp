@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/scene/detail/PlainGeometry.h>
 
+#include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/RigidReference.h>
@@ -49,7 +50,8 @@ void PlainGeometry::apply(osg::Geometry& geometry)
     DeformationSwitch state = _state;
     state.meet(geometry.getStateSet());
     if (!state.on || _programs.isStranger(state.program) || typeid(geometry) != typeid(osg::Geometry) ||
-        geometry.getDataVariance() == osg::Object::DYNAMIC || RigidParts::of(geometry))
+        geometry.getDataVariance() == osg::Object::DYNAMIC || RigidParts::of(geometry) ||
+        GroundShade::is(geometry))
         return;
     meet(geometry, _matrix);
 }

@@ -45,8 +45,6 @@ Measures measuresOf(BuildingUse use)
     return {3.0, 3.0};
 }
 
-/// What a place that is wholly shut in loses of its color. The sun's light is darkened, too, so it is less than all.
-constexpr double DARKENING = 0.6;
 /// A place on a wall is asked for so far in front of it and, at a corner, so far along it, metres.
 constexpr double BEFORE = 0.05, BESIDE = 0.5;
 
@@ -244,7 +242,7 @@ std::vector<double> BuildingMesh::shades(const osg::Vec2d& place, const osg::Vec
     _openness->at({there.x(), there.y()}, osg::Matrixd::transform3x3(normal, _toOpenness), there.z(),
                   asked.data(), result.data(), asked.size(), roof ? _number : Openness::none);
     for (double& each : result)
-        each = 1.0 - DARKENING * (1.0 - each);
+        each = 1.0 - Openness::darkening * (1.0 - each);
     return result;
 }
 

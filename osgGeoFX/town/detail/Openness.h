@@ -29,6 +29,8 @@ class Openness
 public:
     static constexpr double reach = 40.0, groundReach = 6.0; ///< metres
     static constexpr int azimuths = 24;
+    /// What a place that is wholly shut in loses of its color. The sun's light is darkened, too, so it is less than all.
+    static constexpr double darkening = 0.6;
     /// No building.
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/town/detail/TownCells.h>
 
+#include <osgGeoFX/effect/GroundShade.h>
 #include <osgGeoFX/terrain/detail/TileFile.h>
 #include <osgGeoFX/town/detail/BlockMaker.h>
 #include <osgGeoFX/town/detail/BuildingMesh.h>
@@ -35,6 +36,9 @@ constexpr double BLOCK = 60.0, BLOCK_PIXELS = 4.0;
 constexpr double LEAST_DEPTH = 0.5;
 /// Of a middle cell's cells along its side, and a large cell's middle ones.
 constexpr int FINER = 4;
+/// Of the shade around buildings. What a level is off by is less than a pixel from where it is drawn.
+constexpr ContactShade::Fineness DETAIL_SHADE = {12.0, 1.0 / 32.0}, SINGLE_SHADE = {40.0, 1.0 / 8.0},
+                                 BLOCKS_SHADE = {40.0, 0.5};
 /// Bounds are floats in the world.
 constexpr double ROUNDING = 2.0;
 
@@ -46,12 +50,6 @@ std::string nameOf(int x, int y)
 std::string fileOf(const std::string& kind, int x, int y)
 {
     return kind + "/" + nameOf(x, y) + ".osgb";
-}
-
-void expand(osg::BoundingBoxd& box, const osg::BoundingBox& other, const osg::Matrixd& matrix)
-{
-    for (unsigned int i = 0; i < 8; ++i)
-        box.expandBy(osg::Vec3d(other.corner(i)) * matrix);
 }
 
 } // namespace
@@ -201,8 +199,31 @@ PlacedBuilding TownCells::place(const Building& building, const Standing& standi
     return result;
 }
 
-/// A cell's node: its own geometry from a range on, and the finer file within it. The box is around both, in the frame.
-osg::ref_ptr<osg::Node> TownCells::cellNode(const osg::Matrixd& frame, osg::Geometry* geometry,
+void TownCells::Drawn::expand(osg::BoundingBoxd& box, const osg::Matrixd& matrix) const
+{
+    for (const auto& each : {buildings, shade})
+        for (unsigned int i = 0; each && i < 8; ++i)
+            box.expandBy(osg::Vec3d(each->getBoundingBox().corner(i)) * matrix);
+}
+
+void TownCells::Drawn::addTo(osg::Group& group) const
+{
+    for (const auto& each : {buildings, shade})
+        if (each) group.addChild(each);
+}
+
+ContactShade::Ground TownCells::groundIn(DrawnGround& ground, const osg::Matrixd& frame) const
+{
+    return [this, &ground, frame, back = osg::Matrixd::inverse(frame)](const osg::Vec2d& at, double otherwise)
+    {
+        const osg::Vec3d place = _grid.fromWorld(osg::Vec3d(at, otherwise) * frame);
+        const std::optional<double> height = ground.at({place.x(), place.y()});
+        return height ? (_grid.toWorld({place.x(), place.y()}, *height) * back).z() : otherwise;
+    };
+}
+
+/// A cell's node: what it draws from a range on, and the finer file within it. The box is around both, in the frame.
+osg::ref_ptr<osg::Node> TownCells::cellNode(const osg::Matrixd& frame, const Drawn& drawn,
                                             const osg::BoundingBoxd& box, const std::string& finer,
                                             double range) const
 {
@@ -214,10 +235,10 @@ osg::ref_ptr<osg::Node> TownCells::cellNode(const osg::Matrixd& frame, osg::Geom
     lod->setRadius(static_cast<float>(radius));
     const auto within = static_cast<float>(range + radius);
     unsigned int number = 0;
-    if (geometry)
+    if (drawn.buildings)
     {
         osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(frame);
-        transform->addChild(geometry);
+        drawn.addTo(*transform);
         lod->addChild(transform, within, std::numeric_limits<float>::max());
         lod->setNumChildrenThatCannotBeExpired(1);
         number = 1;
@@ -297,6 +318,8 @@ void TownCells::build(int worker, std::size_t index)
         if (_ambientOcclusion) openness.add(all.back());
     }
     if (_ambientOcclusion) addNeighbours(*ground, index, toUnit, openness);
+    // One for the files of this unit: whoever writes a state set is no other thread.
+    const osg::ref_ptr<osg::StateSet> shadeState = GroundShade::createState();
     std::size_t number = 0;
     osg::BoundingBoxd box;
     osg::ref_ptr<osg::Group> singles = new osg::Group;
@@ -311,26 +334,34 @@ void TownCells::build(int worker, std::size_t index)
         const osg::Matrixd fromCell = cellFrame * toUnit;
         const Openness* around = _ambientOcclusion ? &openness : nullptr;
         BuildingMesh detail(_detail.depth, around, fromCell), single(_single.depth, around, fromCell);
+        const ContactShade::Ground onGround = groundIn(*ground, cellFrame);
+        ContactShade nearShade(onGround, DETAIL_SHADE), farShade(onGround, SINGLE_SHADE);
         for (std::size_t i = first; i < last; ++i)
         {
             const std::optional<Standing>& standing = standings[i - unit.first];
             if (!standing) continue;
             const PlacedBuilding placed = place(_spool->read(_entries[i].place), *standing, toCell);
             detail.add(placed, BuildingLevel::DETAIL, number);
-            single.add(simplified(placed, 1.0), BuildingLevel::SINGLE, number);
+            const PlacedBuilding simple = simplified(placed, 1.0);
+            single.add(simple, BuildingLevel::SINGLE, number);
             ++number;
+            if (!_ambientOcclusion) continue;
+            nearShade.add(placed);
+            farShade.add(simple);
         }
         first = last;
-        const osg::ref_ptr<osg::Geometry> fine = detail.create(), coarse = single.create();
-        if (!fine || !coarse) continue;
+        const Drawn fine = {detail.create(), nearShade.create(shadeState)},
+                    coarse = {single.create(), farShade.create(shadeState)};
+        if (!fine.buildings || !coarse.buildings) continue;
         osg::BoundingBoxd cellBox;
-        expand(cellBox, fine->getBoundingBox(), osg::Matrixd());
-        expand(cellBox, coarse->getBoundingBox(), osg::Matrixd());
-        for (const auto& geometry : {fine, coarse})
-            expand(box, geometry->getBoundingBox(), cellFrame * toUnit);
+        for (const Drawn& each : {fine, coarse})
+        {
+            each.expand(cellBox, osg::Matrixd());
+            each.expand(box, cellFrame * toUnit);
+        }
         osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(cellFrame);
         transform->setName("buildings " + nameOf(x, y));
-        transform->addChild(fine);
+        fine.addTo(*transform);
         write(*transform, "detail", x, y);
         singles->addChild(
             cellNode(cellFrame, coarse, cellBox, "../../" + fileOf("detail", x, y), _detail.range));
@@ -347,12 +378,16 @@ void TownCells::build(int worker, std::size_t index)
         for (const PlacedBuilding& block : blocks)
             ofBlocks.add(block);
     BuildingMesh mesh(_blocks.depth, _ambientOcclusion ? &ofBlocks : nullptr);
+    ContactShade shade(groundIn(*ground, frame), BLOCKS_SHADE);
     for (std::size_t i = 0; i < blocks.size(); ++i)
+    {
         mesh.add(blocks[i], BuildingLevel::SINGLE, i);
-    const osg::ref_ptr<osg::Geometry> geometry = mesh.create();
-    if (geometry) expand(box, geometry->getBoundingBox(), osg::Matrixd());
+        if (_ambientOcclusion) shade.add(blocks[i]);
+    }
+    const Drawn drawn = {mesh.create(), shade.create(shadeState)};
+    drawn.expand(box, osg::Matrixd());
     const osg::ref_ptr<osg::Node> node =
-        cellNode(frame, geometry, box, "../../" + fileOf("single", unit.x, unit.y), _single.range);
+        cellNode(frame, drawn, box, "../../" + fileOf("single", unit.x, unit.y), _single.range);
     _made[index] = node;
     finishUnit(index);
 }
@@ -390,7 +425,7 @@ void TownCells::finishUnit(std::size_t index)
     }
     if (group->getNumChildren() == 0) return;
     write(*group, "blocks", x, y);
-    large->node = cellNode(frame, nullptr, box, "buildings/" + fileOf("blocks", x, y), _blocks.range);
+    large->node = cellNode(frame, {}, box, "buildings/" + fileOf("blocks", x, y), _blocks.range);
 }
 
 std::uint64_t TownCells::noted(Building::Note note) const

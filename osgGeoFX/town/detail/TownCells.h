@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/town/detail/Building.h>
 #include <osgGeoFX/town/detail/BuildingSpool.h>
+#include <osgGeoFX/town/detail/ContactShade.h>
 #include <osgGeoFX/town/detail/DrawnGround.h>
 #include <osgGeoFX/town/detail/Openness.h>
 #include <osgGeoFX/town/detail/TownFrame.h>
@@ -74,6 +75,13 @@ private:
         double depth = 0.0; ///< of walls below the ground
     };
     struct Standing;
+    /// What a level of a cell consists of. Null: nothing of it.
+    struct Drawn
+    {
+        osg::ref_ptr<osg::Geometry> buildings, shade;
+        void expand(osg::BoundingBoxd& box, const osg::Matrixd& matrix) const;
+        void addTo(osg::Group& group) const;
+    };
 
     /// A large cell, by its y and x.
     using LargeKey = std::pair<int, int>;
@@ -88,13 +96,15 @@ private:
     /// Writes the file of a unit's large cell if it was the last one of it, and lets its blocks go.
     void finishUnit(std::size_t index);
     osg::Vec2d middleOf(int x, int y, int size) const;
+    /// The ground in a local frame, metres.
+    ContactShade::Ground groundIn(DrawnGround& ground, const osg::Matrixd& frame) const;
     /// Adds the buildings of other units that may stand within the openness' reach.
     void addNeighbours(DrawnGround& ground, std::size_t index, const osg::Matrixd& toUnit,
                        Openness& openness) const;
     bool stand(DrawnGround& ground, const Building& building, Standing& standing) const;
     PlacedBuilding place(const Building& building, const Standing& standing,
                          const osg::Matrixd& toLocal) const;
-    osg::ref_ptr<osg::Node> cellNode(const osg::Matrixd& frame, osg::Geometry* geometry,
+    osg::ref_ptr<osg::Node> cellNode(const osg::Matrixd& frame, const Drawn& drawn,
                                      const osg::BoundingBoxd& box, const std::string& finer,
                                      double range) const;
     void write(const osg::Node& node, const std::string& kind, int x, int y) const;
