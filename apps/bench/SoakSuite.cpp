@@ -43,7 +43,10 @@ constexpr OffscreenView::Size SIZE = {192, 120}; ///< small, for so many frames
 const double FIELD_OF_VIEW = osg::DegreesToRadians(40.0);
 constexpr double FRAMES_A_SECOND = 30.0; ///< of the flights' own clock
 constexpr int FRAMES_A_FLIGHT = 400;     ///< then another one begins elsewhere, with other effects
-constexpr int FRAMES_A_SAMPLE = 100;     ///< of memory
+// The same flights in each, with new objects: freed memory stays with the C library, and what the first round takes is enough
+// for the others.
+constexpr int ROUNDS = 10;
+constexpr int FRAMES_A_SAMPLE = 100;                                          ///< of memory
 constexpr double WEST = -158.35, EAST = -157.55, SOUTH = 21.15, NORTH = 21.8; ///< where they fly, degrees
 constexpr double METRES_PER_RADIAN = 6371000.0;
 
@@ -255,7 +258,11 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
                                  ": it has no place for the flights; take one that covers Oahu.");
             view.look(matrix);
         };
-        const int counted = std::max(frames / 40 / FRAMES_A_FLIGHT, 1) * FRAMES_A_FLIGHT;
+        const auto wholeFlights = [](int least)
+        {
+            return std::max(least / FRAMES_A_FLIGHT, 1) * FRAMES_A_FLIGHT;
+        };
+        const int round = wholeFlights(frames / ROUNDS), counted = wholeFlights(frames / 40);
         const auto countObjects = [&](int frame)
         {
             removeEffects(*scene->effects);
@@ -275,6 +282,7 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
             if (frame % counted == 0) countObjects(frame);
             if (frame % FRAMES_A_FLIGHT == 0)
             {
+                if (frame % round == 0) dice = Dice();
                 flight = randomFlight(dice);
                 changeEffects(*scene->effects, dice, flight.begin);
             }
