@@ -7,6 +7,7 @@
 #include <osgGeoFX/town/detail/BuildingMesh.h>
 #include <osgGeoFX/town/detail/ContactShade.h>
 #include <tools/RandomSamples.h>
+#include <town/TownShapes.h>
 
 #include <gtest/gtest.h>
 
@@ -21,24 +22,6 @@ namespace
 
 constexpr ContactShade::Fineness FINE = {12.0, 1.0 / 32.0};
 constexpr double GRAIN = 4.0 / 32.0; ///< what lies at a ring's end may be off by so much
-
-PlacedBuilding building(std::vector<Ring> rings, double base, double height)
-{
-    PlacedBuilding result;
-    const osg::Vec2d middle = ringMiddle(rings.front());
-    result.reference.set(middle.x(), middle.y(), base);
-    result.foot = base;
-    result.top = base + height;
-    result.rings = std::move(rings);
-    return result;
-}
-
-Ring box(const osg::Vec2d& middle, double width, double depth, double angle)
-{
-    const osg::Vec2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
-    const osg::Vec2d a = along * (0.5 * width), b = across * (0.5 * depth);
-    return {middle - a - b, middle + a - b, middle + a + b, middle - a + b};
-}
 
 /// Not steep: uphill walls are high enough everywhere.
 double hills(const osg::Vec2d& at, double)

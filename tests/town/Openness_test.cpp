@@ -6,6 +6,7 @@
 #include <osgGeoFX/town/detail/BuildingMesh.h>
 #include <osgGeoFX/town/detail/Openness.h>
 #include <tools/RandomSamples.h>
+#include <town/TownShapes.h>
 
 #include <gtest/gtest.h>
 
@@ -17,24 +18,6 @@ using namespace geofx::test;
 
 namespace
 {
-
-PlacedBuilding building(std::vector<Ring> rings, double base, double height)
-{
-    PlacedBuilding result;
-    const osg::Vec2d middle = ringMiddle(rings.front());
-    result.reference.set(middle.x(), middle.y(), base);
-    result.foot = base;
-    result.top = base + height;
-    result.rings = std::move(rings);
-    return result;
-}
-
-Ring box(const osg::Vec2d& middle, double width, double depth, double angle = 0.0)
-{
-    const osg::Vec2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
-    const osg::Vec2d a = along * (0.5 * width), b = across * (0.5 * depth);
-    return {middle - a - b, middle + a - b, middle + a + b, middle - a + b};
-}
 
 double ask(const Openness& openness, const osg::Vec3d& place, const osg::Vec3d& normal, double ground,
            std::size_t except = Openness::none)

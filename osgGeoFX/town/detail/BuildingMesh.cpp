@@ -5,6 +5,7 @@
 #include <osgGeoFX/effect/RigidParts.h>
 #include <osgGeoFX/town/detail/Openness.h>
 #include <osgGeoFX/town/detail/Scatter.h>
+#include <osgGeoFX/town/detail/TownGeometry.h>
 #include <osgGeoFX/town/detail/WindowPicture.h>
 
 #include <osgUtil/Tessellator>
@@ -437,16 +438,7 @@ void BuildingMesh::add(const PlacedBuilding& building, BuildingLevel level, std:
 osg::ref_ptr<osg::Geometry> BuildingMesh::create() const
 {
     if (_triangles.empty()) return nullptr;
-    osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
-    geometry->setUseDisplayList(false);
-    geometry->setUseVertexBufferObjects(true);
-    // Each array has a buffer of its own: drivers count how often one is written.
-    const auto own = [](osg::Array* array)
-    {
-        array->setVertexBufferObject(new osg::VertexBufferObject);
-        return array;
-    };
-    geometry->setVertexArray(own(new osg::Vec3Array(_places.begin(), _places.end())));
+    osg::ref_ptr<osg::Geometry> geometry = TownGeometry::create(_places, _colors, _triangles);
     // Bytes do, since each face has one normal.
     osg::ref_ptr<osg::Vec3bArray> normals = new osg::Vec3bArray(osg::Array::BIND_PER_VERTEX);
     normals->setNormalize(true);
@@ -454,18 +446,9 @@ osg::ref_ptr<osg::Geometry> BuildingMesh::create() const
         normals->push_back(osg::Vec3b(static_cast<signed char>(std::lround(127.0f * normal.x())),
                                       static_cast<signed char>(std::lround(127.0f * normal.y())),
                                       static_cast<signed char>(std::lround(127.0f * normal.z()))));
-    geometry->setNormalArray(own(normals));
-    osg::ref_ptr<osg::Vec4ubArray> colors = new osg::Vec4ubArray(_colors.begin(), _colors.end());
-    colors->setBinding(osg::Array::BIND_PER_VERTEX);
-    colors->setNormalize(true);
-    geometry->setColorArray(own(colors));
-    geometry->setTexCoordArray(0, own(new osg::Vec2Array(_texels.begin(), _texels.end())));
-    if (_places.size() <= 65536)
-        geometry->addPrimitiveSet(
-            new osg::DrawElementsUShort(GL_TRIANGLES, _triangles.begin(), _triangles.end()));
-    else
-        geometry->addPrimitiveSet(
-            new osg::DrawElementsUInt(GL_TRIANGLES, _triangles.begin(), _triangles.end()));
+    geometry->setNormalArray(TownGeometry::withOwnBuffer(normals));
+    geometry->setTexCoordArray(
+        0, TownGeometry::withOwnBuffer(new osg::Vec2Array(_texels.begin(), _texels.end())));
     RigidParts::finish(*geometry, _references);
     return geometry;
 }

@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/town/detail/BuildingMesh.h>
 #include <osgGeoFX/town/detail/Openness.h>
+#include <osgGeoFX/town/detail/TownGeometry.h>
 
 #include <algorithm>
 #include <cmath>
@@ -190,24 +191,7 @@ void ContactShade::add(const PlacedBuilding& building)
 osg::ref_ptr<osg::Geometry> ContactShade::create(osg::StateSet* state) const
 {
     if (_triangles.empty()) return nullptr;
-    osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
-    geometry->setUseDisplayList(false);
-    geometry->setUseVertexBufferObjects(true);
-    const osg::ref_ptr<osg::Vec3Array> places = new osg::Vec3Array(_places.begin(), _places.end());
-    const osg::ref_ptr<osg::Vec4ubArray> colors = new osg::Vec4ubArray(_colors.begin(), _colors.end());
-    colors->setBinding(osg::Array::BIND_PER_VERTEX);
-    colors->setNormalize(true);
-    // Each array has a buffer of its own: drivers count how often one is written.
-    places->setVertexBufferObject(new osg::VertexBufferObject);
-    colors->setVertexBufferObject(new osg::VertexBufferObject);
-    geometry->setVertexArray(places);
-    geometry->setColorArray(colors);
-    if (_places.size() <= 65536)
-        geometry->addPrimitiveSet(
-            new osg::DrawElementsUShort(GL_TRIANGLES, _triangles.begin(), _triangles.end()));
-    else
-        geometry->addPrimitiveSet(
-            new osg::DrawElementsUInt(GL_TRIANGLES, _triangles.begin(), _triangles.end()));
+    osg::ref_ptr<osg::Geometry> geometry = TownGeometry::create(_places, _colors, _triangles);
     geometry->setStateSet(state);
     return geometry;
 }
