@@ -46,7 +46,8 @@ constexpr int FRAMES_A_FLIGHT = 400;     ///< then another one begins elsewhere,
 // The same flights in each, with new objects: freed memory stays with the C library, and what the first round takes is enough
 // for the others.
 constexpr int ROUNDS = 10;
-constexpr int FRAMES_A_SAMPLE = 100;                                          ///< of memory
+constexpr int FRAMES_A_SAMPLE = 100; ///< of memory
+
 constexpr double WEST = -158.35, EAST = -157.55, SOUTH = 21.15, NORTH = 21.8; ///< where they fly, degrees
 constexpr double METRES_PER_RADIAN = 6371000.0;
 
