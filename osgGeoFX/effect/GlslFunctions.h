@@ -13,8 +13,11 @@
     - It uses the types below instead of float and vec2, and Number(0.5) instead of 0.5, which would be a double.
       Integers may stand in arithmetic with scalars, but not with vectors and not as arguments.
     - It has no swizzles of several components, uniforms, samplers, gl_... or main. `out` parameters need a macro.
-    - Its includes stand in #ifndef __cplusplus, because this header includes all files, in order, twice. */
-#define GEOFX_INLINE inline
+    - Its includes stand in #ifndef __cplusplus, because this header includes all files, in order, twice.
+
+    As in GLSL, structures are passed by value. Where a function is not inlined, that copies hundreds of bytes: most of the
+    time that culling and picking spent in panorama maps. */
+#define GEOFX_INLINE [[gnu::always_inline]] inline
 
 namespace osgGeoFX
 {

@@ -22,6 +22,10 @@ namespace osgGeoFX
 namespace
 {
 
+/// Corners of triangles that are judged together, before any of them is deformed. Neighbours in a mesh are mostly neighbours in
+/// the list.
+constexpr std::size_t RUN = 3 * 64;
+
 /// Where a ray meets a triangle: the distance in units of the direction, negative where it misses, and the shares of the
 /// second and third corner.
 struct Meeting
@@ -180,8 +184,9 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
     if (!bounds.valid() || !meets(_chain->bound(EyeBox::of(bounds, _modelView).ball()))) return;
     if (missesBox(*drawable)) return;
     const DrawableTriangles mesh(*drawable);
-    std::vector<osg::Vec3d> deformed;
-    deformed.reserve(mesh.positions().size());
+    // Where vertices are drawn, as far as the ray comes near them.
+    std::vector<osg::Vec3d> deformed(mesh.positions().size());
+    std::vector<bool> known(deformed.size(), false);
     // Many things in one drawable, each of which keeps its shape.
     const osg::Vec4Array* references = RigidParts::of(*drawable);
     if (references && references->size() != mesh.positions().size()) references = nullptr;
@@ -190,12 +195,21 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         const osg::Vec4& each = (*references)[vertex];
         return osg::Vec3d(each.x(), each.y(), each.z()) * _modelView;
     };
-    for (const osg::Vec3d& position : mesh.positions())
+    const auto deform = [&](std::size_t vertex)
     {
-        const osg::Vec3d eye = position * _modelView;
-        deformed.push_back(references ? RigidParts::place(*_chain, eye, reference(deformed.size()))
-                                      : _chain->deform(eye));
-    }
+        if (known[vertex]) return;
+        known[vertex] = true;
+        const osg::Vec3d eye = mesh.positions()[vertex] * _modelView;
+        deformed[vertex] =
+            references ? RigidParts::place(*_chain, eye, reference(vertex)) : _chain->deform(eye);
+    };
+    const auto missesRun = [&](std::size_t begin, std::size_t end)
+    {
+        osg::BoundingBoxd box;
+        for (std::size_t i = begin; i < end; ++i)
+            box.expandBy(mesh.positions()[mesh.corners()[i]]);
+        return !meets(_chain->bound(Ball{box.center() * _modelView, box.radius() * _scale}));
+    };
 
     const auto* ours = dynamic_cast<const DeformedIntersectionVisitor*>(&visitor);
     const bool divides = ours && !OwnPrograms::isOwn(ours->_deformation.program) &&
@@ -231,29 +245,38 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         root()->_found.push_back(hit);
         root()->_sorted = false;
     };
-    for (std::size_t i = 0; i < mesh.corners().size(); i += 3)
+    const std::size_t count = mesh.corners().size();
+    for (std::size_t begin = 0; begin < count; begin += RUN)
     {
-        const unsigned int* corner = &mesh.corners()[i];
-        if (divides)
+        const std::size_t end = std::min(begin + RUN, count);
+        // Rigid parts may leave the bounds of ground at their place.
+        if (!references && count > RUN && missesRun(begin, end)) continue;
+        for (std::size_t i = begin; i < end; i += 3)
         {
-            const osg::Vec3d* first = mesh.positions().data();
-            const std::array<osg::Vec3d, 3> flat = {
-                first[corner[0]] * _modelView, first[corner[1]] * _modelView, first[corner[2]] * _modelView};
-            Ball ball = {(flat[0] + flat[1] + flat[2]) / 3.0, 0.0};
+            const unsigned int* corner = &mesh.corners()[i];
+            std::array<osg::Vec3d, 3> flat;
             int parts = 1;
+            if (divides)
+            {
+                for (std::size_t k = 0; k < 3; ++k)
+                    flat[k] = mesh.positions()[corner[k]] * _modelView;
+                Ball ball = {(flat[0] + flat[1] + flat[2]) / 3.0, 0.0};
+                for (const osg::Vec3d& each : flat)
+                    ball.radius = std::max(ball.radius, (each - ball.center).length());
+                if (!meets(_chain->bound(ball))) continue;
+                for (std::size_t k = 0; k < 3; ++k)
+                    parts = std::max(parts, DividedTriangles::parts(*_chain, flat[k], flat[(k + 1) % 3]));
+            }
             for (std::size_t k = 0; k < 3; ++k)
-                ball.radius = std::max(ball.radius, (flat[k] - ball.center).length());
-            if (!meets(_chain->bound(ball))) continue;
-            for (std::size_t k = 0; k < 3; ++k)
-                parts = std::max(parts, DividedTriangles::parts(*_chain, flat[k], flat[(k + 1) % 3]));
+                deform(corner[k]);
             if (parts > 1)
             {
                 for (const Meeting& met : meetParts(_origin, _direction, *_chain, parts, flat))
                     note(i, met);
                 continue;
             }
+            note(i, meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]));
         }
-        note(i, meet(_origin, _direction, deformed[corner[0]], deformed[corner[1]], deformed[corner[2]]));
     }
 }
 
