@@ -223,24 +223,29 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
         CPLFree(xml);
         return result;
     };
-    std::string xml = CPLSPrintf("<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\">",
-                                 source.GetRasterXSize(), source.GetRasterYSize());
-    xml += "<SRS>" + escaped(wkt) + "</SRS>";
+    std::string begin = CPLSPrintf("<VRTDataset rasterXSize=\"%d\" rasterYSize=\"%d\">",
+                                   source.GetRasterXSize(), source.GetRasterYSize());
+    begin += "<SRS>" + escaped(wkt) + "</SRS>";
     CPLFree(wkt);
-    xml +=
+    begin +=
         CPLSPrintf("<GeoTransform>%.17g,%.17g,%.17g,%.17g,%.17g,%.17g</GeoTransform>", _geoTransform[0],
                    _geoTransform[1], _geoTransform[2], _geoTransform[3], _geoTransform[4], _geoTransform[5]);
+    // The classes with our colors as their color table: GDAL looks a table up by its index, and a <LUT> by searching.
+    std::string classes = begin + "<VRTRasterBand dataType=\"Byte\" band=\"1\"><ColorTable>";
+    for (const auto& color : colors)
+        classes += CPLSPrintf("<Entry c1=\"%d\" c2=\"%d\" c3=\"%d\" c4=\"%d\"/>", color[0], color[1],
+                              color[2], color[3]);
+    classes += "</ColorTable><SimpleSource><SourceFilename relativeToVRT=\"0\">" + escaped(name.c_str()) +
+               "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
     const char* interpretation[] = {"Red", "Green", "Blue", "Alpha"};
-    for (std::size_t channel = 0; channel < 4; ++channel)
-    {
+    std::string xml = begin;
+    for (int channel = 1; channel <= 4; ++channel)
         xml += CPLSPrintf("<VRTRasterBand dataType=\"Byte\" band=\"%d\"><ColorInterp>%s</ColorInterp>",
-                          static_cast<int>(channel) + 1, interpretation[channel]);
-        xml += "<ComplexSource><SourceFilename relativeToVRT=\"0\">" + escaped(name.c_str()) +
-               "</SourceFilename><SourceBand>1</SourceBand><LUT>";
-        for (std::size_t value = 0; value < 256; ++value)
-            xml += CPLSPrintf("%s%d:%d", value ? "," : "", static_cast<int>(value), colors[value][channel]);
-        xml += "</LUT></ComplexSource></VRTRasterBand>";
-    }
+                          channel, interpretation[channel - 1]) +
+               ("<ComplexSource><SourceFilename relativeToVRT=\"0\">" + escaped(classes.c_str())) +
+               CPLSPrintf("</SourceFilename><SourceBand>1</SourceBand>"
+                          "<ColorTableComponent>%d</ColorTableComponent></ComplexSource></VRTRasterBand>",
+                          channel);
     xml += "</VRTDataset>";
     GdalErrorScope errors;
     DatasetPtr colored(GDALDataset::Open(xml.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
