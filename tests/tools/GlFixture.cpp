@@ -76,6 +76,14 @@ void GlFixture::TearDown()
 osg::ref_ptr<osg::Image> GlFixture::render(osg::Node* scene)
 {
     if (_viewer->getSceneData() != scene) _viewer->setSceneData(scene);
+    // OSG knows the array that was drawn last by its address. Where its geometry is gone and that of this frame lies at the same
+    // place, what is gone would be drawn.
+    withContext(
+        [](osg::State& state)
+        {
+            state.lazyDisablingOfVertexAttributes();
+            state.applyDisablingOfVertexAttributes();
+        });
     _capture->request();
     _viewer->frame();
     return _capture->take();
