@@ -20,7 +20,7 @@ namespace
 // data/oahu/README.md.
 constexpr int COLUMNS = 3240, ROWS = 2700;
 constexpr double WEST = -158.4, NORTH = 21.85, STEP = 1.0 / 3600.0;
-constexpr int NOISE_SIDE = 2048;
+constexpr int NOISE_SIDE = 2048, NOISE_BANDS = 3;
 constexpr int WINDOW_COLUMN = 1519, WINDOW_ROW = 900, WINDOW_SIZE = 1621;
 
 struct Window
@@ -99,41 +99,15 @@ void write(const std::filesystem::path& elevation, const Window& window, int sam
 void writeNoise(const std::filesystem::path& raster)
 {
     std::mt19937 random(21);
-    std::string bytes(static_cast<std::size_t>(NOISE_SIDE) * NOISE_SIDE, '\0');
+    std::string bytes(static_cast<std::size_t>(NOISE_BANDS) * NOISE_SIDE * NOISE_SIDE, '\0');
     for (char& byte : bytes)
-        byte = static_cast<char>(random() % 41u);
+        byte = static_cast<char>(60u + random() % 120u);
     save(raster, bytes);
     const std::string side = std::to_string(NOISE_SIDE);
     save(raster.string() + ".hdr", "ENVI\nsamples = " + side + "\nlines = " + side +
-                                       "\nbands = 1\nheader offset = 0\nfile type = ENVI Standard\n"
+                                       "\nbands = " + std::to_string(NOISE_BANDS) +
+                                       "\nheader offset = 0\nfile type = ENVI Standard\n"
                                        "data type = 1\ninterleave = bsq\nbyte order = 0\n");
-}
-
-/// One raster beside the other, until samples × samples are covered.
-void writeNoiseEverywhere(int samples, double metres, const std::filesystem::path& vrt)
-{
-    std::ostringstream text;
-    text << header({0, 0, COLUMNS, ROWS}, samples) << "  <VRTRasterBand dataType=\"Float32\" band=\"1\">\n";
-    for (int row = 0; row < samples; row += NOISE_SIDE)
-    {
-        for (int column = 0; column < samples; column += NOISE_SIDE)
-        {
-            const int columns = std::min(NOISE_SIDE, samples - column);
-            const int rows = std::min(NOISE_SIDE, samples - row);
-            text << "    <ComplexSource>\n"
-                 << "      <SourceFilename relativeToVRT=\"1\">noise</SourceFilename>\n"
-                 << "      <SourceBand>1</SourceBand>\n"
-                 << "      <SrcRect xOff=\"0\" yOff=\"0\" xSize=\"" << columns << "\" ySize=\"" << rows
-                 << "\"/>\n"
-                 << "      <DstRect xOff=\"" << column << "\" yOff=\"" << row << "\" xSize=\"" << columns
-                 << "\" ySize=\"" << rows << "\"/>\n"
-                 << "      <ScaleOffset>" << -metres << "</ScaleOffset>\n"
-                 << "      <ScaleRatio>" << metres / 20.0 << "</ScaleRatio>\n"
-                 << "    </ComplexSource>\n";
-        }
-    }
-    text << "  </VRTRasterBand>\n</VRTDataset>\n";
-    save(vrt, text.str());
 }
 
 } // namespace
@@ -149,25 +123,34 @@ void writeWindowOfOahu(const std::filesystem::path& elevation, int samples, cons
     write(elevation, {WINDOW_COLUMN + margin, WINDOW_ROW + margin, samples, samples}, samples, "", vrt);
 }
 
-void writeNoisyOahu(const std::filesystem::path& elevation, int samples, double metres,
-                    const std::filesystem::path& vrt)
+void writeNoisyImagery(int samples, const std::filesystem::path& vrt)
 {
-    const std::filesystem::path folder = vrt.parent_path();
-    writeResampledOahu(elevation, samples, folder / "smooth.vrt");
-    writeNoise(folder / "noise");
-    writeNoiseEverywhere(samples, metres, folder / "noise.vrt");
-    std::string text = header({0, 0, COLUMNS, ROWS}, samples) +
-                       "  <VRTRasterBand dataType=\"Float32\" band=\"1\" subClass=\"VRTDerivedRasterBand\">\n"
-                       "    <PixelFunctionType>sum</PixelFunctionType>\n";
-    for (const char* each : {"smooth.vrt", "noise.vrt"})
+    writeNoise(vrt.parent_path() / "noise");
+    std::ostringstream text;
+    text << header({0, 0, COLUMNS, ROWS}, samples);
+    for (int band = 1; band <= NOISE_BANDS; ++band)
     {
-        const std::string rectangle = R"( xOff="0" yOff="0" xSize=")" + std::to_string(samples) +
-                                      R"(" ySize=")" + std::to_string(samples) + R"("/>)";
-        text += std::string("    <SimpleSource>\n      <SourceFilename relativeToVRT=\"1\">") + each +
-                "</SourceFilename>\n      <SourceBand>1</SourceBand>\n      <SrcRect" + rectangle +
-                "\n      <DstRect" + rectangle + "\n    </SimpleSource>\n";
+        text << "  <VRTRasterBand dataType=\"Byte\" band=\"" << band << "\">\n";
+        // One raster beside the other, until all is covered.
+        for (int row = 0; row < samples; row += NOISE_SIDE)
+        {
+            for (int column = 0; column < samples; column += NOISE_SIDE)
+            {
+                const int columns = std::min(NOISE_SIDE, samples - column);
+                const int rows = std::min(NOISE_SIDE, samples - row);
+                text << "    <SimpleSource>\n"
+                     << "      <SourceFilename relativeToVRT=\"1\">noise</SourceFilename>\n"
+                     << "      <SourceBand>" << band << "</SourceBand>\n"
+                     << "      <SrcRect xOff=\"0\" yOff=\"0\" xSize=\"" << columns << "\" ySize=\"" << rows
+                     << "\"/>\n"
+                     << "      <DstRect xOff=\"" << column << "\" yOff=\"" << row << "\" xSize=\"" << columns
+                     << "\" ySize=\"" << rows << "\"/>\n"
+                     << "    </SimpleSource>\n";
+            }
+        }
+        text << "  </VRTRasterBand>\n";
     }
-    save(vrt, text + "  </VRTRasterBand>\n</VRTDataset>\n");
+    save(vrt, text.str() + "</VRTDataset>\n");
 }
 
 } // namespace geofx::bench

@@ -19,9 +19,8 @@ void writeResampledOahu(const std::filesystem::path& elevation, int samples,
 /// sides.
 void writeWindowOfOahu(const std::filesystem::path& elevation, int samples, const std::filesystem::path& vrt);
 
-/// The whole raster on samples × samples posts, with noise of ±`metres` that differs from post to post within 2,048 posts. Writes
-/// the files `noise`, `noise.hdr`, `noise.vrt`, `smooth.vrt` beside the VRT.
-void writeNoisyOahu(const std::filesystem::path& elevation, int samples, double metres,
-                    const std::filesystem::path& vrt);
+/// Colors for the whole raster, samples × samples texels of noise that differs from texel to texel within 2,048 texels. Writes
+/// the files `noise` and `noise.hdr` beside the VRT.
+void writeNoisyImagery(int samples, const std::filesystem::path& vrt);
 
 } // namespace geofx::bench

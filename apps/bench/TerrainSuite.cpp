@@ -33,14 +33,21 @@ Suite terrainSuite()
 }
 
 std::vector<std::string> builderCommand(const Settings& settings, const std::filesystem::path& dem,
-                                        const std::filesystem::path& output, int threads)
+                                        const std::filesystem::path& output, int threads, int memoryMiB)
 {
     if (settings.builder.empty())
         throw BenchError(
             "The program osggeofx_build was not found beside osggeofx_bench; name it with --builder FILE, "
             "or measure a database that is there with --only drawing --terrain DIR/terrain.osgb.");
-    return {settings.builder.string(), "--dem",    dem.string(),   "--memory", "512", "--threads",
-            std::to_string(threads),   "--output", output.string()};
+    return {settings.builder.string(),
+            "--dem",
+            dem.string(),
+            "--memory",
+            std::to_string(memoryMiB),
+            "--threads",
+            std::to_string(threads),
+            "--output",
+            output.string()};
 }
 
 } // namespace geofx::bench

@@ -23,6 +23,7 @@ std::vector<Figure> measureDrawing(const Settings& settings, const std::filesyst
 
 /// The command line of osggeofx_build; throws BenchError where there is none.
 std::vector<std::string> builderCommand(const Settings& settings, const std::filesystem::path& dem,
-                                        const std::filesystem::path& output, int threads);
+                                        const std::filesystem::path& output, int threads,
+                                        int memoryMiB = 512);
 
 } // namespace geofx::bench
