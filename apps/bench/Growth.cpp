@@ -24,6 +24,19 @@ double Growth::slopeFrom(double frame) const
     return spread > 0.0 ? (count * xy - x * y) / spread : 0.0;
 }
 
+double Growth::typicalSlopeFrom(double frame) const
+{
+    std::vector<double> slopes;
+    for (std::size_t i = 0; i < _samples.size(); ++i)
+    {
+        const auto& [first, before] = _samples[i];
+        if (first < frame) continue;
+        for (std::size_t j = i + 1; j < _samples.size(); ++j)
+            slopes.push_back((_samples[j].second - before) / (_samples[j].first - first) * 10000.0);
+    }
+    return slopes.empty() ? 0.0 : median(std::move(slopes));
+}
+
 double Growth::medianWithin(double first, double end) const
 {
     std::vector<double> values;

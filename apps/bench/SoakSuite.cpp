@@ -333,17 +333,17 @@ std::vector<Figure> run(const Settings& settings)
     const double settled = 0.1 * extent.frames;
     char remark[300];
     Figure memory{"memory",
-                  "how much resident memory grows in 10,000 frames, after the first tenth of " +
+                  "how much resident memory typically grows in 10,000 frames, after the first tenth of " +
                       std::to_string(extent.frames),
                   "MiB", Bound::Below, 1.0};
-    memory.measured = log.memory.slopeFrom(settled);
+    memory.measured = log.memory.typicalSlopeFrom(settled);
     const double third = (extent.frames - settled) / 3.0;
-    std::snprintf(
-        remark, sizeof remark,
-        "a database of %.2f GB; median of memory in the first, second and last third: %.0f, %.0f, %.0f MiB",
-        gigabytes, log.memory.medianWithin(settled, settled + third),
-        log.memory.medianWithin(settled + third, settled + 2.0 * third),
-        log.memory.medianWithin(settled + 2.0 * third, extent.frames));
+    std::snprintf(remark, sizeof remark,
+                  "a database of %.2f GB; the line of least squares rises by %.1f MiB; median of memory in "
+                  "the first, second and last third: %.0f, %.0f, %.0f MiB",
+                  gigabytes, log.memory.slopeFrom(settled), log.memory.medianWithin(settled, settled + third),
+                  log.memory.medianWithin(settled + third, settled + 2.0 * third),
+                  log.memory.medianWithin(settled + 2.0 * third, extent.frames));
     memory.remark = remark;
     memory.details = {{"gigabytes", gigabytes}, {"samples", log.memory.samples()}};
 
