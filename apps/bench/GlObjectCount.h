@@ -6,6 +6,7 @@
 #include <osg/GLObjects>
 #include <osg/State>
 
+#include <algorithm>
 #include <ostream>
 
 namespace geofx::bench
@@ -24,11 +25,13 @@ struct GlObjectCount
         // OSG has no use for this one.
         GLboolean(GL_APIENTRY * isFrameBuffer)(GLuint) = nullptr;
         osg::setGLExtensionFuncPtr(isFrameBuffer, "glIsFramebuffer");
-        // Names are handed out from the lowest on, so a long run without any is the end.
+        // Names are handed out from the lowest on. A driver that gives no name twice leaves long runs without any below its newest
+        // name; above it such a run is the end.
         constexpr GLuint longest = 20000;
+        const GLuint next = newestName(gl);
         GlObjectCount count;
         int before = 0;
-        for (GLuint name = 1, last = 0; name < last + longest; ++name)
+        for (GLuint name = 1, last = 0; name < std::max(last, next) + longest; ++name)
         {
             count.textures += glIsTexture(name) ? 1 : 0;
             count.buffers += gl.glIsBuffer(name) ? 1 : 0;
@@ -39,6 +42,21 @@ struct GlObjectCount
             before = count.all();
         }
         return count;
+    }
+
+    /// The highest of names that are handed out now.
+    static GLuint newestName(const osg::GLExtensions& gl)
+    {
+        GLuint texture = 0, buffer = 0, frameBuffer = 0;
+        glGenTextures(1, &texture);
+        gl.glGenBuffers(1, &buffer);
+        gl.glGenFramebuffers(1, &frameBuffer);
+        const GLuint program = gl.glCreateProgram();
+        glDeleteTextures(1, &texture);
+        gl.glDeleteBuffers(1, &buffer);
+        gl.glDeleteFramebuffers(1, &frameBuffer);
+        gl.glDeleteProgram(program);
+        return std::max({texture, buffer, frameBuffer, program});
     }
 
     /// A driver may hold a program that has been deleted until it draws with another one; its name lives as long.

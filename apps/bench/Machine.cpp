@@ -5,6 +5,7 @@
 #include <osgGeoFX/offscreen/EglGraphicsContext.h>
 
 #include <ctime>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -62,6 +63,12 @@ double residentMiB()
     double size = 0.0, resident = 0.0;
     file >> size >> resident;
     return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
+}
+
+double allocatedMiB()
+{
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd) / 1048576.0;
 }
 
 namespace

@@ -24,6 +24,9 @@ struct Machine
 /// Main memory that this process has now, MiB.
 double residentMiB();
 
+/// Main memory that the C library has handed out and not got back, MiB: what is in use, without what it keeps of freed memory.
+double allocatedMiB();
+
 /// Processor time that this process has taken, in all of its threads, seconds. What other programs take does not count.
 double processSeconds();
 /// The same of this thread alone: OpenGL's own threads do not count.

@@ -221,8 +221,10 @@ void changeEffects(osgGeoFX::EffectScene& scene, Dice& dice, const ViewPoint& pl
 /// What was seen while it flew.
 struct Log
 {
-    Growth memory;  ///< MiB
-    Growth objects; ///< of OpenGL, in the same place with no effect, between two flights
+    Growth memory; ///< MiB
+    // In the same place with no effect, between two flights.
+    Growth allocated; ///< MiB
+    Growth objects;   ///< of OpenGL
     std::vector<double> seconds;
     int messages = 0;
 };
@@ -272,9 +274,10 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
                 view.frame(frame / FRAMES_A_SECOND);
             const GlObjectCount objects = view.objects();
             log.objects.add(frame, objects.all());
+            log.allocated.add(frame, allocatedMiB());
             std::ostringstream text;
             text << frame << " frames of " << frames << ": " << static_cast<int>(residentMiB()) << " MiB, "
-                 << objects;
+                 << static_cast<int>(allocatedMiB()) << " of them in use, " << objects;
             announce(text.str());
         };
         for (int frame = 0; frame < frames; ++frame)
@@ -347,6 +350,19 @@ std::vector<Figure> run(const Settings& settings)
     memory.remark = remark;
     memory.details = {{"gigabytes", gigabytes}, {"samples", log.memory.samples()}};
 
+    Figure allocated{
+        "allocated",
+        "how much memory in use typically grows in 10,000 frames, after the first tenth, in one place "
+        "with no effect",
+        "MiB", Bound::Below, 1.0};
+    allocated.measured = log.allocated.typicalSlopeFrom(settled);
+    std::snprintf(remark, sizeof remark, "median in the first, second and last third: %.0f, %.0f, %.0f MiB",
+                  log.allocated.medianWithin(settled, settled + third),
+                  log.allocated.medianWithin(settled + third, settled + 2.0 * third),
+                  log.allocated.medianWithin(settled + 2.0 * third, extent.frames + 1.0));
+    allocated.remark = remark;
+    allocated.details = {{"samples", log.allocated.samples()}};
+
     Figure objects{"objects", "OpenGL's objects in the last third of the frames over those in the first", "",
                    Bound::AtMost, 1.05};
     const double first = log.objects.medianWithin(settled, settled + third);
@@ -365,7 +381,7 @@ std::vector<Figure> run(const Settings& settings)
                   "median %.1f ms, at %d x %d; shaders of new effects compile within frames", 1000.0 * middle,
                   SIZE.width, SIZE.height);
     frames.remark = remark;
-    return {memory, objects, messages, frames};
+    return {memory, allocated, objects, messages, frames};
 }
 
 } // namespace
