@@ -6,6 +6,8 @@
 #include "bench/Interruption.h"
 #include "bench/Report.h"
 
+#include <osgGeoFX/paging/FreedMemory.h>
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -115,6 +117,7 @@ int run(const std::vector<std::string>& names, const std::string& jsonFile, bool
 
 int main(int argc, char** argv)
 {
+    osgGeoFX::giveBackLargeBlocks();
     geofx::bench::Settings settings;
     std::vector<std::string> names;
     std::string json;

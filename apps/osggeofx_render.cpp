@@ -13,6 +13,7 @@
 #include "web/ScenePage.h"
 
 #include <osgGeoFX/offscreen/SceneRenderer.h>
+#include <osgGeoFX/paging/FreedMemory.h>
 #include <osgGeoFX/print/PicturePrint.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
@@ -550,6 +551,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
 
 int main(int argc, char** argv)
 {
+    osgGeoFX::giveBackLargeBlocks();
     Arguments arguments;
     CLI::App app(
         "Renders an OSG file or .geofx scene to a picture, or to one for each step of a camera path, "

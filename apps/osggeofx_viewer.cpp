@@ -6,6 +6,7 @@
 #include "names/SceneNames.h"
 #include "viewer/ViewerSetup.h"
 
+#include <osgGeoFX/paging/FreedMemory.h>
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/viewer/EffectKinds.h>
 #include <osgGeoFX/viewer/Scene.h>
@@ -114,6 +115,7 @@ bool hasDisplay()
 
 int main(int argc, char** argv)
 {
+    osgGeoFX::giveBackLargeBlocks();
     osg::ArgumentParser arguments(&argc, argv);
     describe(*arguments.getApplicationUsage());
     const bool colorGiven = arguments.find("--clear-color") > 0;

@@ -5,6 +5,7 @@
 // databases.
 #pragma once
 
+#include <osgGeoFX/paging/FreedMemory.h>
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/MemoryBudget.h>
 #include <osgGeoFX/paging/PagerMonitor.h>
