@@ -53,7 +53,7 @@ constexpr double METRES_PER_RADIAN = 6371000.0;
 
 constexpr int BUILD_MEMORY = 1024; ///< MiB; with 512, imagery so fine leaves room for one thread
 constexpr int TEXELS_PER_POST = 4; ///< along an edge, in the finest tiles
-// A noisy build's work files and database together, and the database alone; measured, with a margin.
+// The build's work files and database together, and the database alone; measured, with a margin.
 constexpr double DISK_BYTES_PER_SAMPLE = 90.0, DATABASE_BYTES_PER_SAMPLE = 60.0;
 
 struct Extent
@@ -336,26 +336,26 @@ std::vector<Figure> run(const Settings& settings)
     const double settled = 0.1 * extent.frames;
     char remark[300];
     Figure memory{"memory",
-                  "how much resident memory typically grows in 10,000 frames, after the first tenth of " +
+                  "how much resident memory grows in 10,000 frames, after the first tenth of " +
                       std::to_string(extent.frames),
                   "MiB", Bound::Below, 1.0};
-    memory.measured = log.memory.typicalSlopeFrom(settled);
+    memory.measured = log.memory.slopeFrom(settled);
     const double third = (extent.frames - settled) / 3.0;
     std::snprintf(remark, sizeof remark,
-                  "a database of %.2f GB; the line of least squares rises by %.1f MiB; median of memory in "
+                  "a database of %.2f GB; typically %.1f MiB; median of memory in "
                   "the first, second and last third: %.0f, %.0f, %.0f MiB",
-                  gigabytes, log.memory.slopeFrom(settled), log.memory.medianWithin(settled, settled + third),
+                  gigabytes, log.memory.typicalSlopeFrom(settled),
+                  log.memory.medianWithin(settled, settled + third),
                   log.memory.medianWithin(settled + third, settled + 2.0 * third),
                   log.memory.medianWithin(settled + 2.0 * third, extent.frames));
     memory.remark = remark;
     memory.details = {{"gigabytes", gigabytes}, {"samples", log.memory.samples()}};
 
-    Figure allocated{
-        "allocated",
-        "how much memory in use typically grows in 10,000 frames, after the first tenth, in one place "
-        "with no effect",
-        "MiB", Bound::Below, 1.0};
-    allocated.measured = log.allocated.typicalSlopeFrom(settled);
+    Figure allocated{"allocated",
+                     "how much memory in use grows in 10,000 frames, after the first tenth, in one place "
+                     "with no effect",
+                     "MiB", Bound::Below, 1.0};
+    allocated.measured = log.allocated.slopeFrom(settled);
     std::snprintf(remark, sizeof remark, "median in the first, second and last third: %.0f, %.0f, %.0f MiB",
                   log.allocated.medianWithin(settled, settled + third),
                   log.allocated.medianWithin(settled + third, settled + 2.0 * third),

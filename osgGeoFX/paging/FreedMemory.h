@@ -13,7 +13,7 @@ namespace osgGeoFX
     Without this, glibc puts larger and larger blocks, up to 32 MiB, among the small ones once the first of them have been freed. What
     is freed there can be given back only if all behind it is free. A program that pages terrain for long then keeps half as much again
     as it uses, or more. Call it once at the beginning of a program, from any thread. It is a setting of the whole process, so the
-    kit's programs call it and its libraries do not. With another C library it does nothing.
+    kit's viewer, renderer and benchmarks call it and its libraries do not. With another C library it does nothing.
     @ingroup paging */
 OSGGEOFX_EXPORT void giveBackLargeBlocks();
 
