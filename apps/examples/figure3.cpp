@@ -95,7 +95,7 @@ int main(int argc, char** argv)
     std::string size = "1200x800";
     CLI::App app("Draws one of six maps of Oahu with projective mappings.", "example_figure3");
     app.add_option("terrain", arguments.terrain,
-                   "Oahu: data/oahu/oahu.geofx, or a database of it on the globe")
+                   "Oahu: data/oahu/plain.geofx, or a database of it on the globe")
         ->required();
     app.add_option("data", arguments.dataFolder, "Folder of elevation.tif and landcover.tif")->required();
     app.add_option("figure", arguments.figure,

@@ -332,7 +332,7 @@ int main(int argc, char** argv)
     CLI::App app("A flood that rises over the coast of Oahu, or a fire that spreads on its slopes.",
                  "example_simulation");
     app.add_option("terrain", arguments.terrain,
-                   "Oahu: data/oahu/oahu.geofx, or a database of it on the globe")
+                   "Oahu: data/oahu/plain.geofx, or a database of it on the globe")
         ->required();
     app.add_option("data", arguments.data, "Folder of elevation.tif and landcover.tif")->required();
     app.add_option("kind", arguments.kind, "flood or fire")

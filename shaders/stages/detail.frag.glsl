@@ -84,6 +84,32 @@ struct SLOT_Texels
     vec4 cover;
 };
 
+#ifdef GEOFX_TEXTURE_0
+// The texels of one side of the shore around a place, the nearest ones above all; as they were where there are none. `water`: 1 for the sea's.
+SLOT_Texels SLOT_texelsOfSide(SLOT_Texels texels, vec2 at, float water)
+{
+    ivec2 last = textureSize(SLOT_colors, 0) - 1, low = ivec2(floor(at));
+    vec3 color = vec3(0.0), cover = vec3(0.0);
+    float all = 0.0;
+    for (int i = 0; i < 16; ++i)
+    {
+        ivec2 place = low + ivec2(i & 3, i >> 2) - 1;
+        if (any(lessThan(place, ivec2(0))) || any(greaterThan(place, last))) continue;
+        vec4 here = texelFetch(SLOT_cover, place, 0);
+        if (step(128.0 / 255.0, here.a) != water) continue;
+        vec2 way = vec2(place) - at;
+        float weight = exp2(-4.0 * dot(way, way));
+        color += weight * texelFetch(SLOT_colors, place, 0).rgb;
+        cover += weight * here.rgb;
+        all += weight;
+    }
+    if (all <= 0.0) return texels;
+    texels.color = mix(texels.color, color / all, SLOT_how.z);
+    texels.cover.rgb = mix(texels.cover.rgb, cover / all, SLOT_how.z);
+    return texels;
+}
+#endif
+
 // `cover`: as it is without them. `none`: the color where there is no texture.
 SLOT_Texels SLOT_texelsAt(vec4 cover, vec2 stray, SLOT_Pixel pixel, vec3 none)
 {
@@ -111,6 +137,8 @@ SLOT_Texels SLOT_texelsAt(vec4 cover, vec2 stray, SLOT_Pixel pixel, vec3 none)
         vec3 d = texelFetch(SLOT_colors, high, 0).rgb;
         vec4 weights = vec4((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
         weights = mix(weights, geofx_crispWeights(weights, a, b, c, d, pixel.sharp), SLOT_how.z);
+        float water = step(128.0 / 255.0, cover.a);
+        bool across = false;
         if (textureSize(SLOT_cover, 0) == size)
         {
             vec4 coverA = texelFetch(SLOT_cover, low, 0);
@@ -118,14 +146,16 @@ SLOT_Texels SLOT_texelsAt(vec4 cover, vec2 stray, SLOT_Pixel pixel, vec3 none)
             vec4 coverC = texelFetch(SLOT_cover, ivec2(low.x, high.y), 0);
             vec4 coverD = texelFetch(SLOT_cover, high, 0);
             // The shore is the line where its distance is none, and each side has the colors of its own.
-            float water = step(128.0 / 255.0, cover.a);
             vec4 wet = step(vec4(128.0 / 255.0), vec4(coverA.a, coverB.a, coverC.a, coverD.a));
             vec4 ashore = weights * (1.0 - abs(wet - water));
             float all = dot(ashore, vec4(1.0));
-            weights = all > 1e-3 ? mix(weights, ashore / all, SLOT_how.z) : weights;
+            across = all <= 1e-3;
+            if (!across) weights = mix(weights, ashore / all, SLOT_how.z);
             result.cover.rgb = weights.x * coverA.rgb + weights.y * coverB.rgb + weights.z * coverC.rgb + weights.w * coverD.rgb;
         }
         result.color = weights.x * a + weights.y * b + weights.z * c + weights.w * d;
+        // The shore is smooth, and samples stray, so all four may lie on the other side.
+        if (across) result = SLOT_texelsOfSide(result, at, water);
     }
 #endif
     return result;

@@ -17,7 +17,6 @@
 #include <functional>
 #include <iterator>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 
@@ -56,10 +55,11 @@ void expectAccepted(const geofx::test::ProgramResult& result)
 std::vector<std::string> importedDefines(const std::string& text)
 {
     std::vector<std::string> names;
-    const std::regex pragma(R"(#pragma import_defines\(([^)]*)\))");
-    for (std::sregex_iterator each(text.begin(), text.end(), pragma), end; each != end; ++each)
+    const std::string pragma = "#pragma import_defines(";
+    for (std::size_t found = text.find(pragma); found != std::string::npos; found = text.find(pragma, found))
     {
-        std::string list = (*each)[1];
+        found += pragma.size();
+        std::string list = text.substr(found, text.find(')', found) - found);
         std::replace(list.begin(), list.end(), ',', ' ');
         std::istringstream words(list);
         std::copy(std::istream_iterator<std::string>(words), {}, std::back_inserter(names));
@@ -140,19 +140,24 @@ void expectProgramAccepted(const osg::Program* program, Random& random, double s
                 defines.emplace(name, std::to_string(random.integer(1, 3)));
         }
     }
+    // Programs share most of their shaders, so each text is compiled once.
+    static std::set<std::string> compiled;
     const TempDir folder;
     std::vector<std::string> arguments = {"glslangValidator"};
     for (unsigned int i = 0; i < program->getNumShaders(); ++i)
     {
         const osg::Shader& shader = *program->getShader(i);
         const std::string name = "unit" + std::to_string(i) + endingOf(shader.getType());
-        folder.write(name, withDefines(validatorsText(shader), defines));
+        const std::string text = withDefines(validatorsText(shader), defines);
+        if (!compiled.insert(endingOf(shader.getType()) + text).second) continue;
+        folder.write(name, text);
         arguments.push_back((std::filesystem::path(folder.path()) / name).string());
         // In a core profile, without what needs the fixed functions.
         if (shader.getName().rfind("stages/fixed.", 0) == 0 || needsFixedFunctions(shader)) continue;
         folder.write("core" + name, withDefines(coreText(shader), defines));
         arguments.push_back((std::filesystem::path(folder.path()) / ("core" + name)).string());
     }
+    if (arguments.size() == 1) return;
     std::string set;
     for (const auto& [name, value] : defines)
         set.append(name).append("=").append(value).append(" ");

@@ -316,6 +316,29 @@ glm::dvec3 GroundDetailTest::evaluate(const Place& place, const Place& right, co
         color += weights[corner] * colors[static_cast<std::size_t>(corner)];
         cover += weights[corner] * covers[static_cast<std::size_t>(corner)];
     }
+    if (all <= 1e-3)
+    {
+        // Nearby texels of the place's own side.
+        glm::dvec4 nearColor(0.0), nearCover(0.0);
+        double sum = 0.0;
+        for (int down = -1; down <= 2; ++down)
+            for (int along = -1; along <= 2; ++along)
+            {
+                const glm::ivec2 cell(column + along, row + down);
+                const glm::dvec4 texelsCover = texelOf(*_cover, cell.x, cell.y);
+                if (glm::clamp(cell, 0, TEXELS - 1) != cell || wetOf(texelsCover) != wetOf(known)) continue;
+                const glm::dvec2 way = glm::dvec2(cell) - strayed;
+                const double weight = std::exp2(-4.0 * glm::dot(way, way));
+                nearColor += weight * texelOf(*_colors, cell.x, cell.y);
+                nearCover += weight * texelsCover;
+                sum += weight;
+            }
+        if (sum > 0.0)
+        {
+            color = glm::mix(color, nearColor / sum, _detail->getEdges());
+            cover = glm::mix(cover, nearCover / sum, _detail->getEdges());
+        }
+    }
     cover.w = known.w;
     const geofx_Cover here = geofx_coverOf(cover);
     const Rgb own = brightness * Rgb(color);
@@ -566,6 +589,60 @@ TEST_F(GroundDetailTest, OfTerrainsThatTellNothing)
     draw();
     const osg::ref_ptr<osg::Image> detailed = draw();
     EXPECT_GT(differing(*plain, *detailed), WIDTH * HEIGHT / 4);
+}
+
+// The smooth shore runs across cells of the other side, and wind carries the sample over it.
+TEST_F(GroundDetailTest, EachSideOfARaggedShoreHasColorsOfItsOwn)
+{
+    Random random(5);
+    std::array<bool, TEXELS * TEXELS> sea{};
+    for (int y = 0; y < TEXELS; ++y)
+        for (int x = 0, shore = random.integer(12, 19); x < TEXELS; ++x)
+            sea[static_cast<std::size_t>(y * TEXELS + x)] = x > shore;
+    const double texel = 2.0 * HALF / TEXELS;
+    for (int i = 0; i < TEXELS * TEXELS; ++i)
+    {
+        const bool wet = sea[static_cast<std::size_t>(i)];
+        double nearest = 1e6; // texels from the border of the nearest one of the other side
+        for (int k = 0; k < TEXELS * TEXELS; ++k)
+            if (sea[static_cast<std::size_t>(k)] != wet)
+                nearest =
+                    std::min(nearest, std::hypot(std::max(std::abs(k % TEXELS - i % TEXELS) - 0.5, 0.0),
+                                                 std::max(std::abs(k / TEXELS - i / TEXELS) - 0.5, 0.0)));
+        unsigned char* color = _colors->data() + 4 * i;
+        unsigned char* cover = _cover->data() + 4 * i;
+        color[0] = wet ? 30 : 200, color[1] = wet ? 70 : 150, color[2] = wet ? 120 : 80;
+        cover[0] = cover[1] = cover[2] = 0;
+        cover[3] = coded(glsl::geofx_shoreCode((wet ? 1.0 : -1.0) * texel * nearest));
+    }
+    _colors->dirty();
+    _cover->dirty();
+    look({-120.0, -700.0, 420.0}, {-60.0, 0.0, 0.0});
+    draw();
+    const osg::ref_ptr<osg::Image> image = draw();
+    const DeformedView view(*_scene, *viewer().getCamera());
+    int land = 0, water = 0, blueLand = 0, brownWater = 0;
+    for (int y = 0; y < HEIGHT; y += 2)
+        for (int x = 0; x < WIDTH; x += 2)
+        {
+            const auto place = view.pick(x + 0.5, y + 0.5);
+            if (!place) continue;
+            const glm::dvec2 at =
+                (glm::dvec2(place->world.x(), place->world.y()) + glm::dvec2(HALF)) / texel - 0.5;
+            double code = 0.0;
+            for (const glm::dvec2 way : {glm::dvec2(0.75, 0.75), glm::dvec2(-0.75, 0.75),
+                                         glm::dvec2(0.75, -0.75), glm::dvec2(-0.75, -0.75)})
+                code += 0.25 * bilinear(*_cover, at + way).w;
+            const double shore = glsl::geofx_shoreDistance(code);
+            const osg::Vec3d color = colorAt(*image, x, y);
+            // Not where a pixel has both; beyond the foam.
+            if (shore < -30.0 && shore > -90.0) ++land, blueLand += color.z() > color.x();
+            if (shore > 30.0 && shore < 90.0) ++water, brownWater += color.x() > color.z();
+        }
+    EXPECT_GT(land, 300);
+    EXPECT_GT(water, 300);
+    EXPECT_EQ(blueLand, 0);
+    EXPECT_EQ(brownWater, 0);
 }
 
 // A texture that begins again, and coordinates that a texture matrix makes, show the same detail.
