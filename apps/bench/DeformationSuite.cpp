@@ -144,9 +144,9 @@ public:
         _scene = *scene;
         _root->addChild(_scene.node);
         _view = std::make_unique<OffscreenView>(_size, FIELD_OF_VIEW, _root);
-        const double detail = settings.smoke ? 0.25 : 1.0;
-        _view->camera().setLODScale(osgGeoFX::lodScaleFor(
-            *scene->terrain, detail * osgGeoFX::pixelsPerRadian(_size.height, FIELD_OF_VIEW)));
+        const float scale =
+            osgGeoFX::lodScaleFor(*scene->terrain, osgGeoFX::pixelsPerRadian(_size.height, FIELD_OF_VIEW));
+        _view->camera().setLODScale(settings.smoke ? 4.0f : scale);
     }
 
     std::vector<Figure> measure(const Case& each)
