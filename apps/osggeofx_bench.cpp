@@ -117,7 +117,7 @@ int run(const std::vector<std::string>& names, const std::string& jsonFile, bool
 
 int main(int argc, char** argv)
 {
-    osgGeoFX::giveBackLargeBlocks();
+    const osgGeoFX::FreedMemory freed;
     geofx::bench::Settings settings;
     std::vector<std::string> names;
     std::string json;

@@ -551,7 +551,7 @@ void run(Arguments& arguments, const geofx::plan::Division& division)
 
 int main(int argc, char** argv)
 {
-    osgGeoFX::giveBackLargeBlocks();
+    const osgGeoFX::FreedMemory freed;
     Arguments arguments;
     CLI::App app(
         "Renders an OSG file or .geofx scene to a picture, or to one for each step of a camera path, "

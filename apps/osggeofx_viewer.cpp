@@ -115,7 +115,7 @@ bool hasDisplay()
 
 int main(int argc, char** argv)
 {
-    osgGeoFX::giveBackLargeBlocks();
+    const osgGeoFX::FreedMemory freed;
     osg::ArgumentParser arguments(&argc, argv);
     describe(*arguments.getApplicationUsage());
     const bool colorGiven = arguments.find("--clear-color") > 0;

@@ -37,7 +37,7 @@ namespace osgGeoFX
     OSG has them. A scene with a budget should have a pager of its own: when tiles must go, the pager removes what it may
     of other scenes, too. Memory that is not tiles' does not count: programs, frame buffers, strokes and whatever else listeners add to
     tiles, what the scene's root brings, and what OpenGL has not given back yet. Nor does what the C library keeps of memory that was
-    freed. That may be more than what is in use; giveBackLargeBlocks() makes it little.
+    freed. That may be more than what is in use; a FreedMemory makes it little.
 
     Threads: tiles are measured on the pager's threads. The rest happens in the update traversal of the watched node. Call all
     functions between frames, but counts() and hasRoom(), which any thread may call.
