@@ -25,6 +25,7 @@
 #include <osg/Math>
 #include <osg/NodeVisitor>
 #include <osg/Notify>
+#include <osg/Texture>
 
 #include <algorithm>
 #include <cmath>
@@ -93,17 +94,23 @@ private:
     int _count = 0;
 };
 
-/// Counts the buffers of what of a scene is in memory, drawn now or not.
-class SceneBuffers : public osg::NodeVisitor
+/// Counts the buffers and textures of what of a scene is in memory, drawn now or not.
+class SceneObjects : public osg::NodeVisitor
 {
 public:
-    explicit SceneBuffers(unsigned int contextId) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _contextId(contextId)
+    explicit SceneObjects(unsigned int contextId) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _contextId(contextId)
     {
     }
-    std::size_t count() const { return _buffers.size(); }
+    std::size_t count() const { return _objects.size(); }
 
+    void apply(osg::Node& node) override
+    {
+        if (node.getStateSet()) addTextures(*node.getStateSet());
+        traverse(node);
+    }
     void apply(osg::Geometry& geometry) override
     {
+        if (geometry.getStateSet()) addTextures(*geometry.getStateSet());
         osg::Geometry::ArrayList arrays;
         geometry.getArrayList(arrays);
         for (const osg::ref_ptr<osg::Array>& array : arrays)
@@ -116,11 +123,21 @@ private:
     void add(const osg::BufferObject* buffer)
     {
         if (buffer && buffer->getGLBufferObject(_contextId))
-            _buffers.insert(buffer->getGLBufferObject(_contextId));
+            _objects.insert(buffer->getGLBufferObject(_contextId));
+    }
+    void addTextures(const osg::StateSet& state)
+    {
+        for (unsigned int unit = 0; unit < state.getTextureAttributeList().size(); ++unit)
+        {
+            const auto* texture = dynamic_cast<const osg::Texture*>(
+                state.getTextureAttribute(unit, osg::StateAttribute::TEXTURE));
+            if (texture && texture->getTextureObject(_contextId))
+                _objects.insert(texture->getTextureObject(_contextId));
+        }
     }
 
     unsigned int _contextId;
-    std::set<const osg::GLBufferObject*> _buffers;
+    std::set<const void*> _objects;
 };
 
 /// The same numbers with every standard library.
@@ -258,7 +275,7 @@ struct Log
     // In the same place with no effect, between two flights.
     Growth allocated; ///< MiB
     Growth objects;   ///< of OpenGL
-    Growth others;    ///< of them, but for buffers of tiles in memory
+    Growth others;    ///< of them, but for those of tiles in memory
     std::vector<double> seconds;
     int messages = 0;
 };
@@ -307,16 +324,16 @@ Log fly(const std::filesystem::path& terrain, const Settings& settings, int fram
             for (int i = 0; i < 30; ++i)
                 view.frame(frame / FRAMES_A_SECOND);
             const GlObjectCount objects = view.objects();
-            SceneBuffers buffers(view.camera().getGraphicsContext()->getState()->getContextID());
-            scene->node->accept(buffers);
-            const int others = objects.all() - static_cast<int>(buffers.count());
+            SceneObjects ofTiles(view.camera().getGraphicsContext()->getState()->getContextID());
+            scene->node->accept(ofTiles);
+            const int others = objects.all() - static_cast<int>(ofTiles.count());
             log.objects.add(frame, objects.all());
             log.others.add(frame, others);
             log.allocated.add(frame, allocatedMiB());
             std::ostringstream text;
             text << frame << " frames of " << frames << ": " << static_cast<int>(residentMiB()) << " MiB, "
                  << static_cast<int>(allocatedMiB()) << " of them in use, " << objects << "; " << others
-                 << " objects but for buffers of tiles in memory";
+                 << " objects but for those of tiles in memory";
             announce(text.str());
         };
         for (int frame = 0; frame < frames; ++frame)
@@ -407,10 +424,10 @@ std::vector<Figure> run(const Settings& settings)
     const double first = log.objects.medianWithin(settled, settled + third);
     const double last = log.objects.medianWithin(settled + 2.0 * third, extent.frames + 1.0);
     objects.measured = first > 0.0 ? last / first : 1.0;
-    // A tile has buffers from when it was drawn first, so their number follows the last flights.
+    // A tile has objects from when it was drawn first, so their number follows the last flights.
     std::snprintf(
         remark, sizeof remark,
-        "%.0f and %.0f, in one place with no effect; but for buffers of tiles in memory %.0f and %.0f", first,
+        "%.0f and %.0f, in one place with no effect; but for those of tiles in memory %.0f and %.0f", first,
         last, log.others.medianWithin(settled, settled + third),
         log.others.medianWithin(settled + 2.0 * third, extent.frames + 1.0));
     objects.remark = remark;
