@@ -176,7 +176,8 @@ public:
         OPEN, ///< the engines cull nothing, neither by the frustum nor by the horizon; the group still does
         PROXY ///< the engines cull by a frustum and a view point that contain all ground which the deformed picture shows
     };
-    /** AS_IT_IS by default. OPEN and PROXY take effect where a deformation is enabled. They also keep a clamp callback of the
+    /** AS_IT_IS by default. OPEN and PROXY take effect where a deformation is enabled, and in passes of parts
+        of the scene, such as those of close-ups. They also keep a clamp callback of the
         host's from cutting off what the group draws, and hold osgEarth's horizon clip plane (oe_ClipPlane_plane) neutral.
 
         PROXY draws less than OPEN where engines have many tiles. Any node of a class that is neither OSG's nor the kit's

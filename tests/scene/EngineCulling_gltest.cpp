@@ -128,6 +128,32 @@ TEST_F(EngineCulling, OpenLosesNothing)
     EXPECT_LT(_engine->drawn, cells * cells);
 }
 
+// The ground of a close-up may lie beside the picture that shows it.
+TEST_F(EngineCulling, CloseUpsAloneLoseNothing)
+{
+    for (const double x : {-500.0, 0.0, 500.0})
+        _closeUps->addCloseUp(makeCloseUp({x, 200.0 - 0.4 * x}));
+    _scene->addEffect(_closeUps);
+    _engine->horizon = false; // right where nothing is deformed
+    Random random(9);
+    const int count = fullTest() ? 200 : 20;
+    int lost = 0;
+    for (int i = 0; i < count; ++i)
+    {
+        SCOPED_TRACE("camera " + std::to_string(i));
+        lookAnyhow(random);
+        const osg::ref_ptr<osg::Image> expected = drawAll();
+        _scene->setEngineCulling(EffectScene::AS_IT_IS);
+        if (!same(*draw(), *expected)) ++lost;
+        for (const EffectScene::EngineCulling culling : {EffectScene::OPEN, EffectScene::PROXY})
+        {
+            _scene->setEngineCulling(culling);
+            EXPECT_TRUE(same(*draw(), *expected)) << culling;
+        }
+    }
+    EXPECT_GT(lost, count / 10);
+}
+
 // Tiles of which the picture shows nothing stay coarse, and all others are as fine as they were.
 TEST_F(EngineCulling, TilesThatAreOutOfSightAreToldFromOthers)
 {

@@ -82,10 +82,11 @@ public:
             nullptr; ///< EffectScene::getShaderHost(); null in passes whose functions it has not
         osg::StateSet* hostAddition = nullptr; ///< ShaderHost::addition(); null for none
         bool adapts = false;                   ///< EffectScene::getAdaptsPrograms()
-        bool open = false;                     ///< nothing else is to cull: EffectScene::OPEN or PROXY
-        bool proxy = false;                    ///< engines cull by a ProxyFrustum: EffectScene::PROXY
-        osg::BoundingSphere bound;             ///< of the terrain, for this frustum
-        double tileError = 0.0;                ///< Ground::tileError
+        bool engines = false;                  ///< EffectScene::OPEN or PROXY
+        bool open = false;  ///< nothing else is to cull, since what engines cull by is not what is shown
+        bool proxy = false; ///< engines cull by a ProxyFrustum: EffectScene::PROXY
+        osg::BoundingSphere bound; ///< of the terrain, for this frustum
+        double tileError = 0.0;    ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
         bool asksForTiles = true;              ///< false: pagers hear nothing
         bool findsNearAndFar = true;           ///< false: the camera's stay as they are

@@ -12,7 +12,10 @@ PassCullVisitor::~PassCullVisitor() = default;
 void PassCullVisitor::run(osgUtil::CullVisitor& outer, const Task& task, PassFilter& filter)
 {
     _filter = &filter;
-    CompensatingCullVisitor::run(outer, task);
+    // The parts may lie beside the picture that shows them, whether or not anything is deformed.
+    Task opened = task;
+    opened.open = task.engines;
+    CompensatingCullVisitor::run(outer, opened);
 }
 
 bool PassCullVisitor::outOfSight(const osg::Node& node)

@@ -259,8 +259,8 @@ SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chai
     task.normals = lookAtNormals(_effects);
     task.adapts = _scene.getAdaptsPrograms();
     task.tileError = _view.ground.tileError;
-    task.open =
-        _scene.getEngineCulling() != EffectScene::AS_IT_IS && _scene.getCompensation() && !chain->empty();
+    task.engines = _scene.getEngineCulling() != EffectScene::AS_IT_IS && _scene.getCompensation();
+    task.open = task.engines && !chain->empty();
     task.proxy = task.open && _scene.getEngineCulling() == EffectScene::PROXY;
     task.bound = _bound;
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
