@@ -15,8 +15,8 @@ namespace osgGeoFX
     puts larger and larger blocks, up to 32 MiB, among the small ones once the first of them have been freed. What is freed there can be
     given back only if all behind it is free, and the program keeps half as much again as it uses, or more.
 
-    A thread of its own gives back the free pages between smaller blocks from time to time. Without that they grow by some 60 MiB an hour
-    of flight. It takes some 20 ms for each GiB of smaller blocks; other threads that allocate may wait for a part of that.
+    A thread of its own gives back the free pages between smaller blocks from time to time. Without that they grow by some 60 MiB in
+    10,000 frames of flight. It takes some 20 ms for each GiB of smaller blocks; other threads that allocate may wait for a part of that.
 
     Both are matters of the whole process, so the kit's viewer, renderer and benchmarks have such an object and its libraries do not. What
     is said of large blocks outlasts it. From any thread; several objects do no harm. With another C library it does nothing.
