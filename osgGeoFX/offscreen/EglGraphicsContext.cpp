@@ -354,9 +354,12 @@ void EglGraphicsContext::installDebugCallback()
     using Callback = void(GL_APIENTRY*)(GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar*, const void*);
     using DebugMessageCallback = void(GL_APIENTRY*)(Callback, const void*);
     const auto setCallback = eglFunction<DebugMessageCallback>("glDebugMessageCallback");
-    if (!setCallback || osg::getGLVersionNumber() < 4.3f)
+    // Drivers give a context of the version that was asked for, and the extension with it.
+    if (!setCallback ||
+        !osg::isGLExtensionOrVersionSupported(getState()->getContextID(), "GL_KHR_debug", 4.3f))
     {
-        OSG_WARN << "osgGeoFX: the OpenGL driver has no debug messages (it needs OpenGL 4.3)." << std::endl;
+        OSG_WARN << "osgGeoFX: the OpenGL driver has no debug messages (it needs OpenGL 4.3 or GL_KHR_debug)."
+                 << std::endl;
         return;
     }
     constexpr GLenum debugOutput = 0x92E0;

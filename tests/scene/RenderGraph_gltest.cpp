@@ -33,7 +33,7 @@ using namespace geofx::test;
 namespace
 {
 
-/// Pixels of a color: how many, and where.
+/// Pixels of a color: how many, and where. A smooth point is nowhere quite opaque with NVIDIA's driver.
 struct Patch
 {
     int count = 0;
@@ -50,7 +50,7 @@ struct Patch
                     image.data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
                 if (std::abs(pixel[0] - color.r()) + std::abs(pixel[1] - color.g()) +
                         std::abs(pixel[2] - color.b()) >
-                    60)
+                    90)
                     continue;
                 ++count;
                 left = std::min(left, x);

@@ -29,7 +29,11 @@ void* functionOf(const char* name)
 {
     static void* const library = dlopen(GEOFX_COMPARE_LIBRARY, RTLD_NOW | RTLD_LOCAL);
     void* const function = library ? dlsym(library, name) : nullptr;
-    if (!function) throw std::runtime_error(std::string("Images cannot be compared: ") + dlerror());
+    if (!function)
+        // dlerror() tells of each failure once, and this library is looked for once.
+        throw std::runtime_error(std::string("Images cannot be compared: ") + GEOFX_COMPARE_LIBRARY +
+                                 " cannot be loaded, or has no " + name +
+                                 "; build the target geofx_compare.");
     return function;
 }
 

@@ -60,11 +60,27 @@ bool replaceWord(std::string& text, const std::string& word, const std::string& 
     return found;
 }
 
-// What a program without shaders does: no program is in force.
-const osg::Program& nothing()
+/// A program that draws nothing. Without a program, a driver draws what it likes: NVIDIA's draws white.
+osg::ref_ptr<osg::Program> makeNothing()
 {
-    static const osg::ref_ptr<osg::Program> none = new osg::Program;
-    return *none;
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->setName("nothing, in a core profile");
+    program->addShader(new osg::Shader(
+        osg::Shader::VERTEX, "#version 330 core\nvoid main() { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); }\n"));
+    program->addShader(
+        new osg::Shader(osg::Shader::FRAGMENT, "#version 330 core\nvoid main() { discard; }\n"));
+    return program;
+}
+
+void warnOfFixedFunctions()
+{
+    static std::atomic<bool> said{false};
+    if (!said.exchange(true))
+        OSG_WARN
+            << "osgGeoFX: geometry below effects has no program, and the kit's stand-in for OpenGL's fixed "
+               "functions needs a context with the compatibility profile; it is not drawn. Give it a program "
+               "(EffectScene::addFunctions() or adapt()), or ask for such a context."
+            << std::endl;
 }
 
 void copyRest(const osg::Program& from, osg::Program& to)
@@ -143,7 +159,12 @@ bool ProfileProgram::standsInForFixedFunctions() const
 osg::ref_ptr<osg::Program> ProfileProgram::core() const
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    if (_core || standsInForFixedFunctions()) return _core;
+    if (_core) return _core;
+    if (standsInForFixedFunctions())
+    {
+        warnOfFixedFunctions();
+        return _core = makeNothing();
+    }
     const std::lock_guard<std::mutex> other(sharing());
     _core = new osg::Program(*this, osg::CopyOp::SHALLOW_COPY);
     for (const auto& shader : _shaderList)
@@ -166,22 +187,13 @@ osg::ref_ptr<osg::Program> ProfileProgram::coreIfMade() const
 void ProfileProgram::apply(osg::State& state) const
 {
     if (!isCore(state)) return osg::Program::apply(state);
-    if (const osg::ref_ptr<osg::Program> program = core()) return program->apply(state);
-    static std::atomic<bool> said{false};
-    if (!said.exchange(true))
-        OSG_WARN
-            << "osgGeoFX: geometry below effects has no program, and the kit's stand-in for OpenGL's fixed "
-               "functions needs a context with the compatibility profile; it is not drawn with effects. Give "
-               "it "
-               "a program (EffectScene::addFunctions() or adapt()), or ask for such a context."
-            << std::endl;
-    nothing().apply(state);
+    core()->apply(state);
 }
 
 void ProfileProgram::compileGLObjects(osg::State& state) const
 {
     if (!isCore(state)) return osg::Program::compileGLObjects(state);
-    if (const osg::ref_ptr<osg::Program> program = core()) program->compileGLObjects(state);
+    core()->compileGLObjects(state);
 }
 
 void ProfileProgram::setThreadSafeRefUnref(bool threadSafe)

@@ -17,8 +17,7 @@ namespace osgGeoFX
     program draws in its place. It has the same shaders, of which those of the kit are translated by coreText(). It is
     made when it is first needed, so shaders must not be added or removed after a program has been drawn.
 
-    If shaders of the program stand in for OpenGL's fixed functions, there is no such program. Nothing is drawn with it in a
-    core profile, and one warning says so.
+    If shaders of the program stand in for OpenGL's fixed functions, that program draws nothing, and one warning says so.
 
     Threads: like osg::Program. */
 class ProfileProgram : public osg::Program
@@ -28,7 +27,7 @@ public:
     /// A program with the shaders of another one, and all else that it has.
     explicit ProfileProgram(const osg::Program& other);
 
-    /// The program for core profiles; null if this one stands in for the fixed functions.
+    /// The program for core profiles; one that draws nothing if this one stands in for the fixed functions.
     osg::ref_ptr<osg::Program> core() const;
 
     void apply(osg::State& state) const override;
