@@ -9,6 +9,8 @@
 #include <osg/Uniform>
 #include <osgUtil/CullVisitor>
 
+#include <cmath>
+
 namespace osgGeoFX
 {
 
@@ -28,10 +30,10 @@ struct NoBound : public osg::Drawable::ComputeBoundingBoxCallback
 class PlaceOfEye : public osg::NodeCallback
 {
 public:
-    PlaceOfEye(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air)
+    PlaceOfEye(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air, double haze)
         : _scale(1.0 / ellipsoid.getRadiusEquator(), 1.0 / ellipsoid.getRadiusEquator(),
                  1.0 / ellipsoid.getRadiusPolar()),
-          _air(air)
+          _air(air), _haze(static_cast<float>(haze * ellipsoid.getRadiusEquator()))
     {
     }
 
@@ -50,6 +52,7 @@ public:
         state->addUniform(new osg::Uniform("geofx_earthEye", osg::Vec3(eye)));
         state->addUniform(new osg::Uniform("geofx_earthRise", static_cast<float>(eye.length2() - 1.0)));
         state->addUniform(new osg::Uniform("geofx_earthAir", _air));
+        state->addUniform(new osg::Uniform("geofx_earthHaze", _haze));
         cull->pushStateSet(state);
         traverse(node, visitor);
         cull->popStateSet();
@@ -58,11 +61,13 @@ public:
 private:
     const osg::Vec3d _scale;
     const osg::Vec3 _air;
+    const float _haze;
 };
 
 } // namespace
 
-osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air)
+osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air,
+                                     double visibility)
 {
     osg::ref_ptr<osg::Geometry> picture = new osg::Geometry;
     osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
@@ -80,7 +85,7 @@ osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const
     sky->setName("sky of the Earth");
     sky->setCullingActive(false);
     sky->addChild(picture);
-    sky->setCullCallback(new PlaceOfEye(ellipsoid, air));
+    sky->setCullCallback(new PlaceOfEye(ellipsoid, air, -std::log(0.02) / visibility));
     osg::StateSet* state = sky->getOrCreateStateSet();
     state->setAttributeAndModes(
         ShaderLibrary::createProgram("sky of the Earth", "stages/earthsky.vert", "stages/earthsky.frag"),

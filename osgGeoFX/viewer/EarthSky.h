@@ -12,8 +12,11 @@ namespace osgGeoFX
 {
 
 /** Makes a sky for a geocentric scene, at any height from the ground to beyond orbit: black space, a blue rim around
-    the Earth that thins out by exp(-height / 8 km), and the sky of a bright day near the ground. Where no terrain is
-    drawn, the Earth is a blue sea in haze. `air` is the color of deep air, as at the horizon, 0 to 1.
+    the Earth that thins out by exp(-height / 8 km), and the sky of a bright day near the ground, with haze that thins
+    out by exp(-height / 1.2 km). Where no terrain is drawn, the Earth is a blue sea in this haze. `air` is the color of
+    deep air and of haze, as at the horizon, 0 to 1. `visibility`: metres, above 0, at which haze at the sea has left 2 % of the
+    contrast; infinity for none. Give the terrain the haze that goes with it by an osg::Fog of this color, EXP, of the
+    density 3.912 / visibility; scene files do so.
 
     The node is drawn before everything else of its camera. It writes no depth and does not count for near and far, so
     it never fights with the terrain. It takes the place of the camera's clear color; hide the node to have that again.
@@ -21,6 +24,6 @@ namespace osgGeoFX
     It is for perspective cameras. Light is the same all around; there is no night. Each camera that culls has its own
     state, so the node may be shared by cameras and threads. */
 OSGGEOFX_EXPORT osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid,
-                                                     const osg::Vec3& air);
+                                                     const osg::Vec3& air, double visibility = 150e3);
 
 } // namespace osgGeoFX

@@ -88,6 +88,7 @@ std::optional<SceneSettings> SceneSettings::read(const osg::Node& root, std::str
         }
     }
     root.getUserValue("geofx.hasLight", settings.hasLight);
+    root.getUserValue("geofx.hasSky", settings.hasSky);
     return settings;
 }
 
@@ -210,11 +211,13 @@ bool Scene::addSky(std::string& error)
             "--geocentric.";
         return false;
     }
+    if (settings.hasSky) return true;
     osg::ref_ptr<osg::Group> both = new osg::Group;
     const osg::Vec4& air = settings.background;
     both->addChild(makeEarthSky(osg::EllipsoidModel(), osg::Vec3(air.r(), air.g(), air.b())));
     both->addChild(node);
     node = both;
+    settings.hasSky = true;
     return true;
 }
 

@@ -28,6 +28,7 @@ namespace osgGeoFX
     - `geofx.homeFov`: double, the vertical field of view in degrees, between 0 and 180.
     - `geofx.background`: string "r,g,b", 0…1.
     - `geofx.hasLight`: bool, true if the scene has its own light and needs no headlight.
+    - `geofx.hasSky`: bool, true if the scene draws a sky.
     @ingroup viewer */
 struct OSGGEOFX_EXPORT SceneSettings
 {
@@ -35,6 +36,7 @@ struct OSGGEOFX_EXPORT SceneSettings
     std::optional<double> homeFov; ///< vertical, degrees
     osg::Vec4 background = {0.72f, 0.80f, 0.88f, 1.0f};
     bool hasLight = false;
+    bool hasSky = false;
 
     /// Returns nothing, with a sentence in `error`, if a value is present but invalid.
     static std::optional<SceneSettings> read(const osg::Node& root, std::string& error);
@@ -72,7 +74,8 @@ struct OSGGEOFX_EXPORT Scene
     bool addCity(const std::string& file, std::string& error, const osgDB::Options* options = nullptr);
 
     /// Puts a sky around the Earth (makeEarthSky()) behind the scene. The color of its deep air is the background's.
-    /// False, with a sentence in `error`, if the scene is not geocentric. Call it before the scene is shown, once.
+    /// A scene that has a sky keeps its own. False, with a sentence in `error`, if the scene is not geocentric. Call it before the
+    /// scene is shown.
     bool addSky(std::string& error);
 
     /// Adds to the node what reads the depths of each picture as soon as it is drawn, for what is put onto pictures. Call it before the scene is shown.

@@ -54,11 +54,7 @@ public:
             result.homeViewPlace = _xml.place(view);
         }
         if (xmlNode* sunNode = child(root, "sun")) result.sun = sun(sunNode);
-        if (xmlNode* background = child(root, "background"))
-        {
-            result.background = color(background, "color");
-            result.backgroundPlace = _xml.place(background);
-        }
+        if (xmlNode* behind = child(root, "background")) result.background = background(behind);
         if (xmlNode* effectsNode = child(root, "effects")) effects(effectsNode, result);
         if (xmlNode* presetsNode = child(root, "presets")) presets(presetsNode, result);
         if (xmlNode* map = child(root, "map")) result.map = mapOf(map);
@@ -197,6 +193,16 @@ private:
         return result;
     }
 
+    SceneBackground background(xmlNode* node) const
+    {
+        SceneBackground result;
+        result.place = _xml.place(node);
+        result.color = color(node, "color");
+        if (!attributeOf(node, "visibility").empty()) result.visibility = real(node, "visibility");
+        result.sky = attributeOf(node, "sky") == "true";
+        return result;
+    }
+
     SceneMap mapOf(xmlNode* node) const
     {
         return {_xml.place(node),          pathIfAny(node, "style"),  pathIfAny(node, "fontFile"),
@@ -309,7 +315,7 @@ SceneResult parseEngineScene(const std::string& text, const std::string& file, c
                 "the map's tiles do not say what lies on the ground; expected: bends without coverMap."));
     }
     if (scene.background)
-        result.errors.push_back(scene.backgroundPlace.message(
+        result.errors.push_back(scene.background->place.message(
             "the background is the program's; expected: no <background> in an .earth file."));
     if (scene.map)
         result.errors.push_back(scene.map->place.message("names and lines are put on terrains that the scene "

@@ -84,6 +84,14 @@ struct SceneSun
     std::optional<ClockTime> time; ///< the sun stands where it does then, not at azimuth and elevation
 };
 
+struct SceneBackground
+{
+    ScenePlace place;
+    SceneColor color{};
+    std::optional<double> visibility; ///< metres
+    bool sky = false;
+};
+
 /// Degrees on a globe, else metres of the terrain's coordinate system.
 struct SceneBox
 {
@@ -283,8 +291,8 @@ struct SceneFile
 
     std::optional<SceneView> homeView;
     std::optional<SceneSun> sun;
-    std::optional<SceneColor> background;
-    ScenePlace homeViewPlace, backgroundPlace;
+    std::optional<SceneBackground> background;
+    ScenePlace homeViewPlace;
     std::vector<osg::ref_ptr<Effect>> effects; ///< in their order
     std::vector<SceneMappings> mappings;       ///< of the effects among them that have mappings
     std::vector<SceneCloseUps> closeUps;       ///< of the effects among them that have close-ups

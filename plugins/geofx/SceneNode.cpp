@@ -11,7 +11,9 @@
 #include <osgGeoFX/paging/Georeference.h>
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/EffectScene.h>
+#include <osgGeoFX/viewer/EarthSky.h>
 
+#include <osg/Fog>
 #include <osg/LightModel>
 #include <osg/LightSource>
 #include <osg/Math>
@@ -134,6 +136,37 @@ bool addSun(const SceneFile& scene, const osg::Node& terrain, osg::Group& group,
     return true;
 }
 
+/// Fog of OpenGL, for the contrast of what is far away (Koschmieder).
+void addHaze(const SceneBackground& background, osg::Group& group)
+{
+    const osg::ref_ptr<osg::Fog> haze = new osg::Fog;
+    haze->setMode(osg::Fog::EXP);
+    haze->setDensity(static_cast<float>(-std::log(0.02) / *background.visibility));
+    haze->setColor(opaque(background.color));
+    group.getOrCreateStateSet()->setAttributeAndModes(haze);
+}
+
+/// A group of a sky and the node. Null, with a sentence in `error`, if there is no round Earth.
+osg::ref_ptr<osg::Group> withSky(const SceneBackground& background, osg::Node& terrain, osg::Group& node,
+                                 std::string& error)
+{
+    const osg::ref_ptr<Georeference> reference = Georeference::create(&terrain, error);
+    if (!reference || !reference->isGeocentric())
+    {
+        error = background.place.message("the terrain is no round Earth to put a sky around; expected: no "
+                                         "sky, or a terrain that is geocentric.");
+        return nullptr;
+    }
+    const SceneColor& air = background.color;
+    osg::ref_ptr<osg::Group> both = new osg::Group;
+    const osg::Vec3d color(air[0], air[1], air[2]);
+    both->addChild(background.visibility
+                       ? makeEarthSky(osg::EllipsoidModel(), osg::Vec3(color), *background.visibility)
+                       : makeEarthSky(osg::EllipsoidModel(), osg::Vec3(color)));
+    both->addChild(&node);
+    return both;
+}
+
 } // namespace
 
 bool addEffects(const SceneFile& scene, EffectScene& node, const osg::Node& terrain, std::string& error)
@@ -171,8 +204,9 @@ void tellPrograms(const SceneFile& scene, osg::Group& group)
                                                         view.heading, view.pitch, view.roll}));
         if (view.verticalFieldOfView) group.setUserValue("geofx.homeFov", *view.verticalFieldOfView);
     }
-    if (scene.background) group.setUserValue("geofx.background", joined(*scene.background));
+    if (scene.background) group.setUserValue("geofx.background", joined(scene.background->color));
     if (scene.sun) group.setUserValue("geofx.hasLight", true);
+    if (scene.background && scene.background->sky) group.setUserValue("geofx.hasSky", true);
 }
 
 /// A group of the scene and its names, or the scene if it has none. Null, with a sentence in `error`, where something is missing.
@@ -200,7 +234,9 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
 {
     osg::ref_ptr<osg::Group> group;
     osg::ref_ptr<EffectScene> effects;
-    if (scene.effects.empty() && !scene.map)
+    const bool sky = scene.background && scene.background->sky;
+    // Names and a sky stand beside an EffectScene, so that effects which a program adds leave them alone.
+    if (scene.effects.empty() && !scene.map && !sky)
     {
         group = new osg::Group;
     }
@@ -216,7 +252,9 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
         error = scene.sun->place.message(error);
         return nullptr;
     }
+    if (scene.background && scene.background->visibility) addHaze(*scene.background, *group);
     if (scene.map) group = withMap(*scene.map, *effects, error);
+    if (group && sky) group = withSky(*scene.background, *terrain, *group, error);
     if (group) tellPrograms(scene, *group);
     return group;
 }

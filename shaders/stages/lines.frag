@@ -31,9 +31,25 @@ vec3 shaded(vec3 color)
 #endif
 }
 
+// As on the ground below. Which mode of osg::Fog is on a shader cannot see: it is EXP where it is not LINEAR. Without fog there are
+// OpenGL's defaults.
+vec3 fogged(vec3 color)
+{
+#ifdef GEOFX_CORE
+    return color;
+#else
+    bool linear = gl_Fog.start != 0.0 || gl_Fog.end != 1.0;
+    if (!linear && gl_Fog.density == 1.0 && gl_Fog.color == vec4(0.0)) return color;
+    mat4 p = gl_ProjectionMatrix;
+    float away = p[2][3] != 0.0 ? abs((1.0 / gl_FragCoord.w - p[3][3]) / p[2][3]) : 0.0;
+    float clear = linear ? (gl_Fog.end - away) * gl_Fog.scale : exp(-gl_Fog.density * away);
+    return mix(gl_Fog.color.rgb, color, clamp(clear, 0.0, 1.0));
+#endif
+}
+
 void main()
 {
-    vec3 color = shaded(geofx_linesColor.rgb);
+    vec3 color = fogged(shaded(geofx_linesColor.rgb));
     vec3 place = geofx_linesPlace.xyz / geofx_linesPlace.w; // along, across, half the width
     float away = length(vec2(place.x - clamp(place.x, 0.0, geofx_linesLength), place.y));
     float cover = clamp(place.z + 0.5 - away, 0.0, 1.0) * min(2.0 * place.z, 1.0);

@@ -68,7 +68,10 @@ void check(const osgGeoFX::SceneFile& scene)
         require(within(scene.sun->elevation, -90.0, 90.0), "elevation in its range");
         require(isColor(scene.sun->color) && isColor(scene.sun->ambient), "colors in their range");
     }
-    require(!scene.background || isColor(*scene.background), "background in its range");
+    require(!scene.background || isColor(scene.background->color), "background in its range");
+    require(!scene.background || !scene.background->visibility ||
+                (*scene.background->visibility >= 10.0 && *scene.background->visibility <= 1e7),
+            "visibility in its range");
     for (const auto& effect : scene.effects)
     {
         require(effect.valid(), "an effect");

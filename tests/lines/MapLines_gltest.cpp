@@ -16,6 +16,7 @@
 #include <tools/RandomSamples.h>
 
 #include <cairo.h>
+#include <osg/Fog>
 #include <osg/Program>
 #include <osg/ShapeDrawable>
 
@@ -340,6 +341,79 @@ TEST_F(MapLinesTest, HideNothing)
         if (hit)
         {
             EXPECT_NEAR(hit->world.z(), groundHeight(hit->world.x(), hit->world.y()), 4.0);
+        }
+    }
+}
+
+// As deep as the ground on which they lie.
+TEST_F(MapLinesTest, AreInTheFogOfTheirGround)
+{
+    _styles[""].width = 9.0;
+    look({100.0, -1400.0, 900.0}, {0.0, 0.0, 20.0});
+    const osg::ref_ptr<osg::Fog> fog = new osg::Fog;
+    fog->setColor({0.1f, 0.8f, 0.2f, 1.0f});
+    _scene->getOrCreateStateSet()->setAttributeAndModes(fog);
+    const osg::ref_ptr<Effect> bend = kinds()[1].second;
+    const std::vector<MapLine> all = _lines;
+    for (const bool linear : {false, true})
+    {
+        SCOPED_TRACE(linear ? "linear" : "exp");
+        fog->setMode(linear ? osg::Fog::LINEAR : osg::Fog::EXP);
+        fog->setStart(linear ? 700.0f : 0.0f);
+        fog->setEnd(linear ? 2500.0f : 1.0f);
+        fog->setDensity(0.0006f);
+        for (const bool bent : {false, true})
+        {
+            SCOPED_TRACE(bent ? "bent" : "straight");
+            if (bent) _scene->addEffect(bend);
+            int compared = 0;
+            float least = 1.0f, most = 0.0f;
+            // One by one: a wide line covers others behind it.
+            for (std::size_t k = 0; k < all.size(); k += 3)
+            {
+                _lines = {all[k]};
+                hide();
+                draw();
+                const DeformedView view(*_scene, *viewer().getCamera());
+                show();
+                const osg::ref_ptr<osg::Image> image = draw();
+                const auto distanceOf = [&](const osg::Vec3d& world)
+                {
+                    return -(view.deform(world) * viewer().getCamera()->getViewMatrix()).z();
+                };
+                for (const osg::Vec3d& place : all[k].places)
+                {
+                    osg::Vec2d pixel;
+                    if (!view.project(place, pixel) || pixel.x() < 0.0 || pixel.y() < 0.0 ||
+                        pixel.x() >= WIDTH || pixel.y() >= HEIGHT)
+                        continue;
+                    const auto distance = static_cast<float>(distanceOf(place));
+                    bool hidden = false;
+                    for (const osg::Vec2d& side : {osg::Vec2d(0, 0), osg::Vec2d(5, 0), osg::Vec2d(-5, 0),
+                                                   osg::Vec2d(0, 5), osg::Vec2d(0, -5)})
+                    {
+                        const auto hit = view.pick(pixel.x() + side.x(), pixel.y() + side.y());
+                        const double before =
+                            (side.length2() > 0.0 ? 0.98 : 0.997) * static_cast<double>(distance);
+                        hidden = hidden || (hit && distanceOf(hit->world) < before);
+                    }
+                    if (hidden) continue;
+                    const float clear = linear ? std::clamp((2500.0f - distance) / 1800.0f, 0.0f, 1.0f)
+                                               : std::exp(-0.0006f * distance);
+                    const osg::Vec4 expected = fog->getColor() * (1.0f - clear) + _styles[""].color * clear;
+                    const osg::Vec4 seen = image->getColor(static_cast<unsigned int>(pixel.x()),
+                                                           static_cast<unsigned int>(pixel.y()));
+                    ++compared;
+                    least = std::min(least, clear);
+                    most = std::max(most, clear);
+                    for (unsigned int channel = 0; channel < 3; ++channel)
+                        EXPECT_NEAR(seen[channel], expected[channel], 0.02f)
+                            << pixel.x() << ", " << pixel.y() << ": " << channel;
+                }
+            }
+            EXPECT_GT(compared, 60);
+            EXPECT_GT(most - least, 0.15f);
+            if (bent) _scene->removeEffect(bend);
         }
     }
 }

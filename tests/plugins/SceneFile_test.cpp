@@ -99,7 +99,7 @@ TEST(SceneFile, MayBeAPartOfAnEnginesFile)
 TEST(SceneFile, ReadsAllThatASceneSays)
 {
     const SceneFile scene = parsed(R"(<geofx version="1">
-  <background color="#ff8000"/>
+  <background color="#ff8000" visibility="60000.5" sky="true"/>
   <sun azimuth="-115.5" elevation="35" color="#ffffff" ambient="#003300"/>
   <homeView longitude="-157.905" latitude="+21.245" height="1400" heading="25" pitch="-12" roll=".5"
             verticalFieldOfView="35"/>
@@ -148,7 +148,11 @@ TEST(SceneFile, ReadsAllThatASceneSays)
     EXPECT_EQ(scene.sun->elevation, 35.0);
     EXPECT_EQ(scene.sun->color, (osgGeoFX::SceneColor{1.0, 1.0, 1.0}));
     EXPECT_EQ(scene.sun->ambient, (osgGeoFX::SceneColor{0.0, 0.2, 0.0}));
-    EXPECT_EQ(*scene.background, (osgGeoFX::SceneColor{1.0, 128.0 / 255.0, 0.0}));
+    EXPECT_EQ(scene.background->color, (osgGeoFX::SceneColor{1.0, 128.0 / 255.0, 0.0}));
+    EXPECT_EQ(scene.background->visibility, 60000.5);
+    EXPECT_TRUE(scene.background->sky);
+    const SceneFile plain = parsed(sceneWith("<background color='#000000'/>"));
+    EXPECT_FALSE(plain.background->visibility || plain.background->sky);
 }
 
 TEST(SceneFile, ReadsWhatIsStatedOfADatabaseOfAnotherMaker)
@@ -335,7 +339,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "x.geofx:3: <bathymetry>: this element is not known in <rasters>",
                 "expected: <dem> or <imagery> or <landCover> or <treeCover>."},
         Mistake{"UnknownAttribute", sceneWith("<background color='#000000' colour='#000000'/>"),
-                "x.geofx:2: <background>: the attribute \"colour\" is not known here", "expected: color."},
+                "x.geofx:2: <background>: the attribute \"colour\" is not known here",
+                "expected: color, visibility, sky."},
+        Mistake{"NoSightAtAll", sceneWith("<background color='#000000' visibility='0'/>"),
+                "x.geofx:2: <background>: visibility=\"0\"", "expected: metres at which haze has left 2 %"},
         Mistake{"Order", rastersWith("", "<imagery file='a'/><dem file='b'/>"),
                 "x.geofx:3: <imagery>: ", "expected: <dem>."},
         Mistake{"NoDem", rastersWith("", ""), "x.geofx:2: <rasters>: ", "expected: <dem>."},
@@ -420,7 +427,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"TextBetweenEffects", sceneWith("<effects>hello</effects>"),
                 "x.geofx:2: <effects>: ", "expected: elements only."},
         Mistake{"ForeignAttribute", sceneWith("<background color='#000000' xml:lang='de'/>"),
-                "x.geofx:2: <background>: the attribute ", "expected: color."}),
+                "x.geofx:2: <background>: the attribute ", "expected: color, visibility, sky."}),
     [](const auto& mistake) { return std::string(mistake.param.name); });
 
 // Not among the mistakes above, whose texts each run of this program makes.

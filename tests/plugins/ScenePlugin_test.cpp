@@ -11,6 +11,7 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 #include <osg/CoordinateSystemNode>
+#include <osg/Fog>
 #include <osg/Geode>
 #include <osg/LightSource>
 #include <osg/Math>
@@ -105,6 +106,73 @@ TEST_F(ScenePlugin, SceneTellsProgramsWhatItSays)
     EXPECT_FALSE(other->getUserValue("geofx.homeView", text) || other->getUserValue("geofx.homeFov", fov) ||
                  other->getUserValue("geofx.background", text) ||
                  other->getUserValue("geofx.hasLight", hasLight));
+}
+
+TEST_F(ScenePlugin, HazeIsFogOfTheBackgroundsColor)
+{
+    const TempDir folder;
+    writeTerrain(folder, geocentricRoot(), osg::Vec3d(6378137.0, 0.0, 0.0));
+    for (const char* const effects : {"", "<effects><birdsEyeView/></effects>"})
+    {
+        SCOPED_TRACE(effects);
+        const auto file = folder.write(
+            "a.geofx",
+            sceneWith(std::string("<background color='#ff0033' visibility='39120.23'/>") + effects));
+        const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(file.string());
+        ASSERT_TRUE(scene && scene->getStateSet());
+        EXPECT_EQ(scene->getStateSet()->getMode(GL_FOG), osg::StateAttribute::ON);
+        const auto* const haze =
+            static_cast<const osg::Fog*>(scene->getStateSet()->getAttribute(osg::StateAttribute::FOG));
+        ASSERT_TRUE(haze);
+        EXPECT_EQ(haze->getMode(), osg::Fog::EXP);
+        EXPECT_EQ(haze->getColor(), osg::Vec4(1.0f, 0.0f, 0.2f, 1.0f));
+        // A fiftieth of the contrast is left.
+        EXPECT_NEAR(std::exp(-haze->getDensity() * 39120.23f), 0.02f, 1e-4f);
+    }
+}
+
+TEST_F(ScenePlugin, ASkyStandsBesideAGlobeAndOnlyOnce)
+{
+    const TempDir folder;
+    writeTerrain(folder, geocentricRoot(), osg::Vec3d(6378137.0, 0.0, 0.0));
+    const std::string sky = "<background color='#ff0033' sky='true'/>";
+    for (const char* const effects : {"", "<effects><birdsEyeView/></effects>"})
+    {
+        SCOPED_TRACE(effects);
+        const auto file = folder.write("a.geofx", sceneWith(sky + effects));
+        std::string error;
+        std::optional<osgGeoFX::Scene> scene = osgGeoFX::Scene::load(file.string(), error);
+        ASSERT_TRUE(scene) << error;
+        const auto skiesOf = [](osg::Node& node)
+        {
+            struct Count : public osg::NodeVisitor
+            {
+                Count() : NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+                void apply(osg::Node& child) override
+                {
+                    skies += child.getName() == "sky of the Earth" ? 1 : 0;
+                    traverse(child);
+                }
+                int skies = 0;
+            } count;
+            node.accept(count);
+            return count.skies;
+        };
+        EXPECT_EQ(skiesOf(*scene->node), 1);
+        EXPECT_EQ(skiesOf(*scene->effects), 0) << "bends do not bend it";
+        EXPECT_TRUE(scene->settings.hasSky);
+        EXPECT_TRUE(scene->addSky(error)) << error;
+        EXPECT_EQ(skiesOf(*scene->node), 1) << "it has its own";
+        EXPECT_EQ(scene->settings.background, osg::Vec4(1.0f, 0.0f, 0.2f, 1.0f));
+    }
+    const TempDir plane;
+    osg::ref_ptr<osg::CoordinateSystemNode> root = new osg::CoordinateSystemNode("WKT", wktOf(32604));
+    writeTerrain(plane, root, osg::Vec3d(610000.0, 2360000.0, 0.0));
+    const auto file = plane.write("a.geofx", sceneWith(sky));
+    std::string error;
+    EXPECT_FALSE(osgGeoFX::Scene::load(file.string(), error));
+    EXPECT_NE(error.find("a.geofx:3: <background>: the terrain is no round Earth"), std::string::npos)
+        << error;
 }
 
 TEST_F(ScenePlugin, EffectsStandAboveTerrainAndSun)

@@ -10,17 +10,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace
 {
 
 const osg::Vec3 air(0.72f, 0.80f, 0.88f);
 const osg::Vec3d scatter = osg::Vec3d(5.8e-6, 13.5e-6, 33.1e-6) * 2.5;
-constexpr double SCALE_HEIGHT = 8.0e3;
+constexpr double AIR_HEIGHT = 8.0e3, HAZE_HEIGHT = 1.2e3;
 
-/// What a ray meets of air, in metres of air as dense as at the sea, from an eye on a ball of the Earth's size. Where
+/// What a ray meets of air or haze, in metres of what is at the sea, from an eye on a ball of the Earth's size. Where
 /// it ends on the ball, `hits` is set.
-double airAlong(const osg::Vec3d& eye, const osg::Vec3d& ray, double radius, bool& hits)
+double metAlong(const osg::Vec3d& eye, const osg::Vec3d& ray, double radius, double scale, bool& hits)
 {
     const double middle = -(eye * ray), offset2 = eye.length2() - middle * middle;
     hits = offset2 < radius * radius && middle > 0.0;
@@ -30,7 +31,7 @@ double airAlong(const osg::Vec3d& eye, const osg::Vec3d& ray, double radius, boo
     constexpr int STEPS = 20000;
     const double step = (end - start) / STEPS;
     for (int i = 0; i < STEPS; ++i)
-        sum += step * std::exp(-((eye + ray * (start + (i + 0.5) * step)).length() - radius) / SCALE_HEIGHT);
+        sum += step * std::exp(-((eye + ray * (start + (i + 0.5) * step)).length() - radius) / scale);
     return sum;
 }
 
@@ -69,6 +70,14 @@ protected:
         return direction;
     }
 
+    double airAlong(const osg::Vec3d& ray, bool& hits) const
+    {
+        return metAlong(_eye, ray, RADIUS, AIR_HEIGHT, hits);
+    }
+
+    /// Compares the sky's pictures with air that is added up; `haze`: what haze at the sea scatters, to a metre.
+    void expectAirAlongRays(osg::Node& sky, double haze);
+
     osg::ref_ptr<osg::Node> _sky;
     osg::Vec3d _eye;
     osg::Matrixd _view;
@@ -77,7 +86,7 @@ protected:
 
 } // namespace
 
-TEST_F(EarthSky, AirThinsOutAlongTheRay)
+void EarthSky::expectAirAlongRays(osg::Node& sky, double haze)
 {
     struct View
     {
@@ -88,21 +97,22 @@ TEST_F(EarthSky, AirThinsOutAlongTheRay)
                           View{200e3, -14.0, 6.0}, View{2e6, -40.4, 3.0}, View{20e6, -76.0, 2.0}})
     {
         SCOPED_TRACE(v.height);
-        const osg::ref_ptr<osg::Image> image = look(_sky, v.height, v.pitch, v.fieldOfView);
+        const osg::ref_ptr<osg::Image> image = look(&sky, v.height, v.pitch, v.fieldOfView);
         for (int row = 1; row < 256; row += 3)
         {
             // Not where the horizon runs through the pixel.
             bool below = false, above = false;
-            airAlong(_eye, ray(128, row - 1), RADIUS, below);
-            airAlong(_eye, ray(128, row + 1), RADIUS, above);
+            airAlong(ray(128, row - 1), below);
+            airAlong(ray(128, row + 1), above);
             if (below != above) continue;
             bool hits = false;
-            const double metres = airAlong(_eye, ray(128, row), RADIUS, hits);
+            const double metres = airAlong(ray(128, row), hits);
+            const double hazy = haze * metAlong(_eye, ray(128, row), RADIUS, HAZE_HEIGHT, hits);
             const osg::Vec4 seen = image->getColor(128, row);
             for (unsigned int channel = 0; channel < 3; ++channel)
             {
                 const double sea[] = {0.10, 0.19, 0.33};
-                const double veil = 1.0 - std::exp(-metres * scatter[channel]);
+                const double veil = 1.0 - std::exp(-metres * scatter[channel] - hazy);
                 const double expected =
                     (hits ? sea[channel] : 0.0) * (1.0 - veil) + static_cast<double>(air[channel]) * veil;
                 // A byte's rounding, and what a parabola for the round Earth costs.
@@ -118,6 +128,19 @@ TEST_F(EarthSky, AirThinsOutAlongTheRay)
     EXPECT_GT(rim, 20);
     EXPECT_GT(space, 20);
     EXPECT_GT(ground, 50);
+}
+
+TEST_F(EarthSky, AirThinsOutAlongTheRay)
+{
+    const osg::EllipsoidModel ball(RADIUS, RADIUS);
+    expectAirAlongRays(*osgGeoFX::makeEarthSky(ball, air, std::numeric_limits<double>::infinity()), 0.0);
+}
+
+TEST_F(EarthSky, HazeThinsOutFasterThanAir)
+{
+    const osg::EllipsoidModel ball(RADIUS, RADIUS);
+    for (const double visibility : {300e3, 30e3})
+        expectAirAlongRays(*osgGeoFX::makeEarthSky(ball, air, visibility), -std::log(0.02) / visibility);
 }
 
 TEST_F(EarthSky, NearAndFarAreThoseOfTheSceneAndNothingIsHidden)
