@@ -53,6 +53,7 @@ FreedMemory::FreedMemory(double seconds)
 {
     // A threshold that is set does not move any more.
     mallopt(M_MMAP_THRESHOLD, 256 * 1024);
+    mallopt(M_ARENA_MAX, 1);
     if (seconds > 0.0) _thread = std::make_unique<Thread>(seconds);
 }
 
