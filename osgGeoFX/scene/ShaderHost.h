@@ -26,6 +26,10 @@ namespace osgGeoFX
     texts: `#define GEOFX_HOST_NORMAL expression`. The expression of the fragment stage is a vec3 in the camera's eye
     space, before any effect; that of the vertex stage is not read.
 
+    An engine that leaves tiles coarse where they are out of sight (isTileOutOfSight()) puts `#define GEOFX_HOST_COARSE_TILES` before the
+    text of the vertex stage: panorama maps gather all ground far ahead in one point, and large triangles that lead there from beside the
+    picture would cross it.
+
     Outside of a scene, and for cameras that see it undeformed, the functions change nothing.
 
     @ingroup scene */

@@ -57,8 +57,24 @@ vec3 SLOT_placeOf(vec3 position)
     return SLOT_knownPlace;
 }
 
+// An engine leaves tiles coarse that are out of sight. A triangle of theirs would lead from ground beside the picture or behind the
+// eye to the one point in which all ground far ahead is gathered, right across the picture. So such ground ends at the eye itself: a
+// triangle from there is seen from its edge. Only far away, where no triangle of the picture ends. Not with an orthographic camera.
+#ifdef GEOFX_HOST_COARSE_TILES
+bool SLOT_isAside(vec3 place)
+{
+    geofx_Panorama view = SLOT_view();
+    float far = 3.0 * view.horizon + 2.0 / view.across + 2e5;
+    bool hasEye = length(view.directionX) > 1e-4;
+    return hasEye && view.plain == 0.0 && place.y < view.end && max(abs(place.x), -place.y) > far;
+}
+#endif
+
 vec3 SLOT_deform(vec3 position)
 {
+#ifdef GEOFX_HOST_COARSE_TILES
+    if (SLOT_isAside(SLOT_placeOf(position))) return vec3(0.0);
+#endif
     return geofx_panoramaDraw(SLOT_view(), position, SLOT_placeOf(position));
 }
 

@@ -4,6 +4,7 @@
 // An engine that assembles its shaders itself, and draws with programs of a class of its own, as osgEarth does.
 #include <osgGeoFX/closeup/CloseUps.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/ShaderHost.h>
 #include <tools/BentGround.h>
 
@@ -54,6 +55,7 @@ public:
     bool draws(const osg::StateAttribute& attribute) const override { return &attribute == program.get(); }
 
     const osg::ref_ptr<EngineProgram> program = new EngineProgram;
+    std::string defines; ///< before the text of the vertex stage
     int told = 0;
 
 private:
@@ -63,7 +65,7 @@ private:
         program->inner = new osg::Program;
         program->inner->addShader(new osg::Shader(
             osg::Shader::VERTEX,
-            version + texts.vertex +
+            version + defines + texts.vertex +
                 "void engine_view(inout vec4 eye) { eye = geofx_vertex(eye); }\n"
                 "void main()\n{\n    vec4 eye = gl_ModelViewMatrix * gl_Vertex;\n"
                 "    vec4 placed = eye;\n    engine_view(placed);\n"
@@ -114,6 +116,51 @@ TEST_F(ShaderHosts, DrawWhatTheKitDraws)
     EXPECT_EQ(_engine->told, 2);
     // Outside of scenes nothing happens, with the texts of the effects, too.
     EXPECT_TRUE(same(*render(makePlain({engineGround()})), *render(makePlain({makeGround()}))));
+}
+
+// Tiles that an engine has left coarse, beside the picture and behind the eye, with corners far ahead.
+TEST_F(ShaderHosts, CoarseTilesBesideAPanoramaStayThere)
+{
+    const osg::ref_ptr<osg::Geometry> coarse = new osg::Geometry;
+    const osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
+    for (const float side : {-1.0f, 1.0f})
+        for (const osg::Vec2& corner :
+             {osg::Vec2(4e5f, -2e5f), osg::Vec2(6e5f, -1e5f), osg::Vec2(4e5f, 9e6f)})
+            corners->push_back(osg::Vec3(side * corner.x(), corner.y(), 0.0f));
+    for (const osg::Vec2& corner : {osg::Vec2(-1e5f, -5e5f), osg::Vec2(1e5f, -5e5f), osg::Vec2(0.0f, 9e6f)})
+        corners->push_back(osg::Vec3(corner, 0.0f));
+    const osg::ref_ptr<osg::Vec4Array> color = new osg::Vec4Array(osg::Array::BIND_OVERALL);
+    color->push_back({1.0f, 0.0f, 1.0f, 1.0f});
+    coarse->setVertexArray(corners);
+    coarse->setColorArray(color);
+    coarse->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, static_cast<int>(corners->size())));
+    coarse->getOrCreateStateSet()->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
+
+    viewer().getCamera()->setCullingMode(osg::CullSettings::NO_CULLING);
+    const auto picture = [&](const std::string& defines, bool withCoarse)
+    {
+        const osg::ref_ptr<Engine> engine = new Engine;
+        engine->defines = defines;
+        const osg::ref_ptr<PanoramaMap> map = new PanoramaMap;
+        map->setViewRadius(120.0);
+        map->setPaint(false);
+        map->setSky(false);
+        map->setStrokes(false);
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        scene->addEffect(map);
+        scene->setShaderHost(engine);
+        scene->addChild(makeGround());
+        scene->addChild(coarse);
+        for (unsigned int i = 0; i < 2; ++i)
+            scene->getChild(i)->getOrCreateStateSet()->setAttribute(engine->program);
+        if (!withCoarse) scene->removeChild(coarse);
+        return render(scene);
+    };
+    const osg::ref_ptr<osg::Image> expected = picture("", false);
+    EXPECT_GT(covered(*expected), 2000);
+    EXPECT_GT(differing(*picture("", true), *expected), 1000) << "there is nothing to mend";
+    EXPECT_TRUE(same(*picture("#define GEOFX_HOST_COARSE_TILES\n", true), *expected));
+    viewer().getCamera()->setCullingMode(osg::CullSettings::DEFAULT_CULLING);
 }
 
 TEST_F(ShaderHosts, TextsHaveNoVersion)
