@@ -52,7 +52,9 @@ osg::ref_ptr<osg::StateSet> VirtualProgramHost::addition(const ShaderTexts& text
     osg::ref_ptr<VirtualProgram> program = new VirtualProgram;
     program->setName("osgGeoFX");
     program->setInheritShaders(true);
-    program->setFunction("geofx_osgearth_vertex", "#define GEOFX_HOST_NORMAL\n#define GEOFX_HOST_COARSE_TILES\n" + texts.vertex + vertexCall,
+    program->setFunction("geofx_osgearth_vertex",
+                         "#define GEOFX_HOST_NORMAL\n#define GEOFX_HOST_COARSE_TILES\n" + texts.vertex +
+                             vertexCall,
                          VirtualProgram::LOCATION_VERTEX_VIEW, FLT_MAX);
     program->setFunction("geofx_osgearth_normal", normalCall, VirtualProgram::LOCATION_FRAGMENT_LIGHTING,
                          -FLT_MAX);
