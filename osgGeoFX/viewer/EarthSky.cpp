@@ -66,6 +66,11 @@ private:
 
 } // namespace
 
+double hazeDensity(double visibility)
+{
+    return -std::log(0.02) / visibility;
+}
+
 osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air,
                                      double visibility)
 {
@@ -85,7 +90,7 @@ osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const
     sky->setName("sky of the Earth");
     sky->setCullingActive(false);
     sky->addChild(picture);
-    sky->setCullCallback(new PlaceOfEye(ellipsoid, air, -std::log(0.02) / visibility));
+    sky->setCullCallback(new PlaceOfEye(ellipsoid, air, hazeDensity(visibility)));
     osg::StateSet* state = sky->getOrCreateStateSet();
     state->setAttributeAndModes(
         ShaderLibrary::createProgram("sky of the Earth", "stages/earthsky.vert", "stages/earthsky.frag"),

@@ -11,12 +11,16 @@
 namespace osgGeoFX
 {
 
+/// How much of the light haze scatters, to a metre, if it has left 2 % of the contrast at so many metres, above 0 (Koschmieder); 0 for
+/// infinity. The density for an osg::Fog of mode EXP. From any thread.
+OSGGEOFX_EXPORT double hazeDensity(double visibility);
+
 /** Makes a sky for a geocentric scene, at any height from the ground to beyond orbit: black space, a blue rim around
     the Earth that thins out by exp(-height / 8 km), and the sky of a bright day near the ground, with haze that thins
     out by exp(-height / 1.2 km). Where no terrain is drawn, the Earth is a blue sea in this haze. `air` is the color of
     deep air and of haze, as at the horizon, 0 to 1. `visibility`: metres, above 0, at which haze at the sea has left 2 % of the
-    contrast; infinity for none. Give the terrain the haze that goes with it by an osg::Fog of this color, EXP, of the
-    density 3.912 / visibility; scene files do so.
+    contrast; infinity for none. Give the terrain the haze that goes with it by an osg::Fog of this color, EXP, of
+    the density hazeDensity(visibility); scene files do so.
 
     The node is drawn before everything else of its camera. It writes no depth and does not count for near and far, so
     it never fights with the terrain. It takes the place of the camera's clear color; hide the node to have that again.

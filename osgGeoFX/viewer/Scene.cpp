@@ -89,6 +89,16 @@ std::optional<SceneSettings> SceneSettings::read(const osg::Node& root, std::str
     }
     root.getUserValue("geofx.hasLight", settings.hasLight);
     root.getUserValue("geofx.hasSky", settings.hasSky);
+    double visibility = 0.0;
+    if (root.getUserValue("geofx.visibility", visibility))
+    {
+        if (!(visibility > 0.0))
+        {
+            error = "The scene's visibility must be above 0 metres.";
+            return std::nullopt;
+        }
+        settings.visibility = visibility;
+    }
     return settings;
 }
 
@@ -213,8 +223,9 @@ bool Scene::addSky(std::string& error)
     }
     if (settings.hasSky) return true;
     osg::ref_ptr<osg::Group> both = new osg::Group;
-    const osg::Vec4& air = settings.background;
-    both->addChild(makeEarthSky(osg::EllipsoidModel(), osg::Vec3(air.r(), air.g(), air.b())));
+    const osg::Vec3 air(settings.background.r(), settings.background.g(), settings.background.b());
+    both->addChild(settings.visibility ? makeEarthSky(osg::EllipsoidModel(), air, *settings.visibility)
+                                       : makeEarthSky(osg::EllipsoidModel(), air));
     both->addChild(node);
     node = both;
     settings.hasSky = true;

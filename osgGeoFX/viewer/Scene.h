@@ -28,6 +28,7 @@ namespace osgGeoFX
     - `geofx.homeFov`: double, the vertical field of view in degrees, between 0 and 180.
     - `geofx.background`: string "r,g,b", 0…1.
     - `geofx.hasLight`: bool, true if the scene has its own light and needs no headlight.
+    - `geofx.visibility`: double, metres, above 0, if the scene has haze (EarthSky.h).
     - `geofx.hasSky`: bool, true if the scene draws a sky.
     @ingroup viewer */
 struct OSGGEOFX_EXPORT SceneSettings
@@ -36,6 +37,7 @@ struct OSGGEOFX_EXPORT SceneSettings
     std::optional<double> homeFov; ///< vertical, degrees
     osg::Vec4 background = {0.72f, 0.80f, 0.88f, 1.0f};
     bool hasLight = false;
+    std::optional<double> visibility; ///< of haze, metres
     bool hasSky = false;
 
     /// Returns nothing, with a sentence in `error`, if a value is present but invalid.
@@ -73,7 +75,7 @@ struct OSGGEOFX_EXPORT Scene
     /// Call it before the scene is shown.
     bool addCity(const std::string& file, std::string& error, const osgDB::Options* options = nullptr);
 
-    /// Puts a sky around the Earth (makeEarthSky()) behind the scene. The color of its deep air is the background's.
+    /// Puts a sky around the Earth (makeEarthSky()) behind the scene. The color of its deep air is the background's, and its haze the scene's.
     /// A scene that has a sky keeps its own. False, with a sentence in `error`, if the scene is not geocentric. Call it before the
     /// scene is shown.
     bool addSky(std::string& error);

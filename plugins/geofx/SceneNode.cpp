@@ -136,12 +136,12 @@ bool addSun(const SceneFile& scene, const osg::Node& terrain, osg::Group& group,
     return true;
 }
 
-/// Fog of OpenGL, for the contrast of what is far away (Koschmieder).
+/// Fog of OpenGL, which any program draws.
 void addHaze(const SceneBackground& background, osg::Group& group)
 {
     const osg::ref_ptr<osg::Fog> haze = new osg::Fog;
     haze->setMode(osg::Fog::EXP);
-    haze->setDensity(static_cast<float>(-std::log(0.02) / *background.visibility));
+    haze->setDensity(static_cast<float>(hazeDensity(*background.visibility)));
     haze->setColor(opaque(background.color));
     group.getOrCreateStateSet()->setAttributeAndModes(haze);
 }
@@ -206,6 +206,8 @@ void tellPrograms(const SceneFile& scene, osg::Group& group)
     }
     if (scene.background) group.setUserValue("geofx.background", joined(scene.background->color));
     if (scene.sun) group.setUserValue("geofx.hasLight", true);
+    if (scene.background && scene.background->visibility)
+        group.setUserValue("geofx.visibility", *scene.background->visibility);
     if (scene.background && scene.background->sky) group.setUserValue("geofx.hasSky", true);
 }
 

@@ -20,7 +20,8 @@ bool addEffects(const SceneFile& scene, EffectScene& node, const osg::Node& terr
 
     For programs it carries user values: string "geofx.homeView" = "LON,LAT,HEIGHT,HEADING,PITCH,ROLL" (degrees
    and metres), double "geofx.homeFov" (vertical, degrees; only where the scene says it), string
-   "geofx.background" = "R,G,B" (0…1), bool "geofx.hasLight" = true where there is a sun, bool
+   "geofx.background" = "R,G,B" (0…1), bool "geofx.hasLight" = true where there is a sun, double
+   "geofx.visibility" (metres; only where there is haze), bool
    "geofx.hasSky" = true where there is a sky, which is beside the rest in a group of both.
 
     Mappings get their pictures, tables and places here.

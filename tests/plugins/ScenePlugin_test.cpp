@@ -126,6 +126,9 @@ TEST_F(ScenePlugin, HazeIsFogOfTheBackgroundsColor)
         ASSERT_TRUE(haze);
         EXPECT_EQ(haze->getMode(), osg::Fog::EXP);
         EXPECT_EQ(haze->getColor(), osg::Vec4(1.0f, 0.0f, 0.2f, 1.0f));
+        double visibility = 0.0;
+        EXPECT_TRUE(scene->getUserValue("geofx.visibility", visibility));
+        EXPECT_EQ(visibility, 39120.23) << "--sky has the same haze";
         // A fiftieth of the contrast is left.
         EXPECT_NEAR(std::exp(-haze->getDensity() * 39120.23f), 0.02f, 1e-4f);
     }
