@@ -56,8 +56,12 @@ class Walk
 {
 public:
     Walk(const TerrainRelief& relief, const ReliefWorth& worth, int columns, int steps)
-        : _relief(relief), _worth(worth), _columns(columns), _steps(steps)
+        : _relief(relief), _worth(worth), _columns(columns), _steps(steps),
+          _columnsPerUnit(relief.columns / (relief.east - relief.west)),
+          _rowsPerUnit(relief.rows / (relief.north - relief.south))
     {
+        const osg::Vec2d size = relief.size();
+        _cellSize = std::min(size.x() / relief.columns, size.y() / relief.rows);
     }
 
     /// Whether most of the picture's rectangle has ground; for a first choice among many views.
@@ -232,10 +236,10 @@ private:
     /// Ground nearer to the end of the data than `margin` does not count.
     Sample at(const osg::Vec2d& place, double margin) const
     {
-        const double x = (place.x() - _relief.west) / (_relief.east - _relief.west) * _relief.columns;
-        const double y = (place.y() - _relief.south) / (_relief.north - _relief.south) * _relief.rows;
-        const int column = std::clamp(static_cast<int>(std::floor(x)), 0, _relief.columns - 1);
-        const int row = std::clamp(static_cast<int>(std::floor(y)), 0, _relief.rows - 1);
+        const double x = (place.x() - _relief.west) * _columnsPerUnit;
+        const double y = (place.y() - _relief.south) * _rowsPerUnit;
+        const int column = static_cast<int>(std::min(std::max(0.0, x), _relief.columns - 1.0));
+        const int row = static_cast<int>(std::min(std::max(0.0, y), _relief.rows - 1.0));
         const std::size_t cell = _relief.index(column, row);
         const bool outside = x < 0.0 || y < 0.0 || x >= _relief.columns || y >= _relief.rows;
         const double away = static_cast<double>(_worth.inside[cell]);
@@ -249,12 +253,7 @@ private:
         return sample;
     }
 
-    bool isSeaBorder(std::size_t cell) const
-    {
-        const osg::Vec2d size = _relief.size();
-        return static_cast<double>(_worth.inside[cell]) >
-               std::min(size.x() / _relief.columns, size.y() / _relief.rows);
-    }
+    bool isSeaBorder(std::size_t cell) const { return static_cast<double>(_worth.inside[cell]) > _cellSize; }
 
     /// 1 if a summit is in sight and not at the picture's sides; 0 if it is not.
     double seenShare(const ReliefSummit& summit, const osg::Vec2d& at, const PictureCurve& curve,
@@ -278,6 +277,8 @@ private:
     const TerrainRelief& _relief;
     const ReliefWorth& _worth;
     int _columns, _steps;
+    double _columnsPerUnit, _rowsPerUnit; ///< of the relief's cells
+    double _cellSize;                     ///< the shorter side, metres
 };
 
 const char* directionOf(double heading)

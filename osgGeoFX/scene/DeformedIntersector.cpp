@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_map>
 
 namespace osgGeoFX
 {
@@ -140,12 +141,11 @@ bool DeformedLineIntersector::meets(const Ball& ball) const
     return (toCenter - _direction * along).length2() <= radius * radius;
 }
 
-bool DeformedLineIntersector::missesBox(const osg::Drawable& drawable) const
+bool DeformedLineIntersector::misses(const EyeBox& box, double reach) const
 {
-    const EyeBox box = EyeBox::of(drawable.getBoundingBox(), _modelView);
     Hull hull;
     _chain->bound(box, hull);
-    hull.margin += RigidParts::reach(drawable, *_chain, box.ball(), _scale);
+    hull.margin += reach;
     // Along the ray the hull is a flat figure, and the ray a point: has it a side with nothing of the figure?
     osg::Vec3d across = _direction ^ osg::Vec3d(0.0, 1.0, 0.0);
     if (across.length2() < 0.01) across = _direction ^ osg::Vec3d(1.0, 0.0, 0.0);
@@ -181,12 +181,13 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
 {
     if (root()->reachedLimit()) return;
     const osg::BoundingBox& bounds = drawable->getBoundingBox();
-    if (!bounds.valid() || !meets(_chain->bound(EyeBox::of(bounds, _modelView).ball()))) return;
-    if (missesBox(*drawable)) return;
+    if (!bounds.valid()) return;
+    const EyeBox whole = EyeBox::of(bounds, _modelView);
+    if (!meets(_chain->bound(whole.ball()))) return;
+    if (misses(whole, RigidParts::reach(*drawable, *_chain, whole.ball(), _scale))) return;
     const DrawableTriangles mesh(*drawable);
-    // Where vertices are drawn, as far as the ray comes near them.
-    std::vector<osg::Vec3d> deformed(mesh.positions().size());
-    std::vector<bool> known(deformed.size(), false);
+    // Where the vertices of a run are drawn. The ray comes near few runs of many.
+    std::unordered_map<unsigned int, osg::Vec3d> deformed;
     // Many things in one drawable, each of which keeps its shape.
     const osg::Vec4Array* references = RigidParts::of(*drawable);
     if (references && references->size() != mesh.positions().size()) references = nullptr;
@@ -195,26 +196,27 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         const osg::Vec4& each = (*references)[vertex];
         return osg::Vec3d(each.x(), each.y(), each.z()) * _modelView;
     };
-    const auto deform = [&](std::size_t vertex)
+    const auto deform = [&](unsigned int vertex)
     {
-        if (known[vertex]) return;
-        known[vertex] = true;
+        const auto [place, isNew] = deformed.try_emplace(vertex);
+        if (!isNew) return;
         const osg::Vec3d eye = mesh.positions()[vertex] * _modelView;
-        deformed[vertex] =
-            references ? RigidParts::place(*_chain, eye, reference(vertex)) : _chain->deform(eye);
+        place->second = references ? RigidParts::place(*_chain, eye, reference(vertex)) : _chain->deform(eye);
     };
     const auto missesRun = [&](std::size_t begin, std::size_t end)
     {
         osg::BoundingBoxd box;
         for (std::size_t i = begin; i < end; ++i)
             box.expandBy(mesh.positions()[mesh.corners()[i]]);
-        return !meets(_chain->bound(Ball{box.center() * _modelView, box.radius() * _scale}));
+        if (!meets(_chain->bound(Ball{box.center() * _modelView, box.radius() * _scale}))) return true;
+        // Boxes of eye space come from single precision.
+        const double rounding = 1e-7 * (box.center().length() + box.radius()) * _scale;
+        return misses(EyeBox::of(osg::BoundingBox(box._min, box._max), _modelView), rounding);
     };
 
     const auto* ours = dynamic_cast<const DeformedIntersectionVisitor*>(&visitor);
     const bool divides = ours && !OwnPrograms::isOwn(ours->_deformation.program) &&
-                         PatchTwins::mayHave(*drawable) &&
-                         DividedTriangles::within(*_chain, EyeBox::of(bounds, _modelView));
+                         PatchTwins::mayHave(*drawable) && DividedTriangles::within(*_chain, whole);
     const auto note = [&](std::size_t i, const Meeting& met)
     {
         const unsigned int* corner = &mesh.corners()[i];
@@ -251,6 +253,7 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
         const std::size_t end = std::min(begin + RUN, count);
         // Rigid parts may leave the bounds of ground at their place.
         if (!references && count > RUN && missesRun(begin, end)) continue;
+        deformed.clear();
         for (std::size_t i = begin; i < end; i += 3)
         {
             const unsigned int* corner = &mesh.corners()[i];

@@ -59,8 +59,8 @@ protected:
 private:
     DeformedLineIntersector* root() { return _root ? _root : this; }
     bool meets(const Ball& ball) const;
-    /// Whether the ray certainly misses what becomes of a drawable's box.
-    bool missesBox(const osg::Drawable& drawable) const;
+    /// Whether the ray certainly misses what becomes of a box, even if that moves by `reach` metres more.
+    bool misses(const EyeBox& box, double reach = 0.0) const;
 
     osg::Vec3d _origin;
     osg::Vec3d _direction;

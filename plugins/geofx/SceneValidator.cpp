@@ -81,6 +81,14 @@ public:
     Schema(const Schema&) = delete;
     Schema& operator=(const Schema&) = delete;
 
+    /// The one that all threads share. Compiling it takes many times as long as validating a scene.
+    static const Schema& shared()
+    {
+        static const Schema schema;
+        return schema;
+    }
+
+    /// Validators of several threads may use it at once: they keep what they find in contexts of their own.
     xmlSchema* compiled() const { return _schema; }
 
     /// Names of the elements (kind "element") or attributes ("attribute") that an element may have.
@@ -216,7 +224,7 @@ public:
     /// libxml2's validator calls this.
     static void invalid(void* data, xmlErrorPtr error) { static_cast<Findings*>(data)->translate(*error); }
 
-    const Schema schema;
+    const Schema& schema = Schema::shared();
 
 private:
     void translate(const xmlError& error)
