@@ -110,6 +110,7 @@ struct Conditions
     bool looksAhead = false;
     double memory = 0.0; ///< limit of OpenGL's objects of tiles, MiB; 0: none
     int frames = 0;
+    float coarser = 1.0f; ///< factor of the camera's LOD scale
 };
 
 struct Flown
@@ -146,7 +147,7 @@ Flown fly(const Conditions& conditions, const FlightPath& path)
     camera.setGraphicsContext(context);
     camera.setViewport(0, 0, WIDTH, HEIGHT);
     camera.setProjectionMatrixAsPerspective(FIELD_OF_VIEW, static_cast<double>(WIDTH) / HEIGHT, 1.0, 1e6);
-    camera.setLODScale(scene->lodScale(HEIGHT, osg::DegreesToRadians(FIELD_OF_VIEW)));
+    camera.setLODScale(conditions.coarser * scene->lodScale(HEIGHT, osg::DegreesToRadians(FIELD_OF_VIEW)));
     const osg::ref_ptr<TilesDrawn> drawn = new TilesDrawn;
     camera.setPreDrawCallback(drawn);
     camera.addFinalDrawCallback(new FinishCallback);
@@ -289,7 +290,7 @@ std::vector<Figure> run(const Settings& settings)
     if (!scene) throw BenchError(error);
     if (!scene->reference) throw BenchError(scene->referenceError);
     const std::optional<osgGeoFX::TerrainRelief> relief = osgGeoFX::TerrainRelief::read(
-        *scene->node, scene->effects->ground().ellipsoid.get(), settings.smoke ? 256 : 1024, error);
+        *scene->node, scene->effects->ground().ellipsoid.get(), settings.smoke ? 64 : 1024, error);
     if (!relief) throw BenchError(error);
     if (!relief->geocentric) throw BenchError(terrain.string() + ": a globe's database is needed.");
     const FlightPath path(*relief, *scene->reference);
@@ -297,6 +298,7 @@ std::vector<Figure> run(const Settings& settings)
 
     Conditions conditions;
     conditions.frames = static_cast<int>(seconds * RATE);
+    if (settings.smoke) conditions.coarser = 4.0f;
     conditions.file = terrain.string();
     announce("flying over a local disk");
     // Once before, so that no flight but this one finds files that the system has not read yet.

@@ -93,7 +93,7 @@ std::vector<Figure> measure(const MapView& view, const std::vector<osgGeoFX::Map
     const osg::ref_ptr<osg::Group> root = new osg::Group;
     root->addChild(stage.scene.node);
     root->addChild(labels);
-    const std::unique_ptr<OffscreenView> offscreen = stage.draw(*root, MapStage::sizeFor(settings));
+    const std::unique_ptr<OffscreenView> offscreen = stage.draw(*root, settings);
     OffscreenView& drawing = *offscreen;
     for (int i = 0; i < 8; ++i)
         drawing.frame(); // depths are known some frames later

@@ -98,7 +98,7 @@ std::vector<Figure> measure(const MapView& view, const PlacedLines& placed, cons
     const MapStage stage(view, terrain);
     const osg::ref_ptr<osgGeoFX::MapLines> node = new osgGeoFX::MapLines(placed.lines, placed.styles);
     stage.scene.effects->addChild(node);
-    const std::unique_ptr<OffscreenView> drawing = stage.draw(*stage.scene.node, MapStage::sizeFor(settings));
+    const std::unique_ptr<OffscreenView> drawing = stage.draw(*stage.scene.node, settings);
     MapStage::save(*drawing, settings, std::string("lines-") + view.name);
     const int rounds = settings.smoke ? 3 : settings.quick ? 15 : 61;
     std::vector<double> with, without, ratios;

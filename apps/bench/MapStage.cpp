@@ -49,20 +49,17 @@ osgGeoFX::TerrainRelief MapStage::relief(const Settings& settings) const
 {
     std::string error;
     std::optional<osgGeoFX::TerrainRelief> read =
-        osgGeoFX::TerrainRelief::read(*scene.node, ellipsoid(), settings.smoke ? 256 : 1024, error);
+        osgGeoFX::TerrainRelief::read(*scene.node, ellipsoid(), settings.smoke ? 64 : 1024, error);
     if (!read) throw BenchError(error);
     return std::move(*read);
 }
 
-OffscreenView::Size MapStage::sizeFor(const Settings& settings)
+std::unique_ptr<OffscreenView> MapStage::draw(osg::Node& root, const Settings& settings) const
 {
-    return settings.smoke ? OffscreenView::Size{320, 180} : OffscreenView::Size{1600, 900};
-}
-
-std::unique_ptr<OffscreenView> MapStage::draw(osg::Node& root, const OffscreenView::Size& size) const
-{
+    const OffscreenView::Size size =
+        settings.smoke ? OffscreenView::Size{320, 180} : OffscreenView::Size{1600, 900};
     auto drawing = std::make_unique<OffscreenView>(size, fieldOfView, &root);
-    drawing->camera().setLODScale(scene.lodScale(size.height, fieldOfView));
+    drawing->camera().setLODScale((settings.smoke ? 4.0f : 1.0f) * scene.lodScale(size.height, fieldOfView));
     drawing->look(matrix);
     drawing->settle();
     return drawing;

@@ -38,13 +38,12 @@ struct MapStage
     MapStage(const MapView& view, const std::filesystem::path& terrain);
 
     const osg::EllipsoidModel* ellipsoid() const { return scene.effects->ground().ellipsoid.get(); }
-    /// A drawing of the scene in this view, whose tiles are there.
-    std::unique_ptr<OffscreenView> draw(osg::Node& root, const OffscreenView::Size& size) const;
+    /// A drawing of the scene in this view, whose tiles are there. A smoke test's is small and coarse.
+    std::unique_ptr<OffscreenView> draw(osg::Node& root, const Settings& settings) const;
     /// Writes the picture, if pictures are wanted.
     static void save(OffscreenView& drawing, const Settings& settings, const std::string& name);
 
     static constexpr double fieldOfView = 0.5235987755982988; ///< 30 degrees, in radians
-    static OffscreenView::Size sizeFor(const Settings& settings);
 
     /// The terrain's relief. Throws BenchError.
     osgGeoFX::TerrainRelief relief(const Settings& settings) const;
