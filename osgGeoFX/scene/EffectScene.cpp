@@ -184,6 +184,11 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformationOfColumn(const osg:
     return CameraSnapshots(_effects, EffectsAtWork(_effects), view).chain(known);
 }
 
+osg::Matrixd EffectScene::movementOfHorizon(osgUtil::CullVisitor& visitor)
+{
+    return _drawing->movementOfHorizon(*this, _effects, visitor);
+}
+
 unsigned int EffectScene::leastParts() const
 {
     unsigned int parts = 1;

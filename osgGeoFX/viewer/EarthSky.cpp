@@ -3,6 +3,7 @@
 #include <osgGeoFX/viewer/EarthSky.h>
 
 #include <osgGeoFX/effect/ShaderLibrary.h>
+#include <osgGeoFX/scene/EffectScene.h>
 
 #include <osg/Depth>
 #include <osg/Geometry>
@@ -30,10 +31,10 @@ struct NoBound : public osg::Drawable::ComputeBoundingBoxCallback
 class PlaceOfEye : public osg::NodeCallback
 {
 public:
-    PlaceOfEye(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air, double haze)
-        : _scale(1.0 / ellipsoid.getRadiusEquator(), 1.0 / ellipsoid.getRadiusEquator(),
-                 1.0 / ellipsoid.getRadiusPolar()),
-          _air(air), _haze(static_cast<float>(haze * ellipsoid.getRadiusEquator()))
+    PlaceOfEye(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air, double haze, EffectScene* scene)
+        : _ellipsoid(ellipsoid), _scale(1.0 / ellipsoid.getRadiusEquator(),
+                                        1.0 / ellipsoid.getRadiusEquator(), 1.0 / ellipsoid.getRadiusPolar()),
+          _air(air), _haze(static_cast<float>(haze * ellipsoid.getRadiusEquator())), _scene(scene)
     {
     }
 
@@ -41,7 +42,7 @@ public:
     {
         osgUtil::CullVisitor* cull = visitor->asCullVisitor();
         if (!cull || (*cull->getProjectionMatrix())(3, 3) != 0.0) return;
-        const osg::Matrixd toWorld = osg::Matrixd::inverse(*cull->getModelViewMatrix());
+        const osg::Matrixd toWorld = placeOf(*cull);
         const osg::Vec3d eye = osg::componentMultiply(toWorld.getTrans(), _scale);
         osg::Matrix3 turn;
         for (int row = 0; row < 3; ++row)
@@ -59,9 +60,38 @@ public:
     }
 
 private:
+    /// From eye space to the world, as the sky's eye has it.
+    osg::Matrixd placeOf(osgUtil::CullVisitor& cull) const
+    {
+        const osg::Matrixd& modelView = *cull.getModelViewMatrix();
+        const osg::Matrixd plain = osg::Matrixd::inverse(modelView);
+        osg::ref_ptr<EffectScene> scene;
+        if (!_scene.lock(scene)) return plain;
+        const osg::Matrixd movement = scene->movementOfHorizon(cull);
+        osg::Vec3d up = plain.getTrans();
+        up.normalize();
+        up = osg::Matrixd::transform3x3(up, modelView);
+        osg::Vec3d ahead = osg::Vec3d(0.0, 0.0, -1.0) + up * up.z();
+        if (ahead.length() < 0.05) ahead.set(0.0, 1.0, 0.0);
+        // Of both horizons the lower one is the sky's.
+        if (osg::Matrixd::transform3x3(ahead, movement) * up > -1e-9) return plain;
+        osg::Matrixd bent = osg::Matrixd::inverse(modelView * movement);
+        // The eye stays above the sea, wherever the bend has it.
+        double latitude = 0.0, longitude = 0.0, height = 0.0;
+        const osg::Vec3d eye = bent.getTrans();
+        _ellipsoid.convertXYZToLatLongHeight(eye.x(), eye.y(), eye.z(), latitude, longitude, height);
+        if (height < LEAST_HEIGHT)
+            bent.setTrans(eye + _ellipsoid.computeLocalUpVector(eye.x(), eye.y(), eye.z()) *
+                                    (LEAST_HEIGHT - height));
+        return bent;
+    }
+
+    static constexpr double LEAST_HEIGHT = 2.0; ///< metres
+    const osg::EllipsoidModel _ellipsoid;
     const osg::Vec3d _scale;
     const osg::Vec3 _air;
     const float _haze;
+    const osg::observer_ptr<EffectScene> _scene;
 };
 
 } // namespace
@@ -72,7 +102,7 @@ double hazeDensity(double visibility)
 }
 
 osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air,
-                                     double visibility)
+                                     double visibility, EffectScene* scene)
 {
     osg::ref_ptr<osg::Geometry> picture = new osg::Geometry;
     osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
@@ -90,7 +120,7 @@ osg::ref_ptr<osg::Node> makeEarthSky(const osg::EllipsoidModel& ellipsoid, const
     sky->setName("sky of the Earth");
     sky->setCullingActive(false);
     sky->addChild(picture);
-    sky->setCullCallback(new PlaceOfEye(ellipsoid, air, hazeDensity(visibility)));
+    sky->setCullCallback(new PlaceOfEye(ellipsoid, air, hazeDensity(visibility), scene));
     osg::StateSet* state = sky->getOrCreateStateSet();
     state->setAttributeAndModes(
         ShaderLibrary::createProgram("sky of the Earth", "stages/earthsky.vert", "stages/earthsky.frag"),

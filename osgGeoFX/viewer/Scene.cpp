@@ -224,8 +224,8 @@ bool Scene::addSky(std::string& error)
     if (settings.hasSky) return true;
     osg::ref_ptr<osg::Group> both = new osg::Group;
     const osg::Vec3 air(settings.background.r(), settings.background.g(), settings.background.b());
-    both->addChild(settings.visibility ? makeEarthSky(osg::EllipsoidModel(), air, *settings.visibility)
-                                       : makeEarthSky(osg::EllipsoidModel(), air));
+    both->addChild(
+        makeEarthSky(osg::EllipsoidModel(), air, settings.visibility.value_or(DEFAULT_VISIBILITY), effects));
     both->addChild(node);
     node = both;
     settings.hasSky = true;

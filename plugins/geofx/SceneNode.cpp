@@ -147,8 +147,8 @@ void addHaze(const SceneBackground& background, osg::Group& group)
 }
 
 /// A group of a sky and the node. Null, with a sentence in `error`, if there is no round Earth.
-osg::ref_ptr<osg::Group> withSky(const SceneBackground& background, osg::Node& terrain, osg::Group& node,
-                                 std::string& error)
+osg::ref_ptr<osg::Group> withSky(const SceneBackground& background, osg::Node& terrain, EffectScene& effects,
+                                 osg::Group& node, std::string& error)
 {
     const osg::ref_ptr<Georeference> reference = Georeference::create(&terrain, error);
     if (!reference || !reference->isGeocentric())
@@ -160,9 +160,8 @@ osg::ref_ptr<osg::Group> withSky(const SceneBackground& background, osg::Node& t
     const SceneColor& air = background.color;
     osg::ref_ptr<osg::Group> both = new osg::Group;
     const osg::Vec3d color(air[0], air[1], air[2]);
-    both->addChild(background.visibility
-                       ? makeEarthSky(osg::EllipsoidModel(), osg::Vec3(color), *background.visibility)
-                       : makeEarthSky(osg::EllipsoidModel(), osg::Vec3(color)));
+    both->addChild(makeEarthSky(osg::EllipsoidModel(), osg::Vec3(color),
+                                background.visibility.value_or(DEFAULT_VISIBILITY), &effects));
     both->addChild(&node);
     return both;
 }
@@ -256,7 +255,7 @@ osg::ref_ptr<osg::Group> createSceneNode(const SceneFile& scene, osg::Node* terr
     }
     if (scene.background && scene.background->visibility) addHaze(*scene.background, *group);
     if (scene.map) group = withMap(*scene.map, *effects, error);
-    if (group && sky) group = withSky(*scene.background, *terrain, *group, error);
+    if (group && sky) group = withSky(*scene.background, *terrain, *effects, *group, error);
     if (group) tellPrograms(scene, *group);
     return group;
 }

@@ -7,6 +7,7 @@
 #include <tools/TestRasters.h>
 
 #include <gtest/gtest.h>
+#include <osg/DisplaySettings>
 #include <osg/Math>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
@@ -151,6 +152,9 @@ bool EarthMaps::startViewer()
         ADD_FAILURE() << context->error();
         return false;
     }
+    // Without vertex array objects OSG 3.6.5 knows an array by its address. After osgEarth has let a tile go, another one's array may
+    // have that address: OpenGL then reads vertices from a buffer that is gone.
+    osg::DisplaySettings::instance()->setVertexBufferHint(osg::DisplaySettings::VERTEX_ARRAY_OBJECT);
     _viewer = *viewer = new osgViewer::Viewer;
     _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     camera().setGraphicsContext(context);

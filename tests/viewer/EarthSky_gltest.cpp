@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 // The sky around the Earth, against air that the test adds up along the ray.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/scene/EffectScene.h>
 #include <osgGeoFX/viewer/EarthSky.h>
 #include <tools/GlFixture.h>
 
@@ -141,6 +144,49 @@ TEST_F(EarthSky, HazeThinsOutFasterThanAir)
     const osg::EllipsoidModel ball(RADIUS, RADIUS);
     for (const double visibility : {300e3, 30e3})
         expectAirAlongRays(*osgGeoFX::makeEarthSky(ball, air, visibility), -std::log(0.02) / visibility);
+}
+
+// A bird's-eye view looks down at the ground and has its horizon in the picture. Its sky is that of a camera which stands where the bend has moved
+// the far ground to.
+TEST_F(EarthSky, ComesDownWithTheHorizonOfABend)
+{
+    const osg::EllipsoidModel ball(RADIUS, RADIUS);
+    const osg::ref_ptr<osg::CoordinateSystemNode> ground = new osg::CoordinateSystemNode;
+    ground->setEllipsoidModel(new osg::EllipsoidModel(ball));
+    const osg::ref_ptr<osgGeoFX::EffectScene> scene = new osgGeoFX::EffectScene;
+    scene->addChild(ground);
+    const osg::ref_ptr<osgGeoFX::BirdsEyeView> bird = new osgGeoFX::BirdsEyeView;
+    bird->setHorizonLine(0.84);
+    scene->addEffect(bird);
+    const osg::ref_ptr<osg::Group> both = new osg::Group;
+    both->addChild(osgGeoFX::makeEarthSky(ball, air, osgGeoFX::DEFAULT_VISIBILITY, scene));
+    both->addChild(scene);
+
+    constexpr double height = 4000.0, pitch = -42.0, fieldOfView = 40.0;
+    const osg::ref_ptr<osg::Image> bent = look(both, height, pitch, fieldOfView);
+    const osg::Matrixd plainView = _view, projection = viewer().getCamera()->getProjectionMatrix();
+    const double down = osg::DegreesToRadians(-pitch);
+    const osg::Matrixd moved = scene->deformation(plainView, projection)
+                                   ->placement(osg::Vec3d(0.0, std::sin(down), -std::cos(down)) * 1e6);
+    viewer().getCamera()->setViewMatrix(plainView * moved);
+    const osg::ref_ptr<osg::Image> expected = render(_sky);
+    const osg::ref_ptr<osg::Image> straight = look(_sky, height, pitch, fieldOfView);
+    // At the horizon the last bit of a float makes a step of two or three.
+    for (unsigned int row = 0; row < 256; ++row)
+        for (unsigned int channel = 0; channel < 3; ++channel)
+            ASSERT_NEAR(bent->getColor(128, row)[channel], expected->getColor(128, row)[channel], 3.1 / 255.0)
+                << "row " << row;
+    // At the line of the horizon there is bright air, and a dark sea without the bend.
+    EXPECT_GT(bent->getColor(128, 217).r(), 0.6f);
+    EXPECT_LT(straight->getColor(128, 217).r(), 0.4f);
+
+    // A pedestrian's ground rises into the sky, and the sky stays.
+    scene->removeEffect(bird);
+    scene->addEffect(new osgGeoFX::PedestrianView);
+    const osg::ref_ptr<osg::Image> folded = look(both, 300.0, -3.0, fieldOfView);
+    const osg::ref_ptr<osg::Image> above = look(_sky, 300.0, -3.0, fieldOfView);
+    for (unsigned int row = 0; row < 256; ++row)
+        ASSERT_EQ(folded->getColor(128, row), above->getColor(128, row)) << "row " << row;
 }
 
 TEST_F(EarthSky, NearAndFarAreThoseOfTheSceneAndNothingIsHidden)

@@ -408,4 +408,33 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
     return Traversal(*this, scene, effects, shown, outer, view, depth, boundOfChildren(top), traverse).run();
 }
 
+osg::Matrixd SceneDrawing::movementOfHorizon(EffectScene& scene, const Effects& effects,
+                                             osgUtil::CullVisitor& outer)
+{
+    if (!outer.getRenderStage() || !outer.getCurrentCamera() || !deforms(effects)) return {};
+    const CameraEffects* const special = CameraEffects::find(*outer.getCurrentCamera());
+    const Effects shown = special ? effectsFor(effects, *special) : effects;
+    const std::optional<CameraRole> role = roleOf(scene, outer, special);
+    if (!role) return {};
+    const Ground known = ground.find(scene, *scene.getTerrain(), outer.getNodePath());
+    const ViewGeometry view = viewOf(outer, *role, known);
+    osg::Vec3d ahead = osg::Vec3d(0.0, 0.0, -1.0) + view.up * view.up.z();
+    if (ahead.length() < 0.05) ahead = osg::Vec3d(0.0, 1.0, 0.0) - view.up * view.up.y();
+    ahead.normalize();
+    // Behind the transition zone, which lies within the picture.
+    osg::Vec3d at = ahead * std::max(1e6, 1e3 * view.eyeHeight);
+    osg::Matrixd movement;
+    const CameraSnapshots snapshots(shown, EffectsAtWork(shown), view);
+    for (const CameraSnapshots::Placed& placed : snapshots.all())
+    {
+        if (!placed.snapshot) continue;
+        const osg::Vec3d to = placed.snapshot->deform(at);
+        if (placed.snapshot->reach({at, 0.0}) == DeformationSnapshot::Reach::Affine)
+            movement.postMult(osg::Matrixd::translate(-at) * placed.snapshot->turn(at) *
+                              osg::Matrixd::translate(to));
+        at = to;
+    }
+    return view.image.ofView ? movement : view.image.toView * movement * view.image.toEye;
+}
+
 } // namespace osgGeoFX

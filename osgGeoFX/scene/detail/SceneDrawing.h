@@ -35,6 +35,9 @@ public:
     bool cull(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer, osg::Group& top,
               const Traverse& traverse);
 
+    /// As EffectScene::movementOfHorizon().
+    osg::Matrixd movementOfHorizon(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer);
+
     /// Computes the bounds of all nodes below one, whatever is known of those above them: a node with a bound of its own
     /// says nothing of its children.
     static void computeBoundsBelow(const osg::Group& top);
