@@ -32,8 +32,8 @@ class PlaceOfEye : public osg::NodeCallback
 {
 public:
     PlaceOfEye(const osg::EllipsoidModel& ellipsoid, const osg::Vec3& air, double haze, EffectScene* scene)
-        : _ellipsoid(ellipsoid), _scale(1.0 / ellipsoid.getRadiusEquator(),
-                                        1.0 / ellipsoid.getRadiusEquator(), 1.0 / ellipsoid.getRadiusPolar()),
+        : _scale(1.0 / ellipsoid.getRadiusEquator(), 1.0 / ellipsoid.getRadiusEquator(),
+                 1.0 / ellipsoid.getRadiusPolar()),
           _air(air), _haze(static_cast<float>(haze * ellipsoid.getRadiusEquator())), _scene(scene)
     {
     }
@@ -67,7 +67,7 @@ private:
         const osg::Matrixd plain = osg::Matrixd::inverse(modelView);
         osg::ref_ptr<EffectScene> scene;
         if (!_scene.lock(scene)) return plain;
-        const osg::Matrixd movement = scene->movementOfHorizon(cull);
+        osg::Matrixd movement = scene->movementOfHorizon(cull);
         osg::Vec3d up = plain.getTrans();
         up.normalize();
         up = osg::Matrixd::transform3x3(up, modelView);
@@ -75,19 +75,11 @@ private:
         if (ahead.length() < 0.05) ahead.set(0.0, 1.0, 0.0);
         // Of both horizons the lower one is the sky's.
         if (osg::Matrixd::transform3x3(ahead, movement) * up > -1e-9) return plain;
-        osg::Matrixd bent = osg::Matrixd::inverse(modelView * movement);
-        // The eye stays above the sea, wherever the bend has it.
-        double latitude = 0.0, longitude = 0.0, height = 0.0;
-        const osg::Vec3d eye = bent.getTrans();
-        _ellipsoid.convertXYZToLatLongHeight(eye.x(), eye.y(), eye.z(), latitude, longitude, height);
-        if (height < LEAST_HEIGHT)
-            bent.setTrans(eye + _ellipsoid.computeLocalUpVector(eye.x(), eye.y(), eye.z()) *
-                                    (LEAST_HEIGHT - height));
-        return bent;
+        // The eye keeps its height: a bend may put it into the plane of the far ground, where the sea has no depth.
+        movement.setTrans(osg::Vec3d());
+        return osg::Matrixd::inverse(modelView * movement);
     }
 
-    static constexpr double LEAST_HEIGHT = 2.0; ///< metres
-    const osg::EllipsoidModel _ellipsoid;
     const osg::Vec3d _scale;
     const osg::Vec3 _air;
     const float _haze;
