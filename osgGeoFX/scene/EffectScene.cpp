@@ -184,9 +184,9 @@ osg::ref_ptr<const DeformationChain> EffectScene::deformationOfColumn(const osg:
     return CameraSnapshots(_effects, EffectsAtWork(_effects), view).chain(known);
 }
 
-osg::Matrixd EffectScene::movementOfHorizon(osgUtil::CullVisitor& visitor)
+osg::Matrixd EffectScene::turnOfHorizon(osgUtil::CullVisitor& visitor)
 {
-    return _drawing->movementOfHorizon(*this, _effects, visitor);
+    return _drawing->turnOfHorizon(*this, _effects, visitor);
 }
 
 unsigned int EffectScene::leastParts() const

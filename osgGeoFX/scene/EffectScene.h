@@ -242,10 +242,10 @@ public:
                                                              const osg::Matrixd& projection, double low,
                                                              double high,
                                                              const osg::NodePath& above = {}) const;
-    /// How bends move the far ground, and the horizon with it, for the camera that a visitor culls for: a matrix from its eye
-    /// space to its eye space. The identity where no bend reaches that far. A sky behind the scene needs it. Threads:
-    /// for those that cull, several at once.
-    osg::Matrixd movementOfHorizon(osgUtil::CullVisitor& visitor);
+    /// How a sky behind the scene turns about the eye for the camera that a visitor culls for, in its eye space: as bends
+    /// turn the far ground, where that brings the horizon down; otherwise the identity. Threads: for those that cull,
+    /// several at once.
+    osg::Matrixd turnOfHorizon(osgUtil::CullVisitor& visitor);
     /// The least number of cameras, side by side, that draw a whole picture of the scene with the effects that are switched
     /// on now; 1 for most. A panorama map of 360° needs two (drawInParts()).
     unsigned int leastParts() const;

@@ -42,7 +42,10 @@ public:
     {
         osgUtil::CullVisitor* cull = visitor->asCullVisitor();
         if (!cull || (*cull->getProjectionMatrix())(3, 3) != 0.0) return;
-        const osg::Matrixd toWorld = placeOf(*cull);
+        osg::Matrixd modelView = *cull->getModelViewMatrix();
+        osg::ref_ptr<EffectScene> scene;
+        if (_scene.lock(scene)) modelView.postMult(scene->turnOfHorizon(*cull));
+        const osg::Matrixd toWorld = osg::Matrixd::inverse(modelView);
         const osg::Vec3d eye = osg::componentMultiply(toWorld.getTrans(), _scale);
         osg::Matrix3 turn;
         for (int row = 0; row < 3; ++row)
@@ -60,26 +63,6 @@ public:
     }
 
 private:
-    /// From eye space to the world, as the sky's eye has it.
-    osg::Matrixd placeOf(osgUtil::CullVisitor& cull) const
-    {
-        const osg::Matrixd& modelView = *cull.getModelViewMatrix();
-        const osg::Matrixd plain = osg::Matrixd::inverse(modelView);
-        osg::ref_ptr<EffectScene> scene;
-        if (!_scene.lock(scene)) return plain;
-        osg::Matrixd movement = scene->movementOfHorizon(cull);
-        osg::Vec3d up = plain.getTrans();
-        up.normalize();
-        up = osg::Matrixd::transform3x3(up, modelView);
-        osg::Vec3d ahead = osg::Vec3d(0.0, 0.0, -1.0) + up * up.z();
-        if (ahead.length() < 0.05) ahead.set(0.0, 1.0, 0.0);
-        // Of both horizons the lower one is the sky's.
-        if (osg::Matrixd::transform3x3(ahead, movement) * up > -1e-9) return plain;
-        // The eye keeps its height: a bend may put it into the plane of the far ground, where the sea has no depth.
-        movement.setTrans(osg::Vec3d());
-        return osg::Matrixd::inverse(modelView * movement);
-    }
-
     const osg::Vec3d _scale;
     const osg::Vec3 _air;
     const float _haze;

@@ -408,8 +408,8 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
     return Traversal(*this, scene, effects, shown, outer, view, depth, boundOfChildren(top), traverse).run();
 }
 
-osg::Matrixd SceneDrawing::movementOfHorizon(EffectScene& scene, const Effects& effects,
-                                             osgUtil::CullVisitor& outer)
+osg::Matrixd SceneDrawing::turnOfHorizon(EffectScene& scene, const Effects& effects,
+                                         osgUtil::CullVisitor& outer)
 {
     if (!outer.getRenderStage() || !outer.getCurrentCamera() || !deforms(effects)) return {};
     const CameraEffects* const special = CameraEffects::find(*outer.getCurrentCamera());
@@ -418,23 +418,25 @@ osg::Matrixd SceneDrawing::movementOfHorizon(EffectScene& scene, const Effects& 
     if (!role) return {};
     const Ground known = ground.find(scene, *scene.getTerrain(), outer.getNodePath());
     const ViewGeometry view = viewOf(outer, *role, known);
-    osg::Vec3d ahead = osg::Vec3d(0.0, 0.0, -1.0) + view.up * view.up.z();
-    if (ahead.length() < 0.05) ahead = osg::Vec3d(0.0, 1.0, 0.0) - view.up * view.up.y();
-    ahead.normalize();
+    // Bends point there, too.
+    osg::Vec3d ahead = view.up ^ osg::X_AXIS;
+    if (!(ahead.normalize() > 0.0)) return {};
     // Behind the transition zone, which lies within the picture.
     osg::Vec3d at = ahead * std::max(1e6, 1e3 * view.eyeHeight);
-    osg::Matrixd movement;
+    osg::Matrixd turn;
     const CameraSnapshots snapshots(shown, EffectsAtWork(shown), view);
     for (const CameraSnapshots::Placed& placed : snapshots.all())
     {
         if (!placed.snapshot) continue;
-        const osg::Vec3d to = placed.snapshot->deform(at);
         if (placed.snapshot->reach({at, 0.0}) == DeformationSnapshot::Reach::Affine)
-            movement.postMult(osg::Matrixd::translate(-at) * placed.snapshot->turn(at) *
-                              osg::Matrixd::translate(to));
-        at = to;
+            turn.postMult(placed.snapshot->turn(at));
+        at = placed.snapshot->deform(at);
     }
-    return view.image.ofView ? movement : view.image.toView * movement * view.image.toEye;
+    if (osg::Matrixd::transform3x3(ahead, turn) * view.up > -1e-9) return {};
+    if (!view.image.ofView) turn = view.image.toView * turn * view.image.toEye;
+    // The eye keeps its height: a bend may put it into the plane of the far ground, where the sea has no depth.
+    turn.setTrans(osg::Vec3d());
+    return turn;
 }
 
 } // namespace osgGeoFX

@@ -35,8 +35,8 @@ public:
     bool cull(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer, osg::Group& top,
               const Traverse& traverse);
 
-    /// As EffectScene::movementOfHorizon().
-    osg::Matrixd movementOfHorizon(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer);
+    /// As EffectScene::turnOfHorizon().
+    osg::Matrixd turnOfHorizon(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer);
 
     /// Computes the bounds of all nodes below one, whatever is known of those above them: a node with a bound of its own
     /// says nothing of its children.
