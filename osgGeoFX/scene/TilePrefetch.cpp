@@ -44,7 +44,7 @@ struct Seen
     bool compensates = false;
     osg::ref_ptr<const osg::Viewport> viewport;
     double lodScale = 1.0;
-    bool sides = true;
+    bool sides = true, horizons = true;
     osg::Node::NodeMask mask = ~0u, override = 0;
     osg::Matrixd above;                          ///< from the scene's children to the world
     osg::observer_ptr<const osg::Camera> leader; ///< the view's camera; null for cameras that no path leads
@@ -61,7 +61,7 @@ struct Seen
             chain = CameraSnapshots(effects, EffectsAtWork(effects), there).chain(there.ground);
         else
             chain = new DeformationChain;
-        return {there, chain, viewport, lodScale, sides, compensates};
+        return {there, chain, viewport, lodScale, sides, horizons, compensates};
     }
 };
 
@@ -225,6 +225,7 @@ void TilePrefetch::note(osgUtil::CullVisitor& outer, osg::Group& top, const View
     seen.viewport = outer.getViewport() ? new osg::Viewport(*outer.getViewport()) : nullptr;
     seen.lodScale = static_cast<double>(outer.getLODScale());
     seen.sides = (outer.getCullingMode() & osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING) != 0;
+    seen.horizons = (outer.getCullingMode() & osg::CullSettings::CLUSTER_CULLING) != 0;
     seen.mask = outer.getTraversalMask();
     seen.override = outer.getNodeMaskOverride();
     seen.above = osg::computeLocalToWorld(outer.getNodePath());

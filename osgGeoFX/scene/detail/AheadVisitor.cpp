@@ -5,6 +5,8 @@
 #include <osgGeoFX/paging/TerrainInfo.h>
 #include <osgGeoFX/scene/detail/TileSight.h>
 
+#include <osg/ClusterCullingCallback>
+
 #include <algorithm>
 #include <cmath>
 
@@ -84,6 +86,17 @@ bool AheadVisitor::outOfSight(const osg::Node& node)
     return _sight.hides(chain(), ball) || _sight.outOfSight(chain().bound(ball), _mode.planes, true);
 }
 
+bool AheadVisitor::belowHorizon(const osg::Node& node) const
+{
+    const auto* horizon = dynamic_cast<const osg::ClusterCullingCallback*>(node.getCullCallback());
+    if (!horizon || !_outlook.horizons || !chain().empty()) return false;
+    const osg::Vec3d eye =
+        osg::Matrixd::inverse(_mode.toView).getTrans() - osg::Vec3d(horizon->getControlPoint());
+    const double distance = eye.length();
+    return distance >= static_cast<double>(horizon->getRadius()) &&
+           eye * osg::Vec3d(horizon->getNormal()) < distance * static_cast<double>(horizon->getDeviation());
+}
+
 double AheadVisitor::rangeFor(const osg::LOD& node) const
 {
     const Ball ball = {osg::Vec3d(node.getCenter()) * _mode.toView,
@@ -101,10 +114,10 @@ bool AheadVisitor::wants(const Missing& missing)
     const Mode former = _mode;
     _mode.planes = _sight.all();
     place(missing.model);
-    const bool sees =
-        !outOfSight(missing.group) && !(_outlook.compensates && _mode.planes &&
-                                        tileOutOfSight(_sight, chain(), missing.group, _mode.toView,
-                                                       _outlook.view.ground.tileError, _mode.planes));
+    const bool sees = !outOfSight(missing.group) && !belowHorizon(missing.group) &&
+                      !(_outlook.compensates && _mode.planes &&
+                        tileOutOfSight(_sight, chain(), missing.group, _mode.toView,
+                                       _outlook.view.ground.tileError, _mode.planes));
     const double range = sees ? rangeFor(missing.group) : 0.0;
     _mode = former;
     return sees && static_cast<double>(missing.group.getMinRange(missing.child)) <= range &&
@@ -148,7 +161,7 @@ void AheadVisitor::apply(osg::LOD& node)
 void AheadVisitor::apply(osg::PagedLOD& node)
 {
     const Scope scope(*this, node);
-    if (scope.skip ||
+    if (scope.skip || belowHorizon(node) ||
         (_outlook.compensates && _mode.planes &&
          tileOutOfSight(_sight, chain(), node, _mode.toView, _outlook.view.ground.tileError, _mode.planes)))
         return;

@@ -27,7 +27,9 @@ public:
         osg::ref_ptr<const DeformationChain> chain;
         osg::ref_ptr<const osg::Viewport> viewport; ///< may be null
         double lodScale = 1.0;
-        bool sides = true;       ///< whether the borders of the picture cull
+        bool sides = true; ///< whether the borders of the picture cull
+        bool horizons =
+            true; ///< whether nodes that know their horizon (osg::ClusterCullingCallback) are left out below it
         bool compensates = true; ///< whether boxes of tiles are looked at, as the kit's visitor does
     };
 
@@ -83,6 +85,8 @@ private:
     Ball ballOf(const osg::Node& node) const;
     /// Narrows the planes for what is below the node.
     bool outOfSight(const osg::Node& node);
+    /// Whether the round Earth hides a node that knows its horizon.
+    bool belowHorizon(const osg::Node& node) const;
     /// What the ranges of a node are compared with.
     double rangeFor(const osg::LOD& node) const;
 

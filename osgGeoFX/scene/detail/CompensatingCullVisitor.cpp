@@ -168,6 +168,8 @@ void CompensatingCullVisitor::begin(osgUtil::CullVisitor& outer, const Task& tas
     // Of this mode, engines make culling stacks of their own.
     if (task.open) setCullingMode(NO_CULLING);
     pushMatrices(outer);
+    // The horizon that tiles know (osg::ClusterCullingCallback) is that of the undeformed Earth, for the eye.
+    if (!task.chain->empty() || !cullsByPicture()) setCullingMode(getCullingMode() & ~CLUSTER_CULLING);
 
     _mode = Mode();
     _mode.chain = task.chain;

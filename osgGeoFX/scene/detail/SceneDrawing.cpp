@@ -386,6 +386,17 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
 {
     if (dynamic_cast<CompensatingCullVisitor*>(&outer)) return false;
     if (!outer.getRenderStage() || !outer.getCurrentCamera()) return false;
+    if ((*outer.getProjectionMatrix())(3, 3) != 0.0 &&
+        (outer.getCullingMode() & osg::CullSettings::CLUSTER_CULLING))
+    {
+        // Tiles that know their horizon ask for the eye, and an orthographic picture is seen from nowhere. All settings
+        // are kept, since a change of one tells OSG to take it from the camera no longer.
+        const osg::CullSettings former(outer);
+        outer.setCullingMode(outer.getCullingMode() & ~osg::CullSettings::CLUSTER_CULLING);
+        if (!cull(scene, effects, outer, top, traverse)) traverse(outer);
+        outer.setCullSettings(former);
+        return true;
+    }
     const CameraEffects* const special = CameraEffects::find(*outer.getCurrentCamera());
     const Effects shown = special ? effectsFor(effects, *special) : effects;
     const CameraDepth depth(special && special->getDepthConvention() ? *special->getDepthConvention()

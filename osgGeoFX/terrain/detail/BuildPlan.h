@@ -36,7 +36,8 @@ struct TileFacts
         0.0f; ///< the deepest wall of the tile and all below it, below the lowest ground, metres
     std::int32_t voids =
         0; ///< of a unit's root: whether posts have no height within a raster's rectangle (VoidState)
-    std::int32_t any = 0; ///< it has at least one post with data
+    std::int32_t any = 0;   ///< it has at least one post with data
+    std::int32_t holes = 0; ///< it has at least one post without
 
     enum VoidState : std::int32_t
     {
@@ -138,6 +139,8 @@ public:
     /// Whether any of the four tiles beside a tile, on its level, has finer ones below it.
     bool isBesideDenser(const TileKey& key) const;
     const TileFacts& whole() const { return fact({0, 0, 0}); }
+    /// Whether there is ground all around the Earth, but for a few degrees at the poles. The facts of all units must be known.
+    bool isWholeEarth() const;
     /// Empty facts for a unit whose heights come next. Facts count as a unit's from here on.
     void startFacts(const Unit& unit);
     /// Takes a unit's facts from its work file. Returns false if there is none, or a damaged one.

@@ -103,7 +103,11 @@ TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& ke
         for (int i = column; i <= column + n; ++i)
         {
             const float height = grid.at(i, j);
-            if (std::isnan(height)) continue;
+            if (std::isnan(height))
+            {
+                facts.holes = 1;
+                continue;
+            }
             facts.minHeight = facts.any ? std::min(facts.minHeight, height) : height;
             facts.maxHeight = facts.any ? std::max(facts.maxHeight, height) : height;
             facts.any = 1;
@@ -117,7 +121,9 @@ TileFacts gatheredFacts(const BuildPlan& plan, const Unit& unit, const TileKey& 
     TileFacts facts;
     for (int c = 0; c < 4; ++c)
     {
-        const TileFacts& child = plan.fact(key.child(c & 1, c >> 1));
+        const TileKey below = key.child(c & 1, c >> 1);
+        const TileFacts& child = plan.fact(below);
+        if (plan.scheme.exists(below) && (!child.any || child.holes)) facts.holes = 1;
         if (!child.any) continue;
         facts.minHeight = facts.any ? std::min(facts.minHeight, child.minHeight) : child.minHeight;
         facts.maxHeight = facts.any ? std::max(facts.maxHeight, child.maxHeight) : child.maxHeight;

@@ -72,6 +72,14 @@ const TileFacts& BuildPlan::fact(const TileKey& key) const
     return place.block->facts[place.index];
 }
 
+bool BuildPlan::isWholeEarth() const
+{
+    // Files have their outermost posts half a sample from the poles.
+    constexpr double nearPole = 85.0;
+    return scheme.wholeCircle() && scheme.south <= -nearPole && scheme.north >= nearPole && whole().any &&
+           !whole().holes;
+}
+
 void BuildPlan::startFacts(const Unit& unit)
 {
     const std::lock_guard<std::mutex> lock(_factsMutex);

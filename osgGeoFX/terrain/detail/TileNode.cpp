@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/terrain/detail/NormalMap.h>
 #include <osgGeoFX/terrain/detail/TileBlocks.h>
+#include <osgGeoFX/terrain/detail/TileHorizon.h>
 
 #include <osg/BoundingBox>
 #include <osg/Math>
@@ -282,7 +283,16 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     transform->setUserValue("geofx.cells", lattice.intervals);
     const int texels = scheme.textureIntervals(key.level);
     if (scheme.textureSize(texels) != texels + 1) transform->setUserValue("geofx.texels", texels);
-    if (_plan.isLeaf(key)) return transform;
+    const osg::ref_ptr<osg::ClusterCullingCallback> horizon =
+        _plan.isWholeEarth() ? createHorizonCulling(scheme, key, static_cast<double>(facts.maxHeight))
+                             : nullptr;
+    if (_plan.isLeaf(key))
+    {
+        // OSG asks in the frame of what is below the transform.
+        if (horizon) horizon->transform(osg::Matrixd::inverse(transform->getMatrix()));
+        transform->setCullCallback(horizon);
+        return transform;
+    }
 
     // At a distance of d metres, a length e covers e·k/d pixels. The nearest point of the tile is at least d − R
     // away, so the finer tiles are drawn within R + e·k/limit.
@@ -304,6 +314,7 @@ osg::ref_ptr<osg::Node> TileNodeFactory::create(const TileKey& key, const LevelA
     lod->setFileName(1, (key.level == 0 ? "tiles/" : "../../") + key.path() + ".osgb");
     lod->setRange(1, 0.0f, static_cast<float>(range));
     lod->setNumChildrenThatCannotBeExpired(1);
+    lod->setCullCallback(horizon);
     return lod;
 }
 

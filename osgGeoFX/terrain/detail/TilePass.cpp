@@ -197,6 +197,7 @@ Digest unitKey(const BuildPlan& plan, const Unit& unit)
     const TilingScheme& scheme = plan.scheme;
     ContentHash hash;
     hash.add(unit.root.level).add(unit.depth).add(unit.sampled).add(plan.factsDigest(unit));
+    hash.add(plan.isWholeEarth());
     if (unit.sampled)
     {
         const int width = unit.span() * scheme.intervals * scheme.step(unit.latticeLevel());
@@ -227,7 +228,7 @@ Digest tileKey(const BuildPlan& plan, const TileKey& key, const LevelArrays& arr
          {facts.minHeight, facts.maxHeight, facts.latticeError, facts.error, facts.skirtBelow,
           arrays.textureError[static_cast<std::size_t>(y * arrays.span + x)]})
         hash.add(each);
-    hash.add(plan.isLeaf(key)).add(arrays.normals);
+    hash.add(plan.isLeaf(key)).add(plan.isWholeEarth()).add(arrays.normals);
     for (int side = 0; side < 4; ++side)
         hash.add(plan.skirt(key, side));
     // The tile's part of a lattice, with the points on its border.

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Tiles of a whole Earth that know their horizon, in plain OSG and below effects: the picture is that without culling, bit for
+// bit, also where a bend lifts what lies beyond the horizon.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/mapping/ProjectiveMappings.h>
+#include <tools/CullHarness.h>
+#include <tools/GlFixture.h>
+#include <tools/ImageComparison.h>
+#include <tools/OahuScene.h>
+#include <tools/RandomSamples.h>
+
+#include <osg/ClusterCullingCallback>
+#include <osg/CoordinateSystemNode>
+#include <osg/Math>
+#include <osg/MatrixTransform>
+#include <osg/ShapeDrawable>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+constexpr int WIDTH = 160, HEIGHT = 120;
+constexpr double EQUATOR = 6378137.0;
+
+class HorizonCulling : public GlFixture
+{
+protected:
+    HorizonCulling() : GlFixture(WIDTH, HEIGHT) {}
+};
+
+/// The sphere is not within the ground where that is below the ellipsoid's equator; this is well above all.
+double heightOver(const osg::Vec3d& eye)
+{
+    return eye.length() - (EQUATOR - 22000.0);
+}
+
+osg::Matrixd randomView(Random& random)
+{
+    osg::Vec3d up(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    up.normalize();
+    const osg::Vec3d east = osg::Vec3d(0.0, 0.0, 1.0) ^ up;
+    const osg::Vec3d eye = up * (EQUATOR + random.logarithmic(1000.0, 3e7));
+    // Mostly near the horizon.
+    const double dip = std::acos(std::min(1.0, EQUATOR / eye.length()));
+    const double pitch = -dip * random.uniform(0.3, 1.2);
+    const osg::Vec3d ahead = osg::Quat(random.uniform(-osg::PI, osg::PI), up) * east;
+    return osg::Matrixd::lookAt(eye, eye + (ahead * std::cos(pitch) + up * std::sin(pitch)) * 1000.0, up);
+}
+
+/// What the depth buffer has to tell apart is far away.
+osg::Matrixd perspective(Random& random, const osg::Matrixd& view)
+{
+    const double height = heightOver(osg::Matrixd::inverse(view).getTrans());
+    return osg::Matrixd::perspective(random.uniform(20.0, 90.0), static_cast<double>(WIDTH) / HEIGHT,
+                                     0.3 * height, 1e8);
+}
+
+} // namespace
+
+TEST_F(HorizonCulling, PicturesOfAWholeEarthAreThoseWithoutIt)
+{
+    const std::optional<Scene> oahu = loadOahu("oahu_globe");
+    if (!oahu) return;
+    const std::function<void(EffectScene&, Random&)> kinds[] = {
+        // Moves nothing.
+        [](EffectScene& scene, Random&) { scene.addEffect(new ProjectiveMappings); },
+        [](EffectScene& scene, Random& random)
+        {
+            osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+            exaggeration->setFactor(random.uniform(1.0, 10.0));
+            scene.addEffect(exaggeration);
+        },
+        [](EffectScene& scene, Random&) { scene.addEffect(new BirdsEyeView); },
+        [](EffectScene& scene, Random&)
+        {
+            scene.addEffect(new PedestrianView);
+        }};
+    CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
+    harness.camera().setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    std::size_t without = 0, with = 0;
+    for (int i = 0; i < (fullTest() ? 300 : 24); ++i)
+    {
+        SCOPED_TRACE(i);
+        Random random(static_cast<std::uint64_t>(i));
+        EffectScene& scene = *oahu->effects;
+        while (scene.getNumEffects() > 0)
+            scene.removeEffect(scene.getEffect(0));
+        kinds[i % 4](scene, random);
+        const osg::Matrixd view = randomView(random);
+        // An orthographic picture of the whole Earth, too: there the eye is nowhere.
+        const bool flat = i % 8 == 4;
+        const osg::Matrixd projection =
+            flat ? osg::Matrixd::ortho(-8e6, 8e6, -6e6, 6e6, -1e8, 1e8) : perspective(random, view);
+        harness.setCamera(view, projection);
+        for (int step = 0; step < 3; ++step)
+            CullHarness::load(harness.frame(true, false).requests, random, 0.7);
+        const osg::CullSettings::CullingMode mode = harness.camera().getCullingMode();
+        const Culled culled = harness.frame(true);
+        const Culled everything = harness.frame(false);
+        EXPECT_TRUE(imagesMatch(*culled.image, *everything.image, {}));
+        harness.camera().setCullingMode(mode & ~osg::CullSettings::CLUSTER_CULLING);
+        const Culled both = harness.frame(true, false);
+        harness.camera().setCullingMode(mode);
+        if (flat || !scene.deformation(view, projection)->empty())
+        {
+            EXPECT_EQ(culled.leaves.size(), both.leaves.size());
+            continue;
+        }
+        with += culled.leaves.size();
+        without += both.leaves.size();
+    }
+    EXPECT_LT(with, without) << "nothing was left out beyond the horizon";
+    std::cout << "drawables that stay where they are: " << with << " in the place of " << without << "\n";
+}
+
+TEST_F(HorizonCulling, PicturesOfPlainOsgAreThoseWithoutIt)
+{
+    const std::optional<Scene> oahu = loadOahu("oahu_globe");
+    if (!oahu) return;
+    // The terrain itself, as Debian's osgviewer draws it.
+    osg::ref_ptr<osg::Group> plain = new osg::Group;
+    for (unsigned int i = 0; i < oahu->effects->getNumChildren(); ++i)
+        plain->addChild(oahu->effects->getChild(i));
+    CullHarness harness(context(), plain, WIDTH, HEIGHT);
+    harness.camera().setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    for (int i = 0; i < (fullTest() ? 200 : 16); ++i)
+    {
+        SCOPED_TRACE(i);
+        Random random(static_cast<std::uint64_t>(1000 + i));
+        const osg::Matrixd view = randomView(random);
+        harness.setCamera(view, perspective(random, view));
+        for (int step = 0; step < 3; ++step)
+            CullHarness::load(harness.frame(true, false).requests, random, 0.7);
+        const Culled culled = harness.frame(true);
+        const Culled everything = harness.frame(false);
+        EXPECT_TRUE(imagesMatch(*culled.image, *everything.image, {}));
+    }
+}
+
+/// Databases of others have such callbacks, too: VirtualPlanetBuilder's.
+TEST_F(HorizonCulling, OfOthersDoesNotHoldWhereABendLifts)
+{
+    // A red block behind the horizon of an Earth without ground, so high that it stands above the horizon once it is exaggerated.
+    osg::ref_ptr<EffectScene> scene = new EffectScene;
+    osg::ref_ptr<osg::CoordinateSystemNode> earth = new osg::CoordinateSystemNode;
+    earth->setEllipsoidModel(new osg::EllipsoidModel);
+    scene->addChild(earth);
+    const osg::Vec3d up(1.0, 0.0, 0.0), north(0.0, 0.0, 1.0);
+    const double angle = 0.04; // 255 km
+    const osg::Vec3d there = up * std::cos(angle) + north * std::sin(angle);
+    osg::ref_ptr<osg::Group> tile = new osg::Group;
+    osg::ref_ptr<osg::ShapeDrawable> block =
+        new osg::ShapeDrawable(new osg::Box(osg::Vec3(there * EQUATOR), 50000.0f));
+    block->setColor(osg::Vec4(1.0f, 0.0f, 0.0f, 1.0f));
+    tile->addChild(block);
+    tile->setCullCallback(
+        new osg::ClusterCullingCallback(osg::Vec3(there * EQUATOR), osg::Vec3(there), -0.005f));
+    earth->addChild(tile);
+    CullHarness harness(context(), scene, WIDTH, HEIGHT);
+    const osg::Vec3d eye = up * (EQUATOR + 1000.0);
+    harness.setCamera(osg::Matrixd::lookAt(eye, eye + north, up),
+                      osg::Matrixd::perspective(60.0, static_cast<double>(WIDTH) / HEIGHT, 10.0, 1e7));
+    EXPECT_TRUE(harness.frame(true).leaves.empty()) << "the test's block does not know its horizon";
+    osg::ref_ptr<VerticalExaggeration> exaggeration = new VerticalExaggeration;
+    exaggeration->setFactor(10.0);
+    scene->addEffect(exaggeration);
+    EXPECT_EQ(harness.frame(true).leaves.size(), 1u);
+}
