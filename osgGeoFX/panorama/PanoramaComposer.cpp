@@ -104,28 +104,31 @@ public:
         const PictureCurve curve(view, aspect);
         const double tip = view.horizonLine + tipInSky * (1.0 - view.horizonLine);
         double most = std::clamp(mostSlope / std::max(steep, 1e-3), modestExaggeration, mostExaggeration);
-        const auto fit = [&](double x, double s, double height)
+        const std::vector<double> dips = dipsOf(curve);
+        const auto fit = [&](double dip, const PictureCurve::Reach& there, double height)
         {
-            const double part = curve.share(s);
-            const double raised = curve.raised(height, s);
-            const double room = tip - curve.foot(x, s) - part * curve.far * raised;
+            const double part = there.share;
+            const double raised = curve.raised(height, there);
+            const double room = tip - curve.foot(dip, there) - part * curve.far * raised;
             if ((1.0 - part) * raised > 1e-6) most = std::min(most, room / ((1.0 - part) * raised));
         };
         const PicturePlace place(_relief, view);
-        for (int column = 0; column < _columns; ++column)
+        for (int step = 0; step < _steps; ++step)
         {
-            for (int step = 0; step < _steps; ++step)
+            const double s = curve.end * (step + 0.5) / _steps;
+            const PictureCurve::Reach there = curve.at(s);
+            for (int column = 0; column < _columns; ++column)
             {
-                const double s = curve.end * (step + 0.5) / _steps;
                 const Sample sample = at(place.at(xOf(column) * view.viewRadius, s), 0.0);
-                if (sample.ground) fit(xOf(column), s, sample.height);
+                if (sample.ground) fit(dips[static_cast<std::size_t>(column)], there, sample.height);
             }
         }
         for (const ReliefSummit& summit : _worth.summits)
         {
             const osg::Vec2d at = place.of(summit.place);
             const double x = at.x() / view.viewRadius;
-            if (std::abs(x) < 1.0 && at.y() > 0.0 && at.y() < curve.end) fit(x, at.y(), summit.height);
+            if (std::abs(x) < 1.0 && at.y() > 0.0 && at.y() < curve.end)
+                fit(curve.dip(x), curve.at(at.y()), summit.height);
         }
         return std::max(most, leastExaggeration);
     }
@@ -141,18 +144,30 @@ public:
         double nearHeight = 0.0, nearCount = 0.0, farHeight = 0.0, farCount = 0.0;
         const double stretch = curve.end + curve.before;
         const double stepArea = (stretch / _steps) * (2.0 * curve.radius / _columns);
+        // The same in all columns.
+        struct Step
+        {
+            double s, area;
+            PictureCurve::Reach reach;
+        };
+        std::vector<Step> steps;
+        for (int step = 0; step < _steps; ++step)
+        {
+            const double s = stretch * (step + 0.5) / _steps - curve.before;
+            steps.push_back({s, stepArea * curve.widening(s), curve.at(s)});
+        }
         std::vector<float> tops(static_cast<std::size_t>(_columns) * static_cast<std::size_t>(_steps));
         for (int column = 0; column < _columns; ++column)
         {
-            const double x = xOf(column);
+            const double x = xOf(column), dip = curve.dip(x);
             double top = 0.0, known = view.baseHeight;
             bool begun = false; // Where the ground begins above the picture's base, what lies below is blank.
             for (int step = 0; step < _steps; ++step)
             {
-                const double s = stretch * (step + 0.5) / _steps - curve.before;
+                const auto& [s, ground, there] = steps[static_cast<std::size_t>(step)];
                 const Sample sample = at(place.at(x * curve.radius, s), view.edgeWidth * curve.radius);
                 if (sample.ground) known = sample.height;
-                const double y = curve.foot(x, s) + curve.lifted(known, s);
+                const double y = curve.foot(dip, there) + curve.lifted(known, there);
                 const double area = std::min(y, 1.0) - top;
                 const bool inPicture = s >= 0.0 && s < curve.horizon;
                 walked += inPicture ? 1.0 : 0.0;
@@ -168,7 +183,7 @@ public:
                     {
                         shown += area;
                         worth += area * sample.worth;
-                        covered += sample.worth * stepArea * curve.widening(s);
+                        covered += sample.worth * ground;
                         if (sample.water) water += area;
                         const double height = area * sample.height;
                         if (top < 0.35 * view.horizonLine) nearHeight += height, nearCount += area;
@@ -231,6 +246,13 @@ public:
     }
 
 private:
+    std::vector<double> dipsOf(const PictureCurve& curve) const
+    {
+        std::vector<double> result;
+        for (int column = 0; column < _columns; ++column)
+            result.push_back(curve.dip(xOf(column)));
+        return result;
+    }
     double xOf(int column) const { return (2.0 * column + 1.0) / _columns - 1.0; }
 
     /// Ground nearer to the end of the data than `margin` does not count.

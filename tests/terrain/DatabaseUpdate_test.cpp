@@ -82,7 +82,7 @@ protected:
         _options.dems = {base()};
         _options.epsg = GetParam() ? 32604 : 0;
         _options.tileSize = 8;
-        _options.textureSize = 64;
+        _options.textureSize = 32;
         _options.output = (_folder / "db").string();
         _options.threads = 2;
         _options.update = true;
@@ -345,6 +345,7 @@ TEST_P(DatabaseUpdate, OptionsThatAffectEverything)
     expectAll("tile size 16");
     _options.compressTextures = true;
     expectAll("textures compressed");
+    _options.compressTextures = false;
     // Beyond the border of before.
     _options.dems.push_back(patch(PIXEL, COLUMNS - 20));
     expectAll("extent ");

@@ -38,30 +38,56 @@ struct PictureCurve
         if (profile.first > 0.0) along = 2.0 * composition.horizonLine / horizon;
     }
 
-    /// The picture's y, 0…1 from its base, of ground at the base height.
-    double foot(double x, double s) const
+    /// What the curve makes of a distance, for the many places at it.
+    struct Reach
     {
-        const double width = std::max(horizon - curve, 1e-3);
-        const double bent = std::clamp(s - curve, 0.0, width);
-        double rise = std::min(s, curve) + bent - bent * bent / (2.0 * width);
-        if (profile.first > 0.0) rise = horizon * glsl::geofx_profileRise(profile, s / horizon);
-        return 0.5 * (along * rise - arch * (1.0 - std::cos(x * osg::PI_2)));
-    }
+        double climbed;      ///< twice the y of ground at the base height in the picture's middle
+        double share;        ///< of the horizon's own exaggeration
+        double exaggeration; ///< there
+        double lift, shown;  ///< of a height
+    };
+    Reach at(double s) const { return {climbed(s), share(s), exaggeration(s), lift * width(s), shown(s)}; }
+
+    /// The picture's y, 0…1 from its base, of ground at the base height.
+    double foot(double x, double s) const { return 0.5 * (climbed(s) - dip(x)); }
+    double foot(double dip, const Reach& there) const { return 0.5 * (there.climbed - dip); }
+    /// Twice what horizontals lie lower at x than in the middle.
+    double dip(double x) const { return arch * (1.0 - std::cos(x * osg::PI_2)); }
     /// The share of the horizon's own exaggeration at a distance.
     double share(double s) const { return far < 0.0 ? 0.0 : glsl::geofx_profileLift(0.0, 1.0, s / horizon); }
     /// The exaggeration at a distance.
     double exaggeration(double s) const { return near * (1.0 - share(s)) + far * share(s); }
     /// How much a height raises it.
-    double lifted(double height, double s) const { return exaggeration(s) * raised(height, s); }
-    /// How much a height raises it, for an exaggeration of 1.
-    double raised(double height, double s) const
+    double lifted(double height, double s) const { return lifted(height, at(s)); }
+    double lifted(double height, const Reach& there) const
     {
-        const double t = std::clamp(1.0 - (s - horizon) / std::max(end - horizon, 1e-3), 0.0, 1.0);
-        const double width = ring > 0.0 ? ring / (ring + std::max(s, 0.0)) : 1.0;
-        return 0.5 * lift * width * (height - base) * t * t * (3.0 - 2.0 * t);
+        return there.exaggeration * raised(height, there);
+    }
+    /// How much a height raises it, for an exaggeration of 1.
+    double raised(double height, double s) const { return raised(height, at(s)); }
+    double raised(double height, const Reach& there) const
+    {
+        return 0.5 * there.lift * (height - base) * there.shown;
     }
     /// How much wider than at the base a column is at a distance s.
     double widening(double s) const { return ring > 0.0 ? std::max(ring + s, 0.0) / ring : 1.0; }
+
+    double climbed(double s) const
+    {
+        const double width = std::max(horizon - curve, 1e-3);
+        const double bent = std::clamp(s - curve, 0.0, width);
+        double rise = std::min(s, curve) + bent - bent * bent / (2.0 * width);
+        if (profile.first > 0.0) rise = horizon * glsl::geofx_profileRise(profile, s / horizon);
+        return along * rise;
+    }
+    /// Heights get smaller with the distance as widths do.
+    double width(double s) const { return ring > 0.0 ? ring / (ring + std::max(s, 0.0)) : 1.0; }
+    /// Beyond the horizon they go down to nothing.
+    double shown(double s) const
+    {
+        const double t = std::clamp(1.0 - (s - horizon) / std::max(end - horizon, 1e-3), 0.0, 1.0);
+        return t * t * (3.0 - 2.0 * t);
+    }
 
     double radius, ring, before, curve, horizon, end, along, lift, arch, base, near, far;
     glsl::geofx_Profile profile;
