@@ -9,10 +9,10 @@
 #include "lib/painting.glsl"
 #endif
 
-// Light as maps have it: what is in the shade is not dark. 0.55 to 1.1.
+// Light as maps have it: what is in the shade is not dark. 0.7 to 1.06.
 GEOFX_INLINE Number geofx_bendShade(Rgb light)
 {
-    return Number(0.55) + Number(0.55) * min(dot(light, Rgb(Number(0.2126), Number(0.7152), Number(0.0722))), Number(1));
+    return Number(0.7) + Number(0.36) * min(dot(light, Rgb(Number(0.2126), Number(0.7152), Number(0.0722))), Number(1));
 }
 
 // The map that is made of what lies on the ground, in pale colors. `wet`: the share of water. `light`: on the ground.
@@ -21,7 +21,7 @@ GEOFX_INLINE Rgb geofx_bendMap(geofx_Cover cover, Number wet, Rgb light)
     Rgb color = Rgb(Number(0.95), Number(0.94), Number(0.88));
     color = mix(color, Rgb(Number(0.93), Number(0.89), Number(0.78)), geofx_ease(cover.bare, Number(0.1), Number(0.4)));
     color = mix(color, Rgb(Number(0.76), Number(0.85), Number(0.68)), geofx_ease(cover.trees, Number(0.25), Number(0.5)));
-    color = mix(color, Rgb(Number(0.88), Number(0.84), Number(0.8)), geofx_ease(cover.town, Number(0.2), Number(0.5)));
+    color = mix(color, Rgb(Number(0.94), Number(0.92), Number(0.89)), geofx_ease(cover.town, Number(0.2), Number(0.5)));
     color = mix(color, Rgb(Number(0.62), Number(0.77), Number(0.88)), wet);
     return color * geofx_bendShade(light);
 }
@@ -46,8 +46,8 @@ GEOFX_INLINE Rgb geofx_bendRestyle(geofx_BendStyle styles, Rgb color, Rgba map, 
     if (building)
     {
         share = max(share, styles.blocks * style);
-        // A little darker than paper, or their roofs would be lost on it.
-        other = geofx_bendShade(other) * Rgb(Number(0.86), Number(0.84), Number(0.81));
+        // Warmer than paper, and a little darker, or their roofs would be lost on it.
+        other = geofx_bendShade(other) * Rgb(Number(0.93), Number(0.87), Number(0.78));
     }
     Rgb result = mix(color, other, share * map.w);
     Number grey = dot(result, Rgb(Number(0.2126), Number(0.7152), Number(0.0722)));

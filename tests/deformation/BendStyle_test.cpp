@@ -93,13 +93,13 @@ TEST(BendStyle, BuildingsBecomeBlocksInTheContextAndOnTheMap)
     style.blocks = 1.0;
     expectColor(geofx_bendRestyle(style, windows, bare, true, 0.0), windows);
     expectColor(geofx_bendRestyle(style, windows, bare, true, 1.0),
-                (0.55 + 0.55 * 0.8) * Rgb(0.86, 0.84, 0.81));
+                (0.7 + 0.36 * 0.8) * Rgb(0.93, 0.87, 0.78));
     expectColor(geofx_bendRestyle(style, windows, bare, false, 1.0), windows);
     style.blocks = 0.0;
     style.map = 1.0;
     style.mapInFocus = 1.0;
     expectColor(geofx_bendRestyle(style, windows, bare, true, 0.0),
-                (0.55 + 0.55 * 0.8) * Rgb(0.86, 0.84, 0.81));
+                (0.7 + 0.36 * 0.8) * Rgb(0.93, 0.87, 0.78));
     expectColor(geofx_bendRestyle(style, windows, bare, true, 1.0), windows);
 }
 
