@@ -431,7 +431,7 @@ TEST(ShaderLibrary, ThePassesOfCloseUpsAreAcceptedWithAnyDefines)
         {"birdsEyeView", "closeUps", "projectiveMappings"},
         {"projectiveMappings", "verticalExaggeration", "pedestrianView", "closeUps", "closeUps"},
     };
-    const int samples = geofx::test::fullTest() ? 50 : 3;
+    const int samples = geofx::test::fullTest() ? 50 : 2;
     for (const std::vector<std::string>& kinds : lists)
     {
         EffectProgram::Effects effects;
@@ -471,7 +471,7 @@ TEST(ShaderLibrary, TheStagesThatShowLayersAreAccepted)
 TEST(ShaderLibrary, TheFixedStagesAreAcceptedWithAnyDefines)
 {
     const osg::ref_ptr<osgGeoFX::Effect> effect = osgGeoFX::createEffect("birdsEyeView");
-    const int samples = geofx::test::fullTest() ? 500 : 15;
+    const int samples = geofx::test::fullTest() ? 500 : 8;
     for (int sample = 0; sample < samples; ++sample)
     {
         SCOPED_TRACE(sample);

@@ -403,7 +403,7 @@ TEST_P(MappingScenes, AreWhatTheCpuComputes)
     _mappings->setPageSide(256);
     const bool inBytes = filtersInBytes();
     double changed = 0.0;
-    const SampleRange scenes(fullTest() ? 200 : 24, GetParam(), PARTS);
+    const SampleRange scenes(fullTest() ? 200 : 16, GetParam(), PARTS);
     for (int scene = scenes.first; scene < scenes.end; ++scene)
     {
         Random random(static_cast<std::uint64_t>(scene));

@@ -168,7 +168,7 @@ struct Plain
 
 TEST_F(DeformedLevels, NearAndFarContainWhatIsDrawn)
 {
-    const int count = fullTest() ? 300 : 20;
+    const int count = fullTest() ? 300 : 12;
     const double ratio = 0.0005;
     int checked = 0;
     int wrongWithout = 0;
@@ -417,7 +417,7 @@ TEST_F(DeformedLevels, WithoutCompensationCullingIsThatOfAPlainGroup)
     if (!oahu) return;
     CullHarness harness(context(), oahu->node, WIDTH, HEIGHT);
     int others = 0;
-    for (int i = 0; i < (fullTest() ? 200 : 20); ++i)
+    for (int i = 0; i < (fullTest() ? 200 : 12); ++i)
     {
         SCOPED_TRACE("camera " + std::to_string(i));
         Random random(static_cast<std::uint64_t>(i) + 9000);

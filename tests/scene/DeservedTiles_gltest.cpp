@@ -223,7 +223,7 @@ TEST_P(DeservedTiles, NoTileIsMissingAndNoneIsCoarserThanItsErrorAllows)
     std::optional<Scene> oahu = loadOahu(GetParam());
     if (!oahu) return;
     CullHarness harness(context(), oahu->node, WIDTH, HEIGHT);
-    const int cameras = fullTest() ? 200 : 40;
+    const int cameras = fullTest() ? 200 : 24;
     int inSight = 0;
     int due = 0;
     int asking = 0;

@@ -224,7 +224,7 @@ protected:
         return bad;
     }
 
-    static int pictures() { return fullTest() ? 100 : 10; }
+    static int pictures() { return fullTest() ? 100 : 6; }
 
 private:
     static std::unique_ptr<LoadedDatabase> geocentricDatabase, projectedDatabase;

@@ -237,7 +237,7 @@ std::vector<double> changesOf(const osg::Image& before, const osg::Image& after)
 class DrawnTriangles : public GlFixture
 {
 protected:
-    static int views() { return fullTest() ? 100 : 8; }
+    static int views() { return fullTest() ? 100 : 5; }
 
     void check(const BuildOptions& options, double most,
                const std::function<double(double x, double y)>& height)
