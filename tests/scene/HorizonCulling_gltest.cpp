@@ -147,7 +147,7 @@ TEST_F(HorizonCulling, PicturesOfPlainOsgAreThoseWithoutIt)
     }
 }
 
-/// Databases of others have such callbacks, too: VirtualPlanetBuilder's.
+/// Tiles and models of others may have such callbacks, too.
 TEST_F(HorizonCulling, OfOthersDoesNotHoldWhereABendLifts)
 {
     // A red block behind the horizon of an Earth without ground, so high that it stands above the horizon once it is exaggerated.
