@@ -16,7 +16,6 @@
 #include <osg/ClusterCullingCallback>
 #include <osg/CoordinateSystemNode>
 #include <osg/Math>
-#include <osg/MatrixTransform>
 #include <osg/ShapeDrawable>
 
 #include <algorithm>
@@ -38,7 +37,7 @@ protected:
     HorizonCulling() : GlFixture(WIDTH, HEIGHT) {}
 };
 
-/// The sphere is not within the ground where that is below the ellipsoid's equator; this is well above all.
+/// An eye's height over a sphere that touches the Earth at its poles: never less than that over the ellipsoid.
 double heightOver(const osg::Vec3d& eye)
 {
     return eye.length() - (EQUATOR - 22000.0);

@@ -5,7 +5,6 @@
 // that is far beyond the horizon is left out.
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <tools/DatabaseReader.h>
-#include <tools/FolderContents.h>
 #include <tools/RandomSamples.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
@@ -203,9 +202,9 @@ TEST(DatabaseHorizon, OnlyWhereTheEarthIsWhole)
 {
     const TempDir folder;
     const std::pair<const char*, World> worlds[] = {{"whole", {}},
-                                                    {"south.tif", {-90.0, 60.0}},
-                                                    {"west.tif", {-90.0, 90.0, 150.0}},
-                                                    {"hole.tif", {-90.0, 90.0, 180.0, true}}};
+                                                    {"south", {-90.0, 60.0}},
+                                                    {"west", {-90.0, 90.0, 150.0}},
+                                                    {"hole", {-90.0, 90.0, 180.0, true}}};
     for (const auto& [name, world] : worlds)
     {
         SCOPED_TRACE(name);
@@ -216,8 +215,14 @@ TEST(DatabaseHorizon, OnlyWhereTheEarthIsWhole)
         int horizons = 0;
         for (const auto& tile : readTiles(folder / "db"))
             horizons += horizonOf(tile) ? 1 : 0;
-        EXPECT_EQ(horizons > 20, std::string("whole") == name) << horizons;
-        EXPECT_EQ(horizons > 0, std::string("whole") == name) << horizons;
+        if (std::string("whole") == name)
+        {
+            EXPECT_GT(horizons, 20);
+        }
+        else
+        {
+            EXPECT_EQ(horizons, 0);
+        }
     }
 }
 

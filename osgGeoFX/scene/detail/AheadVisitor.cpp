@@ -86,15 +86,10 @@ bool AheadVisitor::outOfSight(const osg::Node& node)
     return _sight.hides(chain(), ball) || _sight.outOfSight(chain().bound(ball), _mode.planes, true);
 }
 
-bool AheadVisitor::belowHorizon(const osg::Node& node) const
+bool AheadVisitor::belowHorizon(const osg::Node& node)
 {
     const auto* horizon = dynamic_cast<const osg::ClusterCullingCallback*>(node.getCullCallback());
-    if (!horizon || !_outlook.horizons || !chain().empty()) return false;
-    const osg::Vec3d eye =
-        osg::Matrixd::inverse(_mode.toView).getTrans() - osg::Vec3d(horizon->getControlPoint());
-    const double distance = eye.length();
-    return distance >= static_cast<double>(horizon->getRadius()) &&
-           eye * osg::Vec3d(horizon->getNormal()) < distance * static_cast<double>(horizon->getDeviation());
+    return horizon && _outlook.horizons && chain().empty() && horizon->cull(this, nullptr, nullptr);
 }
 
 double AheadVisitor::rangeFor(const osg::LOD& node) const
@@ -200,6 +195,11 @@ void AheadVisitor::apply(osg::PagedLOD& node)
     const float priority =
         node.getPriorityOffset(there) + static_cast<float>(sign * share) * node.getPriorityScale(there);
     found({node, there, priority, _mode.model});
+}
+
+osg::Vec3 AheadVisitor::getViewPoint() const
+{
+    return osg::Matrixd::inverse(_mode.toView).getTrans();
 }
 
 float AheadVisitor::getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const

@@ -64,6 +64,7 @@ public:
     void apply(osg::Billboard&) override {}
     void apply(osg::Drawable&) override {}
 
+    osg::Vec3 getViewPoint() const override;
     float getDistanceToViewPoint(const osg::Vec3& position, bool withLodScale) const override;
 
 protected:
@@ -86,7 +87,7 @@ private:
     /// Narrows the planes for what is below the node.
     bool outOfSight(const osg::Node& node);
     /// Whether the round Earth hides a node that knows its horizon.
-    bool belowHorizon(const osg::Node& node) const;
+    bool belowHorizon(const osg::Node& node);
     /// What the ranges of a node are compared with.
     double rangeFor(const osg::LOD& node) const;
 

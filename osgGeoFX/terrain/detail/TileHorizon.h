@@ -14,7 +14,7 @@ namespace osgGeoFX
     horizon. The callback is OSG's own, in the world's frame.
 
     A sphere within all ground that is ever drawn stands for the Earth. From beyond the cone that touches it, nothing of the
-    tile is seen, up to `maxHeight` above the ellipsoid, metres. Null for tiles so large that hardly any eye is there. */
+    tile is seen, up to `maxHeight` above the ellipsoid, metres. Null for tiles so large that they are in sight from almost everywhere. */
 osg::ref_ptr<osg::ClusterCullingCallback> createHorizonCulling(const TilingScheme& scheme, const TileKey& key,
                                                                double maxHeight);
 
