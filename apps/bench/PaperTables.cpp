@@ -75,54 +75,77 @@ public:
     void tileRead(osg::Node& tile) override { applyTo(tile); }
 };
 
-/// Flies along paths, with the terrain read anew each time.
-class Pilot
+/// Shows the scenes of flights, one after the other.
+struct Cockpit
 {
-public:
     /// `lines`: of the picture that tiles are chosen for, which may be larger than the one that is drawn.
-    Pilot(const Settings& settings, std::filesystem::path scene, OffscreenView::Size size, int lines,
-          int frames)
-        : _file(std::move(scene)), _pictures(settings.pictures), _lines(lines), _frames(frames),
-          _view(size, FIELD_OF_VIEW, _root)
+    Cockpit(OffscreenView::Size size, int lines) : view(size, FIELD_OF_VIEW, root)
     {
-        osg::Camera& camera = _view.camera();
+        osg::Camera& camera = view.camera();
         camera.setSmallFeatureCullingPixelSize(camera.getSmallFeatureCullingPixelSize() *
                                                static_cast<float>(size.height) / static_cast<float>(lines));
     }
 
-    /// Tiles come beside the frames, as they do for users. Straight frames and bent ones take turns, each with its own terrain.
+    const osg::ref_ptr<osg::Group> root = new osg::Group;
+    OffscreenView view;
+};
+
+/// Flies along paths, with the terrain read anew each time.
+class Pilot
+{
+public:
+    /// `lines`: as for Cockpit.
+    Pilot(const Settings& settings, std::filesystem::path scene, OffscreenView::Size size, int lines,
+          int frames)
+        : _file(std::move(scene)), _pictures(settings.pictures), _lines(lines), _frames(frames),
+          _straight(size, lines), _bent(size, lines)
+    {
+    }
+
+    /// Straight frames and bent ones take turns, each with its own terrain and pager: a scene that one viewer shows in every other
+    /// frame would lose its tiles in between. Frames have all their tiles, for a frame without them is sooner drawn.
     Flights time(const PaperPath& path)
     {
-        const osgGeoFX::Scene scenes[] = {load(path, false), load(path, true)};
-        Flights result;
-        for (const osgGeoFX::Scene& scene : scenes)
-            start(scene, path);
+        Flight straight, bent;
+        Cruise cruises[] = {Cruise{_straight, load(path, false), straight},
+                            Cruise{_bent, load(path, true), bent}};
+        for (Cruise& cruise : cruises)
+            start(cruise, path);
         for (int frame = 1; frame <= _frames; ++frame)
         {
             const double share = static_cast<double>(frame) / _frames;
             // Each is first in every other round.
             for (const int which : {frame % 2, 1 - frame % 2})
             {
-                show(scenes[which], path, share);
+                Cruise& cruise = cruises[which];
+                show(cruise, path, share);
+                cruise.cockpit.view.settle(share * DURATION);
                 const double before = processSeconds();
-                Flight& flight = which == 0 ? result.straight : result.bent;
-                flight.seconds += _view.frame(share * DURATION);
-                flight.processorSeconds += processSeconds() - before;
+                cruise.flight.seconds += cruise.cockpit.view.frame(share * DURATION);
+                cruise.flight.processorSeconds += processSeconds() - before;
             }
         }
         if (!_pictures.empty())
             for (const int which : {0, 1})
-                picture(scenes[which], path, which == 0 ? "straight" : "bent");
-        land();
-        return result;
+                picture(cruises[which], path, which == 0 ? "straight" : "bent");
+        for (const Cruise& cruise : cruises)
+            land(cruise);
+        return {straight, bent};
     }
 
-    /// Each frame waits for its tiles, and is counted.
+    /// What is read and drawn. Frames have all their tiles.
     Flights count(const PaperPath& path) { return {count(path, false), count(path, true)}; }
 
 private:
     /// Frames from one that is counted to the next; those of the shortest flight have one.
     static constexpr int PERIOD = 3;
+
+    struct Cruise
+    {
+        Cockpit& cockpit;
+        osgGeoFX::Scene scene;
+        Flight& flight;
+    };
 
     osgGeoFX::Scene load(const PaperPath& path, bool bent) const
     {
@@ -141,66 +164,64 @@ private:
         return *scene;
     }
 
-    void show(const osgGeoFX::Scene& scene, const PaperPath& path, double share)
+    static void show(Cruise& cruise, const PaperPath& path, double share)
     {
-        if (_root->getNumChildren() != 1 || _root->getChild(0) != scene.node)
-        {
-            _root->removeChildren(0, _root->getNumChildren());
-            _root->addChild(scene.node);
-            scene.setUpView(_view.view());
-        }
-        _view.look(path.view(share, *scene.reference));
+        cruise.cockpit.view.look(path.view(share, *cruise.scene.reference));
     }
 
-    void start(const osgGeoFX::Scene& scene, const PaperPath& path)
+    void start(Cruise& cruise, const PaperPath& path)
     {
-        _view.camera().setLODScale(scene.lodScale(_lines, FIELD_OF_VIEW));
-        show(scene, path, 0.0);
-        _view.settle();
+        OffscreenView& view = cruise.cockpit.view;
+        cruise.cockpit.root->addChild(cruise.scene.node);
+        cruise.scene.setUpView(view.view());
+        view.camera().setLODScale(cruise.scene.lodScale(_lines, FIELD_OF_VIEW));
+        show(cruise, path, 0.0);
+        view.settle();
     }
 
     Flight count(const PaperPath& path, bool bent)
     {
-        const osgGeoFX::Scene scene = load(path, bent);
-        start(scene, path);
         Flight flight;
-        flight.firstBytes = scene.guard->counts().bytesRead;
+        Cruise cruise{bent ? _bent : _straight, load(path, bent), flight};
+        OffscreenView& view = cruise.cockpit.view;
+        start(cruise, path);
+        const osgGeoFX::TileGuard& guard = *cruise.scene.guard;
+        flight.firstBytes = guard.counts().bytesRead;
         int counted = 0;
         for (int frame = 1; frame <= _frames; ++frame)
         {
             const double share = static_cast<double>(frame) / _frames;
-            show(scene, path, share);
-            _view.settle(share * DURATION);
+            show(cruise, path, share);
+            view.settle(share * DURATION);
             if (frame % PERIOD != PERIOD / 2) continue;
-            const OffscreenView::Drawn drawn = _view.count(share * DURATION);
+            const OffscreenView::Drawn drawn = view.count(share * DURATION);
             flight.triangles += static_cast<double>(drawn.triangles);
             flight.drawables += static_cast<double>(drawn.drawables);
             ++counted;
         }
-        flight.bytes = scene.guard->counts().bytesRead - flight.firstBytes;
+        flight.bytes = guard.counts().bytesRead - flight.firstBytes;
         flight.triangles /= counted;
         flight.drawables /= counted;
-        land();
+        land(cruise);
         return flight;
     }
 
-    void picture(const osgGeoFX::Scene& scene, const PaperPath& path, const std::string& kind)
+    void picture(Cruise& cruise, const PaperPath& path, const std::string& kind)
     {
-        show(scene, path, 0.5);
-        _view.settle(DURATION);
+        show(cruise, path, 0.5);
+        cruise.cockpit.view.settle(DURATION);
         const std::filesystem::path file =
             _pictures / (path.name + "-" + std::to_string(_lines) + "-" + kind + ".png");
-        if (!osgDB::writeImageFile(*_view.capture(), file.string()))
+        if (!osgDB::writeImageFile(*cruise.cockpit.view.capture(), file.string()))
             throw BenchError(file.string() + ": the picture cannot be written; name another folder.");
     }
 
-    void land() { _root->removeChildren(0, _root->getNumChildren()); }
+    static void land(const Cruise& cruise) { cruise.cockpit.root->removeChild(cruise.scene.node); }
 
     const std::filesystem::path _file, _pictures;
     const int _lines, _frames;
     const osg::ref_ptr<PlainFiltering> _filtering = new PlainFiltering;
-    const osg::ref_ptr<osg::Group> _root = new osg::Group;
-    OffscreenView _view;
+    Cockpit _straight, _bent;
 };
 
 /// A row of the paper's Table 1.
@@ -211,7 +232,7 @@ Figure speed(Pilot& pilot, const PaperPath& path, std::size_t size, int frames)
     const auto [straight, bent] = pilot.time(path);
     Figure figure{"table1-" + path.name + "-" + pixels,
                   "frames a second with the deformation over those without, at " + pixels +
-                      ", tiles coming as one flies, without anisotropic filtering: " + path.what,
+                      ", each frame with all its tiles, without anisotropic filtering: " + path.what,
                   "", Bound::AtLeast, path.leastSpeed};
     figure.measured = straight.seconds / bent.seconds;
     const PaperPath::Speed& theirs = path.paperSpeeds[size];

@@ -29,6 +29,7 @@ osg::ref_ptr<osg::StateSet> GroundShade::createState()
     for (const char* other : {"GEOFX_RIGID", "GEOFX_PAINTED", "GEOFX_DETAIL"})
         state->setDefine(other, osg::StateAttribute::OFF);
     state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    state->setMode(GL_CULL_FACE, osg::StateAttribute::OFF);
     state->setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OFF);
     // What is drawn takes its share, whatever color effects have given it.
     state->setAttributeAndModes(new osg::BlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE));

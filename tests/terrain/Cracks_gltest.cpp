@@ -100,6 +100,8 @@ void take(const LoadedDatabase& database, const DatabaseTile& tile, const Refine
 Cut cutOf(const LoadedDatabase& database, const Refine& refine)
 {
     Cut cut;
+    // As above a database's tiles.
+    cut.scene->getOrCreateStateSet()->setMode(GL_CULL_FACE, osg::StateAttribute::ON);
     take(database, database.tiles.at({0, 0, 0}), refine, cut);
     return cut;
 }

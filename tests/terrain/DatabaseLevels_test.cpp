@@ -459,6 +459,52 @@ TEST(DatabaseLevels, SkirtsHaveNoGaps)
                  });
 }
 
+/// OpenGL draws no backs of them.
+TEST(DatabaseLevels, AllTrianglesFaceOutside)
+{
+    const TempDir folder;
+    const auto projected = writeRelief(folder / "utm.tif", 100, 70, 600000.0, 2400000.0, 30.0, "EPSG:32604");
+    const auto geographic = writeRelief(folder / "geographic.tif", 100, 70, 10.0, 50.0, 0.001);
+    for (const auto& [dem, epsg] : {std::pair(projected, 32604), std::pair(geographic, 0)})
+    {
+        const std::string database = folder / ("db" + std::to_string(epsg));
+        buildDatabase(options({dem}, database, epsg));
+        std::size_t ground = 0, walls = 0;
+        readDatabase(database,
+                     [&](const DatabaseTile& tile)
+                     {
+                         for (const auto& mesh : tile.meshes)
+                         {
+                             const auto& places =
+                                 dynamic_cast<const osg::Vec3Array&>(*mesh.geometry->getVertexArray());
+                             const osg::PrimitiveSet& corners = *mesh.geometry->getPrimitiveSet(0);
+                             const osg::Vec3d middle = mesh.block->getCenter();
+                             for (unsigned int i = 0; i < corners.getNumIndices(); i += 3)
+                             {
+                                 const osg::Vec3d a = places[corners.index(i)],
+                                                  b = places[corners.index(i + 1)],
+                                                  c = places[corners.index(i + 2)];
+                                 const osg::Vec3d normal = (b - a) ^ (c - a);
+                                 if (i / 3 < mesh.ground.size())
+                                 {
+                                     ASSERT_GT(normal.z(), 0.0) << tile.transform->getName();
+                                     ++ground;
+                                     continue;
+                                 }
+                                 osg::Vec3d away = (a + b + c) / 3.0 - middle;
+                                 away.z() = 0.0;
+                                 // Some are as thin as the rounding of places.
+                                 if (normal.length() < 1.0) continue;
+                                 ASSERT_GT(normal * away, 0.0) << tile.transform->getName();
+                                 ++walls;
+                             }
+                         }
+                     });
+        EXPECT_GT(ground, 10000u);
+        EXPECT_GT(walls, 3000u);
+    }
+}
+
 TEST(DatabaseLevels, NormalsAreThoseOfTheGround)
 {
     // A plane that rises 3 m in 10 m to the east and falls 1 m in 10 m to the north.

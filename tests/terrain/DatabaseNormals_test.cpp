@@ -295,7 +295,7 @@ TEST(DatabaseNormals, LieWhereVerticesDo)
     }
 }
 
-TEST(DatabaseNormals, TheyAreBoundAndTheProgramStandsAboveTilesAlone)
+TEST(DatabaseNormals, TheyAreBoundAndTheStateStandsAboveTilesAlone)
 {
     const TempDir folder;
     const auto dem = writeRelief(folder / "dem.tif", 40, 40, 10.0, 50.0, 0.004);
@@ -315,8 +315,10 @@ TEST(DatabaseNormals, TheyAreBoundAndTheProgramStandsAboveTilesAlone)
     const osg::ref_ptr<osg::Node> root = osgDB::readRefNodeFile(o.output + "/terrain.osgb");
     ASSERT_TRUE(root.valid());
     EXPECT_EQ(root->getStateSet()->getAttribute(osg::StateAttribute::PROGRAM), nullptr);
+    EXPECT_EQ(root->getStateSet()->getMode(GL_CULL_FACE), osg::StateAttribute::INHERIT);
     const osg::StateSet* above = root->asGroup()->getChild(0)->getStateSet();
     ASSERT_NE(above, nullptr);
+    EXPECT_EQ(above->getMode(GL_CULL_FACE), osg::StateAttribute::ON);
     const auto* program =
         dynamic_cast<const osg::Program*>(above->getAttribute(osg::StateAttribute::PROGRAM));
     ASSERT_NE(program, nullptr);

@@ -12,6 +12,8 @@
 #include <tools/TestRasters.h>
 #include <town/TownFiles.h>
 
+#include <osgDB/ReadFile>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -205,6 +207,12 @@ TEST(TownBuilder, EachBuildingOnceOnEachLevel)
     EXPECT_GT(summary.gabled, static_cast<std::uint64_t>(count / 4));
     EXPECT_EQ(summary.byArea + summary.byStoreys + summary.badHeights + summary.leftOut + summary.outside,
               0u);
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(database + "/terrain.osgb");
+    ASSERT_TRUE(node);
+    const osg::Group& children = *node->asGroup();
+    const osg::Node& town = *children.getChild(children.getNumChildren() - 1);
+    EXPECT_EQ(town.getName(), "buildings");
+    EXPECT_EQ(town.getStateSet()->getMode(GL_CULL_FACE), osg::StateAttribute::ON);
     const DatabaseRoot root(database);
     // The middles of the source, and heights.
     std::map<std::pair<long, long>, double> wanted;

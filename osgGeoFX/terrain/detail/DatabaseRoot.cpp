@@ -183,7 +183,10 @@ osg::ref_ptr<osg::CoordinateSystemNode> createRoot(const BuildPlan& plan, const 
     material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(1.0f, 1.0f, 1.0f, 1.0f));
     root->getOrCreateStateSet()->setAttributeAndModes(material);
     // Not at the root itself, below which applications put other things.
-    addTileProgram(*result.root->getOrCreateStateSet());
+    osg::StateSet& tiles = *result.root->getOrCreateStateSet();
+    addTileProgram(tiles);
+    // Ground and walls are seen from outside alone. Mountains at the skyline show as many backs as fronts.
+    tiles.setMode(GL_CULL_FACE, osg::StateAttribute::ON);
     root->addChild(result.root);
     return root;
 }

@@ -154,6 +154,8 @@ osg::ref_ptr<osg::StateSet> createTownState()
     // What streets and neighbours reflect: a wall in the shade is not as dark as the ground on a slope.
     material->setEmission(osg::Material::FRONT_AND_BACK, osg::Vec4(0.11f, 0.11f, 0.11f, 1.0f));
     state->setAttributeAndModes(material);
+    // Buildings are seen from outside alone.
+    state->setMode(GL_CULL_FACE, osg::StateAttribute::ON);
     state->setDefine(RigidParts::define);
     return state;
 }
