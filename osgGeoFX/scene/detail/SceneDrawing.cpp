@@ -11,6 +11,7 @@
 #include <osgGeoFX/scene/detail/CameraRoles.h>
 #include <osgGeoFX/scene/detail/DividedTriangles.h>
 #include <osgGeoFX/scene/detail/GpuLimits.h>
+#include <osgGeoFX/scene/detail/NearestFirst.h>
 #include <osgGeoFX/scene/detail/TargetFormat.h>
 
 #include <osg/Notify>
@@ -386,17 +387,26 @@ bool SceneDrawing::cull(EffectScene& scene, const Effects& effects, osgUtil::Cul
 {
     if (dynamic_cast<CompensatingCullVisitor*>(&outer)) return false;
     if (!outer.getRenderStage() || !outer.getCurrentCamera()) return false;
-    if ((*outer.getProjectionMatrix())(3, 3) != 0.0 &&
-        (outer.getCullingMode() & osg::CullSettings::CLUSTER_CULLING))
+    NearestFirst order(*outer.getCurrentRenderBin());
+    const bool orthographic = (*outer.getProjectionMatrix())(3, 3) != 0.0;
+    if (orthographic && (outer.getCullingMode() & osg::CullSettings::CLUSTER_CULLING))
     {
         // Tiles that know their horizon ask for the eye, and an orthographic picture is seen from nowhere. All settings
         // are kept, since a change of one tells OSG to take it from the camera no longer.
         const osg::CullSettings former(outer);
         outer.setCullingMode(outer.getCullingMode() & ~osg::CullSettings::CLUSTER_CULLING);
-        if (!cull(scene, effects, outer, top, traverse)) traverse(outer);
+        if (!cullWithEffects(scene, effects, outer, top, traverse)) traverse(outer);
         outer.setCullSettings(former);
-        return true;
     }
+    else if (!cullWithEffects(scene, effects, outer, top, traverse))
+        traverse(outer);
+    order.sort();
+    return true;
+}
+
+bool SceneDrawing::cullWithEffects(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer,
+                                   osg::Group& top, const Traverse& traverse)
+{
     const CameraEffects* const special = CameraEffects::find(*outer.getCurrentCamera());
     const Effects shown = special ? effectsFor(effects, *special) : effects;
     const CameraDepth depth(special && special->getDepthConvention() ? *special->getDepthConvention()

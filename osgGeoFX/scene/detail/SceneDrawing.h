@@ -30,8 +30,8 @@ public:
 
     SceneDrawing();
 
-    /// Culls what is below `top`, where `outer` has come to. `traverse` goes on below it. False if the camera draws it
-    /// without effects; nothing has been culled then.
+    /// Culls what is below `top`, where `outer` has come to, and has it drawn with or without effects, the nearest tiles first.
+    /// `traverse` goes on below it. False if `outer` is a visitor of ours, or draws nothing; nothing has been culled then.
     bool cull(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer, osg::Group& top,
               const Traverse& traverse);
 
@@ -65,6 +65,9 @@ private:
                                const std::shared_ptr<const TextureUnits>& units);
     };
 
+    /// The same; false if the camera draws the scene without effects.
+    bool cullWithEffects(EffectScene& scene, const Effects& effects, osgUtil::CullVisitor& outer,
+                         osg::Group& top, const Traverse& traverse);
     std::shared_ptr<const TextureUnits> unitsOf(const Effects& effects, const EffectScene& scene);
     void completeBounds(const EffectScene& scene, const osg::Group& top, const osg::FrameStamp* stamp);
     void sayOnce(const std::string& sentence);

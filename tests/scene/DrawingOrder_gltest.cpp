@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// The order in which things of a scene are drawn: the nearest first, where any order gives the same picture.
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <tools/BentGround.h>
+#include <tools/CullHarness.h>
+
+#include <osg/Depth>
+
+#include <map>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+
+namespace
+{
+
+/// Boxes ahead of the camera, each with a state of its own, as tiles have. Their names are the distances.
+class DrawingOrder : public BentGround
+{
+protected:
+    void SetUp() override
+    {
+        BentGround::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        for (const int distance : {400, 100, 300, 200})
+        {
+            const osg::ref_ptr<osg::MatrixTransform> box = makeBox(10.0f, osg::Vec3d(0.0, distance, 0.0));
+            osg::Drawable* drawable = box->getChild(0)->asDrawable();
+            ASSERT_NE(drawable, nullptr);
+            drawable->setName(std::to_string(distance));
+            _states[distance] = drawable->getOrCreateStateSet();
+            _boxes->addChild(box);
+        }
+        _scene->addChild(_boxes);
+    }
+
+    std::vector<int> order(osg::Node* top)
+    {
+        CullHarness harness(context(), top, WIDTH, HEIGHT);
+        harness.setCamera(osg::Matrixd::lookAt(osg::Vec3d(0.0, 0.0, 30.0), osg::Vec3d(0.0, 1000.0, 0.0),
+                                               osg::Vec3d(0.0, 0.0, 1.0)),
+                          osg::Matrixd::perspective(40.0, 4.0 / 3.0, 1.0, 2000.0));
+        std::vector<int> result;
+        for (const Culled::Leaf& leaf : harness.frame(true, false).leaves)
+            result.push_back(std::stoi(leaf.drawable->getName()));
+        return result;
+    }
+    std::vector<int> order() { return order(_scene); }
+
+    const osg::ref_ptr<EffectScene> _scene = new EffectScene;
+    const osg::ref_ptr<osg::Group> _boxes = new osg::Group;
+    std::map<int, osg::StateSet*> _states;
+};
+
+using Order = std::vector<int>;
+
+} // namespace
+
+TEST_F(DrawingOrder, IsFromNearToFarWithAndWithoutEffects)
+{
+    EXPECT_EQ(order(_boxes), Order({400, 100, 300, 200})); // OSG's own
+    EXPECT_EQ(order(), Order({100, 200, 300, 400}));
+    const osg::ref_ptr<VerticalExaggeration> high = new VerticalExaggeration;
+    high->setFactor(2.0);
+    _scene->addEffect(high);
+    EXPECT_EQ(order(), Order({100, 200, 300, 400}));
+}
+
+TEST_F(DrawingOrder, StaysWhereThePictureDependsOnIt)
+{
+    _states[300]->setAttributeAndModes(new osg::Depth(osg::Depth::LEQUAL));
+    EXPECT_EQ(order(), Order({100, 200, 300, 400}));
+    _states[100]->setMode(GL_DEPTH_TEST, osg::StateAttribute::OFF);
+    EXPECT_EQ(order(), Order({200, 100, 300, 400}));
+    _states[200]->setMode(GL_BLEND, osg::StateAttribute::ON);
+    EXPECT_EQ(order(), Order({400, 100, 300, 200}));
+    _states[200]->removeMode(GL_BLEND);
+    _boxes->getOrCreateStateSet()->setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
+    EXPECT_EQ(order(), Order({400, 100, 300, 200}));
+}
+
+TEST_F(DrawingOrder, BuildingsAreDrawnBeforeTheGround)
+{
+    const osg::ref_ptr<osg::Group> town = new osg::Group;
+    town->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    for (const int distance : {450, 250, 350})
+    {
+        const osg::ref_ptr<osg::MatrixTransform> box = makeBox(10.0f, osg::Vec3d(0.0, distance, 0.0));
+        box->getChild(0)->asDrawable()->setName(std::to_string(distance));
+        town->addChild(box);
+    }
+    _scene->addChild(town);
+    EXPECT_EQ(order(), Order({250, 350, 450, 100, 200, 300, 400}));
+}
+
+TEST_F(DrawingOrder, OfTheHostStays)
+{
+    const osg::ref_ptr<osg::Group> host = new osg::Group;
+    const osg::ref_ptr<osg::MatrixTransform> sky = makeBox(10.0f, osg::Vec3d(0.0, 500.0, 0.0));
+    sky->getChild(0)->asDrawable()->setName("500");
+    sky->getChild(0)->asDrawable()->getOrCreateStateSet();
+    host->addChild(sky);
+    host->addChild(_scene);
+    EXPECT_EQ(order(host), Order({500, 100, 200, 300, 400}));
+    host->getOrCreateStateSet()->setRenderBinDetails(1, "TraversalOrderBin");
+    EXPECT_EQ(order(host), Order({500, 400, 100, 300, 200}));
+}
