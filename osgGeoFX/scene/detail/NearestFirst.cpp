@@ -67,7 +67,7 @@ void sortLeaves(osgUtil::StateGraph::LeafList& leaves)
 }
 
 /// Tiles have a state each. What shares the state of a group stands on them, as buildings do.
-bool isTile(const osgUtil::RenderLeaf& leaf)
+bool hasOwnState(const osgUtil::RenderLeaf& leaf)
 {
     return PatchGeometry::originalOf(*leaf._drawable).getStateSet() != nullptr;
 }
@@ -101,7 +101,7 @@ void NearestFirst::sort()
         if (!orders.any(graphs[i])) continue;
         const osgUtil::RenderLeaf& first = *leaves.front();
         const double distance =
-            isTile(first) && first._modelview ? first._modelview->getTrans().length2() : -1.0;
+            hasOwnState(first) && first._modelview ? first._modelview->getTrans().length2() : -1.0;
         entries.push_back({distance, graphs[i]});
         slots.push_back(i);
         sortLeaves(leaves);
