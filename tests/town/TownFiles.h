@@ -31,10 +31,11 @@ struct Feature
     std::vector<std::string> values;
 };
 
-/// Writes polygons as a GeoPackage. Fields: names, with ":real" behind those of numbers. Values that are empty are left out.
+/// Writes polygons as a GeoPackage, each made when it is its turn, so that millions take no memory. Fields: names, with ":real"
+/// behind those of numbers. Values that are empty are left out.
 inline std::string writeFeatures(const std::filesystem::path& file, const std::vector<std::string>& fields,
-                                 const std::vector<Feature>& features, const std::string& crs = "EPSG:4326",
-                                 const std::string& format = "GPKG")
+                                 std::size_t count, const std::function<Feature(std::size_t)>& make,
+                                 const std::string& crs = "EPSG:4326", const std::string& format = "GPKG")
 {
     GDALAllRegister();
     std::filesystem::remove(file);
@@ -52,8 +53,9 @@ inline std::string writeFeatures(const std::filesystem::path& file, const std::v
         layer->CreateField(&definition);
     }
     data->StartTransaction();
-    for (const Feature& each : features)
+    for (std::size_t number = 0; number < count; ++number)
     {
+        const Feature each = make(number);
         OGRGeometry* geometry = nullptr;
         OGRGeometryFactory::createFromWkt(each.wkt.c_str(), nullptr, &geometry);
         // A number that is none has no words.
@@ -85,6 +87,14 @@ inline std::string writeFeatures(const std::filesystem::path& file, const std::v
     }
     data->CommitTransaction();
     return file.string();
+}
+
+inline std::string writeFeatures(const std::filesystem::path& file, const std::vector<std::string>& fields,
+                                 const std::vector<Feature>& features, const std::string& crs = "EPSG:4326",
+                                 const std::string& format = "GPKG")
+{
+    return writeFeatures(
+        file, fields, features.size(), [&](std::size_t i) { return features[i]; }, crs, format);
 }
 
 /// A rectangle about a place, `width` and `depth` in the CRS's units.
