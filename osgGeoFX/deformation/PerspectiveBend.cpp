@@ -126,11 +126,13 @@ public:
     }
     double longestEdge(const Ball& ball, double tolerance) const override
     {
-        // The GPU divides what is too long.
-        if (reach(ball) != Reach::Curved || _look.allowed > 0.0) return HUGE_VAL;
+        if (reach(ball) != Reach::Curved) return HUGE_VAL;
         const Ball bent = bound(ball);
         const double gap = std::max(0.0, bent.center.length() - bent.radius);
-        return std::sqrt(8.0 * tolerance * gap / (_look.transitionDetail * std::max(_curvature, 1e-30)));
+        const double longest =
+            std::sqrt(8.0 * tolerance * gap / (_look.transitionDetail * std::max(_curvature, 1e-30)));
+        // The GPU divides what is too long, but not without end.
+        return dividesTriangles() ? mostParts * longest : longest;
     }
     double detail(const Ball& ball) const override
     {

@@ -84,9 +84,10 @@ public:
     double getContextDetail() const { return _contextDetail; }
 
     /// Whether the GPU divides the triangles of the transition zone, so that a coarse mesh is drawn as the curve that it lies on, where
-    /// OpenGL 4 with the compatibility profile is at hand. Tiles are then not refined for the curve's sake. Default: false. What has a
-    /// program of its own, rigid things, and what effects draw again (close-ups) keep their triangles. Of several graphics
-    /// contexts all must have OpenGL 4; else finer levels are drawn, as without. The first frame of a context is drawn without.
+    /// OpenGL 4 with the compatibility profile is at hand. Tiles are then refined for the curve's sake only where 15 parts of an edge
+    /// are not enough. Default: false. What has a program of its own, rigid things, and what effects draw again (close-ups) keep their
+    /// triangles. Of several graphics contexts all must have OpenGL 4; else finer levels are drawn, as without. The first frame of a
+    /// context is drawn without.
     bool setTessellation(bool on) { return assign("tessellation", on ? 1.0 : 0.0); }
     bool getTessellation() const { return _tessellation; }
     /// How far a divided triangle may be from the curve, pixels, 0.1…16. Default: 0.5. An edge has 15 parts at most.

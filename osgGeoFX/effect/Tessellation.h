@@ -61,6 +61,9 @@ private:
 class TessellatedSnapshot
 {
 public:
+    /// Into how many parts an edge is divided at most, as stages/tessellation.tesc.glsl has it.
+    static constexpr double mostParts = 15.0;
+
     /// Whether triangles are divided at all.
     virtual bool dividesTriangles() const = 0;
     /// Whether some edge in a box may be divided. It leaves room for what floats round: no edge of a box of which this is false

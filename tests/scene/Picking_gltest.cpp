@@ -187,6 +187,76 @@ TEST_P(Picking, PixelToGroundToPixel)
     }
 }
 
+class BentSea : public GlFixture, public ::testing::WithParamInterface<const char*>
+{
+protected:
+    BentSea() : GlFixture(WIDTH, HEIGHT) {}
+};
+
+/// The triangles of a sea are kilometres long. Close above it 15 parts of each are not enough for a bend's zone, which is some 100 m
+/// long there, so finer ones must be drawn.
+TEST_P(BentSea, LiesOnTheCurveThoughItsTrianglesAreLong)
+{
+    const std::optional<Scene> oahu = loadOahu(GetParam());
+    if (!oahu) return;
+    ViewPoint point;
+    point.longitude = osg::DegreesToRadians(-157.64);
+    point.latitude = osg::DegreesToRadians(21.232);
+    point.height = 130.0;
+    point.heading = osg::DegreesToRadians(-46.0);
+    point.pitch = osg::DegreesToRadians(-72.0);
+    osg::Matrixd view;
+    ASSERT_TRUE(point.viewMatrix(*oahu->reference, view));
+    const double half = 12.5;
+    const osg::Matrixd projection =
+        osg::Matrixd::frustum(-half * WIDTH / HEIGHT, half * WIDTH / HEIGHT, -half, half, 50.0, 2e5);
+    const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+    bend->setFocusLine(0.65);
+    bend->setHorizonLine(0.84);
+    bend->setTransitionDetail(1.5);
+    bend->setTessellation(true);
+    oahu->effects->addEffect(bend);
+    CullHarness harness(context(), oahu->effects, WIDTH, HEIGHT);
+    harness.setCamera(view, projection);
+    // The first frame of a context draws nothing divided, and finer tiles come one after the other.
+    harness.frame(true);
+    Random random(1);
+    for (int step = 0; step < 20; ++step)
+        CullHarness::load(harness.frame(true, false).requests, random, 1.0);
+    harness.frame(true);
+    ASSERT_TRUE(bend->tessellates());
+    osg::ref_ptr<osg::Image> depths = new osg::Image;
+    depths->readPixels(0, 0, WIDTH, HEIGHT, GL_DEPTH_COMPONENT, GL_FLOAT);
+
+    const DeformedView picture(*oahu->effects, view, projection, WIDTH, HEIGHT);
+    int checked = 0, inZone = 0;
+    for (int y = 4; y < HEIGHT; y += 12)
+    {
+        for (int x = 4; x < WIDTH; x += 12)
+        {
+            const auto hit = picture.pick(x + 0.5, y + 0.5);
+            double longitude = 0.0, latitude = 0.0, height = 0.0;
+            if (!hit || -hit->deformed.z() > 2000.0 ||
+                !picture.unproject(x + 0.5, y + 0.5, *oahu->reference, longitude, latitude, height))
+                continue;
+            const double pixelSize = -hit->deformed.z() * 2.0 * half / 50.0 / HEIGHT;
+            EXPECT_NEAR(height, 0.0, pixelSize) << "pixel " << x << ' ' << y;
+            const double drawn = depthOf(valueAt(*depths, x, y), projection);
+            EXPECT_NEAR(-hit->deformed.z(), drawn,
+                        footprintAt(picture, x + 0.5, y + 0.5, -hit->deformed.z()) + pixelSize)
+                << "pixel " << x << ' ' << y;
+            const double style = picture.chain().style(hit->world * picture.modelView());
+            inZone += style > 0.0 && style < 1.0 ? 1 : 0;
+            ++checked;
+        }
+    }
+    EXPECT_GT(checked, 50);
+    EXPECT_GT(inZone, 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(Oahu, BentSea, ::testing::Values("oahu", "oahu_projected"),
+                         [](const auto& each) { return std::string(each.param); });
+
 TEST_P(Picking, WhatIsPickedIsDrawnWhateverTheLodScale)
 {
     const std::optional<Scene> oahu = loadOahu(GetParam().database);

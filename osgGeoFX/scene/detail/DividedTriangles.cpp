@@ -65,12 +65,12 @@ int DividedTriangles::parts(const DeformationChain& chain, osg::Vec3d from, osg:
         to = each->deform(to);
     }
     if (!(sag.x() > 0.0 || sag.y() > 0.0)) return 1;
-    constexpr double share = 1e-4, most = 15.0,
-                     sliding = 2.0; // as stages/tessellation.tesc.glsl and bendview.sag.glsl have them
+    constexpr double share = 1e-4, sliding = 2.0; // the latter as bendview.sag.glsl has it
     const double near = std::min(from.length(), to.length()), far = std::max(from.length(), to.length());
     const double allowed = share * std::max({near - sag.x() - sag.y(), 0.05 * far, 1e-3});
-    return static_cast<int>(std::ceil(
-        std::clamp(std::max(std::sqrt(sag.x() / allowed), sag.y() / (sliding * allowed)), 1.0, most)));
+    return static_cast<int>(
+        std::ceil(std::clamp(std::max(std::sqrt(sag.x() / allowed), sag.y() / (sliding * allowed)), 1.0,
+                             TessellatedSnapshot::mostParts)));
 }
 
 } // namespace osgGeoFX
