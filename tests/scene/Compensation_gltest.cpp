@@ -74,7 +74,7 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
     // Liberties bound what their whole region does, so some more tiles are drawn and asked for beside it: a paged node's ball grows by
     // as much as anything in it moves, which is kilometres in a wide region that turns. From above a close picture they are a dozen.
     const bool liberties = sort.addEffects == addRandomLiberties;
-    const double slack = liberties ? 2.0 : 1.0, beside = liberties ? 12.0 : 4.0;
+    const double slack = liberties ? 2.0 : 1.0, beside = liberties ? 16.0 : 4.0;
     const int count = cameras.count();
     std::vector<double> tileRatios;
     std::vector<double> requestRatios;

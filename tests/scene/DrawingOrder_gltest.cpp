@@ -2,12 +2,14 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // The order in which things of a scene are drawn: the nearest first, where any order gives the same picture.
+#include <osgGeoFX/deformation/BirdsEyeView.h>
 #include <osgGeoFX/deformation/VerticalExaggeration.h>
 #include <tools/BentGround.h>
 #include <tools/CullHarness.h>
 
 #include <osg/Depth>
 
+#include <algorithm>
 #include <map>
 
 using namespace osgGeoFX;
@@ -93,6 +95,55 @@ TEST_F(DrawingOrder, BuildingsAreDrawnBeforeTheGround)
     }
     _scene->addChild(town);
     EXPECT_EQ(order(), Order({250, 350, 450, 100, 200, 300, 400}));
+}
+
+/// What the GPU divides has a program of its own. Which of a tile's two comes first must not depend on what is in sight, or pixels of
+/// equal depths between its parts would.
+TEST_F(DrawingOrder, OfATilesPartsIsTheSameWhicheverIsSeenFirst)
+{
+    const osg::ref_ptr<BirdsEyeView> bend = new BirdsEyeView;
+    bend->setTessellation(true);
+    _scene->addEffect(bend);
+    _scene->removeChild(_boxes);
+    const osg::ref_ptr<osg::MatrixTransform> tile = new osg::MatrixTransform;
+    _scene->addChild(tile);
+    const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    std::vector<osg::ref_ptr<osg::Geometry>> parts;
+    for (int distance = 20; distance <= 1000; distance += 20)
+    {
+        parts.push_back(makeBox(2.0f));
+        auto& vertices = static_cast<osg::Vec3Array&>(*parts.back()->getVertexArray());
+        for (osg::Vec3& vertex : vertices)
+            vertex.y() += static_cast<float>(distance);
+        parts.back()->setName(std::to_string(distance));
+        parts.back()->setStateSet(state);
+    }
+    CullHarness harness(context(), _scene, WIDTH, HEIGHT);
+    const osg::Matrixd view = osg::Matrixd::lookAt(osg::Vec3d(0.0, 0.0, 50.0), osg::Vec3d(0.0, 100.0, 0.0),
+                                                   osg::Vec3d(0.0, 0.0, 1.0));
+    const osg::Matrixd projection = osg::Matrixd::perspective(60.0, 4.0 / 3.0, 1.0, 2000.0);
+    harness.setCamera(view, projection);
+    harness.frame(true); // a context is known from its second frame on
+    Order orders[2];
+    bool divided[2] = {};
+    for (Order& result : orders)
+    {
+        tile->removeChildren(0, tile->getNumChildren());
+        for (const auto& part : parts)
+            tile->addChild(part);
+        std::reverse(parts.begin(), parts.end());
+        for (const Culled::Leaf& leaf : harness.frame(true).leaves)
+            result.push_back(std::stoi(leaf.drawable->getName()));
+    }
+    ASSERT_TRUE(bend->tessellates());
+    const osg::ref_ptr<const DeformationChain> chain = _scene->deformation(view, projection);
+    for (const int distance : orders[0])
+    {
+        const double style = chain->style(osg::Vec3d(0.0, distance, 0.0) * view);
+        divided[style > 0.0 && style < 1.0] = true;
+    }
+    EXPECT_TRUE(divided[0] && divided[1]);
+    EXPECT_EQ(orders[0], orders[1]);
 }
 
 TEST_F(DrawingOrder, OfTheHostStays)

@@ -7,6 +7,7 @@
 #include <osg/Depth>
 
 #include <algorithm>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -66,6 +67,12 @@ void sortLeaves(osgUtil::StateGraph::LeafList& leaves)
         leaves[i] = placed[i].second;
 }
 
+/// Whether the GPU divides its triangles, with a program of their own. A tile may have such parts and others.
+bool isDivided(const osgUtil::RenderLeaf& leaf)
+{
+    return &PatchGeometry::originalOf(*leaf._drawable) != leaf._drawable.get();
+}
+
 /// Tiles have a state each. What shares the state of a group stands on them, as buildings do.
 bool hasOwnState(const osgUtil::RenderLeaf& leaf)
 {
@@ -88,6 +95,7 @@ void NearestFirst::sort()
     struct Entry
     {
         double distance; ///< squared, of a tile's frame; nothing in sight or out of it changes it
+        bool divided;
         osgUtil::StateGraph* graph;
     };
     std::vector<Entry> entries;
@@ -102,12 +110,13 @@ void NearestFirst::sort()
         const osgUtil::RenderLeaf& first = *leaves.front();
         const double distance =
             hasOwnState(first) && first._modelview ? first._modelview->getTrans().length2() : -1.0;
-        entries.push_back({distance, graphs[i]});
+        entries.push_back({distance, isDivided(first), graphs[i]});
         slots.push_back(i);
         sortLeaves(leaves);
     }
     std::stable_sort(entries.begin(), entries.end(),
-                     [](const Entry& a, const Entry& b) { return a.distance < b.distance; });
+                     [](const Entry& a, const Entry& b)
+                     { return std::tie(a.distance, a.divided) < std::tie(b.distance, b.divided); });
     for (std::size_t i = 0; i < slots.size(); ++i)
         graphs[slots[i]] = entries[i].graph;
 }

@@ -14,8 +14,8 @@ namespace osgGeoFX
     OSG draws states in the order in which the traversal came by. Here what shares the state of a group is drawn first, for buildings and
     trees stand before the ground. Things with a state of their own follow, such as tiles, by the distance of their frames. The drawables of one state are in the
     order of the distances of their boxes. Only that is moved of which any order gives the same picture: without blending, and with a
-    depth test that admits no equal depths. A tile's place does not depend on what else is in sight, so pictures with and without culling
-    are the same to the last bit. Where things in several frames share a state of their own, the first in sight counts for all: there pixels of
+    depth test that admits no equal depths. A tile's place does not depend on what else is in sight, and its divided parts come after the others, so pictures with and without
+    culling are the same to the last bit. Where things in several frames share a state of their own, the first in sight counts for all: there pixels of
     equal depths may differ. Not thread-safe. */
 class NearestFirst
 {
