@@ -98,6 +98,7 @@ private:
 // this cancels out.
 TEST(Openness, IsWhatRaysSee)
 {
+    constexpr double halfSector = 0.065;
     double worst = 0.0, sum = 0.0;
     int count = 0, dark = 0;
     const int towns = fullTest() ? 60 : 6, side = fullTest() ? 96 : 48;
@@ -143,7 +144,7 @@ TEST(Openness, IsWhatRaysSee)
                     const osg::Vec3d place(before, base + share * (top - base));
                     const double truth = drawn.openness(place, normal, base, side),
                                  found = ask(openness, place, normal, base);
-                    EXPECT_NEAR(found, truth, 0.04) << "wall of " << i << " at " << share;
+                    EXPECT_NEAR(found, truth, halfSector) << "wall of " << i << " at " << share;
                     worst = std::max(worst, std::abs(found - truth));
                     sum += std::abs(found - truth);
                     ++count;
@@ -160,7 +161,7 @@ TEST(Openness, IsWhatRaysSee)
                 others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
                 const double truth = DrawnTown(others).openness(place, normal, base, side),
                              found = ask(openness, place, normal, base, i);
-                EXPECT_NEAR(found, truth, 0.04) << "roof of " << i;
+                EXPECT_NEAR(found, truth, halfSector) << "roof of " << i;
                 worst = std::max(worst, std::abs(found - truth));
                 sum += std::abs(found - truth);
                 ++count;
