@@ -71,10 +71,9 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
     const OahuCase& sort = std::get<0>(GetParam());
     const SampleRange cameras(fullTest() ? sort.many : sort.few, std::get<1>(GetParam()), PARTS);
     const bool painted = sort.addEffects == addRandomPainting;
-    // Liberties bound what their whole region does, so some more tiles are drawn and asked for beside it: a paged node's ball grows by
-    // as much as anything in it moves, which is kilometres in a wide region that turns. From above a close picture they are a dozen.
-    const bool liberties = sort.addEffects == addRandomLiberties;
-    const double slack = liberties ? 2.0 : 1.0, beside = liberties ? 16.0 : 4.0;
+    // Liberties bound what their whole region does, so some more tiles are drawn and asked for beside it. Where several turn wide
+    // regions below a close picture, more are asked for than this admits: with --full some cameras show it.
+    const double slack = sort.addEffects == addRandomLiberties ? 2.0 : 1.0;
     const int count = cameras.count();
     std::vector<double> tileRatios;
     std::vector<double> requestRatios;
@@ -118,7 +117,7 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
         // A painting draws its mirror's tiles, too, and those beside the picture whose strokes reach into it.
         if (!painted)
         {
-            EXPECT_LE(static_cast<double>(drawn), 1.5 * slack * needed + beside)
+            EXPECT_LE(static_cast<double>(drawn), 1.5 * slack * needed + 4.0)
                 << needed << " needed, " << _scene->getEffect(0)->className();
         }
         if (needed > 0.0) tileRatios.push_back(static_cast<double>(drawn) / needed);
@@ -129,7 +128,7 @@ TEST_P(Compensation, PicturesAreThoseWithoutCullingAndTilesThoseOfTheOracle)
         const auto deserving = static_cast<double>(oracle.deserving.size());
         if (!painted)
         {
-            EXPECT_LE(asking, 2.0 * slack * deserving + beside) << deserving << " deserving";
+            EXPECT_LE(asking, 2.0 * slack * deserving + 4.0) << deserving << " deserving";
         }
         if (deserving > 0.0) requestRatios.push_back(asking / deserving);
     }
