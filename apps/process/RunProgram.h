@@ -32,8 +32,8 @@ struct ProgramResult
     std::string standardError;
     double seconds = 0.0;    ///< wall-clock time
     double cpuSeconds = 0.0; ///< of all its threads, in user and system mode
-    double peakMiB =
-        0.0; ///< largest resident size; not less than our own largest until the start, as the kernel counts
+    /// Largest resident size; at least our own largest until the start, which the kernel counts into it.
+    double peakMiB = 0.0;
 };
 
 /// Runs a program, arguments[0] a path or a name on PATH, and waits for its end. Throws std::system_error if it cannot be
