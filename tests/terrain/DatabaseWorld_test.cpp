@@ -5,6 +5,7 @@
 #include <osgGeoFX/geodata/BuildError.h>
 #include <osgGeoFX/terrain/DatabaseBuilder.h>
 #include <tools/DatabaseReader.h>
+#include <tools/FolderContents.h>
 #include <tools/TempDir.h>
 #include <tools/TestRasters.h>
 
@@ -14,6 +15,8 @@
 #include <ogr_spatialref.h>
 
 #include <cmath>
+#include <map>
+#include <utility>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -118,6 +121,116 @@ TEST(DatabaseWorld, WholeGlobeIsClosed)
     // The levels above are coarse polyhedra; they must still be there.
     EXPECT_EQ(readTiles(folder / "db").size(),
               static_cast<std::size_t>(DatabaseRoot(folder / "db").value<double>("geofx.tiles")));
+}
+
+/// Where a ray towards the Earth's center goes in through a triangle; NaN where it does not, or from behind.
+double heightAlong(const osg::Vec3d& direction, const osg::Vec3d& a, const osg::Vec3d& b, const osg::Vec3d& c)
+{
+    const osg::Vec3d normal = (b - a) ^ (c - a);
+    if (normal * direction <= 0.0) return std::nan("");
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+        if ((from ^ to) * direction < 0.0) return std::nan("");
+    return geodetic(direction * ((a * normal) / (direction * normal))).height;
+}
+
+TEST(DatabaseWorld, CapsCloseThePoles)
+{
+    const TempDir folder;
+    // The last tiles reach beyond the ends in the east and in the north.
+    const auto height = [](int column, int row)
+    {
+        return (row < 45 ? 2000.0 : 500.0) + 300.0 * std::sin(column * 4.0 * osg::PI / 180.0);
+    };
+    const auto dem = TestRaster(180, 90)
+                         .placed(-180.0, 90.0, 2.0, 2.0)
+                         .crs("EPSG:4326")
+                         .fill([&](int column, int row, int) { return height(column, row); })
+                         .write(folder / "dem.tif");
+    buildDatabase(options({dem}, folder / "db"));
+    struct Corners
+    {
+        osg::Vec3d a, b, c;
+    };
+    // Of the finest meshes, by level.
+    std::map<int, std::vector<Corners>> caps;
+    const auto tiles = readTiles(folder / "db");
+    for (const auto& tile : tiles)
+    {
+        const auto corners = [&](const DatabaseTile::Triangle& triangle)
+        {
+            return Corners{tile.world(triangle[0]), tile.world(triangle[1]), tile.world(triangle[2])};
+        };
+        for (const auto& each : tile.cap)
+            caps[tile.level].push_back(corners(each));
+        for (const auto& mesh : tile.meshes)
+        {
+            for (const auto& each : mesh.cap)
+                for (const unsigned int vertex : each)
+                {
+                    const Geodetic g = geodetic(tile.world(vertex));
+                    if (std::abs(g.latitude) < 89.9) continue;
+                    ASSERT_NEAR(g.height, g.latitude > 0.0 ? 2000.0 : 500.0, 30.0);
+                }
+            if (mesh.cap.empty()) continue;
+            EXPECT_FALSE(mesh.capWalls.empty()) << tile.transform->getName();
+        }
+    }
+    EXPECT_GE(caps.size(), 3u);
+    int rays = 0;
+    for (const auto& [level, triangles] : caps)
+        for (const bool north : {true, false})
+            for (int i = 0; i < 400; ++i)
+            {
+                // The first row of posts is a degree from the pole. A coarse level has a polygon there.
+                const double longitude = osg::DegreesToRadians(0.9 * i + 0.05);
+                const double share = level == 0 ? 0.5 : 0.9;
+                const double colatitude = osg::DegreesToRadians(share * (i % 40 + 0.5) / 40.0);
+                const osg::Vec3d direction(std::sin(colatitude) * std::cos(longitude),
+                                           std::sin(colatitude) * std::sin(longitude),
+                                           (north ? 1.0 : -1.0) * std::cos(colatitude));
+                int hits = 0;
+                for (const Corners& each : triangles)
+                {
+                    const double found = heightAlong(direction, each.a, each.b, each.c);
+                    if (std::isnan(found)) continue;
+                    ++hits;
+                    ASSERT_NEAR(found, north ? 2000.0 : 500.0, 1300.0);
+                }
+                ASSERT_EQ(hits, 1) << "level " << level << ", " << i << (north ? " north" : " south");
+                ++rays;
+            }
+    EXPECT_GE(rays, 2400);
+}
+
+TEST(DatabaseWorld, CapsFollowAnUpdate)
+{
+    const TempDir folder;
+    const auto write = [&](double more)
+    {
+        return TestRaster(180, 90)
+            .placed(-180.0, 90.0, 2.0, 2.0)
+            .crs("EPSG:4326")
+            .fill(
+                [&](int column, int row, int) {
+                    return 4.0 * relief(2.0 * (column % 180), 2.0 * row) +
+                           (row == 0 && column < 6 ? more : 0.0);
+                })
+            .write(folder / "dem.tif");
+    };
+    auto o = options({write(0.0)}, folder / "db");
+    o.update = true;
+    o.keep = true;
+    buildDatabase(o);
+    write(10.0);
+    buildDatabase(o);
+    o.output = (folder / "anew").string();
+    buildDatabase(o);
+    // Tiles far from the change have a part of the cap, too.
+    const auto updated = contents(folder / "db" / "tiles"), anew = contents(folder / "anew" / "tiles");
+    ASSERT_GT(anew.size(), 20u);
+    ASSERT_EQ(updated.size(), anew.size());
+    for (const auto& [name, bytes] : anew)
+        EXPECT_TRUE(updated.at(name) == bytes) << name;
 }
 
 /// A wall of a skirt on a meridian, in that meridian's half plane: distance from the axis, and along it.

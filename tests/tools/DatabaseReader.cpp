@@ -70,6 +70,7 @@ public:
             // A mesh that no camera is near enough for is there for deformations alone.
             if (!mesh.smallest || mesh.to < 0.01 || (mesh.from > 0.01)) continue;
             tile.surface.insert(tile.surface.end(), mesh.ground.begin(), mesh.ground.end());
+            tile.cap.insert(tile.cap.end(), mesh.cap.begin(), mesh.cap.end());
             tile.skirt.insert(tile.skirt.end(), mesh.walls.begin(), mesh.walls.end());
         }
         tiles.push_back(tile);
@@ -123,6 +124,20 @@ private:
         return entry->second;
     }
 
+    /// Whether a triangle reaches to a pole from the border of the ground: it covers none of the tile's texture.
+    bool isOfCap(const DatabaseTile::Triangle& triangle) const
+    {
+        const osg::Vec2 &a = _tile->places[triangle[0]], ab = _tile->places[triangle[1]] - a,
+                        ac = _tile->places[triangle[2]] - a;
+        if (ab.x() * ac.y() != ab.y() * ac.x()) return false;
+        return std::any_of(triangle.begin(), triangle.end(),
+                           [&](unsigned int vertex)
+                           {
+                               const osg::Vec3d place = _tile->world(vertex);
+                               return std::abs(place.z()) > 6e6 && std::hypot(place.x(), place.y()) < 10.0;
+                           });
+    }
+
     void sort(DatabaseTile::Mesh& mesh, unsigned int first, unsigned int ground) const
     {
         const std::vector<osg::Vec3>& vertices = _tile->vertices;
@@ -139,6 +154,11 @@ private:
         osg::Vec2 low(2.0f, 2.0f), high(-1.0f, -1.0f);
         for (unsigned int i = 0; i < ground; i += 3)
         {
+            if (isOfCap(triangle(i)))
+            {
+                mesh.cap.push_back(triangle(i));
+                continue;
+            }
             mesh.ground.push_back(triangle(i));
             for (const unsigned int vertex : mesh.ground.back())
             {
@@ -163,6 +183,11 @@ private:
         for (unsigned int i = ground; i + 2 < primitives.getNumIndices(); i += 3)
         {
             const DatabaseTile::Triangle corners = triangle(i);
+            if (isOfCap(corners))
+            {
+                mesh.capWalls.push_back(corners);
+                continue;
+            }
             unsigned int side = 0;
             while (side < 4 && !std::all_of(corners.begin(), corners.end(),
                                             [&](unsigned int vertex) { return onSide(vertex, side); }))

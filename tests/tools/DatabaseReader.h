@@ -40,6 +40,8 @@ struct DatabaseTile
         bool smallest = false;       ///< of a block that no finer ones stand in for
         std::vector<Triangle> ground;
         std::vector<Wall> walls;
+        /// The cap between its ground and a pole, which is among the indices of the ground, and the walls of the cap.
+        std::vector<Triangle> cap, capWalls;
         osg::Vec2 low, high; ///< texture coordinates of its ground's corners
     };
 
@@ -52,6 +54,7 @@ struct DatabaseTile
     std::vector<Mesh> meshes;
     std::vector<Triangle> surface;   ///< its finest meshes together, without walls
     std::vector<Wall> skirt;         ///< theirs
+    std::vector<Triangle> cap;       ///< theirs
     std::vector<osg::Vec3> vertices; ///< of all its arrays, one after the other: triangles count in these
     std::vector<osg::Vec2> places;   ///< their texture coordinates
 

@@ -11,6 +11,15 @@
 namespace osgGeoFX
 {
 
+namespace
+{
+
+/// A liberty moves each part of a large tile another way, so what bounds all of it is wide. A tile that asks for finer ones is worth
+/// a closer look.
+constexpr int HALVINGS = 6;
+
+} // namespace
+
 bool tileOutOfSight(Visibility& sight, const DeformationChain& chain, const osg::LOD& node,
                     const osg::Matrixd& toView, double tileError, Visibility::Mask planes)
 {
@@ -26,7 +35,7 @@ bool tileOutOfSight(Visibility& sight, const DeformationChain& chain, const osg:
     const osg::Vec3 more(osg::Vec3d(error, error, error));
     bounds._min -= more;
     bounds._max += more;
-    return sight.outOfSight(chain, EyeBox::of(bounds, placement * toView), planes);
+    return sight.outOfSight(chain, EyeBox::of(bounds, placement * toView), planes, HALVINGS);
 }
 
 } // namespace osgGeoFX

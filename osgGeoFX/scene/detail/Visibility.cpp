@@ -4,6 +4,8 @@
 
 #include <osg/CullingSet>
 
+#include <algorithm>
+
 namespace osgGeoFX
 {
 
@@ -68,13 +70,28 @@ bool Visibility::misses(const DeformationChain& chain, const EyeBox& box, Mask p
     return _frustum.misses(_hull, planes);
 }
 
-bool Visibility::outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes)
+bool Visibility::outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes, int halvings)
 {
     if (hides(chain, box)) return true;
     const Ball deformed = chain.bound(box.ball());
     const EyeFrustum::Side side = _frustum.side(deformed, planes);
     if (side != EyeFrustum::Side::Crossing) return side == EyeFrustum::Side::Outside;
-    return !_frustum.holds(deformed.center, planes) && misses(chain, box, planes);
+    if (_frustum.holds(deformed.center, planes)) return false;
+    if (misses(chain, box, planes)) return true;
+    // A margin that is small beside the box would not become much smaller.
+    constexpr double loose = 0.1;
+    if (halvings == 0 || _hull.margin < loose * box.ball().radius) return false;
+    const osg::Vec3d* longest =
+        std::max_element(box.half, box.half + 3,
+                         [](const osg::Vec3d& a, const osg::Vec3d& b) { return a.length2() < b.length2(); });
+    for (const double share : {-0.5, 0.5})
+    {
+        EyeBox part = box;
+        part.center += *longest * share;
+        part.half[longest - box.half] *= 0.5;
+        if (!outOfSight(chain, part, planes, halvings - 1)) return false;
+    }
+    return true;
 }
 
 } // namespace osgGeoFX

@@ -61,8 +61,8 @@ public:
     /// Whether the hull of a deformed box misses the picture. Slow. What it holds may reach beyond the box' image by `margin`,
     /// metres.
     bool misses(const DeformationChain& chain, const EyeBox& box, Mask planes, double margin = 0.0);
-    /// The same, with a test of a ball around the box first.
-    bool outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes);
+    /// The same, with a test of a ball around the box first. A box whose hull is loose is halved up to `halvings` times.
+    bool outOfSight(const DeformationChain& chain, const EyeBox& box, Mask planes, int halvings = 0);
 
 private:
     EyeFrustum _frustum;

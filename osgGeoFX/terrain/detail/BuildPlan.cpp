@@ -680,12 +680,10 @@ double BuildPlan::largestError(int level) const
 double BuildPlan::skirt(const TileKey& key, int side) const
 {
     // A tile has no neighbour beyond the terrain's border. A skirt would only show below the edge there.
-    const int width = scheme.intervals * scheme.step(key.level);
-    const bool outer[] = {key.y == 0, scheme.firstColumn(key) + width >= scheme.lastColumn,
-                          scheme.firstRow(key) + width >= scheme.lastRow, key.x == 0};
+    const bool outer = scheme.endsAt(key, side);
     // The globe's eastern and western end are one line, however, with tiles of all levels on both sides.
-    const bool seam = outer[side] && scheme.wholeCircle() && side % 2 == 1;
-    if (outer[side] && !seam) return 0.0;
+    const bool seam = outer && scheme.wholeCircle() && side % 2 == 1;
+    if (outer && !seam) return 0.0;
 
     // The camera and the pager decide which neighbour stands on the other side. It may be of any level from the
     // coarsest one on which this line divides two tiles. (On coarser levels both sides lie in one tile.)

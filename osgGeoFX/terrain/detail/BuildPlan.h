@@ -36,6 +36,8 @@ struct TileFacts
         0.0f; ///< the deepest wall of the tile and all below it, below the lowest ground, metres
     std::int32_t voids =
         0; ///< of a unit's root: whether posts have no height within a raster's rectangle (VoidState)
+    std::array<float, 2>
+        ends{}; ///< mean heights along the extent's southern and northern end, as far as they are the tile's, metres
     std::int32_t any = 0;   ///< it has at least one post with data
     std::int32_t holes = 0; ///< it has at least one post without
 
@@ -139,8 +141,12 @@ public:
     /// Whether any of the four tiles beside a tile, on its level, has finer ones below it.
     bool isBesideDenser(const TileKey& key) const;
     const TileFacts& whole() const { return fact({0, 0, 0}); }
-    /// Whether there is ground all around the Earth, but for a few degrees at the poles. The facts of all units must be known.
+    /// Whether there is ground all around the Earth, but for a few degrees at the poles, which caps close. The facts of all
+    /// units must be known.
     bool isWholeEarth() const;
+    /// The height of the pole beyond a tile's side (0 south, 2 north), metres: the mean along the end of the ground there. The
+    /// tile has a part of the cap that closes the Earth. Empty for other tiles and sides.
+    std::optional<double> poleHeight(const TileKey& key, int side) const;
     /// Empty facts for a unit whose heights come next. Facts count as a unit's from here on.
     void startFacts(const Unit& unit);
     /// Takes a unit's facts from its work file. Returns false if there is none, or a damaged one.

@@ -94,6 +94,21 @@ float leafError(const BuildPlan& plan, const TileKey& key, const HeightGrid& gri
     return 0.5f * bend + static_cast<float>(sag);
 }
 
+/// Of a row of `intervals` + 1 posts, metres. 0 if none has a height.
+float meanHeight(const HeightGrid& grid, int column, int row, int intervals)
+{
+    double sum = 0.0;
+    int count = 0;
+    for (int i = column; i <= column + intervals; ++i)
+    {
+        const float height = grid.at(i, row);
+        if (std::isnan(height)) continue;
+        sum += static_cast<double>(height);
+        ++count;
+    }
+    return count > 0 ? static_cast<float>(sum / count) : 0.0f;
+}
+
 TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& key, const HeightGrid& grid)
 {
     const int n = plan.scheme.intervals;
@@ -112,6 +127,11 @@ TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& ke
             facts.maxHeight = facts.any ? std::max(facts.maxHeight, height) : height;
             facts.any = 1;
         }
+    const int posts = plan.scheme.step(key.level);
+    const int east = std::min(n, (plan.scheme.lastColumn - plan.scheme.firstColumn(key) + posts - 1) / posts);
+    const int north = std::min(n, (plan.scheme.lastRow - plan.scheme.firstRow(key) + posts - 1) / posts);
+    if (plan.scheme.endsAt(key, 0)) facts.ends[0] = meanHeight(grid, column, row, east);
+    if (plan.scheme.endsAt(key, 2)) facts.ends[1] = meanHeight(grid, column, row + north, east);
     if (plan.isBesideDenser(key)) facts.error = leafError(plan, key, grid, column, row);
     return facts;
 }
@@ -119,6 +139,7 @@ TileFacts finestFacts(const BuildPlan& plan, const Unit& unit, const TileKey& ke
 TileFacts gatheredFacts(const BuildPlan& plan, const Unit& unit, const TileKey& key)
 {
     TileFacts facts;
+    std::array<double, 2> ends{}, widths{};
     for (int c = 0; c < 4; ++c)
     {
         const TileKey below = key.child(c & 1, c >> 1);
@@ -128,10 +149,21 @@ TileFacts gatheredFacts(const BuildPlan& plan, const Unit& unit, const TileKey& 
         facts.minHeight = facts.any ? std::min(facts.minHeight, child.minHeight) : child.minHeight;
         facts.maxHeight = facts.any ? std::max(facts.maxHeight, child.maxHeight) : child.maxHeight;
         facts.any = 1;
+        const int column = plan.scheme.firstColumn(below);
+        const double width =
+            std::min(plan.scheme.intervals * plan.scheme.step(below.level), plan.scheme.lastColumn - column);
+        for (std::size_t end = 0; end < 2; ++end)
+        {
+            if (!plan.scheme.endsAt(below, end == 0 ? 0 : 2)) continue;
+            ends[end] += width * static_cast<double>(child.ends[end]);
+            widths[end] += width;
+        }
         // The lattice of an upper tier consists of the roots below it. The levels above use the same lattice.
         const bool root = !unit.sampled && key.level == unit.latticeLevel() - 1;
         facts.latticeError = std::max(facts.latticeError, root ? child.rootError : child.latticeError);
     }
+    for (std::size_t end = 0; end < 2; ++end)
+        if (widths[end] > 0.0) facts.ends[end] = static_cast<float>(ends[end] / widths[end]);
     facts.error = facts.latticeError + static_cast<float>(plan.finestError(key.level));
     return facts;
 }

@@ -2,7 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/terrain/detail/TileBlocks.h>
 
+#include <GeographicLib/Constants.hpp>
+
 #include <osg/BoundingBox>
+#include <osg/Math>
 
 #include <algorithm>
 #include <cfloat>
@@ -95,7 +98,10 @@ TileBlocks::TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetw
 {
     addVertices({0, 0, _lattice.intervals});
     for (int side = 0; side < 4; ++side)
+    {
         _skirts[static_cast<std::size_t>(side)] = plan.skirt(key, side);
+        _poles[static_cast<std::size_t>(side)] = plan.poleHeight(key, side);
+    }
     // Only tiles of the coarsest level are far enough away to be one block. A finest tile is hardly ever far enough
     // away for halves.
     const int intervals = _lattice.intervals, smallest = smallestBlock(plan.scheme, isFinest(), intervals);
@@ -163,6 +169,10 @@ TileBlocks::Block TileBlocks::make(const TileBlock& block)
             box.expandBy(ground + up * static_cast<double>(low));
             box.expandBy(ground + up * static_cast<double>(high));
         }
+    const std::array<int, 4> lines = linesOf(block), ends = borders();
+    for (const std::size_t side : {0u, 2u})
+        if (_poles[side] && lines[side] == ends[side])
+            box.expandBy(_vertices.front()->pole(side == 2, *_poles[side]));
     result.middle = box.center();
     result.radius = box.radius();
 
@@ -288,7 +298,11 @@ TileBlocks::Mesh TileBlocks::made(const TileBlock& block, const Block& result, c
     made.longestEdge = longestEdge(surface) * metres();
     for (const Post& corner : surface.corners)
         made.triangles.push_back(vertices.post(corner));
+    std::vector<std::uint32_t> walls;
+    addCaps(block, result.vertices, surface, made.triangles, walls);
+    if (!walls.empty()) made.longestEdge = std::max(made.longestEdge, toPole());
     made.ground = made.triangles.size();
+    made.triangles.insert(made.triangles.end(), walls.begin(), walls.end());
     // A neighbour of the same tile or level is hardly farther away than the farthest place where this mesh is drawn.
     // The distance counts twice, since deformations stretch it.
     double other = _plan.largestError(_key.level);
@@ -318,36 +332,92 @@ void TileBlocks::addWalls(const TileBlock& block, std::size_t vertices, const Bl
     // Even in a plain, rounding opens hair lines between meshes of different density. A power of two lets meshes of
     // about the same depth share a wall's lower end.
     const double inner = std::exp2(std::ceil(std::log2(depth + _plan.leastSkirt(_key.level))));
-    // There is nothing beyond the end of the ground.
-    const int east = _lattice.eastColumn(), north = _lattice.northRow();
-    const int lines[4] = {block.row, std::min(block.column + block.size, east),
-                          std::min(block.row + block.size, north), block.column};
-    const int borders[4] = {0, east, north, 0};
+    const std::array<int, 4> lines = linesOf(block), ends = borders();
     for (int number = 0; number < 4; ++number)
     {
-        Side side{number, lines[number], inner, false, vertices};
-        side.border = side.line == borders[number];
-        const double neighbours = _skirts[static_cast<std::size_t>(number)];
+        const auto index = static_cast<std::size_t>(number);
+        Side side{number, lines[index], inner, false, vertices};
+        side.border = side.line == ends[index];
+        const double neighbours = _skirts[index];
         if (side.border) side.depth = neighbours > 0.0 ? std::max(inner, mesh.deviation + neighbours) : 0.0;
         if (side.depth <= 0.0) continue;
         // A wall hangs from each edge of the surface along the side. Holes, and posts beyond the end of the ground,
         // have none.
-        std::vector<std::pair<int, int>> edges;
-        for (std::size_t i = 0; i < mesh.corners.size(); ++i)
-        {
-            const Post &a = mesh.corners[i], &b = mesh.corners[i % 3 == 2 ? i - 2 : i + 1];
-            if (side.holds(a) && side.holds(b) && side.place(a) < side.place(b))
-                edges.emplace_back(side.place(a), side.place(b));
-        }
-        std::sort(edges.begin(), edges.end());
-        std::vector<Post> way;
-        for (std::size_t i = 0; i < edges.size(); ++i)
-        {
-            if (way.empty()) way.push_back(side.post(edges[i].first));
-            way.push_back(side.post(edges[i].second));
-            if (i + 1 < edges.size() && edges[i + 1].first == edges[i].second) continue;
+        for (const std::vector<Post>& way : border(side, mesh))
             addWall(side, way, triangles);
-            way.clear();
+    }
+}
+
+std::array<int, 4> TileBlocks::linesOf(const TileBlock& block) const
+{
+    // There is nothing beyond the end of the ground.
+    return {block.row, std::min(block.column + block.size, _lattice.eastColumn()),
+            std::min(block.row + block.size, _lattice.northRow()), block.column};
+}
+
+std::vector<std::vector<BlockMesh::Post>> TileBlocks::border(const Side& side, const BlockMesh& mesh)
+{
+    std::vector<std::pair<int, int>> edges;
+    for (std::size_t i = 0; i < mesh.corners.size(); ++i)
+    {
+        const Post &a = mesh.corners[i], &b = mesh.corners[i % 3 == 2 ? i - 2 : i + 1];
+        if (side.holds(a) && side.holds(b) && side.place(a) < side.place(b))
+            edges.emplace_back(side.place(a), side.place(b));
+    }
+    std::sort(edges.begin(), edges.end());
+    std::vector<std::vector<Post>> ways;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+    {
+        if (i == 0 || edges[i - 1].second != edges[i].first) ways.push_back({side.post(edges[i].first)});
+        ways.back().push_back(side.post(edges[i].second));
+    }
+    return ways;
+}
+
+double TileBlocks::toPole() const
+{
+    const TilingScheme& scheme = _plan.scheme;
+    // The radius of curvature at the poles, where it is largest.
+    const double radius = GeographicLib::Constants::WGS84_a() / (1.0 - GeographicLib::Constants::WGS84_f());
+    return osg::DegreesToRadians(std::max(90.0 + scheme.south, 90.0 - scheme.north)) * radius;
+}
+
+void TileBlocks::addCaps(const TileBlock& block, std::size_t vertices, const BlockMesh& mesh,
+                         std::vector<std::uint32_t>& triangles, std::vector<std::uint32_t>& walls)
+{
+    const std::array<int, 4> lines = linesOf(block), ends = borders();
+    TileVertices& all = *_vertices[vertices];
+    // Blocks beside each other have the corner and the pole in common. Only rounding parts them there.
+    const double depth = std::min(_plan.leastSkirt(_key.level), endDepth());
+    for (const int number : {0, 2})
+    {
+        const auto index = static_cast<std::size_t>(number);
+        if (!_poles[index] || lines[index] != ends[index]) continue;
+        const Side side{number, lines[index], depth, true, vertices};
+        const auto pole = [&](const Post& post, double below)
+        {
+            const auto [entry, isNew] =
+                _atPoles.try_emplace(std::make_tuple(vertices, number, post.column, post.row, below), 0u);
+            if (isNew) entry->second = all.atPole(post, number == 2, *_poles[index] - below);
+            return entry->second;
+        };
+        const auto low = [&](const Post& post)
+        {
+            const auto [entry, isNew] =
+                _strips.try_emplace(std::make_tuple(vertices, number, post.column, post.row, depth), 0u);
+            if (isNew) entry->second = all.below(post, depth, 0.0, 0.0);
+            return entry->second;
+        };
+        for (const std::vector<Post>& way : border(side, mesh))
+        {
+            for (std::size_t i = 0; i + 1 < way.size(); ++i)
+                triangles.insert(triangles.end(),
+                                 {all.post(way[i + 1]), all.post(way[i]), pole(way[i], 0.0)});
+            const Post &first = way.front(), &last = way.back();
+            walls.insert(walls.end(), {all.post(first), low(first), pole(first, 0.0),      //
+                                       pole(first, 0.0), low(first), pole(first, depth),   //
+                                       pole(last, 0.0), pole(last, depth), all.post(last), //
+                                       all.post(last), pole(last, depth), low(last)});
         }
     }
 }
@@ -432,11 +502,9 @@ void TileBlocks::addStrip(const Side& side, const std::vector<Post>& top,
             std::make_tuple(side.vertices, side.number, post.column, post.row, side.depth), 0u);
         if (isNew)
         {
-            // At the terrain's border the wall reaches down by the tile's own error only, since a finer neighbour's
-            // first posts may be so much lower. A deeper or leaning end would show below the border.
+            // A leaning end would show below the border.
             const bool end = ends(post);
-            const double depth =
-                end ? std::min(side.depth, 1.5 * _plan.largestError(_key.level) / 4.0) : side.depth;
+            const double depth = end ? std::min(side.depth, endDepth()) : side.depth;
             const osg::Vec2d out = side.out() * (end ? 0.0 : LEAN * depth);
             entry->second = vertices.below(post, depth, out.x(), out.y());
         }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -20,7 +21,7 @@ namespace osgGeoFX
     From its own distance on, a mesh is right to a pixel, with hardly more triangles than needed. Meshes are index
     lists over shared vertices. Each mesh has walls along the block's border, down to what may stand on the other
     side. The lower end of a wall is a straight line. So a wall costs one triangle for each edge of the border, and
-    one more.
+    one more. Beside a pole, a mesh has its part of the cap: triangles from its border to the pole.
 
     Not thread-safe. */
 class TileBlocks
@@ -29,7 +30,7 @@ public:
     struct Mesh
     {
         std::vector<std::uint32_t> triangles; ///< the ground's, then the walls'
-        std::size_t ground = 0;               ///< the number of indices of the ground
+        std::size_t ground = 0;               ///< the number of indices of the ground, with its part of a cap
         double from = 0.0;                    ///< metres from the block's middle
         double longestEdge = 0.0;             ///< of the surface, along the ground, metres
     };
@@ -82,11 +83,23 @@ private:
     /// Makes the vertices of a block, or of the whole tile.
     std::size_t addVertices(const TileBlock& block);
     static double longestEdge(const BlockMesh& mesh);
+    /// The edges of a mesh along a side, in the order of Side::place, as ways without gaps.
+    static std::vector<std::vector<Post>> border(const Side& side, const BlockMesh& mesh);
+    /// The lines that a block's sides lie on, and those of the tile's sides: 0 south, 1 east, 2 north, 3 west.
+    std::array<int, 4> linesOf(const TileBlock& block) const;
+    std::array<int, 4> borders() const { return {0, _lattice.eastColumn(), _lattice.northRow(), 0}; }
+    /// From the border of the ground to the pole. `walls` gets the walls between these triangles and those of other blocks.
+    void addCaps(const TileBlock& block, std::size_t vertices, const BlockMesh& mesh,
+                 std::vector<std::uint32_t>& triangles, std::vector<std::uint32_t>& walls);
     void addWalls(const TileBlock& block, std::size_t vertices, const BlockMesh& mesh, double depth,
                   std::vector<std::uint32_t>& triangles);
     void addWall(const Side& side, const std::vector<Post>& top, std::vector<std::uint32_t>& triangles);
     void addStrip(const Side& side, const std::vector<Post>& top, std::vector<std::uint32_t>& triangles);
     bool ends(const Post& post) const;
+    /// How far walls reach down at the terrain's border, metres: by the tile's own error only, since a finer neighbour's first
+    /// posts may be so much lower. A deeper end would show below the border.
+    double endDepth() const { return 1.5 * _plan.largestError(_key.level) / 4.0; }
+    double toPole() const; ///< from the end of the ground to the farther pole, metres
     double metres() const; ///< from post to post
 
     const BuildPlan& _plan;
@@ -97,6 +110,7 @@ private:
     const int _x, _y;
     std::vector<std::unique_ptr<TileVertices>> _vertices; ///< the tile's own first
     std::array<double, 4> _skirts{}; ///< what the tile's sides ask for: 0 south, 1 east, 2 north, 3 west
+    std::array<std::optional<double>, 4> _poles; ///< the heights of poles beyond these sides, metres
     std::vector<Block> _blocks;
     std::size_t _roots = 0;
     double _error = 0.0;
@@ -109,7 +123,7 @@ private:
     /// share these lines.
     std::map<std::tuple<std::size_t, int, int, int, int, double>, Line> _lines;
     /// By the vertices, the side, the post and the depth.
-    std::map<std::tuple<std::size_t, int, int, int, double>, std::uint32_t> _strips;
+    std::map<std::tuple<std::size_t, int, int, int, double>, std::uint32_t> _strips, _atPoles;
 };
 
 } // namespace osgGeoFX

@@ -80,6 +80,14 @@ bool BuildPlan::isWholeEarth() const
            !whole().holes;
 }
 
+std::optional<double> BuildPlan::poleHeight(const TileKey& key, int side) const
+{
+    constexpr double touching = 1e-9; // degrees
+    if (side % 2 != 0 || !scheme.endsAt(key, side) || !isWholeEarth()) return std::nullopt;
+    if ((side == 0 ? 90.0 + scheme.south : 90.0 - scheme.north) < touching) return std::nullopt;
+    return static_cast<double>(whole().ends[side == 0 ? 0 : 1]);
+}
+
 void BuildPlan::startFacts(const Unit& unit)
 {
     const std::lock_guard<std::mutex> lock(_factsMutex);
@@ -127,7 +135,7 @@ Digest BuildPlan::factsDigest(const Unit& unit) const
                     hash.add(each);
                 hash.add(isLeaf(key));
                 for (int side = 0; side < 4; ++side)
-                    hash.add(skirt(key, side));
+                    hash.add(skirt(key, side)).add(poleHeight(key, side).value_or(0.0));
             }
     }
     return hash.digest();

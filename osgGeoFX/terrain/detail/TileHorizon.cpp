@@ -36,16 +36,24 @@ osg::ref_ptr<osg::ClusterCullingCallback> createHorizonCulling(const TilingSchem
     constexpr int points = 32;
     const double width = static_cast<double>(scheme.intervals) * scheme.step(key.level);
     double radius = 0.0;
+    const auto include = [&](osg::Vec3d place)
+    {
+        place.normalize();
+        radius = std::max(radius, std::acos(std::clamp(place * middle, -1.0, 1.0)));
+    };
     for (int i = 0; i <= points; ++i)
         for (const auto& [x, y] :
              {std::pair(i, 0), std::pair(i, points), std::pair(0, i), std::pair(points, i)})
         {
-            osg::Vec3d place = frame.position(scheme.gridX(scheme.firstColumn(key) + width * x / points),
-                                              scheme.gridY(scheme.firstRow(key) + width * y / points), 0.0) *
-                               toWorld;
-            place.normalize();
-            radius = std::max(radius, std::acos(std::clamp(place * middle, -1.0, 1.0)));
+            const osg::Vec3d place =
+                frame.position(scheme.gridX(scheme.firstColumn(key) + width * x / points),
+                               scheme.gridY(scheme.firstRow(key) + width * y / points), 0.0) *
+                toWorld;
+            include(place);
         }
+    // The caps at the poles.
+    if (scheme.endsAt(key, 0)) include({0.0, 0.0, -1.0});
+    if (scheme.endsAt(key, 2)) include({0.0, 0.0, 1.0});
 
     const double a = GeographicLib::Constants::WGS84_a();
     const double inner = INNER_SHARE * a * (1.0 - GeographicLib::Constants::WGS84_f());

@@ -230,7 +230,7 @@ Digest tileKey(const BuildPlan& plan, const TileKey& key, const LevelArrays& arr
         hash.add(each);
     hash.add(plan.isLeaf(key)).add(plan.isWholeEarth()).add(arrays.normals);
     for (int side = 0; side < 4; ++side)
-        hash.add(plan.skirt(key, side));
+        hash.add(plan.skirt(key, side)).add(plan.poleHeight(key, side).value_or(0.0));
     // The tile's part of a lattice, with the points on its border.
     const auto add = [&](const auto& values, int columns, int channels)
     {

@@ -11,7 +11,7 @@ namespace osgGeoFX
 namespace
 {
 
-/// Indices from here on stand for vertices below posts.
+/// Indices from here on stand for vertices that are no posts.
 constexpr std::uint32_t STAND_IN = 0x80000000u;
 constexpr std::uint32_t NONE = 0xffffffffu;
 
@@ -74,6 +74,11 @@ osg::Vec3d TileVertices::up(const Post& post) const
     osg::Vec3d east, north, up;
     _frame.axes(gridX(post.column), gridY(post.row), east, north, up);
     return up;
+}
+
+osg::Vec3d TileVertices::pole(bool north, double height) const
+{
+    return _frame.position(_frame.centerX(), north ? 90.0 : -90.0, height);
 }
 
 /// The level's slopes lie on its own posts. Between them they are interpolated.
@@ -150,18 +155,24 @@ std::uint32_t TileVertices::below(const Post& post, double depth, double outX, d
     osg::Vec3d east, north, up;
     _frame.axes(gridX(post.column), gridY(post.row), east, north, up);
     const std::uint32_t top = this->post(post);
-    _low.push_back({rounded(osg::Vec3d((*vertices)[top]) + east * outX + north * outY - up * depth), top});
-    return STAND_IN + static_cast<std::uint32_t>(_low.size() - 1);
+    _others.push_back({rounded(osg::Vec3d((*vertices)[top]) + east * outX + north * outY - up * depth), top});
+    return STAND_IN + static_cast<std::uint32_t>(_others.size() - 1);
+}
+
+std::uint32_t TileVertices::atPole(const Post& post, bool north, double height)
+{
+    _others.push_back({rounded(pole(north, height)), this->post(post)});
+    return STAND_IN + static_cast<std::uint32_t>(_others.size() - 1);
 }
 
 void TileVertices::finish(std::vector<std::vector<std::uint32_t>*>& indices)
 {
     const auto first = static_cast<std::uint32_t>(_posts.size());
-    for (const Low& low : _low)
+    for (const Other& other : _others)
     {
-        vertices->push_back(low.vertex);
-        normals->push_back(osg::Vec3b((*normals)[low.post]));
-        texCoords->push_back(osg::Vec2((*texCoords)[low.post]));
+        vertices->push_back(other.vertex);
+        normals->push_back(osg::Vec3b((*normals)[other.post]));
+        texCoords->push_back(osg::Vec2((*texCoords)[other.post]));
     }
     for (auto* list : indices)
         for (std::uint32_t& each : *list)

@@ -14,7 +14,7 @@ namespace osgGeoFX
 {
 
 /** The vertices that the meshes of a tile, or of one of its blocks, share. Posts come first, then the walls' lower
-    ends.
+    ends, and the poles.
 
     Places are rounded to a grid of at most 1/32 m, and of at most 1/1024 of the way from post to post. Finer digits
     are noise, which no compressor can shrink. Not thread-safe. */
@@ -35,7 +35,9 @@ public:
     /// The index of a new vertex below a post, moved by `outX` and `outY` metres to the east and to the north. Final
     /// indices are known only after all posts, so this index is a stand-in until finish().
     std::uint32_t below(const Post& post, double depth, double outX, double outY);
-    /// Puts the vertices below posts behind the posts, and replaces stand-ins by indices.
+    /// The index of a new vertex on a pole, at a height in metres, with the texture coordinates of a post: a stand-in, too.
+    std::uint32_t atPole(const Post& post, bool north, double height);
+    /// Puts these vertices behind the posts, and replaces stand-ins by indices.
     void finish(std::vector<std::vector<std::uint32_t>*>& indices);
 
     /// The largest distance of a vertex from its exact place, metres.
@@ -47,13 +49,15 @@ public:
     osg::Vec3d ground(const Post& post) const;
     /// The upward direction at a post, in the tile's frame.
     osg::Vec3d up(const Post& post) const;
+    /// A pole at a height in metres, in the tile's frame.
+    osg::Vec3d pole(bool north, double height) const;
 
     osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec3bArray> normals = new osg::Vec3bArray(osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::Vec2Array> texCoords = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
 
 private:
-    struct Low
+    struct Other
     {
         osg::Vec3 vertex;
         std::uint32_t post;
@@ -75,7 +79,7 @@ private:
     const double _quantum;               ///< metres, a power of two
     std::vector<std::uint32_t> _indices; ///< of the block's posts, row by row
     std::vector<Post> _posts;
-    std::vector<Low> _low;
+    std::vector<Other> _others;
 };
 
 } // namespace osgGeoFX

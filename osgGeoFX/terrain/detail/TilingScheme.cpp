@@ -36,6 +36,22 @@ Lattice TilingScheme::lattice(double column, double row, double spacing, int col
     return result;
 }
 
+bool TilingScheme::endsAt(const TileKey& key, int side) const
+{
+    const int width = intervals * step(key.level);
+    switch (side)
+    {
+    case 0:
+        return key.y == 0;
+    case 1:
+        return firstColumn(key) + width >= lastColumn;
+    case 2:
+        return firstRow(key) + width >= lastRow;
+    default:
+        return key.x == 0;
+    }
+}
+
 double TilingScheme::metresX(double y) const
 {
     const double dx = (east - west) / lastColumn;

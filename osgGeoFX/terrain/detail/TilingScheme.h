@@ -70,6 +70,8 @@ struct TilingScheme
     int firstColumn(const TileKey& key) const { return key.x * intervals * step(key.level); }
     int firstRow(const TileKey& key) const { return key.y * intervals * step(key.level); }
     bool exists(const TileKey& key) const { return firstColumn(key) < lastColumn && firstRow(key) < lastRow; }
+    /// Whether the extent ends on a tile's side: 0 south, 1 east, 2 north, 3 west.
+    bool endsAt(const TileKey& key, int side) const;
 
     /// The grid position of a finest post; fractions are allowed. Beyond the extent it is that of the border.
     double gridX(double column) const
