@@ -99,28 +99,39 @@ TEST(DatabaseWorld, WholeGlobeIsClosed)
     {
         return 1000.0 + 500.0 * std::sin(column * 2.5 * osg::PI / 180.0) + 5.0 * row;
     };
-    const auto dem = TestRaster(144, 72)
-                         .placed(-180.0, 90.0, 2.5, 2.5)
-                         .crs("EPSG:4326")
-                         .fill([&](int column, int row, int) { return height(column, row); })
-                         .write(folder / "dem.tif");
-    buildDatabase(options({dem}, folder / "db"));
-    const FinestLevel level(folder / "db");
-    for (int row = 0; row < level.rows; ++row)
+    const auto write = [&](const std::string& name, int first, int columns)
     {
-        const auto first = level.index(0, row), last = level.index(level.columns - 1, row);
-        ASSERT_LT((level.world[first] - level.world[last]).length(), 1.0) << "row " << row;
-        for (int column = 0; column < level.columns; ++column)
+        return TestRaster(columns, 72)
+            .placed(-180.0 + 2.5 * first, 90.0, 2.5, 2.5)
+            .crs("EPSG:4326")
+            .fill([&](int column, int row, int) { return height(first + column, row); })
+            .write(folder / name);
+    };
+    // Worlds come in one file or in several, none of which goes around.
+    const std::vector<std::string> one{write("dem.tif", 0, 144)},
+        several{write("west.tif", 0, 40), write("east.tif", 90, 54), write("middle.tif", 40, 50)};
+    for (const auto& dems : {one, several})
+    {
+        SCOPED_TRACE(dems.front());
+        buildDatabase(options(dems, folder / "db"));
+        const FinestLevel level(folder / "db");
+        EXPECT_EQ(level.columns, 145);
+        for (int row = 0; row < level.rows; ++row)
         {
-            ASSERT_TRUE(level.used[level.index(column, row)]) << column << " " << row;
-            // Posts lie amid the pixels.
-            const Geodetic g = geodetic(level.world[level.index(column, row)]);
-            ASSERT_NEAR(g.height, height(column % 144, 71 - row), ROUNDING) << column << " " << row;
+            const auto first = level.index(0, row), last = level.index(level.columns - 1, row);
+            ASSERT_LT((level.world[first] - level.world[last]).length(), 1.0) << "row " << row;
+            for (int column = 0; column < level.columns; ++column)
+            {
+                ASSERT_TRUE(level.used[level.index(column, row)]) << column << " " << row;
+                // Posts lie amid the pixels.
+                const Geodetic g = geodetic(level.world[level.index(column, row)]);
+                ASSERT_NEAR(g.height, height(column % 144, 71 - row), ROUNDING) << column << " " << row;
+            }
         }
+        // The levels above are coarse polyhedra; they must still be there.
+        EXPECT_EQ(readTiles(folder / "db").size(),
+                  static_cast<std::size_t>(DatabaseRoot(folder / "db").value<double>("geofx.tiles")));
     }
-    // The levels above are coarse polyhedra; they must still be there.
-    EXPECT_EQ(readTiles(folder / "db").size(),
-              static_cast<std::size_t>(DatabaseRoot(folder / "db").value<double>("geofx.tiles")));
 }
 
 /// Where a ray towards the Earth's center goes in through a triangle; NaN where it does not, or from behind.
@@ -205,27 +216,29 @@ TEST(DatabaseWorld, CapsCloseThePoles)
 TEST(DatabaseWorld, CapsFollowAnUpdate)
 {
     const TempDir folder;
-    const auto write = [&](double more)
+    const auto write = [&](const std::string& name, double west, double more)
     {
-        return TestRaster(180, 90)
-            .placed(-180.0, 90.0, 2.0, 2.0)
+        return TestRaster(120, 180)
+            .placed(west, 90.0, 1.0, 1.0)
             .crs("EPSG:4326")
-            .fill(
-                [&](int column, int row, int) {
-                    return 4.0 * relief(2.0 * (column % 180), 2.0 * row) +
-                           (row == 0 && column < 6 ? more : 0.0);
-                })
-            .write(folder / "dem.tif");
+            .fill([&](int column, int row, int)
+                  { return 4.0 * relief(column, row) + (row == 0 && column < 12 ? more : 0.0); })
+            .write(folder / name);
     };
-    auto o = options({write(0.0)}, folder / "db");
+    auto o = options(
+        {write("west.tif", -180.0, 0.0), write("middle.tif", -60.0, 0.0), write("east.tif", 60.0, 0.0)},
+        folder / "db");
+    o.tileSize = 8;
     o.update = true;
     o.keep = true;
     buildDatabase(o);
-    write(10.0);
-    buildDatabase(o);
+    write("middle.tif", -60.0, 10.0);
+    const BuildSummary update = buildDatabase(o);
+    EXPECT_GT(update.unitsKept, 0u) << update.allBecause;
+    EXPECT_GT(update.tilesKept, 0u);
     o.output = (folder / "anew").string();
     buildDatabase(o);
-    // Tiles far from the change have a part of the cap, too.
+    // Tiles far from the change, made of another file alone, have a part of the cap, too.
     const auto updated = contents(folder / "db" / "tiles"), anew = contents(folder / "anew" / "tiles");
     ASSERT_GT(anew.size(), 20u);
     ASSERT_EQ(updated.size(), anew.size());

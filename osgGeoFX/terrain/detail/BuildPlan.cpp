@@ -204,7 +204,12 @@ void BuildPlan::chooseExtent()
         if (print.north > scheme.north + y) scheme.north = print.north;
         wholeCircle = wholeCircle || print.wholeCircle;
     }
-    if (scheme.crs.geographic && (wholeCircle || scheme.east - scheme.west > 360.0))
+    // Several files may go around together. From the last post to the first it is a pixel, as it is between any two of them.
+    double step = 0.0;
+    for (const auto& print : dems)
+        if (print.west < scheme.west + print.stepX || print.east > scheme.east - print.stepX)
+            step = std::max(step, print.stepX);
+    if (scheme.crs.geographic && (wholeCircle || scheme.east - scheme.west + 1.5 * step >= 360.0))
         scheme.east = scheme.west + 360.0;
     require(scheme.east > scheme.west && scheme.north > scheme.south,
             options.dems.front() +
