@@ -16,7 +16,7 @@ namespace
 
 /// A liberty moves each part of a large tile another way, so what bounds all of it is wide. A tile that asks for finer ones is worth
 /// a closer look.
-constexpr int HALVINGS = 6;
+constexpr int HALVINGS = 10;
 
 } // namespace
 

@@ -79,7 +79,7 @@ bool Visibility::outOfSight(const DeformationChain& chain, const EyeBox& box, Ma
     if (_frustum.holds(deformed.center, planes)) return false;
     if (misses(chain, box, planes)) return true;
     // A margin that is small beside the box would not become much smaller.
-    constexpr double loose = 0.1;
+    constexpr double loose = 0.03;
     if (halvings == 0 || _hull.margin < loose * box.ball().radius) return false;
     const osg::Vec3d* longest =
         std::max_element(box.half, box.half + 3,
