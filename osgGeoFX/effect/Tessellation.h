@@ -61,7 +61,8 @@ private:
 class TessellatedSnapshot
 {
 public:
-    /// Into how many parts an edge is divided at most, as stages/tessellation.tesc.glsl has it.
+    /// Into how many parts an edge is divided at most. 15 parts are 225 times as close to the curve as one. Mesa's llvmpipe loses
+    /// triangles where there are more: it numbers the vertices of 341 patches, with 192 each, in 16 bits.
     static constexpr double mostParts = 15.0;
 
     /// Whether triangles are divided at all.

@@ -34,9 +34,7 @@ GEOFX_SAG_CALLS
     vec2 pixels = geofx_halfPicture * abs(vec2(projection[0][0], projection[1][1])) / depth;
     // What a chord misses of a curve falls with the square of their number, and what it misses at a corner with their number.
     float scale = max(pixels.x, pixels.y);
-    // 15 parts are 225 times as close to the curve as one. Mesa's llvmpipe loses triangles where there are more: it numbers the
-    // vertices of 341 patches, with 192 each, in 16 bits.
-    return clamp(max(sqrt(sag.y * scale), sag.z * scale), 1.0, 15.0);
+    return clamp(max(sqrt(sag.y * scale), sag.z * scale), 1.0, GEOFX_MOST_PARTS);
 }
 
 void main()

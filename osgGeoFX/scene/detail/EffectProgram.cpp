@@ -427,6 +427,7 @@ std::string tessellationText(const EffectProgram::Effects& effects, const Shader
     const Parts parts = tessellationParts(effects, library, stage, sags);
     std::string main = replaced(library.read(file), "GEOFX_BUILT_INS\n", builtIns(stage));
     main = parts.fill(replaced(main, "GEOFX_SAG_CALLS\n", sags));
+    if (control) main = replaced(main, "GEOFX_MOST_PARTS", std::to_string(TessellatedSnapshot::mostParts));
     const Relay fromControl = {"_control", "", "[]", "", "GEOFX_COPY(w)"};
     return library.assemble(relayText(parts, handedByTessellation(effects), main,
                                       control ? toControl : fromControl, laterVersion),
