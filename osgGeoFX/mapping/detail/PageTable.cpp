@@ -129,11 +129,11 @@ bool PageTable::write(const std::vector<PageResidency::Source>& sources, int col
     {
         const int shift = source.wanted.level - finest;
         if (shift > 30) return false;
-        Rectangle rectangle;
-        rectangle.x = source.wanted.x << shift;
-        rectangle.y = source.wanted.y << shift;
         const std::int64_t size = std::int64_t{1} << shift;
         if (size > mostCells) return false;
+        Rectangle rectangle;
+        rectangle.x = source.wanted.x * size;
+        rectangle.y = source.wanted.y * size;
         rectangle.size = static_cast<int>(size);
         const auto exponent = static_cast<std::uint32_t>(127 - (source.page.level - finest));
         rectangle.word = static_cast<std::uint32_t>(source.slot % columns) |
