@@ -93,8 +93,9 @@ osg::ref_ptr<osg::CoordinateSystemNode> readRoot(const fs::path& file)
                          ": there is no finished terrain database for the buildings; build one with "
                          "osggeofx_build --dem FILE -o DIR.");
     osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
+    const osg::ref_ptr<osgDB::Options> withoutPath = new osgDB::Options;
     osg::ref_ptr<osg::Node> node;
-    if (reader) node = reader->readNode(stream, new osgDB::Options).getNode();
+    if (reader) node = reader->readNode(stream, withoutPath).getNode();
     auto* root = dynamic_cast<osg::CoordinateSystemNode*>(node.get());
     if (!root) throw BuildError(file.string() + ": it cannot be read; build the terrain again with --anew.");
     return root;

@@ -209,8 +209,8 @@ TEST_F(RenderProgram, CitiesKeepTheirShape)
     osgGeoFX::addPluginFolder();
     watch().ignore("unable to find material");
     // OSG's reader of .obj turns models upright unless it is told not to.
-    const osg::ref_ptr<osg::Node> house =
-        osgDB::readRefNodeFile((_folder / "house.obj").string(), new osgDB::Options("noRotation"));
+    const osg::ref_ptr<osgDB::Options> asItIs = new osgDB::Options("noRotation");
+    const osg::ref_ptr<osg::Node> house = osgDB::readRefNodeFile((_folder / "house.obj").string(), asItIs);
     ASSERT_TRUE(house);
     const osg::ref_ptr<osg::Group> city = new osg::Group, nodes = new osg::Group;
     for (int i = 0; i < 60; ++i)

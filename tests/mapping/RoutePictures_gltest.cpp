@@ -54,7 +54,8 @@ protected:
     {
         osgDB::ReaderWriter* const plugin = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
         std::stringstream stream;
-        EXPECT_TRUE(plugin->writeObject(effect, stream, new osgDB::Options("Compressor=null")).success());
+        const osg::ref_ptr<osgDB::Options> plain = new osgDB::Options("Compressor=null");
+        EXPECT_TRUE(plugin->writeObject(effect, stream, plain).success());
         osgDB::ReaderWriter::ReadResult result = plugin->readObject(stream);
         return dynamic_cast<ProjectiveMappings*>(result.getObject());
     }

@@ -162,8 +162,8 @@ TEST_F(PanoramaStates, DrawsTheSameFromFiles)
         EXPECT_TRUE(imagesMatch(*draw(read), *expected, {}, name));
     }
     // Text files have no images of their own and round the ground; the map itself they keep.
-    ASSERT_TRUE(osgDB::writeObjectFile(*_map, (folder / "map.osgt").string(),
-                                       new osgDB::Options("WriteImageHint=IncludeData")));
+    const osg::ref_ptr<osgDB::Options> whole = new osgDB::Options("WriteImageHint=IncludeData");
+    ASSERT_TRUE(osgDB::writeObjectFile(*_map, (folder / "map.osgt").string(), whole));
     const osg::ref_ptr<PanoramaMap> map = osgDB::readRefFile<PanoramaMap>((folder / "map.osgt").string());
     ASSERT_TRUE(map);
     const osg::ref_ptr<EffectScene> other = new EffectScene;

@@ -254,6 +254,7 @@ TEST_F(Serving, AServerThatGoesAwayAndComesBack)
 void writeGrid(const fs::path& folder, int count)
 {
     const osg::ref_ptr<osg::Group> root = new osg::Group;
+    const osg::ref_ptr<osgDB::Options> compressed = new osgDB::Options("Compressor=zlib");
     for (int i = 0; i < count; ++i)
     {
         const osg::Vec3 center(static_cast<float>(i % 8) * 400.0f - 1400.0f,
@@ -267,10 +268,9 @@ void writeGrid(const fs::path& folder, int count)
         lod->setRange(0, 0.0f, 1e9f);
         root->addChild(lod);
         fs::create_directories(folder / "grid");
-        osgDB::writeNodeFile(*box, (folder / "grid" / (std::to_string(i) + ".osgb")).string(),
-                             new osgDB::Options("Compressor=zlib"));
+        osgDB::writeNodeFile(*box, (folder / "grid" / (std::to_string(i) + ".osgb")).string(), compressed);
     }
-    osgDB::writeNodeFile(*root, (folder / "grid.osgb").string(), new osgDB::Options("Compressor=zlib"));
+    osgDB::writeNodeFile(*root, (folder / "grid.osgb").string(), compressed);
 }
 
 TEST_F(Serving, EightFilesAreFetchedAtOnce)

@@ -129,8 +129,9 @@ osg::ref_ptr<osg::Node> readRootTile(const BuildPlan& plan, const TileKey& key)
     // Without a path in the options, OSG leaves the file names in the tile as they were written.
     std::ifstream stream(file, std::ios::binary);
     osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("osgb");
+    const osg::ref_ptr<osgDB::Options> withoutPath = new osgDB::Options;
     osg::ref_ptr<osg::Node> node;
-    if (stream && reader) node = reader->readNode(stream, new osgDB::Options).getNode();
+    if (stream && reader) node = reader->readNode(stream, withoutPath).getNode();
     if (!former && node) return node;
     if (former && node && node->asGroup())
         for (unsigned int i = 0; i < node->asGroup()->getNumChildren(); ++i)
