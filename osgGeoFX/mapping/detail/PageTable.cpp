@@ -23,7 +23,7 @@ int powerOfTwo(std::int64_t least)
 
 std::int64_t floorTo(std::int64_t value, int bits)
 {
-    return (value >> bits) << bits;
+    return (value >> bits) * (std::int64_t{1} << bits);
 }
 
 } // namespace
