@@ -147,7 +147,8 @@ TEST(LayerPlayer, DrivesWhatFollowsItInTheUpdateTraversal)
     const osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addUpdateCallback(player);
     EXPECT_EQ(LayerPlayer::of(*scene), player);
-    EXPECT_EQ(LayerPlayer::of(*new osg::Group), nullptr);
+    const osg::ref_ptr<osg::Group> other = new osg::Group;
+    EXPECT_EQ(LayerPlayer::of(*other), nullptr);
     const osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
     osgUtil::UpdateVisitor visitor;
     visitor.setFrameStamp(stamp);

@@ -372,8 +372,8 @@ Parts tessellationParts(const EffectProgram::Effects& effects, const ShaderLibra
             for (const Varying& each : deformation->varyings())
             {
                 const std::string declaration = each.type + " SLOT_" + each.name + ";";
-                text = replaced(text, "flat out " + declaration, declaration);
-                text = replaced(text, "out " + declaration, declaration);
+                for (const char* output : {"flat out ", "out "})
+                    text = replaced(text, std::string(output).append(declaration), declaration);
             }
             if (tessellator) text += library.read(tessellator->tessellationFile());
             std::string call;

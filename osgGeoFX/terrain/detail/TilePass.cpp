@@ -276,6 +276,14 @@ bool hasFormerRoot(const BuildPlan& plan, const Unit& unit)
     return group && plan.kept->hasTiles(*group, parent);
 }
 
+/// The texels of a square (BuildPlan::sampledSquare).
+struct Surface
+{
+    TileKey root;
+    int level = 0;
+    std::vector<unsigned char> colors, classes, cover;
+};
+
 class UnitBuilder
 {
 public:
@@ -303,13 +311,6 @@ private:
     BuildPlan& _plan;
     TileNodeFactory _factory;
     std::unique_ptr<RasterStack> _rasters;
-    /// The texels of a square (BuildPlan::sampledSquare).
-    struct Surface
-    {
-        TileKey root;
-        int level = 0;
-        std::vector<unsigned char> colors, classes, cover;
-    };
     std::optional<Surface> _surface; ///< of which more tiles may come
     // Of the unit in work.
     std::optional<UnitRecord> _former; ///< of the former database; empty if it has none
