@@ -217,7 +217,7 @@ TEST_F(SurfaceDataLayers, OfColorsComeFromAnyPlainImage)
     EXPECT_EQ(firstOf(GL_FLOAT, 7.0f), 1.0);
     EXPECT_EQ(firstOf(GL_FLOAT, std::numeric_limits<float>::quiet_NaN()), 0.0);
 
-    const auto refuses = [&](osg::Image* image, int width, int height)
+    const auto refuses = [&](const osg::ref_ptr<osg::Image>& image, int width, int height)
     {
         return isRefused([&] { return SurfaceData::toLayer(*image, width, height).valid(); }, "plain RGB");
     };

@@ -182,7 +182,8 @@ TEST(LeastTriangles, FollowTheDistance)
 TEST(LeastTriangles, NeedADatabaseOfOurs)
 {
     std::string error;
-    EXPECT_FALSE(LeastTriangles::read(*new osg::Group, error));
+    const osg::ref_ptr<osg::Group> other = new osg::Group;
+    EXPECT_FALSE(LeastTriangles::read(*other, error));
     EXPECT_NE(error.find("--least-triangles"), std::string::npos) << error;
 }
 

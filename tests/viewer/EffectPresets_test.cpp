@@ -192,7 +192,8 @@ TEST_F(EffectPresetsTest, CaptureAllAndComeBack)
     ASSERT_EQ(read.size(), 2u) << error;
     EXPECT_EQ(read[0].settings, before.settings);
     EXPECT_EQ(read[1].name, "Übersicht \"2\"");
-    EXPECT_TRUE(EffectPreset::read(*new EffectScene, error).empty());
+    const osg::ref_ptr<EffectScene> other = new EffectScene;
+    EXPECT_TRUE(EffectPreset::read(*other, error).empty());
     EXPECT_EQ(error, "");
     scene->setUserValue("geofx.presets", std::string("{\"x\": "));
     EXPECT_TRUE(EffectPreset::read(*scene, error).empty());
