@@ -66,7 +66,7 @@ double ContactShade::width(const PlacedBuilding& building)
 unsigned int ContactShade::vertex(const osg::Vec2d& place, double share, double grain)
 {
     const osg::Vec2d at(multipleOf(grain, place.x()), multipleOf(grain, place.y()));
-    _places.push_back(osg::Vec3(osg::Vec3d(at, multipleOf(COARSER * _fineness.grain, _ground(at, _base)))));
+    _places.emplace_back(osg::Vec3d(at, multipleOf(COARSER * _fineness.grain, _ground(at, _base))));
     _colors.push_back(
         osg::Vec4ub(0, 0, 0, static_cast<unsigned char>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)))));
     return static_cast<unsigned int>(_places.size() - 1);
