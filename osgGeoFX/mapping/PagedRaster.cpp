@@ -183,12 +183,12 @@ public:
         Leaves leaves;
         eachRoot([&](const MappingPage& page) { visit(page, page, _store.find(page), leaves); });
         bool same = !look && leaves.size() == _leaves.size();
-        for (auto leaf = leaves.begin(); leaf != leaves.end(); ++leaf)
+        for (auto& [page, leaf] : leaves)
         {
-            const auto former = _leaves.find(leaf->first);
-            const bool stays = !look && former != _leaves.end() && former->second.part &&
-                               former->second.layer == leaf->second.layer;
-            leaf->second.part = stays ? former->second.part : partFor(leaf->first, leaf->second.layer);
+            const auto former = _leaves.find(page);
+            const bool stays =
+                !look && former != _leaves.end() && former->second.part && former->second.layer == leaf.layer;
+            leaf.part = stays ? former->second.part : partFor(page, leaf.layer);
             same = same && stays;
         }
         _revision = _mapping->revision();
