@@ -122,7 +122,8 @@ void PageDrawing::makeState(const std::string& prefix)
 void PageDrawing::addPiece(const PageResidency::Piece& piece)
 {
     const PlaneBox whole = piece.page.whole();
-    const osg::Vec2d origin(piece.slot % _columns, piece.slot / _columns);
+    const int firstColumn = piece.slot % _columns, firstRow = piece.slot / _columns;
+    const osg::Vec2d origin(firstColumn, firstRow);
     const auto corner = [&](double x, double y)
     {
         // In whole texels of the page.
