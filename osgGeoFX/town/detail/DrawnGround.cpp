@@ -39,6 +39,13 @@ struct Corners
     void operator()(unsigned int a, unsigned int b, unsigned int c) { found.insert(found.end(), {a, b, c}); }
 };
 
+/// The tiles of a file of the database; null if it cannot be read.
+osg::ref_ptr<osg::Node> readTiles(const std::string& file)
+{
+    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    return osgDB::readRefNodeFile(file, options);
+}
+
 } // namespace
 
 /// The triangles of a finest tile, over the grid.
@@ -175,7 +182,7 @@ DrawnGround::Tiles& DrawnGround::tilesIn(const std::string& file)
 {
     const auto known = _files.find(file);
     if (known != _files.end()) return known->second;
-    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file, new osgDB::Options);
+    const osg::ref_ptr<osg::Node> node = readTiles(file);
     if (!node)
         throw BuildError(file +
                          ": this tile of the ground cannot be read; build the database again with --anew.");
@@ -191,8 +198,7 @@ const DrawnGround::Surface& DrawnGround::surfaceOf(Tiles& tiles, const std::stri
     if (!tiles[index].surface)
     {
         const osg::ref_ptr<const osg::Node> node =
-            file.empty() ? _root
-                         : osg::ref_ptr<const osg::Node>(osgDB::readRefNodeFile(file, new osgDB::Options));
+            file.empty() ? _root : osg::ref_ptr<const osg::Node>(readTiles(file));
         if (node) makeSurfaces(tiles, *node);
     }
     if (!tiles[index].surface)
