@@ -248,7 +248,7 @@ bool SceneRoutes::add(const std::string& file, const Options& options, std::stri
     for (const RoutePath& route : request.routes)
     {
         if (add(route, options, error)) continue;
-        error = file + ": " + error;
+        error.insert(0, file + ": ");
         return false;
     }
     return true;

@@ -704,7 +704,7 @@ std::vector<std::string> PanoramaComposer::explain(const PanoramaComposition& vi
                    100.0 * seen.blank)
             : std::string("Edges: none of the data's edges is in the picture."));
     if (seen.cut > 0.0)
-        lines.push_back("Summits go beyond the picture's upper edge; lower the exaggeration.");
+        lines.emplace_back("Summits go beyond the picture's upper edge; lower the exaggeration.");
     return lines;
 }
 

@@ -46,7 +46,7 @@ public:
 class TileFiles
 {
 public:
-    TileFiles(fs::path folder, std::string key, OIIO::TypeDesc type)
+    TileFiles(fs::path folder, std::string key, const OIIO::TypeDesc& type)
         : _folder(std::move(folder)), _key(std::move(key)), _type(type)
     {
         std::error_code fault;
@@ -278,7 +278,8 @@ private:
 };
 
 /// Puts the tiles of a row side by side. OSG's rows go upwards.
-void readRow(const TilePlan& plan, const TileFiles& tiles, int row, OIIO::TypeDesc type, osg::Image& strip)
+void readRow(const TilePlan& plan, const TileFiles& tiles, int row, const OIIO::TypeDesc& type,
+             osg::Image& strip)
 {
     const std::size_t pixelSize = 3 * type.size();
     for (int column = 0; column < plan.columns; ++column)

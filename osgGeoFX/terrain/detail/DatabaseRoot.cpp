@@ -54,7 +54,7 @@ std::optional<TileKey> parentOf(const std::filesystem::path& file)
 std::vector<std::string> obsoleteFiles(BuildPlan& plan)
 {
     // The facts of so many units at most, if they are read from files.
-    constexpr std::size_t BATCH = 10000;
+    constexpr std::size_t batch = 10000;
     namespace fs = std::filesystem;
     std::vector<std::string> result;
     const fs::path tiles = fs::path(plan.options.output) / "tiles";
@@ -68,7 +68,7 @@ std::vector<std::string> obsoleteFiles(BuildPlan& plan)
         const auto parent = parentOf(name);
         if (!parent || !plan.has(*parent) || plan.isLeaf(*parent) || !plan.fact(*parent).any)
             result.push_back("tiles/" + name.generic_string());
-        if (++count % BATCH == 0) plan.forgetFacts();
+        if (++count % batch == 0) plan.forgetFacts();
     }
     return result;
 }

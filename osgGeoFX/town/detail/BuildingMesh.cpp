@@ -162,7 +162,7 @@ std::vector<osg::Vec2d> triangulate(const std::vector<Ring>& rings)
     {
         if (index < exact.size()) return exact[index];
         const osg::Vec3& place = (*made)[index];
-        return origin + osg::Vec2d(place.x(), place.y());
+        return origin + osg::Vec2d(osg::Vec2(place.x(), place.y()));
     };
     const auto add = [&](unsigned int a, unsigned int b, unsigned int c)
     {
@@ -218,7 +218,7 @@ unsigned int BuildingMesh::vertex(const osg::Vec3d& place, const osg::Vec3d& nor
     _normals.push_back(osg::Vec3(normal));
     _references.push_back(_reference);
     _colors.push_back(bytes(color));
-    _texels.push_back(osg::Vec2(static_cast<float>(u), static_cast<float>(v)));
+    _texels.emplace_back(static_cast<float>(u), static_cast<float>(v));
     return static_cast<unsigned int>(_places.size() - 1);
 }
 
