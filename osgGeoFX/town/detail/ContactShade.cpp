@@ -67,8 +67,8 @@ unsigned int ContactShade::vertex(const osg::Vec2d& place, double share, double 
 {
     const osg::Vec2d at(multipleOf(grain, place.x()), multipleOf(grain, place.y()));
     _places.emplace_back(osg::Vec3d(at, multipleOf(COARSER * _fineness.grain, _ground(at, _base))));
-    _colors.push_back(
-        osg::Vec4ub(0, 0, 0, static_cast<unsigned char>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)))));
+    const auto opacity = static_cast<unsigned char>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+    _colors.emplace_back(0, 0, 0, opacity);
     return static_cast<unsigned int>(_places.size() - 1);
 }
 
