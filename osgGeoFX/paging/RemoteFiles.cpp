@@ -74,7 +74,7 @@ osg::ref_ptr<osgDB::Options> fetchOptions(const osgDB::Options* options)
 
 std::string reasonOf(const ReadResult& result, Content& content)
 {
-    const std::string message = result.message();
+    const std::string& message = result.message();
     const std::string prefix = "error code = ";
     if (message.compare(0, prefix.size(), prefix) == 0)
     {

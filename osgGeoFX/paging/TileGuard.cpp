@@ -186,9 +186,13 @@ void TileGuard::tell(osg::Node& tile, const std::string& file)
         catch (...)
         {
         }
-        warnOnce(file, "osgGeoFX: a TileListener fails on the tile \"" + file + "\" (" + reason +
-                           "); the tile is drawn, without what the listener would have made of it. Repair "
-                           "the listener.");
+        std::string message = "osgGeoFX: a TileListener fails on the tile \"";
+        message += file;
+        message += "\" (";
+        message += reason;
+        message +=
+            "); the tile is drawn, without what the listener would have made of it. Repair the listener.";
+        warnOnce(file, message);
     }
 }
 

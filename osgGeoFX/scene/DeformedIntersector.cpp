@@ -194,7 +194,7 @@ void DeformedLineIntersector::intersect(osgUtil::IntersectionVisitor& visitor, o
     const auto reference = [&](std::size_t vertex)
     {
         const osg::Vec4& each = (*references)[vertex];
-        return osg::Vec3d(each.x(), each.y(), each.z()) * _modelView;
+        return osg::Vec3d(osg::Vec3(each.x(), each.y(), each.z())) * _modelView;
     };
     const auto deform = [&](unsigned int vertex)
     {
