@@ -108,8 +108,13 @@ std::string workerLine(const Options& options, const WorkStatus& work, const Job
     std::string line = quoted(programOf(options, work)) + " --quiet --threads 1";
     if (options.memoryMiB > 0) line += " --memory " + std::to_string(options.memoryMiB);
     line += " --work " + quoted(options.folder) + " --unit";
+    const std::string share = ":" + part + "/" + std::to_string(array.jobs);
     for (const std::string& stage : array.stages)
-        line += " " + stage + ":" + part + "/" + std::to_string(array.jobs);
+    {
+        line += " ";
+        line += stage;
+        line += share;
+    }
     return line;
 }
 
@@ -164,7 +169,7 @@ std::string submitArray(const Options& options, const std::vector<std::string>& 
         return "JOB-" + name;
     }
     const auto result = slurm(command);
-    const std::string job = result.standardOutput.substr(0, result.standardOutput.find_first_of(";\n"));
+    std::string job = result.standardOutput.substr(0, result.standardOutput.find_first_of(";\n"));
     if (result.exitCode != 0 || job.empty())
         throw WorkError("sbatch refuses the jobs of " + name + ": " + result.standardError +
                         "What was submitted before waits for them; cancel it with scancel" +

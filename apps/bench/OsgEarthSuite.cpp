@@ -70,12 +70,12 @@ int shrink(const Settings& settings)
 /// The builder with what all databases here have in common.
 std::vector<std::string> build(const Settings& settings, const fs::path& output)
 {
-    const double pixels =
-        osgGeoFX::pixelsPerRadian(HEIGHT / shrink(settings), osg::DegreesToRadians(FIELD_OF_VIEW));
+    const int height = HEIGHT / shrink(settings);
+    const double pixels = osgGeoFX::pixelsPerRadian(height, osg::DegreesToRadians(FIELD_OF_VIEW));
     std::vector<std::string> command = {settings.builder.string(), "--quiet",  "--pixels-per-radian",
                                         std::to_string(pixels),    "--output", output.string()};
     if (settings.smoke) command.insert(command.end(), {"--tile-size", "32"});
-    command.push_back("--dem");
+    command.emplace_back("--dem");
     return command;
 }
 
@@ -84,7 +84,7 @@ Terrain makeTerrain(const Settings& settings, const fs::path& dem, const fs::pat
     fs::create_directories(folder);
     const auto global = [&](const std::string& name, const std::vector<std::string>& bands, const char* type)
     {
-        const fs::path file = folder / name;
+        fs::path file = folder / name;
         std::vector<std::string> command = {"gdal_create", "-q",      "-ot",    type,
                                             "-outsize",    "72",      "36",     "-a_srs",
                                             "EPSG:4326",   "-a_ullr", "-180",   "90",

@@ -294,7 +294,7 @@ Figure bytes(Pilot& pilot, const PaperPath& path, int frames)
 /// A scene with the light of an afternoon, for without one a viewer's own lamp lights the ground.
 std::filesystem::path writeScene(const std::filesystem::path& folder, const std::filesystem::path& terrain)
 {
-    const std::filesystem::path file = folder / "paper.geofx";
+    std::filesystem::path file = folder / "paper.geofx";
     std::ofstream stream(file);
     stream << "<geofx version=\"1\">\n  <terrain><database file=\"" << terrain.string()
            << "\"/></terrain>\n"

@@ -63,10 +63,11 @@ std::pair<double, double> fly(OffscreenView& view, const PaperPath& path,
     for (int turn = 0; turn < 2 * rounds; ++turn)
     {
         shadows.setEnabled(turn % 2 == 1);
+        const int round = turn / 2;
         // Each kind flies the same way; its first step only follows the other kind.
         for (int step = 0; step < 3; ++step)
         {
-            view.look(path.view(0.5 + share * (3 * (turn / 2) + step), reference));
+            view.look(path.view(0.5 + share * (3 * round + step), reference));
             const double seconds = view.frame();
             if (step > 0) times[turn % 2].push_back(1000.0 * seconds);
         }

@@ -39,8 +39,9 @@ osg::ref_ptr<osg::Node> makeTown()
     };
     for (int i = 0; i < 40 * 40; ++i)
     {
-        const auto x = static_cast<float>(i % 40 * 70 - 1365), y = static_cast<float>(i / 40 * 70 - 1365);
-        if (i % 40 % 5 == 2 || i / 40 % 7 == 3) continue; // streets
+        const int column = i % 40, row = i / 40;
+        if (column % 5 == 2 || row % 7 == 3) continue; // streets
+        const auto x = static_cast<float>(column * 70 - 1365), y = static_cast<float>(row * 70 - 1365);
         const float tall =
             10.0f + 60.0f * std::exp(-(x * x + y * y) / 250000.0f) + static_cast<float>(i * 7 % 13);
         const float shade = 0.78f + 0.02f * static_cast<float>(i * 5 % 11);

@@ -48,6 +48,8 @@ public:
 
     std::vector<KmlOverlay> collect()
     {
+        // take() adds to the queue.
+        // NOLINTNEXTLINE(modernize-loop-convert)
         for (std::size_t next = 0; next < _queue.size(); ++next)
         {
             const Link link = _queue[next];

@@ -33,7 +33,8 @@ constexpr int lattice = 33;
 /// The place of a lattice's point in the picture, 0…1.
 osg::Vec2d pictureAt(int point)
 {
-    return {(point % lattice) / (lattice - 1.0), (point / lattice) / (lattice - 1.0)};
+    const int column = point % lattice, row = point / lattice;
+    return {column / (lattice - 1.0), row / (lattice - 1.0)};
 }
 
 osg::Vec3d directionOf(const osg::Vec2d& degrees)

@@ -174,7 +174,7 @@ std::optional<PresetBlend> PresetBlend::begin(EffectScene& scene, const EffectPr
         double value = 0.0;
         if (!found || !found->property->parse(text, value, error))
         {
-            error = "The preset \"" + preset.name + "\" cannot be shown: " + error;
+            error.insert(0, "The preset \"" + preset.name + "\" cannot be shown: ");
             return std::nullopt;
         }
         std::vector<Change>& changes = blend._changes[found->holder];

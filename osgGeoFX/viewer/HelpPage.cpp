@@ -96,7 +96,9 @@ public:
             std::string word = words.substr(begin, end - begin);
             begin = end + 1;
             if (word.empty()) continue;
-            const std::string longer = line.empty() ? word : line + " " + word;
+            std::string longer = line;
+            if (!longer.empty()) longer += " ";
+            longer += word;
             if (width(longer) <= room)
             {
                 line = longer;

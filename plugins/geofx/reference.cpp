@@ -86,7 +86,7 @@ private:
     static std::string attribute(xmlNode* node, const char* name)
     {
         xmlChar* value = xmlGetNoNsProp(node, chars(name));
-        const std::string text = value ? reinterpret_cast<const char*>(value) : "";
+        std::string text = value ? reinterpret_cast<const char*>(value) : "";
         xmlFree(value);
         return text;
     }

@@ -144,20 +144,20 @@ bool writeEngineCulling(osgDB::OutputStream& stream, const EffectScene& scene)
 }
 
 /// A whole number of a scene, which refuses what it cannot be.
-template<int (EffectScene::*get)() const, bool (EffectScene::*set)(int), int defaultValue>
+template<int (EffectScene::*Get)() const, bool (EffectScene::*Set)(int), int DefaultValue>
 struct SceneNumber
 {
-    static bool has(const EffectScene& scene) { return (scene.*get)() != defaultValue; }
+    static bool has(const EffectScene& scene) { return (scene.*Get)() != DefaultValue; }
     static bool read(osgDB::InputStream& stream, EffectScene& scene)
     {
         int value = 0;
         stream >> value;
-        (scene.*set)(value);
+        (scene.*Set)(value);
         return true;
     }
     static bool write(osgDB::OutputStream& stream, const EffectScene& scene)
     {
-        stream << (scene.*get)() << std::endl;
+        stream << (scene.*Get)() << std::endl;
         return true;
     }
 };

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-struct _xmlTextReader; // libxml2's
+struct _xmlTextReader; // libxml2's; NOLINT(bugprone-reserved-identifier)
 
 namespace osgGeoFX
 {

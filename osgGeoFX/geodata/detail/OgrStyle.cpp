@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/geodata/detail/OgrStyle.h>
 
+#include <osg/Vec4d>
+
 #include <cpl_string.h>
 #include <ogr_featurestyle.h>
 

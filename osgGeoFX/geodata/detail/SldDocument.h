@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-struct _xmlDoc;
+struct _xmlDoc; // libxml2's; NOLINT(bugprone-reserved-identifier)
 
 namespace osgGeoFX
 {

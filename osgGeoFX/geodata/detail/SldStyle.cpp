@@ -66,7 +66,7 @@ std::string textOf(xmlNode* node)
 std::string attributeOf(xmlNode* node, const char* name)
 {
     xmlChar* const text = xmlGetProp(node, reinterpret_cast<const xmlChar*>(name));
-    const std::string result = text ? reinterpret_cast<const char*>(text) : "";
+    std::string result = text ? reinterpret_cast<const char*>(text) : "";
     xmlFree(text);
     return result;
 }

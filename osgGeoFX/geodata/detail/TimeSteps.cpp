@@ -180,14 +180,14 @@ private:
     {
         for (const std::string& name : group.GetMDArrayNames())
         {
-            const std::shared_ptr<GDALMDArray> array = group.OpenMDArray(name);
+            std::shared_ptr<GDALMDArray> array = group.OpenMDArray(name);
             if (array && (wanted.empty() || name == wanted) && fits(*array, _axes)) return array;
         }
         for (const std::string& name : group.GetGroupNames())
         {
             const std::shared_ptr<GDALGroup> child = group.OpenGroup(name);
             if (!child) continue;
-            if (const std::shared_ptr<GDALMDArray> array = find(*child, wanted)) return array;
+            if (std::shared_ptr<GDALMDArray> array = find(*child, wanted)) return array;
         }
         return nullptr;
     }

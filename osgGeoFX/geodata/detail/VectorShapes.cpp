@@ -380,10 +380,10 @@ private:
             return;
         }
         OGRPoint point;
-        if (type == wkbPoint) point = *geometry.toPoint();
+        if (type != wkbPoint && !everywhere) return;
         // The symbol of an area stands within it, and that of a line at its middle.
-        else if (!everywhere)
-            return;
+        if (type == wkbPoint)
+            point = *geometry.toPoint();
         else if (type == wkbLineString)
             geometry.toLineString()->Value(geometry.toLineString()->get_Length() / 2.0, &point);
         else if (geometry.Centroid(&point) != OGRERR_NONE)
