@@ -6,8 +6,10 @@
 #include <tools/VertexTypes.h>
 
 #include <gtest/gtest.h>
+#include <osg/Camera>
 #include <osg/Geode>
 #include <osg/PrimitiveRestartIndex>
+#include <osg/View>
 #include <osgGeoFX/effect/detail/DrawableTriangles.h>
 #include <osgGeoFX/scene/DeformedIntersector.h>
 
@@ -153,6 +155,15 @@ TEST(DrawableTriangles, KnowRestart)
     EXPECT_EQ(trianglesOf(*geometry).size(), 2u);
     geode->setStateSet(restartAt(7));
     EXPECT_EQ(trianglesOf(*geometry).size(), 0u);
+    geode->setStateSet(nullptr);
+    const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+    camera->setStateSet(restartAt(7));
+    camera->addChild(geode);
+    EXPECT_EQ(trianglesOf(*geometry).size(), 0u);
+    // But not that of a view's camera, which its own thread may change at the time.
+    const osg::ref_ptr<osg::View> view = new osg::View;
+    view->setCamera(camera);
+    EXPECT_EQ(trianglesOf(*geometry).size(), 2u);
 }
 
 TEST(DrawableTriangles, LeaveOutWhatIsBeyondTheArray)

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/effect/detail/DrawableTriangles.h>
 
+#include <osgGeoFX/effect/detail/FirstParent.h>
+
 #include <osg/PrimitiveRestartIndex>
 
 #include <algorithm>
@@ -103,13 +105,12 @@ std::optional<bool> modeIn(const osg::StateSet& state, GLenum mode)
 }
 
 /// The restart by the state of the drawable and of the nodes above it, the nearest first. Of several parents the
-/// first counts.
+/// first counts. What a view's camera says of it is not known.
 Restart restartOf(const osg::Drawable& drawable)
 {
     std::optional<bool> on, atLargest;
     std::optional<unsigned int> index;
-    for (const osg::Node* node = &drawable; node;
-         node = node->getNumParents() > 0 ? node->getParent(0) : nullptr)
+    for (const osg::Node* node = &drawable; node; node = firstParent(*node))
     {
         const osg::StateSet* state = node->getStateSet();
         if (!state) continue;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/detail/CoverSampler.h>
 
+#include <osgGeoFX/effect/detail/FirstParent.h>
+
 #include <osg/Texture2D>
 
 #include <algorithm>
@@ -32,7 +34,7 @@ CoverSampler::CoverSampler(const osg::Geometry& geometry, unsigned int unit)
     while (node && !_image)
     {
         _image = imageOf(node->getStateSet(), unit);
-        node = node->getNumParents() > 0 ? node->getParent(0) : nullptr;
+        node = firstParent(*node);
     }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/panorama/detail/StrokeCompanion.h>
 
+#include <osgGeoFX/effect/detail/FirstParent.h>
 #include <osgGeoFX/panorama/detail/PanoramaSnapshot.h>
 
 #include <osg/BlendFunc>
@@ -44,8 +45,7 @@ double growthOf(const ScenePass& pass, const PanoramaMap& map, const osg::Vec2d&
 /// painted. By first parents, as CoverSampler has it.
 bool isGround(const osg::Geometry& geometry, unsigned int coverUnit)
 {
-    for (const osg::Node* node = &geometry; node;
-         node = node->getNumParents() > 0 ? node->getParent(0) : nullptr)
+    for (const osg::Node* node = &geometry; node; node = firstParent(*node))
     {
         const osg::StateSet* state = node->getStateSet();
         if (!state) continue;
