@@ -66,14 +66,13 @@ void BuildPlan::chooseEstimate()
     double groundCells = 0.0;
     for (const GroundPatch& patch : groundPatches)
         groundCells += static_cast<double>(patch.columns) * patch.rows;
-    double tiles = 0.0, squares = 0.0;
+    double tiles = 0.0;
     for (int level = 0; level <= scheme.finestLevel; ++level)
     {
         const double width = static_cast<double>(scheme.intervals) * scheme.step(level);
         tiles += std::ceil(scheme.lastColumn / width) * std::ceil(scheme.lastRow / width);
-        squares += std::pow(4.0, level);
     }
-    if (!uniform()) tiles = squares = static_cast<double>(_tiles);
+    if (!uniform()) tiles = static_cast<double>(_tiles);
     const double workBytes = posts * WORK_PER_POST + WORK_PER_GROUND_CELL * groundCells;
     const double normals = posts * (std::min(scheme.finestLevel, TilingScheme::normalDepth) + 4.0 / 3.0);
     const double bytes = posts * BYTES_PER_POST + texels * BYTES_PER_TEXEL + normals * BYTES_PER_NORMAL;
@@ -109,7 +108,7 @@ void BuildPlan::chooseEstimate()
                          " on the disk while it is built, at the very least " + sizeInWords(least) +
                          "; only " + sizeInWords(room) +
                          " are free there. Choose another folder with -o, or " + remedy + ".");
-    const double memory = squares * sizeof(TileFacts);
+    const double memory = tiles * sizeof(TileFacts);
     if (memory > options.memoryMiB * 1024.0 * 1024.0)
         throw BuildError(options.dems.front() + ": the terrain would have " + inWords(posts) +
                          " samples in " + inWords(tiles) +
