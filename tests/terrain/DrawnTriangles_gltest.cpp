@@ -53,7 +53,8 @@ struct Loaded
         options.width = WIDTH;
         options.height = HEIGHT;
         options.fieldOfView = FIELD_OF_VIEW;
-        options.countTriangles = options.leastTriangles = least;
+        options.countTriangles = true;
+        options.leastTriangles = least;
         if (scene && scene->terrain) renderer = SceneRenderer::create(*scene, options, error);
         if (!renderer) ADD_FAILURE() << error;
     }
@@ -272,6 +273,53 @@ TEST_F(DrawnTriangles, OfMountainsAreNotManyMoreThanTheLeast)
     // Twice is what is asked, and the full test demands it; these rough mountains are not there yet. What the short one demands
     // keeps them from getting worse.
     check(built, fullTest() ? 2.0 : 3.0, [&](double x, double y) { return ground.near(x, y); });
+}
+
+/// The bytes of all index lists in memory, drawn or not.
+class IndexBytes : public osg::NodeVisitor
+{
+public:
+    IndexBytes() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    void apply(osg::Geometry& mesh) override { sum += mesh.getPrimitiveSet(0)->getTotalDataSize(); }
+    std::uint64_t sum = 0;
+};
+
+// Blocks and distances go by cells. So tiles of half the edge show about the same meshes, and less is loaded that is not shown.
+TEST_F(DrawnTriangles, OfSmallTilesAreAsManyAndTakeLessMemory)
+{
+    const Mountains ground(1025, 30.0, 5);
+    const std::string dem = ground.write(folder / "dem.tif");
+    std::array<std::uint64_t, 2> triangles{}, bytes{};
+    for (const std::size_t small : {0u, 1u})
+    {
+        BuildOptions built = options(dem, folder / (small ? "small" : "large"));
+        built.tileSize = small ? 64 : 128;
+        buildDatabase(built);
+        Random random(17);
+        for (int view = 0; view < 4; ++view)
+        {
+            const Loaded loaded(built.output);
+            ASSERT_TRUE(loaded.renderer);
+            const osg::Vec3d eye(Mountains::WEST + random.uniform(5000.0, 25000.0),
+                                 Mountains::NORTH - 36000.0, random.uniform(5000.0, 9000.0));
+            const osg::Vec3d forward(0.0, std::cos(0.25), -std::sin(0.25));
+            FrameStatistics statistics;
+            std::string error;
+            ASSERT_TRUE(loaded.renderer->render(
+                osg::Matrixd::lookAt(eye, eye + forward, osg::Vec3d(0.0, 0.0, 1.0)), 0.0, statistics, error))
+                << error;
+            triangles[small] += statistics.triangles;
+            IndexBytes indices;
+            loaded.scene->node->accept(indices);
+            bytes[small] += indices.sum;
+        }
+    }
+    const double more = static_cast<double>(triangles[1]) / static_cast<double>(triangles[0]);
+    const double memory = static_cast<double>(bytes[1]) / static_cast<double>(bytes[0]);
+    std::cout << "small tiles: " << more << " of the triangles, " << memory
+              << " of the index lists in memory\n";
+    EXPECT_LE(more, 1.1);
+    EXPECT_LE(memory, 0.75);
 }
 
 TEST_F(DrawnTriangles, ShowEachPostWithinAPixelAndAHalf)

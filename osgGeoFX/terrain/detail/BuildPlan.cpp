@@ -665,9 +665,10 @@ bool BuildPlan::isBesideDenser(const TileKey& key) const
 
 double BuildPlan::tolerance(int level) const
 {
-    // At the distance where a tile's children replace it, its edge is two pixels long for each pixel of error. So
-    // relief and texture ask for the children at about the same distance.
-    return 2.0 * options.pixelError * scheme.tileMetres(level) / options.pixelsPerRadian;
+    // A tile's children replace it at a distance of 256 of its cells. Then relief and texture ask for the children at about
+    // the same distance, whatever the size of tiles. Small tiles would be too many there, and large ones hardly fit.
+    const double edges = std::clamp(256.0 / scheme.intervals, 2.0, 4.0);
+    return edges * options.pixelError * scheme.tileMetres(level) / options.pixelsPerRadian;
 }
 
 double BuildPlan::finestError(int level) const

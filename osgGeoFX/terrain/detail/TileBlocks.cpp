@@ -29,10 +29,10 @@ constexpr double LEAST_STEP = 1.1;
 /// The errors of an edge and of its parts add up, so posts may be off by so many times the tolerance. That is one and
 /// a half pixels in the corners of a wide picture, where an angle takes more pixels than in the middle.
 constexpr double ACCUMULATION = 1.2;
-/// The cells along the smallest block of a finest tile, and the number of smallest blocks along the edge of a coarser
-/// one.
+/// The cells along the smallest block of a finest tile, and of a coarser one, whatever the size of tiles. Posts of a
+/// coarser one may be denser than its cells.
 constexpr int FINEST_CELLS = 16;
-constexpr int COARSE_SHARE = 4;
+constexpr int COARSE_CELLS = 32;
 /// A finest tile leaves out posts whose errors are below this share of a cell and below a millimetre. No camera comes
 /// near enough to see these errors.
 constexpr double NEGLIGIBLE = 1.0 / 32768.0, NEGLIGIBLE_METRES = 1e-3;
@@ -44,7 +44,7 @@ constexpr double LEAN = 0.1;
 int smallestBlock(const TilingScheme& scheme, bool finest, int intervals)
 {
     if (finest) return std::min(intervals, FINEST_CELLS);
-    return intervals / std::clamp(scheme.intervals / FINEST_CELLS, 1, COARSE_SHARE);
+    return intervals / std::max(scheme.intervals / COARSE_CELLS, 1);
 }
 
 /// Twice the area of a triangle, positive if it is counter-clockwise.
@@ -102,11 +102,9 @@ TileBlocks::TileBlocks(const BuildPlan& plan, const TileKey& key, const TileNetw
         _skirts[static_cast<std::size_t>(side)] = plan.skirt(key, side);
         _poles[static_cast<std::size_t>(side)] = plan.poleHeight(key, side);
     }
-    // Only tiles of the coarsest level are far enough away to be one block. A finest tile is hardly ever far enough
-    // away for halves.
+    // Only tiles of the coarsest level are far enough away for larger blocks than these.
     const int intervals = _lattice.intervals, smallest = smallestBlock(plan.scheme, isFinest(), intervals);
-    const int parts = key.level == 0 ? 1 : isFinest() ? 4 : 2;
-    const int size = std::max(smallest, intervals / parts);
+    const int size = key.level == 0 ? intervals : std::min(intervals, 2 * smallest);
     std::vector<Block> roots;
     for (int row = 0; row < intervals; row += size)
         for (int column = 0; column < intervals; column += size)
