@@ -32,7 +32,7 @@ std::filesystem::path windowToDraw(const Settings& settings, const std::filesyst
     std::vector<std::string> command = builderCommand(settings, source, folder / "window", 2);
     command.insert(command.end(), {"--landcover", (oahu / "landcover.tif").string(), "--landcover-table",
                                    (oahu / "landcover.csv").string(), "--pixels-per-radian",
-                                   std::to_string(pixelsPerRadian), "--tile-size", "64"});
+                                   std::to_string(pixelsPerRadian)});
     announce("building the terrain to draw");
     runChild(command);
     return folder / "window" / "terrain.osgb";

@@ -61,8 +61,9 @@ struct BuildOptions
     std::optional<double> treeLine;
     /// The least area of level ground that counts as a lake if no land cover says so, square metres, 0 or more.
     double lakeArea = 2e5;
-    /// Grid intervals along a tile's edge at most, a power of two, 8…256. Meshes fit the view alike with any size from 64
-    /// on. Larger tiles are fewer files, but a program keeps more in memory that it does not draw.
+    /// Grid intervals along a tile's edge at most, a power of two, 8…256. With 64 and 128
+    /// about the same meshes are drawn. Larger tiles are fewer files, but a program keeps more in memory that it does not
+    /// draw.
     int tileSize = 64;
     /// Texture intervals along a tile's edge at most, 16…4096. 0 stands for 4 × tileSize on the finest level. If the
     /// finest level has fewer, the levels above it keep its texels, up to 2 × tileSize.

@@ -235,6 +235,15 @@ std::vector<double> changesOf(const osg::Image& before, const osg::Image& after)
     return result;
 }
 
+/// The bytes of all index lists in memory, drawn or not.
+class IndexBytes : public osg::NodeVisitor
+{
+public:
+    IndexBytes() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    void apply(osg::Geometry& mesh) override { sum += mesh.getPrimitiveSet(0)->getTotalDataSize(); }
+    std::uint64_t sum = 0;
+};
+
 class DrawnTriangles : public GlFixture
 {
 protected:
@@ -274,15 +283,6 @@ TEST_F(DrawnTriangles, OfMountainsAreNotManyMoreThanTheLeast)
     // keeps them from getting worse.
     check(built, fullTest() ? 2.0 : 3.0, [&](double x, double y) { return ground.near(x, y); });
 }
-
-/// The bytes of all index lists in memory, drawn or not.
-class IndexBytes : public osg::NodeVisitor
-{
-public:
-    IndexBytes() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
-    void apply(osg::Geometry& mesh) override { sum += mesh.getPrimitiveSet(0)->getTotalDataSize(); }
-    std::uint64_t sum = 0;
-};
 
 // Blocks and distances go by cells. So tiles of half the edge show about the same meshes, and less is loaded that is not shown.
 TEST_F(DrawnTriangles, OfSmallTilesAreAsManyAndTakeLessMemory)
