@@ -590,6 +590,56 @@ TEST_F(MappingRasterValues, OfAPaletteAreColors)
               (std::array<int, 4>{90, 90, 90, 255}));
 }
 
+/// While it lives, GDAL writes masks into the GeoTIFF itself, as most orthophotos have them.
+struct InternalMasks
+{
+    InternalMasks() { CPLSetConfigOption("GDAL_TIFF_INTERNAL_MASK", "YES"); }
+    ~InternalMasks() { CPLSetConfigOption("GDAL_TIFF_INTERNAL_MASK", nullptr); }
+};
+
+TEST_F(MappingRasterValues, OfAMaskedOrthophotoWithOverviewsAreColors)
+{
+    for (const bool overviews : {false, true})
+    {
+        TestRaster source = raster(512, 256, 3, GDT_Byte);
+        source.fill([](int, int, int) { return 120.0; });
+        const std::string file = source.write(_folder / (overviews ? "overviews.tif" : "plain.tif"));
+        {
+            const InternalMasks internal;
+            const geofx::test::DatasetPtr dataset(
+                GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+            ASSERT_EQ(dataset->CreateMaskBand(GMF_PER_DATASET), CE_None);
+            std::vector<unsigned char> mask(512 * 256, 255);
+            for (std::size_t i = 0; i < mask.size(); ++i)
+                if (i % 512 < 256) mask[i] = 0;
+            ASSERT_EQ(dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(
+                          GF_Write, 0, 0, 512, 256, mask.data(), 512, 256, GDT_Byte, 0, 0, nullptr),
+                      CE_None);
+            int factors[] = {2, 4, 8};
+            if (overviews)
+            {
+                ASSERT_EQ(dataset->BuildOverviews("AVERAGE", 3, factors, 0, nullptr, nullptr, nullptr),
+                          CE_None);
+            }
+        }
+        // Each life of the reader ends with all that is below it.
+        for (const int side : {2048, 100, 40})
+        {
+            const MappingRaster read = readGood(file, _frame, {std::nullopt, side});
+            ASSERT_EQ(read.layer->getKind(), DataLayer::COLOR);
+            const osg::Image& image = *read.layer->getImage();
+            for (int i = 0; i < 5; ++i)
+            {
+                const int row = (2 * i + 1) * image.t() / 10;
+                EXPECT_EQ(image.data(image.s() / 5, row)[3], 0) << side;
+                const unsigned char* const shown = image.data(4 * image.s() / 5, row);
+                EXPECT_EQ(shown[0], 120) << side;
+                EXPECT_EQ(shown[3], 255) << side;
+            }
+        }
+    }
+}
+
 TEST_F(MappingRasterValues, ByControlPointsAndOfTheWholeEarth)
 {
     TestRaster turned(50, 50);

@@ -193,21 +193,21 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
     {
         // Files beside a picture may be of any format, and so name any file and address: .aux.xml, .ovr and .msk.
         const WithoutSidecars without(_file);
-        _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
-                                              plainPictures, nullptr, without.siblings()));
+        _chain.add(DatasetPtr(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
+                                                plainPictures, nullptr, without.siblings())));
     }
     else
     {
         chooseTileCache();
         CPLStringList options;
         if (overview >= 0) options.SetNameValue("OVERVIEW_LEVEL", std::to_string(overview).c_str());
-        _chain.emplace_back(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, nullptr,
-                                              options.List()));
+        _chain.add(DatasetPtr(GDALDataset::Open(_file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
+                                                nullptr, options.List())));
     }
-    if (!_chain.back() && formats == PLAIN_PICTURES)
+    if (_chain.empty() && formats == PLAIN_PICTURES)
         fail("it is not there, or no PNG, JPEG, GIF, TIFF, BMP, WebP or JPEG 2000 (" + errors.message() +
              "); correct its name, or convert it to PNG");
-    if (!_chain.back())
+    if (_chain.empty())
         fail("it is not a raster that GDAL can read (" + errors.message() +
              "); check it with gdalinfo, or convert it to GeoTIFF");
     // A TIFF has metadata in itself.
@@ -216,8 +216,7 @@ FrameRaster::FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted
     prepare(wanted, placed);
 }
 
-FrameRaster::FrameRaster(std::string file, std::vector<DatasetPtr> chain,
-                         std::optional<DataLayer::Kind> wanted)
+FrameRaster::FrameRaster(std::string file, DatasetChain chain, std::optional<DataLayer::Kind> wanted)
     : _file(std::move(file)), _chain(std::move(chain))
 {
     prepare(wanted, true);
@@ -296,7 +295,7 @@ void FrameRaster::checkSize() const
 void FrameRaster::giveWords(DataLayer& layer) const
 {
     if (kind == DataLayer::COLOR) return;
-    GDALRasterBand& file = *_chain.front()->GetRasterBand(1);
+    GDALRasterBand& file = *_chain.file().GetRasterBand(1);
     if (kind == DataLayer::VALUE && file.GetUnitType()) LayerWords::setUnit(layer, file.GetUnitType());
     if (kind != DataLayer::CLASS) return;
     std::map<double, std::string> names;
@@ -309,7 +308,7 @@ void FrameRaster::giveWords(DataLayer& layer) const
 std::vector<double> FrameRaster::overviews() const
 {
     std::vector<double> factors;
-    GDALRasterBand* const band = _chain.front()->GetRasterBand(1);
+    GDALRasterBand* const band = _chain.file().GetRasterBand(1);
     for (int i = 0; i < band->GetOverviewCount(); ++i)
     {
         GDALRasterBand* const overview = band->GetOverview(i);
@@ -344,13 +343,6 @@ void FrameRaster::checkOverviews() const
         fail("it has no overviews that are small enough, so that a picture of all of it would take all of "
              "its pixels; make them with gdaladdo -r average \"" +
              _file + "\" 4 16 64 256");
-}
-
-FrameRaster::~FrameRaster()
-{
-    // A virtual dataset reads from the one before it, so the last goes first.
-    while (!_chain.empty())
-        _chain.pop_back();
 }
 
 void FrameRaster::fail(const std::string& what) const
@@ -439,7 +431,7 @@ DatasetPtr FrameRaster::warped(const FrameCrs& crs, const osg::Vec2d& low, const
     if (_hasMask) arguments.emplace_back("-srcalpha");
     const WarpErrors errors;
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(listOf(arguments).List(), nullptr);
-    GDALDatasetH source = GDALDataset::ToHandle(_chain.back().get());
+    GDALDatasetH source = GDALDataset::ToHandle(&top());
     DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
     GDALWarpAppOptionsFree(options);
     if (!result || !errors.message.empty()) failToRead(errors.message);
@@ -615,12 +607,12 @@ void FrameRaster::translate(Arguments arguments)
     arguments.insert(arguments.end(), {"-of", "VRT"});
     GdalErrorScope errors;
     GDALTranslateOptions* options = GDALTranslateOptionsNew(listOf(arguments).List(), nullptr);
-    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(_chain.back().get()), options, nullptr);
+    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(&top()), options, nullptr);
     GDALTranslateOptionsFree(options);
     if (!result)
         fail("its bands cannot be used (" + errors.message() +
              "); convert it to GeoTIFF with gdal_translate");
-    _chain.emplace_back(GDALDataset::FromHandle(result));
+    _chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
 }
 
 /// Red, green, blue and alpha, bytes.

@@ -66,8 +66,7 @@ public:
     FrameRaster(std::string file, std::optional<DataLayer::Kind> wanted, bool placed = true,
                 Formats formats = ANY_FORMAT, int overview = -1);
     /// The same of datasets that are open, each above the one before it; `file` is for messages.
-    FrameRaster(std::string file, std::vector<DatasetPtr> chain, std::optional<DataLayer::Kind> wanted);
-    ~FrameRaster();
+    FrameRaster(std::string file, DatasetChain chain, std::optional<DataLayer::Kind> wanted);
     FrameRaster(const FrameRaster&) = delete;
     FrameRaster& operator=(const FrameRaster&) = delete;
 
@@ -130,7 +129,7 @@ private:
 
     Transformer transformerTo(const FrameCrs& crs, const GdalErrorScope& errors) const;
     [[noreturn]] void failToPlace(const GdalErrorScope& errors) const;
-    GDALDataset& top() const { return *_chain.back(); }
+    GDALDataset& top() const { return _chain.top(); }
     GDALRasterBand& band() const { return *top().GetRasterBand(1); }
     [[noreturn]] void failToRead(const GdalErrorScope& errors) const;
     [[noreturn]] void failToRead(const std::string& message) const;
@@ -145,7 +144,7 @@ private:
     void makeValues();
 
     std::string _file;
-    std::vector<DatasetPtr> _chain;
+    DatasetChain _chain;
     bool _palette = false;
     bool _hasMask = false; ///< as a second band beside values
 };

@@ -13,6 +13,22 @@ namespace osgGeoFX
 
 BuildError::~BuildError() = default;
 
+bool DatasetChain::add(DatasetPtr dataset)
+{
+    if (!dataset) return false;
+    constexpr int references = 65536; // a virtual dataset takes one away for each band and overview
+    for (int i = 0; i < references; ++i)
+        dataset->Reference();
+    _datasets.push_back(std::move(dataset));
+    return true;
+}
+
+void DatasetChain::clear()
+{
+    while (!_datasets.empty())
+        _datasets.pop_back();
+}
+
 void initialiseGdal()
 {
     static std::once_flag once;

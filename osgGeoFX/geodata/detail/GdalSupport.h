@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace osgGeoFX
 {
@@ -20,6 +21,43 @@ struct DatasetCloser
     void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 };
 using DatasetPtr = std::unique_ptr<GDALDataset, DatasetCloser>;
+
+/** A file and the virtual datasets on top of it, each of which reads from the one before it.
+
+    The chain is their only owner, and closes the last one first, also where a constructor throws. GDAL 3.6 counts the references of
+    virtual overviews to a mask wrongly: each takes one away that it has not added, so that the virtual dataset would delete the one below it.
+    So the chain holds more references than GDAL can take away. Not thread-safe. */
+class DatasetChain
+{
+public:
+    DatasetChain() = default;
+    ~DatasetChain() { clear(); }
+    DatasetChain(DatasetChain&& other) noexcept : _datasets(std::move(other._datasets))
+    {
+        other._datasets.clear();
+    }
+    DatasetChain& operator=(DatasetChain&& other) noexcept
+    {
+        _datasets.swap(other._datasets);
+        return *this;
+    }
+    DatasetChain(const DatasetChain&) = delete;
+    DatasetChain& operator=(const DatasetChain&) = delete;
+
+    /// Adds a dataset on top; null is left out. Returns whether there was one.
+    bool add(DatasetPtr dataset);
+    bool empty() const { return _datasets.empty(); }
+    std::size_t size() const { return _datasets.size(); }
+    /// The file. The chain must not be empty.
+    GDALDataset& file() const { return *_datasets.front(); }
+    /// The last one. The chain must not be empty.
+    GDALDataset& top() const { return *_datasets.back(); }
+
+private:
+    void clear();
+
+    std::vector<DatasetPtr> _datasets;
+};
 
 struct TransformationDestroyer
 {

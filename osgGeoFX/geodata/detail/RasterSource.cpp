@@ -83,22 +83,16 @@ RasterSource::RasterSource(const std::string& file, RasterKind kind) : _file(fil
 
     {
         GdalErrorScope errors;
-        _chain.emplace_back(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-        if (!_chain.back())
+        if (!_chain.add(DatasetPtr(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR))))
             fail("it is not a raster that GDAL can read (" + errors.message() +
                  "); check it with gdalinfo, or convert it to GeoTIFF");
     }
-    if (_chain.back()->GetRasterCount() == 0)
+    if (_chain.top().GetRasterCount() == 0)
         fail("it holds no raster band; if gdalinfo lists subdatasets, name one of them instead");
     openAs(kind);
 }
 
-RasterSource::~RasterSource()
-{
-    // A virtual dataset reads from the one before it, so the last goes first.
-    while (!_chain.empty())
-        _chain.pop_back();
-}
+RasterSource::~RasterSource() = default;
 
 void RasterSource::fail(const std::string& what) const
 {
@@ -114,26 +108,25 @@ void RasterSource::translate(const std::vector<std::string>& arguments)
         list.AddString(argument.c_str());
     GdalErrorScope errors;
     GDALTranslateOptions* options = GDALTranslateOptionsNew(list.List(), nullptr);
-    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(_chain.back().get()), options, nullptr);
+    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(&_chain.top()), options, nullptr);
     GDALTranslateOptionsFree(options);
     if (!result)
         fail("its bands cannot be used (" + errors.message() +
              "); convert it to GeoTIFF with gdal_translate");
-    _chain.emplace_back(GDALDataset::FromHandle(result));
+    _chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
 }
 
 void RasterSource::openAs(RasterKind kind)
 {
-    const bool placed = _chain.back()->GetGeoTransform(_geoTransform.data()) == CE_None;
-    if (!placed && _chain.back()->GetGCPCount() == 0)
+    const bool placed = _chain.top().GetGeoTransform(_geoTransform.data()) == CE_None;
+    if (!placed && _chain.top().GetGCPCount() == 0)
         fail("it has no georeference; give it one with gdal_translate -a_ullr WEST NORTH EAST SOUTH");
-    const OGRSpatialReference* srs =
-        placed ? _chain.back()->GetSpatialRef() : _chain.back()->GetGCPSpatialRef();
+    const OGRSpatialReference* srs = placed ? _chain.top().GetSpatialRef() : _chain.top().GetGCPSpatialRef();
     if (!srs || srs->IsEmpty() || srs->IsLocal())
         fail("it has no coordinate reference system; name it with gdal_translate -a_srs EPSG:N");
     _srs = gisOrder(*srs);
 
-    GDALRasterBand* band = _chain.back()->GetRasterBand(1);
+    GDALRasterBand* band = _chain.top().GetRasterBand(1);
     const GDALDataType type = band->GetRasterDataType();
     if (GDALDataTypeIsComplex(type))
         fail("its values are complex numbers; export a real band with gdal_translate -ot Float32");
@@ -156,7 +149,7 @@ void RasterSource::openAs(RasterKind kind)
                  "color-relief");
         else
         {
-            const bool grey = _chain.back()->GetRasterCount() < 3;
+            const bool grey = _chain.top().GetRasterCount() < 3;
             std::vector<std::string> arguments{
                 "-b", "1",      "-b",  grey ? "1" : "2", "-b",           grey ? "1" : "3",
                 "-b", "mask,1", "-ot", "Byte",           "-colorinterp", "red,green,blue,alpha"};
@@ -187,7 +180,7 @@ void RasterSource::warpByControlPoints(RasterKind kind)
                                        kind == RasterKind::LandCover ? "near" : "bilinear"};
     // What lies outside the turned raster is no ground.
     int hasNoData = FALSE;
-    _chain.back()->GetRasterBand(1)->GetNoDataValue(&hasNoData);
+    _chain.top().GetRasterBand(1)->GetNoDataValue(&hasNoData);
     if (kind == RasterKind::Imagery)
         arguments.push_back("-dstalpha");
     else if (!hasNoData && kind != RasterKind::LandCover)
@@ -197,20 +190,20 @@ void RasterSource::warpByControlPoints(RasterKind kind)
     for (const char* argument : arguments)
         list.AddString(argument);
     GdalErrorScope errors;
-    GDALDatasetH source = GDALDataset::ToHandle(_chain.back().get());
+    GDALDatasetH source = GDALDataset::ToHandle(&_chain.top());
     GDALWarpAppOptions* options = GDALWarpAppOptionsNew(list.List(), nullptr);
     GDALDatasetH result = GDALWarp("", nullptr, 1, &source, options, nullptr);
     GDALWarpAppOptionsFree(options);
     if (!result)
         fail("its ground control points fit no plane (" + errors.message() +
              "); warp it with gdalwarp first");
-    _chain.emplace_back(GDALDataset::FromHandle(result));
-    _chain.back()->GetGeoTransform(_geoTransform.data());
+    _chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
+    _chain.top().GetGeoTransform(_geoTransform.data());
 }
 
 void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>& colors)
 {
-    GDALDataset& source = *_chain.back();
+    GDALDataset& source = _chain.top();
     // A virtual dataset is named by its XML.
     char** description = source.GetMetadata("xml:VRT");
     const std::string name = _chain.size() > 1 && description ? description[0] : _file;
@@ -250,13 +243,13 @@ void RasterSource::colorize(const std::array<std::array<unsigned char, 4>, 256>&
     GdalErrorScope errors;
     DatasetPtr colored(GDALDataset::Open(xml.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
     if (!colored) fail("its classes cannot be drawn in colors (" + errors.message() + ")");
-    _chain.push_back(std::move(colored));
+    _chain.add(std::move(colored));
     _colorized = true;
 }
 
 void RasterSource::takePoles(const GridCrs& crs, Footprint& result) const
 {
-    auto& dataset = *_chain.back();
+    auto& dataset = _chain.top();
     const TransformationPtr toSource = createTransformation(crs.srs, _srs, _file);
     std::array<double, 6> inverse{};
     if (!GDALInvGeoTransform(const_cast<double*>(_geoTransform.data()), inverse.data()))
@@ -280,7 +273,7 @@ void RasterSource::takePoles(const GridCrs& crs, Footprint& result) const
 
 Footprint RasterSource::footprint(const GridCrs& crs) const
 {
-    auto& dataset = *_chain.back();
+    auto& dataset = _chain.top();
     const int width = dataset.GetRasterXSize(), height = dataset.GetRasterYSize();
     const TransformationPtr toGrid = createTransformation(_srs, crs.srs, _file);
 
@@ -356,7 +349,7 @@ Footprint RasterSource::footprint(const GridCrs& crs) const
 
 void RasterSource::warp(const GridCrs& crs, const Lattice& lattice, const WarpRequest& request)
 {
-    GDALDataset& source = *_chain.back();
+    GDALDataset& source = _chain.top();
     GdalErrorScope errors;
 
     DatasetPtr target(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
@@ -436,7 +429,7 @@ void RasterSource::sampleHeights(const GridCrs& crs, const Lattice& lattice, flo
 
 void RasterSource::markCovered(const GridCrs& crs, const Lattice& lattice, unsigned char* covered)
 {
-    const GDALDataset& raster = *_chain.back();
+    const GDALDataset& raster = _chain.top();
     const int width = const_cast<GDALDataset&>(raster).GetRasterXSize();
     const int height = const_cast<GDALDataset&>(raster).GetRasterYSize();
     const TransformationPtr gridToSource = createTransformation(crs.srs, _srs, _file);

@@ -97,7 +97,7 @@ private:
     OGRSpatialReference _srs;
     std::array<double, 6> _geoTransform{};
     bool _colorized = false;
-    std::vector<DatasetPtr> _chain; ///< the file, then the virtual datasets on top of it; the last is read
+    DatasetChain _chain; ///< the file, then the virtual datasets on top of it; the last is read
 };
 
 } // namespace osgGeoFX

@@ -43,8 +43,7 @@ DatasetPtr openRaster(const std::string& file)
 }
 
 /// A virtual dataset above the last one.
-void addVirtual(std::vector<DatasetPtr>& chain, const std::vector<std::string>& arguments,
-                const std::string& file)
+void addVirtual(DatasetChain& chain, const std::vector<std::string>& arguments, const std::string& file)
 {
     CPLStringList list;
     list.AddString("-of");
@@ -53,12 +52,12 @@ void addVirtual(std::vector<DatasetPtr>& chain, const std::vector<std::string>& 
         list.AddString(each.c_str());
     const GdalErrorScope errors;
     GDALTranslateOptions* options = GDALTranslateOptionsNew(list.List(), nullptr);
-    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(chain.back().get()), options, nullptr);
+    GDALDatasetH result = GDALTranslate("", GDALDataset::ToHandle(&chain.top()), options, nullptr);
     GDALTranslateOptionsFree(options);
     if (!result)
         throw BuildError(file + ": a step of it cannot be used (" + errors.message() +
                          "); check it with gdalinfo.");
-    chain.emplace_back(GDALDataset::FromHandle(result));
+    chain.add(DatasetPtr(GDALDataset::FromHandle(result)));
 }
 
 /// Times must rise; those that do not are as good as none.
@@ -128,12 +127,12 @@ public:
         }
         const std::shared_ptr<GDALMDArray> slice = _array->GetView(view + "]");
         const std::size_t x = _axes.x > _axes.y ? 1 : 0;
-        std::vector<DatasetPtr> chain;
-        if (slice) chain.emplace_back(slice->AsClassicDataset(x, 1 - x));
-        if (chain.empty() || !chain[0])
+        DatasetChain chain;
+        if (slice) chain.add(DatasetPtr(slice->AsClassicDataset(x, 1 - x)));
+        if (chain.empty())
             throw BuildError(_file + ": step " + std::to_string(index) + " of its variable " + variable +
                              " cannot be used (" + errors.message() + "); check it with gdalmdiminfo.");
-        const OGRSpatialReference* srs = chain[0]->GetSpatialRef();
+        const OGRSpatialReference* srs = chain.file().GetSpatialRef();
         const std::string degrees = lower(dimensions[_axes.x]->GetIndexingVariable()
                                               ? dimensions[_axes.x]->GetIndexingVariable()->GetUnit()
                                               : std::string());
@@ -267,8 +266,8 @@ public:
 
     std::unique_ptr<FrameRaster> step(std::size_t index) override
     {
-        std::vector<DatasetPtr> chain;
-        chain.push_back(openRaster(_file));
+        DatasetChain chain;
+        chain.add(openRaster(_file));
         addVirtual(chain, {"-b", std::to_string(index + 1)}, _file);
         return std::make_unique<FrameRaster>(_file, std::move(chain), DataLayer::VALUE);
     }
