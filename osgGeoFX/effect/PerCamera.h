@@ -19,8 +19,10 @@ namespace osgGeoFX
 /** Data that an effect keeps for each camera, and for each scene that hosts the effect.
 
     A camera is known by its cull visitor of OSG. So one thread at a time uses the data, for one of the frames that
-    are in flight. Another Owner may take the place of the cull visitor, for example a camera's state set. Data of an
-    owner that no longer exists is deleted when any owner asks next.
+    are in flight. Another Owner may take the place of the cull visitor, for example a camera's state set.
+
+    Data of an owner that no longer exists is deleted when any owner asks next. Data of a scene that no longer exists is deleted
+    when the same owner asks next, or is gone: until then a thread may still draw the owner's last frame with it.
 
     @ingroup effect */
 template<class Data, class Owner = osgUtil::CullVisitor>
@@ -35,7 +37,7 @@ public:
         const std::lock_guard<std::mutex> lock(_mutex);
         for (auto entry = _all.begin(); entry != _all.end();)
         {
-            const bool lives = entry->second->owner.valid();
+            const bool lives = entry->second->lives(entry->first, &owner);
             if (!lives) gone.push_back(std::move(entry->second));
             entry = lives ? std::next(entry) : _all.erase(entry);
         }
@@ -44,6 +46,7 @@ public:
         {
             found = std::make_unique<Camera>();
             found->owner = &owner;
+            found->scene = scene;
         }
         return found->data;
     }
@@ -73,13 +76,21 @@ public:
     }
 
 private:
+    using Key = std::pair<Owner*, const osg::Group*>;
     struct Camera
     {
         osg::observer_ptr<Owner> owner;
+        osg::observer_ptr<const osg::Group>
+            scene; ///< observed, since another scene may come to the address of a former one
         Data data;
+
+        bool lives(const Key& key, const Owner* asking) const
+        {
+            return owner.valid() && (key.first != asking || !key.second || scene.valid());
+        }
     };
     mutable std::mutex _mutex;
-    std::map<std::pair<Owner*, const osg::Group*>, std::unique_ptr<Camera>> _all;
+    std::map<Key, std::unique_ptr<Camera>> _all;
 };
 
 } // namespace osgGeoFX
