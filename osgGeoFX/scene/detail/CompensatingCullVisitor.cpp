@@ -94,7 +94,11 @@ CompensatingCullVisitor::Scope::Scope(CompensatingCullVisitor& visitor, const os
 
 CompensatingCullVisitor::CompensatingCullVisitor() : _nothing(new DeformationChain) {}
 
-CompensatingCullVisitor::~CompensatingCullVisitor() = default;
+CompensatingCullVisitor::~CompensatingCullVisitor()
+{
+    // A draw thread may still draw the last frame's leaves, which the render graph holds. OSG's destructor would empty them.
+    _currentReuseRenderLeafIndex = 0;
+}
 
 bool CompensatingCullVisitor::startsFrame(osgUtil::CullVisitor& outer)
 {
