@@ -4,6 +4,7 @@
 
 #include <osgGeoFX/paging/RemoteFiles.h>
 #include <osgGeoFX/paging/detail/BinaryHeader.h>
+#include <osgGeoFX/paging/detail/FileStamp.h>
 #include <osgGeoFX/paging/detail/PagerCache.h>
 #include <osgGeoFX/paging/detail/StandIn.h>
 
@@ -35,8 +36,8 @@ using ReadResult = osgDB::ReaderWriter::ReadResult;
 
 using Clock = StandIn::Clock;
 
-/// When a file on a disk is tried again.
-constexpr Clock::time_point never = Clock::time_point::max();
+/// The first delay of a file that is on no server, seconds.
+constexpr double firstDelay = 0.5;
 
 ReadResult makeStandIn(const std::string& file, const osgDB::Options* options, Clock::time_point again)
 {
@@ -51,11 +52,39 @@ ReadResult makeStandIn(const std::string& file, const osgDB::Options* options, C
     const bool hasCoarser = parent && parent->getNumChildren() > 0;
     const osg::ref_ptr<StandIn> result =
         new StandIn(hasCoarser ? parent->getChild(parent->getNumChildren() - 1) : nullptr);
-    if (again != never) result->askAgain(file, options, again);
+    result->askAgain(file, options, again);
     return result.get();
 }
 
+/// Whether all bytes of a file can be read.
+bool canBeRead(const std::string& path)
+{
+    osgDB::ifstream stream(path.c_str(), std::ios::in | std::ios::binary);
+    std::vector<char> bytes(1 << 16);
+    while (stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+    {
+    }
+    return stream.is_open() && stream.eof() && !stream.bad();
+}
+
+/// The topmost folder of a missing file that is missing, too; empty where only the file is.
+std::string missingFolderOf(const std::string& file, const osgDB::Options* options)
+{
+    std::string missing;
+    for (std::string folder = osgDB::getFilePath(file);
+         !folder.empty() && osgDB::findDataFile(folder, options).empty(); folder = osgDB::getFilePath(folder))
+        missing = folder;
+    return missing;
+}
+
 } // namespace
+
+/// A file on a disk, as it was before it was read.
+struct TileGuard::Attempt
+{
+    std::string path; ///< empty: no file is known
+    FileStamp stamp;
+};
 
 /// The guard's place in the options of one PagedLOD, with the callback that was there before.
 class TileGuard::Callback : public osgDB::ReadFileCallback
@@ -73,7 +102,20 @@ public:
     struct Failure
     {
         Clock::time_point again; ///< when the file is tried again
-        double delay = 0.0;      ///< before that, seconds; 0: it is not tried again
+        double delay = 0.0;      ///< before that, seconds; 0: it has not failed
+        std::string cause;       ///< of the warning
+        Attempt broken;          ///< the last one, if it read a whole file
+        int times = 0;           ///< how often this file was read whole and was broken
+        /// One time may be a disk's fault that is over when we look.
+        bool isRefused() const { return times >= 2; }
+        /// The next delay is twice this one, between these limits.
+        Clock::time_point putOff(double least, double most)
+        {
+            delay = std::min(std::max(2.0 * delay, least), most);
+            again = Clock::now() +
+                    std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(delay));
+            return again;
+        }
     };
     /// Files that failed with these options. Under the guard's lock.
     std::map<std::string, Failure> failed;
@@ -240,21 +282,31 @@ osg::ref_ptr<osgDB::Options> TileGuard::guardedOptions(osgDB::Options* original)
 
 ReadResult TileGuard::read(const std::string& file, const osgDB::Options* options, Callback& callback)
 {
+    Attempt attempt;
     {
         const std::lock_guard<std::mutex> lock(_mutex);
         const auto known = callback.failed.find(file);
-        if (known != callback.failed.end() && Clock::now() < known->second.again)
-            return makeStandIn(file, options, known->second.again);
+        if (known != callback.failed.end())
+        {
+            if (Clock::now() < known->second.again) return makeStandIn(file, options, known->second.again);
+            if (known->second.isRefused()) attempt = known->second.broken;
+        }
+    }
+    if (!attempt.path.empty() && FileStamp::of(attempt.path) == attempt.stamp)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        return makeStandIn(file, options, callback.failed[file].putOff(firstDelay, _retryDelay));
     }
     const osg::ref_ptr<osgDB::ReadFileCallback> previous =
         callback.previous ? callback.previous.get() : osgDB::Registry::instance()->getReadFileCallback();
     if (!previous && RemoteFiles::isRemote(file)) return readRemote(file, options, callback);
-    const std::string path = previous ? std::string() : osgDB::findDataFile(file, options);
+    attempt.path = previous ? std::string() : osgDB::findDataFile(file, options);
+    attempt.stamp = FileStamp::of(attempt.path);
     // A name without a file may mean something to the plugin of its extension.
     if (!previous && osgDB::getLowerCaseFileExtension(file) == "osgb")
     {
-        const std::string fault = faultOf(path);
-        if (!fault.empty()) return fail(file, fault, options, callback);
+        const std::string fault = faultOf(attempt.path);
+        if (!fault.empty()) return fail(file, fault, attempt, options, callback);
     }
     ReadResult result;
     try
@@ -269,24 +321,32 @@ ReadResult TileGuard::read(const std::string& file, const osgDB::Options* option
     }
     catch (const std::exception& exception)
     {
-        return fail(file, exception.what(), options, callback);
+        return fail(file, exception.what(), attempt, options, callback);
     }
     catch (...)
     {
-        return fail(file, "its reader throws something that is no std::exception", options, callback);
+        return fail(file, "its reader throws something that is no std::exception", attempt, options,
+                    callback);
     }
     if (!result.validNode())
     {
         const std::string message = result.notFound() ? "it is missing" : result.statusMessage();
-        return fail(file, message.empty() ? "it holds nothing that can be drawn" : message, options,
+        return fail(file, message.empty() ? "it holds nothing that can be drawn" : message, attempt, options,
                     callback);
     }
     if (!result.loadedFromCache()) tell(*result.getNode(), file);
     std::error_code ignored;
-    const std::uintmax_t size = path.empty() ? 0 : std::filesystem::file_size(path, ignored);
+    const std::uintmax_t size = attempt.path.empty() ? 0 : std::filesystem::file_size(attempt.path, ignored);
     const std::lock_guard<std::mutex> lock(_mutex);
     ++_counts.tilesRead;
     _counts.bytesRead += ignored ? 0 : size;
+    const auto failure = callback.failed.find(file);
+    if (failure != callback.failed.end())
+    {
+        _warned.erase(failure->second.cause);
+        callback.failed.erase(failure);
+        _failed.erase(file);
+    }
     return result;
 }
 
@@ -321,18 +381,37 @@ ReadResult TileGuard::readRemote(const std::string& file, const osgDB::Options* 
     return read.node.get();
 }
 
-ReadResult TileGuard::fail(const std::string& file, const std::string& reason, const osgDB::Options* options,
-                           Callback& callback)
+ReadResult TileGuard::fail(const std::string& file, const std::string& reason, const Attempt& attempt,
+                           const osgDB::Options* options, Callback& callback)
 {
+    // A file that could not be read may be there the next time: a disk, or a folder, may be away for a moment.
+    const bool broken =
+        !attempt.path.empty() && canBeRead(attempt.path) && FileStamp::of(attempt.path) == attempt.stamp;
+    const std::string folder = attempt.path.empty() ? missingFolderOf(file, options) : std::string();
+    const std::string cause = folder.empty() ? file : folder;
+    Clock::time_point again;
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        if (callback.failed.emplace(file, Callback::Failure{never}).second) ++_counts.tilesFailed;
+        Callback::Failure& failure = callback.failed[file];
+        if (failure.delay == 0.0) ++_counts.tilesFailed;
+        const bool same = broken && failure.broken.stamp == attempt.stamp;
+        failure.times = broken ? (same ? failure.times + 1 : 1) : 0;
+        failure.broken = attempt;
+        failure.cause = cause;
+        again = failure.putOff(firstDelay, _retryDelay);
         _failed.insert(file);
     }
-    warnOnce(file,
-             "osgGeoFX: the tile \"" + file + "\" cannot be read (" + reason +
-                 "); the coarser one stays in its place. Restore the file or build the database again.");
-    return makeStandIn(file, options, never);
+    if (folder.empty())
+        warnOnce(cause, "osgGeoFX: the tile \"" + file + "\" cannot be read (" + reason +
+                            "); the coarser one stays in its place" +
+                            (broken ? "" : ", and the file is tried again later") +
+                            ". Restore the file or build the database again.");
+    else
+        warnOnce(cause,
+                 "osgGeoFX: the folder \"" + folder + "\" is missing, and with it the tile \"" + file +
+                     "\"; coarser tiles stay in the place of its tiles, and these are tried again later. "
+                     "Restore the folder or build the database again.");
+    return makeStandIn(file, options, again);
 }
 
 ReadResult TileGuard::failRemote(const std::string& file, const osgDB::Options* options, Callback& callback)
@@ -341,10 +420,7 @@ ReadResult TileGuard::failRemote(const std::string& file, const osgDB::Options* 
     const std::lock_guard<std::mutex> lock(_mutex);
     Callback::Failure& failure = callback.failed[file];
     if (failure.delay == 0.0) ++_counts.tilesFailed;
-    failure.delay =
-        failure.delay == 0.0 ? _retryDelay : std::min(2.0 * failure.delay, mostDelays * _retryDelay);
-    failure.again = Clock::now() +
-                    std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(failure.delay));
+    failure.putOff(_retryDelay, mostDelays * _retryDelay);
     _failed.insert(file);
     return makeStandIn(file, options, failure.again);
 }

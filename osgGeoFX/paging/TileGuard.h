@@ -47,8 +47,11 @@ protected:
     a server did not send is tried again when it is in sight and some time has passed (setRetryDelay()). If a server
     does not answer, there is one warning for all its tiles, and one more if that happens again later.
 
-    A file on a disk that failed is not tried again with the same options, as long as these exist. PagedLODs with options
-    of their own may use one file name for different tiles. Some loaders do so and find in the options what to read.
+    A file on a disk that could not be read, because it or its folder is missing or because the disk fails, is tried again
+    after 0.5 s while it is in sight. Each further failure doubles that time, up to that of setRetryDelay(). A file
+    that was read twice and is damaged is left alone until it changes. If a folder is missing, there is one warning for all its
+    tiles. PagedLODs with options of their own may use one file name for different tiles. Some loaders do so and find in
+    the options what to read.
     Thread-safe, in all of OSG's threading models and for any number of pager threads.
 
     @ingroup paging */
@@ -74,7 +77,7 @@ public:
     TileGuard();
 
     /// How long a tile of a server that failed is left alone, 0.01…3,600 seconds; at first 10. Each further failure
-    /// doubles it, up to 32 times. It holds for the next failures.
+    /// doubles it, up to 32 times. A file on a disk is left alone for this time at most. It holds for the next failures.
     void setRetryDelay(double seconds);
 
     /// Tells a listener of each tile that is read from now on. If the listener throws, there is one warning for each
@@ -87,7 +90,7 @@ public:
 
     /// Totals since the guard was made.
     Counts counts() const;
-    /// The names of all files that failed, without tiles of servers that came later.
+    /// The names of all files that failed, without those that were read later.
     std::set<std::string> failedFiles() const;
 
 protected:
@@ -96,6 +99,7 @@ protected:
 private:
     class Callback;
     class Installer;
+    struct Attempt;
 
     void tell(osg::Node& tile, const std::string& file);
     void warnOnce(const std::string& file, const std::string& sentence);
@@ -103,7 +107,8 @@ private:
     osgDB::ReaderWriter::ReadResult read(const std::string& file, const osgDB::Options* options,
                                          Callback& callback);
     osgDB::ReaderWriter::ReadResult fail(const std::string& file, const std::string& reason,
-                                         const osgDB::Options* options, Callback& callback);
+                                         const Attempt& attempt, const osgDB::Options* options,
+                                         Callback& callback);
 
     osgDB::ReaderWriter::ReadResult readRemote(const std::string& file, const osgDB::Options* options,
                                                Callback& callback);
@@ -111,7 +116,7 @@ private:
                                                Callback& callback);
 
     mutable std::mutex _mutex;
-    std::set<std::string> _failed, _warned; ///< file names; warned of: servers, too
+    std::set<std::string> _failed, _warned; ///< file names; warned of: servers and folders, too
     double _retryDelay = 10.0;              ///< seconds
     Counts _counts;
     std::vector<osg::observer_ptr<TileListener>> _listeners;

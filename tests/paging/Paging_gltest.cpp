@@ -297,6 +297,42 @@ INSTANTIATE_TEST_SUITE_P(All, DamagedTile,
                          [](const ::testing::TestParamInfo<Damage>& damage)
                          { return std::string(damage.param.name); });
 
+/// The pager asks as long as the stand-in is in sight.
+TEST_F(Paging, TilesOfADiskThatIsAwayForAMomentComeWhenItIsBack)
+{
+    const Scene scene = load(PagedScene::write(_folder.path(), PagedScene::Kind::Flat));
+    const fs::path tiles = _folder / "tiles", away = _folder / "away";
+    fs::rename(tiles, away);
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    std::string error;
+    std::unique_ptr<SceneRenderer> renderer;
+    osg::ref_ptr<osg::Image> image;
+    int frame = 0;
+    const auto draw = [&]
+    {
+        osgGeoFX::FrameStatistics statistics;
+        image = renderer->render(fromAbove(), frame, statistics, error);
+        ++frame;
+        ASSERT_TRUE(image.valid()) << error;
+    };
+    const std::vector<std::string> warnings = watch().messagesOf(
+        [&]
+        {
+            renderer = SceneRenderer::create(scene, rendererOptions(), error);
+            ASSERT_TRUE(renderer) << error;
+            while (Clock::now() < start + std::chrono::milliseconds(800))
+                draw();
+        });
+    EXPECT_EQ(warnings.size(), 1u) << ::testing::PrintToString(warnings);
+    EXPECT_EQ(quadrants(*image), std::vector<osg::Vec3i>(4, red));
+    fs::rename(away, tiles);
+    const std::vector<osg::Vec3i> finest(4, blue);
+    while (quadrants(*image) != finest && Clock::now() < start + std::chrono::seconds(10))
+        draw();
+    EXPECT_EQ(quadrants(*image), finest);
+}
+
 TEST_F(Paging, BadTileIsHarmlessInEveryThreadingModel)
 {
     const fs::path file = PagedScene::write(_folder.path(), PagedScene::Kind::Flat);

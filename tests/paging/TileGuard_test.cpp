@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// What the guard keeps and what it forgets; loaders that page under one name; listeners that throw; bounds.
+// What the guard keeps and what it forgets; files that are away for a moment, and files that are damaged; loaders that page under one name; listeners that throw; bounds.
 #include <osgGeoFX/paging/TileGuard.h>
 #include <tools/NotifyWatch.h>
 #include <tools/PagedScene.h>
@@ -14,7 +14,10 @@
 #include <osgDB/Registry>
 
 #include <atomic>
+#include <chrono>
+#include <filesystem>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 using namespace osgGeoFX;
@@ -146,6 +149,136 @@ TEST(TileGuardNames, ANameWithoutAFileIsThePluginsMatter)
     EXPECT_EQ(guard->counts().tilesRead, 1u);
     EXPECT_EQ(guard->counts().tilesFailed, 0u);
     osgDB::Registry::instance()->removeReaderWriter(plugin);
+}
+
+/// Reads files that have one of these extensions as it is told to, and counts.
+struct Reader : public osgDB::ReaderWriter
+{
+    explicit Reader(std::function<ReadResult(int)> function) : answer(std::move(function))
+    {
+        supportsExtension("geofxtold", "for this test");
+        osgDB::Registry::instance()->addReaderWriter(this);
+    }
+    void remove() { osgDB::Registry::instance()->removeReaderWriter(this); }
+    ReadResult readNode(const std::string& file, const Options*) const override
+    {
+        if (!acceptsExtension(osgDB::getLowerCaseFileExtension(file))) return ReadResult::FILE_NOT_HANDLED;
+        return answer(++reads);
+    }
+    std::function<ReadResult(int)> answer;
+    mutable std::atomic<int> reads{0};
+};
+
+using Seconds = std::chrono::duration<double>;
+
+/// The guard of a PagedLOD, and what a pager gets that asks for a file again and again.
+class TileGuardRetry : public ::testing::Test
+{
+protected:
+    /// Asks for some time, and ends as soon as there is a tile, which has children here. Returns whether there is one.
+    bool comesWithin(double seconds, const std::string& file)
+    {
+        const auto end = std::chrono::steady_clock::now() + Seconds(seconds);
+        do
+        {
+            const osg::ref_ptr<osg::Node> node = read(*lod, file);
+            if (node && node->asGroup()->getNumChildren() > 0) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        } while (std::chrono::steady_clock::now() < end);
+        return false;
+    }
+    static ReadResult tile()
+    {
+        const osg::ref_ptr<osg::Group> group = new osg::Group;
+        group->addChild(new osg::Group);
+        return ReadResult(group.get());
+    }
+
+    NotifyWatch watch;
+    TempDir folder;
+    const osg::ref_ptr<osg::PagedLOD> lod = pagedLod(new osgDB::Options);
+    const osg::ref_ptr<TileGuard> guard = TileGuard::install(lod);
+};
+
+/// As OSG does, which asks for a file in each frame.
+TEST_F(TileGuardRetry, AFolderThatIsAwayForAMomentComesBackInTwoSeconds)
+{
+    namespace fs = std::filesystem;
+    PagedScene::write(folder.path(), PagedScene::Kind::Flat);
+    const fs::path tiles = folder / "tiles", away = folder / "away";
+    const std::vector<std::string> files = {"0_0_0.osgb", "1_0_0.osgb", "1_1_0.osgb", "1_0_1.osgb",
+                                            "1_1_1.osgb"};
+    for (int turn = 0; turn < 2; ++turn)
+    {
+        fs::rename(tiles, away);
+        const auto start = std::chrono::steady_clock::now();
+        const auto warnings = watch.messagesOf(
+            [&]
+            {
+                while (std::chrono::steady_clock::now() < start + Seconds(0.8))
+                    for (const std::string& file : files)
+                        EXPECT_FALSE(comesWithin(0.0, (tiles / file).string()));
+            });
+        ASSERT_EQ(warnings.size(), 1u) << "one cause, one warning: " << ::testing::PrintToString(warnings);
+        EXPECT_NE(warnings[0].find("\"" + tiles.string() + "\""), std::string::npos) << warnings[0];
+        EXPECT_NE(warnings[0].find("tried again"), std::string::npos) << warnings[0];
+        EXPECT_EQ(guard->failedFiles().size(), files.size());
+        fs::rename(away, tiles);
+        for (const std::string& file : files)
+            EXPECT_TRUE(comesWithin(2.0 - Seconds(std::chrono::steady_clock::now() - start).count(),
+                                    (tiles / file).string()))
+                << file;
+        EXPECT_TRUE(guard->failedFiles().empty());
+    }
+    EXPECT_EQ(guard->counts().tilesRead, 10u);
+    EXPECT_EQ(guard->counts().tilesFailed, 10u);
+}
+
+/// It costs a look for each second that it is missing, and not one for each frame.
+TEST_F(TileGuardRetry, AFileThatStaysAwayIsLookedForLessAndLess)
+{
+    const osg::ref_ptr<Answer> none = new Answer([] { return ReadResult(ReadResult::FILE_NOT_FOUND); });
+    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    options->setReadFileCallback(none);
+    lod->setDatabaseOptions(options);
+    TileGuard::install(lod)->setRetryDelay(0.8);
+    const auto warnings = watch.messagesOf([&] { EXPECT_FALSE(comesWithin(2.5, "none.osgb")); });
+    EXPECT_EQ(warnings.size(), 1u) << ::testing::PrintToString(warnings);
+    // At 0, 0.5, 1.3 and 2.1 s.
+    EXPECT_GE(none->asked, 3);
+    EXPECT_LE(none->asked, 4);
+}
+
+TEST_F(TileGuardRetry, ADamagedFileIsLeftAloneUntilItChanges)
+{
+    const std::string file = folder.write("a.geofxtold", "damaged").string();
+    bool whole = false;
+    const osg::ref_ptr<Reader> reader =
+        new Reader([&](int) { return whole ? tile() : ReadResult("bad sum"); });
+    guard->setRetryDelay(0.1);
+    const auto warnings = watch.messagesOf([&] { EXPECT_FALSE(comesWithin(1.0, file)); });
+    EXPECT_EQ(warnings.size(), 1u) << ::testing::PrintToString(warnings);
+    EXPECT_EQ(reader->reads, 2) << "the second time tells that it is not the disk";
+    whole = true;
+    EXPECT_FALSE(comesWithin(0.3, file)) << "it is the same file";
+    // As long as before.
+    folder.write("a.geofxtold", "mended.");
+    EXPECT_TRUE(comesWithin(1.0, file));
+    EXPECT_EQ(reader->reads, 3);
+    EXPECT_TRUE(guard->failedFiles().empty());
+    reader->remove();
+}
+
+/// The file is whole again when the guard looks, and has not changed.
+TEST_F(TileGuardRetry, AReadThatFailsOnceIsTheDisksFault)
+{
+    const std::string file = folder.write("a.geofxtold", "whole").string();
+    const osg::ref_ptr<Reader> reader =
+        new Reader([](int time) { return time == 1 ? ReadResult("cannot read") : tile(); });
+    const auto warnings = watch.messagesOf([&] { EXPECT_TRUE(comesWithin(2.0, file)); });
+    EXPECT_EQ(warnings.size(), 1u) << ::testing::PrintToString(warnings);
+    EXPECT_EQ(reader->reads, 2);
+    reader->remove();
 }
 
 struct Thrower : public TileListener

@@ -13,8 +13,8 @@
 namespace osgGeoFX
 {
 
-/** Draws what the parent of a tile draws, instead of a tile that cannot be read. One that stands for a file on a server asks
-    the pager for the file again, when it is in sight after a while, and is the tile's parent when the tile comes. */
+/** Draws what the parent of a tile draws, instead of a tile that cannot be read. It asks the pager for the file again,
+    when it is in sight after a while, and is the tile's parent when the tile comes. */
 class StandIn : public osg::Group
 {
 public:
