@@ -10,6 +10,8 @@
 #include <osg/CoordinateSystemNode>
 #include <osg/LOD>
 #include <osg/MatrixTransform>
+#include <osg/PagedLOD>
+#include <osg/Switch>
 #include <osg/ValueObject>
 
 #include <cmath>
@@ -170,12 +172,67 @@ TEST(GroundSearch, NoticesWhatComesAndGoes)
     deeper->getBound();
     group->addChild(deeper);
     EXPECT_EQ(radiusOf(after(*scene, 2)), 8e6);
-    // Not below levels of detail, and not where it is too deep.
-    group->removeChild(deeper);
-    const osg::ref_ptr<osg::LOD> levels = new osg::LOD;
-    levels->addChild(deeper, 0.0f, 1e9f);
-    group->addChild(levels);
-    EXPECT_EQ(radiusOf(after(*scene, 2)), 0.0);
+}
+
+/// A globe is none the less one for what stands above its coordinate system.
+TEST(GroundSearch, FindsASystemWhereverItIs)
+{
+    const osg::ref_ptr<osg::CoordinateSystemNode> system = makeSystem(7e6);
+    const auto levels = []
+    {
+        return osg::ref_ptr<osg::Group>(new osg::LOD);
+    };
+    const auto paged = []
+    {
+        return osg::ref_ptr<osg::Group>(new osg::PagedLOD);
+    };
+    const auto group = []
+    {
+        return osg::ref_ptr<osg::Group>(new osg::Group);
+    };
+    const auto off = []
+    {
+        const osg::ref_ptr<osg::Switch> result = new osg::Switch;
+        result->setNewChildDefaultValue(false);
+        return osg::ref_ptr<osg::Group>(result);
+    };
+    struct Way
+    {
+        const char* name;
+        std::function<osg::ref_ptr<osg::Group>()> make;
+        int levels;
+    };
+    for (const Way& way : {Way{"levels of detail", levels, 1}, Way{"paged levels of detail", paged, 1},
+                           Way{"many paged levels", paged, 30}, Way{"ten levels down", group, 10},
+                           Way{"sixty levels down", group, 60}, Way{"a switch", off, 1}})
+    {
+        SCOPED_TRACE(way.name);
+        for (const bool later : {false, true})
+        {
+            const osg::ref_ptr<EffectScene> scene = new EffectScene;
+            osg::ref_ptr<osg::Group> last = scene;
+            for (int i = 0; i < way.levels; ++i)
+            {
+                const osg::ref_ptr<osg::Group> next = way.make();
+                last->addChild(next);
+                last = next;
+            }
+            // A tile that a pager brings.
+            if (later)
+            {
+                EXPECT_EQ(radiusOf(after(*scene, 1)), 0.0);
+            }
+            last->addChild(system);
+            EXPECT_EQ(radiusOf(after(*scene, 2)), 7e6);
+            // One that it takes away again.
+            last->removeChild(system);
+            EXPECT_EQ(radiusOf(after(*scene, 1)), 0.0);
+        }
+    }
+    // Above the scene, with levels of detail between them.
+    const osg::ref_ptr<EffectScene> scene = new EffectScene;
+    const osg::ref_ptr<osg::Group> between = levels();
+    EXPECT_EQ(radiusOf(scene->ground({system.get(), between.get(), scene.get()})), 7e6);
 }
 
 TEST(GroundSearch, NoticesWhatComesToALargeScene)

@@ -2,9 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 #include <osgGeoFX/effect/detail/NodeFinder.h>
 
-#include <osg/LOD>
-
-#include <limits>
+#include <algorithm>
 
 namespace osgGeoFX
 {
@@ -12,15 +10,8 @@ namespace osgGeoFX
 namespace
 {
 
-/// The steps of one look. A node takes up to two steps.
-constexpr std::size_t slice = 128;
-
-/// The group whose children are searched; null for none.
-const osg::Group* insideOf(const osg::Node& node)
-{
-    const osg::Group* group = node.asGroup();
-    return group && !dynamic_cast<const osg::LOD*>(group) ? group : nullptr;
-}
+/// The steps of one look, and of a first one. A node takes up to two steps.
+constexpr std::size_t slice = 128, all = 2000000;
 
 } // namespace
 
@@ -49,8 +40,7 @@ void NodeFinder::walk(std::size_t nodes)
 {
     for (; _looking && nodes > 0; --nodes)
     {
-        const osg::Group* parent = nullptr;
-        if (_way.size() < _depth) parent = _way.empty() ? _top : insideOf(*_way.back().node);
+        const osg::Group* parent = _way.empty() ? _top : _way.back().node->asGroup();
         if (parent && _next < parent->getNumChildren())
         {
             const osg::Node* child = parent->getChild(_next);
@@ -73,7 +63,6 @@ void NodeFinder::walk(std::size_t nodes)
 
 const osg::Node* NodeFinder::find(const osg::Group& top)
 {
-    constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
     const auto found = [&]
     {
         return _way.empty() ? _top : _way.back().node;
@@ -97,6 +86,23 @@ const osg::Node* NodeFinder::find(const osg::Group& top)
         walk(slice);
     }
     return _found ? found() : nullptr;
+}
+
+void NodeFinder::meet(const osg::Group& top, const osg::NodePath& path)
+{
+    if (&top != _top || _found) return;
+    const auto start = std::find(path.begin(), path.end(), &top);
+    if (start == path.end()) return;
+    _way.clear();
+    const osg::Group* parent = _top;
+    for (auto node = start + 1; node != path.end() && parent; ++node)
+    {
+        _way.push_back({*node, parent->getChildIndex(*node)});
+        parent = (*node)->asGroup();
+    }
+    _next = 0;
+    _found = true;
+    _looking = false;
 }
 
 } // namespace osgGeoFX

@@ -11,22 +11,23 @@ namespace osgGeoFX
 {
 
 /** Finds the first node of a kind below a group, and remembers the way to it. Asking again costs one step for each
-    level of the way. Levels of detail (osg::LOD) are not searched.
+    level of the way.
 
-    The first look is complete. If it finds nothing, each later look goes on for a few dozen nodes from where the last
-    one ended. OSG does not tell what is added to a graph, and searching a large one in each frame would take longer
-    than drawing it. A node that is added to a small scene is found at once; in one of 100,000 nodes it takes some
-    seconds. For one thread at a time. */
+    The first look is complete, up to a million nodes. If it finds nothing, each later look goes on for a few dozen nodes
+    from where the last one ended. OSG does not tell what is added to a graph, and searching a large one in each frame
+    would take longer than drawing it. A node that is added to a small scene is found at once; in one of 100,000 nodes it
+    takes some seconds, unless someone meets it there. For one thread at a time. */
 class NodeFinder
 {
 public:
     using Wanted = bool (*)(const osg::Node& node);
 
-    /// `depth`: how far below the group the node may be.
-    NodeFinder(Wanted wanted, std::size_t depth) : _wanted(wanted), _depth(depth) {}
+    explicit NodeFinder(Wanted wanted) : _wanted(wanted) {}
 
     /// The node among the group and everything below it; null if there is none.
     const osg::Node* find(const osg::Group& top);
+    /// A traversal has met such a node: the last one of a path that leads through the group. It counts where none is known.
+    void meet(const osg::Group& top, const osg::NodePath& path);
 
 private:
     /// A child on the way down, and its place in its parent.
@@ -40,7 +41,6 @@ private:
     void walk(std::size_t nodes);
 
     const Wanted _wanted;
-    const std::size_t _depth;
     const osg::Group* _top = nullptr;
     std::vector<Step> _way; ///< to the found node, or to where the search has come
     unsigned int _next = 0; ///< the child to look at next

@@ -6,6 +6,7 @@
 #include <osgGeoFX/scene/RigidReference.h>
 #include <osgGeoFX/scene/detail/CullVisitorAccess.h>
 #include <osgGeoFX/scene/detail/DividedTriangles.h>
+#include <osgGeoFX/scene/detail/GroundFinder.h>
 #include <osgGeoFX/scene/detail/OpenCulling.h>
 
 #include <osg/OcclusionQueryNode>
@@ -397,6 +398,12 @@ void CompensatingCullVisitor::apply(osg::Group& node)
     if (scope.skip()) return;
     tellHost(node);
     CullVisitor::apply(node);
+}
+
+void CompensatingCullVisitor::apply(osg::CoordinateSystemNode& node)
+{
+    if (_task.ground) _task.ground->meet(*_task.terrain, getNodePath());
+    apply(static_cast<osg::Group&>(node));
 }
 
 void CompensatingCullVisitor::meet(const osg::StateSet* state)

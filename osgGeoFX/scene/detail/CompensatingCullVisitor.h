@@ -12,6 +12,7 @@
 #include <osgGeoFX/scene/detail/UndeformedParts.h>
 #include <osgGeoFX/scene/detail/Visibility.h>
 
+#include <osg/CoordinateSystemNode>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderLeaf>
 
@@ -29,6 +30,7 @@ namespace osgGeoFX
 class DrawableCompanion;
 class ShaderHost;
 class FollowingPrograms;
+class GroundFinder;
 class RigidReference;
 
 /** Culls what the GPU is going to deform.
@@ -85,8 +87,10 @@ public:
         bool engines = false;                  ///< EffectScene::OPEN or PROXY
         bool open = false;  ///< nothing else is to cull, since what engines cull by is not what is shown
         bool proxy = false; ///< engines cull by a ProxyFrustum: EffectScene::PROXY
-        osg::BoundingSphere bound; ///< of the terrain, for this frustum
-        double tileError = 0.0;    ///< Ground::tileError
+        osg::BoundingSphere bound;           ///< of the terrain, for this frustum
+        GroundFinder* ground = nullptr;      ///< hears of coordinate systems that are met
+        const osg::Group* terrain = nullptr; ///< below which they are looked for
+        double tileError = 0.0;              ///< Ground::tileError
         std::vector<DrawableCompanion*> companions;
         bool asksForTiles = true;              ///< false: pagers hear nothing
         bool findsNearAndFar = true;           ///< false: the camera's stay as they are
@@ -135,6 +139,7 @@ public:
     void apply(osg::Billboard& node) override;
     void apply(osg::ClearNode& node) override;
     void apply(osg::ClipNode& node) override;
+    void apply(osg::CoordinateSystemNode& node) override;
     void apply(osg::LightSource& node) override;
     void apply(osg::OccluderNode& node) override;
     void apply(osg::OcclusionQueryNode& node) override;

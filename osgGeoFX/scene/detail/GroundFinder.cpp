@@ -14,9 +14,6 @@ namespace osgGeoFX
 namespace
 {
 
-/// How far below the scene a coordinate system may be, and a terrain.
-constexpr std::size_t deepestSystem = 9, deepestTerrain = 32;
-
 bool isSystem(const osg::Node& node)
 {
     // Asked for many nodes, and casts take their time: transforms are none.
@@ -47,8 +44,12 @@ void addStated(const EffectScene::GroundDescription& stated, Ground& ground)
 
 } // namespace
 
-GroundFinder::GroundFinder() : _systems(&isSystem, deepestSystem), _terrains(&isTerrainRoot, deepestTerrain)
+GroundFinder::GroundFinder() : _systems(&isSystem), _terrains(&isTerrainRoot) {}
+
+void GroundFinder::meet(const osg::Group& top, const osg::NodePath& path)
 {
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _systems.meet(top, path);
 }
 
 const osg::CoordinateSystemNode* GroundFinder::systemBelow(const osg::Group& top)

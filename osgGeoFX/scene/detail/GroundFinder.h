@@ -25,6 +25,9 @@ public:
     GroundFinder();
     /// What a scene states, and what is said by its terrain and by the nodes above this.
     Ground find(const EffectScene& scene, const osg::Group& terrain, const osg::NodePath& above);
+    /// A traversal has come to a coordinate system below `top`, at the end of a path. So one that a pager brings is known
+    /// in the next frame, however large the scene is.
+    void meet(const osg::Group& top, const osg::NodePath& path);
 
 private:
     /// The first coordinate system at `top` or below it; null where there is none.

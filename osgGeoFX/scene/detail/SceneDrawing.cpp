@@ -111,9 +111,9 @@ public:
     /// `listed`: the effects of the scene; `effects`: what the camera draws in their places.
     Traversal(SceneDrawing& drawing, EffectScene& scene, const Effects& listed, const Effects& effects,
               osgUtil::CullVisitor& outer, const ViewGeometry& view, const CameraDepth& depth,
-              const osg::BoundingSphere& bound, const Traverse& traverse)
+              const osg::Group& top, const Traverse& traverse)
         : _drawing(drawing), _scene(scene), _listed(listed), _effects(effects), _work(effects), _outer(outer),
-          _view(view), _depth(depth), _bound(bound), _traverse(traverse),
+          _view(view), _depth(depth), _top(top), _bound(boundOfChildren(top)), _traverse(traverse),
           _units(drawing.unitsOf(listed, scene))
     {
     }
@@ -137,6 +137,7 @@ private:
     osgUtil::CullVisitor& _outer;
     const ViewGeometry& _view;
     const CameraDepth& _depth;
+    const osg::Group& _top;
     const osg::BoundingSphere _bound; ///< of the terrain's children, in their frame
     const Traverse& _traverse;
     const std::shared_ptr<const TextureUnits> _units;
@@ -264,6 +265,8 @@ SceneDrawing::Traversal::taskOf(const osg::ref_ptr<const DeformationChain>& chai
     task.open = task.engines && !chain->empty();
     task.proxy = task.open && _scene.getEngineCulling() == EffectScene::PROXY;
     task.bound = _bound;
+    task.ground = &_drawing.ground;
+    task.terrain = &_top;
     // Where no effect moves anything, OSG's own tests are right, and faster. Where one does so for other cameras, ours go
     // on for this one: they let fewer tiles through, and what is drawn is not to jump as the bend comes to its end.
     task.compensate = _scene.getCompensation() && (_scene.getDebugBounds() || deforms(_effects));
@@ -426,7 +429,7 @@ bool SceneDrawing::cullWithEffects(EffectScene& scene, const Effects& effects, o
     tellContext(shown, outer);
     const ViewGeometry view = viewOf(outer, *role, ground.find(scene, top, outer.getNodePath()));
     if (prefetch) prefetch->note(outer, top, view, shown, scene.getCompensation() && deforms(shown));
-    return Traversal(*this, scene, effects, shown, outer, view, depth, boundOfChildren(top), traverse).run();
+    return Traversal(*this, scene, effects, shown, outer, view, depth, top, traverse).run();
 }
 
 osg::Matrixd SceneDrawing::turnOfHorizon(EffectScene& scene, const Effects& effects,
