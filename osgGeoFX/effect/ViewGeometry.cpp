@@ -104,7 +104,10 @@ void ViewGeometry::ray(const osg::Matrixd& projection, const osg::Matrixd& inver
     if (!CameraDepth::reverses(projection))
     {
         origin = osg::Vec3d(x, y, -1.0) * inverse;
-        direction = osg::Vec3d(x, y, 1.0) * inverse - origin;
+        const osg::Vec4d last = osg::Vec4d(x, y, 1.0, 1.0) * inverse;
+        const osg::Vec3d along(last.x(), last.y(), last.z());
+        // The far plane may be at infinity, and a little beyond.
+        direction = last.w() > 0.0 ? osg::Vec3d(x, y, 1.0) * inverse - origin : along - origin * last.w();
         return;
     }
     // The far plane may be anywhere, and at infinity.

@@ -173,3 +173,47 @@ TEST(DepthConventionTest, RaysAndPartsOfPicturesAreThoseOfStandardDepths)
         }
     }
 }
+
+/// Of one that has no far plane, and of one whose far plane lies a little beyond infinity, as Lengyel has it against rounding.
+TEST(DepthConventionTest, RaysAndPartsOfPicturesWithoutAFarPlaneAreThoseWithOne)
+{
+    int perspectives = 0;
+    for (int i = 0; i < 200; ++i)
+    {
+        SCOPED_TRACE(i);
+        Random random(static_cast<std::uint64_t>(i));
+        const double nearest = random.logarithmic(0.01, 100.0);
+        const osg::Matrixd standard = randomProjection(random, nearest);
+        if (standard(3, 3) != 0.0) continue;
+        ++perspectives;
+        const osg::Matrixd modelView =
+            osg::Matrixd::lookAt(osg::Vec3d(0, 0, 100), osg::Vec3d(30, 70, 20), osg::Vec3d(0, 0, 1));
+        const ViewGeometry expected(modelView, standard, Ground());
+        const double x = random.uniform(-1.0, 1.0), y = random.uniform(-1.0, 1.0);
+        osg::Vec3d origin, direction;
+        expected.ray(x, y, origin, direction);
+        direction.normalize();
+        const osg::Matrixd half = osg::Matrixd::scale(2, 1, 1) * osg::Matrixd::translate(-1, 0, 0);
+        for (const double beyond : {0.0, 2.4e-7, 1e-16})
+        {
+            SCOPED_TRACE(beyond);
+            osg::Matrixd endless = standard;
+            endless(2, 2) = beyond - 1.0;
+            endless(3, 2) = (beyond - 2.0) * nearest;
+            ViewGeometry view(modelView, endless, Ground());
+            osg::Vec3d from, along;
+            view.ray(x, y, from, along);
+            along.normalize();
+            EXPECT_LT((from - origin).length(), 1e-6 * origin.length());
+            EXPECT_LT((along - direction).length(), 1e-6);
+            view.setImage(modelView, endless * half);
+            osg::Vec2d low, high;
+            view.picturePart(low, high);
+            EXPECT_NEAR(low.x(), 0.0, 1e-6);
+            EXPECT_NEAR(high.x(), 1.0, 1e-6);
+            EXPECT_NEAR(low.y(), -1.0, 1e-6);
+            EXPECT_NEAR(high.y(), 1.0, 1e-6);
+        }
+    }
+    EXPECT_GT(perspectives, 50);
+}

@@ -2,7 +2,10 @@
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
 // What a program may do to the kit without knowing better: it is drawn right all the same, or one sentence says what to do.
-#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/BlendedView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/panorama/PanoramaMap.h>
 #include <osgGeoFX/scene/EffectScene.h>
 #include <tools/CullHarness.h>
 #include <tools/GlFixture.h>
@@ -82,6 +85,23 @@ protected:
             last = harness.frame(true);
         }
         return last.image;
+    }
+    /// Of a plane, with one effect or none.
+    osg::ref_ptr<osg::Image> drawFlat(Effect* effect, osg::Node* ground, const osg::Matrixd& projection,
+                                      bool computesNearFar = false)
+    {
+        const osg::ref_ptr<EffectScene> scene = new EffectScene;
+        if (effect) scene->addEffect(effect);
+        scene->addChild(ground);
+        CullHarness harness(context(), scene, WIDTH, HEIGHT);
+        harness.camera().setClearColor({0.0f, 0.0f, 0.0f, 1.0f});
+        harness.camera().setComputeNearFarMode(
+            computesNearFar ? osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES
+                            : osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        harness.setCamera(osg::Matrixd::lookAt(osg::Vec3d(0.0, -1800.0, 1500.0), osg::Vec3d(0.0, -200.0, 0.0),
+                                               osg::Vec3d(0.0, 0.0, 1.0)),
+                          projection);
+        return harness.frame(true).image;
     }
     osg::Matrixd view() const
     {
@@ -198,6 +218,39 @@ TEST_F(Misuse, AGlobeThatComesToALargeSceneIsBentInTheNextFrame)
     small->addEffect(new BirdsEyeView);
     small->addChild(system);
     EXPECT_TRUE(imagesMatch(*image, *draw(small)));
+}
+
+/// The far plane of the kit's pictures is what lies farthest; a program may have none.
+TEST_F(Misuse, WithoutAFarPlaneEffectsAreThoseWithOne)
+{
+    const osg::ref_ptr<osg::Geometry> ground = makeGround();
+    const double nearest = 10.0;
+    osg::Matrixd endless = osg::Matrixd::perspective(50.0, 4.0 / 3.0, nearest, 1e7), beyond = endless;
+    endless(2, 2) = -1.0;
+    endless(3, 2) = -2.0 * nearest;
+    beyond(2, 2) = -1.0 + 2.4e-7;
+    beyond(3, 2) = (2.4e-7 - 2.0) * nearest;
+    const osg::ref_ptr<osg::Image> plain =
+        drawFlat(nullptr, ground, osg::Matrixd::perspective(50.0, 4.0 / 3.0, nearest, 1e7));
+    const osg::ref_ptr<PedestrianView> pedestrian = new PedestrianView;
+    pedestrian->setFocusDistance(1000.0);
+    pedestrian->setBendAngle(0.5);
+    for (const osg::ref_ptr<Effect>& effect : std::vector<osg::ref_ptr<Effect>>{
+             new BirdsEyeView, pedestrian, new BlendedView, new PanoramaMap, new VerticalExaggeration})
+    {
+        for (const bool computes : {false, true})
+        {
+            SCOPED_TRACE(std::string(effect->className()) + (computes ? ", near and far computed" : ""));
+            const osg::ref_ptr<osg::Image> right =
+                drawFlat(effect, ground, osg::Matrixd::perspective(50.0, 4.0 / 3.0, nearest, 1e7), computes);
+            if (effect->asDeformation()->isProjection())
+            {
+                EXPECT_GT(pixelsApart(*right, *plain), WIDTH * HEIGHT / 20) << "it is to do something";
+            }
+            for (const osg::Matrixd& each : {endless, beyond})
+                EXPECT_LT(pixelsApart(*drawFlat(effect, ground, each, computes), *right), 10);
+        }
+    }
 }
 
 } // namespace
