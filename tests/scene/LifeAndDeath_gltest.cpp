@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+// SPDX-FileCopyrightText: 2026 the osgGeoFX authors
+//
+// Scenes, effects, callbacks, views, windows and contexts are made, replaced and deleted while frames are on their way, in all of
+// OSG's threading models. Run it with AddressSanitizer and ThreadSanitizer, too.
+#include <tools/CloseUpSamples.h>
+#include <tools/GlRequired.h>
+#include <tools/ImageComparison.h>
+#include <tools/NotifyWatch.h>
+#include <tools/PagedScene.h>
+#include <tools/RandomSamples.h>
+#include <tools/TempDir.h>
+
+#include <osg/DisplaySettings>
+#include <osg/LightSource>
+#include <osg/ShapeDrawable>
+#include <osgDB/ReadFile>
+#include <osgGeoFX/deformation/BirdsEyeView.h>
+#include <osgGeoFX/deformation/PedestrianView.h>
+#include <osgGeoFX/deformation/VerticalExaggeration.h>
+#include <osgGeoFX/light/SunShadows.h>
+#include <osgGeoFX/offscreen/EglGraphicsContext.h>
+#include <osgGeoFX/offscreen/ImageCapture.h>
+#include <osgGeoFX/scene/EffectCullCallback.h>
+#include <osgViewer/CompositeViewer>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+using namespace osgGeoFX;
+using namespace geofx::test;
+using Threading = osgViewer::ViewerBase::ThreadingModel;
+
+namespace
+{
+
+constexpr int WIDTH = 80, HEIGHT = 60;
+/// More than there are at a time.
+constexpr unsigned int contexts = 64;
+
+constexpr Threading models[] = {osgViewer::ViewerBase::SingleThreaded,
+                                osgViewer::ViewerBase::CullDrawThreadPerContext,
+                                osgViewer::ViewerBase::DrawThreadPerContext,
+                                osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
+
+/// Keeps a frame on its way for a while, so that what happens between frames happens while it is drawn.
+class Late : public osg::Camera::DrawCallback
+{
+public:
+    explicit Late(int milliseconds) : _time(milliseconds) {}
+    using osg::Camera::DrawCallback::operator();
+    void operator()(osg::RenderInfo&) const override { std::this_thread::sleep_for(_time); }
+
+private:
+    const std::chrono::milliseconds _time;
+};
+
+/// Views in windows of their own, which come and go.
+class Windows
+{
+public:
+    explicit Windows(Threading model, int late) : _viewer(new osgViewer::CompositeViewer), _late(late)
+    {
+        _viewer->setThreadingModel(model);
+        _viewer->setKeyEventSetsDone(0);
+    }
+    ~Windows()
+    {
+        _viewer->stopThreading();
+        _viewer = nullptr;
+        for (Window& window : _windows)
+            window.context->close();
+    }
+    Windows(const Windows&) = delete;
+    Windows& operator=(const Windows&) = delete;
+
+    void open(osg::Node* scene)
+    {
+        Window window;
+        osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+        traits->width = WIDTH;
+        traits->height = HEIGHT;
+        traits->alpha = 8;
+        window.context = new EglGraphicsContext(traits);
+        window.view = new osgViewer::View;
+        osg::Camera& camera = *window.view->getCamera();
+        camera.setGraphicsContext(window.context);
+        camera.setViewport(0, 0, WIDTH, HEIGHT);
+        camera.setProjectionMatrixAsPerspective(45.0, static_cast<double>(WIDTH) / HEIGHT, 1.0, 1e5);
+        camera.setInitialDrawCallback(new Late(_late));
+        window.capture = ImageCapture::attach(&camera);
+        window.view->setSceneData(scene);
+        look(window.view, 9000.0);
+        _viewer->addView(window.view);
+        _windows.push_back(window);
+    }
+    /// With its context.
+    void close(std::size_t i)
+    {
+        const Window window = _windows[i];
+        _windows.erase(_windows.begin() + static_cast<std::ptrdiff_t>(i));
+        _viewer->removeView(window.view);
+        window.context->close();
+    }
+    std::size_t size() const { return _windows.size(); }
+    osgViewer::View& view(std::size_t i) { return *_windows[i].view; }
+    void setModel(Threading model) { _viewer->setThreadingModel(model); }
+    /// Nearer eyes have more tiles.
+    static void look(osgViewer::View* view, double distance, double turn = 0.0)
+    {
+        const osg::Vec3d eye(distance * std::sin(turn), -distance * std::cos(turn), 0.4 * distance);
+        view->getCamera()->setViewMatrixAsLookAt(eye, osg::Vec3d(), osg::Z_AXIS);
+    }
+    void realize() { _viewer->realize(); }
+    void frame() { _viewer->frame(++_frames / 1000.0); }
+    /// Of the next frame.
+    osg::ref_ptr<osg::Image> picture(std::size_t i)
+    {
+        frame();
+        frame();
+        _windows[i].capture->request();
+        frame();
+        frame();
+        return _windows[i].capture->take();
+    }
+
+private:
+    struct Window
+    {
+        osg::ref_ptr<EglGraphicsContext> context;
+        osg::ref_ptr<osgViewer::View> view;
+        osg::ref_ptr<ImageCapture> capture;
+    };
+    osg::ref_ptr<osgViewer::CompositeViewer> _viewer;
+    const int _late;
+    std::vector<Window> _windows;
+    int _frames = 0;
+};
+
+class LifeAndDeath : public ::testing::TestWithParam<Threading>
+{
+protected:
+    void SetUp() override
+    {
+        // An osg::Texture makes room for a context when it is first drawn there, without a lock.
+        osg::DisplaySettings::instance()->setMaxNumberOfGraphicsContexts(contexts);
+        osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+        traits->width = traits->height = 8;
+        const osg::ref_ptr<EglGraphicsContext> context = new EglGraphicsContext(traits);
+        if (context->valid()) return;
+        if (geofx::test::glIsRequired()) FAIL() << context->error();
+        GTEST_SKIP() << context->error();
+    }
+
+    /// Many small things in two colors, with some that have a program.
+    static osg::ref_ptr<osg::Group> plain()
+    {
+        osg::ref_ptr<osg::Group> all = new osg::Group;
+        for (int i = 0; i < 64; ++i)
+        {
+            osg::ref_ptr<osg::ShapeDrawable> box = new osg::ShapeDrawable(
+                new osg::Box(osg::Vec3(500.0f * static_cast<float>(i % 8) - 1750.0f,
+                                       500.0f * static_cast<float>(i / 8) - 1750.0f, 0.0f),
+                             300.0f));
+            box->setColor(i % 3 ? osg::Vec4(0.2f, 0.7f, 0.3f, 1.0f) : osg::Vec4(0.8f, 0.2f, 0.1f, 1.0f));
+            box->setUseDisplayList(false);
+            box->setUseVertexBufferObjects(true);
+            all->addChild(box);
+        }
+        return all;
+    }
+    static osg::ref_ptr<EffectScene> sceneOf(Effect* effect)
+    {
+        osg::ref_ptr<EffectScene> scene = new EffectScene;
+        scene->addChild(plain());
+        scene->addEffect(effect);
+        return scene;
+    }
+    static osg::ref_ptr<BirdsEyeView> bird()
+    {
+        osg::ref_ptr<BirdsEyeView> effect = new BirdsEyeView;
+        effect->setFocusLine(0.3);
+        effect->setHorizonLine(0.8);
+        return effect;
+    }
+    static osg::ref_ptr<CloseUps> closeUps(Random& random, CloseUps::Pipeline pipeline)
+    {
+        CloseUpPlan plan;
+        plan.reach = 1200.0;
+        osg::ref_ptr<CloseUps> effect = new CloseUps;
+        effect->setPipeline(pipeline);
+        effect->addCloseUp(randomCloseUp(random, plan));
+        return effect;
+    }
+    static osg::ref_ptr<SunShadows> shadows()
+    {
+        osg::ref_ptr<SunShadows> effect = new SunShadows;
+        effect->setMapSize(64);
+        effect->setCascades(2);
+        return effect;
+    }
+
+    /// The picture of a scene in one thread.
+    static osg::ref_ptr<osg::Image> alone(osg::Node* scene)
+    {
+        Windows windows(osgViewer::ViewerBase::SingleThreaded, 0);
+        windows.open(scene);
+        windows.realize();
+        return windows.picture(0);
+    }
+    static constexpr int replacements = 10;
+    static constexpr int late = 10; ///< milliseconds
+
+    NotifyWatch _watch;
+};
+
+INSTANTIATE_TEST_SUITE_P(AllModels, LifeAndDeath, ::testing::ValuesIn(models),
+                         [](const auto& each) { return "Model" + std::to_string(each.index); });
+
+} // namespace
+
+TEST_P(LifeAndDeath, ASceneIsReplacedInItsView)
+{
+    const osg::ref_ptr<osg::Image> expected = alone(sceneOf(bird()));
+    Windows windows(GetParam(), late);
+    windows.open(sceneOf(bird()));
+    windows.realize();
+    windows.frame();
+    for (int i = 0; i < replacements; ++i)
+    {
+        windows.frame();
+        windows.view(0).setSceneData(sceneOf(bird()));
+    }
+    EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "replaced-scene"));
+}
+
+TEST_P(LifeAndDeath, ASceneIsReplacedInAGroup)
+{
+    const osg::ref_ptr<osg::Image> expected = alone(sceneOf(bird()));
+    Windows windows(GetParam(), late);
+    const osg::ref_ptr<osg::Group> root = new osg::Group;
+    root->addChild(sceneOf(bird()));
+    windows.open(root);
+    windows.realize();
+    windows.frame();
+    for (int i = 0; i < replacements; ++i)
+    {
+        windows.frame();
+        root->setChild(0, sceneOf(bird()));
+    }
+    EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "replaced-child"));
+}
+
+TEST_P(LifeAndDeath, ACullCallbackIsReplaced)
+{
+    const osg::ref_ptr<osg::Image> expected = alone(sceneOf(bird()));
+    Windows windows(GetParam(), late);
+    const osg::ref_ptr<osg::Group> terrain = plain();
+    terrain->setCullingActive(false);
+    const auto callback = []
+    {
+        osg::ref_ptr<EffectScene> scene = new EffectScene;
+        scene->addEffect(bird());
+        return osg::ref_ptr<EffectCullCallback>(new EffectCullCallback(scene));
+    };
+    terrain->setCullCallback(callback());
+    windows.open(terrain);
+    windows.realize();
+    windows.frame();
+    for (int i = 0; i < replacements; ++i)
+    {
+        windows.frame();
+        terrain->setCullCallback(callback());
+    }
+    EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "replaced-callback"));
+}
+
+// Those of effects, with their stages, cameras and textures.
+TEST_P(LifeAndDeath, AnEffectIsReplaced)
+{
+    Random random(1);
+    const osg::ref_ptr<EffectScene> scene = sceneOf(bird());
+    osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
+    sun->getLight()->setPosition(osg::Vec4(0.3f, 0.2f, 1.0f, 0.0f));
+    scene->addChild(sun);
+    const osg::ref_ptr<osg::Image> expected = alone(scene);
+    Windows windows(GetParam(), late);
+    windows.open(scene);
+    windows.realize();
+    windows.frame();
+    for (int i = 0; i < replacements; ++i)
+    {
+        osg::ref_ptr<Effect> effect;
+        if (i % 3 == 2)
+            effect = shadows();
+        else
+            effect = closeUps(random, i % 3 ? CloseUps::MULTI_PASS : CloseUps::SINGLE_PASS);
+        scene->addEffect(effect);
+        windows.frame();
+        windows.frame();
+        scene->removeEffect(effect);
+        effect = nullptr;
+        if (i % 2) windows.frame();
+    }
+    EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "replaced-effect"));
+}
+
+TEST_P(LifeAndDeath, AViewGoesWithItsWindow)
+{
+    const osg::ref_ptr<EffectScene> scene = sceneOf(bird());
+    const osg::ref_ptr<osg::Image> expected = alone(scene);
+    Windows windows(GetParam(), late);
+    windows.open(scene);
+    windows.realize();
+    for (int i = 0; i < 4; ++i)
+    {
+        windows.open(i % 2 ? scene : sceneOf(bird()));
+        windows.realize();
+        windows.frame();
+        windows.frame();
+        windows.close(1);
+    }
+    EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "after-views"));
+}
