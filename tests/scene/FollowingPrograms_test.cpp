@@ -8,6 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 using namespace osgGeoFX;
 
 namespace
@@ -157,4 +161,84 @@ TEST(FollowingPrograms, NothingIsKeptOfProgramsThatAreGone)
     following.of(*program);
     EXPECT_FALSE(copy.valid());
     EXPECT_EQ(following.programs().size(), 1u);
+}
+
+namespace
+{
+
+/// Of OSG's own class, as each tile of a database may have one.
+osg::ref_ptr<osg::Program> makeTile(const std::string& name, const std::string& more = "")
+{
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->setName(name);
+    program->addShader(
+        new osg::Shader(osg::Shader::VERTEX, "#pragma import_defines(OWN)\nvoid main() {}\n" + more));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, "void main() {}\n"));
+    EffectProgram::addFunctions(*program, {});
+    return program;
+}
+
+} // namespace
+
+TEST(FollowingPrograms, EqualProgramsShareOneCopy)
+{
+    FollowingPrograms following;
+    const osg::ref_ptr<osg::Program> effects = EffectProgram::create({new BirdsEyeView});
+    following.follow(*effects);
+    std::vector<osg::ref_ptr<osg::Program>> tiles;
+    std::set<const osg::StateSet*> states;
+    for (int i = 0; i < 200; ++i)
+    {
+        tiles.push_back(makeTile("tile " + std::to_string(i)));
+        states.insert(following.of(*tiles.back()));
+    }
+    EXPECT_EQ(states.size(), 1u);
+    EXPECT_EQ(following.programs().size(), 1u);
+    const osg::ref_ptr<osg::StateSet> shared = following.of(*tiles[0]);
+    for (const char* define : {"OWN", "GEOFX_EFFECT_0", "GEOFX_DEFORMATION"})
+        EXPECT_EQ(programOf(shared)->getShaderDefines().count(define), 1u) << define;
+
+    // Each of these is another program, and the others go on with theirs.
+    tiles[0]->getShader(0)->setShaderSource("void main() { gl_Position = gl_Vertex; }\n");
+    tiles[1]->addBindAttribLocation("blade", 7);
+    tiles[2]->addBindFragDataLocation("result", 2);
+    tiles[3]->addBindUniformBlock("Wind", 4);
+    tiles[4]->setParameter(GL_GEOMETRY_VERTICES_OUT_EXT, 6);
+    tiles[5]->addTransformFeedBackVarying("foot");
+    tiles[6]->getShaderDefines().insert("MORE");
+    tiles[7]->addShader(new osg::Shader(osg::Shader::FRAGMENT, "void more() {}\n"));
+    std::set<const osg::StateSet*> others = {shared};
+    for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_TRUE(others.insert(following.of(*tiles[i])).second) << i;
+    for (std::size_t i = 8; i < tiles.size(); ++i)
+        EXPECT_EQ(following.of(*tiles[i]), shared) << i;
+    // The same change makes the same program.
+    tiles[8]->addBindAttribLocation("blade", 7);
+    EXPECT_EQ(following.of(*tiles[8]), following.of(*tiles[1]));
+    EXPECT_EQ(following.programs().size(), 9u);
+    // Neither the application's shaders nor what is drawn with them has changed.
+    EXPECT_EQ(programOf(shared)->getShader(0)->getShaderSource(), tiles[9]->getShader(0)->getShaderSource());
+    EXPECT_NE(programOf(shared)->getShader(0), tiles[9]->getShader(0));
+    // Copies of programs that differ in one shader share the other one.
+    EXPECT_EQ(programOf(shared)->getShader(1), programOf(following.of(*tiles[0]))->getShader(1));
+}
+
+// Tiles, and passes whose programs are replaced.
+TEST(FollowingPrograms, ListsDoNotGrow)
+{
+    FollowingPrograms following;
+    osg::ref_ptr<osg::Program> effects = EffectProgram::create({new BirdsEyeView});
+    following.follow(*effects);
+    for (int i = 0; i < 1000; ++i)
+        following.of(*makeTile("tile", "// " + std::to_string(i)));
+    EXPECT_LE(following.programs().size(), 64u);
+    const osg::ref_ptr<osg::Program> lasts = makeTile("a tile that stays");
+    for (int i = 0; i < 20; ++i)
+    {
+        effects = EffectProgram::create({new BirdsEyeView});
+        following.follow(*effects);
+        following.of(*lasts);
+    }
+    following.of(*makeTile("another one", "// more"));
+    EXPECT_LE(following.programs().size(), 3u);
 }

@@ -7,6 +7,7 @@
 #include <tools/CullHarness.h>
 #include <tools/RandomSamples.h>
 
+#include <osg/GLObjects>
 #include <osg/Geode>
 #include <osgGeoFX/deformation/PedestrianView.h>
 #include <osgGeoFX/scene/DeformedView.h>
@@ -14,6 +15,9 @@
 #include <osgGeoFX/scene/detail/OwnPrograms.h>
 
 #include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -21,14 +25,16 @@ using namespace geofx::test;
 namespace
 {
 
-osg::ref_ptr<osg::Program> makeStranger(const std::string& name = "")
+/// `more`: at the end of its vertex shader's text.
+osg::ref_ptr<osg::Program> makeStranger(const std::string& name = "", const std::string& more = "")
 {
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->setName(name);
     program->addShader(new osg::Shader(
         osg::Shader::VERTEX, "#version 120\n"
                              "// geofx_vertex(eye) is not called here\n"
-                             "void main() { gl_Position = ftransform(); gl_FrontColor = gl_Color; }\n"));
+                             "void main() { gl_Position = ftransform(); gl_FrontColor = gl_Color; }\n" +
+                                 more));
     program->addShader(
         new osg::Shader(osg::Shader::FRAGMENT, "#version 120\nvoid main() { gl_FragColor = gl_Color; }\n"));
     return program;
@@ -72,6 +78,12 @@ protected:
             });
     }
 };
+
+/// Of a tile in rows of twenty.
+osg::Vec3d placeOf(int tile)
+{
+    return {4.0 * (tile % 20) - 40.0, 4.0 * (tile / 20) - 90.0, 0.0};
+}
 
 bool contains(const std::string& text, const std::string& part)
 {
@@ -125,13 +137,14 @@ TEST_F(OwnProgramsTest, OneWarningForEach)
     EXPECT_TRUE(contains(said[0], "addFunctions")) << said[0];
     EXPECT_TRUE(contains(said[0], "RigidReference")) << said[0];
 
-    // Two that are called alike are two, and so are two without a name.
+    // Two with other texts that are called alike are two, and so are two without a name.
     const osg::ref_ptr<osg::Group> more = new osg::Group;
     more->setName("more of it");
-    for (const char* name : {"the glow", "", ""})
+    for (const auto& [name, text] :
+         {std::pair{"the glow", "// 1"}, std::pair{"", "// 2"}, std::pair{"", "// 3"}})
     {
         const osg::ref_ptr<osg::MatrixTransform> box = makeBox(5, {10, -90, 0});
-        box->getOrCreateStateSet()->setAttribute(makeStranger(name));
+        box->getOrCreateStateSet()->setAttribute(makeStranger(name, text));
         more->addChild(box);
     }
     scene->addChild(more);
@@ -140,6 +153,79 @@ TEST_F(OwnProgramsTest, OneWarningForEach)
     EXPECT_TRUE(contains(said[1], "\"more of it\"")) << said[1];
     // Of all that they have been told.
     EXPECT_TRUE(saidOf(scene).empty());
+}
+
+// As an engine may have a program for each tile.
+TEST_F(OwnProgramsTest, OneWarningForAllWithEqualTexts)
+{
+    const osg::ref_ptr<osg::Group> tiles = new osg::Group;
+    const osg::ref_ptr<EffectScene> scene = makeScene({tiles});
+    const auto fill = [&](const std::string& name)
+    {
+        tiles->removeChildren(0, tiles->getNumChildren());
+        for (int i = 0; i < 200; ++i)
+        {
+            const osg::ref_ptr<osg::MatrixTransform> tile = makeBox(2, placeOf(i));
+            tile->setName("tile " + std::to_string(i));
+            tile->getOrCreateStateSet()->setAttribute(
+                makeStranger(name.empty() ? name : name + static_cast<char>('a' + i % 26)));
+            tiles->addChild(tile);
+        }
+    };
+    fill("");
+    const std::vector<std::string> said = saidOf(scene);
+    ASSERT_EQ(said.size(), 1u) << ::testing::PrintToString(said);
+    // Others at their place.
+    fill("the program of tile ");
+    EXPECT_TRUE(saidOf(scene).empty());
+}
+
+// Drawn with the functions, by one program of OpenGL.
+TEST_F(OwnProgramsTest, OneProgramForAllWithEqualTexts)
+{
+    const auto programs = [this](int tiles, bool adapted)
+    {
+        const osg::ref_ptr<osg::Group> all = new osg::Group;
+        for (int i = 0; i < tiles; ++i)
+        {
+            const osg::ref_ptr<osg::MatrixTransform> tile = makeBox(2, placeOf(i));
+            const osg::ref_ptr<osg::Program> program = makeStranger(
+                "tile " + std::to_string(i),
+                adapted ? "" : "vec4 geofx_vertex(vec4 eye);\nvoid more() { geofx_vertex(gl_Vertex); }\n");
+            if (adapted)
+                EffectScene::adapt(*program);
+            else
+                EffectScene::addFunctions(*program);
+            tile->getOrCreateStateSet()->setAttribute(program);
+            all->addChild(tile);
+        }
+        // OSG compiles what it finds in a scene that is new to a view, whoever draws it.
+        const osg::ref_ptr<osg::Group> root = makePlain({});
+        render(root);
+        root->addChild(makeScene({all}));
+        // The names that are taken in both counts.
+        int before = 0, after = 0;
+        const auto count = [](int& number)
+        {
+            return [&number](osg::State& state)
+            {
+                // Those of scenes that are gone.
+                osg::flushAllDeletedGLObjects(state.getContextID());
+                for (GLuint name = 1; name < 20000; ++name)
+                    number += state.get<osg::GLExtensions>()->glIsProgram(name) ? 1 : 0;
+            };
+        };
+        withContext(count(before));
+        render(root);
+        withContext(count(after));
+        return after - before;
+    };
+    for (const bool adapted : {true, false})
+    {
+        SCOPED_TRACE(adapted);
+        const int one = programs(1, adapted);
+        EXPECT_EQ(programs(200, adapted), one);
+    }
 }
 
 TEST_F(OwnProgramsTest, NoWarningWhereNothingIsAmiss)

@@ -43,55 +43,71 @@ bool hasBlocksOf(const osg::Program& copy, const osg::Program& program)
     return std::includes(all.begin(), all.end(), wanted.begin(), wanted.end());
 }
 
-/// Whether a copy still has what the application has put into its program. `adapted`: its shaders are known to be those.
-bool isCopyOf(const osg::Program& copy, const osg::Program& program, const osg::Program& functions,
-              bool adapted)
+/// Whether a program is nothing more than what OSG's own class holds.
+bool isOrdinary(const osg::Program& program)
 {
-    for (const GLenum parameter :
-         {GL_GEOMETRY_VERTICES_OUT_EXT, GL_GEOMETRY_INPUT_TYPE_EXT, GL_GEOMETRY_OUTPUT_TYPE_EXT})
-    {
-        if (copy.getParameter(parameter) != program.getParameter(parameter)) return false;
-    }
-    const osg::ShaderDefines& defines = copy.getShaderDefines();
-    const osg::ShaderDefines& wanted = program.getShaderDefines();
-    return (adapted || ownShaders(copy) == ownShaders(program)) && copy.getName() == program.getName() &&
-           copy.getAttribBindingList() == program.getAttribBindingList() &&
-           copy.getFragDataBindingList() == program.getFragDataBindingList() && hasBlocksOf(copy, program) &&
-           hasBlocksOf(copy, functions) &&
-           copy.getUniformBlockBindingList().size() ==
-               program.getUniformBlockBindingList().size() + functions.getUniformBlockBindingList().size() &&
-           copy.getTransformFeedBackMode() == program.getTransformFeedBackMode() &&
-           feedback(copy) == feedback(program) &&
-           std::includes(defines.begin(), defines.end(), wanted.begin(), wanted.end());
+    return typeid(program) == typeid(osg::Program) || dynamic_cast<const ProfileProgram*>(&program);
 }
 
-osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const osg::Program& functions,
-                                  const ProgramAdaptation* adaptation)
+/// Without the functions.
+osg::ref_ptr<osg::Program> copyOf(const osg::Program& program, const ProgramAdaptation* adaptation)
 {
     // A class of the application's may hold more. Its copies draw in the compatibility profile alone.
-    const bool ordinary =
-        typeid(program) == typeid(osg::Program) || dynamic_cast<const ProfileProgram*>(&program);
     osg::ref_ptr<osg::Program> copy =
-        ordinary ? new ProfileProgram(program) : osg::clone(&program, osg::CopyOp::SHALLOW_COPY);
+        isOrdinary(program) ? new ProfileProgram(program) : osg::clone(&program, osg::CopyOp::SHALLOW_COPY);
     for (unsigned int i = copy->getNumShaders(); i-- > 0;)
     {
         if (EffectProgram::isFunctions(*copy->getShader(i))) copy->removeShader(copy->getShader(i));
     }
     if (adaptation) adaptation->apply(*copy);
+    return copy;
+}
+
+void addFunctions(const osg::Program& program, const osg::Program& functions, osg::Program& copy)
+{
     // They are the same for all, and compiled once.
-    EffectProgram::addFunctionsOf(functions, *copy);
+    EffectProgram::addFunctionsOf(functions, copy);
     // What OSG's own copy leaves out.
     for (const osg::Program* each : {&functions, &program})
     {
         for (const auto& [name, binding] : each->getUniformBlockBindingList())
-            copy->addBindUniformBlock(name, binding);
+            copy.addBindUniformBlock(name, binding);
     }
     const osg::ShaderDefines& defines = program.getShaderDefines();
-    copy->getShaderDefines().insert(defines.begin(), defines.end());
-    return copy;
+    copy.getShaderDefines().insert(defines.begin(), defines.end());
 }
 
 } // namespace
+
+/// Whether it still has what the application has put into its program.
+bool FollowingPrograms::Copy::isOf(const osg::Program& original, const osg::Program& wanted,
+                                   bool adapts) const
+{
+    if (functions != &wanted || adapted != adapts) return false;
+    for (const GLenum parameter :
+         {GL_GEOMETRY_VERTICES_OUT_EXT, GL_GEOMETRY_INPUT_TYPE_EXT, GL_GEOMETRY_OUTPUT_TYPE_EXT})
+    {
+        if (program->getParameter(parameter) != original.getParameter(parameter)) return false;
+    }
+    const std::vector<const osg::Shader*> own = ownShaders(original);
+    const bool sameShaders = isOrdinary(original)
+                                 ? std::equal(own.begin(), own.end(), texts.begin(), texts.end(),
+                                              [](const osg::Shader* shader, const Text& text) {
+                                                  return shader->getType() == text.first &&
+                                                         shader->getShaderSource() == text.second;
+                                              })
+                                 : adapts || ownShaders(*program) == own;
+    const osg::ShaderDefines& defines = program->getShaderDefines();
+    const osg::ShaderDefines& needed = original.getShaderDefines();
+    return sameShaders && program->getAttribBindingList() == original.getAttribBindingList() &&
+           program->getFragDataBindingList() == original.getFragDataBindingList() &&
+           hasBlocksOf(*program, original) && hasBlocksOf(*program, wanted) &&
+           program->getUniformBlockBindingList().size() ==
+               original.getUniformBlockBindingList().size() + wanted.getUniformBlockBindingList().size() &&
+           program->getTransformFeedBackMode() == original.getTransformFeedBackMode() &&
+           feedback(*program) == feedback(original) &&
+           std::includes(defines.begin(), defines.end(), needed.begin(), needed.end());
+}
 
 void FollowingPrograms::follow(const osg::Program& functions)
 {
@@ -112,33 +128,90 @@ osg::ref_ptr<osg::StateSet> FollowingPrograms::of(const osg::StateAttribute& pro
     const bool inPass = drawing && EffectProgram::isPassOfTwoStages(*drawing);
     if (!inPass && !_functions) return nullptr;
     const osg::Program& functions = inPass ? *drawing : *_functions;
-    Copy& copy = _copies[{&program, inPass ? drawing : nullptr}];
-    if (copy.original.valid() && copy.functions.get() == &functions && copy.adaptation == adaptation &&
-        isCopyOf(*copy.program, *original, functions, adaptation != nullptr))
-        return copy.state;
-    if (copy.program) _former.emplace_back(copy.program);
-    copy.original = &program;
-    copy.functions = &functions;
-    copy.adaptation = adaptation;
+    Use& use = _uses[{&program, inPass ? drawing : nullptr}];
+    // An application's own class is copied anew with each adaptation.
+    const bool known = use.copy && use.original.valid() &&
+                       (use.adaptation == adaptation || isOrdinary(*original)) &&
+                       use.copy->isOf(*original, functions, adaptation != nullptr);
+    use.adaptation = adaptation;
+    if (known) return use.copy->state;
+    use.original = &program;
+    use.copy = copyFor(*original, functions, adaptation.get());
+    if (adaptation) complain(*original, *adaptation);
+    const osg::ref_ptr<osg::StateSet> state = use.copy->state;
+    if (_uses.size() > _purgeSize || use.copy.use_count() == 1) purge();
+    return state;
+}
+
+std::shared_ptr<const FollowingPrograms::Copy> FollowingPrograms::copyFor(const osg::Program& original,
+                                                                          const osg::Program& functions,
+                                                                          const ProgramAdaptation* adaptation)
+{
+    const bool ordinary = isOrdinary(original);
+    for (const std::weak_ptr<const Copy>& each : _shared)
+    {
+        const std::shared_ptr<const Copy> copy = ordinary ? each.lock() : nullptr;
+        if (copy && copy->isOf(original, functions, adaptation != nullptr)) return copy;
+    }
+    const auto copy = std::make_shared<Copy>();
+    copy->functions = &functions;
+    copy->adapted = adaptation != nullptr;
+    for (const osg::Shader* shader : ownShaders(original))
+    {
+        if (ordinary) copy->texts.emplace_back(shader->getType(), shader->getShaderSource());
+    }
     {
         // Scenes share shaders.
         const std::lock_guard<std::mutex> sharing(ProfileProgram::sharing());
-        copy.program = copyOf(*original, functions, adaptation.get());
+        copy->program = copyOf(original, adaptation);
+        if (ordinary) takeShaders(*copy->program, original);
+        addFunctions(original, functions, *copy->program);
     }
-    if (adaptation && !adaptation->colorRefusal().empty())
-    {
-        std::string sentence = OwnPrograms::describe(program, {}) + " is adapted, but keeps its colors: ";
-        sentence += adaptation->colorRefusal() + ". Let its fragment shader call geofx_fragment().";
-        if (std::find(_complaints.begin(), _complaints.end(), sentence) == _complaints.end())
-            _complaints.push_back(sentence);
-    }
-    copy.state = new osg::StateSet;
+    copy->state = new osg::StateSet;
     // Whatever put the program into force.
-    copy.state->setAttributeAndModes(copy.program, osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
-                                                       osg::StateAttribute::PROTECTED);
-    const osg::ref_ptr<osg::StateSet> state = copy.state;
-    purge();
-    return state;
+    copy->state->setAttributeAndModes(copy->program, osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE |
+                                                         osg::StateAttribute::PROTECTED);
+    _former.emplace_back(copy->program);
+    if (ordinary) _shared.push_back(copy);
+    return copy;
+}
+
+/// Puts shaders of ours into the places of the application's. Copies share those with equal texts, so that each is compiled once.
+void FollowingPrograms::takeShaders(osg::Program& copy, const osg::Program& original)
+{
+    const std::vector<const osg::Shader*> foreign = ownShaders(original);
+    std::vector<osg::ref_ptr<osg::Shader>> all;
+    for (unsigned int i = 0; i < copy.getNumShaders(); ++i)
+        all.emplace_back(copy.getShader(i));
+    for (const osg::ref_ptr<osg::Shader>& each : all)
+        copy.removeShader(each);
+    for (const osg::ref_ptr<osg::Shader>& each : all)
+    {
+        osg::observer_ptr<osg::Shader>& known =
+            _shaders[{{each->getType(), each->getShaderSource()}, each->getName()}];
+        osg::ref_ptr<osg::Shader> shader;
+        const bool shares = known.lock(shader) && shader->getShaderDefines() == each->getShaderDefines() &&
+                            shader->getShaderRequirements() == each->getShaderRequirements() &&
+                            !each->getShaderBinary();
+        if (!shares)
+        {
+            const bool isForeign = std::find(foreign.begin(), foreign.end(), each.get()) != foreign.end();
+            shader = isForeign ? osg::clone(each.get(), osg::CopyOp::SHALLOW_COPY) : each.get();
+            shader->getShaderDefines() = each->getShaderDefines();
+            shader->getShaderRequirements() = each->getShaderRequirements();
+            known = shader;
+        }
+        copy.addShader(shader);
+    }
+}
+
+/// Once for all programs with equal texts.
+void FollowingPrograms::complain(const osg::Program& program, const ProgramAdaptation& adaptation)
+{
+    if (adaptation.colorRefusal().empty() || !_complained.insert(OwnPrograms::numberOf(program)).second)
+        return;
+    _complaints.push_back(OwnPrograms::describe(program, {}) + " is adapted, but keeps its colors: " +
+                          adaptation.colorRefusal() + ". Let its fragment shader call geofx_fragment().");
 }
 
 bool FollowingPrograms::hasFixedVertices(const osg::StateAttribute& program)
@@ -150,17 +223,22 @@ bool FollowingPrograms::hasFixedVertices(const osg::StateAttribute& program)
 
 void FollowingPrograms::purge()
 {
-    for (auto each = _copies.begin(); each != _copies.end();)
+    for (auto each = _uses.begin(); each != _uses.end();)
     {
-        const bool lives = each->second.original.valid() && each->second.functions.valid();
-        if (!lives) _former.emplace_back(each->second.program);
-        each = lives ? std::next(each) : _copies.erase(each);
+        const bool lives = each->second.original.valid() && each->second.copy->functions.valid();
+        each = lives ? std::next(each) : _uses.erase(each);
     }
-    const auto gone = [](const osg::observer_ptr<osg::Program>& each)
+    _purgeSize = 2 * _uses.size() + 64;
+    const auto gone = [](const auto& each)
     {
         return !each.valid();
     };
     _former.erase(std::remove_if(_former.begin(), _former.end(), gone), _former.end());
+    _shared.erase(
+        std::remove_if(_shared.begin(), _shared.end(), [](const auto& each) { return each.expired(); }),
+        _shared.end());
+    for (auto each = _shaders.begin(); each != _shaders.end();)
+        each = each->second.valid() ? std::next(each) : _shaders.erase(each);
 }
 
 std::vector<std::string> FollowingPrograms::takeComplaints(bool colors)
@@ -174,8 +252,6 @@ std::vector<osg::ref_ptr<osg::Program>> FollowingPrograms::programs()
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     std::vector<osg::ref_ptr<osg::Program>> all;
-    for (const auto& [original, copy] : _copies)
-        all.push_back(copy.program);
     for (const osg::observer_ptr<osg::Program>& each : _former)
     {
         osg::ref_ptr<osg::Program> former;

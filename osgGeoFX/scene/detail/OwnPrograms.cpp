@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <iterator>
 
 namespace osgGeoFX
@@ -123,6 +124,17 @@ bool OwnPrograms::callsFunctions(const osg::StateAttribute& program)
         known.calls = known.calls || (placesVertices(*shader) && calls(shader->getShaderSource()));
     }
     return known.calls;
+}
+
+std::size_t OwnPrograms::numberOf(const osg::Program& program)
+{
+    std::string texts;
+    for (unsigned int i = 0; i < program.getNumShaders(); ++i)
+    {
+        const osg::Shader& shader = *program.getShader(i);
+        texts += std::to_string(shader.getType()) + '\n' + shader.getShaderSource() + '\0';
+    }
+    return std::hash<std::string>()(texts);
 }
 
 std::string OwnPrograms::describe(const osg::StateAttribute& program, const osg::NodePath& path)

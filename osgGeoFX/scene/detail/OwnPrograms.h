@@ -6,6 +6,7 @@
 #include <osg/Program>
 #include <osg/observer_ptr>
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <utility>
@@ -40,6 +41,8 @@ public:
     /// Starts a frame. Each program is looked at once in a frame.
     void startFrame();
 
+    /// The same number for programs with equal texts, as the tiles of a database may have them.
+    static std::size_t numberOf(const osg::Program& program);
     /// A description for messages: the program's name, else its shaders' names, with the node where it draws.
     static std::string describe(const osg::StateAttribute& program, const osg::NodePath& path);
     /// Whether a shader's text calls a function that returns a vec4, comments and declarations apart.

@@ -193,7 +193,7 @@ void SceneDrawing::sayOnce(const std::string& sentence)
     if (_said.insert(kind).second) OSG_WARN << "osgGeoFX: " << sentence << std::endl;
 }
 
-/// Once for each program, whatever it is called.
+/// Once for all programs with equal texts, whatever they are called.
 void SceneDrawing::warnOf(const CompensatingCullVisitor::Stranger& stranger)
 {
     osg::ref_ptr<const osg::StateAttribute> own;
@@ -202,7 +202,14 @@ void SceneDrawing::warnOf(const CompensatingCullVisitor::Stranger& stranger)
     osg::observer_ptr<const osg::StateAttribute>& known = _strangers[own.get()];
     if (known.valid()) return;
     known = own.get();
+    if (_strangers.size() > _strangersPurgeSize)
+    {
+        for (auto each = _strangers.begin(); each != _strangers.end();)
+            each = each->second.valid() ? std::next(each) : _strangers.erase(each);
+        _strangersPurgeSize = 2 * _strangers.size() + 64;
+    }
     const auto* program = dynamic_cast<const osg::Program*>(own.get());
+    if (program && !_strangerNumbers.insert(OwnPrograms::numberOf(*program)).second) return;
     const auto adaptation = program ? AdaptedPrograms::instance().of(*program) : nullptr;
     const std::string why =
         adaptation ? " cannot be adapted, since " + adaptation->refusal() : " does not call geofx_vertex()";

@@ -84,7 +84,10 @@ private:
     const osg::ref_ptr<osg::StateSet> _inPass = new osg::StateSet;
     std::optional<unsigned int> _boundsFrame; ///< the frame that another node's bounds were completed in
     std::set<std::string> _said;
+    /// Those that have been warned of, by themselves and by OwnPrograms::numberOf().
     std::map<const osg::StateAttribute*, osg::observer_ptr<const osg::StateAttribute>> _strangers;
+    std::set<std::size_t> _strangerNumbers;
+    std::size_t _strangersPurgeSize = 64;
 };
 
 } // namespace osgGeoFX
