@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // SPDX-FileCopyrightText: 2026 the osgGeoFX authors
 //
-// Scenes, effects, callbacks, views, windows and contexts are made, replaced and deleted while frames are on their way, in all of
-// OSG's threading models. Run it with AddressSanitizer and ThreadSanitizer, too.
+// Scenes, effects, callbacks, views, windows and contexts are made, replaced and deleted while frames are on their way and tiles
+// come and go, in all of OSG's threading models. Run it with AddressSanitizer and ThreadSanitizer, too.
 #include <tools/CloseUpSamples.h>
 #include <tools/GlRequired.h>
 #include <tools/ImageComparison.h>
@@ -26,7 +26,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <thread>
+#include <typeinfo>
+#include <utility>
+#include <vector>
 
 using namespace osgGeoFX;
 using namespace geofx::test;
@@ -138,6 +142,24 @@ private:
     int _frames = 0;
 };
 
+/// Many small things in two colors.
+osg::ref_ptr<osg::Group> plain()
+{
+    osg::ref_ptr<osg::Group> all = new osg::Group;
+    for (int i = 0; i < 64; ++i)
+    {
+        osg::ref_ptr<osg::ShapeDrawable> box =
+            new osg::ShapeDrawable(new osg::Box(osg::Vec3(500.0f * static_cast<float>(i % 8) - 1750.0f,
+                                                          500.0f * static_cast<float>(i / 8) - 1750.0f, 0.0f),
+                                                300.0f));
+        box->setColor(i % 3 ? osg::Vec4(0.2f, 0.7f, 0.3f, 1.0f) : osg::Vec4(0.8f, 0.2f, 0.1f, 1.0f));
+        box->setUseDisplayList(false);
+        box->setUseVertexBufferObjects(true);
+        all->addChild(box);
+    }
+    return all;
+}
+
 class LifeAndDeath : public ::testing::TestWithParam<Threading>
 {
 protected:
@@ -153,23 +175,6 @@ protected:
         GTEST_SKIP() << context->error();
     }
 
-    /// Many small things in two colors, with some that have a program.
-    static osg::ref_ptr<osg::Group> plain()
-    {
-        osg::ref_ptr<osg::Group> all = new osg::Group;
-        for (int i = 0; i < 64; ++i)
-        {
-            osg::ref_ptr<osg::ShapeDrawable> box = new osg::ShapeDrawable(
-                new osg::Box(osg::Vec3(500.0f * static_cast<float>(i % 8) - 1750.0f,
-                                       500.0f * static_cast<float>(i / 8) - 1750.0f, 0.0f),
-                             300.0f));
-            box->setColor(i % 3 ? osg::Vec4(0.2f, 0.7f, 0.3f, 1.0f) : osg::Vec4(0.8f, 0.2f, 0.1f, 1.0f));
-            box->setUseDisplayList(false);
-            box->setUseVertexBufferObjects(true);
-            all->addChild(box);
-        }
-        return all;
-    }
     static osg::ref_ptr<EffectScene> sceneOf(Effect* effect)
     {
         osg::ref_ptr<EffectScene> scene = new EffectScene;
@@ -322,4 +327,259 @@ TEST_P(LifeAndDeath, AViewGoesWithItsWindow)
         windows.close(1);
     }
     EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "after-views"));
+}
+
+namespace
+{
+
+/// What an application may do between two frames, at random.
+class Life
+{
+public:
+    Life(Windows& windows, std::uint64_t sample, std::string database)
+        : _windows(windows), _random(sample), _database(std::move(database))
+    {
+        open();
+        _windows.realize();
+    }
+
+    /// A name of what was done.
+    std::string step()
+    {
+        struct Action
+        {
+            const char* name;
+            int weight;
+            void (Life::*run)();
+        };
+        static constexpr Action actions[] = {{"the camera moves", 8, &Life::move},
+                                             {"another scene in the view", 3, &Life::replaceData},
+                                             {"another scene in the group", 4, &Life::replaceChild},
+                                             {"another callback", 4, &Life::replaceCallback},
+                                             {"an effect comes", 5, &Life::addEffect},
+                                             {"an effect goes", 5, &Life::removeEffect},
+                                             {"an effect is switched", 3, &Life::switchEffect},
+                                             {"a window opens", 2, &Life::open},
+                                             {"a window closes", 2, &Life::close},
+                                             {"two views of one scene", 2, &Life::share},
+                                             {"nothing to see", 1, &Life::empty},
+                                             {"another threading model", 1, &Life::changeModel}};
+        int all = 0;
+        for (const Action& each : actions)
+            all += each.weight;
+        int choice = _random.integer(0, all - 1);
+        const Action* action = actions;
+        while (choice >= action->weight)
+            choice -= (action++)->weight;
+        (this->*action->run)();
+        // Some of what was replaced lives a little longer.
+        while (!_replaced.empty() && _random.integer(0, 1))
+            _replaced.pop_back();
+        for (int frames = _random.integer(0, 2); frames > 0; --frames)
+            _windows.frame();
+        return action->name;
+    }
+
+    /// Views of one new scene.
+    void end(osg::Node* scene)
+    {
+        while (_windows.size() > 1)
+            _windows.close(_windows.size() - 1);
+        _windows.view(0).setSceneData(scene);
+        Windows::look(&_windows.view(0), 9000.0);
+        _replaced.clear();
+    }
+
+private:
+    std::size_t any()
+    {
+        return static_cast<std::size_t>(_random.integer(0, static_cast<int>(_windows.size()) - 1));
+    }
+    osg::Group& rootOf(std::size_t i) { return *_windows.view(i).getSceneData()->asGroup(); }
+    /// The scene that a view shows; null for none.
+    EffectScene* sceneOf(std::size_t i)
+    {
+        osg::Group& root = rootOf(i);
+        if (root.getNumChildren() == 0) return nullptr;
+        if (auto* scene = dynamic_cast<EffectScene*>(root.getChild(0))) return scene;
+        auto* callback = dynamic_cast<EffectCullCallback*>(root.getChild(0)->getCullCallback());
+        return callback ? callback->getScene() : nullptr;
+    }
+
+    osg::ref_ptr<Effect> newEffect(const EffectScene& scene)
+    {
+        bool bends = false;
+        for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+            bends = bends || dynamic_cast<const PerspectiveBend*>(scene.getEffect(i));
+        switch (_random.integer(bends ? 2 : 0, 5))
+        {
+        case 0:
+        {
+            const osg::ref_ptr<BirdsEyeView> bird = new BirdsEyeView;
+            bird->setHorizonLine(0.8);
+            return bird;
+        }
+        case 1:
+        {
+            const osg::ref_ptr<PedestrianView> walk = new PedestrianView;
+            walk->setFocusDistance(4000.0);
+            walk->setZoneWidth(5000.0);
+            return walk;
+        }
+        case 2:
+        {
+            const osg::ref_ptr<VerticalExaggeration> high = new VerticalExaggeration;
+            high->setFactor(_random.uniform(1.0, 3.0));
+            return high;
+        }
+        case 3:
+        {
+            const osg::ref_ptr<SunShadows> shadows = new SunShadows;
+            shadows->setMapSize(64);
+            shadows->setCascades(2);
+            return shadows;
+        }
+        default:
+        {
+            CloseUpPlan plan;
+            plan.reach = 1200.0;
+            const osg::ref_ptr<CloseUps> closeUps = new CloseUps;
+            closeUps->setPipeline(_random.integer(0, 1) ? CloseUps::MULTI_PASS : CloseUps::SINGLE_PASS);
+            closeUps->addCloseUp(randomCloseUp(_random, plan));
+            return closeUps;
+        }
+        }
+    }
+    void addEffectTo(EffectScene& scene)
+    {
+        const osg::ref_ptr<Effect> effect = newEffect(scene);
+        // Of each kind, a scene has one.
+        for (unsigned int i = 0; i < scene.getNumEffects(); ++i)
+            if (typeid(*scene.getEffect(i)) == typeid(*effect)) return;
+        scene.addEffect(effect);
+    }
+    osg::ref_ptr<EffectScene> newEffects()
+    {
+        osg::ref_ptr<EffectScene> scene = new EffectScene;
+        for (int count = _random.integer(1, 3); count > 0; --count)
+            addEffectTo(*scene);
+        return scene;
+    }
+    osg::ref_ptr<osg::Group> newTerrain()
+    {
+        osg::ref_ptr<osg::Group> all = new osg::Group;
+        osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
+        sun->getLight()->setPosition(osg::Vec4(0.3f, 0.2f, 1.0f, 0.0f));
+        all->addChild(sun);
+        if (_random.integer(0, 2)) all->addChild(osgDB::readRefNodeFile(_database));
+        if (_random.integer(0, 1)) all->addChild(plain());
+        return all;
+    }
+    osg::ref_ptr<osg::Group> newScene()
+    {
+        const osg::ref_ptr<EffectScene> effects = newEffects();
+        osg::ref_ptr<osg::Group> terrain = newTerrain();
+        if (_random.integer(0, 2))
+        {
+            effects->addChild(terrain);
+            return effects;
+        }
+        terrain->setCullingActive(false);
+        terrain->setCullCallback(new EffectCullCallback(effects));
+        return terrain;
+    }
+    osg::ref_ptr<osg::Group> newRoot()
+    {
+        osg::ref_ptr<osg::Group> root = new osg::Group;
+        root->addChild(newScene());
+        return root;
+    }
+
+    void move()
+    {
+        Windows::look(&_windows.view(any()), _random.logarithmic(500.0, 60000.0), _random.uniform(-3.0, 3.0));
+    }
+    void replaceData()
+    {
+        osgViewer::View& view = _windows.view(any());
+        _replaced.emplace_back(view.getSceneData());
+        view.setSceneData(newRoot());
+    }
+    void replaceChild()
+    {
+        osg::Group& root = rootOf(any());
+        if (root.getNumChildren() > 0) _replaced.emplace_back(root.getChild(0));
+        root.removeChildren(0, root.getNumChildren());
+        root.addChild(newScene());
+    }
+    void replaceCallback()
+    {
+        osg::Group& root = rootOf(any());
+        osg::Node* const terrain = root.getNumChildren() > 0 ? root.getChild(0) : nullptr;
+        if (terrain && dynamic_cast<EffectCullCallback*>(terrain->getCullCallback()))
+            terrain->setCullCallback(new EffectCullCallback(newEffects()));
+    }
+    void addEffect()
+    {
+        if (EffectScene* scene = sceneOf(any())) addEffectTo(*scene);
+    }
+    void removeEffect()
+    {
+        EffectScene* const scene = sceneOf(any());
+        if (!scene || scene->getNumEffects() == 0) return;
+        const osg::ref_ptr<Effect> effect = scene->getEffect(
+            static_cast<unsigned int>(_random.integer(0, static_cast<int>(scene->getNumEffects()) - 1)));
+        if (_random.integer(0, 1)) _replaced.emplace_back(effect);
+        scene->removeEffect(effect);
+    }
+    void switchEffect()
+    {
+        EffectScene* const scene = sceneOf(any());
+        if (!scene || scene->getNumEffects() == 0) return;
+        Effect* const effect = scene->getEffect(
+            static_cast<unsigned int>(_random.integer(0, static_cast<int>(scene->getNumEffects()) - 1)));
+        effect->setEnabled(!effect->getEnabled());
+    }
+    void open()
+    {
+        if (_windows.size() >= 3) return;
+        _windows.open(newRoot());
+        _windows.realize();
+    }
+    void close()
+    {
+        if (_windows.size() > 1) _windows.close(any());
+    }
+    void share()
+    {
+        // Below one root: OSG's pagers do not share a terrain.
+        _windows.view(any()).setSceneData(_windows.view(any()).getSceneData());
+    }
+    void empty() { rootOf(any()).removeChildren(0, rootOf(any()).getNumChildren()); }
+    void changeModel() { _windows.setModel(models[_random.integer(0, 3)]); }
+
+    Windows& _windows;
+    Random _random;
+    const std::string _database;
+    std::vector<osg::ref_ptr<osg::Referenced>> _replaced;
+};
+
+} // namespace
+
+// As many steps for each model; the model itself changes now and then.
+TEST_P(LifeAndDeath, RandomStepsEndWell)
+{
+    const osg::ref_ptr<osg::Image> expected = alone(sceneOf(bird()));
+    const TempDir folder;
+    const std::string database = PagedScene::write(folder.path(), PagedScene::Kind::Flat).string();
+    Windows windows(GetParam(), 2);
+    Life life(windows, static_cast<std::uint64_t>(GetParam()), database);
+    std::string way;
+    for (int i = 0; i < (fullTest() ? 2500 : 30); ++i)
+    {
+        SCOPED_TRACE("step " + std::to_string(i) + way);
+        way = ", after: " + life.step();
+    }
+    life.end(sceneOf(bird()));
+    EXPECT_TRUE(imagesMatch(*windows.picture(0), *expected, {}, "after-random-steps"));
 }
